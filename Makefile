@@ -1,0 +1,45 @@
+# Needs only Python 3.11 or newer (with pip and venv), make and git.
+PYTHON ?= python3
+BIN := .venv/bin
+# A stamp names what was installed; it is renewed when the package's declaration changes.
+ALL := .venv/.installed-all
+CLI := .venv/.installed-cli
+PIP := $(BIN)/python -m pip --disable-pip-version-check
+DECLARED := pyproject.toml constraints.txt
+
+.PHONY: venv demo test lint types layers clean
+
+venv: $(ALL)
+
+$(BIN)/python:
+	$(PYTHON) -c 'import sys; sys.exit(None if (3, 11) <= sys.version_info < (3, 15) else "Standoff needs Python 3.11 to 3.14; this is " + sys.version.split()[0] + ". Name another: make PYTHON=python3.12 ...")'
+	$(PYTHON) -m venv .venv
+
+$(ALL): $(DECLARED) | $(BIN)/python
+	$(PIP) install -q -c constraints.txt -e ".[cli,test,dev,peers]"
+	@touch $(ALL) $(CLI)
+
+$(CLI): $(DECLARED) | $(BIN)/python
+	$(PIP) install -q -c constraints.txt -e ".[cli]"
+	@touch $(CLI)
+
+demo: $(CLI)
+	@mkdir -p build
+	$(BIN)/standoff track examples/demo.toml -o build/demo.parquet --plot build/demo.png
+
+test: $(ALL)
+	$(BIN)/python -m pytest
+
+lint: $(ALL)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(ALL)
+	$(BIN)/mypy
+
+layers: $(ALL)
+	$(BIN)/lint-imports
+
+clean:
+	rm -rf build dist .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
+	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,1 @@
+"""Convex bodies: topology, sewing, convexity proofs, packing, and ready-made shapes."""

@@ -1,0 +1,1 @@
+"""Curves and surfaces: validated, immutable descriptions of shapes."""

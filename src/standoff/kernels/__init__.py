@@ -1,0 +1,1 @@
+"""Compiled kernels over tuples and flat arrays: jets, equations, feedback, tracking."""

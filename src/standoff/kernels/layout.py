@@ -1,0 +1,94 @@
+"""Where everything stands in a packed body: two flat arrays, ``ints`` and ``reals``.
+
+A packed body is read by every kernel and written by one place, ``standoff.bodies.packing``.
+Features have one number: faces 0 .. F-1, then edges, then vertices. A *chart* is one surface
+with its trimming loop in (u, v); a face owns one chart, or an atlas of overlapping ones. A
+*coedge* is one side of an edge: the edge's trimming curve (pcurve) in a chart.
+"""
+
+# ints, header: counts, then the offset of each table in ints.
+DIMENSION = 0  # 2 for a planar body, 3 for a spatial one
+N_FACES = 1
+N_EDGES = 2
+N_VERTICES = 3
+N_CHARTS = 4
+N_SAMPLES = 5
+FACES = 6
+CHARTS = 7
+COEDGES = 8
+EDGES = 9
+VERTICES = 10
+SAMPLES = 11  # in ints: (feature, chart) a sample; the reals' offset is SAMPLE_REALS
+SAMPLE_REALS = 12
+UNBOUNDED = 13  # 1 for a half-space: no bounding box
+INT_HEADER = 14
+
+# reals, header.
+RADIUS = 0  # swept radius, length
+SIZE = 1  # diameter of the core, length
+SLACK = 2  # sewing tolerance and convexity defect, length
+BOX_CENTRE = 3  # 3 numbers, body frame
+BOX_HALF = 6  # 3 numbers
+REAL_HEADER = 9
+
+# A face: first chart, number of charts.
+FACE_STRIDE = 2
+
+# A chart: surface kind, offset in reals, first coedge, number of coedges, face.
+CHART_STRIDE = 5
+CHART_KIND, CHART_REALS, CHART_COEDGE, CHART_N_COEDGES, CHART_FACE = range(5)
+# Its reals: affine map (3x3 row-major, shift), inverse of the 3x3, then the two below, then
+# what the surface kind needs.
+AFFINE = 0
+INVERSE = 12
+OUTWARD = 21  # +1 where f_u x f_v points outward, else -1
+LIMIT = 22  # |u|, |v| where an atlas's chart ends; inf for a chart that stands alone
+SURFACE_DATA = 23
+
+# A coedge: edge (or -1 - vertex for a collapsed side), pcurve kind, offset in reals, side, chart.
+COEDGE_STRIDE = 5
+COEDGE_EDGE, COEDGE_KIND, COEDGE_REALS, COEDGE_SIDE, COEDGE_CHART = range(5)
+# side: +1 where the face lies on the left of the pcurve as its parameter grows, else -1.
+# Its reals: the first and last parameter, then a 3x3 matrix P (row-major): homogeneous (u, v) is
+# P (t, 0, 1) for a line and P (cos t, sin t, 1) for a conic.
+PCURVE_FIRST = 0
+PCURVE_LAST = 1
+PCURVE_MATRIX = 2
+PCURVE_STRIDE = 11
+
+# An edge: curve kind, offset in reals, flags, first vertex, last vertex, coedge, coedge.
+EDGE_STRIDE = 7
+EDGE_KIND, EDGE_REALS, EDGE_FLAGS, EDGE_FIRST, EDGE_LAST, EDGE_COEDGE_0, EDGE_COEDGE_1 = range(7)
+CLOSED = 1  # a period and no vertex
+SMOOTH = 2  # both faces share their normal along it: passed by its reset, not a mode
+OUTWARD_RIGHT = 4  # planar bodies: the outward normal is on the right of the tangent
+# Its reals: first and last parameter, then the affine map (line, conic), or degree and
+# homogeneous control points (w x, w y, w z, w) (rational Bezier).
+EDGE_T0 = 0
+EDGE_T1 = 1
+CURVE_DATA = 2
+
+# A vertex: offset in reals of its point; fan (offset in ints, count); sectors (offset in ints,
+# count); generators of the normal cone (offset in reals, count).
+VERTEX_STRIDE = 7
+VERTEX_REALS, VERTEX_FAN, VERTEX_N_FAN, VERTEX_SECTORS, VERTEX_N_SECTORS, VERTEX_CONE, VERTEX_N_CONE = (
+    range(7)
+)
+# A fan entry: edge, end (0 or 1). A sector entry: chart, offset in reals.
+# A sector's reals: kind, u, v, lo, hi.
+SECTOR_APEX = 0  # collapsed side: start anywhere on u in [lo, hi] at v, heading to growing v
+SECTOR_WIDE = 1  # a face's angle of 180 degrees or more: directions lo .. hi in the (u, v) plane
+
+# A sample's reals: point, outward normal (zero at edges and vertices), parameters.
+SAMPLE_STRIDE = 8
+
+# Surface kinds.
+PLANE = 0
+SPHERE = 1  # gnomonic
+CYLINDER = 2
+CONE = 3
+
+# Curve and pcurve kinds.
+LINE = 0
+CONIC = 1
+BEZIER = 2

@@ -1,0 +1,53 @@
+"""Every tolerance of the kernels: its name, unit, value and reason.
+
+Lengths are compared with the pair's scale: the sum of the diameters plus the distance.
+"""
+
+EPS = 2.220446049250313e-16
+
+# Relative pivot of H in the metric of the tangents (dimensionless). Above it the plain factor is
+# the paper's law; below it the pair is nearly parallel and H is decomposed.
+PIVOT = 1e-10
+
+# Eigenvalues below -NEGATIVE take their magnitude (dimensionless, relative to the largest).
+NEGATIVE = 1e-10
+
+# A gradient component (length², per unit length of tangent) below GRADIENT_NOISE eps scale
+# times |dR| is the roundoff of dR; such a component is no slope. Also the test of stationarity.
+GRADIENT_NOISE = 16.0
+
+# Longest step along a direction without curvature, in scales. A flat direction with a slope is
+# walked to the boundary of its face, which is never farther than one diameter.
+REACH = 4.0
+
+# Armijo's sufficient decrease (dimensionless): small, as Newton steps are nearly always right.
+ARMIJO = 1e-4
+MAX_HALVINGS = 30
+
+# Energy noise, in eps scale |dR| (length²): a rise below it is roundoff, not a rise.
+ENERGY_NOISE = 8.0
+
+# Least slope (dimensionless: a sine of an angle) that releases a feature; SLOPE_NOISE eps
+# scale/d is added, the roundoff of the direction of dR.
+SLOPE = 1e-10
+SLOPE_NOISE = 8.0
+
+# A hit may lie this far behind the start of a step (in steps): the start is on the boundary.
+HIT_BEHIND = 1e-9
+
+# A pcurve hit may lie this far (radians or parameter units) outside its range: at a corner the
+# line must not slip between two edges.
+PCURVE_OVERLAP = 1e-12
+
+# An atlas's chart is left when |u| or |v| passes RECHART (dimensionless, gnomonic).
+RECHART = 1.2
+
+# Surfaces closer than TOUCHING scales, with no positive lower bound, touch or overlap.
+TOUCHING = 1e-13
+
+# Bound on iterations of one descent and on passes of release: far above what was ever seen.
+MAX_ITERATIONS = 400
+
+# A tangent shorter than COLLAPSED scales has collapsed to a point (a cone's apex): the
+# direction is frozen.
+COLLAPSED = 1e-13

@@ -1,0 +1,1 @@
+"""Poses, twists, and paths in time."""

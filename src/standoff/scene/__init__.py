@@ -1,0 +1,1 @@
+"""Scenes in TOML: bodies, placements, motions, and tracking settings."""

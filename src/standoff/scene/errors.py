@@ -1,0 +1,25 @@
+"""The one error that a scene raises."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class SceneError(ValueError):
+    """A scene that cannot be used, with the place and the cure.
+
+    Attributes
+    ----------
+    file : Path or None
+        The file that holds the fault; None where a program or the command line gave the value.
+    key : str
+        Dotted path of the key, such as ``bodies.tool.semi_axes``; empty for the whole file.
+    problem : str
+        What is wrong, with the offending value, and what to write instead.
+    """
+
+    def __init__(self, problem: str, *, key: str = "", file: Path | None = None) -> None:
+        self.problem = problem
+        self.key = key
+        self.file = file
+        super().__init__(": ".join(part for part in (str(file or ""), key, problem) if part))

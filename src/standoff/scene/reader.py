@@ -1,0 +1,285 @@
+"""Strict reading of TOML tables: every value checked, every key accounted for.
+
+A `Table` knows its file and its dotted key path, so that each complaint names the place. Reading
+a key marks it as known; `finish` refuses whatever is left and suggests the nearest known key.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from standoff.scene.errors import SceneError
+
+Array = npt.NDArray[np.float64]
+Value = TypeVar("Value")
+
+NEAREST_CUTOFF = 0.5
+"""Least likeness (difflib ratio, 0 to 1) at which a known name is suggested for an unknown one.
+
+Half catches swapped, missing and doubled letters in short keys, and stays silent on a word that
+has nothing to do with any known key.
+"""
+
+SHOWN_CHARACTERS = 60
+"""Longest piece of an offending value that a message repeats, in characters: one terminal line."""
+
+
+def shown(value: object) -> str:
+    """Return `value` as a message repeats it: its repr, cut to one line."""
+    text = repr(value)
+    return text if len(text) <= SHOWN_CHARACTERS else text[: SHOWN_CHARACTERS - 1] + "…"
+
+
+def one_of(names: Iterable[str]) -> str:
+    """Return names as a sentence lists them: ``'a', 'b' or 'c'``."""
+    quoted = [f"'{name}'" for name in names]
+    return " or ".join(filter(None, [", ".join(quoted[:-1]), *quoted[-1:]]))
+
+
+def nearest(name: str, known: Iterable[str]) -> str | None:
+    """Return the known name most like `name`, or None when none is like it."""
+    folded = {candidate.casefold(): candidate for candidate in known}
+    found = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=NEAREST_CUTOFF)
+    return folded[found[0]] if found else None
+
+
+def unknown_name(name: str, known: Sequence[str], noun: str) -> str:
+    """Return the sentence that refuses a name outside `known` and suggests the nearest one."""
+    likely = nearest(name, known)
+    if likely is not None:
+        return f"unknown {noun} '{name}'; did you mean '{likely}'?"
+    if not known:
+        return f"unknown {noun} '{name}'; none is known here: remove it"
+    return f"unknown {noun} '{name}'; known here: {one_of(known)}"
+
+
+class Table:
+    """One table of a scene file, read key by key.
+
+    Parameters
+    ----------
+    content : mapping
+        The table as tomllib returns it.
+    file : Path or None
+        The scene file, for messages and for file names relative to it.
+    path : str
+        Dotted key path of this table; empty for the top of the file.
+    """
+
+    def __init__(
+        self, content: Mapping[str, object], *, file: Path | None = None, path: str = ""
+    ) -> None:
+        self._content = content
+        self._known: list[str] = []
+        self.file = file
+        self.path = path
+
+    def __contains__(self, key: str) -> bool:
+        if key not in self._known:
+            self._known.append(key)
+        return key in self._content
+
+    def names(self) -> list[str]:
+        """Return the keys in file order, for tables whose keys are the user's own names."""
+        return list(self._content)
+
+    def error(self, problem: str, key: str | None = None) -> SceneError:
+        """Return the error about `key` of this table, or about the table itself."""
+        parts = [part for part in (self.path, key) if part]
+        return SceneError(problem, key=".".join(parts), file=self.file)
+
+    def finish(self) -> None:
+        """Refuse keys that nobody read.
+
+        Raises
+        ------
+        SceneError
+            At the first unknown key, with the nearest known one.
+        """
+        for key in self._content:
+            if key not in self._known:
+                raise self.error(unknown_name(key, sorted(self._known), "key"), key)
+
+    def build(self, construct: Callable[[], Value], key: str | None = None) -> Value:
+        """Return ``construct()``, its ValueError or TypeError told with this table's place."""
+        try:
+            return construct()
+        except SceneError:
+            raise
+        except (ValueError, TypeError) as error:
+            raise self.error(str(error), key) from error
+
+    def required(self, key: str, example: str) -> object:
+        """Return the raw value of `key`; `example` is the line to add when it is missing."""
+        if key in self:
+            return self._content[key]
+        given = [name for name in self._content if name not in self._known]
+        likely = nearest(key, given)
+        hint = f", or rename '{likely}'" if likely is not None else ""
+        raise self.error(f"'{key}' is missing; add a line such as: {example}{hint}")
+
+    def number(self, key: str, default: float | None = None, *, example: str = "") -> float:
+        """Return a finite number."""
+        if default is not None and key not in self:
+            return default
+        return self._finite(self.required(key, example or f"{key} = 1.0"), key)
+
+    def positive(self, key: str, default: float | None = None, *, example: str = "") -> float:
+        """Return a finite number above zero."""
+        value = self.number(key, default, example=example)
+        if value <= 0.0:
+            raise self.error(f"must be above zero, got {value:g}", key)
+        return value
+
+    def not_negative(self, key: str, default: float | None = None) -> float:
+        """Return a finite number, zero or above."""
+        value = self.number(key, default)
+        if value < 0.0:
+            raise self.error(f"must be zero or above, got {value:g}", key)
+        return value
+
+    def text(self, key: str, default: str | None = None, *, example: str = "") -> str:
+        """Return a string that is not empty."""
+        if default is not None and key not in self:
+            return default
+        value = self.required(key, example or f'{key} = "..."')
+        if not isinstance(value, str) or not value.strip():
+            raise self.error(f"must be a text in quotes, got {shown(value)}", key)
+        return value
+
+    def choice(self, key: str, known: Sequence[str], default: str | None = None) -> str:
+        """Return a text out of `known`."""
+        value = self.text(key, default, example=f'{key} = "{known[0]}"')
+        if value not in known:
+            raise self.error(unknown_name(value, known, key), key)
+        return value
+
+    def only_one(self, keys: Sequence[str]) -> str | None:
+        """Return which of `keys` is given, None if none is; refuse two of them."""
+        given = [key for key in keys if key in self]
+        if len(given) > 1:
+            raise self.error(
+                f"{one_of(given[:-1])} and '{given[-1]}' say the same thing: keep one of them"
+            )
+        return given[0] if given else None
+
+    def vector(self, key: str, lengths: int | tuple[int, ...], *, example: str = "") -> Array:
+        """Return a vector of finite numbers whose length is one of `lengths`."""
+        allowed = (lengths,) if isinstance(lengths, int) else lengths
+        sample = ", ".join(["0.0"] * allowed[-1])
+        value = self.required(key, example or f"{key} = [{sample}]")
+        return self._vector(value, key, allowed)
+
+    def matrix(self, key: str, shapes: Sequence[tuple[int, int]]) -> Array:
+        """Return a matrix of finite numbers, written as a list of rows, of one of `shapes`."""
+        rows = self._list(self.required(key, f"{key} = [[...], ...]"), key)
+        widths = tuple({columns for _, columns in shapes})
+        matrix = [
+            self._vector(row, f"{key}[{index}]", widths, "a row of") for index, row in enumerate(rows)
+        ]
+        shape = (len(matrix), len(matrix[0]) if matrix else 0)
+        if shape not in shapes or any(len(row) != shape[1] for row in matrix):
+            wanted = " or ".join(f"{height}×{width}" for height, width in shapes)
+            raise self.error(f"must be a {wanted} list of rows, got {shape[0]} rows", key)
+        return np.array(matrix)
+
+    def points(self, key: str, lengths: int | tuple[int, ...], at_least: int) -> Array:
+        """Return a list of at least `at_least` points of equal length, shape (n, length)."""
+        allowed = (lengths,) if isinstance(lengths, int) else lengths
+        rows = self._list(self.required(key, f"{key} = [[...], ...]"), key)
+        points = [
+            self._vector(row, f"{key}[{index}]", allowed, "a point of")
+            for index, row in enumerate(rows)
+        ]
+        if len(points) < at_least:
+            raise self.error(f"needs at least {at_least} points, got {len(points)}", key)
+        for index, point in enumerate(points):
+            if len(point) != len(points[0]):
+                raise self.error(
+                    f"has {len(point)} numbers where {key}[0] has {len(points[0])}; "
+                    "give every point the same number",
+                    f"{key}[{index}]",
+                )
+        return np.array(points)
+
+    def numbers(self, key: str) -> Array:
+        """Return a list of finite numbers of any length above zero."""
+        values = self._list(self.required(key, f"{key} = [1.0, 1.0]"), key)
+        if not values:
+            raise self.error("is an empty list; give at least one number", key)
+        return np.array([self._finite(value, f"{key}[{i}]") for i, value in enumerate(values)])
+
+    def table(self, key: str, example: str = "") -> Table:
+        """Return the table under `key`."""
+        value = self.required(key, example or f"[{self._below(key)}]")
+        return self._table(value, key)
+
+    def tables(self, key: str) -> list[Table]:
+        """Return the array of tables under `key`, at least one."""
+        values = self._list(self.required(key, f"[[{self._below(key)}]]"), key)
+        if not values:
+            raise self.error(f"is an empty list; add a [[{self._below(key)}]]", key)
+        return [self._table(value, f"{key}[{index}]") for index, value in enumerate(values)]
+
+    def existing_file(self, key: str, example: str) -> Path:
+        """Return a file named relative to the scene file, known to exist."""
+        name = self.text(key, example=example)
+        folder = self.file.parent if self.file is not None else Path()
+        path = folder / name
+        if not path.is_file():
+            raise self.error(missing_file(path, name), key)
+        return path
+
+    def _below(self, key: str) -> str:
+        return f"{self.path}.{key}" if self.path else key
+
+    def _list(self, value: object, key: str) -> list[object]:
+        if not isinstance(value, list):
+            raise self.error(f"must be a list in square brackets, got {shown(value)}", key)
+        return value
+
+    def _table(self, value: object, key: str) -> Table:
+        if not isinstance(value, dict):
+            raise self.error(
+                f"must be a table, written [{self._below(key)}], got {shown(value)}", key
+            )
+        return Table(value, file=self.file, path=self._below(key))
+
+    def _vector(
+        self, value: object, key: str, lengths: tuple[int, ...], noun: str = "a list of"
+    ) -> Array:
+        wanted = " or ".join(map(str, sorted(lengths)))
+        if not isinstance(value, list) or len(value) not in lengths:
+            raise self.error(f"must be {noun} {wanted} numbers, got {shown(value)}", key)
+        return np.array([self._finite(item, f"{key}[{i}]") for i, item in enumerate(value)])
+
+    def _finite(self, value: object, key: str) -> float:
+        # TOML's true and false are Python bools, and a bool is an int: refused by name.
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise self.error(f"must be a number, got {shown(value)}", key)
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number):
+            raise self.error(f"must be a finite number, got {shown(value)}", key)
+        return number
+
+
+def missing_file(path: Path, name: str) -> str:
+    """Return the sentence about a file that is not there, with the nearest name beside it."""
+    if path.is_dir():
+        return f"'{name}' is a folder; name a file in it"
+    if not path.parent.is_dir():
+        return f"no file '{name}': its folder does not exist; paths are relative to the scene file"
+    likely = nearest(path.name, [entry.name for entry in path.parent.iterdir() if entry.is_file()])
+    if likely is not None:
+        return f"no file '{name}'; did you mean '{likely}'?"
+    return f"no file '{name}'; paths are relative to the scene file"

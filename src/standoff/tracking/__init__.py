@@ -1,0 +1,1 @@
+"""Minimum distance tracking: trackers, answers, events, recordings, and gains."""
