@@ -38,7 +38,7 @@ types: $(ALL)
 	$(BIN)/mypy
 
 layers: $(ALL)
-	$(BIN)/lint-imports
+	$(BIN)/lint-imports --no-logo
 
 clean:
 	rm -rf build dist .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
