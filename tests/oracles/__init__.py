@@ -1,0 +1,6 @@
+"""Independent ground truth for the tests.
+
+Nothing here imports ``standoff``: these modules judge it. Only NumPy and SciPy are used, and the
+methods differ from the library's own: support functions, cutting planes on the Minkowski
+difference, sequential quadratic programming and enumeration of features.
+"""
