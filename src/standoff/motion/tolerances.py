@@ -1,0 +1,22 @@
+"""Every tolerance of this layer, with its unit and its reason."""
+
+from typing import Final
+
+#: No unit. Greatest component of ``RᵀR − I`` in an accepted rotation matrix, and greatest error of
+#: the last row of a homogeneous matrix. Double precision gives 1e-15 and long products of rotations
+#: 1e-12; nine digits also admit matrices read from files that keep ten. A larger defect would show
+#: in distances at the level that the library certifies.
+ORTHONORMALITY: Final = 1e-9
+
+#: No unit. Greatest ``| |q| − 1 |`` of an accepted quaternion. Trajectory files keep four decimals,
+#: which leaves up to 1e-4; beyond ten times that the four numbers are something else, most often in
+#: another order or not a quaternion.
+UNIT_QUATERNION: Final = 1e-3
+
+#: No unit. Below this ``| |q| − 1 |`` normalising is rounding and is not reported. The same size as
+#: `ORTHONORMALITY`: a rotation matrix that far off is accepted without a word too.
+QUATERNION_ROUNDING: Final = 1e-9
+
+#: Radian. Two samples whose rotations differ by a half turn to within this have two shortest
+#: screws between them. The accuracy to which rotations are accepted decides which would be taken.
+HALF_TURN: Final = 1e-9

@@ -1,0 +1,179 @@
+"""Twists: how a body moves at an instant, and where it comes when the twist lasts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.spatial.transform import Rotation
+
+from standoff.motion import inputs
+from standoff.motion.inputs import FloatArray, text
+from standoff.motion.pose import Pose, PoseLike
+
+Frame: TypeAlias = Literal["world", "body"]
+"""The axes in which a twist's components are given."""
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Twist:
+    """The velocity of a rigid body: linear part first.
+
+    Both frames hold the same two vectors, the velocity of the body's origin and the angular
+    velocity, both relative to the world; `frame` says along which axes they are resolved.
+
+    Parameters
+    ----------
+    v : array_like, shape (3,)
+        Velocity of the body's origin [length/s].
+    omega : array_like, shape (3,)
+        Angular velocity [rad/s].
+    frame : {"world", "body"}
+        Axes of both vectors.
+
+    Attributes
+    ----------
+    v, omega : ndarray, shape (3,)
+        Read-only, float64.
+    frame : {"world", "body"}
+
+    Raises
+    ------
+    ValueError
+        If a component is not finite, a shape is wrong, or the frame is unknown.
+    """
+
+    v: FloatArray
+    omega: FloatArray
+    frame: Frame
+
+    def __init__(self, v: ArrayLike, omega: ArrayLike, frame: Frame = "world") -> None:
+        if frame not in get_args(Frame):
+            raise ValueError(f'frame is {frame!r}: give "world" or "body"')
+        object.__setattr__(self, "v", inputs.array(v, "v", (3,)))
+        object.__setattr__(self, "omega", inputs.array(omega, "omega", (3,)))
+        object.__setattr__(self, "frame", frame)
+
+    @classmethod
+    def of(cls, value: TwistLike) -> Twist:
+        """Read a twist; bare numbers are in world axes.
+
+        Parameters
+        ----------
+        value : Twist, pair (v, ω), or array_like of shape (6,)
+            Linear part first.
+
+        Raises
+        ------
+        ValueError
+            If it is none of these.
+        """
+        if isinstance(value, Twist):
+            return value
+        try:
+            given = np.asarray(value)
+        except ValueError as error:
+            raise ValueError(f"no twist: {value!r}; {_ACCEPTED}") from error
+        if given.shape not in ((6,), (2, 3)):
+            raise ValueError(f"no twist: shape {given.shape}, value {text(given)}; {_ACCEPTED}")
+        v, omega = given.reshape(2, 3)
+        return cls(v, omega)
+
+    @classmethod
+    def zero(cls) -> Twist:
+        """Return the twist of a body at rest."""
+        return cls(np.zeros(3), np.zeros(3))
+
+    @classmethod
+    def between(cls, first: PoseLike, second: PoseLike, duration: float) -> Twist:
+        """Return the body-frame twist that carries `first` to `second` in `duration`.
+
+        It is the logarithm on SE(3): the constant twist of the screw with the least turn.
+
+        Parameters
+        ----------
+        first, second : Pose or what `Pose.of` reads
+        duration : float
+            Time between them [s], above zero.
+
+        Raises
+        ------
+        ValueError
+            If the duration is not positive.
+        """
+        seconds = inputs.number(duration, "duration")
+        if seconds <= 0.0:
+            raise ValueError(f"duration is {seconds}: give a time above zero")
+        relative = Pose.of(first).inverse() @ Pose.of(second)
+        turn: FloatArray = Rotation.from_matrix(relative.rotation).as_rotvec()
+        return cls(_unshear(turn, relative.translation) / seconds, turn / seconds, "body")
+
+    def in_world(self, pose: PoseLike) -> Twist:
+        """Return the same twist in world axes, for a body at `pose`."""
+        if self.frame == "world":
+            return self
+        rotation = Pose.of(pose).rotation
+        return Twist(rotation @ self.v, rotation @ self.omega)
+
+    def carry(self, pose: PoseLike, duration: float) -> Pose:
+        """Return where a body comes from `pose` when this twist lasts, constant in its own frame.
+
+        In body axes the motion is a screw, ``pose @ exp(twist · duration)``. In world axes the
+        origin goes straight while the body turns.
+
+        Parameters
+        ----------
+        pose : Pose or what `Pose.of` reads
+            Where the body is at first.
+        duration : float
+            Time [s]; negative goes back.
+        """
+        placed = Pose.of(pose)
+        seconds = inputs.number(duration, "duration")
+        turn, shift = self.omega * seconds, self.v * seconds
+        rotation: FloatArray = Rotation.from_rotvec(turn).as_matrix()
+        if self.frame == "world":
+            return Pose.from_checked(rotation @ placed.rotation, placed.translation + shift)
+        return placed @ Pose.from_checked(rotation, _shear(turn, shift))
+
+
+TwistLike: TypeAlias = Twist | ArrayLike | tuple[ArrayLike, ArrayLike]
+"""What `Twist.of` reads: a twist, a pair (v, ω), or six numbers (v, ω)."""
+
+_ACCEPTED = "give a Twist, a pair (v, ω) of three numbers each, or six numbers with v first"
+
+
+# The two maps below are V and V⁻¹ of the exponential on SE(3),
+# exp(v, φ) = (exp φ, V v), as in Lynch and Park, Modern Robotics, 2017, Eq. (3.88). On the plane
+# across the axis n = φ/|φ| they multiply by the complex numbers (e^{iθ} − 1)/(iθ) and its inverse;
+# along the axis they are the identity. Written with n, no term loses digits at small angles.
+
+
+def _shear(turn: FloatArray, shift: FloatArray) -> FloatArray:
+    angle = math.hypot(*turn)
+    if angle == 0.0:
+        return shift
+    axis = turn / angle
+    real = math.sin(angle) / angle
+    imaginary = 2.0 * math.sin(0.5 * angle) ** 2 / angle
+    sheared: FloatArray = (
+        real * shift + imaginary * np.cross(axis, shift) + (1.0 - real) * (axis @ shift) * axis
+    )
+    return sheared
+
+
+def _unshear(turn: FloatArray, translation: FloatArray) -> FloatArray:
+    angle = math.hypot(*turn)
+    if angle == 0.0:
+        return translation
+    axis = turn / angle
+    real = 0.5 * angle / math.tan(0.5 * angle)
+    unsheared: FloatArray = (
+        real * translation
+        - 0.5 * np.cross(turn, translation)
+        + (1.0 - real) * (axis @ translation) * axis
+    )
+    return unsheared
