@@ -1,1 +1,26 @@
 """Poses, twists, and paths in time."""
+
+from standoff.motion.paths import ConstantTwist, Fixed, Offset, Path, Screw
+from standoff.motion.pose import Pose, PoseLike
+from standoff.motion.samples import PoseSamples
+from standoff.motion.samples_file import read_pose_samples
+from standoff.motion.twist import Frame, Twist, TwistLike
+from standoff.motion.winding import Helix, Orientation, Spiral
+
+__all__ = [
+    "ConstantTwist",
+    "Fixed",
+    "Frame",
+    "Helix",
+    "Offset",
+    "Orientation",
+    "Path",
+    "Pose",
+    "PoseLike",
+    "PoseSamples",
+    "Screw",
+    "Spiral",
+    "Twist",
+    "TwistLike",
+    "read_pose_samples",
+]

@@ -1,0 +1,205 @@
+"""Paths: where a body is, and how it moves, at every time."""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.spatial.transform import Rotation
+
+from standoff.motion import inputs
+from standoff.motion.pose import Pose, PoseLike
+from standoff.motion.twist import Twist, TwistLike
+
+
+@runtime_checkable
+class Path(Protocol):
+    """A motion in time.
+
+    Attributes
+    ----------
+    start, end : float
+        The times [s] between which the motion is to be used; `end` may be infinite. A path given
+        by a formula also answers outside them; one given by samples refuses.
+    """
+
+    @property
+    def start(self) -> float: ...
+
+    @property
+    def end(self) -> float: ...
+
+    def pose(self, t: float) -> Pose:
+        """Return where the body is at time `t` [s]."""
+        ...
+
+    def twist(self, t: float) -> Twist:
+        """Return how the body moves at time `t` [s], in world axes.
+
+        It is the derivative of `pose`; where that jumps, the one from the right.
+        """
+        ...
+
+
+class Fixed:
+    """A body at rest, for all times.
+
+    Parameters
+    ----------
+    pose : Pose or what `Pose.of` reads
+
+    Raises
+    ------
+    ValueError
+        If that is no pose.
+    """
+
+    start = 0.0
+    end = math.inf
+
+    def __init__(self, pose: PoseLike) -> None:
+        self._pose = Pose.of(pose)
+
+    def pose(self, t: float) -> Pose:
+        """Return the one pose."""
+        inputs.number(t, "t")
+        return self._pose
+
+    def twist(self, t: float) -> Twist:
+        """Return zero."""
+        inputs.number(t, "t")
+        return Twist.zero()
+
+
+class ConstantTwist:
+    """A body whose twist is constant in the axes that the twist names.
+
+    With a body-frame twist the motion is a screw, ``pose @ exp(twist · t)``. With a world-frame
+    twist the origin goes straight while the body turns about it.
+
+    Parameters
+    ----------
+    pose : Pose or what `Pose.of` reads
+        Where the body is at t = 0.
+    twist : Twist or what `Twist.of` reads
+
+    Raises
+    ------
+    ValueError
+        If that is no pose or no twist.
+    """
+
+    start = 0.0
+    end = math.inf
+
+    def __init__(self, pose: PoseLike, twist: TwistLike) -> None:
+        self._initial = Pose.of(pose)
+        self._twist = Twist.of(twist)
+
+    def pose(self, t: float) -> Pose:
+        """Return where the body is at time `t` [s]."""
+        return self._twist.carry(self._initial, inputs.number(t, "t"))
+
+    def twist(self, t: float) -> Twist:
+        """Return how the body moves at time `t` [s], in world axes."""
+        return self._twist.in_world(self.pose(t))
+
+
+class Screw:
+    """A body that turns about a fixed axis in the world and advances along it.
+
+    Parameters
+    ----------
+    pose : Pose or what `Pose.of` reads
+        Where the body is at t = 0.
+    axis : array_like, shape (3,)
+        Direction of the axis, world; any length but zero.
+    point : array_like, shape (3,)
+        A point of the axis, world [length].
+    angular_rate : float
+        Turn about the axis, right-handed [rad/s].
+    pitch : float
+        Advance along the axis in one whole turn [length].
+
+    Raises
+    ------
+    ValueError
+        If that is no pose, the axis is zero, a number is not finite, or a shape is wrong.
+    """
+
+    start = 0.0
+    end = math.inf
+
+    def __init__(
+        self,
+        pose: PoseLike,
+        axis: ArrayLike,
+        point: ArrayLike = (0.0, 0.0, 0.0),
+        angular_rate: float = 1.0,
+        pitch: float = 0.0,
+    ) -> None:
+        self._initial = Pose.of(pose)
+        self._point = inputs.array(point, "point", (3,))
+        unit = inputs.direction(axis, "axis")
+        rate = inputs.number(angular_rate, "angular_rate")
+        self._omega = unit * rate
+        self._advance = self._omega * (inputs.number(pitch, "pitch") / math.tau)
+
+    def pose(self, t: float) -> Pose:
+        """Return where the body is at time `t` [s]."""
+        seconds = inputs.number(t, "t")
+        turn = Rotation.from_rotvec(self._omega * seconds).as_matrix()
+        arm = self._initial.translation - self._point
+        origin = self._point + turn @ arm + self._advance * seconds
+        return Pose.from_checked(turn @ self._initial.rotation, origin)
+
+    def twist(self, t: float) -> Twist:
+        """Return how the body moves at time `t` [s], in world axes."""
+        seconds = inputs.number(t, "t")
+        origin = self.pose(seconds).translation - self._advance * seconds
+        return Twist(np.cross(self._omega, origin - self._point) + self._advance, self._omega)
+
+
+class Offset:
+    """A body fixed to another that follows a path.
+
+    Parameters
+    ----------
+    path : Path
+        Of the body that carries.
+    pose : Pose or what `Pose.of` reads
+        Of the carried body in the axes of the carrying one.
+
+    Raises
+    ------
+    ValueError
+        If that is no pose.
+    """
+
+    def __init__(self, path: Path, pose: PoseLike) -> None:
+        self._path = path
+        self._offset = Pose.of(pose)
+
+    @property
+    def start(self) -> float:
+        """The carrying path's start [s]."""
+        return self._path.start
+
+    @property
+    def end(self) -> float:
+        """The carrying path's end [s]."""
+        return self._path.end
+
+    def pose(self, t: float) -> Pose:
+        """Return where the carried body is at time `t` [s]."""
+        return self._path.pose(t) @ self._offset
+
+    def twist(self, t: float) -> Twist:
+        """Return how the carried body moves at time `t` [s], in world axes."""
+        carrier = self._path.pose(t)
+        # Another path may answer in its body's axes; the arm below is in the world's.
+        twist = self._path.twist(t).in_world(carrier)
+        arm = carrier.rotation @ self._offset.translation
+        return Twist(twist.v + np.cross(twist.omega, arm), twist.omega)

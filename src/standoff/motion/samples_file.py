@@ -1,0 +1,141 @@
+"""Pose samples from a text file: TUM trajectories and CSV tables."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from standoff.motion.pose import Pose
+from standoff.motion.samples import PoseSamples
+
+#: The columns of a TUM trajectory, in order; a CSV file names the same ones in its header.
+_COLUMNS = ("t", "x", "y", "z", "qx", "qy", "qz", "qw")
+_TUM_HEADER = "timestamp tx ty tz qx qy qz qw"
+
+
+def read_pose_samples(file: str | os.PathLike[str]) -> PoseSamples:
+    """Read a recorded motion.
+
+    ``.tum`` and ``.txt``: a TUM trajectory, ``timestamp tx ty tz qx qy qz qw`` on each line,
+    parted by blanks. ``.csv``: a header that names the columns ``t,x,y,z,qx,qy,qz,qw`` in any
+    order, then one sample a line. Empty lines and lines that begin with ``#`` are passed over.
+    Times are in seconds and must increase strictly; the quaternions' scalar is ``qw``.
+
+    Parameters
+    ----------
+    file : str or path
+
+    Returns
+    -------
+    PoseSamples
+        Its `normalised` counts the quaternions that were not of unit norm, to 1e-3, and were
+        normalised.
+
+    Raises
+    ------
+    FileNotFoundError, IsADirectoryError
+        If there is no such file.
+    ValueError
+        If the ending is none of these or the text is not as above; the message names file and
+        line.
+    """
+    path = Path(file)
+    times: list[float] = []
+    poses: list[Pose] = []
+    for line, values in _rows_of(path):
+        t, x, y, z, qx, qy, qz, qw = values
+        if times and t <= times[-1]:
+            raise _fault(
+                path,
+                line,
+                f"time {t!r} does not come after {times[-1]!r}, the one before; sort the lines by "
+                "time, and keep one of each",
+            )
+        times.append(t)
+        try:
+            poses.append(Pose.from_xyzw((qx, qy, qz, qw), (x, y, z)))
+        except ValueError as error:
+            raise _fault(path, line, f"{error}; the columns are {' '.join(_COLUMNS)}") from error
+    try:
+        return PoseSamples(times, poses)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+
+
+def _rows_of(path: Path) -> Iterator[tuple[int, list[float]]]:
+    """Yield each sample's line number and its eight numbers in the order of `_COLUMNS`."""
+    ending = path.suffix.lower()
+    if ending not in (".tum", ".txt", ".csv"):
+        raise ValueError(
+            f"{path}: the ending {ending!r} names no format of pose samples; "
+            "use .tum (or .txt) for a TUM trajectory and .csv for a table with a header"
+        )
+    lines = _content_lines(path)
+    return _table(path, lines) if ending == ".csv" else _trajectory(path, lines)
+
+
+def _content_lines(path: Path) -> list[tuple[int, str]]:
+    if path.is_dir():
+        raise IsADirectoryError(f"{path} is a folder: give a file of pose samples")
+    try:
+        # Spreadsheets write a byte order mark before the first column's name.
+        content = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError as error:
+        raise FileNotFoundError(
+            f"{path}: no such file; the path counts from the folder {Path.cwd()}"
+        ) from error
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path}: not a text file in UTF-8 ({error.reason})") from error
+    numbered = enumerate(content.splitlines(), 1)
+    return [(n, text) for n, text in numbered if text.strip() and not text.lstrip().startswith("#")]
+
+
+def _trajectory(path: Path, lines: Iterable[tuple[int, str]]) -> Iterator[tuple[int, list[float]]]:
+    for line, text in lines:
+        fields = text.split()
+        if len(fields) != len(_COLUMNS):
+            raise _fault(
+                path, line, f"{len(fields)} columns, not {len(_COLUMNS)}: give {_TUM_HEADER}"
+            )
+        yield line, _numbers(path, line, fields)
+
+
+def _table(path: Path, lines: Iterable[tuple[int, str]]) -> Iterator[tuple[int, list[float]]]:
+    rows = ((line, _cells(text)) for line, text in lines)
+    line, header = next(rows, (1, []))
+    if sorted(header) != sorted(_COLUMNS):
+        raise _fault(
+            path,
+            line,
+            f"the header is {','.join(header)!r}: name the columns {','.join(_COLUMNS)}, in any "
+            "order, each once and no other",
+        )
+    order = [header.index(column) for column in _COLUMNS]
+    for line, fields in rows:
+        if len(fields) != len(header):
+            raise _fault(path, line, f"{len(fields)} columns, where the header names {len(header)}")
+        yield line, _numbers(path, line, [fields[k] for k in order])
+
+
+def _cells(text: str) -> list[str]:
+    return [cell.strip() for cell in next(csv.reader([text]))]
+
+
+def _numbers(path: Path, line: int, fields: list[str]) -> list[float]:
+    values = []
+    for column, field in zip(_COLUMNS, fields, strict=True):
+        try:
+            value = float(field)
+        except ValueError as error:
+            raise _fault(path, line, f"{column} is {field!r}, no number") from error
+        if not math.isfinite(value):
+            raise _fault(path, line, f"{column} is {field!r}; leave out samples without a pose")
+        values.append(value)
+    return values
+
+
+def _fault(path: Path, line: int, problem: str) -> ValueError:
+    return ValueError(f"{path}, line {line}: {problem}")
