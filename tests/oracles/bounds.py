@@ -202,5 +202,12 @@ def maximise_separation(a: Placed, b: Placed, n0: ArrayLike | None = None) -> Se
 
 
 def overlap(a: Placed, b: Placed) -> bool:
-    """Return whether the bodies overlap: no direction separates them."""
-    return maximise_separation(a, b).value < 0
+    """Return whether the bodies overlap or touch: no direction separates them.
+
+    Touching is meant within ``BRACKET`` of the pair's size.
+    """
+    if _plane_normal(a, b) is not None:
+        return maximise_separation(a, b).value <= 0
+    start = b.position - a.position
+    found = _cut(a, b, start if np.linalg.norm(start) > 0 else np.array([1.0, 0.0, 0.0]))
+    return found is None or found.value <= 0

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .support import Shape
+from .shape import Shape
 
 Array = NDArray[Any]
 

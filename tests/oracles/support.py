@@ -1,16 +1,12 @@
-"""Support functions and support points of convex shapes, in the body frame.
+"""Support functions and support points of the ready-made convex shapes, in the body frame.
 
-For a direction ``n`` the support value is ``s(n) = max n.x`` over the shape; the support point
-attains it. Both are homogeneous in ``n``, which need not be of unit length. All shapes are
-centred with axis z: semi-axes for the ellipsoid; full lengths for the box (rounding included),
-the cylinder, the cone (apex at +height/2) and the capsule (its cylindrical part only).
-
-Directions in extended precision (``numpy.longdouble``) stay so: the exact pairs need it.
+All shapes are centred with axis z: semi-axes for the ellipsoid; full lengths for the box
+(rounding included), the cylinder, the cone (apex at +height/2) and the capsule (its cylindrical
+part only). ``Shape``, ``Affine`` and ``Placed`` come from ``shape``, planar loops are in ``loops``.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,32 +14,35 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .facets import Facets
+from .shape import Affine, Placed, Shape, directions, dot, unit
+
+__all__ = [
+    "Affine",
+    "Box",
+    "Cap",
+    "Capsule",
+    "Cone",
+    "Cylinder",
+    "Ellipsoid",
+    "HalfSpace",
+    "Lens",
+    "Placed",
+    "Point",
+    "Polytope",
+    "Segment",
+    "Shape",
+    "SharpBox",
+    "Sphere",
+    "Swept",
+    "Vertices",
+    "directions",
+    "unit",
+]
 
 Array = NDArray[Any]
 
 MEMBERSHIP = 8 * np.finfo(float).eps
 """Relative slack of a point's membership in a ball of a lens: a few roundings of its radius."""
-
-
-def directions(normals: ArrayLike) -> Array:
-    """Return ``normals`` as a (k, 3) floating array; float64 unless already longer."""
-    array = np.atleast_2d(np.asarray(normals))
-    if array.dtype != np.longdouble:
-        array = array.astype(np.float64)
-    if array.shape[-1] != 3:
-        raise ValueError(f"directions must have 3 components, got shape {array.shape}")
-    return array
-
-
-def unit(vectors: Array) -> Array:
-    """Return the rows of ``vectors`` at unit length; a zero row stays zero."""
-    length = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True))
-    return vectors / np.where(length > 0, length, 1)
-
-
-def dot(first: Array, second: Array) -> Array:
-    """Return the row-wise inner products."""
-    return (first * second).sum(axis=-1)
 
 
 def _best(normals: Array, candidates: Sequence[Array], allowed: Sequence[Array]) -> Array:
@@ -56,44 +55,6 @@ def _best(normals: Array, candidates: Sequence[Array], allowed: Sequence[Array])
     )
     chosen = values.argmax(axis=0)
     return np.stack(candidates)[chosen, np.arange(len(normals))]
-
-
-class Shape(ABC):
-    """A closed convex set. ``bounding_radius`` is the greatest |x| (inf for a half-space)."""
-
-    dimension: int = 3
-    bounding_radius: float
-    sweep: float = 0.0
-    """Radius of the ball swept over the shape's core (0 where the shape is its own core)."""
-
-    @abstractmethod
-    def points(self, normals: Array) -> Array:
-        """Return support points (k, 3) for directions (k, 3)."""
-
-    def support_many(self, normals: ArrayLike) -> tuple[Array, Array]:
-        """Return support values (k,) and points (k, 3) for directions (k, 3)."""
-        rows = directions(normals)
-        found = self.points(rows)
-        return dot(rows, found), found
-
-    def support(self, normal: ArrayLike) -> tuple[float, Array]:
-        """Return the support value and one support point (3,) for one direction (3,)."""
-        values, found = self.support_many(normal)
-        return values[0], found[0]
-
-    def maximisers(self, normal: ArrayLike, tolerance: float) -> Array:
-        """Return points (m, 3) whose convex hull lies in the support set of ``normal``.
-
-        Flat faces, straight edges and generators give several; ``tolerance`` is the relative
-        loss of support value (times the bounding radius) at which a point still counts.
-        """
-        del tolerance
-        return self.support(normal)[1][None]
-
-    def special_normals(self, rng: np.random.Generator) -> Array:
-        """Return unit normals (m, 3) of the flat or straight features, one (m = 0) if none."""
-        del rng
-        return np.zeros((0, 3))
 
 
 class Vertices(Shape):
@@ -367,9 +328,7 @@ class Cap(Shape):
 
     def points(self, normals: Array) -> Array:
         ball = self.radius * unit(normals)
-        return np.where(
-            ball[:, 2:] >= self.height, ball, _disc(normals, self.rim, self.height)
-        )
+        return np.where(ball[:, 2:] >= self.height, ball, _disc(normals, self.rim, self.height))
 
     def maximisers(self, normal: ArrayLike, tolerance: float) -> Array:
         direction = unit(directions(normal))
@@ -380,55 +339,3 @@ class Cap(Shape):
     def special_normals(self, rng: np.random.Generator) -> Array:
         del rng
         return np.array([[0.0, 0.0, -1.0]])
-
-
-class Affine(Shape):
-    """The image ``x -> A x + t`` of a shape: ``s(n) = s_X(A^T n) + n.t``."""
-
-    def __init__(self, shape: Shape, matrix: ArrayLike, shift: ArrayLike = (0, 0, 0)) -> None:
-        self.shape = shape
-        self.matrix: Array = np.asarray(matrix, dtype=float)
-        self.shift: Array = np.asarray(shift, dtype=float)
-        self.dimension = shape.dimension
-        stretch = float(np.linalg.norm(self.matrix, 2))
-        self.bounding_radius = stretch * shape.bounding_radius + float(np.linalg.norm(self.shift))
-
-    def points(self, normals: Array) -> Array:
-        return self.shape.points(normals @ self.matrix) @ self.matrix.T + self.shift
-
-    def maximisers(self, normal: ArrayLike, tolerance: float) -> Array:
-        inner = self.shape.maximisers(directions(normal)[0] @ self.matrix, tolerance)
-        return inner @ self.matrix.T + self.shift
-
-    def special_normals(self, rng: np.random.Generator) -> Array:
-        return unit(self.shape.special_normals(rng) @ np.linalg.inv(self.matrix))
-
-
-class Placed:
-    """A shape at the pose ``(R, p)``: world = R body + p."""
-
-    def __init__(self, shape: Shape, rotation: ArrayLike, position: ArrayLike) -> None:
-        self.shape = shape
-        self.rotation: Array = np.asarray(rotation, dtype=float)
-        self.position: Array = np.asarray(position, dtype=float)
-
-    def relative(self, normals: ArrayLike) -> tuple[Array, Array]:
-        """Return support values and points in world axes, measured from ``position``."""
-        rows = directions(normals)
-        values, found = self.shape.support_many(rows @ self.rotation)
-        return values, found @ self.rotation.T
-
-    def support_many(self, normals: ArrayLike) -> tuple[Array, Array]:
-        """Return world support values (k,) and points (k, 3)."""
-        rows = directions(normals)
-        values, found = self.relative(rows)
-        return values + rows @ self.position, found + self.position
-
-    def support(self, normal: ArrayLike) -> tuple[float, Array]:
-        """Return the world support value and point (3,) for one direction."""
-        values, found = self.support_many(normal)
-        return values[0], found[0]
-
-    def local(self, points: ArrayLike) -> Array:
-        """Return world points in the body frame."""
-        return (np.asarray(points, dtype=float) - self.position) @ self.rotation
