@@ -8,37 +8,37 @@ All quantities of one call are in one frame. Notation as in the paper: x_f on A,
 F = [f_u f_v], G = [h_r h_s], dR = x_f - x_h. S = diag(1, 1, -1, -1).
 """
 
-from numba import njit
+from standoff.kernels.compiling import small
 
 from standoff.kernels.vectors import add, cross, dot, scale, sub
 
 
-@njit(cache=True)
+@small
 def active(f):
     """1 where the parameter of tangent column f exists (the column is not zero), else 0."""
     return 1.0 if f[0] != 0.0 or f[1] != 0.0 or f[2] != 0.0 else 0.0
 
 
-@njit(cache=True)
+@small
 def projection_errors(jet_a, jet_b):
     """Psi = (f_u.dR, f_v.dR, h_r.dR, h_s.dR): the errors to be driven to zero.  Eqs. (1)-(4)"""
     dR = sub(jet_a[0], jet_b[0])
     return dot(jet_a[1], dR), dot(jet_a[2], dR), dot(jet_b[1], dR), dot(jet_b[2], dR)
 
 
-@njit(cache=True)
+@small
 def gradient(psi):
     """g = S Psi, the gradient of E = |dR|²/2 by q = (u, v, r, s)."""
     return psi[0], psi[1], -psi[2], -psi[3]
 
 
-@njit(cache=True)
+@small
 def energy(jet_a, jet_b):
     dR = sub(jet_a[0], jet_b[0])
     return 0.5 * dot(dR, dR)
 
 
-@njit(cache=True)
+@small
 def hessian(jet_a, jet_b):
     """H = S M, the Hessian of E, with M of Eq. (9).
 
@@ -62,13 +62,13 @@ def hessian(jet_a, jet_b):
     )
 
 
-@njit(cache=True)
+@small
 def point_velocity(x, p, twist_v, twist_w):
     """V(x) = v + w x (x - p): velocity of the body's point now at x."""
     return add(twist_v, cross(twist_w, sub(x, p)))
 
 
-@njit(cache=True)
+@small
 def feedforward(jet_a, jet_b, p_a, v_a, w_a, p_b, v_b, w_b):
     """b = (F' dV(x_h), G' dV(x_f)), with dV = V_A - V_B and the points crossed.  Eq. (10)
 
@@ -80,7 +80,7 @@ def feedforward(jet_a, jet_b, p_a, v_a, w_a, p_b, v_b, w_b):
     return dot(jet_a[1], at_h), dot(jet_a[2], at_h), dot(jet_b[1], at_f), dot(jet_b[2], at_f)
 
 
-@njit(cache=True)
+@small
 def contact_residual(jet_a, jet_b, n, d):
     """r of the contact-regular form in y = (q, n, d): 8 numbers."""
     miss = sub(sub(jet_b[0], jet_a[0]), scale(d, n))
@@ -96,7 +96,7 @@ def contact_residual(jet_a, jet_b, n, d):
     )
 
 
-@njit(cache=True)
+@small
 def contact_jacobian(jet_a, jet_b, n, d, J):
     """J = dr/dy into the 8 x 8 array J; symmetric. Masked parameters get 1 on the diagonal."""
     fu, fv = jet_a[1], jet_a[2]
@@ -120,7 +120,7 @@ def contact_jacobian(jet_a, jet_b, n, d, J):
             J[i, j] = J[j, i]
 
 
-@njit(cache=True)
+@small
 def contact_feedforward(jet_a, jet_b, n, p_a, v_a, w_a, p_b, v_b, w_b):
     """r_t, the partial time derivative of r under the bodies' motion: 8 numbers."""
     spin_a = cross(n, w_a)

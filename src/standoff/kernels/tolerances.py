@@ -12,8 +12,8 @@ PIVOT = 1e-10
 # Eigenvalues below -NEGATIVE take their magnitude (dimensionless, relative to the largest).
 NEGATIVE = 1e-10
 
-# A gradient component (length², per unit length of tangent) below GRADIENT_NOISE eps scale
-# times |dR| is the roundoff of dR; such a component is no slope. Also the test of stationarity.
+# A component of dR along a unit tangent below GRADIENT_NOISE eps scale (length) is the roundoff
+# of dR, no slope. Twice it is the test of stationarity.
 GRADIENT_NOISE = 16.0
 
 # Longest step along a direction without curvature, in scales. A flat direction with a slope is
@@ -44,6 +44,12 @@ RECHART = 1.2
 
 # Surfaces closer than TOUCHING scales, with no positive lower bound, touch or overlap.
 TOUCHING = 1e-13
+
+# Slope beyond which a Newton step in the noise of E must still halve |g| to be worth another.
+POLISH_RATIO = 0.5
+
+# Releases in a row that may fail to lower E before a descent ends where it is.
+MAX_STALLS = 3
 
 # Bound on iterations of one descent and on passes of release: far above what was ever seen.
 MAX_ITERATIONS = 400

@@ -2,36 +2,36 @@
 
 from math import sqrt
 
-from numba import njit
+from standoff.kernels.compiling import small
 
 
-@njit(cache=True)
+@small
 def add(a, b):
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@njit(cache=True)
+@small
 def sub(a, b):
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@njit(cache=True)
+@small
 def scale(s, a):
     return (s * a[0], s * a[1], s * a[2])
 
 
-@njit(cache=True)
+@small
 def axpy(s, a, b):
     """s a + b."""
     return (s * a[0] + b[0], s * a[1] + b[1], s * a[2] + b[2])
 
 
-@njit(cache=True)
+@small
 def dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@njit(cache=True)
+@small
 def cross(a, b):
     return (
         a[1] * b[2] - a[2] * b[1],
@@ -40,12 +40,12 @@ def cross(a, b):
     )
 
 
-@njit(cache=True)
+@small
 def norm(a):
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
-@njit(cache=True)
+@small
 def unit(a):
     """a / |a|; the zero vector stays zero, so callers test `norm` where it matters."""
     length = norm(a)
@@ -54,7 +54,7 @@ def unit(a):
     return (a[0] / length, a[1] / length, a[2] / length)
 
 
-@njit(cache=True)
+@small
 def rotate(R, a):
     """R a, with R a row-major 9-tuple."""
     return (
@@ -64,7 +64,7 @@ def rotate(R, a):
     )
 
 
-@njit(cache=True)
+@small
 def rotate_back(R, a):
     """Rᵀ a."""
     return (
@@ -74,7 +74,7 @@ def rotate_back(R, a):
     )
 
 
-@njit(cache=True)
+@small
 def compose_back(P, Q):
     """Pᵀ Q as a row-major 9-tuple."""
     return (
@@ -90,7 +90,7 @@ def compose_back(P, Q):
     )
 
 
-@njit(cache=True)
+@small
 def compose(P, Q):
     """P Q as a row-major 9-tuple."""
     return (

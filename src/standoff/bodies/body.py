@@ -1,0 +1,238 @@
+"""A convex body: immutable, checked once, packed once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from standoff.bodies.assembly import assemble, edge_points
+from standoff.bodies.packing import Assembled, Ints, pack, without_charts
+from standoff.bodies.sampling import blind_charts, body_box, boundary_samples, check_convex
+from standoff.bodies.topology import BodyError, Edge, Face
+from standoff.geometry.validation import Array, finite, matrix3, not_negative, vector3
+
+# A linear map is a similarity (keeps spheres) when its singular values agree to this ratio.
+SIMILARITY_TOLERANCE = 1e-12
+
+
+@dataclass(frozen=True)
+class BodyReport:
+    """What the checks at construction found; ``body.check()`` returns it."""
+
+    dimension: int
+    faces: int
+    edges: int
+    vertices: int
+    smooth_edges: int
+    charts: int
+    size: float
+    convexity_defect: float
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A convex body in its own frame. Make one with ``so.shapes`` or ``Body.from_brep``.
+
+    Attributes
+    ----------
+    name : str
+    dimension : 2 for a planar body (a closed loop of curves in z = 0), 3 for a spatial one.
+    radius : swept-sphere radius added to the core, length.
+    size : diagonal of the box around the body with its radius, length; inf for a half-space.
+    ints, reals : the packed body that the kernels read.
+    """
+
+    name: str
+    vertex_points: Array
+    edge_parts: tuple[Edge, ...]
+    face_parts: tuple[Face, ...]
+    radius: float
+    dimension: int
+    ints: Ints
+    reals: Array
+    report: BodyReport
+    size: float
+
+    @staticmethod
+    def from_brep(
+        vertices: Any = (),
+        edges: Sequence[Edge] = (),
+        faces: Sequence[Face] = (),
+        *,
+        radius: float = 0.0,
+        dimension: int = 3,
+        name: str = "body",
+    ) -> Body:
+        """A body from its boundary: vertices, edges and faces.
+
+        Parameters
+        ----------
+        vertices : (n, 3) points, body frame.
+        edges : curves with their vertices; in a spatial body with faces each bounds two faces.
+        faces : surfaces with loops, counterclockwise seen from outside; a loop given the other
+            way round is turned and reported in ``body.check().notes``.
+        radius : swept-sphere radius, length.
+        dimension : 2 for a closed planar loop of edges in z = 0.
+
+        Raises
+        ------
+        BodyError
+            Open or doubly used edges, parts that do not meet, a boundary that is not convex.
+        ValueError
+            NaN, infinite, negative or wrongly shaped numbers.
+        """
+        points = np.array(vertices, dtype=np.float64).reshape(-1, 3) if len(vertices) else None
+        points = np.zeros((0, 3)) if points is None else finite(points, "vertices", (-1, 3))
+        radius = not_negative(radius, "radius")
+        edges, faces = tuple(edges), tuple(faces)
+        if not (len(points) or edges or faces):
+            raise BodyError("A body needs at least one vertex, edge or face.")
+        if dimension == 2:
+            _check_planar(points, edges, faces)
+        spots = [points] + [edge_points(e) for e in edges]
+        cloud = np.concatenate(spots)
+        bounded = any(f.loop or len(f.charts) > 1 for f in faces) or not faces
+        rough = float(np.linalg.norm(np.ptp(cloud, axis=0))) if len(cloud) else 1.0
+        parts, notes = assemble(points, edges, faces, dimension, rough, bounded)
+        return _finish(name, parts, radius, notes)
+
+    def transformed(self, affine: Any) -> Body:
+        """The exact image under an affine map: a (3, 3), a (4, 4), or a ((3, 3), (3,)) pair.
+
+        Raises
+        ------
+        ValueError
+            Singular map; or a map that is no similarity on a body with a swept radius.
+        """
+        linear, shift = _affine(affine)
+        stretch = np.linalg.svd(linear, compute_uv=False)
+        if stretch[2] <= 1e-14 * stretch[0]:
+            raise ValueError(f"The affine map is singular (singular values {stretch}).")
+        radius = self.radius
+        if radius > 0.0:
+            if stretch[0] - stretch[2] > SIMILARITY_TOLERANCE * stretch[0]:
+                raise ValueError(
+                    f"A body with radius {radius} would not keep a round skin under this map "
+                    f"(singular values {stretch}): use so.shapes.ellipsoid or a body of patches."
+                )
+            radius *= float(stretch[0])
+        if self.dimension == 2 and (np.abs(linear[2, :2]).max() > 0.0 or shift[2] != 0.0):
+            raise ValueError("The map takes a planar body out of z = 0.")
+        edges = [
+            Edge(e.curve.transformed(linear, shift), e.first, e.last) for e in self.edge_parts
+        ]
+        flip = 1 if np.linalg.det(linear) > 0.0 else -1
+        faces = [
+            Face(
+                tuple(s.transformed(linear, shift) for s in f.charts),
+                tuple((j, flip * s) for j, s in f.loop),
+                f.apexes,
+            )
+            for f in self.face_parts
+        ]
+        return Body.from_brep(
+            self.vertex_points @ linear.T + shift,
+            edges,
+            faces,
+            radius=radius,
+            dimension=self.dimension,
+            name=self.name,
+        )
+
+    def check(self) -> BodyReport:
+        """What construction found and turned."""
+        return self.report
+
+    @property
+    def bounded(self) -> bool:
+        return bool(np.isfinite(self.size))
+
+    @property
+    def n_faces(self) -> int:
+        return len(self.face_parts)
+
+    @property
+    def n_edges(self) -> int:
+        return len(self.edge_parts)
+
+    @property
+    def n_vertices(self) -> int:
+        return len(self.vertex_points)
+
+    @property
+    def flat(self) -> bool:
+        """May it meet a planar body: everything in z = 0 and no faces."""
+        if self.face_parts:
+            return False
+        spots = [self.vertex_points] + [edge_points(e) for e in self.edge_parts]
+        return bool(np.abs(np.concatenate(spots)[:, 2]).max() == 0.0)
+
+    def __repr__(self) -> str:
+        parts = f"{self.n_faces} faces, {self.n_edges} edges, {self.n_vertices} vertices"
+        skin = f", radius {self.radius:g}" if self.radius else ""
+        return f"<Body {self.name}: {parts}{skin}, size {self.size:g}>"
+
+
+def _finish(name: str, parts: Assembled, radius: float, notes: list[str]) -> Body:
+    ints, reals = pack(parts, [], (np.zeros(3), np.zeros(3)), radius, 0.0)
+    blind = blind_charts(parts, ints, reals)
+    if blind:
+        parts = without_charts(parts, blind)
+        ints, reals = pack(parts, [], (np.zeros(3), np.zeros(3)), radius, 0.0)
+    box = body_box(parts, ints, reals)
+    samples = boundary_samples(parts, ints, reals)
+    size = np.inf if box is None else float(np.linalg.norm(box[1] - box[0]))
+    defect = check_convex(samples, size) if box is not None else 0.0
+    if box is not None and size + radius <= 0.0 and len(parts.vertices) != 1:
+        raise BodyError("The body has no extent.")
+    # rounding of construction: a defect at roundoff is part of the certificate's own allowance
+    ints, reals = pack(parts, samples, box, radius, max(defect, 0.0))
+    report = BodyReport(
+        parts.dimension,
+        len(parts.faces),
+        len(parts.edges),
+        len(parts.vertices),
+        sum(parts.smooth),
+        len(parts.charts),
+        size + 2.0 * radius,
+        max(defect, 0.0),
+        tuple(notes),
+    )
+    return Body(
+        name,
+        parts.vertices,
+        tuple(parts.edges),
+        tuple(parts.faces),
+        radius,
+        parts.dimension,
+        ints,
+        reals,
+        report,
+        size + 2.0 * radius,
+    )
+
+
+def _affine(value: Any) -> tuple[Array, Array]:
+    if isinstance(value, tuple) and len(value) == 2:
+        return matrix3(value[0], "affine map"), vector3(value[1], "affine shift")
+    array = np.asarray(value, dtype=np.float64)
+    if array.shape == (4, 4):
+        finite(array, "affine map", (4, 4))
+        if not np.array_equal(array[3], [0.0, 0.0, 0.0, 1.0]):
+            raise ValueError(f"The affine map's last row is {array[3]}; it must be 0 0 0 1.")
+        return array[:3, :3], array[:3, 3]
+    return matrix3(array, "affine map"), np.zeros(3)
+
+
+def _check_planar(points: Array, edges: Sequence[Edge], faces: Sequence[Face]) -> None:
+    if faces:
+        raise BodyError("A planar body (dimension 2) has edges and vertices only, no faces.")
+    if not edges:
+        raise BodyError("A planar body needs at least one curve.")
+    heights = np.concatenate([points] + [edge_points(e) for e in edges])[:, 2]
+    if np.abs(heights).max() > 0.0:
+        raise BodyError(f"A planar body leaves z = 0 (by {np.abs(heights).max():.3g}).")

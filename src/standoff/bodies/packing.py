@@ -1,0 +1,225 @@
+"""Packing: the only writer of the two flat arrays that ``standoff.kernels.layout`` describes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.topology import Apex, Edge, Face
+from standoff.geometry.pcurves import Pcurve
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
+from standoff.kernels import layout as L
+
+Ints = NDArray[np.int64]
+
+
+@dataclass
+class Coedge:
+    """One side of an edge in one chart, or an apex's collapsed side (edge = -1 - vertex)."""
+
+    edge: int
+    pcurve: Pcurve
+    first: float
+    last: float
+    side: int
+
+
+@dataclass
+class Chart:
+    """A surface with its trimming loop."""
+
+    surface: Surface
+    face: int
+    outward: float = 1.0
+    limit: float = np.inf
+    coedges: list[Coedge] = field(default_factory=list)
+
+
+@dataclass
+class Sector:
+    """Directions of a face at a vertex that edges alone do not bound (see layout)."""
+
+    chart: int
+    kind: int
+    u: float
+    v: float
+    lo: float
+    hi: float
+
+
+@dataclass
+class Assembled:
+    """A body's boundary with orientations, ready to pack."""
+
+    dimension: int
+    vertices: Array
+    edges: Sequence[Edge]
+    faces: Sequence[Face]
+    charts: list[Chart]
+    smooth: list[bool]
+    outward_right: list[bool]
+    sectors: list[list[Sector]]
+    cones: list[list[Array]]
+
+
+def without_charts(body: Assembled, dropped: Sequence[int]) -> Assembled:
+    """The body without some charts; the sectors' chart numbers follow."""
+    kept = [k for k in range(len(body.charts)) if k not in dropped]
+    number = {old: new for new, old in enumerate(kept)}
+    sectors = [[replace(s, chart=number[s.chart]) for s in row] for row in body.sectors]
+    return replace(body, charts=[body.charts[k] for k in kept], sectors=sectors)
+
+
+@dataclass
+class Sample:
+    """A boundary point where a cold start may begin."""
+
+    point: Array
+    normal: Array
+    feature: int
+    chart: int
+    u: float
+    v: float
+
+
+class Writer:
+    """Grows the two arrays; every table's offset is known when it is written."""
+
+    def __init__(self) -> None:
+        self.ints: list[int] = [0] * L.INT_HEADER
+        self.reals: list[float] = [0.0] * L.REAL_HEADER
+
+    def real_block(self, values: Sequence[float] | Array) -> int:
+        offset = len(self.reals)
+        self.reals.extend(float(v) for v in values)
+        return offset
+
+    def table(self, header: int, rows: Sequence[Sequence[int]]) -> None:
+        self.ints[header] = len(self.ints)
+        for row in rows:
+            self.ints.extend(int(v) for v in row)
+
+    def arrays(self) -> tuple[Ints, Array]:
+        ints = np.array(self.ints, dtype=np.int64)
+        reals = np.array(self.reals, dtype=np.float64)
+        ints.flags.writeable = False
+        reals.flags.writeable = False
+        return ints, reals
+
+
+def pack(
+    body: Assembled,
+    samples: Sequence[Sample],
+    box: tuple[Array, Array] | None,
+    radius: float,
+    slack: float,
+) -> tuple[Ints, Array]:
+    """The (ints, reals) of a body. `box` is (low, high) of its core, None when unbounded."""
+    w = Writer()
+    w.ints[L.DIMENSION] = body.dimension
+    w.ints[L.N_FACES] = len(body.faces)
+    w.ints[L.N_EDGES] = len(body.edges)
+    w.ints[L.N_VERTICES] = len(body.vertices)
+    w.ints[L.N_CHARTS] = len(body.charts)
+    w.ints[L.N_SAMPLES] = len(samples)
+    w.ints[L.UNBOUNDED] = int(box is None)
+    w.reals[L.RADIUS] = radius
+    w.reals[L.SLACK] = slack
+    if box is not None:
+        low, high = box
+        w.reals[L.SIZE] = float(np.linalg.norm(high - low))
+        w.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3] = list(0.5 * (low + high))
+        w.reals[L.BOX_HALF : L.BOX_HALF + 3] = list(0.5 * (high - low))
+    _pack_faces(w, body)
+    _pack_edges(w, body)
+    _pack_vertices(w, body)
+    w.table(L.SAMPLES, [(s.feature, s.chart) for s in samples])
+    w.ints[L.SAMPLE_REALS] = len(w.reals)
+    for s in samples:
+        w.real_block([*s.point, *s.normal, s.u, s.v])
+    return w.arrays()
+
+
+def _pack_faces(w: Writer, body: Assembled) -> None:
+    face_rows = []
+    for i in range(len(body.faces)):
+        own = [k for k, chart in enumerate(body.charts) if chart.face == i]
+        face_rows.append((own[0], len(own)))
+    w.table(L.FACES, face_rows)
+    chart_rows, coedge_rows = [], []
+    for k, chart in enumerate(body.charts):
+        reals = chart.surface.reals.copy()
+        reals[L.OUTWARD] = chart.outward
+        reals[L.LIMIT] = chart.limit
+        offset = w.real_block(reals)
+        chart_rows.append(
+            (chart.surface.kind, offset, len(coedge_rows), len(chart.coedges), chart.face)
+        )
+        for c in chart.coedges:
+            block = w.real_block([c.first, c.last, *c.pcurve.matrix.ravel()])
+            coedge_rows.append((c.edge, c.pcurve.kind, block, c.side, k))
+    w.table(L.CHARTS, chart_rows)
+    w.table(L.COEDGES, coedge_rows)
+
+
+def _coedges_of_edge(body: Assembled, edge: int) -> list[int]:
+    """The first coedge of each face at an edge (each chart of an atlas has one more)."""
+    found: dict[int, int] = {}
+    number = 0
+    for chart in body.charts:
+        for c in chart.coedges:
+            if c.edge == edge:
+                found.setdefault(chart.face, number)
+            number += 1
+    return list(found.values())
+
+
+def _pack_edges(w: Writer, body: Assembled) -> None:
+    rows = []
+    for j, edge in enumerate(body.edges):
+        curve = edge.curve
+        offset = w.real_block([curve.first, curve.last, *curve.data])
+        flags = (
+            (L.CLOSED if curve.closed else 0)
+            | (L.SMOOTH if body.smooth[j] else 0)
+            | (L.OUTWARD_RIGHT if body.outward_right[j] else 0)
+        )
+        coedges = (_coedges_of_edge(body, j) + [-1, -1])[:2]
+        first = -1 if edge.first is None else edge.first
+        last = -1 if edge.last is None else edge.last
+        rows.append((curve.kind, offset, flags, first, last, *coedges))
+    w.table(L.EDGES, rows)
+
+
+def _pack_vertices(w: Writer, body: Assembled) -> None:
+    n = len(body.vertices)
+    w.ints[L.VERTICES] = len(w.ints)
+    start = len(w.ints)
+    w.ints.extend([0] * (L.VERTEX_STRIDE * n))
+    for k, point in enumerate(body.vertices):
+        fan = [
+            (j, end)
+            for j, edge in enumerate(body.edges)
+            for end, vertex in enumerate((edge.first, edge.last))
+            if vertex == k
+        ]
+        row = start + L.VERTEX_STRIDE * k
+        w.ints[row + L.VERTEX_REALS] = w.real_block(point)
+        w.ints[row + L.VERTEX_FAN] = len(w.ints)
+        w.ints[row + L.VERTEX_N_FAN] = len(fan)
+        for entry in fan:
+            w.ints.extend(entry)
+        w.ints[row + L.VERTEX_SECTORS] = len(w.ints)
+        w.ints[row + L.VERTEX_N_SECTORS] = len(body.sectors[k])
+        for s in body.sectors[k]:
+            w.ints.extend((s.chart, w.real_block([float(s.kind), s.u, s.v, s.lo, s.hi])))
+        cone = body.cones[k]
+        w.ints[row + L.VERTEX_CONE] = w.real_block(np.concatenate(cone) if cone else [])
+        w.ints[row + L.VERTEX_N_CONE] = len(cone)
+
+
+__all__ = ["Apex", "Assembled", "Chart", "Coedge", "Sample", "Sector", "pack"]

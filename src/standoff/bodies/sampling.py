@@ -1,0 +1,202 @@
+"""Points of a packed body's boundary: starts for cold queries, its box, a check of convexity."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from standoff.bodies.assembly import ATLAS_LIMIT
+from standoff.bodies.packing import Assembled, Chart, Ints, Sample
+from standoff.bodies.topology import BodyError, Edge
+from standoff.geometry.curves import ConicArc, RationalBezier
+from standoff.geometry.surfaces import Cone, Cylinder, Sphere
+from standoff.geometry.validation import Array
+from standoff.kernels.features import chart_normal, planar_edge_normal
+from standoff.kernels.trimming import on_face
+
+# How many samples a body gets: all pairs of two bodies are compared at a cold start.
+FACE_BUDGET = 120
+EDGE_BUDGET = 60
+VERTEX_BUDGET = 120
+# A sampled point may rise above a sampled tangent plane by this fraction of the body's size:
+# the roundoff of building it.
+CONVEXITY_TOLERANCE = 1e-9
+
+
+def _parameter_box(chart: Chart) -> tuple[float, float, float, float]:
+    if chart.limit < np.inf:
+        return -1.0, 1.0, -1.0, 1.0
+    points = np.array(
+        [
+            c.pcurve.point(t)[:2]
+            for c in chart.coedges
+            for t in np.linspace(c.first, c.last, 25)
+        ]
+    )
+    if not len(points):
+        return 0.0, 0.0, 0.0, 0.0
+    low, high = points.min(axis=0), points.max(axis=0)
+    return float(low[0]), float(high[0]), float(low[1]), float(high[1])
+
+
+def blind_charts(body: Assembled, ints: Ints, reals: Array) -> list[int]:
+    """Charts of a trimmed face's atlas that see no edge and lie off the face.
+
+    A chart without edges is wholly on the face or off it; a neighbour that sees the point half
+    way between their centres, and an edge, tells which.
+    """
+    found = []
+    for k, chart in enumerate(body.charts):
+        if chart.coedges or not body.faces[chart.face].loop:
+            continue
+        centre = chart.surface.jet(0.0, 0.0)[0]
+        for m, other in enumerate(body.charts):
+            if other.face != chart.face or not other.coedges:
+                continue
+            y = other.surface.canonical(centre) + np.array([0.0, 0.0, 1.0])
+            if y[2] <= 0.5:
+                continue
+            if not on_face(ints, reals, m, float(y[0] / y[2]), float(y[1] / y[2])):
+                found.append(k)
+            break
+    return found
+
+
+def face_samples(body: Assembled, ints: Ints, reals: Array, budget: int) -> list[Sample]:
+    """A grid over every chart, kept where it lies on the face."""
+    if not body.charts:
+        return []
+    n = int(np.clip(np.sqrt(budget / len(body.charts)), 1, 6))
+    samples = []
+    for k, chart in enumerate(body.charts):
+        u0, u1, v0, v1 = _parameter_box(chart)
+        nu = 2 * n if isinstance(chart.surface, Cylinder | Cone) else n
+        kept = 0
+        for count in (n, 3 * n + 2):  # a slender face may miss the first grid
+            if kept:
+                break
+            for a in (np.arange(nu if count == n else count) + 0.5) / (nu if count == n else count):
+                for b in (np.arange(count) + 0.5) / count:
+                    u, v = float(u0 + a * (u1 - u0)), float(v0 + b * (v1 - v0))
+                    if not on_face(ints, reals, k, u, v):
+                        continue
+                    kept += 1
+                    x = chart.surface.jet(u, v)[0]
+                    normal = np.array(chart_normal(ints, reals, k, u, v))
+                    samples.append(Sample(x, normal, chart.face, k, u, v))
+    return samples
+
+
+def edge_samples(body: Assembled, ints: Ints, reals: Array, budget: int) -> list[Sample]:
+    if not body.edges:
+        return []
+    samples = []
+    for j, edge in enumerate(body.edges):
+        n = int(np.clip(budget / len(body.edges), 1, 12))
+        feature = len(body.faces) + j
+        for s in (np.arange(n) + 0.5) / n:
+            c = edge.curve
+            t = float(c.first + s * (c.last - c.first))
+            normal = np.zeros(3)
+            if body.dimension == 2:
+                normal = np.array(planar_edge_normal(ints, reals, feature, t))
+            samples.append(Sample(c.point(t), normal, feature, -1, t, 0.0))
+    return samples
+
+
+def vertex_samples(body: Assembled, budget: int) -> list[Sample]:
+    base = len(body.faces) + len(body.edges)
+    step = max(1, -(-len(body.vertices) // budget))
+    return [
+        Sample(body.vertices[k], np.zeros(3), base + k, -1, 0.0, 0.0)
+        for k in range(0, len(body.vertices), step)
+    ]
+
+
+def boundary_samples(body: Assembled, ints: Ints, reals: Array) -> list[Sample]:
+    """Points on every kind of feature, the budgets shared among the features of a kind."""
+    return (
+        face_samples(body, ints, reals, FACE_BUDGET)
+        + edge_samples(body, ints, reals, EDGE_BUDGET)
+        + vertex_samples(body, VERTEX_BUDGET)
+    )
+
+
+def curve_box(edge: Edge) -> tuple[Array, Array]:
+    """(low, high) of a box around an edge: exact for lines and conic arcs, else control points."""
+    c = edge.curve
+    if isinstance(c, RationalBezier):
+        h = c.data[1:].reshape(-1, 4)
+        points = h[:, :3] / h[:, 3:]
+        return points.min(axis=0), points.max(axis=0)
+    points = [c.point(c.first), c.point(c.last)]
+    if isinstance(c, ConicArc):
+        basis = c.basis()
+        for i in range(3):
+            angle = np.arctan2(basis[i, 1], basis[i, 0])
+            for t in (angle, angle + np.pi):
+                t = c.first + (t - c.first) % (2.0 * np.pi)
+                if t <= c.last:
+                    points.append(c.point(t))
+    return np.min(points, axis=0), np.max(points, axis=0)
+
+
+def body_box(body: Assembled, ints: Ints, reals: Array) -> tuple[Array, Array] | None:
+    """(low, high) around the core; None for an unbounded body.
+
+    A function n.x has its greatest value on a convex face either at the surface's support point,
+    if that lies on the face, or on the face's boundary.
+    """
+    lows, highs = [], []
+    for edge in body.edges:
+        low, high = curve_box(edge)
+        lows.append(low)
+        highs.append(high)
+    if len(body.vertices):
+        lows.append(body.vertices.min(axis=0))
+        highs.append(body.vertices.max(axis=0))
+    for k, chart in enumerate(body.charts):
+        if not chart.coedges and chart.limit == np.inf:
+            return None
+        if isinstance(chart.surface, Sphere):
+            for i in range(3):
+                for sign in (-1.0, 1.0):
+                    direction = chart.surface.linear.T @ (sign * np.eye(3)[i])
+                    y = direction / np.linalg.norm(direction)
+                    if y[2] <= 0.0:
+                        continue
+                    u, v = float(y[0] / y[2]), float(y[1] / y[2])
+                    if max(abs(u), abs(v)) <= ATLAS_LIMIT or chart.limit == np.inf:
+                        if on_face(ints, reals, k, u, v):
+                            x = chart.surface.jet(u, v)[0]
+                            lows.append(x)
+                            highs.append(x)
+    return np.min(lows, axis=0), np.max(highs, axis=0)
+
+
+def check_convex(samples: Sequence[Sample], size: float) -> float:
+    """Greatest height of a sample above another's tangent plane; raises where it is not roundoff.
+
+    Sampled, not proven: interval proofs come with the surfaces that need them.
+    """
+    points = np.array([s.point for s in samples])
+    faces = [s for s in samples if s.normal.any()]
+    if not faces or not len(points):
+        return 0.0
+    normals = np.array([s.normal for s in faces])
+    heights = normals @ points.T - np.einsum(
+        "ij,ij->i", normals, np.array([s.point for s in faces])
+    )[:, None]
+    i, j = np.unravel_index(int(heights.argmax()), heights.shape)
+    worst = float(heights[i, j])
+    if worst > CONVEXITY_TOLERANCE * size:
+        raise BodyError(
+            f"Not convex: the point {points[j]} (feature {samples[j].feature}) lies {worst:.3g} "
+            f"above the tangent plane at {faces[i].point} (feature {faces[i].feature}); size "
+            f"{size:.3g}. Split the body into convex parts."
+        )
+    return worst
+
+
+__all__ = ["body_box", "boundary_samples", "check_convex"]

@@ -1,0 +1,144 @@
+"""Curves of edges: line, conic arc (open or closed), rational Bezier."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from standoff.geometry.validation import Array, finite, vector3
+from standoff.kernels import layout as L
+from standoff.kernels.jets import curve_jet
+
+FULL_TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A parametric curve on [first, last]; `data` is what its kernel reads."""
+
+    data: Array = field(repr=False)
+    first: float
+    last: float
+    kind: ClassVar[int]
+
+    def jet(self, t: float) -> tuple[Array, Array, Array]:
+        """(x, x_t, x_tt), each (3,), body frame."""
+        x, xt, xtt = curve_jet(self.data, self.kind, 0, t)
+        return np.array(x), np.array(xt), np.array(xtt)
+
+    def point(self, t: float) -> Array:
+        return self.jet(t)[0]
+
+    @property
+    def closed(self) -> bool:
+        return False
+
+    def transformed(self, linear: Array, shift: Array) -> Curve:
+        """The exact image under x -> linear x + shift; the parameter stays the same."""
+        data = self.data.copy()
+        data[0:9] = (linear @ data[0:9].reshape(3, 3)).ravel()
+        data[9:12] = linear @ data[9:12] + shift
+        return _curve(type(self), data, self.first, self.last)
+
+    def basis(self) -> Array:
+        """(3, 3) matrix B: x(t) = B (t, 0, 1) for a line, B (cos t, sin t, 1) for a conic arc."""
+        linear = self.data[0:9].reshape(3, 3)
+        return np.column_stack([linear[:, 0], linear[:, 1], self.data[9:12]])
+
+
+def _curve(kind: type[Curve], data: Array, first: float, last: float) -> Curve:
+    curve = object.__new__(kind)
+    data.flags.writeable = False
+    object.__setattr__(curve, "data", data)
+    object.__setattr__(curve, "first", float(first))
+    object.__setattr__(curve, "last", float(last))
+    return curve
+
+
+def _affine(linear: Array, shift: Array) -> Array:
+    return np.concatenate([np.asarray(linear).ravel(), shift])
+
+
+class Line(Curve):
+    """The segment from p (t = 0) to q (t = 1)."""
+
+    kind = L.LINE
+
+    def __init__(self, p: Any, q: Any) -> None:
+        p, q = vector3(_planar(p), "p"), vector3(_planar(q), "q")
+        if np.array_equal(p, q):
+            raise ValueError(f"Line from {p} to itself: give two different points.")
+        linear = np.zeros((3, 3))
+        linear[:, 0] = q - p
+        _fill(self, _affine(linear, p), 0.0, 1.0)
+
+
+class ConicArc(Curve):
+    """The elliptic arc centre + a cos t + b sin t, t from first to last; closed for a full turn.
+
+    Arcs of parabolas and hyperbolas are rational Bezier curves of degree 2.
+    """
+
+    kind = L.CONIC
+
+    def __init__(
+        self, centre: Any, a: Any, b: Any, first: float = 0.0, last: float = FULL_TURN
+    ) -> None:
+        centre = vector3(_planar(centre), "centre")
+        a, b = vector3(_planar(a), "a"), vector3(_planar(b), "b")
+        first, last = float(finite(first, "first", ())), float(finite(last, "last", ()))
+        if np.linalg.norm(np.cross(a, b)) <= 1e-14 * np.linalg.norm(a) * np.linalg.norm(b):
+            raise ValueError(f"Conic arc with parallel or zero axes a = {a}, b = {b}.")
+        if not 0.0 < last - first <= FULL_TURN * (1.0 + 1e-15):
+            raise ValueError(f"Conic arc from t = {first} to {last}: give 0 < last - first <= 2 pi.")
+        linear = np.zeros((3, 3))
+        linear[:, 0], linear[:, 1] = a, b
+        _fill(self, _affine(linear, centre), first, last)
+
+    @property
+    def closed(self) -> bool:
+        return self.last - self.first >= FULL_TURN * (1.0 - 1e-15)
+
+
+class RationalBezier(Curve):
+    """A rational Bezier curve on [0, 1] from (n + 1, 2 or 3) control points and positive weights."""
+
+    kind = L.BEZIER
+
+    def __init__(self, control_points: Any, weights: Any = None) -> None:
+        points = np.array(control_points, dtype=np.float64)
+        if points.ndim == 2 and points.shape[1] == 2:
+            points = np.column_stack([points, np.zeros(len(points))])
+        points = finite(points, "control_points", (-1, 3))
+        if len(points) < 2:
+            raise ValueError(f"Bezier curve with {len(points)} control point: give at least two.")
+        w = finite(np.ones(len(points)) if weights is None else weights, "weights", (len(points),))
+        if (w <= 0.0).any():
+            raise ValueError(f"Bezier weights must be positive: {w}")
+        homogeneous = np.column_stack([points * w[:, None], w])
+        _fill(self, np.concatenate([[float(len(points) - 1)], homogeneous.ravel()]), 0.0, 1.0)
+
+    @property
+    def degree(self) -> int:
+        return int(self.data[0])
+
+    def transformed(self, linear: Array, shift: Array) -> Curve:
+        data = self.data.copy()
+        h = data[1:].reshape(-1, 4)
+        h[:, :3] = h[:, :3] @ linear.T + h[:, 3:] * shift
+        return _curve(RationalBezier, data, self.first, self.last)
+
+
+def _planar(point: Any) -> Any:
+    """A 2-D point gets z = 0."""
+    array = np.asarray(point)
+    return np.append(array, 0.0) if array.shape == (2,) else point
+
+
+def _fill(curve: Curve, data: Array, first: float, last: float) -> None:
+    data.flags.writeable = False
+    object.__setattr__(curve, "data", data)
+    object.__setattr__(curve, "first", float(first))
+    object.__setattr__(curve, "last", float(last))

@@ -1,0 +1,177 @@
+"""The certificate of DESIGN 2.5: a lower bound of the true distance from supporting planes."""
+
+from math import inf
+
+from standoff.kernels.compiling import kernel
+
+from standoff.kernels import layout as L
+from standoff.kernels.features import (
+    chart_jet,
+    chart_normal,
+    coedge_conormal,
+    dimension,
+    edge_jet,
+    edge_record,
+    planar_edge_normal,
+    vertex_record,
+)
+from standoff.kernels.switching import end_direction, sector_direction, steepest_in_sector
+from standoff.kernels.tolerances import EPS
+from standoff.kernels.vectors import axpy, cross, dot, norm, rotate, rotate_back, scale, sub, unit
+
+# Lengths of the certificate carry a few roundings each; the bound is lowered by this many eps
+# of the largest coordinate met, so that it stays a bound in floating point.
+BOUND_ROUNDINGS = 16.0
+
+
+@kernel
+def between(n, a, b):
+    """The unit vector of the cone spanned by unit vectors a and b that is nearest to n."""
+    axis = cross(a, b)
+    if dot(axis, axis) < EPS:
+        return a if dot(n, a) > dot(n, b) else b
+    flat = axpy(-dot(n, axis) / dot(axis, axis), axis, n)
+    # inside the cone when the flat part is on the inner side of both generators
+    if dot(cross(a, flat), axis) >= 0.0 and dot(cross(flat, b), axis) >= 0.0:
+        return unit(flat)
+    return a if dot(n, a) > dot(n, b) else b
+
+
+@kernel
+def edge_cone(ints, reals, feature, t, n):
+    """Nearest unit outward normal to n at an edge's point."""
+    e = edge_record(ints, feature)
+    if ints[L.DIMENSION] == 2:
+        return planar_edge_normal(ints, reals, feature, t)
+    tangent = unit(edge_jet(ints, reals, feature, t)[1])
+    if ints[e + L.EDGE_COEDGE_0] < 0:
+        return unit(axpy(-dot(n, tangent), tangent, n))
+    a = coedge_conormal(ints, reals, ints[e + L.EDGE_COEDGE_0], tangent, t)[1]
+    b = coedge_conormal(ints, reals, ints[e + L.EDGE_COEDGE_1], tangent, t)[1]
+    return between(n, a, b)
+
+
+@kernel
+def vertex_cone(ints, reals, feature, n):
+    """A unit outward normal near n at a vertex: n itself where no direction of the fan rises."""
+    r = vertex_record(ints, feature)
+    fan, n_fan = ints[r + L.VERTEX_FAN], ints[r + L.VERTEX_N_FAN]
+    worst, at = 0.0, -1
+    direction = (0.0, 0.0, 0.0)
+    for k in range(n_fan):
+        t = end_direction(ints, reals, ints[L.N_FACES] + ints[fan + 2 * k], ints[fan + 2 * k + 1])
+        if dot(n, t) > worst:
+            worst, at, direction = dot(n, t), k, t
+    best = n
+    for k in range(ints[r + L.VERTEX_N_SECTORS]):
+        sector = ints[r + L.VERTEX_SECTORS] + 2 * k
+        slope, angle = steepest_in_sector(ints, reals, sector, n)
+        if -slope > worst:
+            worst, at = -slope, n_fan + k
+            o = ints[sector + 1]
+            chart = ints[sector]
+            if reals[o] == L.SECTOR_APEX:
+                # the normal along a generator is the same at any distance from the apex
+                jet = chart_jet(ints, reals, chart, angle, reals[o + 2] + 1.0)
+                sign = reals[ints[ints[L.CHARTS] + L.CHART_STRIDE * chart + L.CHART_REALS] + L.OUTWARD]
+                best = scale(sign, unit(cross(jet[1], jet[2])))
+            else:
+                best = chart_normal(ints, reals, chart, reals[o + 1], reals[o + 2])
+    if at < 0:
+        return n
+    cone, count = ints[r + L.VERTEX_CONE], ints[r + L.VERTEX_N_CONE]
+    if count == 0:
+        if at < n_fan:  # a faceless end: its cone is the half-space of the edge's direction
+            return unit(axpy(-worst, direction, n))
+        return best
+    best_match = dot(n, best) if at >= n_fan else -inf
+    for k in range(count):
+        i, j = cone + 3 * k, cone + 3 * ((k + 1) % count)
+        a = (reals[i], reals[i + 1], reals[i + 2])
+        b = (reals[j], reals[j + 1], reals[j + 2])
+        m = between(n, a, b)
+        if dot(n, m) > best_match:
+            best, best_match = m, dot(n, m)
+    return best
+
+
+@kernel
+def cone_normal(ints, reals, feature, chart, p, q, n):
+    """A unit vector of the normal cone at a witness point, as near to the unit vector n as found.
+
+    Any member of the cone gives a valid bound; the nearest gives the tightest.
+    """
+    dim = dimension(ints, feature)
+    if dim == 2:
+        return chart_normal(ints, reals, chart, p, q)
+    if dim == 1:
+        return edge_cone(ints, reals, feature, p, n)
+    return vertex_cone(ints, reals, feature, n)
+
+
+@kernel
+def overhang(ints, reals, x, e):
+    """A bound on e.(y - x) over the points y of the body: the support of its box.
+
+    e is the small difference between a plane's normal and a normal of the body at x.
+    """
+    if e[0] == 0.0 and e[1] == 0.0 and e[2] == 0.0:
+        return 0.0
+    if ints[L.UNBOUNDED]:
+        return inf
+    total = 0.0
+    for i in range(3):
+        half = abs(e[i]) * reals[L.BOX_HALF + i]
+        total += e[i] * (reals[L.BOX_CENTRE + i] - x[i]) + half
+    return max(total, 0.0)
+
+
+@kernel
+def plane_bound(ints_a, reals_a, x_a, n_a, ints_b, reals_b, x_b, n_b, R, n, gap_vector):
+    """Lower bound of the cores' distance by the planes of normal n (A's frame) at both witnesses.
+
+    x_a, n_a in A's frame; x_b, n_b (the outward normal) in B's frame; R takes B's frame to A's.
+    """
+    over_a = overhang(ints_a, reals_a, x_a, sub(n, n_a))
+    m = (
+        -(R[0] * n[0] + R[3] * n[1] + R[6] * n[2]),
+        -(R[1] * n[0] + R[4] * n[1] + R[7] * n[2]),
+        -(R[2] * n[0] + R[5] * n[1] + R[8] * n[2]),
+    )
+    over_b = overhang(ints_b, reals_b, x_b, sub(m, n_b))
+    return dot(n, gap_vector) - over_a - over_b
+
+
+@kernel
+def certify(pair, R, p, mode, q, x_a, x_b):
+    """(distance of the cores, lower bound of it, best plane normal) at witness points.
+
+    x_a and x_b in A's frame. The normal is the one of the candidates n_A, -n_B and the direction
+    of x_b - x_a that gives the greatest bound: near contact the last loses its digits.
+    """
+    ia, ra, ib, rb = pair
+    gap = sub(x_b, x_a)
+    d = norm(gap)
+    direction = unit(gap)
+    y_b = rotate_back(R, sub(x_b, p))
+    n_a = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], direction)
+    n_b = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], scale(-1.0, rotate_back(R, direction)))
+    from_b = scale(-1.0, rotate(R, n_b))
+    best, normal = -inf, direction
+    for k in range(3):
+        n = direction if k == 0 else (n_a if k == 1 else from_b)
+        if dot(n, n) < 0.5:  # a collapsed or zero direction bounds nothing
+            continue
+        m_a = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], n) if k == 2 else n_a
+        m_b = n_b
+        if k == 1:
+            m_b = cone_normal(
+                ib, rb, mode[2], mode[3], q[2], q[3], scale(-1.0, rotate_back(R, n))
+            )
+        bound = plane_bound(ia, ra, x_a, m_a, ib, rb, y_b, m_b, R, n, gap)
+        if bound > best:
+            best, normal = bound, n
+    reach = abs(x_a[0]) + abs(x_a[1]) + abs(x_a[2]) + abs(x_b[0]) + abs(x_b[1]) + abs(x_b[2])
+    size = ra[L.SIZE] + rb[L.SIZE]
+    best -= ra[L.SLACK] + rb[L.SLACK] + BOUND_ROUNDINGS * EPS * (reach + size)
+    return d, best, normal

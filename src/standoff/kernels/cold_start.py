@@ -1,0 +1,138 @@
+"""The global start: sampled pairs, descent, certificate, and another start where it fails.
+
+A stationary point on the far side of a body is no minimum; its certificate fails and the next
+start is taken. Starts: the nearest sampled pair whose normals face each other, then the support
+samples along the direction found by Gilbert's iteration on the samples, then those along the
+directions of earlier failures.
+"""
+
+from math import inf
+
+import numpy as np
+from standoff.kernels.compiling import kernel
+
+from standoff.kernels import layout as L
+from standoff.kernels.certificate import certify
+from standoff.kernels.descent import CONTACT, RESTARTS, STATIONARY, pair_jets, set_mode, settle
+from standoff.kernels.tolerances import MAX_ITERATIONS
+from standoff.kernels.vectors import add, dot, norm, rotate, rotate_back, scale, sub
+
+MAX_STARTS = 12
+GILBERT_STEPS = 40
+
+# Outcomes of a query.
+CERTIFIED = 0
+UNCERTIFIED = 1
+TOUCHING_OR_OVERLAPPING = 2
+
+
+@kernel
+def sample_point(ints, reals, k):
+    o = ints[L.SAMPLE_REALS] + L.SAMPLE_STRIDE * k
+    return (reals[o], reals[o + 1], reals[o + 2])
+
+
+@kernel
+def sample_normal(ints, reals, k):
+    o = ints[L.SAMPLE_REALS] + L.SAMPLE_STRIDE * k + 3
+    return (reals[o], reals[o + 1], reals[o + 2])
+
+
+@kernel
+def begin_at(ints, reals, body, k, mode, q):
+    o = ints[L.SAMPLE_REALS] + L.SAMPLE_STRIDE * k + 6
+    i = ints[L.SAMPLES] + 2 * k
+    set_mode(mode, q, body, ints[i], ints[i + 1], reals[o], reals[o + 1])
+
+
+@kernel
+def support_sample(ints, reals, n):
+    """The sample farthest along n (body frame)."""
+    best, at = -inf, 0
+    for k in range(ints[L.N_SAMPLES]):
+        h = dot(n, sample_point(ints, reals, k))
+        if h > best:
+            best, at = h, k
+    return at
+
+
+@kernel
+def nearest_facing(pair, R, p):
+    """(i, j): the nearest sampled pair whose outward normals face each other."""
+    ia, ra, ib, rb = pair
+    best, at_i, at_j = inf, 0, 0
+    for j in range(ib[L.N_SAMPLES]):
+        y = add(rotate(R, sample_point(ib, rb, j)), p)
+        m = rotate(R, sample_normal(ib, rb, j))
+        for i in range(ia[L.N_SAMPLES]):
+            gap = sub(y, sample_point(ia, ra, i))
+            d2 = dot(gap, gap)
+            if d2 < best and dot(gap, m) <= 0.0 and dot(gap, sample_normal(ia, ra, i)) >= 0.0:
+                best, at_i, at_j = d2, i, j
+    return at_i, at_j
+
+
+@kernel
+def gilbert(pair, R, p):
+    """Direction from A to B of nearly least distance between the samples' convex hulls."""
+    ia, ra, ib, rb = pair
+    w = sub(add(rotate(R, sample_point(ib, rb, 0)), p), sample_point(ia, ra, 0))
+    for _ in range(GILBERT_STEPS):
+        i = support_sample(ia, ra, w)
+        j = support_sample(ib, rb, scale(-1.0, rotate_back(R, w)))
+        v = sub(add(rotate(R, sample_point(ib, rb, j)), p), sample_point(ia, ra, i))
+        edge = sub(v, w)
+        length2 = dot(edge, edge)
+        if length2 == 0.0:
+            break
+        s = -dot(w, edge) / length2
+        if s <= 0.0:
+            break
+        w = add(w, scale(min(s, 1.0), edge))
+    return w
+
+
+@kernel
+def global_query(pair, R, p, mode, q, tolerance, counts, events):
+    """(outcome, d, bound, normal) of a cold query; (mode, q) are set to its witness points.
+
+    Distances are those of the cores; `tolerance` (relative to the pair's size) is the gap
+    between distance and bound at which a start is accepted.
+    """
+    ia, ra, ib, rb = pair
+    size = ra[L.SIZE] + rb[L.SIZE]
+    best_gap, best_d, best_bound, best_normal = inf, inf, -inf, (0.0, 0.0, 0.0)
+    best_mode, best_q = mode.copy(), q.copy()
+    direction = (0.0, 0.0, 0.0)
+    outcome = UNCERTIFIED
+    for attempt in range(MAX_STARTS):
+        if attempt == 0:
+            i, j = nearest_facing(pair, R, p)
+        else:
+            counts[RESTARTS] += 1
+            if attempt == 1:
+                direction = gilbert(pair, R, p)
+            i = support_sample(ia, ra, direction)
+            j = support_sample(ib, rb, scale(-1.0, rotate_back(R, direction)))
+        begin_at(ia, ra, 0, i, mode, q)
+        begin_at(ib, rb, 1, j, mode, q)
+        ending = settle(pair, R, p, mode, q, 0, 0.0, MAX_ITERATIONS, counts, events)
+        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+        if ending == CONTACT:
+            outcome, best_d = TOUCHING_OR_OVERLAPPING, 0.0
+            best_mode[:], best_q[:] = mode, q
+            break
+        d, bound, normal = certify(pair, R, p, mode, q, jet_a[0], jet_b[0])
+        if d - bound < best_gap:
+            best_gap, best_d, best_bound, best_normal = d - bound, d, bound, normal
+            best_mode[:], best_q[:] = mode, q
+        if d - bound <= tolerance * (size + d) and bound > 0.0:
+            outcome = CERTIFIED
+            break
+        # aim the next start along this failure's gap, turned a little more each time
+        gap = sub(jet_b[0], jet_a[0])
+        direction = add(scale(1.0 / max(d, 1e-300), gap), scale(0.3 * attempt, direction))
+        if norm(direction) == 0.0:
+            direction = (1.0, 0.0, 0.0)
+    mode[:], q[:] = best_mode, best_q
+    return outcome, best_d, best_bound, best_normal

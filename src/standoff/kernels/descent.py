@@ -1,0 +1,234 @@
+"""Descent of E over the hybrid automaton: safeguarded Newton steps, holds and releases.
+
+A step that meets a boundary is cut there and the boundary is *held*: the pair is solved again
+with fewer parameters until a full step fits or nothing is free. Only at such a stationary point
+are the switching functions tested, and at most one feature, the steepest, is released. As E
+falls between two releases, no stationary point is met twice.
+"""
+
+import numpy as np
+from standoff.kernels.compiling import kernel
+
+from standoff.kernels import layout as L
+from standoff.kernels.features import dimension, feature_jet, moved_jet
+from standoff.kernels.feedback import gradient_norm, law
+from standoff.kernels.switching import (
+    is_smooth,
+    normalised_parameter,
+    onto_boundary,
+    steepest_release,
+)
+from standoff.kernels.switching import across as across_edge
+from standoff.kernels.system import energy, gradient, hessian, projection_errors
+from standoff.kernels.tolerances import (
+    ARMIJO,
+    ENERGY_NOISE,
+    EPS,
+    GRADIENT_NOISE,
+    MAX_HALVINGS,
+    MAX_STALLS,
+    POLISH_RATIO,
+    RECHART,
+    SLOPE,
+    SLOPE_NOISE,
+)
+from standoff.kernels.trimming import HIT_COEDGE, HIT_LIMIT, NO_HIT, walk
+from standoff.kernels.vectors import norm, rotate_back, scale, sub
+
+# Counts, in one int64 array.
+EVALUATIONS, CORRECTIONS, SWITCHES, CHART_CHANGES, RESTARTS, REGULARISED, EVENTS = range(7)
+N_COUNTS = 7
+
+# Columns of the event log: body (0 A, 1 B), from, to, value of the switching function, slope.
+EVENT_COLUMNS = 5
+
+STATIONARY = 0
+EXHAUSTED = 1  # the iterations ran out
+CONTACT = 2  # the surfaces met: no direction is left
+
+
+@kernel
+def pair_jets(pair, R, p, mode, q):
+    """Both jets in A's frame at modes (feature_a, chart_a, feature_b, chart_b), parameters q."""
+    ia, ra, ib, rb = pair
+    jet_a = feature_jet(ia, ra, mode[0], mode[1], q[0], q[1])
+    jet_b = feature_jet(ib, rb, mode[2], mode[3], q[2], q[3])
+    return jet_a, moved_jet(R, p, jet_b)
+
+
+@kernel
+def log_event(events, counts, body, source, target, value, slope):
+    k = counts[EVENTS]
+    if k < events.shape[0]:
+        events[k, 0] = body
+        events[k, 1] = source
+        events[k, 2] = target
+        events[k, 3] = value
+        events[k, 4] = slope
+    counts[EVENTS] += 1
+    counts[SWITCHES] += 1
+
+
+@kernel
+def walk_pair(pair, mode, q, step):
+    """(s, body, hit, index, t): how much of a step of both bodies fits, and who stops it."""
+    ia, ra, ib, rb = pair
+    sa, ha, na, ta = walk(ia, ra, mode[0], mode[1], q[0], q[1], step[0], step[1])
+    sb, hb, nb, tb = walk(ib, rb, mode[2], mode[3], q[2], q[3], step[2], step[3])
+    if hb == NO_HIT or (ha != NO_HIT and sa <= sb):
+        return sa, 0, ha, na, ta
+    return sb, 1, hb, nb, tb
+
+
+@kernel
+def set_mode(mode, q, body, feature, chart, a, b):
+    mode[2 * body] = feature
+    mode[2 * body + 1] = chart
+    q[2 * body] = a
+    q[2 * body + 1] = b
+
+
+@kernel
+def take_hit(pair, mode, q, body, hit, index, t, last_smooth, s, counts, events):
+    """Apply the reset of a boundary hit. Returns the smooth edge passed, or -1."""
+    ia, ra, ib, rb = pair
+    ints, reals = (ia, ra) if body == 0 else (ib, rb)
+    source, chart = mode[2 * body], mode[2 * body + 1]
+    a, b = q[2 * body], q[2 * body + 1]
+    feature, new_chart, na, nb = onto_boundary(ints, reals, source, chart, a, b, hit, index, t)
+    if hit == HIT_LIMIT:
+        counts[CHART_CHANGES] += 1
+        set_mode(mode, q, body, feature, new_chart, na, nb)
+        return -1
+    passed = -1
+    # Ping-pong over one smooth edge: held as an edge the second time, where E decides.
+    if hit == HIT_COEDGE and is_smooth(ints, feature) and feature != last_smooth:
+        passed = feature
+        feature, new_chart, na, nb = across_edge(ints, reals, feature, index, t)
+    set_mode(mode, q, body, feature, new_chart, na, nb)
+    log_event(events, counts, body, source, feature, 1.0 - s, 0.0)
+    return passed
+
+
+@kernel
+def recentre(pair, mode, q, counts):
+    """Change to the most central chart where a witness point nears the rim of its own."""
+    from_limit = 0
+    ia, ra, ib, rb = pair
+    for body in range(2):
+        ints, reals = (ia, ra) if body == 0 else (ib, rb)
+        feature, chart = mode[2 * body], mode[2 * body + 1]
+        if dimension(ints, feature) == 2 and ints[ints[L.FACES] + L.FACE_STRIDE * feature + 1] > 1:
+            u, v = q[2 * body], q[2 * body + 1]
+            if max(abs(u), abs(v)) > RECHART:
+                to, chart, u, v = onto_boundary(
+                    ints, reals, feature, chart, u, v, HIT_LIMIT, -1, 0.0
+                )
+                if chart != mode[2 * body + 1]:
+                    counts[CHART_CHANGES] += 1
+                    from_limit += 1
+                    set_mode(mode, q, body, to, chart, u, v)
+        q[2 * body] = normalised_parameter(ints, reals, feature, q[2 * body])
+    return from_limit
+
+
+@kernel
+def release_pair(pair, R, mode, q, dR, slope_floor, counts, events):
+    """Test the switching functions; release the steepest feature. False where none is left."""
+    ia, ra, ib, rb = pair
+    d = norm(dR)
+    n = scale(-1.0 / d, dR)
+    sa, fa, ca, ua, va = steepest_release(ia, ra, mode[0], q[0], n)
+    sb, fb, cb, ub, vb = steepest_release(ib, rb, mode[2], q[2], scale(-1.0, rotate_back(R, n)))
+    if min(sa, sb) >= -slope_floor:
+        return False
+    if sa <= sb:
+        log_event(events, counts, 0, mode[0], fa, sa * d, sa)
+        set_mode(mode, q, 0, fa, ca, ua, va)
+    else:
+        log_event(events, counts, 1, mode[2], fb, sb * d, sb)
+        set_mode(mode, q, 1, fb, cb, ub, vb)
+    return True
+
+
+@kernel
+def line_search(pair, R, p, mode, q, step, s, E, descent, noise, trial):
+    """Halve s until Armijo's rule holds; the trial parameters stay in `trial`. (s, E, ok)"""
+    for _ in range(MAX_HALVINGS):
+        for k in range(4):
+            trial[k] = q[k] + s * step[k]
+        jet_a, jet_b = pair_jets(pair, R, p, mode, trial)
+        E1 = energy(jet_a, jet_b)
+        if E1 <= E + ARMIJO * s * descent + noise:
+            return s, E1, True
+        s *= 0.5
+    return s, E, False
+
+
+@kernel
+def settle(pair, R, p, mode, q, least, tolerance, max_iterations, counts, events):
+    """Descend to a stationary point of the automaton from (mode, q), changed in place.
+
+    At least `least` corrections are made; after that a slope of E below tolerance |dR| (or
+    roundoff) is stationary. Returns STATIONARY, EXHAUSTED or CONTACT.
+    """
+    size = pair[1][L.SIZE] + pair[3][L.SIZE]
+    still = (0.0, 0.0, 0.0, 0.0)
+    trial = np.empty(4)
+    corrections, stalls, polish = 0, 0, 0
+    last_slope, last_release = 1e300, 1e300
+    last_smooth = -1
+    for _ in range(max_iterations):
+        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+        dR = sub(jet_a[0], jet_b[0])
+        d = norm(dR)
+        span = size + d
+        if d <= EPS * span:
+            return CONTACT
+        E = 0.5 * d * d
+        noise = ENERGY_NOISE * EPS * span * d
+        g = gradient(projection_errors(jet_a, jet_b))
+        slope = gradient_norm(jet_a, jet_b, g)
+        floor = max(2.0 * GRADIENT_NOISE * EPS * span, tolerance * d)
+        stationary = slope <= floor and corrections >= least
+        if slope == 0.0:
+            stationary = True
+        if not stationary:
+            H = hessian(jet_a, jet_b)
+            step, _, _, regularised = law(jet_a, jet_b, g, H, still, span, d)
+            counts[EVALUATIONS] += 1
+            counts[REGULARISED] += regularised
+            descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
+            if -0.5 * descent <= noise:
+                polish += 1
+                stationary = polish > 2 and slope > POLISH_RATIO * last_slope
+            last_slope = slope
+        if not stationary:
+            s, body, hit, index, t = walk_pair(pair, mode, q, step)
+            reach = s
+            s, _, ok = line_search(pair, R, p, mode, q, step, s, E, descent, noise, trial)
+            if ok:
+                corrections += 1
+                counts[CORRECTIONS] += 1
+                for k in range(4):
+                    q[k] = trial[k]
+                if hit != NO_HIT and s == reach:
+                    last_smooth = take_hit(
+                        pair, mode, q, body, hit, index, t, last_smooth, s, counts, events
+                    )
+                    polish, last_slope = 0, 1e300
+                else:
+                    last_smooth = -1
+                    recentre(pair, mode, q, counts)
+                continue
+        # Stationary, or no step lowers E: test the switching functions.
+        if E > last_release - noise:
+            stalls += 1
+            if stalls > MAX_STALLS:
+                return STATIONARY
+        last_release = E
+        slope_floor = max(SLOPE, SLOPE_NOISE * EPS * span / d)
+        if not release_pair(pair, R, mode, q, dR, slope_floor, counts, events):
+            return STATIONARY
+        polish, last_slope = 0, 1e300
+    return EXHAUSTED

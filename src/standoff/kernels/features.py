@@ -1,0 +1,185 @@
+"""Reading a packed body: the jet, normal and neighbours of a feature.
+
+A body in the kernels is the pair (ints, reals) of ``layout``. A *mode* of one body is
+(feature, chart); the chart matters for faces only and is an absolute chart number.
+"""
+
+from standoff.kernels.compiling import kernel
+
+from standoff.kernels import layout as L
+from standoff.kernels.jets import chart_parameters, curve_jet, pcurve_point, surface_jet
+from standoff.kernels.tolerances import COLLAPSED
+from standoff.kernels.vectors import add, cross, dot, rotate, scale, unit
+
+ZERO = (0.0, 0.0, 0.0)
+
+
+@kernel
+def dimension(ints, feature):
+    """2 for a face, 1 for an edge, 0 for a vertex."""
+    if feature < ints[L.N_FACES]:
+        return 2
+    if feature < ints[L.N_FACES] + ints[L.N_EDGES]:
+        return 1
+    return 0
+
+
+@kernel
+def chart_record(ints, chart):
+    return ints[L.CHARTS] + L.CHART_STRIDE * chart
+
+
+@kernel
+def edge_record(ints, feature):
+    return ints[L.EDGES] + L.EDGE_STRIDE * (feature - ints[L.N_FACES])
+
+
+@kernel
+def vertex_record(ints, feature):
+    return ints[L.VERTICES] + L.VERTEX_STRIDE * (
+        feature - ints[L.N_FACES] - ints[L.N_EDGES]
+    )
+
+
+@kernel
+def coedge_record(ints, coedge):
+    return ints[L.COEDGES] + L.COEDGE_STRIDE * coedge
+
+
+@kernel
+def chart_jet(ints, reals, chart, u, v):
+    c = chart_record(ints, chart)
+    return surface_jet(reals, ints[c + L.CHART_KIND], ints[c + L.CHART_REALS], u, v)
+
+
+@kernel
+def edge_jet(ints, reals, feature, t):
+    e = edge_record(ints, feature)
+    return curve_jet(reals, ints[e + L.EDGE_KIND], ints[e + L.EDGE_REALS] + L.CURVE_DATA, t)
+
+
+@kernel
+def vertex_point(ints, reals, feature):
+    o = ints[vertex_record(ints, feature) + L.VERTEX_REALS]
+    return (reals[o], reals[o + 1], reals[o + 2])
+
+
+@kernel
+def feature_jet(ints, reals, feature, chart, p, q):
+    """Jet of any feature at its parameters (p, q); columns that it lacks are zero."""
+    dim = dimension(ints, feature)
+    if dim == 2:
+        x, xu, xv, xuu, xuv, xvv = chart_jet(ints, reals, chart, p, q)
+        tiny = COLLAPSED * reals[L.SIZE]
+        if dot(xu, xu) <= tiny * tiny:
+            return x, ZERO, xv, ZERO, ZERO, xvv
+        return x, xu, xv, xuu, xuv, xvv
+    if dim == 1:
+        x, xt, xtt = edge_jet(ints, reals, feature, p)
+        return x, xt, ZERO, xtt, ZERO, ZERO
+    return vertex_point(ints, reals, feature), ZERO, ZERO, ZERO, ZERO, ZERO
+
+
+@kernel
+def moved_jet(R, p, jet):
+    """The jet seen in another frame: x -> R x + p."""
+    return (
+        add(rotate(R, jet[0]), p),
+        rotate(R, jet[1]),
+        rotate(R, jet[2]),
+        rotate(R, jet[3]),
+        rotate(R, jet[4]),
+        rotate(R, jet[5]),
+    )
+
+
+@kernel
+def chart_normal(ints, reals, chart, u, v):
+    """Outward unit normal; zero where the chart has collapsed."""
+    jet = chart_jet(ints, reals, chart, u, v)
+    o = ints[chart_record(ints, chart) + L.CHART_REALS]
+    return scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
+
+
+@kernel
+def planar_edge_normal(ints, reals, feature, t):
+    """Outward in-plane unit normal of a planar body's edge."""
+    flags = ints[edge_record(ints, feature) + L.EDGE_FLAGS]
+    tangent = unit(edge_jet(ints, reals, feature, t)[1])
+    if flags & L.OUTWARD_RIGHT:
+        return (tangent[1], -tangent[0], 0.0)
+    return (-tangent[1], tangent[0], 0.0)
+
+
+@kernel
+def coedge_parameters(ints, reals, coedge, t):
+    """(u, v, du, dv, depth) of the pcurve at t; depth <= 0 where its chart does not see it."""
+    c = coedge_record(ints, coedge)
+    o = ints[c + L.COEDGE_REALS] + L.PCURVE_MATRIX
+    h, ht = pcurve_point(reals, ints[c + L.COEDGE_KIND], o, t)
+    if h[2] <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, h[2]
+    u, v = h[0] / h[2], h[1] / h[2]
+    return u, v, (ht[0] - u * ht[2]) / h[2], (ht[1] - v * ht[2]) / h[2], h[2]
+
+
+@kernel
+def best_coedge(ints, reals, coedge, t):
+    """The coedge of the same edge and face whose chart sees the point at t most centrally.
+
+    A face with one chart has one; with an atlas every chart that meets the edge has its own.
+    """
+    c = coedge_record(ints, coedge)
+    edge = ints[c + L.COEDGE_EDGE]
+    face = ints[chart_record(ints, ints[c + L.COEDGE_CHART]) + L.CHART_FACE]
+    f = ints[L.FACES] + L.FACE_STRIDE * face
+    if ints[f + 1] == 1:
+        return coedge
+    best = coedge
+    best_reach = 1e300
+    for chart in range(ints[f], ints[f] + ints[f + 1]):
+        r = chart_record(ints, chart)
+        first = ints[r + L.CHART_COEDGE]
+        for k in range(first, first + ints[r + L.CHART_N_COEDGES]):
+            if ints[coedge_record(ints, k) + L.COEDGE_EDGE] == edge:
+                u, v, _, _, depth = coedge_parameters(ints, reals, k, t)
+                if depth > 0.0 and max(abs(u), abs(v)) < best_reach:
+                    best_reach = max(abs(u), abs(v))
+                    best = k
+    return best
+
+
+@kernel
+def best_chart(ints, reals, chart, x):
+    """(chart, u, v) of the atlas's chart that sees the surface point x most centrally."""
+    face = ints[chart_record(ints, chart) + L.CHART_FACE]
+    f = ints[L.FACES] + L.FACE_STRIDE * face
+    best, best_u, best_v, best_reach = chart, 0.0, 0.0, 1e300
+    for k in range(ints[f], ints[f] + ints[f + 1]):
+        r = chart_record(ints, k)
+        u, v, depth = chart_parameters(
+            reals, ints[r + L.CHART_KIND], ints[r + L.CHART_REALS], x
+        )
+        if depth > 0.0 and max(abs(u), abs(v)) < best_reach:
+            best, best_u, best_v, best_reach = k, u, v, max(abs(u), abs(v))
+    return best, best_u, best_v
+
+
+@kernel
+def coedge_conormal(ints, reals, coedge, tangent, t):
+    """(conormal, normal) at edge parameter t: the inward unit conormal of the coedge's face.
+
+    tangent is the edge's unit tangent, in the body's frame.
+    """
+    k = best_coedge(ints, reals, coedge, t)
+    c = coedge_record(ints, k)
+    u, v, du, dv, _ = coedge_parameters(ints, reals, k, t)
+    chart = ints[c + L.COEDGE_CHART]
+    jet = chart_jet(ints, reals, chart, u, v)
+    o = ints[chart_record(ints, chart) + L.CHART_REALS]
+    normal = scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
+    inward = cross(normal, tangent)
+    # the left of the pcurve in (u, v) is the left on the surface where f_u x f_v points outward;
+    # the pcurve may run against the edge's tangent only by its own parametrisation, never does
+    side = ints[c + L.COEDGE_SIDE] * reals[o + L.OUTWARD]
+    return scale(side, inward), normal

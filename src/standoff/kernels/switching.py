@@ -1,0 +1,179 @@
+"""The hybrid automaton of Eqs. (15)-(17): resets across boundaries, and the switching functions.
+
+The switching functions are Kuhn-Tucker multipliers: slopes of the distance along the unit
+directions that lead off a feature. They are the Voronoi tests of Lin and Canny: the sign of the
+slope along an edge at its end is the vertex-edge Voronoi plane, the sign along a face's inward
+conormal the edge-face Voronoi surface. No Voronoi boundary is ever built.
+"""
+
+from math import cos, pi, sin, sqrt
+
+from standoff.kernels.compiling import kernel
+
+from standoff.kernels import layout as L
+from standoff.kernels.features import (
+    best_chart,
+    best_coedge,
+    chart_jet,
+    chart_record,
+    coedge_conormal,
+    coedge_parameters,
+    coedge_record,
+    dimension,
+    edge_jet,
+    edge_record,
+    vertex_record,
+)
+from standoff.kernels.trimming import HIT_COEDGE, HIT_END, TURN, wrapped
+from standoff.kernels.vectors import axpy, dot, norm, scale, unit
+
+FAN_SCAN = 24  # directions tried around an apex or in a wide sector, before refinement
+FAN_REFINE = 60  # golden-section steps: shrinks the bracket by 1e-12, the fan's own roundoff
+
+
+@kernel
+def is_smooth(ints, feature):
+    return (
+        dimension(ints, feature) == 1
+        and ints[edge_record(ints, feature) + L.EDGE_FLAGS] & L.SMOOTH != 0
+    )
+
+
+@kernel
+def onto_face(ints, reals, coedge, t):
+    """Reset edge -> face: (feature, chart, u, v) of the edge's point at t on the coedge's face."""
+    k = best_coedge(ints, reals, coedge, t)
+    u, v, _, _, _ = coedge_parameters(ints, reals, k, t)
+    chart = ints[coedge_record(ints, k) + L.COEDGE_CHART]
+    return ints[chart_record(ints, chart) + L.CHART_FACE], chart, u, v
+
+
+@kernel
+def across(ints, reals, feature, coedge, t):
+    """Reset face -> face over a smooth edge."""
+    face = ints[chart_record(ints, ints[coedge_record(ints, coedge) + L.COEDGE_CHART]) + L.CHART_FACE]
+    e = edge_record(ints, feature)
+    other = ints[e + L.EDGE_COEDGE_0]
+    if ints[chart_record(ints, ints[coedge_record(ints, other) + L.COEDGE_CHART]) + L.CHART_FACE] == face:
+        other = ints[e + L.EDGE_COEDGE_1]
+    return onto_face(ints, reals, other, t)
+
+
+@kernel
+def onto_boundary(ints, reals, feature, chart, p, q, hit, index, t):
+    """Reset at a hit: (feature, chart, p, q) of the boundary that the step has reached."""
+    if hit == HIT_COEDGE:
+        edge = ints[coedge_record(ints, index) + L.COEDGE_EDGE]
+        if edge < 0:
+            return ints[L.N_FACES] + ints[L.N_EDGES] - 1 - edge, -1, 0.0, 0.0
+        return ints[L.N_FACES] + edge, -1, t, 0.0
+    if hit == HIT_END:
+        vertex = ints[edge_record(ints, feature) + L.EDGE_FIRST + index]
+        return ints[L.N_FACES] + ints[L.N_EDGES] + vertex, -1, 0.0, 0.0
+    # the chart's limit: same face, another chart
+    x = chart_jet(ints, reals, chart, p, q)[0]
+    chart, p, q = best_chart(ints, reals, chart, x)
+    return feature, chart, p, q
+
+
+@kernel
+def normalised_parameter(ints, reals, feature, p):
+    """A closed edge's parameter in its first period; a cylinder's angle needs no seam."""
+    if dimension(ints, feature) == 1:
+        e = edge_record(ints, feature)
+        if ints[e + L.EDGE_FLAGS] & L.CLOSED:
+            return wrapped(p, reals[ints[e + L.EDGE_REALS] + L.EDGE_T0])
+    return p
+
+
+@kernel
+def sector_direction(ints, reals, sector, angle):
+    """Unit direction that leaves a vertex into a face's sector, at the sector's angle."""
+    chart, o = ints[sector], ints[sector + 1]
+    u, v = reals[o + 1], reals[o + 2]
+    if reals[o] == L.SECTOR_APEX:
+        return unit(chart_jet(ints, reals, chart, angle, v)[2])
+    jet = chart_jet(ints, reals, chart, u, v)
+    return unit(axpy(cos(angle), jet[1], scale(sin(angle), jet[2])))
+
+
+@kernel
+def steepest_in_sector(ints, reals, sector, n):
+    """(slope, angle): least slope of the distance among a sector's directions."""
+    o = ints[sector + 1]
+    lo, hi = reals[o + 3], reals[o + 4]
+    width = (hi - lo) / FAN_SCAN
+    best, at = 1e300, lo
+    for k in range(FAN_SCAN + 1):
+        slope = -dot(n, sector_direction(ints, reals, sector, lo + k * width))
+        if slope < best:
+            best, at = slope, lo + k * width
+    # golden section around the best direction; an apex's fan is periodic, so it may pass lo, hi
+    a, b = at - width, at + width
+    if reals[o] == L.SECTOR_WIDE:
+        a, b = max(a, lo), min(b, hi)
+    ratio = 0.5 * (sqrt(5.0) - 1.0)
+    c, d = b - ratio * (b - a), a + ratio * (b - a)
+    fc = -dot(n, sector_direction(ints, reals, sector, c))
+    fd = -dot(n, sector_direction(ints, reals, sector, d))
+    for _ in range(FAN_REFINE):
+        if fc < fd:
+            b, d, fd = d, c, fc
+            c = b - ratio * (b - a)
+            fc = -dot(n, sector_direction(ints, reals, sector, c))
+        else:
+            a, c, fc = c, d, fd
+            d = a + ratio * (b - a)
+            fd = -dot(n, sector_direction(ints, reals, sector, d))
+    return (fc, c) if fc < fd else (fd, d)
+
+
+@kernel
+def end_direction(ints, reals, edge, end):
+    """Unit tangent that leaves an edge's end into the edge."""
+    o = ints[edge_record(ints, edge) + L.EDGE_REALS]
+    tangent = unit(edge_jet(ints, reals, edge, reals[o + L.EDGE_T0 + end])[1])
+    return tangent if end == 0 else scale(-1.0, tangent)
+
+
+@kernel
+def steepest_release(ints, reals, feature, p, n):
+    """The steepest way off an edge or vertex: (slope, feature, chart, p, q).
+
+    n is the unit direction towards the other body, in this body's frame, so the slope of the
+    distance along a unit direction c is -n.c. A face has no release: slope 0.
+    """
+    best, to, chart, a, b = 0.0, -1, -1, 0.0, 0.0
+    dim = dimension(ints, feature)
+    if dim == 1:
+        e = edge_record(ints, feature)
+        tangent = unit(edge_jet(ints, reals, feature, p)[1])
+        for side in range(2):
+            k = ints[e + L.EDGE_COEDGE_0 + side]
+            if k < 0:
+                continue
+            slope = -dot(n, coedge_conormal(ints, reals, k, tangent, p)[0])
+            if slope < best:
+                best = slope
+                to, chart, a, b = onto_face(ints, reals, k, p)
+    elif dim == 0:
+        r = vertex_record(ints, feature)
+        fan = ints[r + L.VERTEX_FAN]
+        for k in range(ints[r + L.VERTEX_N_FAN]):
+            edge = ints[L.N_FACES] + ints[fan + 2 * k]
+            end = ints[fan + 2 * k + 1]
+            slope = -dot(n, end_direction(ints, reals, edge, end))
+            if slope < best:
+                t = reals[ints[edge_record(ints, edge) + L.EDGE_REALS] + L.EDGE_T0 + end]
+                best, to, chart, a, b = slope, edge, -1, t, 0.0
+        sectors = ints[r + L.VERTEX_SECTORS]
+        for k in range(ints[r + L.VERTEX_N_SECTORS]):
+            sector = sectors + 2 * k
+            slope, angle = steepest_in_sector(ints, reals, sector, n)
+            if slope < best:
+                o = ints[sector + 1]
+                c = ints[sector]
+                face = ints[chart_record(ints, c) + L.CHART_FACE]
+                u = angle if reals[o] == L.SECTOR_APEX else reals[o + 1]
+                best, to, chart, a, b = slope, face, c, u, reals[o + 2]
+    return best, to, chart, a, b
