@@ -157,9 +157,8 @@ class Screw:
 
     def twist(self, t: float) -> Twist:
         """Return how the body moves at time `t` [s], in world axes."""
-        seconds = inputs.number(t, "t")
-        origin = self.pose(seconds).translation - self._advance * seconds
-        return Twist(np.cross(self._omega, origin - self._point) + self._advance, self._omega)
+        arm = self.pose(t).translation - self._point
+        return Twist(np.cross(self._omega, arm) + self._advance, self._omega)
 
 
 class Offset:

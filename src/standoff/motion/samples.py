@@ -104,8 +104,6 @@ class PoseSamples:
             # Not by the last screw, so that every sample is met without rounding.
             return self.poses[-1]
         elapsed = seconds - float(self.times[index])
-        if elapsed == 0.0:
-            return self.poses[index]
         return self._twists[index].carry(self.poses[index], elapsed)
 
     def twist(self, t: float) -> Twist:
