@@ -1,0 +1,1 @@
+"""Measurements of Standoff beside other packages."""
