@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from oracles import closed_forms
 from oracles.bounds import gap, maximise_separation, overlap, separation
-from oracles.brute import nearest_points, nearest_polytopes
+from oracles.brute import _proves, nearest_points, nearest_polytopes
 from oracles.exact_pairs import exact_pair, random_normal, random_rotation
 from oracles.features import feature_at
 from oracles.loops import BezierCurve, ConicArc, PlanarLoop, line
@@ -31,7 +31,7 @@ from oracles.support import (
     Segment,
     Sphere,
 )
-from oracles.surfaces import quadrics
+from oracles.surfaces import placed_quadrics, quadrics
 
 LENS = Lens(1.0, 0.45)
 PLANAR = PlanarLoop(
@@ -485,3 +485,21 @@ def test_rotations():
     axis = random_normal(rng)
     expected = Rotation.from_rotvec(0.7 * axis).as_matrix()
     np.testing.assert_allclose(rotation_about(axis, 0.7), expected, atol=1e-15)
+
+
+def test_facets_of_a_box():
+    facets = Box(1, 2, 3).core.facets
+    assert (len(facets.normals), len(facets.edges)) == (6, 12)
+    assert sorted(facets.offsets) == [0.5, 0.5, 1, 1, 1.5, 1.5]
+    # Euler: a rock of triangles has 3 v - 6 edges.
+    hull = Polytope(ROCK.vertices[np.unique(ROCK.facets.edges)])
+    assert len(hull.facets.edges) == 3 * len(hull.vertices) - 6
+
+
+def test_a_point_off_its_place_is_not_proven():
+    place, ball = placed_quadrics(placed(Point()), np.zeros(3)), quadrics(Ellipsoid(1, 1, 1))
+    far = placed_quadrics(placed(Ellipsoid(1, 1, 1), position=(3, 0, 0)), np.zeros(3))
+    assert _proves(place, far, np.array([0.0, 0, 0, 2, 0, 0]), 2.0)
+    assert not _proves(place, far, np.array([-0.1, 0, 0, 2, 0, 0]), 2.0)
+    assert not _proves(place, far, np.array([0.0, 0, 0, 2.1, 0, 0]), 2.0)
+    assert not _proves(place, ball, np.array([0.0, 0, 0, 2, 0, 0]), 2.0)
