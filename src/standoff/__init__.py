@@ -1,3 +1,42 @@
-"""Exact, certified minimum distance of curved convex bodies in motion."""
+"""Exact, certified minimum distance of curved convex bodies in motion.
+
+The public face: one import path a symbol. ``import standoff as so``.
+"""
+
+from standoff.bodies import Apex, Body, BodyError, Edge, Face, shapes
+from standoff.motion import Pose, Twist
+from standoff.tracking import (
+    Counts,
+    Event,
+    Feature,
+    FrameBuffer,
+    Proximity,
+    Status,
+    Tracker,
+    TrackerState,
+    distance,
+    max_gain,
+)
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Apex",
+    "Body",
+    "BodyError",
+    "Counts",
+    "Edge",
+    "Event",
+    "Face",
+    "Feature",
+    "FrameBuffer",
+    "Pose",
+    "Proximity",
+    "Status",
+    "Tracker",
+    "TrackerState",
+    "Twist",
+    "distance",
+    "max_gain",
+    "shapes",
+]

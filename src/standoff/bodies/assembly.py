@@ -331,9 +331,7 @@ def assemble(
     if dimension == 2:
         right, cones = _planar_geometry(vertices, edges, inside, size)
     return (
-        Assembled(
-            dimension, vertices, edges, faces, charts, smooth, right, sectors, cones
-        ),
+        Assembled(dimension, vertices, edges, faces, charts, smooth, right, sectors, cones),
         notes,
     )
 

@@ -122,9 +122,7 @@ class Body:
             radius *= float(stretch[0])
         if self.dimension == 2 and (np.abs(linear[2, :2]).max() > 0.0 or shift[2] != 0.0):
             raise ValueError("The map takes a planar body out of z = 0.")
-        edges = [
-            Edge(e.curve.transformed(linear, shift), e.first, e.last) for e in self.edge_parts
-        ]
+        edges = [Edge(e.curve.transformed(linear, shift), e.first, e.last) for e in self.edge_parts]
         flip = 1 if np.linalg.det(linear) > 0.0 else -1
         faces = [
             Face(

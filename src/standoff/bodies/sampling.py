@@ -28,11 +28,7 @@ def _parameter_box(chart: Chart) -> tuple[float, float, float, float]:
     if chart.limit < np.inf:
         return -1.0, 1.0, -1.0, 1.0
     points = np.array(
-        [
-            c.pcurve.point(t)[:2]
-            for c in chart.coedges
-            for t in np.linspace(c.first, c.last, 25)
-        ]
+        [c.pcurve.point(t)[:2] for c in chart.coedges for t in np.linspace(c.first, c.last, 25)]
     )
     if not len(points):
         return 0.0, 0.0, 0.0, 0.0
@@ -185,9 +181,10 @@ def check_convex(samples: Sequence[Sample], size: float) -> float:
     if not faces or not len(points):
         return 0.0
     normals = np.array([s.normal for s in faces])
-    heights = normals @ points.T - np.einsum(
-        "ij,ij->i", normals, np.array([s.point for s in faces])
-    )[:, None]
+    heights = (
+        normals @ points.T
+        - np.einsum("ij,ij->i", normals, np.array([s.point for s in faces]))[:, None]
+    )
     i, j = np.unravel_index(int(heights.argmax()), heights.shape)
     worst = float(heights[i, j])
     if worst > CONVEXITY_TOLERANCE * size:

@@ -1,1 +1,19 @@
-"""Curves and surfaces: validated, immutable descriptions of shapes."""
+"""Geometry: surfaces, curves and their trimming curves, validated and immutable."""
+
+from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
+from standoff.geometry.pcurves import Pcurve, pcurve_of
+from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
+
+__all__ = [
+    "Cone",
+    "ConicArc",
+    "Curve",
+    "Cylinder",
+    "Line",
+    "Pcurve",
+    "Plane",
+    "RationalBezier",
+    "Sphere",
+    "Surface",
+    "pcurve_of",
+]

@@ -92,7 +92,9 @@ class ConicArc(Curve):
         if np.linalg.norm(np.cross(a, b)) <= 1e-14 * np.linalg.norm(a) * np.linalg.norm(b):
             raise ValueError(f"Conic arc with parallel or zero axes a = {a}, b = {b}.")
         if not 0.0 < last - first <= FULL_TURN * (1.0 + 1e-15):
-            raise ValueError(f"Conic arc from t = {first} to {last}: give 0 < last - first <= 2 pi.")
+            raise ValueError(
+                f"Conic arc from t = {first} to {last}: give 0 < last - first <= 2 pi."
+            )
         linear = np.zeros((3, 3))
         linear[:, 0], linear[:, 1] = a, b
         _fill(self, _affine(linear, centre), first, last)

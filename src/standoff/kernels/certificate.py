@@ -2,9 +2,8 @@
 
 from math import inf
 
-from standoff.kernels.compiling import kernel
-
 from standoff.kernels import layout as L
+from standoff.kernels.compiling import kernel
 from standoff.kernels.features import (
     chart_jet,
     chart_normal,
@@ -15,7 +14,7 @@ from standoff.kernels.features import (
     planar_edge_normal,
     vertex_record,
 )
-from standoff.kernels.switching import end_direction, sector_direction, steepest_in_sector
+from standoff.kernels.switching import end_direction, steepest_in_sector
 from standoff.kernels.tolerances import EPS
 from standoff.kernels.vectors import axpy, cross, dot, norm, rotate, rotate_back, scale, sub, unit
 
@@ -73,7 +72,9 @@ def vertex_cone(ints, reals, feature, n):
             if reals[o] == L.SECTOR_APEX:
                 # the normal along a generator is the same at any distance from the apex
                 jet = chart_jet(ints, reals, chart, angle, reals[o + 2] + 1.0)
-                sign = reals[ints[ints[L.CHARTS] + L.CHART_STRIDE * chart + L.CHART_REALS] + L.OUTWARD]
+                sign = reals[
+                    ints[ints[L.CHARTS] + L.CHART_STRIDE * chart + L.CHART_REALS] + L.OUTWARD
+                ]
                 best = scale(sign, unit(cross(jet[1], jet[2])))
             else:
                 best = chart_normal(ints, reals, chart, reals[o + 1], reals[o + 2])
@@ -127,19 +128,9 @@ def overhang(ints, reals, x, e):
 
 
 @kernel
-def plane_bound(ints_a, reals_a, x_a, n_a, ints_b, reals_b, x_b, n_b, R, n, gap_vector):
-    """Lower bound of the cores' distance by the planes of normal n (A's frame) at both witnesses.
-
-    x_a, n_a in A's frame; x_b, n_b (the outward normal) in B's frame; R takes B's frame to A's.
-    """
-    over_a = overhang(ints_a, reals_a, x_a, sub(n, n_a))
-    m = (
-        -(R[0] * n[0] + R[3] * n[1] + R[6] * n[2]),
-        -(R[1] * n[0] + R[4] * n[1] + R[7] * n[2]),
-        -(R[2] * n[0] + R[5] * n[1] + R[8] * n[2]),
-    )
-    over_b = overhang(ints_b, reals_b, x_b, sub(m, n_b))
-    return dot(n, gap_vector) - over_a - over_b
+def into_b(R, n):
+    """A direction of A's frame seen from B, reversed: what is outward there."""
+    return scale(-1.0, rotate_back(R, n))
 
 
 @kernel
@@ -154,21 +145,23 @@ def certify(pair, R, p, mode, q, x_a, x_b):
     d = norm(gap)
     direction = unit(gap)
     y_b = rotate_back(R, sub(x_b, p))
+    m_b = into_b(R, direction)
     n_a = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], direction)
-    n_b = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], scale(-1.0, rotate_back(R, direction)))
-    from_b = scale(-1.0, rotate(R, n_b))
-    best, normal = -inf, direction
-    for k in range(3):
-        n = direction if k == 0 else (n_a if k == 1 else from_b)
-        if dot(n, n) < 0.5:  # a collapsed or zero direction bounds nothing
-            continue
-        m_a = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], n) if k == 2 else n_a
-        m_b = n_b
-        if k == 1:
-            m_b = cone_normal(
-                ib, rb, mode[2], mode[3], q[2], q[3], scale(-1.0, rotate_back(R, n))
-            )
-        bound = plane_bound(ia, ra, x_a, m_a, ib, rb, y_b, m_b, R, n, gap)
+    n_b = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], m_b)
+    over_a = overhang(ia, ra, x_a, sub(direction, n_a))
+    over_b = overhang(ib, rb, y_b, sub(m_b, n_b))
+    best, normal = d - over_a - over_b, direction
+    # A's own normal: nothing hangs over at A. A zero normal (collapsed chart) bounds nothing.
+    if dot(n_a, n_a) > 0.5:
+        m = into_b(R, n_a)
+        cone = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], m)
+        bound = dot(n_a, gap) - overhang(ib, rb, y_b, sub(m, cone))
+        if bound > best:
+            best, normal = bound, n_a
+    if dot(n_b, n_b) > 0.5:
+        n = scale(-1.0, rotate(R, n_b))
+        cone = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], n)
+        bound = dot(n, gap) - overhang(ia, ra, x_a, sub(n, cone))
         if bound > best:
             best, normal = bound, n
     reach = abs(x_a[0]) + abs(x_a[1]) + abs(x_a[2]) + abs(x_b[0]) + abs(x_b[1]) + abs(x_b[2])

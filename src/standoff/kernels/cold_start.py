@@ -9,12 +9,12 @@ directions of earlier failures.
 from math import inf
 
 import numpy as np
-from standoff.kernels.compiling import kernel
 
 from standoff.kernels import layout as L
 from standoff.kernels.certificate import certify
-from standoff.kernels.descent import CONTACT, RESTARTS, STATIONARY, pair_jets, set_mode, settle
-from standoff.kernels.tolerances import MAX_ITERATIONS
+from standoff.kernels.compiling import kernel
+from standoff.kernels.descent import RESTARTS, pair_jets, set_mode, settle
+from standoff.kernels.tolerances import MAX_ITERATIONS, TOUCHING
 from standoff.kernels.vectors import add, dot, norm, rotate, rotate_back, scale, sub
 
 MAX_STARTS = 12
@@ -102,7 +102,8 @@ def global_query(pair, R, p, mode, q, tolerance, counts, events):
     ia, ra, ib, rb = pair
     size = ra[L.SIZE] + rb[L.SIZE]
     best_gap, best_d, best_bound, best_normal = inf, inf, -inf, (0.0, 0.0, 0.0)
-    best_mode, best_q = mode.copy(), q.copy()
+    best_mode, best_q, w_ff = mode.copy(), q.copy(), np.zeros(4)
+    still = (0.0, 0.0, 0.0)
     direction = (0.0, 0.0, 0.0)
     outcome = UNCERTIFIED
     for attempt in range(MAX_STARTS):
@@ -116,18 +117,17 @@ def global_query(pair, R, p, mode, q, tolerance, counts, events):
             j = support_sample(ib, rb, scale(-1.0, rotate_back(R, direction)))
         begin_at(ia, ra, 0, i, mode, q)
         begin_at(ib, rb, 1, j, mode, q)
-        ending = settle(pair, R, p, mode, q, 0, 0.0, MAX_ITERATIONS, counts, events)
+        settle(pair, R, p, still, still, mode, q, w_ff, 0, 0.0, MAX_ITERATIONS, counts, events)
         jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-        if ending == CONTACT:
-            outcome, best_d = TOUCHING_OR_OVERLAPPING, 0.0
-            best_mode[:], best_q[:] = mode, q
-            break
         d, bound, normal = certify(pair, R, p, mode, q, jet_a[0], jet_b[0])
         if d - bound < best_gap:
             best_gap, best_d, best_bound, best_normal = d - bound, d, bound, normal
             best_mode[:], best_q[:] = mode, q
-        if d - bound <= tolerance * (size + d) and bound > 0.0:
+        if bound > 0.0 and d - bound <= tolerance * (size + d):
             outcome = CERTIFIED
+            break
+        if bound <= 0.0 and d <= TOUCHING * (size + d):
+            outcome = TOUCHING_OR_OVERLAPPING
             break
         # aim the next start along this failure's gap, turned a little more each time
         gap = sub(jet_b[0], jet_a[0])

@@ -7,19 +7,19 @@ falls between two releases, no stationary point is met twice.
 """
 
 import numpy as np
-from standoff.kernels.compiling import kernel
 
 from standoff.kernels import layout as L
+from standoff.kernels.compiling import kernel
 from standoff.kernels.features import dimension, feature_jet, moved_jet
 from standoff.kernels.feedback import gradient_norm, law
+from standoff.kernels.switching import across as across_edge
 from standoff.kernels.switching import (
     is_smooth,
     normalised_parameter,
     onto_boundary,
     steepest_release,
 )
-from standoff.kernels.switching import across as across_edge
-from standoff.kernels.system import energy, gradient, hessian, projection_errors
+from standoff.kernels.system import energy, feedforward, gradient, hessian, projection_errors
 from standoff.kernels.tolerances import (
     ARMIJO,
     ENERGY_NOISE,
@@ -31,6 +31,7 @@ from standoff.kernels.tolerances import (
     RECHART,
     SLOPE,
     SLOPE_NOISE,
+    TOUCHING,
 )
 from standoff.kernels.trimming import HIT_COEDGE, HIT_LIMIT, NO_HIT, walk
 from standoff.kernels.vectors import norm, rotate_back, scale, sub
@@ -41,6 +42,8 @@ N_COUNTS = 7
 
 # Columns of the event log: body (0 A, 1 B), from, to, value of the switching function, slope.
 EVENT_COLUMNS = 5
+
+ORIGIN = (0.0, 0.0, 0.0)
 
 STATIONARY = 0
 EXHAUSTED = 1  # the iterations ran out
@@ -159,21 +162,23 @@ def line_search(pair, R, p, mode, q, step, s, E, descent, noise, trial):
             trial[k] = q[k] + s * step[k]
         jet_a, jet_b = pair_jets(pair, R, p, mode, trial)
         E1 = energy(jet_a, jet_b)
-        if E1 <= E + ARMIJO * s * descent + noise:
+        if E + ARMIJO * s * descent + noise >= E1:
             return s, E1, True
         s *= 0.5
     return s, E, False
 
 
 @kernel
-def settle(pair, R, p, mode, q, least, tolerance, max_iterations, counts, events):
+def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, max_iterations, counts, events):
     """Descend to a stationary point of the automaton from (mode, q), changed in place.
 
     At least `least` corrections are made; after that a slope of E below tolerance |dR| (or
-    roundoff) is stationary. Returns STATIONARY, EXHAUSTED or CONTACT.
+    roundoff) is stationary. (v, w) is B's twist in A's frame; w_ff gets the feedforward of the
+    last evaluation. Returns (STATIONARY | EXHAUSTED | CONTACT, fresh): fresh tells whether w_ff
+    belongs to the final mode.
     """
     size = pair[1][L.SIZE] + pair[3][L.SIZE]
-    still = (0.0, 0.0, 0.0, 0.0)
+    fresh = False
     trial = np.empty(4)
     corrections, stalls, polish = 0, 0, 0
     last_slope, last_release = 1e300, 1e300
@@ -183,8 +188,8 @@ def settle(pair, R, p, mode, q, least, tolerance, max_iterations, counts, events
         dR = sub(jet_a[0], jet_b[0])
         d = norm(dR)
         span = size + d
-        if d <= EPS * span:
-            return CONTACT
+        if d <= TOUCHING * span:
+            return CONTACT, fresh
         E = 0.5 * d * d
         noise = ENERGY_NOISE * EPS * span * d
         g = gradient(projection_errors(jet_a, jet_b))
@@ -195,7 +200,11 @@ def settle(pair, R, p, mode, q, least, tolerance, max_iterations, counts, events
             stationary = True
         if not stationary:
             H = hessian(jet_a, jet_b)
-            step, _, _, regularised = law(jet_a, jet_b, g, H, still, span, d)
+            g_t = gradient(feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, v, w))
+            step, forward, _, regularised = law(jet_a, jet_b, g, H, g_t, span, d)
+            for k in range(4):
+                w_ff[k] = forward[k]
+            fresh = True
             counts[EVALUATIONS] += 1
             counts[REGULARISED] += regularised
             descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
@@ -213,22 +222,26 @@ def settle(pair, R, p, mode, q, least, tolerance, max_iterations, counts, events
                 for k in range(4):
                     q[k] = trial[k]
                 if hit != NO_HIT and s == reach:
+                    fresh = False
                     last_smooth = take_hit(
                         pair, mode, q, body, hit, index, t, last_smooth, s, counts, events
                     )
                     polish, last_slope = 0, 1e300
                 else:
                     last_smooth = -1
-                    recentre(pair, mode, q, counts)
+                    if recentre(pair, mode, q, counts) > 0:
+                        fresh = False
                 continue
         # Stationary, or no step lowers E: test the switching functions.
-        if E > last_release - noise:
+        if last_release - noise < E:
             stalls += 1
             if stalls > MAX_STALLS:
-                return STATIONARY
+                return STATIONARY, fresh
         last_release = E
-        slope_floor = max(SLOPE, SLOPE_NOISE * EPS * span / d)
+        # a slope below the residual's own is not known to be one
+        slope_floor = max(SLOPE, max(SLOPE_NOISE * EPS * span, slope) / d)
         if not release_pair(pair, R, mode, q, dR, slope_floor, counts, events):
-            return STATIONARY
+            return STATIONARY, fresh
+        fresh = False
         polish, last_slope = 0, 1e300
-    return EXHAUSTED
+    return EXHAUSTED, fresh

@@ -4,9 +4,8 @@ A body in the kernels is the pair (ints, reals) of ``layout``. A *mode* of one b
 (feature, chart); the chart matters for faces only and is an absolute chart number.
 """
 
-from standoff.kernels.compiling import kernel
-
 from standoff.kernels import layout as L
+from standoff.kernels.compiling import kernel
 from standoff.kernels.jets import chart_parameters, curve_jet, pcurve_point, surface_jet
 from standoff.kernels.tolerances import COLLAPSED
 from standoff.kernels.vectors import add, cross, dot, rotate, scale, unit
@@ -36,9 +35,7 @@ def edge_record(ints, feature):
 
 @kernel
 def vertex_record(ints, feature):
-    return ints[L.VERTICES] + L.VERTEX_STRIDE * (
-        feature - ints[L.N_FACES] - ints[L.N_EDGES]
-    )
+    return ints[L.VERTICES] + L.VERTEX_STRIDE * (feature - ints[L.N_FACES] - ints[L.N_EDGES])
 
 
 @kernel
@@ -157,9 +154,7 @@ def best_chart(ints, reals, chart, x):
     best, best_u, best_v, best_reach = chart, 0.0, 0.0, 1e300
     for k in range(ints[f], ints[f] + ints[f + 1]):
         r = chart_record(ints, k)
-        u, v, depth = chart_parameters(
-            reals, ints[r + L.CHART_KIND], ints[r + L.CHART_REALS], x
-        )
+        u, v, depth = chart_parameters(reals, ints[r + L.CHART_KIND], ints[r + L.CHART_REALS], x)
         if depth > 0.0 and max(abs(u), abs(v)) < best_reach:
             best, best_u, best_v, best_reach = k, u, v, max(abs(u), abs(v))
     return best, best_u, best_v

@@ -8,8 +8,8 @@ units and of the parametrisation.
 from math import sqrt
 
 import numpy as np
-from standoff.kernels.compiling import kernel
 
+from standoff.kernels.compiling import kernel
 from standoff.kernels.tolerances import EPS, GRADIENT_NOISE, NEGATIVE, PIVOT, REACH
 from standoff.kernels.vectors import dot
 

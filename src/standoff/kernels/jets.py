@@ -7,7 +7,6 @@ is one function here, one number in ``layout`` and one line in the chain of ``su
 from math import cos, sin, sqrt
 
 from standoff.kernels.compiling import kernel
-
 from standoff.kernels.layout import (
     AFFINE,
     BEZIER,

@@ -71,9 +71,15 @@ CURVE_DATA = 2
 # A vertex: offset in reals of its point; fan (offset in ints, count); sectors (offset in ints,
 # count); generators of the normal cone (offset in reals, count).
 VERTEX_STRIDE = 7
-VERTEX_REALS, VERTEX_FAN, VERTEX_N_FAN, VERTEX_SECTORS, VERTEX_N_SECTORS, VERTEX_CONE, VERTEX_N_CONE = (
-    range(7)
-)
+(
+    VERTEX_REALS,
+    VERTEX_FAN,
+    VERTEX_N_FAN,
+    VERTEX_SECTORS,
+    VERTEX_N_SECTORS,
+    VERTEX_CONE,
+    VERTEX_N_CONE,
+) = range(7)
 # A fan entry: edge, end (0 or 1). A sector entry: chart, offset in reals.
 # A sector's reals: kind, u, v, lo, hi.
 SECTOR_APEX = 0  # collapsed side: start anywhere on u in [lo, hi] at v, heading to growing v

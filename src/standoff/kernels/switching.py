@@ -6,11 +6,10 @@ slope along an edge at its end is the vertex-edge Voronoi plane, the sign along 
 conormal the edge-face Voronoi surface. No Voronoi boundary is ever built.
 """
 
-from math import cos, pi, sin, sqrt
-
-from standoff.kernels.compiling import kernel
+from math import cos, sin, sqrt
 
 from standoff.kernels import layout as L
+from standoff.kernels.compiling import kernel
 from standoff.kernels.features import (
     best_chart,
     best_coedge,
@@ -24,8 +23,8 @@ from standoff.kernels.features import (
     edge_record,
     vertex_record,
 )
-from standoff.kernels.trimming import HIT_COEDGE, HIT_END, TURN, wrapped
-from standoff.kernels.vectors import axpy, dot, norm, scale, unit
+from standoff.kernels.trimming import HIT_COEDGE, HIT_END, wrapped
+from standoff.kernels.vectors import axpy, dot, scale, unit
 
 FAN_SCAN = 24  # directions tried around an apex or in a wide sector, before refinement
 FAN_REFINE = 60  # golden-section steps: shrinks the bracket by 1e-12, the fan's own roundoff
@@ -51,10 +50,15 @@ def onto_face(ints, reals, coedge, t):
 @kernel
 def across(ints, reals, feature, coedge, t):
     """Reset face -> face over a smooth edge."""
-    face = ints[chart_record(ints, ints[coedge_record(ints, coedge) + L.COEDGE_CHART]) + L.CHART_FACE]
+    face = ints[
+        chart_record(ints, ints[coedge_record(ints, coedge) + L.COEDGE_CHART]) + L.CHART_FACE
+    ]
     e = edge_record(ints, feature)
     other = ints[e + L.EDGE_COEDGE_0]
-    if ints[chart_record(ints, ints[coedge_record(ints, other) + L.COEDGE_CHART]) + L.CHART_FACE] == face:
+    if (
+        ints[chart_record(ints, ints[coedge_record(ints, other) + L.COEDGE_CHART]) + L.CHART_FACE]
+        == face
+    ):
         other = ints[e + L.EDGE_COEDGE_1]
     return onto_face(ints, reals, other, t)
 

@@ -9,7 +9,6 @@ F = [f_u f_v], G = [h_r h_s], dR = x_f - x_h. S = diag(1, 1, -1, -1).
 """
 
 from standoff.kernels.compiling import small
-
 from standoff.kernels.vectors import add, cross, dot, scale, sub
 
 
@@ -125,9 +124,7 @@ def contact_feedforward(jet_a, jet_b, n, p_a, v_a, w_a, p_b, v_b, w_b):
     """r_t, the partial time derivative of r under the bodies' motion: 8 numbers."""
     spin_a = cross(n, w_a)
     spin_b = cross(n, w_b)
-    slip = sub(
-        point_velocity(jet_b[0], p_b, v_b, w_b), point_velocity(jet_a[0], p_a, v_a, w_a)
-    )
+    slip = sub(point_velocity(jet_b[0], p_b, v_b, w_b), point_velocity(jet_a[0], p_a, v_a, w_a))
     return (
         -dot(jet_a[1], spin_a),
         -dot(jet_a[2], spin_a),

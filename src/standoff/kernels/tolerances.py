@@ -57,3 +57,7 @@ MAX_ITERATIONS = 400
 # A tangent shorter than COLLAPSED scales has collapsed to a point (a cone's apex): the
 # direction is frozen.
 COLLAPSED = 1e-13
+
+# Rows of a rotation matrix may miss being orthonormal by this (dimensionless): what a rotation
+# written with ten digits keeps.
+ROTATION = 1e-9

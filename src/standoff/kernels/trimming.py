@@ -2,9 +2,8 @@
 
 from math import atan2, hypot, inf, pi, sqrt
 
-from standoff.kernels.compiling import kernel
-
 from standoff.kernels import layout as L
+from standoff.kernels.compiling import kernel
 from standoff.kernels.features import (
     chart_record,
     coedge_parameters,

@@ -1,1 +1,19 @@
-"""Minimum distance tracking: trackers, answers, events, recordings, and gains."""
+"""Tracking: the tracker and its answers."""
+
+from standoff.tracking.options import max_gain
+from standoff.tracking.proximity import Counts, Event, Feature, Proximity
+from standoff.tracking.status import Status
+from standoff.tracking.tracker import FrameBuffer, Tracker, TrackerState, distance
+
+__all__ = [
+    "Counts",
+    "Event",
+    "Feature",
+    "FrameBuffer",
+    "Proximity",
+    "Status",
+    "Tracker",
+    "TrackerState",
+    "distance",
+    "max_gain",
+]

@@ -1,0 +1,186 @@
+"""The answer of a query: witness points, normal, certified distance, and what it took."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.kernels import tracker as K
+from standoff.tracking.status import Status
+
+Array = NDArray[np.float64]
+
+
+class Feature(NamedTuple):
+    """A face, edge or vertex of a body, numbered within its kind."""
+
+    kind: str
+    index: int
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.index}"
+
+
+class Counts(NamedTuple):
+    """What an answer took.
+
+    evaluations : second-order evaluations of the pair system (one a frame while tracking).
+    corrections : feedback steps applied.
+    switches : changes of feature between the last frame and this one.
+    chart_changes : changes between charts of one face.
+    restarts : global starts after the first.
+    regularised : solves in which the Hessian had to be decomposed.
+    """
+
+    evaluations: int
+    corrections: int
+    switches: int
+    chart_changes: int
+    restarts: int
+    regularised: int
+
+
+class Event(NamedTuple):
+    """A switch of one body's feature, dated to its frame.
+
+    value : slope of the energy (length) for a release; 1 - s, the part of the step that did not
+        fit, for a boundary reached; nan where a restart changed the feature.
+    slope : slope of the distance along the direction of release; 0 for a boundary reached.
+    """
+
+    time: float
+    body: str
+    source: Feature
+    target: Feature
+    value: float
+    slope: float
+
+
+def feature_of(body: Body, number: int) -> Feature:
+    """The feature of a packed number: faces first, then edges, then vertices."""
+    if number < body.n_faces:
+        return Feature("face", number)
+    number -= body.n_faces
+    if number < body.n_edges:
+        return Feature("edge", number)
+    return Feature("vertex", number - body.n_edges)
+
+
+class Proximity:
+    """Witness points of two bodies and their certified distance; all vectors in world axes.
+
+    Attributes
+    ----------
+    distance : float
+        Between the witness points, an upper bound of the true distance. nan while overlapping.
+    lower_bound : float
+        A certified lower bound of the true distance (DESIGN 2.5).
+    point_a, point_b : (3,) arrays
+        Witness points on A and B.
+    normal : (3,) array
+        Unit vector from A to B; of all candidates the one with the greatest lower bound.
+    feature_a, feature_b : Feature
+        Active features of the cores.
+    parameters_a, parameters_b : tuple of float
+        Two on a face (u, v of its active chart), one on an edge, none on a vertex.
+    rate : float
+        Time derivative of the distance; nan where no twists were given.
+    velocity_a, velocity_b : (3,) arrays
+        Velocities of the witness points; nan where no twists were given.
+    residual : float
+        Length of the projections of the witness vector on the unit tangents (Psi in the metric
+        of the tangents): zero at the optimum.
+    status : Status
+    counts : Counts
+    events : tuple of Event
+        The switches of this step.
+    """
+
+    __slots__ = ("_a", "_b", "_out", "events", "time")
+
+    def __init__(
+        self, a: Body, b: Body, out: Array, events: tuple[Event, ...] = (), time: float = 0.0
+    ) -> None:
+        out.flags.writeable = False
+        self._a, self._b, self._out = a, b, out
+        self.events = events
+        self.time = time
+
+    @property
+    def distance(self) -> float:
+        return float(self._out[K.DISTANCE])
+
+    @property
+    def lower_bound(self) -> float:
+        return float(self._out[K.LOWER_BOUND])
+
+    @property
+    def point_a(self) -> Array:
+        return self._out[K.POINT_A : K.POINT_A + 3]
+
+    @property
+    def point_b(self) -> Array:
+        return self._out[K.POINT_B : K.POINT_B + 3]
+
+    @property
+    def normal(self) -> Array:
+        return self._out[K.NORMAL : K.NORMAL + 3]
+
+    @property
+    def feature_a(self) -> Feature:
+        return feature_of(self._a, int(self._out[K.OUT_MODE]))
+
+    @property
+    def feature_b(self) -> Feature:
+        return feature_of(self._b, int(self._out[K.OUT_MODE + 2]))
+
+    @property
+    def parameters_a(self) -> tuple[float, ...]:
+        return self._parameters(self.feature_a, K.OUT_Q)
+
+    @property
+    def parameters_b(self) -> tuple[float, ...]:
+        return self._parameters(self.feature_b, K.OUT_Q + 2)
+
+    def _parameters(self, feature: Feature, at: int) -> tuple[float, ...]:
+        count = {"face": 2, "edge": 1, "vertex": 0}[feature.kind]
+        return tuple(float(x) for x in self._out[at : at + count])
+
+    @property
+    def rate(self) -> float:
+        return float(self._out[K.OUT_RATE])
+
+    @property
+    def velocity_a(self) -> Array:
+        return self._out[K.VELOCITY_A : K.VELOCITY_A + 3]
+
+    @property
+    def velocity_b(self) -> Array:
+        return self._out[K.VELOCITY_B : K.VELOCITY_B + 3]
+
+    @property
+    def residual(self) -> float:
+        return float(self._out[K.RESIDUAL])
+
+    @property
+    def status(self) -> Status:
+        return Status(int(self._out[K.STATUS]))
+
+    @property
+    def certified(self) -> bool:
+        """Is the gap between distance and lower bound within the tolerance?"""
+        return self.status is Status.CONVERGED
+
+    @property
+    def counts(self) -> Counts:
+        o = self._out[K.OUT_COUNTS :]
+        return Counts(int(o[0]), int(o[1]), int(o[6]), int(o[3]), int(o[4]), int(o[5]))
+
+    def __repr__(self) -> str:
+        return (
+            f"Proximity(distance={self.distance:.12g}, lower_bound={self.lower_bound:.12g}, "
+            f"{self.feature_a} - {self.feature_b}, {self.status.name})"
+        )

@@ -1,0 +1,386 @@
+"""The hybrid tracker: two moving bodies, their witness points kept frame by frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.kernels import descent as D
+from standoff.kernels import layout as L
+from standoff.kernels import tracker as K
+from standoff.kernels.trimming import on_face
+from standoff.motion import Pose, PoseLike, Twist, TwistLike
+from standoff.tracking.options import pack_options, positive_number
+from standoff.tracking.overlap import hulls_meet, sample_points
+from standoff.tracking.proximity import Event, Feature, Proximity, feature_of
+from standoff.tracking.status import Status
+
+Array = NDArray[np.float64]
+NO_TWIST = np.zeros(6)
+NO_TWIST.flags.writeable = False
+
+
+@dataclass(frozen=True, eq=False)
+class TrackerState:
+    """The warm start, as a value: goes into a step and comes out of it, never changed.
+
+    Attributes
+    ----------
+    data : (39,) read-only array, laid out in ``standoff.kernels.tracker``.
+    proximity : the answer at the frame of this state.
+    """
+
+    data: Array
+    proximity: Proximity
+
+    @property
+    def time(self) -> float:
+        """Time since ``start``, s."""
+        return float(self.data[K.TIME])
+
+
+def flat_pose(pose: PoseLike) -> Array:
+    """12 numbers (R row-major, p) of a pose; checked by the kernel, or here by Pose."""
+    flat = np.empty(12)
+    if isinstance(pose, np.ndarray) and pose.shape == (4, 4):
+        flat[:9] = pose[:3, :3].ravel()
+        flat[9:] = pose[:3, 3]
+        return flat
+    pose = Pose.of(pose)
+    flat[:9] = pose.rotation.ravel()
+    flat[9:] = pose.translation
+    return flat
+
+
+def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
+    """6 numbers (v, omega) in world axes."""
+    if twist is None:
+        return NO_TWIST
+    twist = Twist.of(twist)
+    if twist.frame != "world":
+        twist = twist.in_world(Pose.of(pose))
+    return np.concatenate([twist.v, twist.omega])
+
+
+class Tracker:
+    """Keeps the minimum distance of two convex bodies while they move.
+
+    Parameters
+    ----------
+    a, b : Body
+        Two spatial bodies, or two planar ones (a point, or another body without faces in z = 0,
+        goes with both).
+    dt : float
+        Frame time, s; ``step`` may be given another where frames are uneven.
+    law : "predictor-corrector" or "paper"
+        Predict with the feedforward and correct with one Newton step (DESIGN 2.3), or integrate
+        the paper's law w = -M⁻¹(K Psi + b), Eq. (12), from the previous frame to this one.
+    predictor : "feedforward-2", "feedforward", "secant" or "none"
+        Two-step or one-step prediction with the twists; the secant of the last two frames, which
+        also serves where no twists are given. For the paper's law "none" leaves the feedforward
+        b out.
+    integrator : "euler", "heun", "midpoint" or "rk4"
+        For the paper's law.
+    gain : float
+        K of the paper's law, 1/s; default 1/dt. Must be below ``so.max_gain(integrator, dt)``.
+    tolerance : float
+        Gap between distance and lower bound, relative to the pair's size, above which the
+        predictor-corrector corrects again, then restarts. inf: one correction, whatever the gap.
+
+    Raises
+    ------
+    ValueError
+        Unknown names, numbers that are not positive, a planar body with a spatial one, two
+        half-spaces.
+    """
+
+    def __init__(
+        self,
+        a: Body,
+        b: Body,
+        dt: float = 1e-3,
+        law: str = "predictor-corrector",
+        predictor: str = "feedforward-2",
+        integrator: str = "heun",
+        gain: float | None = None,
+        tolerance: float = 1e-10,
+    ) -> None:
+        check_pair(a, b)
+        self.a, self.b = a, b
+        self.dt = positive_number(dt, "dt")
+        self.law = law
+        self._options = pack_options(law, predictor, integrator, gain, dt, tolerance)
+        self._pair = (a.ints, a.reals, b.ints, b.reals)
+        self._planar = a.dimension == 2 or b.dimension == 2
+
+    def start(
+        self,
+        pose_a: PoseLike,
+        pose_b: PoseLike,
+        twist_a: TwistLike | None = None,
+        twist_b: TwistLike | None = None,
+    ) -> TrackerState:
+        """Find the witness points globally and certify them.
+
+        Poses are world poses of the bodies' frames; twists are (v, omega) in world axes.
+        """
+        return self._start(pose_a, pose_b, twist_a, twist_b, np.zeros(K.N_STATE), 0)
+
+    def start_from(
+        self,
+        pose_a: PoseLike,
+        pose_b: PoseLike,
+        feature_a: Feature | tuple[str, int],
+        parameters_a: Any,
+        feature_b: Feature | tuple[str, int],
+        parameters_b: Any,
+        twist_a: TwistLike | None = None,
+        twist_b: TwistLike | None = None,
+        settle: bool | None = None,
+    ) -> TrackerState:
+        """Begin at given features and parameters.
+
+        settle : True descends from there to the certified minimum (the default of the
+            predictor-corrector), False begins there as it stands (the default of the paper's
+            law, whose feedback then does the work).
+        """
+        state = np.zeros(K.N_STATE)
+        self._place(state, 0, self.a, feature_a, parameters_a)
+        self._place(state, 2, self.b, feature_b, parameters_b)
+        settle = self.law != "paper" if settle is None else settle
+        return self._start(pose_a, pose_b, twist_a, twist_b, state, 1 if settle else 2)
+
+    def step(
+        self,
+        state: TrackerState,
+        pose_a: PoseLike,
+        pose_b: PoseLike,
+        twist_a: TwistLike | None = None,
+        twist_b: TwistLike | None = None,
+        dt: float | None = None,
+    ) -> tuple[TrackerState, Proximity]:
+        """The witness points at the given poses, from the state of the frame before.
+
+        The twists are those at this instant; without any, the prediction is the secant of the
+        last two frames and the rates are nan. One twist given, the other body is at rest.
+        """
+        flat_a, flat_b, xi_a, xi_b, has_twist = self._motion(pose_a, pose_b, twist_a, twist_b)
+        h = self.dt if dt is None else positive_number(dt, "dt")
+        data = state.data.copy()
+        out = np.empty(K.N_OUT)
+        events = np.empty((K.MAX_EVENTS, D.EVENT_COLUMNS))
+        bad = K.step(
+            self._pair, flat_a, flat_b, xi_a, xi_b, has_twist, h, self._options, data, out, events
+        )
+        self._refuse(bad, pose_a, pose_b)
+        return self._answer(data, out, events, flat_a, flat_b)
+
+    def step_into(
+        self,
+        buffer: FrameBuffer,
+        dt: float | None = None,
+    ) -> float:
+        """One frame on preallocated arrays, for loops that must not allocate.
+
+        Reads ``buffer.pose_a`` and the others, writes ``buffer.out`` (laid out in
+        ``standoff.kernels.tracker``) and ``buffer.state`` in place. Returns the distance; where
+        the answer is uncertified, ``buffer.proximity()`` says why.
+        """
+        bad = K.step(
+            self._pair,
+            buffer.pose_a,
+            buffer.pose_b,
+            buffer.twist_a,
+            buffer.twist_b,
+            buffer.has_twist,
+            self.dt if dt is None else dt,
+            self._options,
+            buffer.state,
+            buffer.out,
+            buffer.events,
+        )
+        if bad:
+            self._refuse(bad, _matrix(buffer.pose_a), _matrix(buffer.pose_b))
+        return float(buffer.out[K.DISTANCE])
+
+    def buffer(self, state: TrackerState) -> FrameBuffer:
+        """Arrays for ``step_into`` that begin at a state."""
+        return FrameBuffer(self, state)
+
+    def _motion(
+        self,
+        pose_a: PoseLike,
+        pose_b: PoseLike,
+        twist_a: TwistLike | None,
+        twist_b: TwistLike | None,
+    ) -> tuple[Array, Array, Array, Array, bool]:
+        flat_a, flat_b = flat_pose(pose_a), flat_pose(pose_b)
+        xi_a, xi_b = flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
+        has_twist = twist_a is not None or twist_b is not None
+        if not (np.isfinite(xi_a).all() and np.isfinite(xi_b).all()):
+            raise ValueError(f"A twist has a NaN or infinite number: {xi_a}, {xi_b}.")
+        if self._planar:
+            _check_in_plane(flat_a, flat_b)
+        return flat_a, flat_b, xi_a, xi_b, has_twist
+
+    def _start(
+        self,
+        pose_a: PoseLike,
+        pose_b: PoseLike,
+        twist_a: TwistLike | None,
+        twist_b: TwistLike | None,
+        data: Array,
+        given: int,
+    ) -> TrackerState:
+        flat_a, flat_b, xi_a, xi_b, has_twist = self._motion(pose_a, pose_b, twist_a, twist_b)
+        out = np.empty(K.N_OUT)
+        bad = K.start(
+            self._pair, flat_a, flat_b, xi_a, xi_b, has_twist, self._options, data, given, out
+        )
+        self._refuse(bad, pose_a, pose_b)
+        events = np.empty((0, D.EVENT_COLUMNS))
+        return self._answer(data, out, events, flat_a, flat_b)[0]
+
+    def _refuse(self, bad: int, pose_a: PoseLike, pose_b: PoseLike) -> None:
+        if not bad:
+            return
+        Pose.of(pose_a if bad == 1 else pose_b)  # says what is wrong with it
+        raise ValueError(f"The rotation of pose_{'ab'[bad - 1]} is not orthonormal to 1e-9.")
+
+    def _answer(
+        self, data: Array, out: Array, log: Array, flat_a: Array, flat_b: Array
+    ) -> tuple[TrackerState, Proximity]:
+        if out[K.STATUS] == Status.NOT_CERTIFIED.value:
+            self._prove_overlap(out, flat_a, flat_b)
+        data.flags.writeable = False
+        time = float(data[K.TIME])
+        count = min(int(out[K.OUT_COUNTS + D.EVENTS]), len(log))
+        events = tuple(
+            Event(
+                time,
+                "AB"[int(row[0])],
+                feature_of(self.a if row[0] == 0 else self.b, int(row[1])),
+                feature_of(self.a if row[0] == 0 else self.b, int(row[2])),
+                float(row[3]),
+                float(row[4]),
+            )
+            for row in log[:count]
+        )
+        proximity = Proximity(self.a, self.b, out, events, time)
+        return TrackerState(data, proximity), proximity
+
+    def _prove_overlap(self, out: Array, flat_a: Array, flat_b: Array) -> None:
+        """An uncertified pair overlaps where the hulls of its samples share a point."""
+        a = sample_points(self.a) @ flat_a[:9].reshape(3, 3).T
+        b = sample_points(self.b) @ flat_b[:9].reshape(3, 3).T + (flat_b[9:] - flat_a[9:])
+        if hulls_meet(a, b):
+            status = float(Status.OVERLAPPING.value)
+            out[: K.OUT_MODE] = np.nan
+            out[K.OUT_RATE : K.STATUS] = np.nan
+            out[K.STATUS] = status
+
+    def _place(self, state: Array, at: int, body: Body, feature: Any, parameters: Any) -> None:
+        """Write a feature and its parameters into a state, checked."""
+        kind, index = feature
+        sizes = {"face": body.n_faces, "edge": body.n_edges, "vertex": body.n_vertices}
+        if kind not in sizes or not 0 <= index < sizes[kind]:
+            raise ValueError(
+                f"{body!r} has no {kind} {index}: faces, edges and vertices are numbered from 0."
+            )
+        values = np.atleast_1d(np.asarray(parameters, dtype=np.float64)).ravel()
+        wanted = {"face": 2, "edge": 1, "vertex": 0}[kind]
+        if len(values) != wanted or not np.isfinite(values).all():
+            raise ValueError(f"A {kind} takes {wanted} finite parameters, not {parameters!r}.")
+        offset = {"face": 0, "edge": body.n_faces, "vertex": body.n_faces + body.n_edges}[kind]
+        chart = -1
+        if kind == "face":
+            chart = _chart_of(body, index, float(values[0]), float(values[1]))
+        if kind == "edge":
+            curve = body.edge_parts[index].curve
+            if not curve.closed and not curve.first <= values[0] <= curve.last:
+                raise ValueError(
+                    f"Parameter {values[0]} lies outside edge {index}: [{curve.first}, {curve.last}]."
+                )
+        state[K.MODE + at] = offset + index
+        state[K.MODE + at + 1] = chart
+        state[K.Q + at : K.Q + at + wanted] = values
+
+
+class FrameBuffer:
+    """Arrays of one frame, reused: write the poses (12 numbers: R row-major, p) and twists."""
+
+    def __init__(self, tracker: Tracker, state: TrackerState) -> None:
+        self._tracker = tracker
+        self.pose_a = np.zeros(12)
+        self.pose_b = np.zeros(12)
+        self.pose_a[[0, 4, 8]] = 1.0
+        self.pose_b[[0, 4, 8]] = 1.0
+        self.twist_a = np.zeros(6)
+        self.twist_b = np.zeros(6)
+        self.has_twist = True
+        self.state = state.data.copy()
+        self.out = np.empty(K.N_OUT)
+        self.events = np.empty((K.MAX_EVENTS, D.EVENT_COLUMNS))
+
+    def proximity(self) -> Proximity:
+        """The last answer as a value."""
+        return self._tracker._answer(
+            self.state.copy(), self.out.copy(), self.events, self.pose_a, self.pose_b
+        )[1]
+
+
+def check_pair(a: Body, b: Body) -> None:
+    """Raise ValueError where two bodies cannot be a pair."""
+    for body in (a, b):
+        if not isinstance(body, Body):
+            raise TypeError(f"{body!r} is not a Body: make one with so.shapes or Body.from_brep.")
+    if not a.bounded and not b.bounded:
+        raise ValueError("Two half-spaces have no pair of witness points: one must be bounded.")
+    if a.dimension != b.dimension:
+        other = b if a.dimension == 2 else a
+        if not other.flat:
+            raise ValueError(
+                f"A planar body needs a planar partner (or a point or segment in z = 0), not "
+                f"{other!r}."
+            )
+
+
+def _check_in_plane(flat_a: Array, flat_b: Array) -> None:
+    """A planar pair must move within one plane z = 0 of world."""
+    for name, flat in (("pose_a", flat_a), ("pose_b", flat_b)):
+        tilt = float(np.abs(flat[[2, 5, 6, 7]]).max())
+        if not tilt <= 1e-12 or flat[11] != 0.0 or flat[8] < 0.0:
+            raise ValueError(
+                f"{name} takes a planar body out of z = 0 (tilt {tilt:.3g}, z = {flat[11]}): "
+                "planar pairs turn about z and move in x and y."
+            )
+
+
+def _chart_of(body: Body, face: int, u: float, v: float) -> int:
+    first, count = body.ints[body.ints[L.FACES] + L.FACE_STRIDE * face :][:2]
+    for chart in range(int(first), int(first + count)):
+        if on_face(body.ints, body.reals, chart, u, v):
+            return chart
+    raise ValueError(f"Parameters ({u}, {v}) lie outside face {face}.")
+
+
+def _matrix(flat: Array) -> Array:
+    matrix = np.eye(4)
+    matrix[:3, :3] = flat[:9].reshape(3, 3)
+    matrix[:3, 3] = flat[9:]
+    return matrix
+
+
+def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
+    """The minimum distance of two bodies at two poses: cold, global, certified.
+
+    Returns
+    -------
+    Proximity
+        ``status`` is OVERLAPPING and ``distance`` nan where the bodies touch or overlap.
+    """
+    return Tracker(a, b).start(pose_a, pose_b).proximity
