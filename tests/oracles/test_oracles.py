@@ -503,3 +503,5 @@ def test_a_point_off_its_place_is_not_proven():
     assert not _proves(place, far, np.array([-0.1, 0, 0, 2, 0, 0]), 2.0)
     assert not _proves(place, far, np.array([0.0, 0, 0, 2.1, 0, 0]), 2.0)
     assert not _proves(place, ball, np.array([0.0, 0, 0, 2, 0, 0]), 2.0)
+    beside = placed_quadrics(placed(Ellipsoid(1, 1, 1), position=(-0.1, 3, 0)), np.zeros(3))
+    assert not _proves(place, beside, np.array([-0.1, 0, 0, -0.1, 2, 0]), 2.0)
