@@ -23,3 +23,7 @@ class SceneError(ValueError):
         self.key = key
         self.file = file
         super().__init__(": ".join(part for part in (str(file or ""), key, problem) if part))
+
+    def found_in(self, file: Path) -> SceneError:
+        """Return the same error with `file` named, unless it names one already."""
+        return self if self.file is not None else SceneError(self.problem, key=self.key, file=file)

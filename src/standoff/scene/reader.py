@@ -1,7 +1,6 @@
 """Strict reading of TOML tables: every value checked, every key accounted for.
 
-A `Table` knows its file and its dotted key path, so that each complaint names the place. Reading
-a key marks it as known; `finish` refuses whatever is left and suggests the nearest known key.
+A `Table` knows its file and its dotted key path, so that each complaint names the place.
 """
 
 from __future__ import annotations
@@ -50,14 +49,13 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     return folded[found[0]] if found else None
 
 
-def unknown_name(name: str, known: Sequence[str], noun: str) -> str:
+def unknown_name(name: str, known: Iterable[str], noun: str) -> str:
     """Return the sentence that refuses a name outside `known` and suggests the nearest one."""
-    likely = nearest(name, known)
+    names = sorted(known)
+    likely = nearest(name, names)
     if likely is not None:
         return f"unknown {noun} '{name}'; did you mean '{likely}'?"
-    if not known:
-        return f"unknown {noun} '{name}'; none is known here: remove it"
-    return f"unknown {noun} '{name}'; known here: {one_of(known)}"
+    return f"unknown {noun} '{name}'; known here: {one_of(names)}"
 
 
 class Table:
@@ -77,13 +75,11 @@ class Table:
         self, content: Mapping[str, object], *, file: Path | None = None, path: str = ""
     ) -> None:
         self._content = content
-        self._known: list[str] = []
+        self._expected: tuple[str, ...] = ()
         self.file = file
         self.path = path
 
     def __contains__(self, key: str) -> bool:
-        if key not in self._known:
-            self._known.append(key)
         return key in self._content
 
     def names(self) -> list[str]:
@@ -95,33 +91,34 @@ class Table:
         parts = [part for part in (self.path, key) if part]
         return SceneError(problem, key=".".join(parts), file=self.file)
 
-    def finish(self) -> None:
-        """Refuse keys that nobody read.
+    def expect(self, *keys: str) -> None:
+        """Refuse every key but these.
 
         Raises
         ------
         SceneError
-            At the first unknown key, with the nearest known one.
+            At the first other key, with the nearest of these.
         """
+        self._expected = keys
         for key in self._content:
-            if key not in self._known:
-                raise self.error(unknown_name(key, sorted(self._known), "key"), key)
+            if key not in keys:
+                raise self.error(unknown_name(key, keys, "key"), key)
 
     def build(self, construct: Callable[[], Value], key: str | None = None) -> Value:
-        """Return ``construct()``, its ValueError or TypeError told with this table's place."""
+        """Return ``construct()``, its ValueError, TypeError or OSError told with this place."""
         try:
             return construct()
         except SceneError:
             raise
-        except (ValueError, TypeError) as error:
+        except (ValueError, TypeError, OSError) as error:
             raise self.error(str(error), key) from error
 
     def required(self, key: str, example: str) -> object:
         """Return the raw value of `key`; `example` is the line to add when it is missing."""
         if key in self:
             return self._content[key]
-        given = [name for name in self._content if name not in self._known]
-        likely = nearest(key, given)
+        # Once the other keys are known to be right, none of them can be this one misspelt.
+        likely = None if self._expected else nearest(key, self._content)
         hint = f", or rename '{likely}'" if likely is not None else ""
         raise self.error(f"'{key}' is missing; add a line such as: {example}{hint}")
 
@@ -154,12 +151,23 @@ class Table:
             raise self.error(f"must be a text in quotes, got {shown(value)}", key)
         return value
 
-    def choice(self, key: str, known: Sequence[str], default: str | None = None) -> str:
-        """Return a text out of `known`."""
+    def choice(
+        self, key: str, known: Sequence[str], default: str | None = None, *, noun: str = ""
+    ) -> str:
+        """Return a text out of `known`; `noun` is what the message calls it, if not `key`."""
         value = self.text(key, default, example=f'{key} = "{known[0]}"')
         if value not in known:
-            raise self.error(unknown_name(value, known, key), key)
+            raise self.error(unknown_name(value, known, noun or key), key)
         return value
+
+    def number_or_word(self, key: str, word: str, default: float | None = None) -> float | None:
+        """Return a finite number, or None where the value is `word`."""
+        value = self._content.get(key, default)
+        if value == word:
+            return None
+        if isinstance(value, str):
+            raise self.error(f"must be a number or '{word}', got {shown(value)}", key)
+        return self.number(key, default)
 
     def only_one(self, keys: Sequence[str]) -> str | None:
         """Return which of `keys` is given, None if none is; refuse two of them."""
@@ -182,7 +190,8 @@ class Table:
         rows = self._list(self.required(key, f"{key} = [[...], ...]"), key)
         widths = tuple({columns for _, columns in shapes})
         matrix = [
-            self._vector(row, f"{key}[{index}]", widths, "a row of") for index, row in enumerate(rows)
+            self._vector(row, f"{key}[{index}]", widths, "a row of")
+            for index, row in enumerate(rows)
         ]
         shape = (len(matrix), len(matrix[0]) if matrix else 0)
         if shape not in shapes or any(len(row) != shape[1] for row in matrix):
@@ -215,6 +224,18 @@ class Table:
         if not values:
             raise self.error("is an empty list; give at least one number", key)
         return np.array([self._finite(value, f"{key}[{i}]") for i, value in enumerate(values)])
+
+    def positive_vector(self, key: str, length: int, *, or_one: bool = False) -> Array:
+        """Return `length` finite numbers above zero; with `or_one`, one may stand for all."""
+        sample = ", ".join(["1.0"] * length)
+        value = self.required(key, f"{key} = [{sample}]")
+        if or_one and not isinstance(value, list):
+            vector = np.full(length, self._finite(value, key))
+        else:
+            vector = self._vector(value, key, (length,))
+        if np.any(vector <= 0.0):
+            raise self.error(f"every number must be above zero, got {vector.tolist()}", key)
+        return vector
 
     def table(self, key: str, example: str = "") -> Table:
         """Return the table under `key`."""
@@ -273,13 +294,16 @@ class Table:
         return number
 
 
-def missing_file(path: Path, name: str) -> str:
-    """Return the sentence about a file that is not there, with the nearest name beside it."""
+def missing_file(path: Path, name: str, folder: str = "the scene file") -> str:
+    """Return the sentence about a file that is not there, with the nearest name beside it.
+
+    `folder` says what relative paths count from.
+    """
     if path.is_dir():
         return f"'{name}' is a folder; name a file in it"
     if not path.parent.is_dir():
-        return f"no file '{name}': its folder does not exist; paths are relative to the scene file"
+        return f"no file '{name}': its folder does not exist; paths are relative to {folder}"
     likely = nearest(path.name, [entry.name for entry in path.parent.iterdir() if entry.is_file()])
     if likely is not None:
         return f"no file '{name}'; did you mean '{likely}'?"
-    return f"no file '{name}'; paths are relative to the scene file"
+    return f"no file '{name}'; paths are relative to {folder}"

@@ -1,0 +1,84 @@
+"""The commands and their options, as tyro reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+from tyro.conf import FlagCreatePairsOff, Positional, arg, subcommand
+
+SceneFile = Annotated[Positional[Path], arg(metavar="SCENE.toml")]
+
+
+@dataclass(frozen=True)
+class TrackCommand:
+    """Track a scene's pair over time and sum up what was seen.
+
+    Exit codes: 0 done, 1 results could not be written, 2 bad input, 3 finished but not certified.
+    """
+
+    scene: SceneFile
+    """Scene file; docs/scene-format.md describes the format."""
+    output: Annotated[Path | None, arg(aliases=["-o"], metavar="OUT.parquet")] = None
+    """Write every frame to this Parquet file."""
+    plot: Annotated[Path | None, arg(metavar="OUT.png")] = None
+    """Plot distance, certificate gap and active features to this file (.png, .svg or .pdf)."""
+    json: bool = False
+    """Print the summary as JSON, with all events."""
+    law: Annotated[str | None, arg(metavar="LAW")] = None
+    """In place of the scene's: predictor-corrector or paper."""
+    predictor: Annotated[str | None, arg(metavar="PREDICTOR")] = None
+    """In place of the scene's: feedforward-2, feedforward, secant or none."""
+    integrator: Annotated[str | None, arg(metavar="INTEGRATOR")] = None
+    """In place of the scene's: heun, euler, midpoint or rk4."""
+    gain: Annotated[float | None, arg(metavar="K")] = None
+    """In place of the scene's: feedback gain, 1/s."""
+    step: Annotated[str | None, arg(metavar="SECONDS|samples")] = None
+    """In place of the scene's: time from frame to frame in s, or 'samples'."""
+    start: Annotated[float | None, arg(metavar="SECONDS")] = None
+    """In place of the scene's: time of the first frame, s."""
+    duration: Annotated[float | None, arg(metavar="SECONDS")] = None
+    """In place of the scene's: time from the first frame to the last, s."""
+
+
+@dataclass(frozen=True)
+class DistanceCommand:
+    """Find the certified distance of a scene's pair at one instant.
+
+    Exit codes: 0 done, 2 bad input, 3 finished but not certified.
+    """
+
+    scene: SceneFile
+    """Scene file; docs/scene-format.md describes the format."""
+    time: Annotated[float | None, arg(metavar="SECONDS")] = None
+    """Scene time in s; the first frame's if not given."""
+    json: bool = False
+    """Print the answer as JSON."""
+
+
+Command = TrackCommand | DistanceCommand
+
+DESCRIPTION = """Exact, certified minimum distance of curved convex bodies in motion.
+
+standoff --version prints the version."""
+
+
+def parse(arguments: Sequence[str]) -> Command:
+    """Return the command that the arguments give.
+
+    Raises
+    ------
+    SystemExit
+        With code 0 after help was printed, 2 after a complaint on stderr.
+    """
+    return tyro.cli(
+        Annotated[TrackCommand, subcommand("track")]
+        | Annotated[DistanceCommand, subcommand("distance")],
+        prog="standoff",
+        description=DESCRIPTION,
+        args=arguments,
+        config=(FlagCreatePairsOff,),
+    )

@@ -1,0 +1,33 @@
+"""What ends a command early, and the exit codes."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class ExitCode(IntEnum):
+    """What the shell gets back."""
+
+    DONE = 0
+    NOT_WRITTEN = 1  # the results could not be written, as on a full disk
+    BAD_INPUT = 2
+    NOT_CERTIFIED = 3
+    INTERRUPTED = 130  # 128 + SIGINT, the shells' convention
+
+
+class CommandError(ValueError):
+    """A command that cannot run as it was given; the message names the value and the fix."""
+
+
+class MissingExtra(CommandError):
+    """A library is missing that comes with an extra of this package."""
+
+    def __init__(self, library: str, extra: str = "cli") -> None:
+        super().__init__(
+            f"{library} is not installed; install the extra '{extra}': "
+            f"pip install 'standoff[{extra}]'"
+        )
+
+
+class WriteError(Exception):
+    """Results that could not be written although the input was good."""

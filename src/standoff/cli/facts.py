@@ -1,0 +1,126 @@
+"""Results as plain data, for ``--json``."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from standoff import __version__
+from standoff.scene import RecordedEvent, Recording, Scene, TrackSettings
+from standoff.scene.reader import Array
+from standoff.tracking import Proximity
+
+
+def json_text(facts: Mapping[str, Any]) -> str:
+    """Return strict JSON: numbers without a value, such as the distance of an overlap, are null."""
+    return json.dumps(_finite(facts), indent=2, ensure_ascii=False, allow_nan=False)
+
+
+def scene_facts(scene: Scene) -> dict[str, Any]:
+    """Return which scene and pair a result belongs to."""
+    return {
+        "standoff": __version__,
+        "scene": scene.file.name,
+        "title": scene.title,
+        "length_unit": scene.length_unit,
+        "a": scene.pair[0],
+        "b": scene.pair[1],
+    }
+
+
+def answer_facts(scene: Scene, time: float, answer: Proximity) -> dict[str, Any]:
+    """Return one answer."""
+    return scene_facts(scene) | {
+        "time": time,
+        "distance": answer.distance,
+        "lower_bound": answer.lower_bound,
+        "point_a": _numbers(answer.point_a),
+        "point_b": _numbers(answer.point_b),
+        "normal": _numbers(answer.normal),
+        "feature_a": str(answer.feature_a),
+        "feature_b": str(answer.feature_b),
+        "parameters_a": list(answer.parameters_a),
+        "parameters_b": list(answer.parameters_b),
+        "rate": answer.rate,
+        "residual": answer.residual,
+        "status": answer.status.name,
+        "certified": answer.certified,
+        "counts": answer.counts._asdict(),
+    }
+
+
+def frame_facts(recording: Recording, frame: int | None) -> dict[str, Any] | None:
+    """Return one frame of a recording; None where there is no such frame."""
+    if frame is None:
+        return None
+    return {
+        "frame": frame,
+        "time": float(recording.times[frame]),
+        "distance": float(recording.distance[frame]),
+        "lower_bound": float(recording.lower_bound[frame]),
+        "point_a": _numbers(recording.point_a[frame]),
+        "point_b": _numbers(recording.point_b[frame]),
+        "normal": _numbers(recording.normal[frame]),
+        "feature_a": str(recording.features_a[frame]),
+        "feature_b": str(recording.features_b[frame]),
+        "status": recording.statuses[frame].name,
+    }
+
+
+def event_facts(events: Iterable[RecordedEvent]) -> list[dict[str, Any]]:
+    """Return the switching events."""
+    return [
+        {
+            "frame": recorded.frame,
+            "time": recorded.time,
+            "body": recorded.event.body,
+            "source": str(recorded.event.source),
+            "target": str(recorded.event.target),
+            "value": recorded.event.value,
+            "slope": recorded.event.slope,
+        }
+        for recorded in events
+    ]
+
+
+def recording_facts(
+    scene: Scene, settings: TrackSettings, recording: Recording, written: Sequence[Path]
+) -> dict[str, Any]:
+    """Return the summary of a run, with all events."""
+    widest = recording.widest_gap()
+    return scene_facts(scene) | {
+        "settings": asdict(settings),
+        "frames": len(recording.times),
+        "start": float(recording.times[0]),
+        "end": float(recording.times[-1]),
+        "closest": frame_facts(recording, recording.closest()),
+        "certified_frames": int(np.count_nonzero(recording.certified)),
+        "certified_share": float(np.mean(recording.certified)),
+        "worst_gap": None if widest is None else float(recording.gap[widest]),
+        "worst_gap_frame": widest,
+        "statuses": {status.name: n for status, n in recording.status_frames().items()},
+        "counts": recording.total_counts()._asdict(),
+        "events": event_facts(recording.events),
+        "normalised_quaternions": sum(motion.normalised for motion in scene.pair_motions),
+        "files": [str(path) for path in written],
+    }
+
+
+def _numbers(vector: Array) -> list[float]:
+    return [float(value) for value in vector]
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,130 @@
+"""The instants at which a scene is looked at."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from standoff.scene.errors import SceneError
+from standoff.scene.motions import Motion
+from standoff.scene.reader import Array
+from standoff.scene.settings import DEFAULT_STEP, SAMPLES, TrackSettings
+
+MOST_FRAMES = 10_000_000
+"""Most frames of one run. A frame is kept in some 400 bytes, so this many take 4 GB; a greater
+number comes from a step or a duration in the wrong unit."""
+
+WHOLE_STEPS = 1e-9
+"""Part of a step by which a duration may miss a whole number of steps and still count as one.
+
+0.3 / 0.1 is a little less than 3 in double precision; a duration of a million steps is off by a
+few 1e-10 of a step.
+"""
+
+
+def time_span(motions: Iterable[Motion]) -> tuple[float, float]:
+    """Return the scene times [s] between which every motion is known; infinite where all are.
+
+    Raises
+    ------
+    SceneError
+        If the samples of two motions have no time in common.
+    """
+    sampled = [motion.sample_times for motion in motions if motion.sample_times.size]
+    first = max((float(times[0]) for times in sampled), default=-math.inf)
+    last = min((float(times[-1]) for times in sampled), default=math.inf)
+    if first >= last:
+        raise SceneError(
+            f"the samples of the two motions have no time in common: one begins at {first:g} s, "
+            f"the other ends at {last:g} s; set their 'start', or 'start = \"file\"' for both",
+            key="motions",
+        )
+    return first, last
+
+
+def check_time(time: float, motions: Iterable[Motion], key: str) -> float:
+    """Return `time` [s] if every motion is known then; `key` names it in the message."""
+    first, last = time_span(motions)
+    if not math.isfinite(time):
+        raise SceneError(f"must be a finite number, got {time}", key=key)
+    if not first <= time <= last:
+        raise SceneError(
+            f"{time:g} s is outside the pose samples, which reach from {first:g} s to {last:g} s",
+            key=key,
+        )
+    return time
+
+
+def start_time(settings: TrackSettings, motions: Iterable[Motion]) -> float:
+    """Return the first instant [s]: the one asked for, else the first that all motions know."""
+    motions = list(motions)
+    if settings.start is not None:
+        return check_time(settings.start, motions, "track.start")
+    first, _ = time_span(motions)
+    return first if math.isfinite(first) else 0.0
+
+
+def frame_times(settings: TrackSettings, motions: Iterable[Motion]) -> Array:
+    """Return the times of all frames [s], shape (n,), strictly increasing.
+
+    Without a ``step`` the frames are the pose samples' own times if a body moves by samples, else
+    `DEFAULT_STEP` apart. With a step they are ``start + k step``, the last one not beyond the end.
+
+    Raises
+    ------
+    SceneError
+        If the times are not settled or not possible: no duration and no samples, a duration
+        beyond the samples, ``step = "samples"`` without samples, or too many frames.
+    """
+    motions = list(motions)
+    start = start_time(settings, motions)
+    end = _end(settings, motions, start)
+    sampled = [motion.sample_times for motion in motions if motion.sample_times.size]
+    step = settings.step if settings.step is not None else (SAMPLES if sampled else DEFAULT_STEP)
+    if isinstance(step, str):
+        if not sampled:
+            raise SceneError(
+                f"'{SAMPLES}' needs a body that moves by pose samples; give a time in seconds, "
+                f"such as step = {DEFAULT_STEP:g}",
+                key="track.step",
+            )
+        times = np.unique(np.concatenate(sampled))
+        times = times[(times >= start) & (times <= end)]
+    else:
+        steps = (end - start) / step + WHOLE_STEPS
+        if steps >= MOST_FRAMES:
+            raise SceneError(
+                f"{end - start:g} s in steps of {step:g} s are {steps:.3g} frames, more than "
+                f"{MOST_FRAMES:g}; give a longer step or a shorter duration",
+                key="track.step",
+            )
+        # The last step may end a rounding error beyond the samples, which refuse to be asked there.
+        times = np.minimum(start + step * np.arange(math.floor(steps) + 1), end)
+    if len(times) < 2:
+        raise SceneError(
+            f"from {start:g} s to {end:g} s there are {len(times)} frames, at least 2 are needed; "
+            "give a longer duration or a shorter step",
+            key="track.duration",
+        )
+    return times
+
+
+def _end(settings: TrackSettings, motions: list[Motion], start: float) -> float:
+    _, last = time_span(motions)
+    if settings.duration is None:
+        if math.isinf(last):
+            raise SceneError(
+                "no motion of the pair ends by itself; add a line such as: duration = 10.0",
+                key="track.duration",
+            )
+        return last
+    end = start + settings.duration
+    if end > last + WHOLE_STEPS * settings.duration:
+        raise SceneError(
+            f"{settings.duration:g} s from {start:g} s on end at {end:g} s, after the last pose "
+            f"sample at {last:g} s; give at most {last - start:g}, or leave 'duration' out",
+            key="track.duration",
+        )
+    return min(end, last)

@@ -1,0 +1,160 @@
+"""From a ``[motions.NAME]`` table to a path in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path as FilePath
+from typing import NamedTuple, cast, get_args
+
+import numpy as np
+
+from standoff.motion import (
+    ConstantTwist,
+    Frame,
+    Helix,
+    Offset,
+    Orientation,
+    Path,
+    Pose,
+    PoseSamples,
+    Screw,
+    Spiral,
+    Twist,
+    read_pose_samples,
+)
+from standoff.scene.placements import in_space, read_pose
+from standoff.scene.reader import Array, Table
+
+FILE_START = "file"
+"""Value of ``start`` that keeps the time stamps as the file gives them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A body's path and where it came from.
+
+    Attributes
+    ----------
+    path : Path
+        Where the body is in scene time.
+    kind : str
+        As the scene names it.
+    sample_times : ndarray, shape (n,)
+        Scene times [s] of the pose samples; empty for a path given by a formula.
+    file : Path or None
+        The file of the pose samples.
+    normalised : int
+        How many of the file's quaternions had to be brought to unit norm.
+    """
+
+    path: Path
+    kind: str
+    sample_times: Array = field(repr=False)
+    file: FilePath | None = None
+    normalised: int = 0
+
+
+class MotionKind(NamedTuple):
+    """One kind of motion: its keys, whether it sets out from a placement, and what reads it."""
+
+    keys: tuple[str, ...]
+    placed: bool
+    read: Callable[[Table, Pose], Motion]
+
+
+def _formula(kind: str, path: Path) -> Motion:
+    return Motion(path, kind, np.empty(0))
+
+
+def _twist(table: Table, placement: Pose) -> Motion:
+    if "linear" not in table and "angular" not in table:
+        raise table.error("a twist needs 'linear' or 'angular'; add linear = [0.1, 0.0, 0.0]")
+    linear = in_space(table, "linear") if "linear" in table else np.zeros(3)
+    angular = table.vector("angular", 3) if "angular" in table else np.zeros(3)
+    frame = cast(Frame, table.choice("frame", get_args(Frame), "world"))
+    return _formula("twist", ConstantTwist(placement, Twist(linear, angular, frame)))
+
+
+def _screw(table: Table, placement: Pose) -> Motion:
+    axis = table.vector("axis", 3)
+    point = in_space(table, "point") if "point" in table else np.zeros(3)
+    rate, pitch = table.number("angular_rate"), table.number("pitch", 0.0)
+    return _formula("screw", table.build(lambda: Screw(placement, axis, point, rate, pitch)))
+
+
+def _helix(table: Table, _: Pose) -> Motion:
+    radius, pitch = table.positive("radius"), table.number("pitch")
+    rate, phase = table.number("rate"), table.number("phase", 0.0)
+    centre = in_space(table, "centre") if "centre" in table else np.zeros(3)
+    axis = table.vector("axis", 3) if "axis" in table else np.array([0.0, 0.0, 1.0])
+    orientation = _orientation(table)
+    path = table.build(lambda: Helix(radius, pitch, rate, centre, axis, phase, orientation))
+    return _formula("helix", path)
+
+
+def _spiral(table: Table, _: Pose) -> Motion:
+    radius, growth = table.not_negative("radius"), table.number("growth")
+    rate, phase = table.number("rate"), table.number("phase", 0.0)
+    centre = table.vector("centre", 2) if "centre" in table else np.zeros(2)
+    orientation = _orientation(table)
+    path = table.build(lambda: Spiral(radius, growth, rate, centre, phase, orientation))
+    return _formula("spiral", path)
+
+
+def _samples(table: Table, _: Pose) -> Motion:
+    file = table.existing_file("file", 'file = "hand.tum"')
+    samples: PoseSamples = table.build(lambda: read_pose_samples(file), "file")
+    start = table.number_or_word("start", FILE_START, 0.0)
+    if start is None:
+        return Motion(samples, "samples", samples.times, file, samples.normalised)
+    # A shift to a far start can round two close stamps to one, which the samples refuse.
+    shifted = table.build(lambda: samples.starting_at(start), "start")
+    return Motion(shifted, "samples", shifted.times, file, samples.normalised)
+
+
+def _orientation(table: Table) -> Orientation:
+    return cast(Orientation, table.choice("orientation", get_args(Orientation), "fixed"))
+
+
+_WINDING = ("centre", "rate", "phase", "orientation")
+
+MOTIONS: Mapping[str, MotionKind] = {
+    "twist": MotionKind(("linear", "angular", "frame"), True, _twist),
+    "screw": MotionKind(("axis", "point", "angular_rate", "pitch"), True, _screw),
+    "helix": MotionKind(("radius", "pitch", "axis", *_WINDING), False, _helix),
+    "spiral": MotionKind(("radius", "growth", *_WINDING), False, _spiral),
+    "samples": MotionKind(("file", "start"), False, _samples),
+}
+"""Every kind of motion that a scene may name."""
+
+
+def read_motion(table: Table, placement: Pose | None) -> Motion:
+    """Return the motion that a ``[motions.NAME]`` table describes.
+
+    Parameters
+    ----------
+    table : Table
+        With ``kind``, the kind's own keys, and optionally ``offset``.
+    placement : Pose or None
+        The body's own placement, if the scene gives one.
+
+    Raises
+    ------
+    SceneError
+        At an unknown kind or key, a value that the motion refuses, a file that is missing or not
+        to be read, or a placement beside a motion that gives the whole pose itself.
+    """
+    kind = MOTIONS[table.choice("kind", list(MOTIONS))]
+    table.expect("kind", "offset", *kind.keys)
+    if placement is not None and not kind.placed:
+        raise table.error(
+            "this kind of motion gives the whole pose, and the body has a placement too; "
+            "remove the placement, or write it as this motion's 'offset'",
+            "kind",
+        )
+    motion = kind.read(table, placement or Pose.identity())
+    if "offset" not in table:
+        return motion
+    path = Offset(motion.path, read_pose(table.table("offset")))
+    return Motion(path, motion.kind, motion.sample_times, motion.file, motion.normalised)

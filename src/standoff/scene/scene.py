@@ -1,0 +1,186 @@
+"""A scene: bodies, where they are, how they move, and which pair of them is tracked."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from standoff.bodies.body import Body
+from standoff.motion import Fixed, Pose
+from standoff.scene.errors import SceneError
+from standoff.scene.frames import check_time, frame_times, start_time
+from standoff.scene.motions import Motion, read_motion
+from standoff.scene.placements import read_pose
+from standoff.scene.reader import Array, Table, Value, missing_file, shown, unknown_name
+from standoff.scene.settings import TrackSettings, read_settings
+from standoff.scene.shapes import read_body
+
+VERSION = 1
+"""The version of the scene format that this library reads."""
+
+DEFAULT_LENGTH_UNIT = "m"
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What a scene file says, checked and built.
+
+    Attributes
+    ----------
+    file : Path
+        The scene file.
+    text : str
+        Its content.
+    title : str
+        A line for the reader; the file's name where the scene has none.
+    length_unit : str
+        Label of lengths; no number is converted.
+    bodies : mapping of str to Body
+    motions : mapping of str to Motion
+        One for each body; bodies at rest have the kind ``fixed``.
+    pair : (str, str)
+        Names of the bodies A and B.
+    settings : TrackSettings
+        The ``[track]`` table.
+    """
+
+    file: Path
+    text: str
+    title: str
+    length_unit: str
+    bodies: Mapping[str, Body]
+    motions: Mapping[str, Motion]
+    pair: tuple[str, str]
+    settings: TrackSettings
+
+    @property
+    def pair_bodies(self) -> tuple[Body, Body]:
+        """Bodies A and B."""
+        return self.bodies[self.pair[0]], self.bodies[self.pair[1]]
+
+    @property
+    def pair_motions(self) -> tuple[Motion, Motion]:
+        """Motions of A and B."""
+        return self.motions[self.pair[0]], self.motions[self.pair[1]]
+
+    def times(self, settings: TrackSettings | None = None) -> Array:
+        """Return the frame times [s] of a run, shape (n,), see `frame_times`."""
+        try:
+            return frame_times(settings or self.settings, self.pair_motions)
+        except SceneError as error:
+            raise error.found_in(self.file) from error
+
+    def instant(self, time: float | None = None) -> float:
+        """Return `time` [s] if the pair's motions are known then; None: the first frame's."""
+        try:
+            if time is None:
+                return start_time(self.settings, self.pair_motions)
+            return check_time(time, self.pair_motions, "time")
+        except SceneError as error:
+            raise error.found_in(self.file) from error
+
+
+def load_scene(file: str | os.PathLike[str]) -> Scene:
+    """Read, check and build a scene.
+
+    Parameters
+    ----------
+    file : str or path
+        A TOML file; the files that it names are relative to its folder.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        If the file is missing or is no TOML, or anything in it is unknown, missing, of the wrong
+        type or shape, not finite, or refused by the shape, pose or motion that it describes. The
+        message names the file, the key and the fix.
+    """
+    path = Path(file)
+    text = _text_of(path)
+    try:
+        content = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(f"is no TOML: {error}", file=path) from error
+    top = Table(content, file=path)
+    _check_version(top)
+    top.expect(
+        "version", "title", "length_unit", "bodies", "placements", "motions", "pair", "track"
+    )
+    bodies = _named(top, "bodies", read_body)
+    if not bodies:
+        raise top.error("no bodies; add a table such as [bodies.tool]", "bodies")
+    placements = _named(top, "placements", read_pose, bodies)
+    motions = _named(top, "motions", lambda table: table, bodies)
+    return Scene(
+        file=path,
+        text=text,
+        title=top.text("title", path.name),
+        length_unit=top.text("length_unit", DEFAULT_LENGTH_UNIT),
+        bodies=bodies,
+        motions={name: _motion(name, motions, placements) for name in bodies},
+        pair=_pair(top.table("pair"), bodies),
+        settings=read_settings(top.table("track")) if "track" in top else TrackSettings(),
+    )
+
+
+def _text_of(path: Path) -> str:
+    if not path.is_file():
+        raise SceneError(missing_file(path, str(path), "the current folder"))
+    try:
+        return path.read_bytes().decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise SceneError(
+            f"is no text in UTF-8 (byte {error.start}); save it as UTF-8", file=path
+        ) from error
+    except OSError as error:
+        raise SceneError(f"cannot be read: {error.strerror}", file=path) from error
+
+
+def _check_version(top: Table) -> None:
+    version = top.required("version", f"version = {VERSION}")
+    if type(version) is not int or version != VERSION:
+        raise top.error(
+            f"is {shown(version)}, but this Standoff reads version {VERSION}: "
+            f"write version = {VERSION}, or install the Standoff that the scene was made for",
+            "version",
+        )
+
+
+def _named(
+    top: Table,
+    key: str,
+    read: Callable[[Table], Value],
+    bodies: Mapping[str, Body] | None = None,
+) -> dict[str, Value]:
+    """Return what the tables ``[key.NAME]`` describe; with `bodies`, each NAME must be one."""
+    if key not in top:
+        return {}
+    table = top.table(key)
+    for name in table.names():
+        if bodies is not None and name not in bodies:
+            raise table.error(unknown_name(name, bodies, "body"), name)
+    return {name: read(table.table(name)) for name in table.names()}
+
+
+def _motion(name: str, motions: Mapping[str, Table], placements: Mapping[str, Pose]) -> Motion:
+    placement = placements.get(name)
+    if name in motions:
+        return read_motion(motions[name], placement)
+    return Motion(Fixed(placement or Pose.identity()), "fixed", np.empty(0))
+
+
+def _pair(table: Table, bodies: Mapping[str, Body]) -> tuple[str, str]:
+    table.expect("a", "b")
+    a, b = (table.choice(key, list(bodies), noun="body") for key in ("a", "b"))
+    if a == b:
+        raise table.error(f"'{a}' is both a and b; name two different bodies")
+    return a, b
