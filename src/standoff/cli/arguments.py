@@ -22,25 +22,27 @@ class TrackCommand:
 
     scene: SceneFile
     """Scene file; docs/scene-format.md describes the format."""
-    output: Annotated[Path | None, arg(aliases=["-o"], metavar="OUT.parquet")] = None
+    output: Annotated[
+        Path | None, arg(aliases=["-o"], metavar="OUT.parquet", help_behavior_hint="")
+    ] = None
     """Write every frame to this Parquet file."""
-    plot: Annotated[Path | None, arg(metavar="OUT.png")] = None
+    plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
     """Plot distance, certificate gap and active features to this file (.png, .svg or .pdf)."""
-    json: bool = False
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print the summary as JSON, with all events."""
-    law: Annotated[str | None, arg(metavar="LAW")] = None
+    law: Annotated[str | None, arg(metavar="LAW", help_behavior_hint="")] = None
     """In place of the scene's: predictor-corrector or paper."""
-    predictor: Annotated[str | None, arg(metavar="PREDICTOR")] = None
+    predictor: Annotated[str | None, arg(metavar="PREDICTOR", help_behavior_hint="")] = None
     """In place of the scene's: feedforward-2, feedforward, secant or none."""
-    integrator: Annotated[str | None, arg(metavar="INTEGRATOR")] = None
+    integrator: Annotated[str | None, arg(metavar="INTEGRATOR", help_behavior_hint="")] = None
     """In place of the scene's: heun, euler, midpoint or rk4."""
-    gain: Annotated[float | None, arg(metavar="K")] = None
+    gain: Annotated[float | None, arg(metavar="K", help_behavior_hint="")] = None
     """In place of the scene's: feedback gain, 1/s."""
-    step: Annotated[str | None, arg(metavar="SECONDS|samples")] = None
+    step: Annotated[str | None, arg(metavar="SECONDS|samples", help_behavior_hint="")] = None
     """In place of the scene's: time from frame to frame in s, or 'samples'."""
-    start: Annotated[float | None, arg(metavar="SECONDS")] = None
+    start: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
     """In place of the scene's: time of the first frame, s."""
-    duration: Annotated[float | None, arg(metavar="SECONDS")] = None
+    duration: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
     """In place of the scene's: time from the first frame to the last, s."""
 
 
@@ -53,9 +55,9 @@ class DistanceCommand:
 
     scene: SceneFile
     """Scene file; docs/scene-format.md describes the format."""
-    time: Annotated[float | None, arg(metavar="SECONDS")] = None
+    time: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
     """Scene time in s; the first frame's if not given."""
-    json: bool = False
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print the answer as JSON."""
 
 

@@ -31,6 +31,7 @@ def scene_facts(scene: Scene) -> dict[str, Any]:
         "length_unit": scene.length_unit,
         "a": scene.pair[0],
         "b": scene.pair[1],
+        "notes": scene.notes,
     }
 
 
@@ -107,7 +108,6 @@ def recording_facts(
         "statuses": {status.name: n for status, n in recording.status_frames().items()},
         "counts": recording.total_counts()._asdict(),
         "events": event_facts(recording.events),
-        "normalised_quaternions": sum(motion.normalised for motion in scene.pair_motions),
         "files": [str(path) for path in written],
     }
 

@@ -9,6 +9,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numba
 import numpy as np
 
 from standoff.cli.errors import MissingExtra
@@ -66,6 +67,7 @@ def run_metadata(scene: Scene, settings: TrackSettings) -> dict[str, Any]:
         "versions": {
             "python": platform.python_version(),
             "numpy": np.__version__,
+            "numba": numba.__version__,
             "pyarrow": pa.__version__,
         },
     }

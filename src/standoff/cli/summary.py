@@ -30,6 +30,7 @@ def answer_lines(scene: Scene, time: float, answer: Proximity) -> list[str]:
     unit = scene.length_unit
     return [
         line("scene", _scene_text(scene)),
+        *(line("", note) for note in scene.notes),
         line("time", f"{_time(time)}"),
         line("distance", f"{answer.distance:.15g} {unit}"),
         line("lower bound", f"{answer.lower_bound:.15g} {unit}"),
@@ -53,9 +54,9 @@ def recording_lines(
     frames, certified = len(recording.times), int(np.count_nonzero(recording.certified))
     return [
         line("scene", _scene_text(scene)),
+        *(line("", note) for note in scene.notes),
         line("law", _law_text(settings, recording)),
         line("frames", _frames_text(recording)),
-        *_rounding_note(scene),
         line("closest", _closest_text(scene, recording)),
         line("certified", f"{certified} of {frames} frames, {_share(certified, frames)}"),
         *_advice(recording.status_frames(), frames),
@@ -90,18 +91,6 @@ def _frames_text(recording: Recording) -> str:
 def _time(seconds: float) -> str:
     # To the microsecond, which a recorder's epoch of 1e9 s leaves of a double.
     return f"{seconds:.6f}".rstrip("0").rstrip(".") + " s"
-
-
-def _rounding_note(scene: Scene) -> list[str]:
-    return [
-        line(
-            "",
-            f"{motion.normalised} of {len(motion.sample_times)} quaternions in "
-            f"{motion.file.name} were rounded; brought to unit norm",
-        )
-        for motion in scene.pair_motions
-        if motion.normalised and motion.file is not None
-    ]
 
 
 def _closest_text(scene: Scene, recording: Recording) -> str:

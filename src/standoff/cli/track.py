@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import track as progress
+from rich.progress import Progress
 
 from standoff.cli.arguments import TrackCommand
-from standoff.cli.errors import ExitCode
+from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text, recording_facts
 from standoff.cli.output import Writer, check_target, write_whole
 from standoff.cli.summary import recording_lines
-from standoff.scene import Recording, Scene, TrackSettings, load_scene, prepare, record
+from standoff.scene import (
+    Recording,
+    Scene,
+    SceneError,
+    TrackSettings,
+    load_scene,
+    prepare,
+    record,
+)
 from standoff.scene.settings import SAMPLES
 from standoff.tracking import Proximity
 
@@ -35,7 +43,7 @@ def run_track(command: TrackCommand) -> int:
         If the files could not be written after all.
     """
     scene = load_scene(command.scene)
-    settings = scene.settings.overridden(_overrides(command))
+    settings = _settings(scene, command)
     prepare(scene, settings)
     _check_files(command)
     recording = record(scene, settings, _watch)
@@ -48,7 +56,7 @@ def run_track(command: TrackCommand) -> int:
     return ExitCode.DONE if recording.certified.all() else ExitCode.NOT_CERTIFIED
 
 
-def _overrides(command: TrackCommand) -> dict[str, object]:
+def _settings(scene: Scene, command: TrackCommand) -> TrackSettings:
     step: object = command.step
     if command.step is not None and command.step != SAMPLES:
         try:
@@ -56,7 +64,11 @@ def _overrides(command: TrackCommand) -> dict[str, object]:
         except ValueError:
             step = command.step  # refused with the other settings, in the same words
     names = ("law", "predictor", "integrator", "gain", "start", "duration")
-    return {name: getattr(command, name) for name in names} | {"step": step}
+    given = {name: getattr(command, name) for name in names} | {"step": step}
+    try:
+        return scene.settings.overridden(given)
+    except SceneError as error:
+        raise CommandError(f"--{error.key}: {error.problem}") from error
 
 
 def _check_files(command: TrackCommand) -> None:
@@ -87,7 +99,13 @@ def _files(
 
 def _watch(answers: Iterable[Proximity], total: int) -> Iterable[Proximity]:
     """Show a progress bar on stderr where that is a terminal."""
-    if not sys.stderr.isatty():
-        return answers
-    console = Console(stderr=True)
-    return progress(answers, "tracking", total=total, console=console, transient=True)
+    return _with_bar(answers, total) if sys.stderr.isatty() else answers
+
+
+def _with_bar(answers: Iterable[Proximity], total: int) -> Iterator[Proximity]:
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        # The kernels are compiled before the first answer and kept on disk for later runs.
+        task = bar.add_task("starting (the very first run compiles)", total=total)
+        for answer in answers:
+            bar.update(task, advance=1, description="tracking")
+            yield answer

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
 from typing import NamedTuple, cast, get_args
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from standoff.motion import (
     ConstantTwist,
+    Fixed,
     Frame,
     Helix,
     Offset,
@@ -44,15 +45,15 @@ class Motion:
         Scene times [s] of the pose samples; empty for a path given by a formula.
     file : Path or None
         The file of the pose samples.
-    normalised : int
-        How many of the file's quaternions had to be brought to unit norm.
+    rounded : int
+        How many of its quaternions were not of unit norm, to 1e-3, and were normalised.
     """
 
     path: Path
     kind: str
     sample_times: Array = field(repr=False)
     file: FilePath | None = None
-    normalised: int = 0
+    rounded: int = 0
 
 
 class MotionKind(NamedTuple):
@@ -61,6 +62,11 @@ class MotionKind(NamedTuple):
     keys: tuple[str, ...]
     placed: bool
     read: Callable[[Table, Pose], Motion]
+
+
+def at_rest(placement: Pose) -> Motion:
+    """Return the motion of a body that stays where it is placed."""
+    return _formula("fixed", Fixed(placement))
 
 
 def _formula(kind: str, path: Path) -> Motion:
@@ -156,5 +162,7 @@ def read_motion(table: Table, placement: Pose | None) -> Motion:
     motion = kind.read(table, placement or Pose.identity())
     if "offset" not in table:
         return motion
-    path = Offset(motion.path, read_pose(table.table("offset")))
-    return Motion(path, motion.kind, motion.sample_times, motion.file, motion.normalised)
+    offset = read_pose(table.table("offset"))
+    return replace(
+        motion, path=Offset(motion.path, offset), rounded=motion.rounded + offset.normalised
+    )

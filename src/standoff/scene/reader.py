@@ -26,6 +26,9 @@ Half catches swapped, missing and doubled letters in short keys, and stays silen
 has nothing to do with any known key.
 """
 
+NEAREST_FILE_CUTOFF = 0.8
+"""The same for file names, which are alike by their ending alone."""
+
 SHOWN_CHARACTERS = 60
 """Longest piece of an offending value that a message repeats, in characters: one terminal line."""
 
@@ -42,10 +45,10 @@ def one_of(names: Iterable[str]) -> str:
     return " or ".join(filter(None, [", ".join(quoted[:-1]), *quoted[-1:]]))
 
 
-def nearest(name: str, known: Iterable[str]) -> str | None:
+def nearest(name: str, known: Iterable[str], cutoff: float = NEAREST_CUTOFF) -> str | None:
     """Return the known name most like `name`, or None when none is like it."""
     folded = {candidate.casefold(): candidate for candidate in known}
-    found = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=NEAREST_CUTOFF)
+    found = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=cutoff)
     return folded[found[0]] if found else None
 
 
@@ -303,7 +306,8 @@ def missing_file(path: Path, name: str, folder: str = "the scene file") -> str:
         return f"'{name}' is a folder; name a file in it"
     if not path.parent.is_dir():
         return f"no file '{name}': its folder does not exist; paths are relative to {folder}"
-    likely = nearest(path.name, [entry.name for entry in path.parent.iterdir() if entry.is_file()])
+    beside = [entry.name for entry in path.parent.iterdir() if entry.is_file()]
+    likely = nearest(path.name, beside, NEAREST_FILE_CUTOFF)
     if likely is not None:
         return f"no file '{name}'; did you mean '{likely}'?"
     return f"no file '{name}'; paths are relative to {folder}"

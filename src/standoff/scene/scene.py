@@ -5,16 +5,14 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from standoff.bodies.body import Body
-from standoff.motion import Fixed, Pose
+from standoff.motion import Pose
 from standoff.scene.errors import SceneError
 from standoff.scene.frames import check_time, frame_times, start_time
-from standoff.scene.motions import Motion, read_motion
+from standoff.scene.motions import Motion, at_rest, read_motion
 from standoff.scene.placements import read_pose
 from standoff.scene.reader import Array, Table, Value, missing_file, shown, unknown_name
 from standoff.scene.settings import TrackSettings, read_settings
@@ -57,6 +55,15 @@ class Scene:
     motions: Mapping[str, Motion]
     pair: tuple[str, str]
     settings: TrackSettings
+
+    @property
+    def notes(self) -> list[str]:
+        """What was mended in the pair's input, a sentence each."""
+        return [
+            f"{motion.rounded} quaternions of {name} were rounded; brought to unit norm"
+            for name, motion in zip(self.pair, self.pair_motions, strict=True)
+            if motion.rounded
+        ]
 
     @property
     def pair_bodies(self) -> tuple[Body, Body]:
@@ -174,8 +181,12 @@ def _named(
 def _motion(name: str, motions: Mapping[str, Table], placements: Mapping[str, Pose]) -> Motion:
     placement = placements.get(name)
     if name in motions:
-        return read_motion(motions[name], placement)
-    return Motion(Fixed(placement or Pose.identity()), "fixed", np.empty(0))
+        motion = read_motion(motions[name], placement)
+    else:
+        motion = at_rest(placement or Pose.identity())
+    if placement is not None and placement.normalised:
+        motion = replace(motion, rounded=motion.rounded + 1)
+    return motion
 
 
 def _pair(table: Table, bodies: Mapping[str, Body]) -> tuple[str, str]:

@@ -1,0 +1,66 @@
+"""Every example runs, is certified, and shows what it is there to show."""
+
+from __future__ import annotations
+
+import runpy
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from standoff.motion import read_pose_samples
+from standoff.scene import load_scene, query, record
+
+Standoff = Callable[..., Any]
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SCENES = sorted(EXAMPLES.glob("*.toml"))
+
+
+def test_there_are_examples() -> None:
+    assert {file.stem for file in SCENES} >= {"demo", "twist", "helix", "planar"}
+
+
+@pytest.mark.parametrize("file", SCENES, ids=lambda file: file.stem)
+def test_example_is_certified_throughout(standoff: Standoff, file: Path) -> None:
+    ended = standoff("track", file)
+    assert ended.code == 0
+    assert ", 100 %" in ended.out
+    assert standoff("distance", file).code == 0
+
+
+def test_demo_visits_faces_edges_and_a_vertex_and_equals_cold_queries() -> None:
+    scene = load_scene(EXAMPLES / "demo.toml")
+    recording = record(scene)
+    assert {feature.kind for feature in recording.features_b} == {"face", "edge", "vertex"}
+    assert len(recording.events) > 10
+    size = max(body.size for body in scene.pair_bodies)
+    for frame in range(0, len(recording.times), 20):
+        cold = query(scene, float(recording.times[frame]))[1].distance
+        assert abs(cold - recording.distance[frame]) <= 1e-10 * size
+
+
+def test_demo_motion_is_uneven_and_jittery() -> None:
+    samples = read_pose_samples(EXAMPLES / "hand_motion.tum")
+    steps = np.diff(samples.times)
+    assert samples.end == pytest.approx(10.0, abs=0.1)
+    assert np.median(steps) == pytest.approx(0.01, rel=0.05)
+    assert steps.std() > 3e-4
+    assert steps.max() > 0.015
+    positions = np.array([pose.translation for pose in samples.poses])
+    even = np.linspace(samples.start, samples.end, len(samples.times))
+    path = np.column_stack([np.interp(even, samples.times, column) for column in positions.T])
+    power = (np.abs(np.fft.rfft(np.diff(path, axis=0), axis=0)) ** 2).sum(axis=1)
+    hertz = np.fft.rfftfreq(len(path) - 1, even[1] - even[0])
+    tremor = power[(hertz > 7.5) & (hertz < 12.5)].mean()
+    assert tremor > 50.0 * power[(hertz > 20.0) & (hertz < 40.0)].mean()
+
+
+def test_demo_motion_is_what_its_script_writes(tmp_path: Path) -> None:
+    script = runpy.run_path(str(EXAMPLES / "make_hand_motion.py"))
+    script["main"](tmp_path / "again.tum")
+    again = np.loadtxt(tmp_path / "again.tum")
+    # To the last decimal that is written: libm differs between machines by a rounding unit.
+    np.testing.assert_allclose(np.loadtxt(EXAMPLES / "hand_motion.tum"), again, atol=2e-6)
