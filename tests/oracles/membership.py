@@ -1,0 +1,42 @@
+"""How far a point lies outside a shape: what makes a distance between two points an upper bound."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .features import core_point
+from .shape import Affine, Shape
+from .support import Box, Capsule, Cone, Sphere
+from .surfaces import quadrics
+
+Array = NDArray[Any]
+
+
+def outside(shape: Shape, point: ArrayLike) -> float:
+    """Return how far a body-frame point lies outside a shape: zero or less inside.
+
+    The greatest signed distance to one of the shape's surfaces, of first order for curved ones:
+    zero on the boundary, and positive exactly for points outside.
+
+    Raises
+    ------
+    TypeError
+        The shape is neither a set of quadratic inequalities nor a cone, nor swept.
+    """
+    p = np.asarray(point, dtype=float)
+    if isinstance(shape, Affine) and isinstance(shape.shape, Cone):
+        back = np.linalg.solve(shape.matrix, p - shape.shift)
+        return outside(shape.shape, back) * float(np.linalg.norm(shape.matrix, 2))
+    if isinstance(shape, Sphere | Capsule | Box):
+        return float(np.linalg.norm(p - core_point(shape, p))) - shape.sweep
+    if isinstance(shape, Cone):
+        slope = shape.radius / shape.height
+        radial = float(np.hypot(p[0], p[1]))
+        side = (radial - slope * (shape.height / 2 - p[2])) / float(np.hypot(1.0, slope))
+        return max(side, -shape.height / 2 - p[2])
+    system = quadrics(shape)
+    heights = system.distances(p)
+    return float(np.where(system.equality, np.abs(heights), heights).max())
