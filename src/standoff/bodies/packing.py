@@ -150,7 +150,8 @@ def _pack_faces(w: Writer, body: Assembled) -> None:
         own = [k for k, chart in enumerate(body.charts) if chart.face == i]
         face_rows.append((own[0], len(own)))
     w.table(L.FACES, face_rows)
-    chart_rows, coedge_rows = [], []
+    chart_rows: list[tuple[int, ...]] = []
+    coedge_rows: list[tuple[int, ...]] = []
     for k, chart in enumerate(body.charts):
         reals = chart.surface.reals.copy()
         reals[L.OUTWARD] = chart.outward
@@ -188,7 +189,7 @@ def _pack_edges(w: Writer, body: Assembled) -> None:
             | (L.SMOOTH if body.smooth[j] else 0)
             | (L.OUTWARD_RIGHT if body.outward_right[j] else 0)
         )
-        coedges = (_coedges_of_edge(body, j) + [-1, -1])[:2]
+        coedges = [*_coedges_of_edge(body, j), -1, -1][:2]
         first = -1 if edge.first is None else edge.first
         last = -1 if edge.last is None else edge.last
         rows.append((curve.kind, offset, flags, first, last, *coedges))

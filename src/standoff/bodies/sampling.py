@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from standoff.bodies.assembly import ATLAS_LIMIT
 from standoff.bodies.packing import Assembled, Chart, Ints, Sample
 from standoff.bodies.topology import BodyError, Edge
 from standoff.geometry.curves import ConicArc, RationalBezier
@@ -126,7 +125,7 @@ def curve_box(edge: Edge) -> tuple[Array, Array]:
         h = c.data[1:].reshape(-1, 4)
         points = h[:, :3] / h[:, 3:]
         return points.min(axis=0), points.max(axis=0)
-    points = [c.point(c.first), c.point(c.last)]
+    ends = [c.point(c.first), c.point(c.last)]
     if isinstance(c, ConicArc):
         basis = c.basis()
         for i in range(3):
@@ -134,8 +133,8 @@ def curve_box(edge: Edge) -> tuple[Array, Array]:
             for t in (angle, angle + np.pi):
                 t = c.first + (t - c.first) % (2.0 * np.pi)
                 if t <= c.last:
-                    points.append(c.point(t))
-    return np.min(points, axis=0), np.max(points, axis=0)
+                    ends.append(c.point(t))
+    return np.min(ends, axis=0), np.max(ends, axis=0)
 
 
 def body_box(body: Assembled, ints: Ints, reals: Array) -> tuple[Array, Array] | None:
@@ -163,11 +162,11 @@ def body_box(body: Assembled, ints: Ints, reals: Array) -> tuple[Array, Array] |
                     if y[2] <= 0.0:
                         continue
                     u, v = float(y[0] / y[2]), float(y[1] / y[2])
-                    if max(abs(u), abs(v)) <= ATLAS_LIMIT or chart.limit == np.inf:
-                        if on_face(ints, reals, k, u, v):
-                            x = chart.surface.jet(u, v)[0]
-                            lows.append(x)
-                            highs.append(x)
+                    in_chart = max(abs(u), abs(v)) <= chart.limit
+                    if in_chart and on_face(ints, reals, k, u, v):
+                        x = chart.surface.jet(u, v)[0]
+                        lows.append(x)
+                        highs.append(x)
     return np.min(lows, axis=0), np.max(highs, axis=0)
 
 
@@ -185,7 +184,7 @@ def check_convex(samples: Sequence[Sample], size: float) -> float:
         normals @ points.T
         - np.einsum("ij,ij->i", normals, np.array([s.point for s in faces]))[:, None]
     )
-    i, j = np.unravel_index(int(heights.argmax()), heights.shape)
+    i, j = (int(k) for k in np.unravel_index(int(heights.argmax()), heights.shape))
     worst = float(heights[i, j])
     if worst > CONVEXITY_TOLERANCE * size:
         raise BodyError(

@@ -105,7 +105,7 @@ class ConicArc(Curve):
 
 
 class RationalBezier(Curve):
-    """A rational Bezier curve on [0, 1] from (n + 1, 2 or 3) control points and positive weights."""
+    """A rational Bezier curve on [0, 1]: (n + 1, 2 or 3) control points, positive weights."""
 
     kind = L.BEZIER
 

@@ -25,10 +25,12 @@ class Pcurve:
     matrix: Array
 
     def point(self, t: float) -> tuple[float, float, float]:
-        """(u, v, depth): depth > 0 where the chart sees the point."""
+        """(u, v, depth): depth > 0 where the chart sees the point, else u and v are nan."""
         basis = (np.cos(t), np.sin(t), 1.0) if self.kind == L.CONIC else (t, 0.0, 1.0)
         h = self.matrix @ np.array(basis)
-        return h[0] / h[2], h[1] / h[2], h[2]
+        if h[2] <= 0.0:
+            return np.nan, np.nan, float(h[2])
+        return float(h[0] / h[2]), float(h[1] / h[2]), float(h[2])
 
 
 def pcurve_of(curve: Curve, surface: Surface) -> Pcurve:
@@ -41,7 +43,8 @@ def pcurve_of(curve: Curve, surface: Surface) -> Pcurve:
     """
     if not isinstance(curve, Line | ConicArc):
         raise ValueError(f"{type(curve).__name__} has no exact pcurve: use Line or ConicArc.")
-    basis = np.linalg.inv(surface.linear) @ (curve.basis() - np.outer(surface.shift, [0, 0, 1]))
+    offset = np.outer(surface.shift, [0.0, 0.0, 1.0])
+    basis = np.asarray(np.linalg.inv(surface.linear) @ (curve.basis() - offset), dtype=np.float64)
     if isinstance(surface, Plane):
         return Pcurve(curve.kind, np.vstack([basis[:2], [0.0, 0.0, 1.0]]))
     if isinstance(surface, Sphere):

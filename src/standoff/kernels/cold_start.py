@@ -8,17 +8,18 @@ directions of earlier failures.
 
 from math import inf
 
-import numpy as np
-
 from standoff.kernels import layout as L
 from standoff.kernels.certificate import certify
 from standoff.kernels.compiling import kernel
-from standoff.kernels.descent import RESTARTS, pair_jets, set_mode, settle
-from standoff.kernels.tolerances import MAX_ITERATIONS, TOUCHING
+from standoff.kernels.descent import set_mode, settle
+from standoff.kernels.events import RESTARTS
+from standoff.kernels.tolerances import TOUCHING
 from standoff.kernels.vectors import add, dot, norm, rotate, rotate_back, scale, sub
 
 MAX_STARTS = 12
 GILBERT_STEPS = 40
+# How strongly a restart's direction is mixed with those before it, a start (dimensionless).
+TURN = 0.3
 
 # Outcomes of a query.
 CERTIFIED = 0
@@ -93,16 +94,27 @@ def gilbert(pair, R, p):
 
 
 @kernel
-def global_query(pair, R, p, mode, q, tolerance, counts, events):
+def weigh(pair, R, p, mode, q, jet_a, jet_b, tolerance):
+    """(outcome, d, bound, normal) of witness points; d and bound are those of the cores."""
+    d, bound, normal = certify(pair, R, p, mode, q, jet_a[0], jet_b[0])
+    span = pair[1][L.SIZE] + pair[3][L.SIZE] + d
+    if bound > 0.0 and d - bound <= tolerance * span:
+        return CERTIFIED, d, bound, normal
+    if bound <= 0.0 and d <= TOUCHING * span:
+        return TOUCHING_OR_OVERLAPPING, d, bound, normal
+    return UNCERTIFIED, d, bound, normal
+
+
+@kernel
+def global_query(pair, R, p, mode, q, w_ff, tolerance, counts, events):
     """(outcome, d, bound, normal) of a cold query; (mode, q) are set to its witness points.
 
-    Distances are those of the cores; `tolerance` (relative to the pair's size) is the gap
-    between distance and bound at which a start is accepted.
+    `tolerance` (relative to the pair's size) is the gap between distance and bound at which a
+    start is accepted. Without one, the answer is that of the least gap.
     """
     ia, ra, ib, rb = pair
-    size = ra[L.SIZE] + rb[L.SIZE]
     best_gap, best_d, best_bound, best_normal = inf, inf, -inf, (0.0, 0.0, 0.0)
-    best_mode, best_q, w_ff = mode.copy(), q.copy(), np.zeros(4)
+    best_mode, best_q = (0, 0, 0, 0), (0.0, 0.0, 0.0, 0.0)
     still = (0.0, 0.0, 0.0)
     direction = (0.0, 0.0, 0.0)
     outcome = UNCERTIFIED
@@ -117,22 +129,19 @@ def global_query(pair, R, p, mode, q, tolerance, counts, events):
             j = support_sample(ib, rb, scale(-1.0, rotate_back(R, direction)))
         begin_at(ia, ra, 0, i, mode, q)
         begin_at(ib, rb, 1, j, mode, q)
-        settle(pair, R, p, still, still, mode, q, w_ff, 0, 0.0, MAX_ITERATIONS, counts, events)
-        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-        d, bound, normal = certify(pair, R, p, mode, q, jet_a[0], jet_b[0])
-        if d - bound < best_gap:
+        _, _, jet_a, jet_b = settle(pair, R, p, still, still, mode, q, w_ff, 0, 0.0, counts, events)
+        outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, tolerance)
+        if d - bound < best_gap or outcome != UNCERTIFIED:
             best_gap, best_d, best_bound, best_normal = d - bound, d, bound, normal
-            best_mode[:], best_q[:] = mode, q
-        if bound > 0.0 and d - bound <= tolerance * (size + d):
-            outcome = CERTIFIED
-            break
-        if bound <= 0.0 and d <= TOUCHING * (size + d):
-            outcome = TOUCHING_OR_OVERLAPPING
+            best_mode = (mode[0], mode[1], mode[2], mode[3])
+            best_q = (q[0], q[1], q[2], q[3])
+        if outcome != UNCERTIFIED:
             break
         # aim the next start along this failure's gap, turned a little more each time
-        gap = sub(jet_b[0], jet_a[0])
-        direction = add(scale(1.0 / max(d, 1e-300), gap), scale(0.3 * attempt, direction))
+        gap = scale(1.0 / max(d, 1e-300), sub(jet_b[0], jet_a[0]))
+        direction = add(gap, scale(TURN * attempt, direction))
         if norm(direction) == 0.0:
             direction = (1.0, 0.0, 0.0)
-    mode[:], q[:] = best_mode, best_q
+    mode[0], mode[1], mode[2], mode[3] = best_mode
+    q[0], q[1], q[2], q[3] = best_q
     return outcome, best_d, best_bound, best_normal

@@ -5,7 +5,35 @@ the middle of a step. `small` asks LLVM to inline: measured in docs/spikes/dispa
 it a step takes 1.6 times as long.
 """
 
-from numba import njit
+from numba import config, njit, types
+from numba.extending import intrinsic
 
 kernel = njit(cache=True, error_model="numpy")
 small = njit(cache=True, error_model="numpy", forceinline=True)
+
+
+@intrinsic
+def _pointer(typingctx, array, offset):  # type: ignore[no-untyped-def]
+    def codegen(context, builder, signature, args):  # type: ignore[no-untyped-def]
+        view = context.make_array(signature.args[0])(context, builder, args[0])
+        return builder.gep(view.data, [args[1]])
+
+    return types.CPointer(array.dtype)(array, types.intp), codegen
+
+
+if config.DISABLE_JIT:
+
+    def pointer(array, offset):  # type: ignore[no-untyped-def]
+        return array[offset:]
+
+else:
+
+    @small
+    def pointer(array, offset):
+        """The address of array[offset], to be indexed like the array itself.
+
+        A compiled function takes an array as seven numbers and counts a reference to it at every
+        call; a pointer is one number. Kernels below an entry get pointers: measured, a step takes
+        half the time. The entry must keep the array alive until the last use.
+        """
+        return _pointer(array, offset)

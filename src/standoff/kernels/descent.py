@@ -6,10 +6,15 @@ are the switching functions tested, and at most one feature, the steepest, is re
 falls between two releases, no stationary point is met twice.
 """
 
-import numpy as np
-
 from standoff.kernels import layout as L
 from standoff.kernels.compiling import kernel
+from standoff.kernels.events import (
+    CHART_CHANGES,
+    CORRECTIONS,
+    EVALUATIONS,
+    REGULARISED,
+    log_event,
+)
 from standoff.kernels.features import dimension, feature_jet, moved_jet
 from standoff.kernels.feedback import gradient_norm, law
 from standoff.kernels.switching import across as across_edge
@@ -26,6 +31,8 @@ from standoff.kernels.tolerances import (
     EPS,
     GRADIENT_NOISE,
     MAX_HALVINGS,
+    MAX_ITERATIONS,
+    MAX_POLISH,
     MAX_STALLS,
     POLISH_RATIO,
     RECHART,
@@ -35,13 +42,6 @@ from standoff.kernels.tolerances import (
 )
 from standoff.kernels.trimming import HIT_COEDGE, HIT_LIMIT, NO_HIT, walk
 from standoff.kernels.vectors import norm, rotate_back, scale, sub
-
-# Counts, in one int64 array.
-EVALUATIONS, CORRECTIONS, SWITCHES, CHART_CHANGES, RESTARTS, REGULARISED, EVENTS = range(7)
-N_COUNTS = 7
-
-# Columns of the event log: body (0 A, 1 B), from, to, value of the switching function, slope.
-EVENT_COLUMNS = 5
 
 ORIGIN = (0.0, 0.0, 0.0)
 
@@ -57,19 +57,6 @@ def pair_jets(pair, R, p, mode, q):
     jet_a = feature_jet(ia, ra, mode[0], mode[1], q[0], q[1])
     jet_b = feature_jet(ib, rb, mode[2], mode[3], q[2], q[3])
     return jet_a, moved_jet(R, p, jet_b)
-
-
-@kernel
-def log_event(events, counts, body, source, target, value, slope):
-    k = counts[EVENTS]
-    if k < events.shape[0]:
-        events[k, 0] = body
-        events[k, 1] = source
-        events[k, 2] = target
-        events[k, 3] = value
-        events[k, 4] = slope
-    counts[EVENTS] += 1
-    counts[SWITCHES] += 1
 
 
 @kernel
@@ -115,8 +102,8 @@ def take_hit(pair, mode, q, body, hit, index, t, last_smooth, s, counts, events)
 
 @kernel
 def recentre(pair, mode, q, counts):
-    """Change to the most central chart where a witness point nears the rim of its own."""
-    from_limit = 0
+    """Change to the most central chart where a witness point nears its own's rim. Any change?"""
+    changed = False
     ia, ra, ib, rb = pair
     for body in range(2):
         ints, reals = (ia, ra) if body == 0 else (ib, rb)
@@ -129,10 +116,10 @@ def recentre(pair, mode, q, counts):
                 )
                 if chart != mode[2 * body + 1]:
                     counts[CHART_CHANGES] += 1
-                    from_limit += 1
+                    changed = True
                     set_mode(mode, q, body, to, chart, u, v)
         q[2 * body] = normalised_parameter(ints, reals, feature, q[2 * body])
-    return from_limit
+    return changed
 
 
 @kernel
@@ -155,53 +142,56 @@ def release_pair(pair, R, mode, q, dR, slope_floor, counts, events):
 
 
 @kernel
-def line_search(pair, R, p, mode, q, step, s, E, descent, noise, trial):
-    """Halve s until Armijo's rule holds; the trial parameters stay in `trial`. (s, E, ok)"""
-    for _ in range(MAX_HALVINGS):
-        for k in range(4):
-            trial[k] = q[k] + s * step[k]
+def line_search(pair, R, p, mode, q, step, s, E, descent, noise):
+    """Halve s until Armijo's rule holds: (s, ok, parameters, jet_a, jet_b)."""
+    for halving in range(MAX_HALVINGS + 1):
+        trial = (
+            q[0] + s * step[0],
+            q[1] + s * step[1],
+            q[2] + s * step[2],
+            q[3] + s * step[3],
+        )
         jet_a, jet_b = pair_jets(pair, R, p, mode, trial)
-        E1 = energy(jet_a, jet_b)
-        if E + ARMIJO * s * descent + noise >= E1:
-            return s, E1, True
-        s *= 0.5
-    return s, E, False
+        if energy(jet_a, jet_b) <= E + ARMIJO * s * descent + noise:
+            return s, True, trial, jet_a, jet_b
+        if halving < MAX_HALVINGS:
+            s *= 0.5
+    return s, False, trial, jet_a, jet_b
 
 
 @kernel
-def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, max_iterations, counts, events):
+def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
     """Descend to a stationary point of the automaton from (mode, q), changed in place.
 
     At least `least` corrections are made; after that a slope of E below tolerance |dR| (or
     roundoff) is stationary. (v, w) is B's twist in A's frame; w_ff gets the feedforward of the
-    last evaluation. Returns (STATIONARY | EXHAUSTED | CONTACT, fresh): fresh tells whether w_ff
-    belongs to the final mode.
+    last evaluation. Returns (STATIONARY | EXHAUSTED | CONTACT, fresh, jet_a, jet_b): fresh tells
+    whether w_ff belongs to the final mode, the jets are those of the final witness points.
     """
     size = pair[1][L.SIZE] + pair[3][L.SIZE]
-    fresh = False
-    trial = np.empty(4)
     corrections, stalls, polish = 0, 0, 0
     last_slope, last_release = 1e300, 1e300
     last_smooth = -1
-    for _ in range(max_iterations):
-        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+    fresh = False
+    ending = EXHAUSTED
+    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+    for _ in range(MAX_ITERATIONS):
         dR = sub(jet_a[0], jet_b[0])
         d = norm(dR)
         span = size + d
         if d <= TOUCHING * span:
-            return CONTACT, fresh
+            ending = CONTACT
+            break
         E = 0.5 * d * d
         noise = ENERGY_NOISE * EPS * span * d
         g = gradient(projection_errors(jet_a, jet_b))
         slope = gradient_norm(jet_a, jet_b, g)
         floor = max(2.0 * GRADIENT_NOISE * EPS * span, tolerance * d)
-        stationary = slope <= floor and corrections >= least
-        if slope == 0.0:
-            stationary = True
+        stationary = slope == 0.0 or (slope <= floor and corrections >= least)
         if not stationary:
             H = hessian(jet_a, jet_b)
             g_t = gradient(feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, v, w))
-            step, forward, _, regularised = law(jet_a, jet_b, g, H, g_t, span, d)
+            step, forward, _, regularised = law(jet_a, jet_b, g, H, g_t, span)
             for k in range(4):
                 w_ff[k] = forward[k]
             fresh = True
@@ -210,38 +200,43 @@ def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, max_iterations, co
             descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
             if -0.5 * descent <= noise:
                 polish += 1
-                stationary = polish > 2 and slope > POLISH_RATIO * last_slope
+                stationary = polish > MAX_POLISH and slope > POLISH_RATIO * last_slope
             last_slope = slope
         if not stationary:
             s, body, hit, index, t = walk_pair(pair, mode, q, step)
             reach = s
-            s, _, ok = line_search(pair, R, p, mode, q, step, s, E, descent, noise, trial)
+            s, ok, trial, new_a, new_b = line_search(
+                pair, R, p, mode, q, step, s, E, descent, noise
+            )
             if ok:
                 corrections += 1
                 counts[CORRECTIONS] += 1
-                for k in range(4):
-                    q[k] = trial[k]
+                q[0], q[1], q[2], q[3] = trial
+                jet_a, jet_b = new_a, new_b
                 if hit != NO_HIT and s == reach:
-                    fresh = False
                     last_smooth = take_hit(
                         pair, mode, q, body, hit, index, t, last_smooth, s, counts, events
                     )
-                    polish, last_slope = 0, 1e300
+                    polish, last_slope, fresh = 0, 1e300, False
+                    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
                 else:
                     last_smooth = -1
-                    if recentre(pair, mode, q, counts) > 0:
+                    if recentre(pair, mode, q, counts):
                         fresh = False
+                        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
                 continue
         # Stationary, or no step lowers E: test the switching functions.
+        ending = STATIONARY
         if last_release - noise < E:
             stalls += 1
             if stalls > MAX_STALLS:
-                return STATIONARY, fresh
+                break
         last_release = E
         # a slope below the residual's own is not known to be one
         slope_floor = max(SLOPE, max(SLOPE_NOISE * EPS * span, slope) / d)
         if not release_pair(pair, R, mode, q, dR, slope_floor, counts, events):
-            return STATIONARY, fresh
-        fresh = False
-        polish, last_slope = 0, 1e300
-    return EXHAUSTED, fresh
+            break
+        ending = EXHAUSTED
+        polish, last_slope, fresh = 0, 1e300, False
+        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+    return ending, fresh, jet_a, jet_b

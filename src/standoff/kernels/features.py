@@ -154,7 +154,7 @@ def best_chart(ints, reals, chart, x):
     best, best_u, best_v, best_reach = chart, 0.0, 0.0, 1e300
     for k in range(ints[f], ints[f] + ints[f + 1]):
         r = chart_record(ints, k)
-        u, v, depth = chart_parameters(reals, ints[r + L.CHART_KIND], ints[r + L.CHART_REALS], x)
+        u, v, depth = chart_parameters(reals, ints[r + L.CHART_REALS], x)
         if depth > 0.0 and max(abs(u), abs(v)) < best_reach:
             best, best_u, best_v, best_reach = k, u, v, max(abs(u), abs(v))
     return best, best_u, best_v
@@ -168,13 +168,12 @@ def coedge_conormal(ints, reals, coedge, tangent, t):
     """
     k = best_coedge(ints, reals, coedge, t)
     c = coedge_record(ints, k)
-    u, v, du, dv, _ = coedge_parameters(ints, reals, k, t)
+    u, v, _, _, _ = coedge_parameters(ints, reals, k, t)
     chart = ints[c + L.COEDGE_CHART]
     jet = chart_jet(ints, reals, chart, u, v)
     o = ints[chart_record(ints, chart) + L.CHART_REALS]
     normal = scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
     inward = cross(normal, tangent)
-    # the left of the pcurve in (u, v) is the left on the surface where f_u x f_v points outward;
-    # the pcurve may run against the edge's tangent only by its own parametrisation, never does
+    # left in (u, v) is left on the surface where f_u x f_v points outward
     side = ints[c + L.COEDGE_SIDE] * reals[o + L.OUTWARD]
     return scale(side, inward), normal

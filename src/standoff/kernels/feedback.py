@@ -156,7 +156,7 @@ def decomposed_solve(H, g, g_t, noise, scale):
 
 
 @kernel
-def law(jet_a, jet_b, g, H, g_t, scale, d):
+def law(jet_a, jet_b, g, H, g_t, scale):
     """(p, w_ff, slope, regularised): p = -H⁻¹ g, w_ff = -H⁻¹ g_t, |g| in the metric D.
 
     Eq. (12) is w = K p + w_ff. `regularised` is 1 where H had to be decomposed.

@@ -7,7 +7,8 @@ q + c_i h k_(i-1). Adding one is a row in each table, see CONTRIBUTING.
 import numpy as np
 
 from standoff.kernels.compiling import kernel
-from standoff.kernels.descent import EVALUATIONS, REGULARISED, pair_jets
+from standoff.kernels.descent import pair_jets
+from standoff.kernels.events import EVALUATIONS, REGULARISED
 from standoff.kernels.feedback import law
 from standoff.kernels.layout import SIZE
 from standoff.kernels.rigid import middle_of_frame
@@ -46,7 +47,7 @@ def law_at(pair, R, p, v, w, mode, q, forward, counts):
     H = hessian(jet_a, jet_b)
     b = feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, v, w)
     g_t = gradient((forward * b[0], forward * b[1], forward * b[2], forward * b[3]))
-    step, w_ff, slope, regularised = law(jet_a, jet_b, g, H, g_t, span, d)
+    step, w_ff, slope, regularised = law(jet_a, jet_b, g, H, g_t, span)
     counts[EVALUATIONS] += 1
     counts[REGULARISED] += regularised
     return step, w_ff, slope, d
@@ -58,29 +59,23 @@ def integrate(pair, before, after, h, gain, forward, integrator, mode, q, counts
 
     before and after are (R, p, v, w) of B in A's frame at both ends of the frame.
     """
-    stage = np.empty(4)
     k = (0.0, 0.0, 0.0, 0.0)
-    dq[:] = 0.0
+    for j in range(4):
+        dq[j] = 0.0
     for i in range(STAGES[integrator]):
         c = NODES[integrator, i]
-        for j in range(4):
-            stage[j] = q[j] + c * h * k[j]
+        stage = (
+            q[0] + c * h * k[0],
+            q[1] + c * h * k[1],
+            q[2] + c * h * k[2],
+            q[3] + c * h * k[3],
+        )
         if c == 0.0:
             R, p, v, w = before
         elif c == 1.0:
             R, p, v, w = after
         else:
-            R, p, v, w = middle_of_frame(
-                before[0],
-                before[1],
-                before[2],
-                before[3],
-                after[0],
-                after[1],
-                after[2],
-                after[3],
-                h,
-            )
+            R, p, v, w = middle_of_frame(before, after, h)
         step, w_ff, _, _ = law_at(pair, R, p, v, w, mode, stage, forward, counts)
         k = (
             gain * step[0] + w_ff[0],

@@ -6,7 +6,7 @@ is one function here, one number in ``layout`` and one line in the chain of ``su
 
 from math import cos, sin, sqrt
 
-from standoff.kernels.compiling import kernel
+from standoff.kernels.compiling import small
 from standoff.kernels.layout import (
     AFFINE,
     BEZIER,
@@ -20,12 +20,12 @@ from standoff.kernels.layout import (
 ZERO = (0.0, 0.0, 0.0)
 
 
-@kernel
+@small
 def plane_jet(u, v):
     return (u, v, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), ZERO, ZERO, ZERO
 
 
-@kernel
+@small
 def sphere_jet(u, v):
     """Unit sphere in the gnomonic chart (u, v, 1)/sqrt(1 + u² + v²): no pole, no trigonometry."""
     s = 1.0 / sqrt(1.0 + u * u + v * v)
@@ -47,13 +47,13 @@ def sphere_jet(u, v):
     )
 
 
-@kernel
+@small
 def cylinder_jet(u, v):
     c, s = cos(u), sin(u)
     return (c, s, v), (-s, c, 0.0), (0.0, 0.0, 1.0), (-c, -s, 0.0), ZERO, ZERO
 
 
-@kernel
+@small
 def cone_jet(u, v):
     """Apex at the origin, v = 0; v grows along the generators."""
     c, s = cos(u), sin(u)
@@ -67,7 +67,7 @@ def cone_jet(u, v):
     )
 
 
-@kernel
+@small
 def linear_map(reals, o, a):
     """The 3x3 at reals[o:o+9] applied to a."""
     return (
@@ -77,13 +77,13 @@ def linear_map(reals, o, a):
     )
 
 
-@kernel
+@small
 def affine_map(reals, o, a):
     x = linear_map(reals, o, a)
     return (x[0] + reals[o + 9], x[1] + reals[o + 10], x[2] + reals[o + 11])
 
 
-@kernel
+@small
 def canonical_jet(kind, u, v):
     if kind == PLANE:
         return plane_jet(u, v)
@@ -96,7 +96,7 @@ def canonical_jet(kind, u, v):
     return ZERO, ZERO, ZERO, ZERO, ZERO, ZERO
 
 
-@kernel
+@small
 def surface_jet(reals, kind, o, u, v):
     """(x, x_u, x_v, x_uu, x_uv, x_vv) of the chart whose reals begin at o."""
     x, xu, xv, xuu, xuv, xvv = canonical_jet(kind, u, v)
@@ -111,8 +111,8 @@ def surface_jet(reals, kind, o, u, v):
     )
 
 
-@kernel
-def chart_parameters(reals, kind, o, x):
+@small
+def chart_parameters(reals, o, x):
     """(u, v, depth) of a point of a gnomonic chart's surface; depth > 0 where the chart sees it."""
     m = o + AFFINE
     shift = (reals[m + 9], reals[m + 10], reals[m + 11])
@@ -122,7 +122,7 @@ def chart_parameters(reals, kind, o, x):
     return y[0] / y[2], y[1] / y[2], y[2]
 
 
-@kernel
+@small
 def bezier_jet(reals, o, t):
     """Rational Bezier curve of any degree, by Bernstein sums over homogeneous control points.
 
@@ -169,7 +169,7 @@ def bezier_jet(reals, o, t):
     return x, xt, xtt
 
 
-@kernel
+@small
 def bernstein(n, i, s, t):
     if n < 0 or i < 0 or i > n:
         return 0.0
@@ -179,7 +179,7 @@ def bernstein(n, i, s, t):
     return c * s ** (n - i) * t**i
 
 
-@kernel
+@small
 def curve_jet(reals, kind, o, t):
     """(x, x_t, x_tt) of the curve whose data begin at o."""
     if kind == BEZIER:
@@ -192,7 +192,7 @@ def curve_jet(reals, kind, o, t):
     return affine_map(reals, o, y), linear_map(reals, o, yt), linear_map(reals, o, ytt)
 
 
-@kernel
+@small
 def pcurve_point(reals, kind, o, t):
     """Homogeneous (u, v) and its derivative by t of the pcurve whose matrix begins at o."""
     if kind == CONIC:

@@ -22,9 +22,19 @@ SMALL_ANGLE = 1e-4
 
 
 @kernel
-def read_rotation(T):
-    """Row-major 9-tuple of a pose stored as 12 numbers (R row-major, p)."""
-    return (T[0], T[1], T[2], T[3], T[4], T[5], T[6], T[7], T[8])
+def read_rotation(T, o):
+    """Row-major 9-tuple at T[o]; a pose is stored as 12 numbers (R row-major, p)."""
+    return (
+        T[o],
+        T[o + 1],
+        T[o + 2],
+        T[o + 3],
+        T[o + 4],
+        T[o + 5],
+        T[o + 6],
+        T[o + 7],
+        T[o + 8],
+    )
 
 
 @kernel
@@ -35,15 +45,15 @@ def read_vector(T, o):
 @kernel
 def relative_pose(Ta, Tb):
     """(R, p): B's pose in A's frame."""
-    Ra = read_rotation(Ta)
+    Ra = read_rotation(Ta, 0)
     shift = sub(read_vector(Tb, 9), read_vector(Ta, 9))
-    return compose_back(Ra, read_rotation(Tb)), rotate_back(Ra, shift)
+    return compose_back(Ra, read_rotation(Tb, 0)), rotate_back(Ra, shift)
 
 
 @kernel
 def relative_twist(Ta, Tb, xi_a, xi_b):
     """(v, w) of B's origin in A's frame, relative to A; twists (v, w) in world, 6 numbers each."""
-    Ra = read_rotation(Ta)
+    Ra = read_rotation(Ta, 0)
     arm = sub(read_vector(Tb, 9), read_vector(Ta, 9))
     wa = read_vector(xi_a, 3)
     carried = add(read_vector(xi_a, 0), cross(wa, arm))
@@ -122,11 +132,13 @@ def right_jacobian_inverse(f, w):
 
 
 @kernel
-def middle_of_frame(R0, p0, v0, w0, R1, p1, v1, w1, h):
+def middle_of_frame(before, after, h):
     """(R, p, v, w) half way between two frames: cubic Hermite in p and in the rotation vector.
 
     The error of the pose is O(h⁴), enough for RK4.
     """
+    R0, p0, v0, w0 = before
+    R1, p1, v1, w1 = after
     p = axpy(0.125 * h, sub(v0, v1), scale(0.5, add(p0, p1)))
     v = axpy(1.5 / h, sub(p1, p0), scale(-0.25, add(v0, v1)))
     f1 = log_rotation(compose_back(R0, R1))

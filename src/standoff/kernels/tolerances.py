@@ -45,7 +45,9 @@ RECHART = 1.2
 # Surfaces closer than TOUCHING scales, with no positive lower bound, touch or overlap.
 TOUCHING = 1e-13
 
-# Slope beyond which a Newton step in the noise of E must still halve |g| to be worth another.
+# Newton steps whose gain in E is below its noise: at first MAX_POLISH are free, then each must
+# bring |g| below POLISH_RATIO of the last to be worth another.
+MAX_POLISH = 2
 POLISH_RATIO = 0.5
 
 # Releases in a row that may fail to lower E before a descent ends where it is.
@@ -61,3 +63,7 @@ COLLAPSED = 1e-13
 # Rows of a rotation matrix may miss being orthonormal by this (dimensionless): what a rotation
 # written with ten digits keeps.
 ROTATION = 1e-9
+
+# Largest gap (relative to the pair's size) with which a start counts as found: far below any
+# far-side minimum's, however loose the tracker's tolerance is.
+START_GAP = 1e-6

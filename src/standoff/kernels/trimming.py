@@ -102,7 +102,7 @@ def crossings(ints, reals, coedge, u, v, du, dv):
 
 @kernel
 def walk_face(ints, reals, chart, u, v, du, dv):
-    """(s, hit, index, t): how much of the step (du, dv) fits on the face, s <= 1, and what it hits."""
+    """(s, hit, index, t): how much of the step fits on the face, s <= 1, and what it hits."""
     r = chart_record(ints, chart)
     first = ints[r + L.CHART_COEDGE]
     best, hit, index, where = 1.0, NO_HIT, -1, 0.0
@@ -146,7 +146,7 @@ def walk(ints, reals, feature, chart, p, q, dp, dq):
 
 @kernel
 def on_face(ints, reals, chart, u, v):
-    """Is (u, v) on the face? The first boundary along a ray is left from inside, entered from outside."""
+    """Is (u, v) on the face? From inside a ray leaves at the first boundary it meets."""
     r = chart_record(ints, chart)
     first = ints[r + L.CHART_COEDGE]
     n = ints[r + L.CHART_N_COEDGES]

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.kernels import frame as K
 from standoff.kernels import integrators as I
-from standoff.kernels import tracker as K
 
 LAWS = {"predictor-corrector": K.LAW_PC, "paper": K.LAW_PAPER}
 PREDICTORS = {

@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.kernels import tracker as K
+from standoff.kernels import events as N
+from standoff.kernels import frame as K
+from standoff.kernels import layout as L
 from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
 
 
-class Feature(NamedTuple):
+@dataclass(frozen=True, order=True)
+class Feature:
     """A face, edge or vertex of a body, numbered within its kind."""
 
     kind: str
     index: int
+
+    def __iter__(self) -> Iterator[str | int]:
+        return iter((self.kind, self.index))
 
     def __str__(self) -> str:
         return f"{self.kind} {self.index}"
@@ -69,6 +77,12 @@ def feature_of(body: Body, number: int) -> Feature:
     return Feature("vertex", number - body.n_edges)
 
 
+def charts_of(body: Body, face: int) -> tuple[int, int]:
+    """(first packed chart, number of charts) of a face."""
+    row = int(body.ints[L.FACES]) + L.FACE_STRIDE * face
+    return int(body.ints[row]), int(body.ints[row + 1])
+
+
 class Proximity:
     """Witness points of two bodies and their certified distance; all vectors in world axes.
 
@@ -85,7 +99,8 @@ class Proximity:
     feature_a, feature_b : Feature
         Active features of the cores.
     parameters_a, parameters_b : tuple of float
-        Two on a face (u, v of its active chart), one on an edge, none on a vertex.
+        (u, v) on a face, (u, v, chart) on a face with an atlas of charts, (t,) on an edge, ()
+        on a vertex.
     rate : float
         Time derivative of the distance; nan where no twists were given.
     velocity_a, velocity_b : (3,) arrays
@@ -139,15 +154,22 @@ class Proximity:
 
     @property
     def parameters_a(self) -> tuple[float, ...]:
-        return self._parameters(self.feature_a, K.OUT_Q)
+        return self._parameters(self._a, 0)
 
     @property
     def parameters_b(self) -> tuple[float, ...]:
-        return self._parameters(self.feature_b, K.OUT_Q + 2)
+        return self._parameters(self._b, 2)
 
-    def _parameters(self, feature: Feature, at: int) -> tuple[float, ...]:
-        count = {"face": 2, "edge": 1, "vertex": 0}[feature.kind]
-        return tuple(float(x) for x in self._out[at : at + count])
+    def _parameters(self, body: Body, at: int) -> tuple[float, ...]:
+        number, chart = (int(n) for n in self._out[K.OUT_MODE + at : K.OUT_MODE + at + 2])
+        kind = feature_of(body, number).kind
+        count = {"face": 2, "edge": 1, "vertex": 0}[kind]
+        values = tuple(float(x) for x in self._out[K.OUT_Q + at : K.OUT_Q + at + count])
+        if kind == "face":
+            first, charts = charts_of(body, number)
+            if charts > 1:
+                return (*values, float(chart - first))
+        return values
 
     @property
     def rate(self) -> float:
@@ -177,7 +199,14 @@ class Proximity:
     @property
     def counts(self) -> Counts:
         o = self._out[K.OUT_COUNTS :]
-        return Counts(int(o[0]), int(o[1]), int(o[6]), int(o[3]), int(o[4]), int(o[5]))
+        return Counts(
+            int(o[N.EVALUATIONS]),
+            int(o[N.CORRECTIONS]),
+            int(o[N.EVENTS]),
+            int(o[N.CHART_CHANGES]),
+            int(o[N.RESTARTS]),
+            int(o[N.REGULARISED]),
+        )
 
     def __repr__(self) -> str:
         return (

@@ -9,19 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.kernels import descent as D
-from standoff.kernels import layout as L
-from standoff.kernels import tracker as K
-from standoff.kernels.trimming import on_face
-from standoff.motion import Pose, PoseLike, Twist, TwistLike
+from standoff.kernels import events as N
+from standoff.kernels import frame as K
+from standoff.kernels import tracker as kernels
+from standoff.motion import Pose, PoseLike, TwistLike
+from standoff.tracking.inputs import check_in_plane, check_pair, flat_pose, flat_twist, place
 from standoff.tracking.options import pack_options, positive_number
 from standoff.tracking.overlap import hulls_meet, sample_points
 from standoff.tracking.proximity import Event, Feature, Proximity, feature_of
 from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
-NO_TWIST = np.zeros(6)
-NO_TWIST.flags.writeable = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,29 +39,6 @@ class TrackerState:
     def time(self) -> float:
         """Time since ``start``, s."""
         return float(self.data[K.TIME])
-
-
-def flat_pose(pose: PoseLike) -> Array:
-    """12 numbers (R row-major, p) of a pose; checked by the kernel, or here by Pose."""
-    flat = np.empty(12)
-    if isinstance(pose, np.ndarray) and pose.shape == (4, 4):
-        flat[:9] = pose[:3, :3].ravel()
-        flat[9:] = pose[:3, 3]
-        return flat
-    pose = Pose.of(pose)
-    flat[:9] = pose.rotation.ravel()
-    flat[9:] = pose.translation
-    return flat
-
-
-def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
-    """6 numbers (v, omega) in world axes."""
-    if twist is None:
-        return NO_TWIST
-    twist = Twist.of(twist)
-    if twist.frame != "world":
-        twist = twist.in_world(Pose.of(pose))
-    return np.concatenate([twist.v, twist.omega])
 
 
 class Tracker:
@@ -142,15 +117,18 @@ class Tracker:
         twist_b: TwistLike | None = None,
         settle: bool | None = None,
     ) -> TrackerState:
-        """Begin at given features and parameters.
+        """Begin at given features and parameters, as ``Proximity`` gives them.
+
+        Parameters are (u, v) on a face, (u, v, chart) on a face with an atlas (without the
+        chart: the first that holds them), (t,) on an edge, () on a vertex.
 
         settle : True descends from there to the certified minimum (the default of the
             predictor-corrector), False begins there as it stands (the default of the paper's
             law, whose feedback then does the work).
         """
         state = np.zeros(K.N_STATE)
-        self._place(state, 0, self.a, feature_a, parameters_a)
-        self._place(state, 2, self.b, feature_b, parameters_b)
+        place(state, 0, self.a, feature_a, parameters_a)
+        place(state, 2, self.b, feature_b, parameters_b)
         settle = self.law != "paper" if settle is None else settle
         return self._start(pose_a, pose_b, twist_a, twist_b, state, 1 if settle else 2)
 
@@ -172,8 +150,8 @@ class Tracker:
         h = self.dt if dt is None else positive_number(dt, "dt")
         data = state.data.copy()
         out = np.empty(K.N_OUT)
-        events = np.empty((K.MAX_EVENTS, D.EVENT_COLUMNS))
-        bad = K.step(
+        events = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
+        bad = kernels.step(
             self._pair, flat_a, flat_b, xi_a, xi_b, has_twist, h, self._options, data, out, events
         )
         self._refuse(bad, pose_a, pose_b)
@@ -190,7 +168,7 @@ class Tracker:
         ``standoff.kernels.tracker``) and ``buffer.state`` in place. Returns the distance; where
         the answer is uncertified, ``buffer.proximity()`` says why.
         """
-        bad = K.step(
+        bad = kernels.step(
             self._pair,
             buffer.pose_a,
             buffer.pose_b,
@@ -221,10 +199,8 @@ class Tracker:
         flat_a, flat_b = flat_pose(pose_a), flat_pose(pose_b)
         xi_a, xi_b = flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
         has_twist = twist_a is not None or twist_b is not None
-        if not (np.isfinite(xi_a).all() and np.isfinite(xi_b).all()):
-            raise ValueError(f"A twist has a NaN or infinite number: {xi_a}, {xi_b}.")
         if self._planar:
-            _check_in_plane(flat_a, flat_b)
+            check_in_plane(flat_a, flat_b)
         return flat_a, flat_b, xi_a, xi_b, has_twist
 
     def _start(
@@ -238,18 +214,23 @@ class Tracker:
     ) -> TrackerState:
         flat_a, flat_b, xi_a, xi_b, has_twist = self._motion(pose_a, pose_b, twist_a, twist_b)
         out = np.empty(K.N_OUT)
-        bad = K.start(
+        bad = kernels.start(
             self._pair, flat_a, flat_b, xi_a, xi_b, has_twist, self._options, data, given, out
         )
         self._refuse(bad, pose_a, pose_b)
-        events = np.empty((0, D.EVENT_COLUMNS))
+        events = np.empty(0)
         return self._answer(data, out, events, flat_a, flat_b)[0]
 
-    def _refuse(self, bad: int, pose_a: PoseLike, pose_b: PoseLike) -> None:
-        if not bad:
+    def _refuse(self, why: int, pose_a: PoseLike, pose_b: PoseLike) -> None:
+        if why == K.FINE:
             return
-        Pose.of(pose_a if bad == 1 else pose_b)  # says what is wrong with it
-        raise ValueError(f"The rotation of pose_{'ab'[bad - 1]} is not orthonormal to 1e-9.")
+        if why == K.BAD_TWIST:
+            raise ValueError("A twist has a NaN or infinite number: give six finite ones.")
+        Pose.of(pose_a if why == K.BAD_POSE_A else pose_b)  # says what is wrong with it
+        raise ValueError(
+            f"pose_{'ab'[why - K.BAD_POSE_A]}: its rotation is not orthonormal to 1e-9, or its "
+            "position is not finite."
+        )
 
     def _answer(
         self, data: Array, out: Array, log: Array, flat_a: Array, flat_b: Array
@@ -258,7 +239,7 @@ class Tracker:
             self._prove_overlap(out, flat_a, flat_b)
         data.flags.writeable = False
         time = float(data[K.TIME])
-        count = min(int(out[K.OUT_COUNTS + D.EVENTS]), len(log))
+        count = int(out[K.OUT_COUNTS + N.EVENTS])
         events = tuple(
             Event(
                 time,
@@ -268,7 +249,7 @@ class Tracker:
                 float(row[3]),
                 float(row[4]),
             )
-            for row in log[:count]
+            for row in log[: N.EVENT_COLUMNS * count].reshape(count, N.EVENT_COLUMNS)
         )
         proximity = Proximity(self.a, self.b, out, events, time)
         return TrackerState(data, proximity), proximity
@@ -282,32 +263,6 @@ class Tracker:
             out[: K.OUT_MODE] = np.nan
             out[K.OUT_RATE : K.STATUS] = np.nan
             out[K.STATUS] = status
-
-    def _place(self, state: Array, at: int, body: Body, feature: Any, parameters: Any) -> None:
-        """Write a feature and its parameters into a state, checked."""
-        kind, index = feature
-        sizes = {"face": body.n_faces, "edge": body.n_edges, "vertex": body.n_vertices}
-        if kind not in sizes or not 0 <= index < sizes[kind]:
-            raise ValueError(
-                f"{body!r} has no {kind} {index}: faces, edges and vertices are numbered from 0."
-            )
-        values = np.atleast_1d(np.asarray(parameters, dtype=np.float64)).ravel()
-        wanted = {"face": 2, "edge": 1, "vertex": 0}[kind]
-        if len(values) != wanted or not np.isfinite(values).all():
-            raise ValueError(f"A {kind} takes {wanted} finite parameters, not {parameters!r}.")
-        offset = {"face": 0, "edge": body.n_faces, "vertex": body.n_faces + body.n_edges}[kind]
-        chart = -1
-        if kind == "face":
-            chart = _chart_of(body, index, float(values[0]), float(values[1]))
-        if kind == "edge":
-            curve = body.edge_parts[index].curve
-            if not curve.closed and not curve.first <= values[0] <= curve.last:
-                raise ValueError(
-                    f"Parameter {values[0]} lies outside edge {index}: [{curve.first}, {curve.last}]."
-                )
-        state[K.MODE + at] = offset + index
-        state[K.MODE + at + 1] = chart
-        state[K.Q + at : K.Q + at + wanted] = values
 
 
 class FrameBuffer:
@@ -324,48 +279,13 @@ class FrameBuffer:
         self.has_twist = True
         self.state = state.data.copy()
         self.out = np.empty(K.N_OUT)
-        self.events = np.empty((K.MAX_EVENTS, D.EVENT_COLUMNS))
+        self.events = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
 
     def proximity(self) -> Proximity:
         """The last answer as a value."""
         return self._tracker._answer(
             self.state.copy(), self.out.copy(), self.events, self.pose_a, self.pose_b
         )[1]
-
-
-def check_pair(a: Body, b: Body) -> None:
-    """Raise ValueError where two bodies cannot be a pair."""
-    for body in (a, b):
-        if not isinstance(body, Body):
-            raise TypeError(f"{body!r} is not a Body: make one with so.shapes or Body.from_brep.")
-    if not a.bounded and not b.bounded:
-        raise ValueError("Two half-spaces have no pair of witness points: one must be bounded.")
-    if a.dimension != b.dimension:
-        other = b if a.dimension == 2 else a
-        if not other.flat:
-            raise ValueError(
-                f"A planar body needs a planar partner (or a point or segment in z = 0), not "
-                f"{other!r}."
-            )
-
-
-def _check_in_plane(flat_a: Array, flat_b: Array) -> None:
-    """A planar pair must move within one plane z = 0 of world."""
-    for name, flat in (("pose_a", flat_a), ("pose_b", flat_b)):
-        tilt = float(np.abs(flat[[2, 5, 6, 7]]).max())
-        if not tilt <= 1e-12 or flat[11] != 0.0 or flat[8] < 0.0:
-            raise ValueError(
-                f"{name} takes a planar body out of z = 0 (tilt {tilt:.3g}, z = {flat[11]}): "
-                "planar pairs turn about z and move in x and y."
-            )
-
-
-def _chart_of(body: Body, face: int, u: float, v: float) -> int:
-    first, count = body.ints[body.ints[L.FACES] + L.FACE_STRIDE * face :][:2]
-    for chart in range(int(first), int(first + count)):
-        if on_face(body.ints, body.reals, chart, u, v):
-            return chart
-    raise ValueError(f"Parameters ({u}, {v}) lie outside face {face}.")
 
 
 def _matrix(flat: Array) -> Array:

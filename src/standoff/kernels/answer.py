@@ -1,0 +1,109 @@
+"""From witness points in A's frame to the answer in world axes, with its status and rates."""
+
+import numpy as np
+
+from standoff.kernels import layout as L
+from standoff.kernels.cold_start import CERTIFIED, TOUCHING_OR_OVERLAPPING
+from standoff.kernels.compiling import kernel
+from standoff.kernels.feedback import gradient_norm
+from standoff.kernels.frame import (
+    CONVERGED,
+    DISTANCE,
+    LAW_PAPER,
+    LOWER_BOUND,
+    NORMAL,
+    NOT_CERTIFIED,
+    OUT_MODE,
+    OUT_Q,
+    OUT_RATE,
+    OVERLAPPING,
+    POINT_A,
+    POINT_B,
+    RESIDUAL,
+    STATUS,
+    TRACKING,
+    VELOCITY_A,
+    VELOCITY_B,
+)
+from standoff.kernels.rigid import read_rotation, read_vector
+from standoff.kernels.system import gradient, projection_errors
+from standoff.kernels.vectors import add, axpy, cross, dot, rotate, scale, sub
+
+
+@kernel
+def judge(pair, law_kind, outcome, d, bound, tolerance):
+    """Status of an answer by its certificate; d and bound are those of the cores."""
+    radii = pair[1][L.RADIUS] + pair[3][L.RADIUS]
+    span = pair[1][L.SIZE] + pair[3][L.SIZE] + d
+    if outcome == TOUCHING_OR_OVERLAPPING or (outcome == CERTIFIED and d <= radii):
+        return OVERLAPPING
+    if bound > radii and d - bound <= tolerance * span:
+        return CONVERGED
+    if law_kind == LAW_PAPER:
+        return TRACKING
+    return NOT_CERTIFIED
+
+
+@kernel
+def write_points(pair, Ta, jets, d, bound, n, out):
+    """Distance, bound, witness points on the swept surfaces and normal."""
+    jet_a, jet_b = jets
+    Ra, origin = read_rotation(Ta, 0), read_vector(Ta, 9)
+    radius_a, radius_b = pair[1][L.RADIUS], pair[3][L.RADIUS]
+    x_a = add(rotate(Ra, axpy(radius_a, n, jet_a[0])), origin)
+    x_b = add(rotate(Ra, axpy(-radius_b, n, jet_b[0])), origin)
+    n_w = rotate(Ra, n)
+    out[DISTANCE] = d - radius_a - radius_b
+    out[LOWER_BOUND] = bound - radius_a - radius_b
+    for k in range(3):
+        out[POINT_A + k] = x_a[k]
+        out[POINT_B + k] = x_b[k]
+        out[NORMAL + k] = n_w[k]
+    out[RESIDUAL] = gradient_norm(jet_a, jet_b, gradient(projection_errors(jet_a, jet_b)))
+
+
+@kernel
+def write_rates(pair, Ta, xi_a, motion, jets, w_ff, d, n, out):
+    """Rate of the distance and velocities of the witness points, from the feedforward.
+
+    motion is (R, p, v, w) of B in A's frame, where A is at rest; V_A is added in world.
+    """
+    jet_a, jet_b = jets
+    _, p, v, w = motion
+    carried = add(v, cross(w, sub(jet_b[0], p)))
+    slide_a = axpy(w_ff[0], jet_a[1], scale(w_ff[1], jet_a[2]))
+    move_b = add(carried, axpy(w_ff[2], jet_b[1], scale(w_ff[3], jet_b[2])))
+    turn = sub(move_b, slide_a)
+    n_rate = scale(1.0 / d, axpy(-dot(turn, n), n, turn)) if d > 0.0 else (0.0, 0.0, 0.0)
+    Ra, origin = read_rotation(Ta, 0), read_vector(Ta, 9)
+    v_a, w_a = read_vector(xi_a, 0), read_vector(xi_a, 3)
+    u_a = rotate(Ra, axpy(pair[1][L.RADIUS], n_rate, slide_a))
+    u_b = rotate(Ra, axpy(-pair[3][L.RADIUS], n_rate, move_b))
+    u_a = add(u_a, add(v_a, cross(w_a, sub(read_vector(out, POINT_A), origin))))
+    u_b = add(u_b, add(v_a, cross(w_a, sub(read_vector(out, POINT_B), origin))))
+    out[OUT_RATE] = dot(n, carried)
+    for k in range(3):
+        out[VELOCITY_A + k] = u_a[k]
+        out[VELOCITY_B + k] = u_b[k]
+
+
+@kernel
+def write_answer(pair, Ta, xi_a, has_twist, motion, mode, q, w_ff, jets, query, status, out):
+    """The whole answer; query is (d, bound, normal) of the cores."""
+    d, bound, n = query
+    write_points(pair, Ta, jets, d, bound, n, out)
+    if has_twist:
+        write_rates(pair, Ta, xi_a, motion, jets, w_ff, d, n, out)
+    else:
+        for k in range(OUT_RATE, RESIDUAL):
+            out[k] = np.nan
+    for k in range(4):
+        out[OUT_MODE + k] = mode[k]
+        out[OUT_Q + k] = q[k]
+    out[STATUS] = status
+    if status == OVERLAPPING:
+        # until penetration is tracked an overlapping pair has no number
+        for k in range(OUT_MODE):
+            out[k] = np.nan
+        for k in range(OUT_RATE, RESIDUAL + 1):
+            out[k] = np.nan

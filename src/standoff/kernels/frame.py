@@ -1,0 +1,81 @@
+"""One frame's arrays: the tracker's state, its options and its answer, and checks of its poses.
+
+Everything in the state is in A's frame; the answer is in world axes. Poses come as 12 numbers
+(R row-major, p), twists as 6 (v, omega), both in world.
+"""
+
+from math import inf
+
+from standoff.kernels.compiling import kernel
+from standoff.kernels.events import N_COUNTS
+from standoff.kernels.rigid import read_vector
+from standoff.kernels.tolerances import ROTATION
+from standoff.kernels.vectors import cross, dot
+
+# State.
+MODE = 0  # feature_a, chart_a, feature_b, chart_b
+Q = 4  # u, v, r, s
+RATE = 8  # feedforward w_ff of this frame, or the secant's
+LAST_RATE = 12  # that of the frame before
+LAST_STEP = 16  # time from the frame before to this one
+HISTORY = 17  # how many of RATE, LAST_RATE are valid
+POSE = 18  # R (9, row-major), p (3)
+TWIST = 30  # v, w
+HAS_TWIST = 36  # 1 where RATE is a feedforward, 0 where it is a secant
+TIME = 37
+LOST = 38  # 1 where the last frame had no certified witness points: start globally
+N_STATE = 39
+
+# Options.
+LAW_PC, LAW_PAPER = 0, 1
+PREDICT_NONE, PREDICT_SECANT, PREDICT_FEEDFORWARD, PREDICT_FEEDFORWARD_2 = range(4)
+O_LAW, O_PREDICTOR, O_INTEGRATOR, O_GAIN, O_TOLERANCE = range(5)
+N_OPTIONS = 5
+
+# Output.
+DISTANCE, LOWER_BOUND = 0, 1
+POINT_A, POINT_B, NORMAL = 2, 5, 8
+OUT_MODE, OUT_Q = 11, 15
+OUT_RATE, VELOCITY_A, VELOCITY_B, RESIDUAL, STATUS = 19, 20, 23, 26, 27
+OUT_COUNTS = 28
+N_OUT = OUT_COUNTS + N_COUNTS
+
+# Status numbers, those of standoff.tracking.Status.
+CONVERGED, TRACKING, OVERLAPPING, NOT_CERTIFIED = range(4)
+
+# How a start begins.
+START_ANYWHERE, START_DESCEND, START_HERE = range(3)
+
+# What a step refuses, with nothing changed.
+FINE, BAD_POSE_A, BAD_POSE_B, BAD_TWIST = range(4)
+
+
+@kernel
+def is_rotation(T):
+    """Finite, orthonormal to ROTATION and not mirrored."""
+    for i in range(3):
+        for j in range(i, 3):
+            total = 0.0
+            for k in range(3):
+                total += T[3 * i + k] * T[3 * j + k]
+            if not abs(total - (1.0 if i == j else 0.0)) <= ROTATION:
+                return False
+    third = cross(read_vector(T, 0), read_vector(T, 3))
+    return (
+        dot(third, read_vector(T, 6)) > 0.0
+        and T[9] + T[10] + T[11] < inf
+        and (T[9] + T[10] + T[11] > -inf)
+    )
+
+
+@kernel
+def refusal(Ta, Tb, xi_a, xi_b):
+    """FINE, or which of the poses and twists is not one."""
+    if not is_rotation(Ta):
+        return BAD_POSE_A
+    if not is_rotation(Tb):
+        return BAD_POSE_B
+    total = 0.0
+    for k in range(6):
+        total += abs(xi_a[k]) + abs(xi_b[k])
+    return FINE if total < inf else BAD_TWIST

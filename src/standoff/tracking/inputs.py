@@ -1,0 +1,124 @@
+"""What a user gives a tracker, checked and made flat: poses, twists, pairs, places to start."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.kernels import frame as K
+from standoff.kernels.trimming import on_face
+from standoff.motion import Pose, PoseLike, Twist, TwistLike
+from standoff.tracking.proximity import charts_of
+
+Array = NDArray[np.float64]
+# A planar body's pose may be tilted by this (entries of R): roundoff of composing rotations.
+PLANE_TILT = 1e-12
+LAST_ROW = np.array([0.0, 0.0, 0.0, 1.0])
+NO_TWIST = np.zeros(6)
+NO_TWIST.flags.writeable = False
+
+
+def flat_pose(pose: PoseLike) -> Array:
+    """12 numbers (R row-major, p) of a pose; checked by the kernel, or here by Pose."""
+    flat = np.empty(12)
+    if isinstance(pose, np.ndarray) and pose.shape == (4, 4):
+        flat[:9].reshape(3, 3)[:] = pose[:3, :3]
+        flat[9:] = pose[:3, 3]
+        if not (pose[3] == LAST_ROW).all():
+            Pose.of(pose)  # says what is wrong with it
+        return flat
+    pose = Pose.of(pose)
+    flat[:9] = pose.rotation.ravel()
+    flat[9:] = pose.translation
+    return flat
+
+
+def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
+    """6 numbers (v, omega) in world axes."""
+    if twist is None:
+        return NO_TWIST
+    if isinstance(twist, tuple) and len(twist) == 2:
+        v, omega = twist
+        arrays = isinstance(v, np.ndarray) and isinstance(omega, np.ndarray)
+        if arrays and v.shape == (3,) and omega.shape == (3,):
+            flat = np.empty(6)
+            flat[:3], flat[3:] = v, omega
+            return flat
+    twist = Twist.of(twist)
+    if twist.frame != "world":
+        twist = twist.in_world(Pose.of(pose))
+    return np.concatenate([twist.v, twist.omega])
+
+
+def check_pair(a: Body, b: Body) -> None:
+    """Raise ValueError where two bodies cannot be a pair."""
+    for body in (a, b):
+        if not isinstance(body, Body):
+            raise TypeError(f"{body!r} is not a Body: make one with so.shapes or Body.from_brep.")
+    if not a.bounded and not b.bounded:
+        raise ValueError("Two half-spaces have no pair of witness points: one must be bounded.")
+    if a.dimension != b.dimension:
+        other = b if a.dimension == 2 else a
+        if not other.flat:
+            raise ValueError(
+                f"A planar body needs a planar partner (or a point or segment in z = 0), not "
+                f"{other!r}."
+            )
+
+
+def check_in_plane(flat_a: Array, flat_b: Array) -> None:
+    """A planar pair must move within one plane z = 0 of world."""
+    for name, flat in (("pose_a", flat_a), ("pose_b", flat_b)):
+        tilt = float(np.abs(flat[[2, 5, 6, 7]]).max())
+        if not tilt <= PLANE_TILT or flat[11] != 0.0 or flat[8] < 0.0:
+            raise ValueError(
+                f"{name} takes a planar body out of z = 0 (tilt {tilt:.3g}, z = {flat[11]}): "
+                "planar pairs turn about z and move in x and y."
+            )
+
+
+def _chart_of(body: Body, face: int, values: Array) -> int:
+    """The packed chart of parameters (u, v) or (u, v, chart) on a face."""
+    first, count = charts_of(body, face)
+    u, v = float(values[0]), float(values[1])
+    numbers = range(count)
+    if len(values) == 3:
+        if values[2] not in numbers:
+            raise ValueError(f"Face {face} has charts 0 to {count - 1}, not {values[2]}.")
+        numbers = range(int(values[2]), int(values[2]) + 1)
+    for number in numbers:
+        if on_face(body.ints, body.reals, first + number, u, v):
+            return first + number
+    raise ValueError(f"Parameters {tuple(values)} lie outside face {face}.")
+
+
+def place(state: Array, at: int, body: Body, feature: Any, parameters: Any) -> None:
+    """Write a feature and its parameters into a state, checked."""
+    kind, index = feature
+    sizes = {"face": body.n_faces, "edge": body.n_edges, "vertex": body.n_vertices}
+    if kind not in sizes or not 0 <= index < sizes[kind]:
+        raise ValueError(
+            f"{body!r} has no {kind} {index}: faces, edges and vertices are numbered from 0."
+        )
+    values = np.atleast_1d(np.asarray(parameters, dtype=np.float64)).ravel()
+    wanted = {"face": 2, "edge": 1, "vertex": 0}[kind]
+    atlas = kind == "face" and charts_of(body, index)[1] > 1
+    if len(values) not in (wanted, wanted + atlas) or not np.isfinite(values).all():
+        also = " (and the number of its chart)" if atlas else ""
+        raise ValueError(f"A {kind} takes {wanted} finite parameters{also}, not {parameters!r}.")
+    offset = {"face": 0, "edge": body.n_faces, "vertex": body.n_faces + body.n_edges}[kind]
+    chart = -1
+    if kind == "face":
+        chart = _chart_of(body, index, values)
+    if kind == "edge":
+        curve = body.edge_parts[index].curve
+        if not curve.closed and not curve.first <= values[0] <= curve.last:
+            raise ValueError(
+                f"Parameter {values[0]} lies outside edge {index}: [{curve.first}, {curve.last}]."
+            )
+    state[K.MODE + at] = offset + index
+    state[K.MODE + at + 1] = chart
+    state[K.Q + at : K.Q + at + wanted] = values[:wanted]
