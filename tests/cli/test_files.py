@@ -36,7 +36,7 @@ def test_parquet_holds_the_run(standoff: Standoff, passing: Path) -> None:
         np.testing.assert_array_equal(columns, getattr(recording, name))
     assert table["feature_b"].to_pylist() == [str(feature) for feature in recording.features_b]
     assert table["status"].to_pylist() == ["CONVERGED"] * 101
-    assert [len(row) for row in table["parameters_a"].to_pylist()] == [2] * 101
+    assert [len(row) for row in table["parameters_a"].to_pylist()] == [3] * 101
     assert table["evaluations"].to_pylist() == recording.counts[:, 0].tolist()
 
 

@@ -3,8 +3,9 @@
 import numpy as np
 
 from standoff.kernels import layout as L
-from standoff.kernels.cold_start import CERTIFIED, TOUCHING_OR_OVERLAPPING
+from standoff.kernels.cold_start import TOUCHING_OR_OVERLAPPING
 from standoff.kernels.compiling import kernel
+from standoff.kernels.features import pair_span
 from standoff.kernels.feedback import gradient_norm
 from standoff.kernels.frame import (
     CONVERGED,
@@ -31,13 +32,13 @@ from standoff.kernels.vectors import add, axpy, cross, dot, rotate, scale, sub
 
 
 @kernel
-def judge(pair, law_kind, outcome, d, bound, tolerance):
+def judge(pair, law_kind, outcome, p, d, bound, tolerance):
     """Status of an answer by its certificate; d and bound are those of the cores."""
     radii = pair[1][L.RADIUS] + pair[3][L.RADIUS]
-    span = pair[1][L.SIZE] + pair[3][L.SIZE] + d
-    if outcome == TOUCHING_OR_OVERLAPPING or (outcome == CERTIFIED and d <= radii):
+    # d is achieved by two points of the cores, so radii that reach that far overlap
+    if outcome == TOUCHING_OR_OVERLAPPING or 0.0 < d <= radii:
         return OVERLAPPING
-    if bound > radii and d - bound <= tolerance * span:
+    if bound > radii and d - bound <= tolerance * pair_span(pair, p, d):
         return CONVERGED
     if law_kind == LAW_PAPER:
         return TRACKING

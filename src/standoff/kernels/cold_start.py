@@ -13,6 +13,7 @@ from standoff.kernels.certificate import certify
 from standoff.kernels.compiling import kernel
 from standoff.kernels.descent import set_mode, settle
 from standoff.kernels.events import RESTARTS
+from standoff.kernels.features import pair_span
 from standoff.kernels.tolerances import TOUCHING
 from standoff.kernels.vectors import add, dot, norm, rotate, rotate_back, scale, sub
 
@@ -97,7 +98,7 @@ def gilbert(pair, R, p):
 def weigh(pair, R, p, mode, q, jet_a, jet_b, tolerance):
     """(outcome, d, bound, normal) of witness points; d and bound are those of the cores."""
     d, bound, normal = certify(pair, R, p, mode, q, jet_a[0], jet_b[0])
-    span = pair[1][L.SIZE] + pair[3][L.SIZE] + d
+    span = pair_span(pair, p, d)
     if bound > 0.0 and d - bound <= tolerance * span:
         return CERTIFIED, d, bound, normal
     if bound <= 0.0 and d <= TOUCHING * span:

@@ -15,7 +15,7 @@ from standoff.kernels.events import (
     REGULARISED,
     log_event,
 )
-from standoff.kernels.features import dimension, feature_jet, moved_jet
+from standoff.kernels.features import dimension, feature_jet, moved_jet, pair_span
 from standoff.kernels.feedback import gradient_norm, law
 from standoff.kernels.switching import across as across_edge
 from standoff.kernels.switching import (
@@ -168,7 +168,6 @@ def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
     last evaluation. Returns (STATIONARY | EXHAUSTED | CONTACT, fresh, jet_a, jet_b): fresh tells
     whether w_ff belongs to the final mode, the jets are those of the final witness points.
     """
-    size = pair[1][L.SIZE] + pair[3][L.SIZE]
     corrections, stalls, polish = 0, 0, 0
     last_slope, last_release = 1e300, 1e300
     last_smooth = -1
@@ -178,7 +177,7 @@ def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
     for _ in range(MAX_ITERATIONS):
         dR = sub(jet_a[0], jet_b[0])
         d = norm(dR)
-        span = size + d
+        span = pair_span(pair, p, d)
         if d <= TOUCHING * span:
             ending = CONTACT
             break

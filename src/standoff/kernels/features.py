@@ -8,9 +8,22 @@ from standoff.kernels import layout as L
 from standoff.kernels.compiling import kernel
 from standoff.kernels.jets import chart_parameters, curve_jet, pcurve_point, surface_jet
 from standoff.kernels.tolerances import COLLAPSED
-from standoff.kernels.vectors import add, cross, dot, rotate, scale, unit
+from standoff.kernels.vectors import add, cross, dot, norm, rotate, scale, unit
 
 ZERO = (0.0, 0.0, 0.0)
+
+
+@kernel
+def pair_span(pair, p, d):
+    """The length that roundoff and tolerances are measured by: both cores' sizes and the distance.
+
+    p is B's origin in A's frame. A half-space has no size: how far off its origin the other body
+    stands counts instead.
+    """
+    span = pair[1][L.SIZE] + pair[3][L.SIZE] + d
+    if pair[0][L.UNBOUNDED] or pair[2][L.UNBOUNDED]:
+        span += norm(p)
+    return span
 
 
 @kernel

@@ -9,8 +9,8 @@ import numpy as np
 from standoff.kernels.compiling import kernel
 from standoff.kernels.descent import pair_jets
 from standoff.kernels.events import EVALUATIONS, REGULARISED
+from standoff.kernels.features import pair_span
 from standoff.kernels.feedback import law
-from standoff.kernels.layout import SIZE
 from standoff.kernels.rigid import middle_of_frame
 from standoff.kernels.system import feedforward, gradient, hessian, projection_errors
 from standoff.kernels.vectors import norm, sub
@@ -42,7 +42,7 @@ def law_at(pair, R, p, v, w, mode, q, forward, counts):
     """
     jet_a, jet_b = pair_jets(pair, R, p, mode, q)
     d = norm(sub(jet_a[0], jet_b[0]))
-    span = pair[1][SIZE] + pair[3][SIZE] + d
+    span = pair_span(pair, p, d)
     g = gradient(projection_errors(jet_a, jet_b))
     H = hessian(jet_a, jet_b)
     b = feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, v, w)

@@ -6,7 +6,6 @@ the poses it is given.
 
 import numpy as np
 
-from standoff.kernels import layout as L
 from standoff.kernels.answer import judge, write_answer
 from standoff.kernels.cold_start import UNCERTIFIED, global_query, weigh
 from standoff.kernels.compiling import kernel, pointer
@@ -20,6 +19,7 @@ from standoff.kernels.events import (
     RESTARTS,
     tidy_events,
 )
+from standoff.kernels.features import pair_span
 from standoff.kernels.frame import (
     FINE,
     LAW_PAPER,
@@ -87,7 +87,7 @@ def paper_frame(pair, motion, state, options, h, mode, q, counts, events, dq):
     jet_a, jet_b = pair_jets(pair, R, p, mode, q)
     dR = sub(jet_a[0], jet_b[0])
     d = norm(dR)
-    span = pair[1][L.SIZE] + pair[3][L.SIZE] + d
+    span = pair_span(pair, p, d)
     if d > TOUCHING * span:
         floor = max(SLOPE, SLOPE_NOISE * EPS * span / d)
         release_pair(pair, R, mode, q, dR, floor, counts, events)
@@ -154,7 +154,7 @@ def start_frame(
         counts[RESTARTS] += 0 if given == START_ANYWHERE else 1
         outcome, d, bound, normal = global_query(pair, R, p, mode, q, w_ff, goal, counts, events)
     kind = LAW_PAPER if given == START_HERE else LAW_PC
-    status = judge(pair, kind, outcome, d, bound, goal)
+    status = judge(pair, kind, outcome, p, d, bound, goal)
     if has_twist and d > 0.0:
         feedforward_now(pair, motion, mode, q, w_ff, counts)
     for k in range(N_STATE):
@@ -226,7 +226,7 @@ def step_frame(
     fresh, outcome, d, bound, normal = track(
         pair, motion, state, options, h, mode, q, w_ff, dq, counts, events
     )
-    status = judge(pair, options[O_LAW], outcome, d, bound, options[O_TOLERANCE])
+    status = judge(pair, options[O_LAW], outcome, p, d, bound, options[O_TOLERANCE])
     if not fresh and has_twist and d > 0.0:
         feedforward_now(pair, motion, mode, q, w_ff, counts)
     old_a, old_b = int(state[MODE]), int(state[MODE + 2])

@@ -42,7 +42,7 @@ class Recording:
         As in `Proximity`; NaN in rows not yet reached.
     point_a, point_b, normal, velocity_a, velocity_b : ndarray, shape (n, 3)
         World axes.
-    parameters_a, parameters_b : ndarray, shape (n, 2)
+    parameters_a, parameters_b : ndarray, shape (n, 3)
         NaN where the feature has fewer parameters.
     counts : ndarray of int, shape (n, len(Counts._fields))
         Work of each frame.
@@ -89,8 +89,8 @@ class Recording:
             normal=unwritten(3),
             velocity_a=unwritten(3),
             velocity_b=unwritten(3),
-            parameters_a=unwritten(2),
-            parameters_b=unwritten(2),
+            parameters_a=unwritten(3),
+            parameters_b=unwritten(3),
             counts=np.zeros((len(times), len(Counts._fields)), dtype=np.int64),
             certified=np.zeros(len(times), dtype=np.bool_),
         )

@@ -42,8 +42,7 @@ def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
         return NO_TWIST
     if isinstance(twist, tuple) and len(twist) == 2:
         v, omega = twist
-        arrays = isinstance(v, np.ndarray) and isinstance(omega, np.ndarray)
-        if arrays and v.shape == (3,) and omega.shape == (3,):
+        if getattr(v, "shape", None) == getattr(omega, "shape", None) == (3,):
             flat = np.empty(6)
             flat[:3], flat[3:] = v, omega
             return flat

@@ -235,7 +235,7 @@ class Tracker:
     def _answer(
         self, data: Array, out: Array, log: Array, flat_a: Array, flat_b: Array
     ) -> tuple[TrackerState, Proximity]:
-        if out[K.STATUS] == Status.NOT_CERTIFIED.value:
+        if out[K.STATUS] == Status.NOT_CERTIFIED.value and out[K.LOWER_BOUND] <= 0.0:
             self._prove_overlap(out, flat_a, flat_b)
         data.flags.writeable = False
         time = float(data[K.TIME])
@@ -255,14 +255,21 @@ class Tracker:
         return TrackerState(data, proximity), proximity
 
     def _prove_overlap(self, out: Array, flat_a: Array, flat_b: Array) -> None:
-        """An uncertified pair overlaps where the hulls of its samples share a point."""
+        """An uncertified pair overlaps where the hulls of its cores' points share one.
+
+        The witness points join the samples: of a small body inside a large one, close to its
+        surface, the samples alone may miss it.
+        """
+        origin = flat_a[9:]
+        normal = out[K.NORMAL : K.NORMAL + 3]
+        core_a = out[K.POINT_A : K.POINT_A + 3] - self.a.radius * normal - origin
+        core_b = out[K.POINT_B : K.POINT_B + 3] + self.b.radius * normal - origin
         a = sample_points(self.a) @ flat_a[:9].reshape(3, 3).T
-        b = sample_points(self.b) @ flat_b[:9].reshape(3, 3).T + (flat_b[9:] - flat_a[9:])
-        if hulls_meet(a, b):
-            status = float(Status.OVERLAPPING.value)
+        b = sample_points(self.b) @ flat_b[:9].reshape(3, 3).T + (flat_b[9:] - origin)
+        if hulls_meet(np.vstack([a, core_a]), np.vstack([b, core_b])):
             out[: K.OUT_MODE] = np.nan
             out[K.OUT_RATE : K.STATUS] = np.nan
-            out[K.STATUS] = status
+            out[K.STATUS] = float(Status.OVERLAPPING.value)
 
 
 class FrameBuffer:
