@@ -205,7 +205,6 @@ def test_m_and_b_are_the_derivatives_of_psi(a, b, planar):
         def psi_at(time, twists=twists):
             return psi(q, placed.moved(twists, time))
 
-        [x for (_, p), t in zip(placed.poses, twists, strict=True) for x in (p, t[:3], t[3:])]
         found = feedforward(*placed.jets(q, placed.poses), *placed.motion(twists))
         assert_close(found, difference(psi_at))
 
@@ -237,6 +236,5 @@ def test_j_and_r_t_are_the_derivatives_of_r(a, b, planar):
         def residual_at(time, twists=twists):
             return residual(y, placed.moved(twists, time))
 
-        [x for (_, p), t in zip(placed.poses, twists, strict=True) for x in (p, t[:3], t[3:])]
         rate = contact_feedforward(*jets, normal, *placed.motion(twists))
         assert_close(rate, difference(residual_at))
