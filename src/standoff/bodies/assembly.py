@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Sequence
 
 import numpy as np
@@ -178,11 +179,16 @@ def _normal_at(charts: list[Chart], face: int, edge: int, t: float) -> Array:
 
 
 def chart_at(charts: list[Chart], face: int, edge: int, t: float) -> tuple[Chart, float, float]:
-    """The chart of a face that sees an edge's point most centrally, and the parameters there."""
+    """The chart of a face that sees an edge's point most centrally, and the parameters there.
+
+    `charts` are in the order of their faces.
+    """
     best: tuple[float, Chart, float, float] | None = None
-    for chart in charts:
+    first = bisect_left(charts, face, key=lambda chart: chart.face)
+    for k in range(first, len(charts)):
+        chart = charts[k]
         if chart.face != face:
-            continue
+            break
         for c in chart.coedges:
             if c.edge == edge:
                 u, v, depth = c.pcurve.point(t)
@@ -254,7 +260,7 @@ def _vertex_geometry(
     sectors: list[list[Sector]] = [[] for _ in vertices]
     cones: list[list[Array]] = [[] for _ in vertices]
     for i, face in enumerate(faces):
-        number = next(k for k, chart in enumerate(charts) if chart.face == i)
+        number = bisect_left(charts, i, key=lambda chart: chart.face)
         for a in face.apexes:
             sectors[a.vertex].append(Sector(number, L.SECTOR_APEX, 0.0, a.level, a.lo, a.hi))
         touching: dict[int, list[tuple[int, int]]] = {}

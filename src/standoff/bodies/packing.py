@@ -145,10 +145,10 @@ def pack(
 
 
 def _pack_faces(w: Writer, body: Assembled) -> None:
-    face_rows = []
-    for i in range(len(body.faces)):
-        own = [k for k, chart in enumerate(body.charts) if chart.face == i]
-        face_rows.append((own[0], len(own)))
+    owned: list[list[int]] = [[] for _ in body.faces]
+    for k, chart in enumerate(body.charts):
+        owned[chart.face].append(k)
+    face_rows = [(own[0], len(own)) for own in owned]
     w.table(L.FACES, face_rows)
     chart_rows: list[tuple[int, ...]] = []
     coedge_rows: list[tuple[int, ...]] = []
@@ -167,20 +167,21 @@ def _pack_faces(w: Writer, body: Assembled) -> None:
     w.table(L.COEDGES, coedge_rows)
 
 
-def _coedges_of_edge(body: Assembled, edge: int) -> list[int]:
-    """The first coedge of each face at an edge (each chart of an atlas has one more)."""
-    found: dict[int, int] = {}
+def _coedges_of_edges(body: Assembled) -> list[list[int]]:
+    """For every edge the first coedge of each face (each chart of an atlas has one more)."""
+    found: list[dict[int, int]] = [{} for _ in body.edges]
     number = 0
     for chart in body.charts:
         for c in chart.coedges:
-            if c.edge == edge:
-                found.setdefault(chart.face, number)
+            if c.edge >= 0:
+                found[c.edge].setdefault(chart.face, number)
             number += 1
-    return list(found.values())
+    return [list(faces.values()) for faces in found]
 
 
 def _pack_edges(w: Writer, body: Assembled) -> None:
     rows = []
+    coedges_of = _coedges_of_edges(body)
     for j, edge in enumerate(body.edges):
         curve = edge.curve
         offset = w.real_block([curve.first, curve.last, *curve.data])
@@ -189,7 +190,7 @@ def _pack_edges(w: Writer, body: Assembled) -> None:
             | (L.SMOOTH if body.smooth[j] else 0)
             | (L.OUTWARD_RIGHT if body.outward_right[j] else 0)
         )
-        coedges = [*_coedges_of_edge(body, j), -1, -1][:2]
+        coedges = [*coedges_of[j], -1, -1][:2]
         first = -1 if edge.first is None else edge.first
         last = -1 if edge.last is None else edge.last
         rows.append((curve.kind, offset, flags, first, last, *coedges))
@@ -201,13 +202,13 @@ def _pack_vertices(w: Writer, body: Assembled) -> None:
     w.ints[L.VERTICES] = len(w.ints)
     start = len(w.ints)
     w.ints.extend([0] * (L.VERTEX_STRIDE * n))
+    fans: list[list[tuple[int, int]]] = [[] for _ in range(n)]
+    for j, edge in enumerate(body.edges):
+        for end, vertex in enumerate((edge.first, edge.last)):
+            if vertex is not None:
+                fans[vertex].append((j, end))
     for k, point in enumerate(body.vertices):
-        fan = [
-            (j, end)
-            for j, edge in enumerate(body.edges)
-            for end, vertex in enumerate((edge.first, edge.last))
-            if vertex == k
-        ]
+        fan = fans[k]
         row = start + L.VERTEX_STRIDE * k
         w.ints[row + L.VERTEX_REALS] = w.real_block(point)
         w.ints[row + L.VERTEX_FAN] = len(w.ints)

@@ -64,7 +64,9 @@ def face_samples(body: Assembled, ints: Ints, reals: Array, budget: int) -> list
         return []
     n = int(np.clip(np.sqrt(budget / len(body.charts)), 1, 6))
     samples = []
-    for k, chart in enumerate(body.charts):
+    step = max(1, -(-len(body.charts) // budget))
+    for k in range(0, len(body.charts), step):
+        chart = body.charts[k]
         u0, u1, v0, v1 = _parameter_box(chart)
         nu = 2 * n if isinstance(chart.surface, Cylinder | Cone) else n
         kept = 0
@@ -87,7 +89,9 @@ def edge_samples(body: Assembled, ints: Ints, reals: Array, budget: int) -> list
     if not body.edges:
         return []
     samples = []
-    for j, edge in enumerate(body.edges):
+    step = max(1, -(-len(body.edges) // budget))
+    for j in range(0, len(body.edges), step):
+        edge = body.edges[j]
         n = int(np.clip(budget / len(body.edges), 1, 12))
         feature = len(body.faces) + j
         for s in (np.arange(n) + 0.5) / n:

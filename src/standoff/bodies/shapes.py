@@ -158,18 +158,25 @@ def _polyhedron(points: Array, radius: float = 0.0, name: str = "polytope") -> B
 
 def _facets(points: Array, hull: Any) -> list[tuple[list[int], Array]]:
     """Facets merged by plane: (vertex loop counterclockwise from outside, outward normal)."""
-    size = float(np.linalg.norm(np.ptp(points, axis=0)))
-    groups: list[tuple[Array, float, set[int]]] = []
-    for simplex, equation in zip(hull.simplices, hull.equations, strict=True):
-        normal, offset = equation[:3], equation[3]
-        for n, o, members in groups:
-            if np.linalg.norm(n - normal) < COPLANAR and abs(o - offset) < COPLANAR * size:
-                members.update(int(k) for k in simplex)
-                break
-        else:
-            groups.append((normal, offset, {int(k) for k in simplex}))
+    group = -np.ones(len(hull.simplices), dtype=int)
+    groups: list[tuple[Array, set[int]]] = []
+    for seed in range(len(group)):
+        if group[seed] >= 0:
+            continue
+        normal = hull.equations[seed, :3]
+        members: set[int] = set()
+        front = [seed]
+        group[seed] = len(groups)
+        while front:  # spread over neighbours in the seed's plane
+            k = front.pop()
+            members.update(int(v) for v in hull.simplices[k])
+            for m in hull.neighbors[k]:
+                if group[m] < 0 and np.abs(hull.equations[m, :3] - normal).max() < COPLANAR:
+                    group[m] = len(groups)
+                    front.append(int(m))
+        groups.append((normal, members))
     facets = []
-    for normal, _, members in groups:
+    for normal, members in groups:
         corner = sorted(members)
         centre = points[corner].mean(axis=0)
         first = points[corner[0]] - centre

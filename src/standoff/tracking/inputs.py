@@ -16,21 +16,21 @@ from standoff.tracking.proximity import charts_of
 Array = NDArray[np.float64]
 # A planar body's pose may be tilted by this (entries of R): roundoff of composing rotations.
 PLANE_TILT = 1e-12
-LAST_ROW = np.array([0.0, 0.0, 0.0, 1.0])
+LAST_ROW = [0.0, 0.0, 0.0, 1.0]
+# Where R (row-major) and p stand in a 4x4 matrix.
+ROTATION_THEN_POSITION = np.array([0, 1, 2, 4, 5, 6, 8, 9, 10, 3, 7, 11])
 NO_TWIST = np.zeros(6)
 NO_TWIST.flags.writeable = False
 
 
 def flat_pose(pose: PoseLike) -> Array:
     """12 numbers (R row-major, p) of a pose; checked by the kernel, or here by Pose."""
-    flat = np.empty(12)
-    if isinstance(pose, np.ndarray) and pose.shape == (4, 4):
-        flat[:9].reshape(3, 3)[:] = pose[:3, :3]
-        flat[9:] = pose[:3, 3]
-        if not (pose[3] == LAST_ROW).all():
+    if isinstance(pose, np.ndarray) and pose.shape == (4, 4) and pose.dtype == np.float64:
+        if pose[3].tolist() != LAST_ROW:
             Pose.of(pose)  # says what is wrong with it
-        return flat
+        return np.asarray(pose.take(ROTATION_THEN_POSITION))
     pose = Pose.of(pose)
+    flat = np.empty(12)
     flat[:9] = pose.rotation.ravel()
     flat[9:] = pose.translation
     return flat

@@ -240,19 +240,19 @@ class Tracker:
         data.flags.writeable = False
         time = float(data[K.TIME])
         count = int(out[K.OUT_COUNTS + N.EVENTS])
-        events = tuple(
-            Event(
-                time,
-                "AB"[int(row[0])],
-                feature_of(self.a if row[0] == 0 else self.b, int(row[1])),
-                feature_of(self.a if row[0] == 0 else self.b, int(row[2])),
-                float(row[3]),
-                float(row[4]),
-            )
-            for row in log[: N.EVENT_COLUMNS * count].reshape(count, N.EVENT_COLUMNS)
-        )
+        events = self._events(log, count, time) if count else ()
         proximity = Proximity(self.a, self.b, out, events, time)
         return TrackerState(data, proximity), proximity
+
+    def _events(self, log: Array, count: int, time: float) -> tuple[Event, ...]:
+        events = []
+        for row in log[: N.EVENT_COLUMNS * count].reshape(count, N.EVENT_COLUMNS):
+            body = self.a if row[N.BODY] == 0 else self.b
+            source, target = (feature_of(body, int(row[k])) for k in (N.SOURCE, N.TARGET))
+            name = "AB"[int(row[N.BODY])]
+            value, slope = float(row[N.VALUE]), float(row[N.SLOPE_COLUMN])
+            events.append(Event(time, name, source, target, value, slope))
+        return tuple(events)
 
     def _prove_overlap(self, out: Array, flat_a: Array, flat_b: Array) -> None:
         """An uncertified pair overlaps where the hulls of its cores' points share one.
