@@ -10,9 +10,9 @@ import standoff as so
 from standoff.kernels import layout as L
 from standoff.kernels.certificate import certify
 from standoff.kernels.cold_start import CERTIFIED, begin_at, global_query
-from standoff.kernels.descent import N_COUNTS, RESTARTS, pair_jets, settle
+from standoff.kernels.descent import pair_jets, settle
+from standoff.kernels.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNTS, RESTARTS
 from standoff.kernels.features import chart_normal, chart_record, coedge_parameters
-from standoff.kernels.tolerances import MAX_ITERATIONS
 from standoff.kernels.trimming import on_face
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
@@ -26,7 +26,6 @@ STARTS_A_POSE = 5
 POSES_A_PAIR = 20  # poses before new shapes are drawn
 TILTS = (0.0, *(10.0**-k for k in range(9, 1, -1)))
 STILL = (0.0, 0.0, 0.0)
-NO_EVENTS = np.empty((0, 5))
 
 
 # --- bodies, each with the support function that judges it -----------------------------------
@@ -184,11 +183,9 @@ class Case:
     def settle(self):
         """The library's own descent."""
         mode, q = self.mode.copy(), self.q.copy()
-        counts = np.zeros(N_COUNTS, dtype=np.int64)
-        settle(
-            self.pair, self.R, self.p, STILL, STILL, mode, q, np.zeros(4), 0, 0.0,
-            MAX_ITERATIONS, counts, NO_EVENTS,
-        )  # fmt: skip
+        counts, log = np.zeros(N_COUNTS, dtype=np.int64), np.empty(EVENT_COLUMNS * MAX_EVENTS)
+        forward = np.zeros(4)
+        settle(self.pair, self.R, self.p, STILL, STILL, mode, q, forward, 0, 0.0, counts, log)
         return mode, q, counts
 
     def certify(self, mode, q):
@@ -200,8 +197,10 @@ class Case:
     def restart(self):
         """(accepted, distance, normal, restarts) of the library's global query."""
         mode, q = np.zeros(4, dtype=np.int64), np.zeros(4)
-        counts = np.zeros(N_COUNTS, dtype=np.int64)
-        outcome, d, _, n = global_query(self.pair, self.R, self.p, mode, q, GOAL, counts, NO_EVENTS)
+        counts, log = np.zeros(N_COUNTS, dtype=np.int64), np.empty(EVENT_COLUMNS * MAX_EVENTS)
+        outcome, d, _, n = global_query(
+            self.pair, self.R, self.p, mode, q, np.zeros(4), GOAL, counts, log
+        )
         return outcome == CERTIFIED, d, n, int(counts[RESTARTS])
 
     def right(self, d, n):

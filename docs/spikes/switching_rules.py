@@ -1,6 +1,6 @@
 """The descent of ``standoff.kernels.descent.settle`` with its switching rule to choose.
 
-With OURS it is that function, step by step; the script checks that both end at the same numbers.
+With OURS it is that function, step by step; the script checks that both end at the same place.
 The other rules live only here.
 """
 
@@ -9,7 +9,6 @@ from numba import njit
 
 from standoff.kernels import layout as L
 from standoff.kernels.descent import (
-    N_COUNTS,
     ORIGIN,
     line_search,
     pair_jets,
@@ -19,6 +18,7 @@ from standoff.kernels.descent import (
     take_hit,
     walk_pair,
 )
+from standoff.kernels.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNTS
 from standoff.kernels.features import (
     best_coedge,
     chart_record,
@@ -42,6 +42,7 @@ from standoff.kernels.tolerances import (
     EPS,
     GRADIENT_NOISE,
     MAX_ITERATIONS,
+    MAX_POLISH,
     MAX_STALLS,
     NEGATIVE,
     POLISH_RATIO,
@@ -106,10 +107,10 @@ def flat_solve(rule, jet_a, jet_b, g, H, span):
 
 
 @compiled
-def newton_step(rule, jet_a, jet_b, g, p, span, d, tally):
+def newton_step(rule, jet_a, jet_b, g, p, span, tally):
     H = hessian(jet_a, jet_b)
     still = gradient(feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, ORIGIN, ORIGIN))
-    step, _, _, flat = law(jet_a, jet_b, g, H, still, span, d)
+    step, _, _, flat = law(jet_a, jet_b, g, H, still, span)
     tally[SOLVES] += 1
     tally[FLAT] += flat
     if flat and rule in (FLOOR, DROP):
@@ -127,7 +128,7 @@ def clipped(pair, mode, q, step):
 
 
 @compiled
-def advance(rule, pair, R, p, mode, q, step, g, E, noise, counts, trial, events, last_smooth):
+def advance(rule, pair, R, p, mode, q, step, g, E, noise, counts, events, last_smooth):
     """Walk, search and hold, as `settle` does: (moved, the smooth edge passed, hit)."""
     descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
     if rule == CLIP:
@@ -138,11 +139,10 @@ def advance(rule, pair, R, p, mode, q, step, g, E, noise, counts, trial, events,
         s, body, hit, index, t = walk_pair(pair, mode, q, step)
         hit_b = (NO_HIT, -1, 0.0)
     reach = s
-    s, _, ok = line_search(pair, R, p, mode, q, step, s, E, descent, noise, trial)
+    s, ok, trial, _, _ = line_search(pair, R, p, mode, q, step, s, E, descent, noise)
     if not ok:
         return False, last_smooth, False
-    for k in range(4):
-        q[k] = trial[k]
+    q[0], q[1], q[2], q[3] = trial
     if s == reach and (hit != NO_HIT or hit_b[0] != NO_HIT):
         passed = -1
         if hit != NO_HIT:
@@ -167,7 +167,7 @@ def descend(rule, pair, R, p, mode, q, tally):
     if rule == ZEROING:
         return descend_zeroing(pair, R, p, mode, q, tally)
     size = pair[1][L.SIZE] + pair[3][L.SIZE]
-    trial, counts, events = np.empty(4), np.zeros(N_COUNTS, dtype=np.int64), np.empty((0, 5))
+    counts, events = np.zeros(N_COUNTS, dtype=np.int64), np.empty(EVENT_COLUMNS * MAX_EVENTS)
     stalls, polish, last_smooth = 0, 0, -1
     last_slope, last_release = 1e300, 1e300
     for _ in range(MAX_ITERATIONS):
@@ -182,15 +182,15 @@ def descend(rule, pair, R, p, mode, q, tally):
         slope = gradient_norm(jet_a, jet_b, g)
         stationary = slope <= 2.0 * GRADIENT_NOISE * EPS * span
         if not stationary:
-            step = newton_step(rule, jet_a, jet_b, g, p, span, d, tally)
+            step = newton_step(rule, jet_a, jet_b, g, p, span, tally)
             gain = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
             if -0.5 * gain <= noise:
                 polish += 1
-                stationary = polish > 2 and slope > POLISH_RATIO * last_slope
+                stationary = polish > MAX_POLISH and slope > POLISH_RATIO * last_slope
             last_slope = slope
         if not stationary:
             moved, last_smooth, hit = advance(
-                rule, pair, R, p, mode, q, step, g, E, noise, counts, trial, events, last_smooth
+                rule, pair, R, p, mode, q, step, g, E, noise, counts, events, last_smooth
             )
             if hit:
                 polish, last_slope = 0, 1e300
@@ -280,7 +280,7 @@ def hold(pair, mode, q, carrier, held, body, hit, index, t, counts, events):
 def descend_zeroing(pair, R, p, mode, q, tally):
     """The paper's rule: solve with the faces, then zero what is infeasible."""
     size = pair[1][L.SIZE] + pair[3][L.SIZE]
-    trial, counts, events = np.empty(4), np.zeros(N_COUNTS, dtype=np.int64), np.empty((0, 5))
+    counts, events = np.zeros(N_COUNTS, dtype=np.int64), np.empty(EVENT_COLUMNS * MAX_EVENTS)
     carrier, held = np.full(2, -1), np.zeros(2)
     stalls, last_release = 0, 1e300
     ia, ra, ib, rb = pair
@@ -293,7 +293,7 @@ def descend_zeroing(pair, R, p, mode, q, tally):
             return CONTACT
         E, noise = 0.5 * d * d, ENERGY_NOISE * EPS * span * d
         g = gradient(projection_errors(jet_a, jet_b))
-        step = newton_step(ZEROING, jet_a, jet_b, g, p, span, d, tally)
+        step = newton_step(ZEROING, jet_a, jet_b, g, p, span, tally)
         a = (step[0], step[1])
         b = (step[2], step[3])
         if carrier[0] >= 0:
@@ -309,9 +309,9 @@ def descend_zeroing(pair, R, p, mode, q, tally):
             descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
             s, body, hit, index, t = walk_pair(pair, mode, q, step)
             reach = s
-            s, _, ok = line_search(pair, R, p, mode, q, step, s, E, descent, noise, trial)
+            s, ok, trial, _, _ = line_search(pair, R, p, mode, q, step, s, E, descent, noise)
             if ok:
-                q[:] = trial
+                q[0], q[1], q[2], q[3] = trial
                 for k in range(2):
                     if dimension(ia if k == 0 else ib, mode[2 * k]) == 1:
                         held[k] = q[2 * k]
