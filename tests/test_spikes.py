@@ -1,4 +1,4 @@
-"""The switching spike still runs against the kernels, and its tables still say what its page says."""
+"""The switching spike still runs on the kernels, and still finds what its page says."""
 
 import os
 import subprocess
