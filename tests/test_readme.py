@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.bounds import gap
-from oracles.support import Ellipsoid, Lens, Placed
 
 import standoff as so
+from oracles.bounds import gap
+from oracles.support import Ellipsoid, Lens, Placed
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
