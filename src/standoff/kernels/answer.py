@@ -3,7 +3,7 @@
 import numpy as np
 
 from standoff.kernels import layout as L
-from standoff.kernels.cold_start import TOUCHING_OR_OVERLAPPING
+from standoff.kernels.certified import TOUCHING_OR_OVERLAPPING
 from standoff.kernels.compiling import kernel
 from standoff.kernels.features import pair_span
 from standoff.kernels.feedback import gradient_norm

@@ -134,11 +134,12 @@ def into_b(R, n):
 
 
 @kernel
-def certify(pair, R, p, mode, q, x_a, x_b):
+def certify(pair, R, p, mode, q, x_a, x_b, hint):
     """(distance of the cores, lower bound of it, best plane normal) at witness points.
 
-    x_a and x_b in A's frame. The normal is the one of the candidates n_A, -n_B and the direction
-    of x_b - x_a that gives the greatest bound: near contact the last loses its digits.
+    x_a and x_b in A's frame. The normal is the one of the candidates n_A, -n_B, the direction of
+    x_b - x_a and the unit vector `hint` (zero: none) that gives the greatest bound: near contact
+    the direction loses its digits.
     """
     ia, ra, ib, rb = pair
     gap = sub(x_b, x_a)
@@ -151,6 +152,14 @@ def certify(pair, R, p, mode, q, x_a, x_b):
     over_a = overhang(ia, ra, x_a, sub(direction, n_a))
     over_b = overhang(ib, rb, y_b, sub(m_b, n_b))
     best, normal = d - over_a - over_b, direction
+    if dot(hint, hint) > 0.5:
+        m = into_b(R, hint)
+        cone_a = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], hint)
+        cone_b = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], m)
+        bound = dot(hint, gap)
+        bound -= overhang(ia, ra, x_a, sub(hint, cone_a)) + overhang(ib, rb, y_b, sub(m, cone_b))
+        if bound > best:
+            best, normal = bound, hint
     # A's own normal: nothing hangs over at A. A zero normal (collapsed chart) bounds nothing.
     if dot(n_a, n_a) > 0.5:
         m = into_b(R, n_a)

@@ -9,23 +9,16 @@ directions of earlier failures.
 from math import inf
 
 from standoff.kernels import layout as L
-from standoff.kernels.certificate import certify
+from standoff.kernels.certified import UNCERTIFIED, settle_and_weigh
 from standoff.kernels.compiling import kernel
-from standoff.kernels.descent import set_mode, settle
+from standoff.kernels.descent import ORIGIN, pair_jets, set_mode
 from standoff.kernels.events import RESTARTS
-from standoff.kernels.features import pair_span
-from standoff.kernels.tolerances import TOUCHING
 from standoff.kernels.vectors import add, dot, norm, rotate, rotate_back, scale, sub
 
 MAX_STARTS = 12
 GILBERT_STEPS = 40
 # How strongly a restart's direction is mixed with those before it, a start (dimensionless).
 TURN = 0.3
-
-# Outcomes of a query.
-CERTIFIED = 0
-UNCERTIFIED = 1
-TOUCHING_OR_OVERLAPPING = 2
 
 
 @kernel
@@ -95,18 +88,6 @@ def gilbert(pair, R, p):
 
 
 @kernel
-def weigh(pair, R, p, mode, q, jet_a, jet_b, tolerance):
-    """(outcome, d, bound, normal) of witness points; d and bound are those of the cores."""
-    d, bound, normal = certify(pair, R, p, mode, q, jet_a[0], jet_b[0])
-    span = pair_span(pair, p, d)
-    if bound > 0.0 and d - bound <= tolerance * span:
-        return CERTIFIED, d, bound, normal
-    if bound <= 0.0 and d <= TOUCHING * span:
-        return TOUCHING_OR_OVERLAPPING, d, bound, normal
-    return UNCERTIFIED, d, bound, normal
-
-
-@kernel
 def global_query(pair, R, p, mode, q, w_ff, tolerance, counts, events):
     """(outcome, d, bound, normal) of a cold query; (mode, q) are set to its witness points.
 
@@ -116,7 +97,6 @@ def global_query(pair, R, p, mode, q, w_ff, tolerance, counts, events):
     ia, ra, ib, rb = pair
     best_gap, best_d, best_bound, best_normal = inf, inf, -inf, (0.0, 0.0, 0.0)
     best_mode, best_q = (0, 0, 0, 0), (0.0, 0.0, 0.0, 0.0)
-    still = (0.0, 0.0, 0.0)
     direction = (0.0, 0.0, 0.0)
     outcome = UNCERTIFIED
     for attempt in range(MAX_STARTS):
@@ -130,8 +110,9 @@ def global_query(pair, R, p, mode, q, w_ff, tolerance, counts, events):
             j = support_sample(ib, rb, scale(-1.0, rotate_back(R, direction)))
         begin_at(ia, ra, 0, i, mode, q)
         begin_at(ib, rb, 1, j, mode, q)
-        _, _, jet_a, jet_b = settle(pair, R, p, still, still, mode, q, w_ff, 0, 0.0, counts, events)
-        outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, tolerance)
+        _, outcome, d, bound, normal = settle_and_weigh(
+            pair, R, p, ORIGIN, ORIGIN, mode, q, w_ff, 0, 0.0, tolerance, counts, events
+        )
         if d - bound < best_gap or outcome != UNCERTIFIED:
             best_gap, best_d, best_bound, best_normal = d - bound, d, bound, normal
             best_mode = (mode[0], mode[1], mode[2], mode[3])
@@ -139,6 +120,7 @@ def global_query(pair, R, p, mode, q, w_ff, tolerance, counts, events):
         if outcome != UNCERTIFIED:
             break
         # aim the next start along this failure's gap, turned a little more each time
+        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
         gap = scale(1.0 / max(d, 1e-300), sub(jet_b[0], jet_a[0]))
         direction = add(gap, scale(TURN * attempt, direction))
         if norm(direction) == 0.0:

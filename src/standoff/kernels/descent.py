@@ -123,11 +123,12 @@ def recentre(pair, mode, q, counts):
 
 
 @kernel
-def release_pair(pair, R, mode, q, dR, slope_floor, counts, events):
-    """Test the switching functions; release the steepest feature. False where none is left."""
+def release_along(pair, R, mode, q, n, d, slope_floor, counts, events):
+    """Test the switching functions with the unit vector n from A to B; release the steepest.
+
+    False where none falls faster than `slope_floor`.
+    """
     ia, ra, ib, rb = pair
-    d = norm(dR)
-    n = scale(-1.0 / d, dR)
     sa, fa, ca, ua, va = steepest_release(ia, ra, mode[0], q[0], n)
     sb, fb, cb, ub, vb = steepest_release(ib, rb, mode[2], q[2], scale(-1.0, rotate_back(R, n)))
     if min(sa, sb) >= -slope_floor:
@@ -139,6 +140,13 @@ def release_pair(pair, R, mode, q, dR, slope_floor, counts, events):
         log_event(events, counts, 1, mode[2], fb, sb * d, sb)
         set_mode(mode, q, 1, fb, cb, ub, vb)
     return True
+
+
+@kernel
+def release_pair(pair, R, mode, q, dR, slope_floor, counts, events):
+    """`release_along` the direction of dR."""
+    d = norm(dR)
+    return release_along(pair, R, mode, q, scale(-1.0 / d, dR), d, slope_floor, counts, events)
 
 
 @kernel

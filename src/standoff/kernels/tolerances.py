@@ -67,3 +67,9 @@ ROTATION = 1e-9
 # Largest gap (relative to the pair's size) with which a start counts as found: far below any
 # far-side minimum's, however loose the tracker's tolerance is.
 START_GAP = 1e-6
+
+# Distance (in scales) below which an uncertified answer is polished in the contact-regular form:
+# above it H is regular to PIVOT and the direction of dR is good to 1e-12.
+NEAR_CONTACT = 1e-3
+# Newton steps of that polish: it starts near its root and converges quadratically.
+CONTACT_STEPS = 12

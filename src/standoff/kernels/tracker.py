@@ -7,9 +7,17 @@ the poses it is given.
 import numpy as np
 
 from standoff.kernels.answer import judge, write_answer
-from standoff.kernels.cold_start import UNCERTIFIED, global_query, weigh
+from standoff.kernels.certified import UNCERTIFIED, settle_and_weigh, weigh
+from standoff.kernels.cold_start import global_query
 from standoff.kernels.compiling import kernel, pointer
-from standoff.kernels.descent import pair_jets, recentre, release_pair, settle, take_hit, walk_pair
+from standoff.kernels.descent import (
+    ORIGIN,
+    pair_jets,
+    recentre,
+    release_pair,
+    take_hit,
+    walk_pair,
+)
 from standoff.kernels.events import (
     CORRECTIONS,
     EVENT_COLUMNS,
@@ -108,15 +116,15 @@ def track(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
         if options[O_LAW] == LAW_PAPER:
             paper_frame(pair, motion, state, options, h, mode, q, counts, events, dq)
             jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-            outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, tolerance)
+            outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, ORIGIN, tolerance)
             return False, outcome, d, bound, normal
         predict(state, options, h, dq)
         apply_step(pair, mode, q, dq, counts, events)
         for k in range(2):
-            _, fresh, jet_a, jet_b = settle(
-                pair, R, p, v, w, mode, q, w_ff, 1, tolerance if k == 0 else 0.0, counts, events
+            goal = tolerance if k == 0 else 0.0
+            fresh, outcome, d, bound, normal = settle_and_weigh(
+                pair, R, p, v, w, mode, q, w_ff, 1, goal, tolerance, counts, events
             )
-            outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, tolerance)
             if outcome != UNCERTIFIED:
                 return fresh, outcome, d, bound, normal
     counts[RESTARTS] += 1
@@ -146,10 +154,13 @@ def start_frame(
         for k in range(4):
             mode[k] = int(state[MODE + k])
             q[k] = state[Q + k]
-        if given != START_HERE:
-            settle(pair, R, p, v, w, mode, q, w_ff, 0, 0.0, counts, events)
-        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-        outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, goal)
+        if given == START_HERE:
+            jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+            outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, ORIGIN, goal)
+        else:
+            _, outcome, d, bound, normal = settle_and_weigh(
+                pair, R, p, v, w, mode, q, w_ff, 0, 0.0, goal, counts, events
+            )
     if outcome == UNCERTIFIED and given != START_HERE:
         counts[RESTARTS] += 0 if given == START_ANYWHERE else 1
         outcome, d, bound, normal = global_query(pair, R, p, mode, q, w_ff, goal, counts, events)

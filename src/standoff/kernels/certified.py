@@ -1,0 +1,52 @@
+"""A descent with its certificate, polished where contact is very near."""
+
+from standoff.kernels.certificate import certify
+from standoff.kernels.compiling import kernel
+from standoff.kernels.contact import polish
+from standoff.kernels.descent import ORIGIN, pair_jets, release_along, settle
+from standoff.kernels.features import pair_span
+from standoff.kernels.tolerances import MAX_STALLS, SLOPE, TOUCHING
+
+# Outcomes of a query.
+CERTIFIED = 0
+UNCERTIFIED = 1
+TOUCHING_OR_OVERLAPPING = 2
+
+
+@kernel
+def weigh(pair, R, p, mode, q, jet_a, jet_b, hint, tolerance):
+    """(outcome, d, bound, normal) of witness points; d and bound are those of the cores."""
+    d, bound, normal = certify(pair, R, p, mode, q, jet_a[0], jet_b[0], hint)
+    span = pair_span(pair, p, d)
+    if bound > 0.0 and d - bound <= tolerance * span:
+        return CERTIFIED, d, bound, normal
+    if bound <= 0.0 and d <= TOUCHING * span:
+        return TOUCHING_OR_OVERLAPPING, d, bound, normal
+    return UNCERTIFIED, d, bound, normal
+
+
+@kernel
+def settle_and_weigh(pair, R, p, v, w, mode, q, w_ff, least, goal, tolerance, counts, events):
+    """(fresh, outcome, d, bound, normal): descend until the slope is below goal |dR|, certify.
+
+    Very near contact an uncertified answer is polished in the contact-regular form, and settled
+    once more where that shows a feature to release.
+    """
+    _, fresh, jet_a, jet_b = settle(pair, R, p, v, w, mode, q, w_ff, least, goal, counts, events)
+    outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, ORIGIN, tolerance)
+    for _ in range(MAX_STALLS):
+        if outcome != UNCERTIFIED:
+            break
+        improved, n = polish(pair, R, p, mode, q, counts)
+        if not improved:
+            break
+        fresh = False
+        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+        outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, n, tolerance)
+        if outcome != UNCERTIFIED or not release_along(
+            pair, R, mode, q, n, d, SLOPE, counts, events
+        ):
+            break
+        _, fresh, jet_a, jet_b = settle(pair, R, p, v, w, mode, q, w_ff, 0, 0.0, counts, events)
+        outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, n, tolerance)
+    return fresh, outcome, d, bound, normal
