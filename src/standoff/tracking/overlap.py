@@ -1,4 +1,4 @@
-"""A proof that two bodies overlap: a common point of the convex hulls of boundary samples."""
+"""Proofs that two bodies overlap: a point that both have, found among boundary samples."""
 
 from __future__ import annotations
 
@@ -18,6 +18,15 @@ def sample_points(body: Body) -> Array:
     start = int(body.ints[L.SAMPLE_REALS])
     rows = body.reals[start : start + L.SAMPLE_STRIDE * n].reshape(n, L.SAMPLE_STRIDE)
     return np.asarray(rows[:, :3])
+
+
+def reaches_into(body: Body, rotation: Array, position: Array) -> bool:
+    """Does a body come to z <= 0, a half-space's inside, when posed in the half-space's frame?
+
+    A sample below, or within the swept radius of, the plane proves it.
+    """
+    heights = sample_points(body) @ rotation[2] + position[2]
+    return bool(heights.min() <= body.radius)
 
 
 def hulls_meet(a: Array, b: Array) -> bool:

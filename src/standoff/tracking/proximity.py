@@ -124,6 +124,11 @@ class Proximity:
         self.events = events
         self.time = time
 
+    def __setstate__(self, state: tuple[None, dict[str, object]]) -> None:
+        for name, value in state[1].items():
+            object.__setattr__(self, name, value)
+        self._out.flags.writeable = False  # NumPy forgets it when stored
+
     @property
     def distance(self) -> float:
         return float(self._out[K.DISTANCE])

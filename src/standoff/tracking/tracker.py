@@ -15,7 +15,7 @@ from standoff.kernels import tracker as kernels
 from standoff.motion import Pose, PoseLike, TwistLike
 from standoff.tracking.inputs import check_in_plane, check_pair, flat_pose, flat_twist, place
 from standoff.tracking.options import pack_options, positive_number
-from standoff.tracking.overlap import hulls_meet, sample_points
+from standoff.tracking.overlap import hulls_meet, reaches_into, sample_points
 from standoff.tracking.proximity import Event, Feature, Proximity, feature_of
 from standoff.tracking.status import Status
 
@@ -34,6 +34,11 @@ class TrackerState:
 
     data: Array
     proximity: Proximity
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            object.__setattr__(self, name, value)
+        self.data.flags.writeable = False  # NumPy forgets it when stored
 
     @property
     def time(self) -> float:
@@ -255,18 +260,26 @@ class Tracker:
         return tuple(events)
 
     def _prove_overlap(self, out: Array, flat_a: Array, flat_b: Array) -> None:
-        """An uncertified pair overlaps where the hulls of its cores' points share one.
+        """Give an uncertified pair without a positive bound the status OVERLAPPING, if proven.
 
-        The witness points join the samples: of a small body inside a large one, close to its
-        surface, the samples alone may miss it.
+        The cores overlap where the hulls of their points share one. The witness points join the
+        samples: of a small body inside a large one, close to its surface, the samples alone may
+        miss it.
         """
-        origin = flat_a[9:]
-        normal = out[K.NORMAL : K.NORMAL + 3]
-        core_a = out[K.POINT_A : K.POINT_A + 3] - self.a.radius * normal - origin
-        core_b = out[K.POINT_B : K.POINT_B + 3] + self.b.radius * normal - origin
-        a = sample_points(self.a) @ flat_a[:9].reshape(3, 3).T
-        b = sample_points(self.b) @ flat_b[:9].reshape(3, 3).T + (flat_b[9:] - origin)
-        if hulls_meet(np.vstack([a, core_a]), np.vstack([b, core_b])):
+        origin, normal = flat_a[9:], out[K.NORMAL : K.NORMAL + 3]
+        turn_a, turn_b = flat_a[:9].reshape(3, 3), flat_b[:9].reshape(3, 3)
+        shift = flat_b[9:] - origin
+        if not self.a.bounded:
+            meet = reaches_into(self.b, turn_a.T @ turn_b, turn_a.T @ shift)
+        elif not self.b.bounded:
+            meet = reaches_into(self.a, turn_b.T @ turn_a, -(turn_b.T @ shift))
+        else:
+            core_a = out[K.POINT_A : K.POINT_A + 3] - self.a.radius * normal - origin
+            core_b = out[K.POINT_B : K.POINT_B + 3] + self.b.radius * normal - origin
+            a = np.vstack([sample_points(self.a) @ turn_a.T, core_a])
+            b = np.vstack([sample_points(self.b) @ turn_b.T + shift, core_b])
+            meet = hulls_meet(a, b)
+        if meet:
             out[: K.OUT_MODE] = np.nan
             out[K.OUT_RATE : K.STATUS] = np.nan
             out[K.STATUS] = float(Status.OVERLAPPING.value)
