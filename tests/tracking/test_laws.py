@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from benchmarks.law_table import (
     LAWS,
+    LONG,
     ORDERS,
     A,
     B,
@@ -57,6 +58,18 @@ def test_the_predictor_corrector_evaluates_once_a_frame():
     for name in ("PC", "PC2", "secant, no twists"):
         for step in (1e-3, 1e-2, 33e-3):
             assert measure(even(step), LAWS[name], checks=1).evaluations == 1.0
+
+
+@pytest.mark.parametrize(
+    ("name", "step", "allowed"),
+    [("PC2", 1e-2, 5e-9), ("PC2", 33e-3, 5e-6), ("secant, no twists", 1e-2, 5e-6)],
+)
+def test_changes_of_chart_cost_no_accuracy(name, step, allowed):
+    """Every frame of whole turns; a predictor that forgot its past would miss by 20 times more."""
+    found = measure(even(step, LONG), LAWS[name], checks=10**6)
+    assert found.chart_changes >= 4
+    assert found.evaluations == 1.0
+    assert found.error <= allowed
 
 
 def test_secant_without_twists_is_close_to_the_feedforward():

@@ -124,6 +124,15 @@ def test_a_state_cannot_be_written():
             array[0] = 1.0
 
 
+def test_a_stored_state_cannot_be_written_either():
+    _, state = lens_and_point()
+    for stored in (pickle.loads(pickle.dumps(state)), copy.deepcopy(state)):
+        with pytest.raises(ValueError, match="read-only"):
+            stored.data[0] = 1.0
+        with pytest.raises(ValueError, match="read-only"):
+            stored.proximity.point_a[0] = 1.0
+
+
 def test_inputs_are_not_changed():
     tracker, state = lens_and_point()
     pose_a, pose_b = np.eye(4), np.eye(4)
