@@ -9,7 +9,8 @@ from switching_rules import N_TALLY, descend
 import standoff as so
 from standoff.kernels import layout as L
 from standoff.kernels.certificate import certify
-from standoff.kernels.cold_start import CERTIFIED, begin_at, global_query
+from standoff.kernels.certified import CERTIFIED
+from standoff.kernels.cold_start import begin_at, global_query
 from standoff.kernels.descent import pair_jets, settle
 from standoff.kernels.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNTS, RESTARTS
 from standoff.kernels.features import chart_normal, chart_record, coedge_parameters
@@ -191,7 +192,7 @@ class Case:
     def certify(self, mode, q):
         """(accepted, distance, normal) by the library's certificate."""
         jet_a, jet_b = pair_jets(self.pair, self.R, self.p, mode, q)
-        d, bound, n = certify(self.pair, self.R, self.p, mode, q, jet_a[0], jet_b[0])
+        d, bound, n = certify(self.pair, self.R, self.p, mode, q, jet_a[0], jet_b[0], STILL)
         return bound > 0.0 and d - bound <= GOAL * (self.size + d), d, n
 
     def restart(self):

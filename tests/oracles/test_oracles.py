@@ -473,7 +473,10 @@ def test_tilted_boxes(tilt):
         between = float(np.linalg.norm(pose.a.rotation[:, 2] - pose.b.rotation[:, 2]))
         assert between == pytest.approx(2 * np.sin(tilt / 2), abs=1e-15)
         known = maximise_separation(pose.a, pose.b)
-        assert nearest_polytopes(pose.a, pose.b).distance == pytest.approx(known.value, abs=1e-13)
+        # the search brackets the truth; how tightly depends on the rounding of its solver
+        distance = nearest_polytopes(pose.a, pose.b).distance
+        assert known.value - 1e-13 <= distance <= known.upper + 1e-13
+        assert known.upper - known.value <= 1e-9
 
 
 def test_rotations():
