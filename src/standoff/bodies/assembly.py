@@ -10,7 +10,7 @@ import numpy as np
 from standoff.bodies.packing import Assembled, Chart, Coedge, Sector
 from standoff.bodies.topology import BodyError, Edge, Face
 from standoff.geometry.pcurves import Pcurve, pcurve_of
-from standoff.geometry.surfaces import Plane, Sphere, Surface
+from standoff.geometry.surfaces import Plane, Surface
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
 
@@ -37,12 +37,23 @@ def interior_point(vertices: Array, edges: Sequence[Edge], faces: Sequence[Face]
     """A point inside the convex hull of the boundary."""
     points = [vertices] if len(vertices) else []
     points += [edge_points(e) for e in edges]
-    for face in faces:
-        if not face.loop:
-            points += [np.atleast_2d(chart.jet(0.0, 0.0)[0]) for chart in face.charts]
-        elif isinstance(face.charts[0], Sphere):
-            points += [np.atleast_2d(face.charts[0].jet(0.0, 0.0)[0])]
+    points += [_amid(face, edges) for face in faces]
     return np.asarray(np.concatenate(points).mean(axis=0))
+
+
+def _amid(face: Face, edges: Sequence[Edge]) -> Array:
+    """Points of a face's surface amid its loop, (n, 3). An atlas's first chart is centred on it."""
+    if not face.loop:
+        return np.array([chart.jet(0.0, 0.0)[0] for chart in face.charts])
+    surface = face.charts[0]
+    if len(face.charts) > 1:
+        return surface.jet(0.0, 0.0)[0][None]
+    curves = [edges[j].curve for j, _ in face.loop if 0 <= j < len(edges)]
+    spots = [
+        pcurve_of(c, surface).point(t) for c in curves for t in np.linspace(c.first, c.last, 9)
+    ]
+    u, v = np.mean([p[:2] for p in spots if p[2] > 0.0] or [(0.0, 0.0)], axis=0)
+    return surface.jet(float(u), float(v))[0][None]
 
 
 def surface_normal(surface: Surface, u: float, v: float) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from standoff.bodies.assembly import assemble, edge_points
 from standoff.bodies.packing import Assembled, Ints, pack, without_charts
 from standoff.bodies.sampling import blind_charts, body_box, boundary_samples, check_convex
-from standoff.bodies.topology import BodyError, Edge, Face
+from standoff.bodies.topology import BodyError, Edge, Face, check_parts
 from standoff.geometry.validation import Array, finite, matrix3, not_negative, vector3
 
 # A linear map is a similarity (keeps spheres) when its singular values agree to this ratio.
@@ -85,14 +85,12 @@ class Body:
         ValueError
             NaN, infinite, negative or wrongly shaped numbers.
         """
-        points = np.array(vertices, dtype=np.float64).reshape(-1, 3) if len(vertices) else None
-        points = np.zeros((0, 3)) if points is None else finite(points, "vertices", (-1, 3))
+        points = np.zeros((0, 3))
+        if np.size(vertices):
+            points = finite(vertices, "vertices", (-1, 3))
         radius = not_negative(radius, "radius")
         edges, faces = tuple(edges), tuple(faces)
-        if not (len(points) or edges or faces):
-            raise BodyError("A body needs at least one vertex, edge or face.")
-        if dimension == 2:
-            _check_planar(points, edges, faces)
+        check_parts(points, edges, faces, dimension)
         spots = [points] + [edge_points(e) for e in edges]
         cloud = np.concatenate(spots)
         bounded = any(f.loop or len(f.charts) > 1 for f in faces) or not faces
@@ -217,20 +215,9 @@ def _finish(name: str, parts: Assembled, radius: float, notes: list[str]) -> Bod
 def _affine(value: Any) -> tuple[Array, Array]:
     if isinstance(value, tuple) and len(value) == 2:
         return matrix3(value[0], "affine map"), vector3(value[1], "affine shift")
-    array = np.asarray(value, dtype=np.float64)
-    if array.shape == (4, 4):
-        finite(array, "affine map", (4, 4))
+    if np.shape(value) == (4, 4):
+        array = finite(value, "affine map", (4, 4))
         if not np.array_equal(array[3], [0.0, 0.0, 0.0, 1.0]):
             raise ValueError(f"The affine map's last row is {array[3]}; it must be 0 0 0 1.")
         return array[:3, :3], array[:3, 3]
-    return matrix3(array, "affine map"), np.zeros(3)
-
-
-def _check_planar(points: Array, edges: Sequence[Edge], faces: Sequence[Face]) -> None:
-    if faces:
-        raise BodyError("A planar body (dimension 2) has edges and vertices only, no faces.")
-    if not edges:
-        raise BodyError("A planar body needs at least one curve.")
-    heights = np.concatenate([points] + [edge_points(e) for e in edges])[:, 2]
-    if np.abs(heights).max() > 0.0:
-        raise BodyError(f"A planar body leaves z = 0 (by {np.abs(heights).max():.3g}).")
+    return matrix3(value, "affine map"), np.zeros(3)

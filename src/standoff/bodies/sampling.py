@@ -9,7 +9,7 @@ import numpy as np
 from standoff.bodies.packing import Assembled, Chart, Ints, Sample
 from standoff.bodies.topology import BodyError, Edge
 from standoff.geometry.curves import ConicArc, RationalBezier
-from standoff.geometry.surfaces import Cone, Cylinder, Sphere
+from standoff.geometry.surfaces import Cone, Cylinder
 from standoff.geometry.validation import Array
 from standoff.kernels.features import chart_normal, planar_edge_normal
 from standoff.kernels.trimming import on_face
@@ -158,19 +158,14 @@ def body_box(body: Assembled, ints: Ints, reals: Array) -> tuple[Array, Array] |
     for k, chart in enumerate(body.charts):
         if not chart.coedges and chart.limit == np.inf:
             return None
-        if isinstance(chart.surface, Sphere):
-            for i in range(3):
-                for sign in (-1.0, 1.0):
-                    direction = chart.surface.linear.T @ (sign * np.eye(3)[i])
-                    y = direction / np.linalg.norm(direction)
-                    if y[2] <= 0.0:
-                        continue
-                    u, v = float(y[0] / y[2]), float(y[1] / y[2])
-                    in_chart = max(abs(u), abs(v)) <= chart.limit
-                    if in_chart and on_face(ints, reals, k, u, v):
-                        x = chart.surface.jet(u, v)[0]
-                        lows.append(x)
-                        highs.append(x)
+        for direction in (*np.eye(3), *-np.eye(3)):
+            top = chart.surface.highest(direction)
+            if top is None or max(abs(top[0]), abs(top[1])) > chart.limit:
+                continue
+            if on_face(ints, reals, k, *top):
+                x = chart.surface.jet(*top)[0]
+                lows.append(x)
+                highs.append(x)
     return np.min(lows, axis=0), np.max(highs, axis=0)
 
 

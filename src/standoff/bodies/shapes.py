@@ -21,6 +21,9 @@ from standoff.geometry.validation import Array, finite, not_negative, positive
 # Facets of a polytope whose normals differ by less (sine) are one face; hull facets of one
 # plane differ by the roundoff of their vertices.
 COPLANAR = 1e-9
+# A lens's offset, and its radius less the offset, are at least this part of its radius: what
+# float64 can still tell from a ball and from nothing.
+THIN_LENS = 1e-9
 # A gnomonic chart alone serves a face up to this tangent of the angle from its centre.
 SINGLE_CHART_REACH = 3.0
 
@@ -198,6 +201,11 @@ def lens(radius: float, offset: float) -> Body:
     if c >= r:
         raise ValueError(
             f"Empty lens: offset = {c} is not below radius = {r}, so the balls share no interior."
+        )
+    if c < THIN_LENS * r or r - c < THIN_LENS * r:
+        raise ValueError(
+            f"lens({r}, {c}): offset / radius must be from {THIN_LENS:g} to 1 - {THIN_LENS:g}; "
+            "below it is a ball (so.shapes.sphere), above it is thinner than roundoff."
         )
     top = np.array([0.0, 0.0, np.sqrt((r - c) * (r + c))])
     angles = 2.0 * np.pi / 3.0 * np.arange(3)

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from standoff.geometry.curves import Curve
+import numpy as np
+
+from standoff.geometry.curves import Curve, Line
 from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
 
 
 @dataclass(frozen=True)
@@ -46,3 +51,43 @@ class Face:
 
 class BodyError(ValueError):
     """The parts given do not bound a convex body; the message names the part and the fix."""
+
+
+def check_parts(
+    vertices: Array, edges: Sequence[Any], faces: Sequence[Any], dimension: int
+) -> None:
+    """Raise BodyError where parts are of the wrong kind, loose, or bound no convex body."""
+    if dimension not in (2, 3):
+        raise BodyError(f"dimension = {dimension!r}: give 2 (planar loop) or 3.")
+    for name, parts, kind in (("Edge", edges, Edge), ("Face", faces, Face)):
+        for k, part in enumerate(parts):
+            if not isinstance(part, kind):
+                raise BodyError(f"{name} {k} is {part!r}: make one with so.{name}.")
+    for k, face in enumerate(faces):
+        if not face.charts or not all(isinstance(s, Surface) for s in face.charts):
+            raise BodyError(f"Face {k} has the charts {face.charts!r}: give at least one Surface.")
+    if not (len(vertices) or edges or faces):
+        raise BodyError("A body needs at least one vertex, edge or face.")
+    used = {v for e in edges for v in (e.first, e.last) if v is not None}
+    used |= {a.vertex for f in faces for a in f.apexes}
+    loose = sorted(set(range(len(vertices))) - used)
+    if loose and not (len(vertices) == 1 and not edges and not faces):
+        raise BodyError(f"Vertices {loose} belong to no edge: leave them out or join them.")
+    if dimension == 2:
+        _check_planar(vertices, edges, faces)
+    elif edges and not faces and not (len(edges) == 1 and isinstance(edges[0].curve, Line)):
+        raise BodyError(
+            f"{len(edges)} edges and no face: in space only one straight edge is a body (a "
+            "segment); for a planar loop give dimension=2."
+        )
+
+
+def _check_planar(vertices: Array, edges: Sequence[Edge], faces: Sequence[Face]) -> None:
+    if faces:
+        raise BodyError("A planar body (dimension 2) has edges and vertices only, no faces.")
+    if not edges:
+        raise BodyError("A planar body needs at least one curve.")
+    points = [e.curve.point(t) for e in edges for t in np.linspace(e.curve.first, e.curve.last, 9)]
+    height = float(np.abs(np.vstack([vertices, points])[:, 2]).max())
+    if height > 0.0:
+        raise BodyError(f"A planar body leaves z = 0 (by {height:.3g}).")

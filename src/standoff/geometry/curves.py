@@ -110,15 +110,17 @@ class RationalBezier(Curve):
     kind = L.BEZIER
 
     def __init__(self, control_points: Any, weights: Any = None) -> None:
-        points = np.array(control_points, dtype=np.float64)
-        if points.ndim == 2 and points.shape[1] == 2:
-            points = np.column_stack([points, np.zeros(len(points))])
-        points = finite(points, "control_points", (-1, 3))
+        if np.ndim(control_points) == 2 and np.shape(control_points)[1] == 2:
+            flat = finite(control_points, "control_points", (-1, 2))
+            control_points = np.column_stack([flat, np.zeros(len(flat))])
+        points = finite(control_points, "control_points", (-1, 3))
         if len(points) < 2:
             raise ValueError(f"Bezier curve with {len(points)} control point: give at least two.")
         w = finite(np.ones(len(points)) if weights is None else weights, "weights", (len(points),))
         if (w <= 0.0).any():
             raise ValueError(f"Bezier weights must be positive: {w}")
+        if np.ptp(points, axis=0).max() == 0.0:
+            raise ValueError(f"Bezier curve of a single point {points[0]}: spread its points.")
         homogeneous = np.column_stack([points * w[:, None], w])
         _fill(self, np.concatenate([[float(len(points) - 1)], homogeneous.ravel()]), 0.0, 1.0)
 

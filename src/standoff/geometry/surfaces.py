@@ -6,6 +6,7 @@ here. Lengths in the body's frame.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -17,7 +18,7 @@ from standoff.kernels.jets import surface_jet
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class Surface(ABC):
     """A parametric surface, x(u, v) = linear @ canonical(u, v) + shift.
 
     Parameters
@@ -59,6 +60,14 @@ class Surface:
         """The exact image under x -> linear x + shift; parameters stay the same."""
         return type(self)(linear @ self.linear, linear @ self.shift + shift)
 
+    @abstractmethod
+    def highest(self, direction: Array) -> tuple[float, float] | None:
+        """(u, v) where direction @ x is greatest on the whole surface; direction (3,), body frame.
+
+        None where it has no greatest value inside: a face is then highest on its boundary. The
+        body's box, so the certificate, rests on it.
+        """
+
     def canonical(self, points: Array) -> Array:
         """Body points, (..., 3), in the canonical frame."""
         return (np.asarray(points) - self.shift) @ np.linalg.inv(self.linear).T
@@ -81,6 +90,9 @@ class Plane(Surface):
         third = normal / length * np.sqrt(length)
         return Plane(np.column_stack([along_u, along_v, third]), vector3(origin, "origin"))
 
+    def highest(self, direction: Array) -> None:
+        return None
+
 
 class Sphere(Surface):
     """The gnomonic chart (u, v, 1)/sqrt(1 + u² + v²): the half of an ellipsoid about `linear` e_z.
@@ -91,17 +103,27 @@ class Sphere(Surface):
 
     kind = L.SPHERE
 
+    def highest(self, direction: Array) -> tuple[float, float] | None:
+        y = self.linear.T @ direction
+        return (float(y[0] / y[2]), float(y[1] / y[2])) if y[2] > 0.0 else None
+
 
 class Cylinder(Surface):
     """(cos u, sin u, v); u needs no seam."""
 
     kind = L.CYLINDER
 
+    def highest(self, direction: Array) -> None:
+        return None
+
 
 class Cone(Surface):
     """(v cos u, v sin u, v), v >= 0: the apex is at `shift`."""
 
     kind = L.CONE
+
+    def highest(self, direction: Array) -> None:
+        return None
 
 
 __all__ = ["Cone", "Cylinder", "Plane", "Sphere", "Surface", "finite"]

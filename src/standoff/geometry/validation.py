@@ -19,6 +19,8 @@ def finite(value: Any, name: str, shape: tuple[int, ...]) -> Array:
         Not numeric, of another shape, or with a NaN or an infinite number.
     """
     try:
+        if value is None:
+            raise TypeError
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name} is not numeric: {value!r}") from error

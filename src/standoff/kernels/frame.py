@@ -9,7 +9,7 @@ from math import inf
 from standoff.kernels.compiling import kernel
 from standoff.kernels.events import N_COUNTS
 from standoff.kernels.rigid import read_vector
-from standoff.kernels.tolerances import ROTATION
+from standoff.kernels.tolerances import FARTHEST, ROTATION
 from standoff.kernels.vectors import cross, dot
 
 # State.
@@ -51,8 +51,8 @@ FINE, BAD_POSE_A, BAD_POSE_B, BAD_TWIST = range(4)
 
 
 @kernel
-def is_rotation(T):
-    """Finite, orthonormal to ROTATION and not mirrored."""
+def is_pose(T):
+    """A pose: rotation orthonormal to ROTATION and not mirrored, position below FARTHEST."""
     for i in range(3):
         for j in range(i, 3):
             total = 0.0
@@ -61,19 +61,16 @@ def is_rotation(T):
             if not abs(total - (1.0 if i == j else 0.0)) <= ROTATION:
                 return False
     third = cross(read_vector(T, 0), read_vector(T, 3))
-    return (
-        dot(third, read_vector(T, 6)) > 0.0
-        and T[9] + T[10] + T[11] < inf
-        and (T[9] + T[10] + T[11] > -inf)
-    )
+    far = abs(T[9]) + abs(T[10]) + abs(T[11])
+    return dot(third, read_vector(T, 6)) > 0.0 and far < FARTHEST
 
 
 @kernel
 def refusal(Ta, Tb, xi_a, xi_b):
     """FINE, or which of the poses and twists is not one."""
-    if not is_rotation(Ta):
+    if not is_pose(Ta):
         return BAD_POSE_A
-    if not is_rotation(Tb):
+    if not is_pose(Tb):
         return BAD_POSE_B
     total = 0.0
     for k in range(6):

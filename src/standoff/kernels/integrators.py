@@ -11,7 +11,7 @@ from standoff.kernels.descent import pair_jets
 from standoff.kernels.events import EVALUATIONS, REGULARISED
 from standoff.kernels.features import pair_span
 from standoff.kernels.feedback import law
-from standoff.kernels.rigid import middle_of_frame
+from standoff.kernels.rigid import within_frame
 from standoff.kernels.system import feedforward, gradient, hessian, projection_errors
 from standoff.kernels.vectors import norm, sub
 
@@ -75,7 +75,7 @@ def integrate(pair, before, after, h, gain, forward, integrator, mode, q, counts
         elif c == 1.0:
             R, p, v, w = after
         else:
-            R, p, v, w = middle_of_frame(before, after, h)
+            R, p, v, w = within_frame(c, before, after, h)
         step, w_ff, _, _ = law_at(pair, R, p, v, w, mode, stage, forward, counts)
         k = (
             gain * step[0] + w_ff[0],

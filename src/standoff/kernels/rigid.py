@@ -132,20 +132,24 @@ def right_jacobian_inverse(f, w):
 
 
 @kernel
-def middle_of_frame(before, after, h):
-    """(R, p, v, w) half way between two frames: cubic Hermite in p and in the rotation vector.
+def within_frame(c, before, after, h):
+    """(R, p, v, w) at the part c of a frame: cubic Hermite in p and in the rotation vector.
 
-    The error of the pose is O(h⁴), enough for RK4.
+    before and after are (R, p, v, w) at its ends. The error of the pose is O(h⁴), enough for RK4.
     """
     R0, p0, v0, w0 = before
     R1, p1, v1, w1 = after
-    p = axpy(0.125 * h, sub(v0, v1), scale(0.5, add(p0, p1)))
-    v = axpy(1.5 / h, sub(p1, p0), scale(-0.25, add(v0, v1)))
+    # weights of the step, of the first and of the last rate; then those of their derivatives
+    a, b0, b1 = c * c * (3.0 - 2.0 * c), c * (1.0 - c) * (1.0 - c) * h, c * c * (c - 1.0) * h
+    da, d0, d1 = 6.0 * c * (1.0 - c) / h, (1.0 - c) * (1.0 - 3.0 * c), c * (3.0 * c - 2.0)
+    dp = sub(p1, p0)
+    p = add(p0, axpy(a, dp, axpy(b0, v0, scale(b1, v1))))
+    v = axpy(da, dp, axpy(d0, v0, scale(d1, v1)))
     f1 = log_rotation(compose_back(R0, R1))
     r0 = rotate_back(R0, w0)
     r1 = right_jacobian_inverse(f1, rotate_back(R1, w1))
-    f = axpy(0.125 * h, sub(r0, r1), scale(0.5, f1))
-    rate = axpy(1.5 / h, f1, scale(-0.25, add(r0, r1)))
+    f = axpy(a, f1, axpy(b0, r0, scale(b1, r1)))
+    rate = axpy(da, f1, axpy(d0, r0, scale(d1, r1)))
     R = compose(R0, exp_rotation(f))
     return R, p, v, rotate(R, right_jacobian(f, rate))
 

@@ -73,3 +73,6 @@ START_GAP = 1e-6
 NEAR_CONTACT = 1e-3
 # Newton steps of that polish: it starts near its root and converges quadratically.
 CONTACT_STEPS = 12
+
+# Positions (length) must stay below this: squares of distances must not overflow.
+FARTHEST = 1e100

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Any
 
 import numpy as np
@@ -52,6 +53,11 @@ def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
     return np.concatenate([twist.v, twist.omega])
 
 
+def same_body(a: Body, b: Body) -> bool:
+    """Are two bodies equal, as after a pickle round trip?"""
+    return np.array_equal(a.ints, b.ints) and np.array_equal(a.reals, b.reals)
+
+
 def check_pair(a: Body, b: Body) -> None:
     """Raise ValueError where two bodies cannot be a pair."""
     for body in (a, b):
@@ -96,13 +102,22 @@ def _chart_of(body: Body, face: int, values: Array) -> int:
 
 def place(state: Array, at: int, body: Body, feature: Any, parameters: Any) -> None:
     """Write a feature and its parameters into a state, checked."""
-    kind, index = feature
+    try:
+        kind, index = feature
+        index = operator.index(index)
+    except (TypeError, ValueError) as error:
+        raise ValueError(
+            f"{feature!r} is no feature: give so.Feature('face', 0) or ('face', 0)."
+        ) from error
     sizes = {"face": body.n_faces, "edge": body.n_edges, "vertex": body.n_vertices}
     if kind not in sizes or not 0 <= index < sizes[kind]:
         raise ValueError(
             f"{body!r} has no {kind} {index}: faces, edges and vertices are numbered from 0."
         )
-    values = np.atleast_1d(np.asarray(parameters, dtype=np.float64)).ravel()
+    try:
+        values = np.atleast_1d(np.asarray(parameters, dtype=np.float64)).ravel()
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"Parameters {parameters!r} are not numbers.") from error
     wanted = {"face": 2, "edge": 1, "vertex": 0}[kind]
     atlas = kind == "face" and charts_of(body, index)[1] > 1
     if len(values) not in (wanted, wanted + atlas) or not np.isfinite(values).all():

@@ -130,6 +130,11 @@ class Proximity:
         self._out.flags.writeable = False  # NumPy forgets it when stored
 
     @property
+    def bodies(self) -> tuple[Body, Body]:
+        """(A, B)."""
+        return self._a, self._b
+
+    @property
     def distance(self) -> float:
         return float(self._out[K.DISTANCE])
 

@@ -13,7 +13,14 @@ from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import tracker as kernels
 from standoff.motion import Pose, PoseLike, TwistLike
-from standoff.tracking.inputs import check_in_plane, check_pair, flat_pose, flat_twist, place
+from standoff.tracking.inputs import (
+    check_in_plane,
+    check_pair,
+    flat_pose,
+    flat_twist,
+    place,
+    same_body,
+)
 from standoff.tracking.options import pack_options, positive_number
 from standoff.tracking.overlap import hulls_meet, reaches_into, sample_points
 from standoff.tracking.proximity import Event, Feature, Proximity, feature_of
@@ -151,6 +158,7 @@ class Tracker:
         The twists are those at this instant; without any, the prediction is the secant of the
         last two frames and the rates are nan. One twist given, the other body is at rest.
         """
+        self._check_state(state)
         flat_a, flat_b, xi_a, xi_b, has_twist = self._motion(pose_a, pose_b, twist_a, twist_b)
         h = self.dt if dt is None else positive_number(dt, "dt")
         data = state.data.copy()
@@ -173,6 +181,8 @@ class Tracker:
         ``standoff.kernels.tracker``) and ``buffer.state`` in place. Returns the distance; where
         the answer is uncertified, ``buffer.proximity()`` says why.
         """
+        if buffer.tracker is not self:
+            raise ValueError("The buffer belongs to another tracker: make one with tracker.buffer.")
         bad = kernels.step(
             self._pair,
             buffer.pose_a,
@@ -192,7 +202,19 @@ class Tracker:
 
     def buffer(self, state: TrackerState) -> FrameBuffer:
         """Arrays for ``step_into`` that begin at a state."""
+        self._check_state(state)
         return FrameBuffer(self, state)
+
+    def _check_state(self, state: TrackerState) -> None:
+        """A state of another pair would be read with this one's features."""
+        if not isinstance(state, TrackerState):
+            raise TypeError(f"{state!r} is not a TrackerState: get one from tracker.start.")
+        for name, own, other in zip("AB", (self.a, self.b), state.proximity.bodies, strict=True):
+            if own is not other and not same_body(own, other):
+                raise ValueError(
+                    f"The state belongs to another pair: its body {name} is {other!r}, the "
+                    f"tracker's is {own!r}."
+                )
 
     def _motion(
         self,
@@ -234,7 +256,7 @@ class Tracker:
         Pose.of(pose_a if why == K.BAD_POSE_A else pose_b)  # says what is wrong with it
         raise ValueError(
             f"pose_{'ab'[why - K.BAD_POSE_A]}: its rotation is not orthonormal to 1e-9, or its "
-            "position is not finite."
+            "position is not a length below 1e100."
         )
 
     def _answer(
@@ -289,7 +311,7 @@ class FrameBuffer:
     """Arrays of one frame, reused: write the poses (12 numbers: R row-major, p) and twists."""
 
     def __init__(self, tracker: Tracker, state: TrackerState) -> None:
-        self._tracker = tracker
+        self.tracker = tracker
         self.pose_a = np.zeros(12)
         self.pose_b = np.zeros(12)
         self.pose_a[[0, 4, 8]] = 1.0
@@ -303,7 +325,7 @@ class FrameBuffer:
 
     def proximity(self) -> Proximity:
         """The last answer as a value."""
-        return self._tracker._answer(
+        return self.tracker._answer(
             self.state.copy(), self.out.copy(), self.events, self.pose_a, self.pose_b
         )[1]
 
