@@ -1,0 +1,332 @@
+"""What shapes, curves, surfaces and bodies refuse: an error that names the value and the fix."""
+
+import numpy as np
+import pytest
+
+import standoff as so
+from standoff import Edge, Face
+from standoff.geometry import Cone, ConicArc, Cylinder, Line, Plane, RationalBezier, Sphere
+
+NAN, INF = np.nan, np.inf
+SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))
+TETRAHEDRON = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+
+SIZES = {
+    "sphere": ("r",),
+    "segment": ("length",),
+    "ellipsoid": ("a", "b", "c"),
+    "capsule": ("r", "length"),
+    "cylinder": ("r", "length"),
+    "cone": ("r", "height"),
+    "box": ("x", "y", "z"),
+    "lens": ("radius", "offset"),
+}
+"""Shapes and the names of their sizes, all positive."""
+
+
+@pytest.mark.parametrize(("shape", "name"), [(s, n) for s, names in SIZES.items() for n in names])
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (0, "= 0.0: must be positive"),
+        (-1.5, "= -1.5: must be positive"),
+        (NAN, "has a NaN or infinite number: nan"),
+        (INF, "has a NaN or infinite number: inf"),
+        ("long", "is not numeric: 'long'"),
+        (1j, "is not numeric: 1j"),
+        ([1, 2], r"has shape \(2,\)"),
+    ],
+)
+def test_sizes(shape, name, value, words):
+    sizes = dict.fromkeys(SIZES[shape], 1.0)
+    if shape == "lens":
+        sizes["offset"] = 0.5
+    getattr(so.shapes, shape)(**sizes)
+    with pytest.raises(ValueError, match=f"^{name} {words}"):
+        getattr(so.shapes, shape)(**{**sizes, name: value})
+
+
+@pytest.mark.parametrize("offset", [1.0, 2.0])
+def test_empty_lens(offset):
+    with pytest.raises(ValueError, match=f"Empty lens: offset = {offset} is not below"):
+        so.shapes.lens(1, offset)
+
+
+@pytest.mark.parametrize("offset", [1.0, -1.0, 3.0])
+def test_empty_cap(offset):
+    with pytest.raises(ValueError, match=rf"offset = {offset} outside \(-1.0, 1.0\)"):
+        so.shapes.cap(1, offset)
+    with pytest.raises(ValueError, match="offset has a NaN"):
+        so.shapes.cap(1, NAN)
+
+
+def test_rounding():
+    with pytest.raises(ValueError, match=r"rounding = 0\.5 leaves no core.*less than half"):
+        so.shapes.box(1, 2, 3, rounding=0.5)
+    with pytest.raises(ValueError, match=r"rounding = -0\.1: must be zero or positive"):
+        so.shapes.box(1, 2, 3, rounding=-0.1)
+    with pytest.raises(ValueError, match="rounding has a NaN"):
+        so.shapes.box(1, 2, 3, rounding=NAN)
+
+
+@pytest.mark.parametrize(
+    ("vertices", "words"),
+    [
+        ([], "vertices has shape"),
+        (TETRAHEDRON[:1], "1 vertices span no volume.*at least four points"),
+        (TETRAHEDRON[:3], "3 vertices span no volume.*not in one plane"),
+        ([(*corner, 0.5) for corner in SQUARE], "4 vertices span no volume"),
+        (np.zeros((5, 3)), "5 vertices span no volume"),
+        (np.outer(np.arange(6), (1, 2, 3)), "6 vertices span no volume"),
+        ([*TETRAHEDRON, [0, 0, NAN]], "vertices has a NaN or infinite number"),
+        ([*TETRAHEDRON, [0, INF, 0]], "vertices has a NaN or infinite number"),
+        (SQUARE, r"vertices has shape \(4, 2\); give shape \('n', 3\)"),
+        ("cube", "vertices is not numeric: 'cube'"),
+    ],
+)
+def test_polytopes(vertices, words):
+    with pytest.raises(ValueError, match=words):
+        so.shapes.polytope(vertices)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Line((1, 2), (1, 2)), r"Line from \[1. 2. 0.\] to itself"),
+        (lambda: Line((0, 0), (NAN, 0)), "q has a NaN"),
+        (lambda: Line((0,), (1, 1)), r"p has shape \(1,\)"),
+        (lambda: ConicArc((0, 0), (1, 0), (2, 0)), "parallel or zero axes.*2"),
+        (lambda: ConicArc((0, 0), (1, 0), (0, 0)), "parallel or zero axes"),
+        (lambda: ConicArc((0, 0), (1, 0), (0, 1), 1, 1), "from t = 1.0 to 1.0: give 0 < last"),
+        (lambda: ConicArc((0, 0), (1, 0), (0, 1), 0, 7), "from t = 0.0 to 7.0: give 0 < last"),
+        (lambda: ConicArc((0, INF), (1, 0), (0, 1)), "centre has a NaN or infinite"),
+        (lambda: ConicArc((0, 0), (1, 0), (0, 1), NAN), "first has a NaN"),
+        (lambda: RationalBezier([(1, 2)]), "1 control point: give at least two"),
+        (lambda: RationalBezier(SQUARE, [1, 1, 0, 1]), "weights must be positive"),
+        (lambda: RationalBezier(SQUARE, [1, 1, -2, 1]), "weights must be positive.*-2"),
+        (lambda: RationalBezier(SQUARE, [1, 1]), r"weights has shape \(2,\); give shape \(4,\)"),
+        (lambda: RationalBezier([(0, 0), (NAN, 1)]), "control_points has a NaN"),
+        (lambda: RationalBezier([(0, 0), (1, 1)], [1, NAN]), "weights has a NaN"),
+        (lambda: Plane.through((0, 0, 0), (1, 2, 0), (2, 4, 0)), "parallel: no plane"),
+    ],
+)
+def test_curves_and_planes(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
+
+
+@pytest.mark.parametrize("kind", [Plane, Sphere, Cylinder, Cone])
+def test_surfaces(kind):
+    name = kind.__name__
+    with pytest.raises(ValueError, match=rf"(?s){name}\.linear is singular.*independent columns"):
+        kind(np.diag([1.0, 1, 0]), np.zeros(3))
+    with pytest.raises(ValueError, match=rf"{name}\.linear has a NaN"):
+        kind(np.full((3, 3), NAN), np.zeros(3))
+    with pytest.raises(ValueError, match=rf"{name}\.shift has shape \(2,\)"):
+        kind(np.eye(3), np.zeros(2))
+
+
+@pytest.mark.parametrize(
+    ("affine", "words"),
+    [
+        (np.zeros((3, 3)), "map is singular.*0. 0. 0."),
+        (np.diag([1.0, 1, 1e-20]), "map is singular"),
+        (np.full((3, 3), NAN), "affine map has a NaN"),
+        (np.eye(2), r"affine map has shape \(2, 2\)"),
+        ((np.eye(3), (1, 2)), r"affine shift has shape \(2,\)"),
+        ((np.eye(3), (1, 2, INF)), "affine shift has a NaN or infinite"),
+        (np.diag([1.0, 1, 1, 2]), "last row is .*it must be 0 0 0 1"),
+        ("big", "affine map.*'big'"),
+    ],
+)
+def test_affine_maps(affine, words):
+    with pytest.raises(ValueError, match=words):
+        so.shapes.lens(1, 0.45).transformed(affine)
+
+
+def test_maps_that_a_body_does_not_survive():
+    with pytest.raises(ValueError, match=r"radius 0\.5 would not keep a round skin"):
+        so.shapes.capsule(0.5, 1).transformed(np.diag([1, 1, 2]))
+    disc = so.shapes.planar_loop([ConicArc((0, 0), (1, 0), (0, 1))])
+    quarter_turn = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+    for affine in (quarter_turn, (np.eye(3), (0, 0, 1))):
+        with pytest.raises(ValueError, match="out of z = 0"):
+            disc.transformed(affine)
+
+
+def lines(*points):
+    """A closed chain of straight curves."""
+    return [Line(p, q) for p, q in zip(points, (*points[1:], points[0]), strict=True)]
+
+
+@pytest.mark.parametrize(
+    ("curves", "words"),
+    [
+        ([], "0 open curves: give at least two"),
+        (lines(*SQUARE)[:1], "1 open curves: give at least two"),
+        (lines(*SQUARE)[:3], "misses its vertex 0 by 1 "),
+        ([*lines(*SQUARE)[:3], Line((0, 1), (0, 1e-3))], "misses its vertex 0 by 0.001"),
+        (lines((0, 0), (2, 0), (0.5, 0.5), (0, 2)), "Not convex.*Split the body"),
+        (lines((0, 0), (1, 1), (1, 0), (0, 1)), "Not convex"),
+        ([RationalBezier([(0, 0), (0.5, 0.4), (1, 0)]), *lines((1, 0), (0.5, 2), (0, 0))[:2]],
+         "Not convex"),
+        (lines((0, 0, 0), (1, 0, 0), (0, 1, 1)), r"leaves z = 0 \(by 1\)"),
+    ],
+)  # fmt: skip
+def test_planar_loops(curves, words):
+    with pytest.raises(so.BodyError, match=words):
+        so.shapes.planar_loop(curves)
+
+
+def box_parts():
+    """Vertices, edges and faces of a cube from -1/2 to 1/2."""
+    body = so.shapes.box(1, 1, 1)
+    return body.vertex_points.copy(), list(body.edge_parts), list(body.face_parts)
+
+
+def reversed_loop(face):
+    return Face(face.charts, tuple((edge, -sense) for edge, sense in face.loop))
+
+
+def one_entry(face, entry):
+    """The face with another first entry in its loop."""
+    return Face(face.charts, (entry, *face.loop[1:]))
+
+
+def moved_vertex(v, e, f):
+    v[0, 0] += 1e-3
+    return v, e, f
+
+
+def nan_vertex(v, e, f):
+    v[3, 1] = NAN
+    return v, e, f
+
+
+def lifted_face(v, e, f):
+    return (
+        v,
+        e,
+        [Face((f[0].charts[0].transformed(np.eye(3), np.full(3, 0.02)),), f[0].loop), *f[1:]],
+    )
+
+
+PARTS = {
+    "a face missing": (lambda v, e, f: (v, e, f[:-1]), "Edge . is open: it bounds 1 faces"),
+    "a face twice": (lambda v, e, f: (v, e, [*f, f[0]]), "Edge . is used too often.* 3 faces"),
+    "an edge missing": (
+        lambda v, e, f: (v, e, [*f[:-1], Face(f[-1].charts, f[-1].loop[1:])]),
+        "Edge . is open",
+    ),
+    "an unknown edge": (
+        lambda v, e, f: (v, e, [*f[:-1], one_entry(f[-1], (99, 1))]),
+        "Face 5 names edge 99; there are 12",
+    ),
+    "an orientation of zero": (
+        lambda v, e, f: (v, e, [*f[:-1], one_entry(f[-1], (f[-1].loop[0][0], 0))]),
+        r"orientation 0; give \+1 or -1",
+    ),
+    "a loop both ways round": (
+        lambda v, e, f: (
+            v, e, [*f[:-1], one_entry(f[-1], (f[-1].loop[0][0], -f[-1].loop[0][1]))]
+        ),
+        "Face 5: its loop runs both ways round",
+    ),
+    "a moved vertex": (moved_vertex, "Edge . misses its vertex 0 by 0.001.*move the vertex"),
+    "a NaN vertex": (nan_vertex, "vertices has a NaN"),
+    "an unknown vertex": (
+        lambda v, e, f: (v, [Edge(e[0].curve, e[0].first, 77), *e[1:]], f),
+        "Edge 0 names vertex 77; there are 8",
+    ),
+    "an edge against its vertices": (
+        lambda v, e, f: (v, [Edge(e[0].curve, e[0].last, e[0].first), *e[1:]], f),
+        "Edge 0 misses its vertex",
+    ),
+    "an open edge without vertices": (
+        lambda v, e, f: (v, [Edge(e[0].curve), *e[1:]], f),
+        "Edge 0 is open: an open edge needs a first and a last vertex",
+    ),
+    "a sharp edge said to be smooth": (
+        lambda v, e, f: (v, [Edge(e[0].curve, e[0].first, e[0].last, True), *e[1:]], f),
+        "Edge 0 is said to be smooth, but",
+    ),
+    "a surface off its edges": (lifted_face, "Edge . leaves the surface of face 0 by"),
+    "a face without a surface": (
+        lambda v, e, f: (v, e, [*f[:-1], Face((), f[-1].loop)]),
+        "Face 5.*(chart|surface)",
+    ),
+    "a vertex of its own": (
+        lambda v, e, f: (np.vstack([v, [[0, 0, 0]]]), e, f),
+        r"Vertices \[8\] belong to no edge",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_parts_that_do_not_fit(name):
+    spoil, words = PARTS[name]
+    so.Body.from_brep(*box_parts())
+    with pytest.raises(ValueError, match=words):
+        so.Body.from_brep(*spoil(*box_parts()))
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"radius": -1}, "radius = -1.0: must be zero or positive"),
+        ({"radius": NAN}, "radius has a NaN"),
+        ({"dimension": 2}, "edges and vertices only, no faces"),
+        ({"dimension": 4}, "dimension.*4"),
+    ],
+)
+def test_options_of_a_body(options, words):
+    with pytest.raises(ValueError, match=words):
+        so.Body.from_brep(*box_parts(), **options)
+
+
+@pytest.mark.parametrize(
+    ("vertices", "words"),
+    [
+        ((), "at least one vertex, edge or face"),
+        ([[1, 2], [3, 4], [5, 6]], r"vertices has shape \(3, 2\)"),
+        ([[1, 2, 3, 4]], r"vertices has shape \(1, 4\)"),
+        ([[0, 0, 0], [1, 0, 0]], r"Vertices \[0, 1\] belong to no edge"),
+        ("here", "vertices is not numeric: 'here'"),
+    ],
+)
+def test_vertices_alone(vertices, words):
+    with pytest.raises(ValueError, match=words):
+        so.Body.from_brep(vertices)
+
+
+def test_a_closed_edge_has_no_vertices():
+    circle = ConicArc((0, 0), (1, 0), (0, 1))
+    with pytest.raises(so.BodyError, match="Edge 0 is closed and has vertices"):
+        so.Body.from_brep([[1, 0, 0]], [Edge(circle, 0, 0)], dimension=2)
+
+
+def test_a_face_past_a_hemisphere_needs_an_atlas():
+    rim = np.sqrt(0.75)
+    edge = Edge(ConicArc((0, 0, -0.5), (rim, 0, 0), (0, rim, 0)))
+    ball = Face((Sphere(np.eye(3), np.zeros(3)),), ((0, 1),))
+    disc = Face((Plane.through((0, 0, -0.5), (0, 1, 0), (1, 0, 0)),), ((0, -1),))
+    with pytest.raises(so.BodyError, match=r"Face 0 does not see the whole of edge 0.*atlas"):
+        so.Body.from_brep(edges=[edge], faces=[ball, disc])
+
+
+def test_inward_loops_are_turned_and_reported():
+    vertices, edges, faces = box_parts()
+    good = so.Body.from_brep(vertices, edges, faces)
+    assert good.check().notes == ()
+    one = so.Body.from_brep(vertices, edges, [*faces[:-1], reversed_loop(faces[-1])])
+    assert one.check().notes == ("face 5: loop given inward, turned outward",)
+    every = so.Body.from_brep(vertices, edges, [reversed_loop(face) for face in faces])
+    assert len(every.check().notes) == 6
+    rng, home = np.random.default_rng(61), so.Pose.identity()
+    for _ in range(50):
+        place = so.Pose.exp(rng.normal(size=3), 2 * rng.normal(size=3))
+        known = so.distance(good, so.shapes.point(), home, place)
+        for turned in (one, every):
+            found = so.distance(turned, so.shapes.point(), home, place)
+            assert found.status is known.status
+            np.testing.assert_equal(found.distance, known.distance)
