@@ -229,3 +229,29 @@ def test_charts_that_a_face_does_not_have():
     for chart in (6, -1, 0.5):
         with pytest.raises(ValueError, match=f"charts 0 to 5, not {chart}"):
             tracker.start_from(HOME, AWAY, ("face", 0), (0.1, 0.2, chart), ("vertex", 0), ())
+
+
+def test_states_and_buffers_of_another_pair():
+    """Their feature numbers would lead outside this pair's arrays."""
+    tracker = so.Tracker(LENS, POINT)
+    for pair, body in (((BOX, POINT), "A"), ((LENS, BOX), "B"), ((POINT, LENS), "A")):
+        other = so.Tracker(*pair)
+        strange = other.start(HOME, AWAY)
+        with pytest.raises(ValueError, match=f"belongs to another pair: its body {body} is <Body"):
+            tracker.step(strange, HOME, AWAY)
+        with pytest.raises(ValueError, match=f"belongs to another pair: its body {body} is <Body"):
+            tracker.buffer(strange)
+    # The same bodies made again are no other pair.
+    again = so.Tracker(so.shapes.lens(1.0, 0.45), so.shapes.point())
+    assert tracker.step(again.start(HOME, AWAY), HOME, AWAY)[1].certified
+    with pytest.raises(ValueError, match=r"buffer belongs to another tracker: .*tracker\.buffer"):
+        tracker.step_into(other.buffer(other.start(HOME, AWAY)))
+    with pytest.raises(TypeError, match=r"None is not a TrackerState: .*tracker\.start"):
+        tracker.step(None, HOME, AWAY)
+
+
+@pytest.mark.parametrize("feature", ["face 0", "face", None, ("face", 0.5), ("face", "0"), 3])
+def test_what_is_no_feature(feature):
+    tracker = so.Tracker(LENS, POINT)
+    with pytest.raises((ValueError, TypeError), match="feature"):
+        tracker.start_from(HOME, AWAY, feature, (0, 0), ("vertex", 0), ())
