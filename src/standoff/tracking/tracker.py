@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
@@ -27,6 +28,8 @@ from standoff.tracking.proximity import Event, Feature, Proximity, feature_of
 from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
+# Turns a segment of the z axis into one of the y axis.
+UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -284,23 +287,23 @@ class Tracker:
     def _prove_overlap(self, out: Array, flat_a: Array, flat_b: Array) -> None:
         """Give an uncertified pair without a positive bound the status OVERLAPPING, if proven.
 
-        The cores overlap where the hulls of their points share one. The witness points join the
-        samples: of a small body inside a large one, close to its surface, the samples alone may
-        miss it.
+        The cores overlap where the hulls of some of their points share one.
         """
-        origin, normal = flat_a[9:], out[K.NORMAL : K.NORMAL + 3]
         turn_a, turn_b = flat_a[:9].reshape(3, 3), flat_b[:9].reshape(3, 3)
-        shift = flat_b[9:] - origin
+        shift = flat_b[9:] - flat_a[9:]
         if not self.a.bounded:
             meet = reaches_into(self.b, turn_a.T @ turn_b, turn_a.T @ shift)
         elif not self.b.bounded:
             meet = reaches_into(self.a, turn_b.T @ turn_a, -(turn_b.T @ shift))
         else:
-            core_a = out[K.POINT_A : K.POINT_A + 3] - self.a.radius * normal - origin
-            core_b = out[K.POINT_B : K.POINT_B + 3] + self.b.radius * normal - origin
-            a = np.vstack([sample_points(self.a) @ turn_a.T, core_a])
-            b = np.vstack([sample_points(self.b) @ turn_b.T + shift, core_b])
-            meet = hulls_meet(a, b)
+            a, b = (sample_points(body) for body in (self.a, self.b))
+            points_a, points_b = a @ turn_a.T, b @ turn_b.T + shift
+            meet = hulls_meet(
+                points_a,
+                points_b,
+                lambda w: turn_a @ support_point(self.a, turn_a.T @ w),
+                lambda w: turn_b @ support_point(self.b, turn_b.T @ w) + shift,
+            )
         if meet:
             out[: K.OUT_MODE] = np.nan
             out[K.OUT_RATE : K.STATUS] = np.nan
@@ -346,3 +349,24 @@ def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
         ``status`` is OVERLAPPING and ``distance`` nan where the bodies touch or overlap.
     """
     return Tracker(a, b).start(pose_a, pose_b).proximity
+
+
+def support_point(body: Body, direction: Array) -> Array:
+    """The farthest point, (3,), of a body's core along a direction, in the body's frame.
+
+    The witness point against a half-space (in the plane, a long segment) that stands off along
+    the direction, square to it.
+    """
+    n = direction / np.linalg.norm(direction)
+    gap = body.size if body.size > 0.0 else 1.0
+    position = float((sample_points(body) @ n).max() + gap) * n
+    if body.dimension == 2:
+        wall = shapes.segment(4.0 * gap).transformed(UPRIGHT)
+        facing = np.array([[n[0], -n[1], 0.0], [n[1], n[0], 0.0], [0.0, 0.0, 1.0]])
+    else:
+        wall = shapes.halfspace()
+        x = np.cross(np.eye(3)[int(np.abs(n).argmin())], n)
+        x /= np.linalg.norm(x)
+        facing = np.column_stack([x, np.cross(-n, x), -n])
+    answer = distance(body, wall, Pose.identity(), Pose(facing, position))
+    return np.asarray(answer.point_a - body.radius * answer.normal)
