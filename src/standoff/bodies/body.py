@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from standoff.bodies.assembly import assemble, edge_points
+from standoff.bodies.assembly import assemble
+from standoff.bodies.charts import edge_points
 from standoff.bodies.packing import Assembled, Ints, pack, without_charts
 from standoff.bodies.sampling import blind_charts, body_box, boundary_samples, check_convex
 from standoff.bodies.topology import BodyError, Edge, Face, check_parts

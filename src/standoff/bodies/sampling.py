@@ -9,7 +9,6 @@ import numpy as np
 from standoff.bodies.packing import Assembled, Chart, Ints, Sample
 from standoff.bodies.topology import BodyError, Edge
 from standoff.geometry.curves import ConicArc, RationalBezier
-from standoff.geometry.surfaces import Cone, Cylinder
 from standoff.geometry.validation import Array
 from standoff.kernels.features import chart_normal, planar_edge_normal
 from standoff.kernels.trimming import on_face
@@ -68,7 +67,7 @@ def face_samples(body: Assembled, ints: Ints, reals: Array, budget: int) -> list
     for k in range(0, len(body.charts), step):
         chart = body.charts[k]
         u0, u1, v0, v1 = _parameter_box(chart)
-        nu = 2 * n if isinstance(chart.surface, Cylinder | Cone) else n
+        nu = 2 * n if chart.surface.periodic else n
         kept = 0
         for count in (n, 3 * n + 2):  # a slender face may miss the first grid
             if kept:

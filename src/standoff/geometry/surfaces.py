@@ -30,6 +30,7 @@ class Surface(ABC):
     linear: Array
     shift: Array
     kind: ClassVar[int]
+    periodic: ClassVar[bool] = False  # u is an angle
     reals: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -112,6 +113,7 @@ class Cylinder(Surface):
     """(cos u, sin u, v); u needs no seam."""
 
     kind = L.CYLINDER
+    periodic = True
 
     def highest(self, direction: Array) -> None:
         return None
@@ -121,6 +123,7 @@ class Cone(Surface):
     """(v cos u, v sin u, v), v >= 0: the apex is at `shift`."""
 
     kind = L.CONE
+    periodic = True
 
     def highest(self, direction: Array) -> None:
         return None

@@ -1,0 +1,148 @@
+"""The charts of a body's faces with their coedges, from the parts as they were given."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from standoff.bodies.packing import Chart, Coedge
+from standoff.bodies.topology import BodyError, Edge, Face
+from standoff.geometry.pcurves import Pcurve, pcurve_of
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
+from standoff.kernels import layout as L
+
+# |u|, |v| of an atlas's gnomonic charts: they overlap from RECHART (1.2) to here.
+ATLAS_LIMIT = 2.0
+# A chart sees a point whose depth (cosine from its centre) is above this.
+CHART_RIM = 1e-3
+EDGE_POINTS = np.linspace(0.05, 0.95, 7)
+
+
+def edge_points(edge: Edge) -> Array:
+    """Points inside an edge, (7, 3), body frame."""
+    c = edge.curve
+    return np.array([c.point(c.first + s * (c.last - c.first)) for s in EDGE_POINTS])
+
+
+def interior_point(vertices: Array, edges: Sequence[Edge], faces: Sequence[Face]) -> Array:
+    """A point inside the convex hull of the boundary."""
+    points = [vertices] if len(vertices) else []
+    points += [edge_points(e) for e in edges]
+    points += [_amid(face, edges) for face in faces]
+    return np.asarray(np.concatenate(points).mean(axis=0))
+
+
+def _amid(face: Face, edges: Sequence[Edge]) -> Array:
+    """Points of a face's surface amid its loop, (n, 3). An atlas's first chart is centred on it."""
+    if not face.loop:
+        return np.array([chart.jet(0.0, 0.0)[0] for chart in face.charts])
+    surface = face.charts[0]
+    if len(face.charts) > 1:
+        return surface.jet(0.0, 0.0)[0][None]
+    curves = [edges[j].curve for j, _ in face.loop if 0 <= j < len(edges)]
+    spots = [
+        pcurve_of(c, surface).point(t) for c in curves for t in np.linspace(c.first, c.last, 9)
+    ]
+    u, v = np.mean([p[:2] for p in spots if p[2] > 0.0] or [(0.0, 0.0)], axis=0)
+    return surface.jet(float(u), float(v))[0][None]
+
+
+def surface_normal(surface: Surface, u: float, v: float) -> Array:
+    jet = surface.jet(u, v)
+    normal = np.cross(jet[1], jet[2])
+    return np.asarray(normal / np.linalg.norm(normal))
+
+
+def make_charts(
+    faces: Sequence[Face], edges: Sequence[Edge], inside: Array, bounded: bool
+) -> list[Chart]:
+    charts = []
+    for i, face in enumerate(faces):
+        for surface in face.charts:
+            chart = Chart(surface, i, limit=ATLAS_LIMIT if len(face.charts) > 1 else np.inf)
+            for a in face.apexes:
+                line = Pcurve(L.LINE, np.array([[1.0, 0, 0], [0, 0, a.level], [0, 0, 1.0]]))
+                chart.coedges.append(Coedge(-1 - a.vertex, line, a.lo, a.hi, 1))
+            for j, orientation in face.loop:
+                if not 0 <= j < len(edges):
+                    raise BodyError(f"Face {i} names edge {j}; there are {len(edges)} edges.")
+                curve = edges[j].curve
+                pcurve = pcurve_of(curve, surface)
+                spans = visible_spans(pcurve, curve.first, curve.last)
+                if len(face.charts) == 1 and spans != [(curve.first, curve.last)]:
+                    raise BodyError(
+                        f"Face {i} does not see the whole of edge {j} in its one gnomonic chart: "
+                        "the face reaches past a hemisphere; give it an atlas of charts."
+                    )
+                chart.coedges += [Coedge(j, pcurve, a, b, orientation) for a, b in spans]
+            if surface.periodic:
+                _join_angles(chart, edges)
+            u, v = _somewhere(chart, edges)
+            x = surface.jet(u, v)[0]
+            facing = surface_normal(surface, u, v) @ (x - inside) if bounded else 1.0
+            chart.outward = 1.0 if facing > 0.0 else -1.0
+            charts.append(chart)
+    return charts
+
+
+def _join_angles(chart: Chart, edges: Sequence[Edge]) -> None:
+    """Shift pcurves on a surface whose u is an angle by whole turns, so that they meet in u."""
+    placed: dict[int, float] = {}
+    waiting = [c for c in chart.coedges if c.edge >= 0 and edges[c.edge].first is not None]
+    while waiting:
+        k = next((k for k, c in enumerate(waiting) if _ends(c, edges).keys() & placed.keys()), 0)
+        c = waiting.pop(k)
+        for vertex, u in _ends(c, edges).items():
+            if vertex in placed:
+                matrix = c.pcurve.matrix.copy()
+                matrix[0] += (
+                    2.0 * np.pi * np.round((placed[vertex] - u) / (2.0 * np.pi)) * matrix[2]
+                )
+                c.pcurve = Pcurve(c.pcurve.kind, matrix)
+                break
+        for vertex, u in _ends(c, edges).items():
+            placed.setdefault(vertex, u)
+
+
+def _ends(c: Coedge, edges: Sequence[Edge]) -> dict[int, float]:
+    """u at the vertices of a coedge."""
+    edge = edges[c.edge]
+    pairs = ((edge.first, c.first), (edge.last, c.last))
+    return {vertex: c.pcurve.point(t)[0] for vertex, t in pairs if vertex is not None}
+
+
+def visible_spans(pcurve: Pcurve, first: float, last: float) -> list[tuple[float, float]]:
+    """The parameter ranges of a pcurve that its chart sees, with a small margin to its rim."""
+    if pcurve.kind == L.LINE:
+        return [(first, last)]
+    a, b, c = pcurve.matrix[2]
+    reach = float(np.hypot(a, b))
+    rim = CHART_RIM * float(np.abs(pcurve.matrix).max()) - c
+    if reach == 0.0 or abs(rim) >= reach:
+        return [(first, last)] if -rim > reach or (reach == 0.0 and rim < 0.0) else []
+    middle, half = float(np.arctan2(b, a)), float(np.arccos(rim / reach))
+    spans = []
+    start = middle - half + 2.0 * np.pi * np.floor((first - middle - half) / (2.0 * np.pi))
+    while start < last:
+        low, high = max(start, first), min(start + 2.0 * half, last)
+        if low < high:
+            spans.append((low, high))
+        start += 2.0 * np.pi
+    return spans
+
+
+def _somewhere(chart: Chart, edges: Sequence[Edge]) -> tuple[float, float]:
+    """Parameters near the face, for signs only."""
+    points = [
+        c.pcurve.point(t)
+        for c in chart.coedges
+        if c.edge >= 0
+        for t in np.linspace(c.first, c.last, 9)
+    ]
+    visible = [p for p in points if p[2] > 0.0]
+    if not visible or chart.limit < np.inf:
+        return 0.0, 0.0
+    mean = np.mean([p[:2] for p in visible], axis=0)
+    return float(mean[0]), float(mean[1])
