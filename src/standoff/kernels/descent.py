@@ -168,6 +168,43 @@ def line_search(pair, R, p, mode, q, step, s, E, descent, noise):
 
 
 @kernel
+def correction(jet_a, jet_b, p, v, w, g, span, w_ff, counts):
+    """(step, g.step): the Newton step; w_ff gets the feedforward of the same factorisation."""
+    H = hessian(jet_a, jet_b)
+    g_t = gradient(feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, v, w))
+    step, forward, _, regularised = law(jet_a, jet_b, g, H, g_t, span)
+    w_ff[0], w_ff[1], w_ff[2], w_ff[3] = forward
+    counts[EVALUATIONS] += 1
+    counts[REGULARISED] += regularised
+    return step, g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
+
+
+@kernel
+def advance(pair, R, p, mode, q, step, E, descent, noise, last_smooth, counts, events):
+    """Walk a step as far as the boundaries and Armijo's rule let it; hold a boundary reached.
+
+    Returns (ok, held, changed, last_smooth, jet_a, jet_b): held where a boundary was reached,
+    changed where the parameters are now another mode's or chart's.
+    """
+    reach, body, hit, index, t = walk_pair(pair, mode, q, step)
+    s, ok, trial, jet_a, jet_b = line_search(pair, R, p, mode, q, step, reach, E, descent, noise)
+    if not ok:
+        return False, False, False, last_smooth, jet_a, jet_b
+    counts[CORRECTIONS] += 1
+    q[0], q[1], q[2], q[3] = trial
+    held = hit != NO_HIT and s == reach
+    if held:
+        last_smooth = take_hit(pair, mode, q, body, hit, index, t, last_smooth, s, counts, events)
+        changed = True
+    else:
+        last_smooth = -1
+        changed = recentre(pair, mode, q, counts)
+    if changed:
+        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+    return True, held, changed, last_smooth, jet_a, jet_b
+
+
+@kernel
 def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
     """Descend to a stationary point of the automaton from (mode, q), changed in place.
 
@@ -180,70 +217,45 @@ def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
     last_slope, last_release = 1e300, 1e300
     last_smooth = -1
     fresh = False
-    ending = EXHAUSTED
     jet_a, jet_b = pair_jets(pair, R, p, mode, q)
     for _ in range(MAX_ITERATIONS):
         dR = sub(jet_a[0], jet_b[0])
         d = norm(dR)
         span = pair_span(pair, p, d)
         if d <= TOUCHING * span:
-            ending = CONTACT
-            break
+            return CONTACT, fresh, jet_a, jet_b
         E = 0.5 * d * d
         noise = ENERGY_NOISE * EPS * span * d
         g = gradient(projection_errors(jet_a, jet_b))
         slope = gradient_norm(jet_a, jet_b, g)
         floor = max(2.0 * GRADIENT_NOISE * EPS * span, tolerance * d)
-        stationary = slope == 0.0 or (slope <= floor and corrections >= least)
-        if not stationary:
-            H = hessian(jet_a, jet_b)
-            g_t = gradient(feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, v, w))
-            step, forward, _, regularised = law(jet_a, jet_b, g, H, g_t, span)
-            for k in range(4):
-                w_ff[k] = forward[k]
+        if slope > 0.0 and (slope > floor or corrections < least):
+            step, descent = correction(jet_a, jet_b, p, v, w, g, span, w_ff, counts)
             fresh = True
-            counts[EVALUATIONS] += 1
-            counts[REGULARISED] += regularised
-            descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
-            if -0.5 * descent <= noise:
-                polish += 1
-                stationary = polish > MAX_POLISH and slope > POLISH_RATIO * last_slope
-            last_slope = slope
-        if not stationary:
-            s, body, hit, index, t = walk_pair(pair, mode, q, step)
-            reach = s
-            s, ok, trial, new_a, new_b = line_search(
-                pair, R, p, mode, q, step, s, E, descent, noise
-            )
-            if ok:
-                corrections += 1
-                counts[CORRECTIONS] += 1
-                q[0], q[1], q[2], q[3] = trial
-                jet_a, jet_b = new_a, new_b
-                if hit != NO_HIT and s == reach:
-                    last_smooth = take_hit(
-                        pair, mode, q, body, hit, index, t, last_smooth, s, counts, events
-                    )
-                    polish, last_slope, fresh = 0, 1e300, False
-                    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-                else:
-                    last_smooth = -1
-                    if recentre(pair, mode, q, counts):
-                        fresh = False
-                        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-                continue
+            in_noise = -0.5 * descent <= noise
+            polish += in_noise
+            if not (in_noise and polish > MAX_POLISH and slope > POLISH_RATIO * last_slope):
+                ok, held, changed, last_smooth, jet_a_new, jet_b_new = advance(
+                    pair, R, p, mode, q, step, E, descent, noise, last_smooth, counts, events
+                )
+                last_slope = slope
+                if ok:
+                    jet_a, jet_b = jet_a_new, jet_b_new
+                    corrections += 1
+                    fresh = not changed
+                    if held:
+                        polish, last_slope = 0, 1e300
+                    continue
         # Stationary, or no step lowers E: test the switching functions.
-        ending = STATIONARY
         if last_release - noise < E:
             stalls += 1
             if stalls > MAX_STALLS:
-                break
+                return STATIONARY, fresh, jet_a, jet_b
         last_release = E
         # a slope below the residual's own is not known to be one
         slope_floor = max(SLOPE, max(SLOPE_NOISE * EPS * span, slope) / d)
         if not release_pair(pair, R, mode, q, dR, slope_floor, counts, events):
-            break
-        ending = EXHAUSTED
+            return STATIONARY, fresh, jet_a, jet_b
         polish, last_slope, fresh = 0, 1e300, False
         jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-    return ending, fresh, jet_a, jet_b
+    return EXHAUSTED, fresh, jet_a, jet_b

@@ -51,6 +51,15 @@ def max_gain(integrator: str, dt: float) -> float:
     return I.STABILITY_LIMITS[number] / positive_number(dt, "dt")
 
 
+def check_stable(integrator: str, gain: float, dt: float) -> None:
+    """Raise ValueError where the paper's law would not be stable."""
+    if gain >= max_gain(integrator, dt):
+        raise ValueError(
+            f"gain = {gain} is not stable for {integrator} at dt = {dt}: stay below "
+            f"{max_gain(integrator, dt):.6g} (so.max_gain)."
+        )
+
+
 def pack_options(
     law: str, predictor: str, integrator: str, gain: float | None, dt: float, tolerance: float
 ) -> NDArray[np.float64]:
@@ -63,10 +72,7 @@ def pack_options(
     options[K.O_INTEGRATOR] = choice(integrator, "integrator", INTEGRATORS)
     options[K.O_GAIN] = gain
     options[K.O_TOLERANCE] = positive_number(tolerance, "tolerance", allow_infinite=True)
-    if law == "paper" and gain >= max_gain(integrator, dt):
-        raise ValueError(
-            f"gain = {gain} is not stable for {integrator} at dt = {dt}: stay below "
-            f"{max_gain(integrator, dt):.6g} (so.max_gain)."
-        )
+    if law == "paper":
+        check_stable(integrator, gain, dt)
     options.flags.writeable = False
     return options

@@ -22,7 +22,7 @@ from standoff.tracking.inputs import (
     place,
     same_body,
 )
-from standoff.tracking.options import pack_options, positive_number
+from standoff.tracking.options import check_stable, pack_options, positive_number
 from standoff.tracking.overlap import hulls_meet, reaches_into, sample_points
 from standoff.tracking.proximity import Event, Feature, Proximity, feature_of
 from standoff.tracking.status import Status
@@ -102,7 +102,7 @@ class Tracker:
         check_pair(a, b)
         self.a, self.b = a, b
         self.dt = positive_number(dt, "dt")
-        self.law = law
+        self.law, self.integrator = law, integrator
         self._options = pack_options(law, predictor, integrator, gain, dt, tolerance)
         self._pair = (a.ints, a.reals, b.ints, b.reals)
         self._planar = a.dimension == 2 or b.dimension == 2
@@ -163,7 +163,7 @@ class Tracker:
         """
         self._check_state(state)
         flat_a, flat_b, xi_a, xi_b, has_twist = self._motion(pose_a, pose_b, twist_a, twist_b)
-        h = self.dt if dt is None else positive_number(dt, "dt")
+        h = self.dt if dt is None else self._frame_time(dt)
         data = state.data.copy()
         out = np.empty(K.N_OUT)
         events = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
@@ -193,7 +193,7 @@ class Tracker:
             buffer.twist_a,
             buffer.twist_b,
             buffer.has_twist,
-            self.dt if dt is None else dt,
+            self.dt if dt is None else self._frame_time(dt),
             self._options,
             buffer.state,
             buffer.out,
@@ -207,6 +207,13 @@ class Tracker:
         """Arrays for ``step_into`` that begin at a state."""
         self._check_state(state)
         return FrameBuffer(self, state)
+
+    def _frame_time(self, dt: float) -> float:
+        """A frame's own time, s: positive, and short enough for the paper's law to be stable."""
+        dt = positive_number(dt, "dt")
+        if self.law == "paper":
+            check_stable(self.integrator, float(self._options[K.O_GAIN]), dt)
+        return dt
 
     def _check_state(self, state: TrackerState) -> None:
         """A state of another pair would be read with this one's features."""
