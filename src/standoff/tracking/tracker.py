@@ -186,6 +186,8 @@ class Tracker:
         """
         if buffer.tracker is not self:
             raise ValueError("The buffer belongs to another tracker: make one with tracker.buffer.")
+        if self._planar:
+            check_in_plane(buffer.pose_a, buffer.pose_b)
         bad = kernels.step(
             self._pair,
             buffer.pose_a,
