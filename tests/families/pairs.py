@@ -11,7 +11,7 @@ from families.shapes import Maker, Twin
 from oracles.poses import DrawnPose, Kind, draw_poses, size_of, tilted_pair
 
 TILTS = (0.0, *(10.0**-k for k in range(9, 1, -1)))
-"""Angles between the facing sides of two boxes, radians."""
+"""Angles between two facing flat sides, radians."""
 GAPS = (1e-4, 2.0)
 """Range of the gaps of constructed poses, over the pair's size."""
 FEW_CLOSE: dict[Kind, float] = {"exact": 0.45, "feature": 0.3, "free": 0.2, "close": 0.05}
@@ -22,7 +22,7 @@ PLANAR_SHARES: dict[Kind, float] = {"exact": 0.3, "feature": 0.0, "free": 0.69, 
 
 @dataclass(frozen=True)
 class Family:
-    """Two makers of bodies; ``shares`` of the kinds of poses, or ``tilted`` for facing boxes."""
+    """Two makers of bodies; ``shares`` of the kinds of poses, or ``tilted`` flat sides."""
 
     first: Maker
     second: Maker
@@ -37,6 +37,7 @@ FAMILIES: dict[str, Family] = {
     "lens-point": Family(shapes.lens, shapes.point, FEW_CLOSE),
     "box-box": Family(shapes.box, shapes.box),
     "tilted boxes": Family(shapes.box, shapes.box, tilted=True),
+    "tilted round ends": Family(shapes.flat_topped, shapes.flat_ended, tilted=True),
     "box-lens": Family(shapes.box, shapes.lens, FEW_CLOSE),
     "cylinder-cone": Family(shapes.cylinder, shapes.cone),
     "cylinder-cylinder": Family(shapes.cylinder, shapes.cylinder),

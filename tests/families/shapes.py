@@ -98,6 +98,16 @@ def cap(rng: Rng) -> Twin:
     return Twin(oracle.Cap(radius, height), so.shapes.cap(radius, height))
 
 
+def flat_ended(rng: Rng) -> Twin:
+    """A body whose side facing -z is flat and whose side facing +z may be."""
+    return (box, cylinder, cone, cap)[rng.integers(4)](rng)
+
+
+def flat_topped(rng: Rng) -> Twin:
+    """A body whose side facing +z is flat."""
+    return (box, cylinder)[rng.integers(2)](rng)
+
+
 def polytope(rng: Rng) -> Twin:
     count = int(rng.integers(4, 40))
     vertices = rng.normal(size=(count, 3)) * np.exp(rng.uniform(-1, 1, 3))
