@@ -110,12 +110,12 @@ def flat_solve(rule, jet_a, jet_b, g, H, span):
 def newton_step(rule, jet_a, jet_b, g, p, span, tally):
     H = hessian(jet_a, jet_b)
     still = gradient(feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, ORIGIN, ORIGIN))
-    step, _, _, flat = law(jet_a, jet_b, g, H, still, span)
+    step, _, _, flat, valley = law(jet_a, jet_b, g, H, still, span)
     tally[SOLVES] += 1
     tally[FLAT] += flat
     if flat and rule in (FLOOR, DROP):
         step = flat_solve(rule, jet_a, jet_b, g, H, span)
-    return step
+    return step, valley
 
 
 @compiled
@@ -128,7 +128,7 @@ def clipped(pair, mode, q, step):
 
 
 @compiled
-def advance(rule, pair, R, p, mode, q, step, g, E, noise, counts, events, last_smooth):
+def advance(rule, pair, R, p, mode, q, step, valley, g, E, noise, counts, events, last_smooth):
     """Walk, search and hold, as `settle` does: (moved, the smooth edge passed, hit)."""
     descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
     if rule == CLIP:
@@ -139,11 +139,13 @@ def advance(rule, pair, R, p, mode, q, step, g, E, noise, counts, events, last_s
         s, body, hit, index, t = walk_pair(pair, mode, q, step)
         hit_b = (NO_HIT, -1, 0.0)
     reach = s
-    s, ok, trial, _, _ = line_search(pair, R, p, mode, q, step, s, E, descent, noise)
+    s, ok, on_step, trial, _, _ = line_search(
+        pair, R, p, mode, q, step, valley, s, E, descent, noise
+    )
     if not ok:
         return False, last_smooth, False
     q[0], q[1], q[2], q[3] = trial
-    if s == reach and (hit != NO_HIT or hit_b[0] != NO_HIT):
+    if on_step and s == reach and (hit != NO_HIT or hit_b[0] != NO_HIT):
         passed = -1
         if hit != NO_HIT:
             passed = take_hit(pair, mode, q, body, hit, index, t, last_smooth, s, counts, events)
@@ -182,7 +184,7 @@ def descend(rule, pair, R, p, mode, q, tally):
         slope = gradient_norm(jet_a, jet_b, g)
         stationary = slope <= 2.0 * GRADIENT_NOISE * EPS * span
         if not stationary:
-            step = newton_step(rule, jet_a, jet_b, g, p, span, tally)
+            step, valley = newton_step(rule, jet_a, jet_b, g, p, span, tally)
             gain = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
             if -0.5 * gain <= noise:
                 polish += 1
@@ -190,7 +192,7 @@ def descend(rule, pair, R, p, mode, q, tally):
             last_slope = slope
         if not stationary:
             moved, last_smooth, hit = advance(
-                rule, pair, R, p, mode, q, step, g, E, noise, counts, events, last_smooth
+                rule, pair, R, p, mode, q, step, valley, g, E, noise, counts, events, last_smooth
             )
             if hit:
                 polish, last_slope = 0, 1e300
@@ -293,7 +295,7 @@ def descend_zeroing(pair, R, p, mode, q, tally):
             return CONTACT
         E, noise = 0.5 * d * d, ENERGY_NOISE * EPS * span * d
         g = gradient(projection_errors(jet_a, jet_b))
-        step = newton_step(ZEROING, jet_a, jet_b, g, p, span, tally)
+        step, _ = newton_step(ZEROING, jet_a, jet_b, g, p, span, tally)
         a = (step[0], step[1])
         b = (step[2], step[3])
         if carrier[0] >= 0:
@@ -309,7 +311,7 @@ def descend_zeroing(pair, R, p, mode, q, tally):
             descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
             s, body, hit, index, t = walk_pair(pair, mode, q, step)
             reach = s
-            s, ok, trial, _, _ = line_search(pair, R, p, mode, q, step, s, E, descent, noise)
+            s, ok, _, trial, _, _ = line_search(pair, R, p, mode, q, step, 0, s, E, descent, noise)
             if ok:
                 q[0], q[1], q[2], q[3] = trial
                 for k in range(2):

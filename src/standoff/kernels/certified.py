@@ -37,8 +37,8 @@ def settle_and_weigh(pair, R, p, v, w, mode, q, w_ff, least, goal, tolerance, co
     for _ in range(MAX_STALLS):
         if outcome != UNCERTIFIED:
             break
-        improved, n = polish(pair, R, p, mode, q, counts)
-        if not improved:
+        sharp, n = polish(pair, R, p, mode, q, counts)
+        if not sharp:
             break
         fresh = False
         jet_a, jet_b = pair_jets(pair, R, p, mode, q)

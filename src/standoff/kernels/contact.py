@@ -70,7 +70,9 @@ def scaled_residual(jet_a, jet_b, n, d, span, scales, r):
 
 @kernel
 def polish(pair, R, p, mode, q, counts):
-    """(improved, n): Newton steps on r(y) = 0 in the present mode, q changed in place.
+    """(sharp, n): Newton steps on r(y) = 0 in the present mode, q changed in place.
+
+    n is the common normal found, where the feature pair gives one (`sharp`).
 
     Least squares of least norm serve parallel features, where J is singular and consistent.
     A step that would leave a feature ends it: the caller's switching functions decide then.
@@ -85,7 +87,6 @@ def polish(pair, R, p, mode, q, counts):
     contact_scales(jet_a, jet_b, span, scales)
     d = dot(n, gap)
     error = scaled_residual(jet_a, jet_b, n, d, span, scales, r)
-    improved = False
     for _ in range(CONTACT_STEPS):
         contact_jacobian(jet_a, jet_b, n, d, J)
         for i in range(8):
@@ -107,7 +108,7 @@ def polish(pair, R, p, mode, q, counts):
         if not new_error < error:
             q[0], q[1], q[2], q[3] = old
             break
-        n, d, error, improved = new_n, new_d, new_error, True
+        n, d, error = new_n, new_d, new_error
         counts[CORRECTIONS] += 1
     recentre(pair, mode, q, counts)
-    return improved, n
+    return True, n

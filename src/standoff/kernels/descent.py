@@ -16,7 +16,7 @@ from standoff.kernels.events import (
     log_event,
 )
 from standoff.kernels.features import dimension, feature_jet, moved_jet, pair_span
-from standoff.kernels.feedback import gradient_norm, law
+from standoff.kernels.feedback import gradient_norm, law, stiff_step
 from standoff.kernels.switching import across as across_edge
 from standoff.kernels.switching import (
     is_smooth,
@@ -39,6 +39,7 @@ from standoff.kernels.tolerances import (
     SLOPE,
     SLOPE_NOISE,
     TOUCHING,
+    VALLEY_STEPS,
 )
 from standoff.kernels.trimming import HIT_COEDGE, HIT_LIMIT, NO_HIT, walk
 from standoff.kernels.vectors import norm, rotate_back, scale, sub
@@ -150,8 +151,30 @@ def release_pair(pair, R, mode, q, dR, slope_floor, counts, events):
 
 
 @kernel
-def line_search(pair, R, p, mode, q, step, s, E, descent, noise):
-    """Halve s until Armijo's rule holds: (s, ok, parameters, jet_a, jet_b)."""
+def to_valley_floor(pair, R, p, mode, trial):
+    """A trial's parameters corrected in the stiff directions, and its jets."""
+    jet_a, jet_b = pair_jets(pair, R, p, mode, trial)
+    for _ in range(VALLEY_STEPS):
+        g = gradient(projection_errors(jet_a, jet_b))
+        step = stiff_step(jet_a, jet_b, g, hessian(jet_a, jet_b))
+        s = walk_pair(pair, mode, trial, step)[0]
+        trial = (
+            trial[0] + s * step[0],
+            trial[1] + s * step[1],
+            trial[2] + s * step[2],
+            trial[3] + s * step[3],
+        )
+        jet_a, jet_b = pair_jets(pair, R, p, mode, trial)
+    return trial, jet_a, jet_b
+
+
+@kernel
+def line_search(pair, R, p, mode, q, step, flat, s, E, descent, noise):
+    """Halve s until Armijo's rule holds: (s, ok, on_step, parameters, jet_a, jet_b).
+
+    `flat` says that H has a flat direction: a trial that fails may then have left a valley's
+    floor, and is brought back to it before it is judged again (on_step False).
+    """
     for halving in range(MAX_HALVINGS + 1):
         trial = (
             q[0] + s * step[0],
@@ -160,39 +183,49 @@ def line_search(pair, R, p, mode, q, step, s, E, descent, noise):
             q[3] + s * step[3],
         )
         jet_a, jet_b = pair_jets(pair, R, p, mode, trial)
-        if energy(jet_a, jet_b) <= E + ARMIJO * s * descent + noise:
-            return s, True, trial, jet_a, jet_b
+        enough = E + ARMIJO * s * descent + noise
+        if energy(jet_a, jet_b) <= enough:
+            return s, True, True, trial, jet_a, jet_b
+        if flat:
+            trial, jet_a, jet_b = to_valley_floor(pair, R, p, mode, trial)
+            if energy(jet_a, jet_b) <= enough:
+                return s, True, False, trial, jet_a, jet_b
         if halving < MAX_HALVINGS:
             s *= 0.5
-    return s, False, trial, jet_a, jet_b
+    return s, False, True, trial, jet_a, jet_b
 
 
 @kernel
 def correction(jet_a, jet_b, p, v, w, g, span, w_ff, counts):
-    """(step, g.step): the Newton step; w_ff gets the feedforward of the same factorisation."""
+    """(step, g.step, flat): the Newton step; w_ff gets the feedforward of the same factorisation.
+
+    flat is 1 where H has a flat direction.
+    """
     H = hessian(jet_a, jet_b)
     g_t = gradient(feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, v, w))
-    step, forward, _, regularised = law(jet_a, jet_b, g, H, g_t, span)
+    step, forward, _, regularised, flat = law(jet_a, jet_b, g, H, g_t, span)
     w_ff[0], w_ff[1], w_ff[2], w_ff[3] = forward
     counts[EVALUATIONS] += 1
     counts[REGULARISED] += regularised
-    return step, g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
+    return step, g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3], flat
 
 
 @kernel
-def advance(pair, R, p, mode, q, step, E, descent, noise, last_smooth, counts, events):
+def advance(pair, R, p, mode, q, step, flat, E, descent, noise, last_smooth, counts, events):
     """Walk a step as far as the boundaries and Armijo's rule let it; hold a boundary reached.
 
     Returns (ok, held, changed, last_smooth, jet_a, jet_b): held where a boundary was reached,
     changed where the parameters are now another mode's or chart's.
     """
     reach, body, hit, index, t = walk_pair(pair, mode, q, step)
-    s, ok, trial, jet_a, jet_b = line_search(pair, R, p, mode, q, step, reach, E, descent, noise)
+    s, ok, on_step, trial, jet_a, jet_b = line_search(
+        pair, R, p, mode, q, step, flat, reach, E, descent, noise
+    )
     if not ok:
         return False, False, False, last_smooth, jet_a, jet_b
     counts[CORRECTIONS] += 1
     q[0], q[1], q[2], q[3] = trial
-    held = hit != NO_HIT and s == reach
+    held = hit != NO_HIT and s == reach and on_step
     if held:
         last_smooth = take_hit(pair, mode, q, body, hit, index, t, last_smooth, s, counts, events)
         changed = True
@@ -230,13 +263,13 @@ def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
         slope = gradient_norm(jet_a, jet_b, g)
         floor = max(2.0 * GRADIENT_NOISE * EPS * span, tolerance * d)
         if slope > 0.0 and (slope > floor or corrections < least):
-            step, descent = correction(jet_a, jet_b, p, v, w, g, span, w_ff, counts)
+            step, descent, flat = correction(jet_a, jet_b, p, v, w, g, span, w_ff, counts)
             fresh = True
             in_noise = -0.5 * descent <= noise
             polish += in_noise
             if not (in_noise and polish > MAX_POLISH and slope > POLISH_RATIO * last_slope):
                 ok, held, changed, last_smooth, jet_a_new, jet_b_new = advance(
-                    pair, R, p, mode, q, step, E, descent, noise, last_smooth, counts, events
+                    pair, R, p, mode, q, step, flat, E, descent, noise, last_smooth, counts, events
                 )
                 last_slope = slope
                 if ok:

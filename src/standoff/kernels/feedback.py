@@ -10,7 +10,7 @@ from math import sqrt
 import numpy as np
 
 from standoff.kernels.compiling import kernel
-from standoff.kernels.tolerances import EPS, GRADIENT_NOISE, NEGATIVE, PIVOT, REACH
+from standoff.kernels.tolerances import EPS, GRADIENT_NOISE, NEGATIVE, PIVOT, REACH, STIFF
 from standoff.kernels.vectors import dot
 
 
@@ -115,12 +115,8 @@ def negate(a):
 
 
 @kernel
-def decomposed_solve(H, g, g_t, noise, scale):
-    """Newton step and feedforward where H is not safely positive definite (whitened).
-
-    Magnitudes for negative eigenvalues; a flat direction without slope is dropped (minimum
-    norm: truly parallel), one with a slope is walked REACH scales, to its face's boundary.
-    """
+def eigen(H):
+    """(values, V, top) of a whitened H: ascending eigenvalues, vectors in columns, the largest."""
     A = np.empty((4, 4))
     k = 0
     for i in range(4):
@@ -129,7 +125,17 @@ def decomposed_solve(H, g, g_t, noise, scale):
             A[j, i] = H[k]
             k += 1
     values, V = np.linalg.eigh(A)
-    top = max(abs(values[0]), abs(values[3]))
+    return values, V, max(abs(values[0]), abs(values[3]))
+
+
+@kernel
+def decomposed_solve(H, g, g_t, noise, scale):
+    """Newton step and feedforward where H is not safely positive definite (whitened).
+
+    Magnitudes for negative eigenvalues; a flat direction without slope is dropped (minimum
+    norm: truly parallel), one with a slope is walked REACH scales, to its face's boundary.
+    """
+    values, V, top = eigen(H)
     p = np.zeros(4)
     w = np.zeros(4)
     for i in range(4):
@@ -156,10 +162,31 @@ def decomposed_solve(H, g, g_t, noise, scale):
 
 
 @kernel
-def law(jet_a, jet_b, g, H, g_t, scale):
-    """(p, w_ff, slope, regularised): p = -H⁻¹ g, w_ff = -H⁻¹ g_t, |g| in the metric D.
+def stiff_step(jet_a, jet_b, g, H):
+    """The part of the Newton step that lies in the stiff directions of H alone.
 
-    Eq. (12) is w = K p + w_ff. `regularised` is 1 where H had to be decomposed.
+    A long step in a flat direction of curved features leaves the valley's floor (a rim's witness
+    moves on a circle, its partner on a plane straight on); this brings it back.
+    """
+    ia = metric_inverse(jet_a[1], jet_a[2])
+    ib = metric_inverse(jet_b[1], jet_b[2])
+    gw = whiten_gradient(ia, ib, g)
+    values, V, top = eigen(whiten_hessian(ia, ib, H))
+    p = np.zeros(4)
+    for i in range(4):
+        if values[i] > STIFF * top:
+            slope = V[0, i] * gw[0] + V[1, i] * gw[1] + V[2, i] * gw[2] + V[3, i] * gw[3]
+            for j in range(4):
+                p[j] -= V[j, i] * slope / values[i]
+    return unwhiten_step(ia, ib, (p[0], p[1], p[2], p[3]))
+
+
+@kernel
+def law(jet_a, jet_b, g, H, g_t, scale):
+    """(p, w_ff, slope, regularised, flat): p = -H⁻¹ g, w_ff = -H⁻¹ g_t, |g| in the metric D.
+
+    Eq. (12) is w = K p + w_ff. `regularised` is 1 where H had to be decomposed, `flat` 1 where
+    it has a direction that is not stiff.
     """
     ia = metric_inverse(jet_a[1], jet_a[2])
     ib = metric_inverse(jet_b[1], jet_b[2])
@@ -172,10 +199,11 @@ def law(jet_a, jet_b, g, H, g_t, scale):
     least = min(min(f[0], f[1]), min(f[2], f[3]))
     if least > PIVOT * top:
         p, w = negate(ldl_solve(f, gw)), negate(ldl_solve(f, tw))
-        return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), slope, 0
+        flat = 0 if least > STIFF * top else 1
+        return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), slope, 0, flat
     noise = GRADIENT_NOISE * EPS * scale
     p, w = decomposed_solve(Hw, gw, tw, noise, scale)
-    return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), slope, 1
+    return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), slope, 1, 1
 
 
 @kernel

@@ -20,6 +20,11 @@ GRADIENT_NOISE = 16.0
 # walked to the boundary of its face, which is never farther than one diameter.
 REACH = 4.0
 
+# Directions of H above STIFF of its largest eigenvalue (dimensionless) are stiff: the walls of a
+# valley, to whose floor a long step along it is brought back, in VALLEY_STEPS Newton steps.
+STIFF = 1e-3
+VALLEY_STEPS = 2
+
 # Armijo's sufficient decrease (dimensionless): small, as Newton steps are nearly always right.
 ARMIJO = 1e-4
 MAX_HALVINGS = 30
