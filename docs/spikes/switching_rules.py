@@ -38,6 +38,7 @@ from standoff.kernels.feedback import (
 )
 from standoff.kernels.system import feedforward, gradient, hessian, projection_errors
 from standoff.kernels.tolerances import (
+    AT_REST,
     ENERGY_NOISE,
     EPS,
     GRADIENT_NOISE,
@@ -182,7 +183,7 @@ def descend(rule, pair, R, p, mode, q, tally):
         E, noise = 0.5 * d * d, ENERGY_NOISE * EPS * span * d
         g = gradient(projection_errors(jet_a, jet_b))
         slope = gradient_norm(jet_a, jet_b, g)
-        stationary = slope <= 2.0 * GRADIENT_NOISE * EPS * span
+        stationary = slope <= AT_REST * EPS * span
         if not stationary:
             step, valley = newton_step(rule, jet_a, jet_b, g, p, span, tally)
             gain = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]

@@ -96,7 +96,18 @@ def _vertex_geometry(
             sector = _wide_sector(charts, chart, i, edges, ends, u, v)
             if sector is not None:
                 sectors[vertex].append(sector)
-    return sectors, cones
+    return sectors, [_around(cone) for cone in cones]
+
+
+def _around(cone: list[Array]) -> list[Array]:
+    """A vertex's normals in their order around it: the certificate pairs neighbours."""
+    if len(cone) < 4:
+        return cone
+    axis = np.sum(cone, axis=0)
+    axis = axis / np.linalg.norm(axis)
+    x = np.cross(axis, np.eye(3)[int(np.abs(axis).argmin())])
+    y = np.cross(axis, x)
+    return sorted(cone, key=lambda n: float(np.arctan2(n @ y, n @ x)))
 
 
 def _wide_sector(

@@ -39,6 +39,8 @@ def _amid(face: Face, edges: Sequence[Edge]) -> Array:
     if not face.loop:
         return np.array([chart.jet(0.0, 0.0)[0] for chart in face.charts])
     surface = face.charts[0]
+    if surface.periodic:  # its edges surround it, and its angles are not joined yet
+        return np.zeros((0, 3))
     if len(face.charts) > 1:
         return surface.jet(0.0, 0.0)[0][None]
     curves = [edges[j].curve for j, _ in face.loop if 0 <= j < len(edges)]

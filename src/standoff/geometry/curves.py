@@ -121,6 +121,12 @@ class RationalBezier(Curve):
             raise ValueError(f"Bezier weights must be positive: {w}")
         if np.ptp(points, axis=0).max() == 0.0:
             raise ValueError(f"Bezier curve of a single point {points[0]}: spread its points.")
+        for a, b, end in ((points[0], points[1], "first"), (points[-1], points[-2], "last")):
+            if np.array_equal(a, b):
+                raise ValueError(
+                    f"Bezier curve whose {end} two control points are the same, {a}: it has no "
+                    "tangent there; leave one out."
+                )
         homogeneous = np.column_stack([points * w[:, None], w])
         _fill(self, np.concatenate([[float(len(points) - 1)], homogeneous.ravel()]), 0.0, 1.0)
 

@@ -1,5 +1,7 @@
 """From witness points in A's frame to the answer in world axes, with its status and rates."""
 
+from math import inf
+
 import numpy as np
 
 from standoff.kernels import layout as L
@@ -28,6 +30,7 @@ from standoff.kernels.frame import (
 )
 from standoff.kernels.rigid import read_rotation, read_vector
 from standoff.kernels.system import gradient, projection_errors
+from standoff.kernels.tolerances import START_GAP
 from standoff.kernels.vectors import add, axpy, cross, dot, rotate, scale, sub
 
 
@@ -38,9 +41,10 @@ def judge(pair, law_kind, outcome, p, d, bound, tolerance):
     # d is achieved by two points of the cores, so radii that reach that far overlap
     if outcome == TOUCHING_OR_OVERLAPPING or 0.0 < d <= radii:
         return OVERLAPPING
-    if bound > radii and d - bound <= tolerance * pair_span(pair, p, d):
+    goal = START_GAP if tolerance == inf else tolerance
+    if bound > radii and d - bound <= goal * pair_span(pair, p, d):
         return CONVERGED
-    if law_kind == LAW_PAPER:
+    if law_kind == LAW_PAPER or tolerance == inf:
         return TRACKING
     return NOT_CERTIFIED
 

@@ -1,4 +1,4 @@
-"""The certificate of DESIGN 2.5: a lower bound of the true distance from supporting planes."""
+"""The certificate : a lower bound of the true distance from supporting planes."""
 
 from math import inf
 
@@ -173,7 +173,6 @@ def certify(pair, R, p, mode, q, x_a, x_b, hint):
         bound = dot(n, gap) - overhang(ia, ra, x_a, sub(n, cone))
         if bound > best:
             best, normal = bound, n
-    reach = abs(x_a[0]) + abs(x_a[1]) + abs(x_a[2]) + abs(x_b[0]) + abs(x_b[1]) + abs(x_b[2])
-    size = ra[L.SIZE] + rb[L.SIZE]
-    best -= ra[L.SLACK] + rb[L.SLACK] + BOUND_ROUNDINGS * EPS * (reach + size)
+    reach = ra[L.SIZE] + rb[L.SIZE] + norm(x_a) + norm(x_b) + norm(y_b) + norm(p)
+    best -= ra[L.SLACK] + rb[L.SLACK] + BOUND_ROUNDINGS * EPS * reach
     return d, best, normal

@@ -1,4 +1,4 @@
-"""Newton's method on the contact-regular form of DESIGN 2.2, y = (q, n, d).
+"""Newton's method on the contact-regular form, y = (q, n, d).
 
 Near contact H loses rank and the direction of dR its digits; this form keeps both. It is used
 where an answer very near contact is not certified otherwise; the feature pair is held.

@@ -27,9 +27,9 @@ from standoff.kernels.switching import (
 from standoff.kernels.system import energy, feedforward, gradient, hessian, projection_errors
 from standoff.kernels.tolerances import (
     ARMIJO,
+    AT_REST,
     ENERGY_NOISE,
     EPS,
-    GRADIENT_NOISE,
     MAX_HALVINGS,
     MAX_ITERATIONS,
     MAX_POLISH,
@@ -261,7 +261,7 @@ def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
         noise = ENERGY_NOISE * EPS * span * d
         g = gradient(projection_errors(jet_a, jet_b))
         slope = gradient_norm(jet_a, jet_b, g)
-        floor = max(2.0 * GRADIENT_NOISE * EPS * span, tolerance * d)
+        floor = max(AT_REST * EPS * span, tolerance * d)
         if slope > 0.0 and (slope > floor or corrections < least):
             step, descent, flat = correction(jet_a, jet_b, p, v, w, g, span, w_ff, counts)
             fresh = True

@@ -15,15 +15,22 @@ ZERO = (0.0, 0.0, 0.0)
 
 @kernel
 def pair_span(pair, p, d):
-    """The length that roundoff and tolerances are measured by: both cores' sizes and the distance.
+    """The length that roundoff and tolerances are measured by: both cores' sizes, the distance,
+    and how far their boxes' centres stand from their own origins, whose digits are lost.
 
     p is B's origin in A's frame. A half-space has no size: how far off its origin the other body
     stands counts instead.
     """
-    span = pair[1][L.SIZE] + pair[3][L.SIZE] + d
+    span = pair[1][L.SIZE] + pair[3][L.SIZE] + d + offset(pair[1]) + offset(pair[3])
     if pair[0][L.UNBOUNDED] or pair[2][L.UNBOUNDED]:
         span += norm(p)
     return span
+
+
+@kernel
+def offset(reals):
+    """Distance of a body's box centre from its origin."""
+    return norm((reals[L.BOX_CENTRE], reals[L.BOX_CENTRE + 1], reals[L.BOX_CENTRE + 2]))
 
 
 @kernel

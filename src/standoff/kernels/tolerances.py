@@ -13,8 +13,12 @@ PIVOT = 1e-10
 NEGATIVE = 1e-10
 
 # A component of dR along a unit tangent below GRADIENT_NOISE eps scale (length) is the roundoff
-# of dR, no slope. Twice it is the test of stationarity.
+# of dR, no slope.
 GRADIENT_NOISE = 16.0
+
+# A descent is at rest where |g| (length) is below AT_REST eps scale: a few roundings of dR. Less
+# than GRADIENT_NOISE, as a direction that is not flat can still use the digits between.
+AT_REST = 4.0
 
 # Longest step along a direction without curvature, in scales. A flat direction with a slope is
 # walked to the boundary of its face, which is never farther than one diameter.

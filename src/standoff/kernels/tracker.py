@@ -28,6 +28,7 @@ from standoff.kernels.events import (
     tidy_events,
 )
 from standoff.kernels.features import pair_span
+from standoff.kernels.feedback import gradient_norm
 from standoff.kernels.frame import (
     FINE,
     LAW_PAPER,
@@ -59,6 +60,7 @@ from standoff.kernels.rigid import (
     relative_pose,
     relative_twist,
 )
+from standoff.kernels.system import gradient, projection_errors
 from standoff.kernels.tolerances import EPS, SLOPE, SLOPE_NOISE, START_GAP, TOUCHING
 from standoff.kernels.trimming import NO_HIT
 from standoff.kernels.vectors import norm, sub
@@ -97,7 +99,10 @@ def paper_frame(pair, motion, state, options, h, mode, q, counts, events, dq):
     d = norm(dR)
     span = pair_span(pair, p, d)
     if d > TOUCHING * span:
-        floor = max(SLOPE, SLOPE_NOISE * EPS * span / d)
+        # released before it is at rest, a feature is taken back and given up for ever: a slope
+        # must exceed the residual's own
+        slope = gradient_norm(jet_a, jet_b, gradient(projection_errors(jet_a, jet_b)))
+        floor = max(SLOPE, max(SLOPE_NOISE * EPS * span, slope) / d)
         release_pair(pair, R, mode, q, dR, floor, counts, events)
 
 

@@ -30,15 +30,6 @@ def sample_points(body: Body) -> Array:
     return np.asarray(rows[:, :3])
 
 
-def reaches_into(body: Body, rotation: Array, position: Array) -> bool:
-    """Does a body come to z <= 0, a half-space's inside, when posed in the half-space's frame?
-
-    A sample below, or within the swept radius of, the plane proves it.
-    """
-    heights = sample_points(body) @ rotation[2] + position[2]
-    return bool(heights.min() <= body.radius)
-
-
 def separating_direction(a: Array, b: Array) -> Array | None:
     """A direction along which points a, (n, 3), lie below points b, (m, 3); None if their hulls
     meet. A linear program: the greatest t with w.a + t <= c <= w.b - t, |w| <= 1 by components.

@@ -91,7 +91,7 @@ class Proximity:
     distance : float
         Between the witness points, an upper bound of the true distance. nan while overlapping.
     lower_bound : float
-        A certified lower bound of the true distance (DESIGN 2.5).
+        A certified lower bound of the true distance (docs/index.md).
     point_a, point_b : (3,) arrays
         Witness points on A and B.
     normal : (3,) array

@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Status(Enum):
-    """The numbers are those of ``standoff.kernels.tracker``."""
+    """The numbers are those of ``standoff.kernels.frame``."""
 
     CONVERGED = 0
     TRACKING = 1
@@ -22,8 +22,8 @@ class Status(Enum):
 _ADVICE = {
     Status.CONVERGED: "The gap between distance and lower bound is within the tolerance.",
     Status.TRACKING: (
-        "The paper's law is still converging, or lags behind the motion: the lower bound holds; "
-        "raise the gain towards so.max_gain, or shorten the step."
+        "The law is still converging, or lags behind the motion: the lower bound holds; raise the "
+        "paper's gain towards so.max_gain, shorten the step, or give a finite tolerance."
     ),
     Status.OVERLAPPING: (
         "The bodies touch or overlap: there is no distance until they part. The next step starts "

@@ -23,7 +23,7 @@ from standoff.tracking.inputs import (
     same_body,
 )
 from standoff.tracking.options import check_stable, pack_options, positive_number
-from standoff.tracking.overlap import hulls_meet, reaches_into, sample_points
+from standoff.tracking.overlap import hulls_meet, sample_points
 from standoff.tracking.proximity import Event, Feature, Proximity, feature_of
 from standoff.tracking.status import Status
 
@@ -38,7 +38,7 @@ class TrackerState:
 
     Attributes
     ----------
-    data : (39,) read-only array, laid out in ``standoff.kernels.tracker``.
+    data : (39,) read-only array, laid out in ``standoff.kernels.frame``.
     proximity : the answer at the frame of this state.
     """
 
@@ -67,7 +67,7 @@ class Tracker:
     dt : float
         Frame time, s; ``step`` may be given another where frames are uneven.
     law : "predictor-corrector" or "paper"
-        Predict with the feedforward and correct with one Newton step (DESIGN 2.3), or integrate
+        Predict with the feedforward and correct with one Newton step (docs/index.md), or integrate
         the paper's law w = -M⁻¹(K Psi + b), Eq. (12), from the previous frame to this one.
     predictor : "feedforward-2", "feedforward", "secant" or "none"
         Two-step or one-step prediction with the twists; the secant of the last two frames, which
@@ -181,7 +181,7 @@ class Tracker:
         """One frame on preallocated arrays, for loops that must not allocate.
 
         Reads ``buffer.pose_a`` and the others, writes ``buffer.out`` (laid out in
-        ``standoff.kernels.tracker``) and ``buffer.state`` in place. Returns the distance; where
+        ``standoff.kernels.frame``) and ``buffer.state`` in place. Returns the distance; where
         the answer is uncertified, ``buffer.proximity()`` says why.
         """
         if buffer.tracker is not self:
@@ -203,6 +203,7 @@ class Tracker:
         )
         if bad:
             self._refuse(bad, _matrix(buffer.pose_a), _matrix(buffer.pose_b))
+        self._prove_overlap(buffer.state, buffer.out, buffer.pose_a, buffer.pose_b)
         return float(buffer.out[K.DISTANCE])
 
     def buffer(self, state: TrackerState) -> FrameBuffer:
@@ -274,8 +275,7 @@ class Tracker:
     def _answer(
         self, data: Array, out: Array, log: Array, flat_a: Array, flat_b: Array
     ) -> tuple[TrackerState, Proximity]:
-        if out[K.STATUS] == Status.NOT_CERTIFIED.value and out[K.LOWER_BOUND] <= 0.0:
-            self._prove_overlap(out, flat_a, flat_b)
+        self._prove_overlap(data, out, flat_a, flat_b)
         data.flags.writeable = False
         time = float(data[K.TIME])
         count = int(out[K.OUT_COUNTS + N.EVENTS])
@@ -293,11 +293,14 @@ class Tracker:
             events.append(Event(time, name, source, target, value, slope))
         return tuple(events)
 
-    def _prove_overlap(self, out: Array, flat_a: Array, flat_b: Array) -> None:
+    def _prove_overlap(self, data: Array, out: Array, flat_a: Array, flat_b: Array) -> None:
         """Give an uncertified pair without a positive bound the status OVERLAPPING, if proven.
 
         The cores overlap where the hulls of some of their points share one.
         """
+        uncertain = out[K.STATUS] in (Status.NOT_CERTIFIED.value, Status.TRACKING.value)
+        if not uncertain or out[K.LOWER_BOUND] > 0.0:
+            return
         turn_a, turn_b = flat_a[:9].reshape(3, 3), flat_b[:9].reshape(3, 3)
         shift = flat_b[9:] - flat_a[9:]
         if not self.a.bounded:
@@ -317,23 +320,33 @@ class Tracker:
             out[: K.OUT_MODE] = np.nan
             out[K.OUT_RATE : K.STATUS] = np.nan
             out[K.STATUS] = float(Status.OVERLAPPING.value)
+            data[K.LOST] = 1.0
 
 
 class FrameBuffer:
-    """Arrays of one frame, reused: write the poses (12 numbers: R row-major, p) and twists."""
+    """Arrays of one frame, reused: write into the poses (12 numbers: R row-major, p) and twists.
+
+    The arrays are written into, not replaced: the kernels read them by address.
+    """
 
     def __init__(self, tracker: Tracker, state: TrackerState) -> None:
         self.tracker = tracker
-        self.pose_a = np.zeros(12)
-        self.pose_b = np.zeros(12)
-        self.pose_a[[0, 4, 8]] = 1.0
-        self.pose_b[[0, 4, 8]] = 1.0
-        self.twist_a = np.zeros(6)
-        self.twist_b = np.zeros(6)
         self.has_twist = True
-        self.state = state.data.copy()
-        self.out = np.empty(K.N_OUT)
-        self.events = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
+        identity = np.zeros(12)
+        identity[[0, 4, 8]] = 1.0
+        self._pose_a, self._pose_b = identity, identity.copy()
+        self._twist_a, self._twist_b = np.zeros(6), np.zeros(6)
+        self._state = state.data.copy()
+        self._out = np.full(K.N_OUT, np.nan)
+        self._events = np.zeros(N.MAX_EVENTS * N.EVENT_COLUMNS)
+
+    pose_a = property(lambda self: self._pose_a, doc="(12,) pose of A.")
+    pose_b = property(lambda self: self._pose_b, doc="(12,) pose of B.")
+    twist_a = property(lambda self: self._twist_a, doc="(6,) twist of A, (v, omega) in world.")
+    twist_b = property(lambda self: self._twist_b, doc="(6,) twist of B, (v, omega) in world.")
+    state = property(lambda self: self._state, doc="The warm start, changed in place.")
+    out = property(lambda self: self._out, doc="The answer, as standoff.kernels.frame lays it out.")
+    events = property(lambda self: self._events, doc="The log of switches, flat.")
 
     def proximity(self) -> Proximity:
         """The last answer as a value."""
@@ -379,3 +392,12 @@ def support_point(body: Body, direction: Array) -> Array:
         facing = np.column_stack([x, np.cross(-n, x), -n])
     answer = distance(body, wall, Pose.identity(), Pose(facing, position))
     return np.asarray(answer.point_a - body.radius * answer.normal)
+
+
+def reaches_into(body: Body, rotation: Array, position: Array) -> bool:
+    """Does a body come to z <= 0, a half-space's inside, when posed in the half-space's frame?
+
+    Its lowest point below, or within the swept radius of, the plane proves it.
+    """
+    lowest = support_point(body, -rotation[2])
+    return bool(rotation[2] @ lowest + position[2] <= body.radius)
