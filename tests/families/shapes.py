@@ -22,7 +22,7 @@ PLANAR = (
     ((-0.5, 0.9), (-0.87, 0.41), (-0.91, -0.27), (-0.6, -0.8)),
     ((-0.6, -0.8), (0.12, -1.04), (0.76, -0.72), (1, 0)),
 )
-"""The planar body of DESIGN 7."""
+"""The planar golden body."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ def half_space(rng: Rng) -> Twin:
 
 
 def loop(rng: Rng) -> Twin:
-    """The planar body of DESIGN 7, stretched along both axes."""
+    """The planar golden body, stretched along both axes."""
     stretch = np.exp(rng.uniform(-1, 1, 2))
     curves = [np.array(points) * stretch for points in PLANAR]
     return Twin(

@@ -1,4 +1,4 @@
-"""The golden values of DESIGN 7; those of moving ellipsoids are in ``test_laws``."""
+"""The golden values of the design; those of moving ellipsoids are in ``test_laws``."""
 
 import numpy as np
 import pytest
