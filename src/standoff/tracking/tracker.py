@@ -203,7 +203,8 @@ class Tracker:
         )
         if bad:
             self._refuse(bad, _matrix(buffer.pose_a), _matrix(buffer.pose_b))
-        self._prove_overlap(buffer.state, buffer.out, buffer.pose_a, buffer.pose_b)
+        if buffer.out[K.STATUS] != K.CONVERGED:
+            self._prove_overlap(buffer.state, buffer.out, buffer.pose_a, buffer.pose_b)
         return float(buffer.out[K.DISTANCE])
 
     def buffer(self, state: TrackerState) -> FrameBuffer:
@@ -275,7 +276,8 @@ class Tracker:
     def _answer(
         self, data: Array, out: Array, log: Array, flat_a: Array, flat_b: Array
     ) -> tuple[TrackerState, Proximity]:
-        self._prove_overlap(data, out, flat_a, flat_b)
+        if out[K.STATUS] != K.CONVERGED:
+            self._prove_overlap(data, out, flat_a, flat_b)
         data.flags.writeable = False
         time = float(data[K.TIME])
         count = int(out[K.OUT_COUNTS + N.EVENTS])
