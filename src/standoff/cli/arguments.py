@@ -15,7 +15,7 @@ SceneFile = Annotated[Positional[Path], arg(metavar="SCENE.toml")]
 
 @dataclass(frozen=True)
 class TrackCommand:
-    """Track a scene's pair over time and sum up what was seen.
+    """Track a scene's pairs over time and sum up what was seen.
 
     Exit codes: 0 done, 1 results could not be written, 2 bad input, 3 finished but not certified.
     """
@@ -25,11 +25,15 @@ class TrackCommand:
     output: Annotated[
         Path | None, arg(aliases=["-o"], metavar="OUT.parquet", help_behavior_hint="")
     ] = None
-    """Write every frame to this Parquet file."""
+    """Write every frame to this Parquet file; of several pairs each to its own,
+    OUT-NAME.parquet."""
     plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
-    """Plot distance, certificate gap and active features to this file (.png, .svg or .pdf)."""
+    """Plot distance, certificate gap and active features to this file (.png, .svg or .pdf); of
+    several pairs each to its own, OUT-NAME.png."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print the summary as JSON, with all events."""
+    pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
+    """Only this one of the scene's [[pairs]]."""
     law: Annotated[str | None, arg(metavar="LAW", help_behavior_hint="")] = None
     """In place of the scene's: predictor-corrector or paper."""
     predictor: Annotated[str | None, arg(metavar="PREDICTOR", help_behavior_hint="")] = None
@@ -48,7 +52,7 @@ class TrackCommand:
 
 @dataclass(frozen=True)
 class DistanceCommand:
-    """Find the certified distance of a scene's pair at one instant.
+    """Find the certified distance of a scene's pairs at one instant.
 
     Exit codes: 0 done, 2 bad input, 3 finished but not certified.
     """
@@ -57,6 +61,8 @@ class DistanceCommand:
     """Scene file; docs/scene-format.md describes the format."""
     time: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
     """Scene time in s; the first frame's if not given."""
+    pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
+    """Only this one of the scene's [[pairs]]."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print the answer as JSON."""
 

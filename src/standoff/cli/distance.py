@@ -4,23 +4,29 @@ from __future__ import annotations
 
 from standoff.cli.arguments import DistanceCommand
 from standoff.cli.errors import ExitCode
-from standoff.cli.facts import answer_facts, json_text
+from standoff.cli.facts import answer_facts, pairs_text
+from standoff.cli.selection import chosen
 from standoff.cli.summary import answer_lines
 from standoff.scene import load_scene, query
 
 
 def run_distance(command: DistanceCommand) -> int:
-    """Print the certified distance at one instant; the exit code says whether it is certified.
+    """Print the pairs' certified distances at one instant; the exit code tells if they are.
 
     Raises
     ------
     SceneError
         If the scene, or the instant, is not usable.
     """
-    scene = load_scene(command.scene)
-    time, answer = query(scene, command.time)
+    whole = load_scene(command.scene)
+    scenes = chosen(whole, command.pair)
+    # All are asked before any is told: a pair that is refused ends the command.
+    answers = [query(scene, command.time) for scene in scenes]
+    told = list(zip(scenes, answers, strict=True))
     if command.json:
-        print(json_text(answer_facts(scene, time, answer)))
+        print(pairs_text(whole, [answer_facts(scene, *answer) for scene, answer in told]))
     else:
-        print("\n".join(answer_lines(scene, time, answer)))
-    return ExitCode.DONE if answer.certified else ExitCode.NOT_CERTIFIED
+        texts = ["\n".join(answer_lines(scene, *answer)) for scene, answer in told]
+        print("\n\n".join(texts))
+    certified = all(answer.certified for _, answer in answers)
+    return ExitCode.DONE if certified else ExitCode.NOT_CERTIFIED

@@ -22,13 +22,26 @@ def json_text(facts: Mapping[str, Any]) -> str:
     return json.dumps(_finite(facts), indent=2, ensure_ascii=False, allow_nan=False)
 
 
-def scene_facts(scene: Scene) -> dict[str, Any]:
-    """Return which scene and pair a result belongs to."""
+def pairs_text(scene: Scene, results: Sequence[Mapping[str, Any]]) -> str:
+    """Return the JSON of all results: one pair's by itself, several as a list under ``pairs``."""
+    if len(results) == 1:
+        return json_text(results[0])
+    return json_text(_file_facts(scene) | {"pairs": results})
+
+
+def _file_facts(scene: Scene) -> dict[str, Any]:
     return {
         "standoff": __version__,
         "scene": scene.file.name,
         "title": scene.title,
         "length_unit": scene.length_unit,
+    }
+
+
+def scene_facts(scene: Scene) -> dict[str, Any]:
+    """Return which scene and pair a result belongs to."""
+    return _file_facts(scene) | {
+        "pair": scene.selected.name,
         "a": scene.pair[0],
         "b": scene.pair[1],
         "notes": scene.notes,

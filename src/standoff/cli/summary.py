@@ -29,7 +29,7 @@ def answer_lines(scene: Scene, time: float, answer: Proximity) -> list[str]:
     """Return the lines that tell one answer."""
     unit = scene.length_unit
     return [
-        line("scene", _scene_text(scene)),
+        *_scene_lines(scene),
         *(line("", note) for note in scene.notes),
         line("time", f"{_time(time)}"),
         line("distance", f"{answer.distance:.15g} {unit}"),
@@ -53,7 +53,7 @@ def recording_lines(
     """Return the lines that sum up a run."""
     frames, certified = len(recording.times), int(np.count_nonzero(recording.certified))
     return [
-        line("scene", _scene_text(scene)),
+        *_scene_lines(scene),
         *(line("", note) for note in scene.notes),
         line("law", _law_text(settings, recording)),
         line("frames", _frames_text(recording)),
@@ -67,9 +67,12 @@ def recording_lines(
     ]
 
 
-def _scene_text(scene: Scene) -> str:
+def _scene_lines(scene: Scene) -> list[str]:
     (a, b), (body_a, body_b) = scene.pair, scene.pair_bodies
-    return f"{scene.title}: A = {a} ({body_a.name}), B = {b} ({body_b.name})"
+    bodies = f"A = {a} ({body_a.name}), B = {b} ({body_b.name})"
+    if len(scene.pairs) == 1:
+        return [line("scene", f"{scene.title}: {bodies}")]
+    return [line("scene", scene.title), line("pair", f"{scene.selected.name}: {bodies}")]
 
 
 def _law_text(settings: TrackSettings, recording: Recording) -> str:

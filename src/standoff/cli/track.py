@@ -5,14 +5,16 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 from rich.console import Console
 from rich.progress import Progress
 
 from standoff.cli.arguments import TrackCommand
 from standoff.cli.errors import CommandError, ExitCode
-from standoff.cli.facts import json_text, recording_facts
+from standoff.cli.facts import pairs_text, recording_facts
 from standoff.cli.output import Writer, check_target, write_whole
+from standoff.cli.selection import chosen, target_of
 from standoff.cli.summary import recording_lines
 from standoff.scene import (
     Recording,
@@ -42,18 +44,66 @@ def run_track(command: TrackCommand) -> int:
     WriteError
         If the files could not be written after all.
     """
-    scene = load_scene(command.scene)
-    settings = _settings(scene, command)
-    prepare(scene, settings)
-    _check_files(command)
-    recording = record(scene, settings, _watch)
-    write_whole(_files(command, scene, settings, recording))
-    written = [path for path in (command.output, command.plot) if path is not None]
+    whole = load_scene(command.scene)
+    scenes = chosen(whole, command.pair)
+    runs = [_Run.of(scene, command, scenes) for scene in scenes]
+    for run in runs:
+        prepare(run.scene, run.settings)
+    for run in runs:
+        run.check_files()
+    recordings = [record(run.scene, run.settings, _watch) for run in runs]
+    done = list(zip(runs, recordings, strict=True))
+    write_whole({path: write for run, told in done for path, write in run.files(told).items()})
     if command.json:
-        print(json_text(recording_facts(scene, settings, recording, written)))
+        print(pairs_text(whole, [recording_facts(*run.shown(told)) for run, told in done]))
     else:
-        print("\n".join(recording_lines(scene, settings, recording, written)))
-    return ExitCode.DONE if recording.certified.all() else ExitCode.NOT_CERTIFIED
+        texts = ["\n".join(recording_lines(*run.shown(told))) for run, told in done]
+        print("\n\n".join(texts))
+    certified = all(recording.certified.all() for recording in recordings)
+    return ExitCode.DONE if certified else ExitCode.NOT_CERTIFIED
+
+
+class _Run(NamedTuple):
+    """One pair to be tracked, and where its results go."""
+
+    scene: Scene
+    settings: TrackSettings
+    output: Path | None
+    plot: Path | None
+
+    @classmethod
+    def of(cls, scene: Scene, command: TrackCommand, scenes: tuple[Scene, ...]) -> _Run:
+        output = target_of(command.output, scene, scenes)
+        plot = target_of(command.plot, scene, scenes)
+        return cls(scene, _settings(scene, command), output, plot)
+
+    def check_files(self) -> None:
+        if self.output is not None:
+            check_target(self.output, "-o", TABLE_ENDINGS)
+            # Imported now, so that a missing library is told before the run.
+            import standoff.cli.parquet
+        if self.plot is not None:
+            check_target(self.plot, "--plot", PLOT_ENDINGS)
+            import standoff.cli.plot  # noqa: F401
+
+    def files(self, recording: Recording) -> dict[Path, Writer]:
+        files: dict[Path, Writer] = {}
+        if self.output is not None:
+            from standoff.cli.parquet import write_table
+
+            files[self.output] = lambda path: write_table(
+                path, self.scene, self.settings, recording
+            )
+        if self.plot is not None:
+            from standoff.cli.plot import write_plot
+
+            ending = self.plot.suffix.lower().removeprefix(".")
+            files[self.plot] = lambda path: write_plot(path, ending, self.scene, recording)
+        return files
+
+    def shown(self, recording: Recording) -> tuple[Scene, TrackSettings, Recording, list[Path]]:
+        written = [path for path in (self.output, self.plot) if path is not None]
+        return self.scene, self.settings, recording, written
 
 
 def _settings(scene: Scene, command: TrackCommand) -> TrackSettings:
@@ -69,32 +119,6 @@ def _settings(scene: Scene, command: TrackCommand) -> TrackSettings:
         return scene.settings.overridden(given)
     except SceneError as error:
         raise CommandError(f"--{error.key}: {error.problem}") from error
-
-
-def _check_files(command: TrackCommand) -> None:
-    if command.output is not None:
-        check_target(command.output, "-o", TABLE_ENDINGS)
-        # Imported now, so that a missing library is told before the run.
-        import standoff.cli.parquet
-    if command.plot is not None:
-        check_target(command.plot, "--plot", PLOT_ENDINGS)
-        import standoff.cli.plot  # noqa: F401
-
-
-def _files(
-    command: TrackCommand, scene: Scene, settings: TrackSettings, recording: Recording
-) -> dict[Path, Writer]:
-    files: dict[Path, Writer] = {}
-    if command.output is not None:
-        from standoff.cli.parquet import write_table
-
-        files[command.output] = lambda path: write_table(path, scene, settings, recording)
-    if command.plot is not None:
-        from standoff.cli.plot import write_plot
-
-        ending = command.plot.suffix.lower().removeprefix(".")
-        files[command.plot] = lambda path: write_plot(path, ending, scene, recording)
-    return files
 
 
 def _watch(answers: Iterable[Proximity], total: int) -> Iterable[Proximity]:

@@ -1,4 +1,4 @@
-"""A scene: bodies, where they are, how they move, and which pair of them is tracked."""
+"""A scene: bodies, where they are, how they move, and which pairs of them are tracked."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from standoff.motion import Pose
 from standoff.scene.errors import SceneError
 from standoff.scene.frames import check_time, frame_times, start_time
 from standoff.scene.motions import Motion, at_rest, read_motion
+from standoff.scene.pairs import Pair, read_pairs
 from standoff.scene.placements import read_pose
 from standoff.scene.reader import Array, Table, Value, missing_file, shown, unknown_name
 from standoff.scene.settings import TrackSettings, read_settings
@@ -23,10 +24,25 @@ VERSION = 1
 
 DEFAULT_LENGTH_UNIT = "m"
 
+KEYS = (
+    "version",
+    "title",
+    "length_unit",
+    "bodies",
+    "placements",
+    "motions",
+    "pair",
+    "pairs",
+    "track",
+)
+"""Every key that the top of a scene file may have."""
+
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What a scene file says, checked and built.
+    """What a scene file says, checked and built, seen through one of its pairs.
+
+    `query` and `record` work on the selected pair; `each` gives the scene once for every pair.
 
     Attributes
     ----------
@@ -41,10 +57,10 @@ class Scene:
     bodies : mapping of str to Body
     motions : mapping of str to Motion
         One for each body; bodies at rest have the kind ``fixed``.
-    pair : (str, str)
-        Names of the bodies A and B.
-    settings : TrackSettings
-        The ``[track]`` table.
+    pairs : tuple of Pair
+        At least one, in the file's order; their names differ.
+    selected : Pair
+        The pair that the properties below speak of; `load_scene` selects the first.
     """
 
     file: Path
@@ -53,8 +69,36 @@ class Scene:
     length_unit: str
     bodies: Mapping[str, Body]
     motions: Mapping[str, Motion]
-    pair: tuple[str, str]
-    settings: TrackSettings
+    pairs: tuple[Pair, ...]
+    selected: Pair
+
+    @property
+    def pair(self) -> tuple[str, str]:
+        """Names of the bodies A and B."""
+        return self.selected.a, self.selected.b
+
+    @property
+    def settings(self) -> TrackSettings:
+        """How the pair is tracked: the ``[track]`` table, with the pair's own values over it."""
+        return self.selected.settings
+
+    def select(self, name: str) -> Scene:
+        """Return the same scene seen through the pair of that name.
+
+        Raises
+        ------
+        SceneError
+            If no pair has it.
+        """
+        for pair in self.pairs:
+            if pair.name == name:
+                return replace(self, selected=pair)
+        known = [pair.name for pair in self.pairs]
+        raise SceneError(unknown_name(name, known, "pair"), key="pairs", file=self.file)
+
+    def each(self) -> tuple[Scene, ...]:
+        """Return the scene once for every pair, in the file's order."""
+        return tuple(replace(self, selected=pair) for pair in self.pairs)
 
     @property
     def notes(self) -> list[str]:
@@ -119,14 +163,14 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
         raise SceneError(f"is no TOML: {error}", file=path) from error
     top = Table(content, file=path)
     _check_version(top)
-    top.expect(
-        "version", "title", "length_unit", "bodies", "placements", "motions", "pair", "track"
-    )
+    top.expect(*KEYS)
     bodies = _named(top, "bodies", read_body)
     if not bodies:
         raise top.error("no bodies; add a table such as [bodies.tool]", "bodies")
     placements = _named(top, "placements", read_pose, bodies)
     motions = _named(top, "motions", lambda table: table, bodies)
+    common = read_settings(top.table("track")) if "track" in top else TrackSettings()
+    pairs = read_pairs(top, list(bodies), common)
     return Scene(
         file=path,
         text=text,
@@ -134,8 +178,8 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
         length_unit=top.text("length_unit", DEFAULT_LENGTH_UNIT),
         bodies=bodies,
         motions={name: _motion(name, motions, placements) for name in bodies},
-        pair=_pair(top.table("pair"), bodies),
-        settings=read_settings(top.table("track")) if "track" in top else TrackSettings(),
+        pairs=pairs,
+        selected=pairs[0],
     )
 
 
@@ -187,11 +231,3 @@ def _motion(name: str, motions: Mapping[str, Table], placements: Mapping[str, Po
     if placement is not None and placement.normalised:
         motion = replace(motion, rounded=motion.rounded + 1)
     return motion
-
-
-def _pair(table: Table, bodies: Mapping[str, Body]) -> tuple[str, str]:
-    table.expect("a", "b")
-    a, b = (table.choice(key, list(bodies), noun="body") for key in ("a", "b"))
-    if a == b:
-        raise table.error(f"'{a}' is both a and b; name two different bodies")
-    return a, b

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 
 from standoff.scene.reader import Table
@@ -60,35 +60,45 @@ class TrackSettings:
 NAMES: tuple[str, ...] = tuple(field.name for field in fields(TrackSettings))
 
 
-def read_settings(table: Table) -> TrackSettings:
-    """Return the settings that a ``[track]`` table describes.
+def read_settings(
+    table: Table, usual: TrackSettings | None = None, beside: Sequence[str] = ()
+) -> TrackSettings:
+    """Return the settings that a ``[track]`` table, or a pair's own table, describes.
+
+    Parameters
+    ----------
+    table : Table
+    usual : TrackSettings, optional
+        What holds where the table says nothing; the format's defaults if not given.
+    beside : sequence of str
+        Keys of the table that are no settings.
 
     Raises
     ------
     SceneError
         At an unknown key, law, predictor or integrator, or a number that is not above zero.
     """
-    table.expect(*NAMES)
-    usual = TrackSettings()
+    table.expect(*beside, *NAMES)
+    usual = usual or TrackSettings()
     return TrackSettings(
         law=table.choice("law", list(LAWS), usual.law),
         predictor=table.choice("predictor", list(PREDICTORS), usual.predictor),
         integrator=table.choice("integrator", list(INTEGRATORS), usual.integrator),
-        gain=_optional_positive(table, "gain"),
+        gain=_optional_positive(table, "gain", usual.gain),
         tolerance=table.positive("tolerance", usual.tolerance),
-        step=_step(table),
-        start=table.number("start") if "start" in table else None,
-        duration=_optional_positive(table, "duration"),
+        step=_step(table, usual.step),
+        start=table.number("start") if "start" in table else usual.start,
+        duration=_optional_positive(table, "duration", usual.duration),
     )
 
 
-def _optional_positive(table: Table, key: str) -> float | None:
-    return table.positive(key) if key in table else None
+def _optional_positive(table: Table, key: str, usual: float | None) -> float | None:
+    return table.positive(key) if key in table else usual
 
 
-def _step(table: Table) -> float | str | None:
+def _step(table: Table, usual: float | str | None) -> float | str | None:
     if "step" not in table:
-        return None
+        return usual
     if table.number_or_word("step", SAMPLES) is None:
         return SAMPLES
     return table.positive("step")

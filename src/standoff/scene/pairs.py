@@ -1,0 +1,90 @@
+"""From ``[pair]`` or ``[[pairs]]`` to the pairs that are tracked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from standoff.scene.reader import Table, shown
+from standoff.scene.settings import TrackSettings, read_settings
+
+PLAIN = "-_"
+"""What a pair's name may have beside letters and digits: it becomes part of file names."""
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two bodies that are tracked together.
+
+    Attributes
+    ----------
+    name : str
+        Unique within the scene; letters, digits, ``-`` and ``_``.
+    a, b : str
+        Names of the bodies A and B; the normal points from A to B.
+    settings : TrackSettings
+        The scene's, with the pair's own values over them.
+    """
+
+    name: str
+    a: str
+    b: str
+    settings: TrackSettings
+
+
+def read_pairs(top: Table, bodies: Sequence[str], common: TrackSettings) -> tuple[Pair, ...]:
+    """Return the pairs of a scene, at least one.
+
+    Parameters
+    ----------
+    top : Table
+        The scene's top table, with ``pair`` or ``pairs``.
+    bodies : sequence of str
+        Names of the bodies.
+    common : TrackSettings
+        The ``[track]`` table.
+
+    Raises
+    ------
+    SceneError
+        If neither or both are given, a body is unknown or meets itself, or two names are alike.
+    """
+    if "pairs" not in top:
+        table = top.table("pair")
+        table.expect("a", "b")
+        a, b = _bodies(table, bodies)
+        return (Pair("pair", a, b, common),)
+    if "pair" in top:
+        raise top.error("is given beside [[pairs]]; write it as one more [[pairs]]", "pair")
+    pairs: list[Pair] = []
+    for table in top.tables("pairs"):
+        settings = read_settings(table, common, beside=("name", "a", "b"))
+        a, b = _bodies(table, bodies)
+        name = _name(table, f"{a}-{b}", pairs)
+        pairs.append(Pair(name, a, b, settings))
+    return tuple(pairs)
+
+
+def _bodies(table: Table, bodies: Sequence[str]) -> tuple[str, str]:
+    a, b = (table.choice(key, bodies, noun="body") for key in ("a", "b"))
+    if a == b:
+        raise table.error(f"'{a}' is both a and b; name two different bodies")
+    return a, b
+
+
+def _name(table: Table, usual: str, before: Sequence[Pair]) -> str:
+    name = table.text("name", usual)
+    if not all(letter.isalnum() or letter in PLAIN for letter in name):
+        raise table.error(
+            f"{shown(name)} becomes part of file names: give a name of letters, digits, - and _",
+            "name",
+        )
+    for number, pair in enumerate(before):
+        # Some file systems take names that differ in case only for one.
+        if pair.name.casefold() == name.casefold():
+            raise table.error(
+                f"two pairs are called '{name}', this one and pairs[{number}]; give each its own "
+                "name, it tells their results apart",
+                "name",
+            )
+    return name
