@@ -6,6 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from standoff.motion import (
@@ -90,6 +92,11 @@ MOTION_CASES: list[tuple[str, MotionPath]] = [
         Spiral(2.0, 0.5, 1.5, (1.0, 2.0), 0.2),
     ),
     (
+        '[motions.a]\nkind = "spiral"\nradius = 0\ngrowth = 0.1\nrate = -2\n'
+        'orientation = "turning"\noffset = {position = [0.5, 0]}',
+        Offset(Spiral(0.0, 0.1, -2.0, orientation="turning"), Pose(np.eye(3), (0.5, 0.0, 0.0))),
+    ),
+    (
         '[motions.a]\nkind = "helix"\nradius = 2\npitch = 0.5\nrate = 1.5\n'
         "offset = {position = [0, 0, 1], angle = 0.5}",
         Offset(Helix(2.0, 0.5, 1.5), Pose.exp((0.0, 0.0, 0.5), (0.0, 0.0, 1.0))),
@@ -102,12 +109,17 @@ POSES = [Pose.from_xyzw((0.6, 0.0, 0.0, 0.8), (x, 0.0, 0.0)) for x in (0.0, 1.0,
 
 @pytest.fixture
 def samples(tmp_path: Path) -> Path:
-    """Three uneven samples, written as TUM and as CSV."""
+    """Three uneven samples, written as TUM, as CSV and as Parquet."""
     rows = [(t, x, 0.0, 0.0, 0.6, 0.0, 0.0, 0.8) for t, x in zip(STAMPS, (0, 1, 5), strict=True)]
     lines = [" ".join(map(str, row)) for row in rows]
     (tmp_path / "hand.tum").write_text("# comment\n" + "\n".join(lines) + "\n")
     table = ["t,x,y,z,qx,qy,qz,qw", *(",".join(map(str, row)) for row in rows)]
     (tmp_path / "hand.csv").write_text("\n".join(table) + "\n")
+    columns = zip(table[0].replace("t,", "time,").split(","), zip(*rows, strict=True), strict=True)
+    pq.write_table(
+        pa.table({name: list(map(float, values)) for name, values in columns}),
+        tmp_path / "hand.parquet",
+    )
     return tmp_path
 
 
@@ -136,7 +148,7 @@ def test_motion(load_text: LoadText, table: str, path: MotionPath) -> None:
     assert_same_path(load_text(HEAD + table).motions["a"].path, path, (0.0, 0.3, 2.0))
 
 
-@pytest.mark.parametrize("file", ["hand.tum", "hand.csv"])
+@pytest.mark.parametrize("file", ["hand.tum", "hand.csv", "hand.parquet"])
 def test_samples_keep_the_file_s_times(load_text: LoadText, samples: Path, file: str) -> None:
     scene = load_text(f'{HEAD}[motions.a]\nkind = "samples"\nfile = "{file}"\nstart = "file"\n')
     motion = scene.motions["a"]

@@ -1,4 +1,4 @@
-"""Pose samples from a text file: TUM trajectories and CSV tables."""
+"""Pose samples from a file: TUM trajectories, CSV tables and Parquet tables."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from pathlib import Path
 
 from standoff.motion.pose import Pose
 from standoff.motion.samples import PoseSamples
+from standoff.motion.samples_table import COLUMNS as _COLUMNS
+from standoff.motion.samples_table import parquet_rows
 
-#: The columns of a TUM trajectory, in order; a CSV file names the same ones in its header.
-_COLUMNS = ("t", "x", "y", "z", "qx", "qy", "qz", "qw")
 _TUM_HEADER = "timestamp tx ty tz qx qy qz qw"
 
 
@@ -22,7 +22,9 @@ def read_pose_samples(file: str | os.PathLike[str]) -> PoseSamples:
     ``.tum`` and ``.txt``: a TUM trajectory, ``timestamp tx ty tz qx qy qz qw`` on each line,
     parted by blanks. ``.csv``: a header that names the columns ``t,x,y,z,qx,qy,qz,qw`` in any
     order, then one sample a line. Empty lines and lines that begin with ``#`` are passed over.
-    Times are in seconds and must increase strictly; the quaternions' scalar is ``qw``.
+    ``.parquet``: a table with the columns ``time`` (or ``timestamp``, ``t``), ``x y z`` (or
+    ``tx ty tz``) and ``qx qy qz qw``; others are left alone. Times are in seconds and must
+    increase strictly; the quaternions' scalar is ``qw``.
 
     Parameters
     ----------
@@ -39,54 +41,65 @@ def read_pose_samples(file: str | os.PathLike[str]) -> PoseSamples:
     FileNotFoundError, IsADirectoryError
         If there is no such file.
     ValueError
-        If the ending is none of these or the text is not as above; the message names file and
-        line.
+        If the ending is none of these or the content is not as above; the message names file and
+        line, or row.
+    ModuleNotFoundError
+        If the file is Parquet and pyarrow is not installed.
     """
     path = Path(file)
+    noun, rows = _rows_of(path)
     times: list[float] = []
     poses: list[Pose] = []
-    for line, values in _rows_of(path):
+    for line, values in rows:
         t, x, y, z, qx, qy, qz, qw = values
         if times and t <= times[-1]:
             raise _fault(
                 path,
                 line,
-                f"time {t!r} does not come after {times[-1]!r}, the one before; sort the lines by "
-                "time, and keep one of each",
+                f"time {t!r} does not come after {times[-1]!r}, the one before; sort the {noun}s "
+                "by time, and keep one of each",
+                noun,
             )
         times.append(t)
         try:
             poses.append(Pose.from_xyzw((qx, qy, qz, qw), (x, y, z)))
         except ValueError as error:
-            raise _fault(path, line, f"{error}; the columns are {' '.join(_COLUMNS)}") from error
+            problem = f"{error}; the columns are {' '.join(_COLUMNS)}"
+            raise _fault(path, line, problem, noun) from error
     try:
         return PoseSamples(times, poses)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
 
 
-def _rows_of(path: Path) -> Iterator[tuple[int, list[float]]]:
-    """Yield each sample's line number and its eight numbers in the order of `_COLUMNS`."""
+def _rows_of(path: Path) -> tuple[str, Iterator[tuple[int, list[float]]]]:
+    """Return what a sample's place is called, and the samples: place, numbers by `_COLUMNS`."""
     ending = path.suffix.lower()
-    if ending not in (".tum", ".txt", ".csv"):
+    if ending not in (".tum", ".txt", ".csv", ".parquet"):
         raise ValueError(
-            f"{path}: the ending {ending!r} names no format of pose samples; "
-            "use .tum (or .txt) for a TUM trajectory and .csv for a table with a header"
+            f"{path}: the ending {ending!r} names no format of pose samples; use .tum (or .txt) "
+            "for a TUM trajectory, .csv for a text table with a header, .parquet for a Parquet one"
         )
+    _check_file(path)
+    if ending == ".parquet":
+        return "row", parquet_rows(path)
     lines = _content_lines(path)
-    return _table(path, lines) if ending == ".csv" else _trajectory(path, lines)
+    return "line", _table(path, lines) if ending == ".csv" else _trajectory(path, lines)
+
+
+def _check_file(path: Path) -> None:
+    if path.is_dir():
+        raise IsADirectoryError(f"{path} is a folder: give a file of pose samples")
+    if not path.exists():
+        raise FileNotFoundError(
+            f"{path}: no such file; the path counts from the folder {Path.cwd()}"
+        )
 
 
 def _content_lines(path: Path) -> list[tuple[int, str]]:
-    if path.is_dir():
-        raise IsADirectoryError(f"{path} is a folder: give a file of pose samples")
     try:
         # Spreadsheets write a byte order mark before the first column's name.
         content = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError as error:
-        raise FileNotFoundError(
-            f"{path}: no such file; the path counts from the folder {Path.cwd()}"
-        ) from error
     except UnicodeDecodeError as error:
         raise ValueError(f"{path}: not a text file in UTF-8 ({error.reason})") from error
     numbered = enumerate(content.splitlines(), 1)
@@ -137,5 +150,5 @@ def _numbers(path: Path, line: int, fields: list[str]) -> list[float]:
     return values
 
 
-def _fault(path: Path, line: int, problem: str) -> ValueError:
-    return ValueError(f"{path}, line {line}: {problem}")
+def _fault(path: Path, line: int, problem: str, noun: str = "line") -> ValueError:
+    return ValueError(f"{path}, {noun} {line}: {problem}")

@@ -108,12 +108,12 @@ class Table:
                 raise self.error(unknown_name(key, keys, "key"), key)
 
     def build(self, construct: Callable[[], Value], key: str | None = None) -> Value:
-        """Return ``construct()``, its ValueError, TypeError or OSError told with this place."""
+        """Return ``construct()``, its errors told with this place; a missing extra is one too."""
         try:
             return construct()
         except SceneError:
             raise
-        except (ValueError, TypeError, OSError) as error:
+        except (ValueError, TypeError, OSError, ModuleNotFoundError) as error:
             raise self.error(str(error), key) from error
 
     def required(self, key: str, example: str) -> object:
