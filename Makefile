@@ -7,7 +7,7 @@ CLI := .venv/.installed-cli
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 DECLARED := pyproject.toml constraints.txt
 
-.PHONY: venv demo test lint types layers clean
+.PHONY: venv demo test lint types layers docs clean
 
 venv: $(ALL)
 
@@ -16,7 +16,7 @@ $(BIN)/python:
 	$(PYTHON) -m venv .venv
 
 $(ALL): $(DECLARED) | $(BIN)/python
-	$(PIP) install -q -c constraints.txt -e ".[cli,test,dev,peers]"
+	$(PIP) install -q -c constraints.txt -e ".[cli,test,dev,peers,docs]"
 	@touch $(ALL) $(CLI)
 
 $(CLI): $(DECLARED) | $(BIN)/python
@@ -39,6 +39,9 @@ types: $(ALL)
 
 layers: $(ALL)
 	$(BIN)/lint-imports --no-logo
+
+docs: $(ALL)
+	$(BIN)/sphinx-build -q -W --keep-going -b html docs build/docs
 
 clean:
 	rm -rf build dist .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache

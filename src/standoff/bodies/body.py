@@ -41,10 +41,19 @@ class Body:
     Attributes
     ----------
     name : str
-    dimension : 2 for a planar body (a closed loop of curves in z = 0), 3 for a spatial one.
-    radius : swept-sphere radius added to the core, length.
-    size : diagonal of the box around the body with its radius, length; inf for a half-space.
-    ints, reals : the packed body that the kernels read.
+    vertex_points : (n, 3) array
+        Body frame.
+    edge_parts : tuple of Edge
+    face_parts : tuple of Face
+    radius : float
+        Swept-sphere radius added to the core, length.
+    dimension : int
+        2 for a planar body (a closed loop of curves in z = 0), 3 for a spatial one.
+    ints, reals : array
+        The packed body that the kernels read, as ``standoff.kernels.layout`` says.
+    report : BodyReport
+    size : float
+        Diagonal of the box around the body with its radius, length; inf for a half-space.
     """
 
     name: str
@@ -72,12 +81,17 @@ class Body:
 
         Parameters
         ----------
-        vertices : (n, 3) points, body frame.
-        edges : curves with their vertices; in a spatial body with faces each bounds two faces.
-        faces : surfaces with loops, counterclockwise seen from outside; a loop given the other
-            way round is turned and reported in ``body.check().notes``.
-        radius : swept-sphere radius, length.
-        dimension : 2 for a closed planar loop of edges in z = 0.
+        vertices : (n, 3) array_like
+            Points, body frame.
+        edges : sequence of Edge
+            Curves with their vertices; in a spatial body with faces each bounds two faces.
+        faces : sequence of Face
+            Surfaces with loops, counterclockwise seen from outside; a loop given the other way
+            round is turned and reported in ``body.check().notes``.
+        radius : float
+            Swept-sphere radius, length.
+        dimension : int
+            2 for a closed planar loop of edges in z = 0.
 
         Raises
         ------

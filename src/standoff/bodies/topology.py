@@ -17,7 +17,13 @@ from standoff.geometry.validation import Array
 class Edge:
     """A curve between two vertices; None, None for a closed curve.
 
-    smooth : both faces share their normal along it (G1). None lets the body find out.
+    Parameters
+    ----------
+    curve : Curve
+    first, last : int or None
+        Numbers of the vertices at its ends.
+    smooth : bool or None
+        Both faces share their normal along it (G1). None lets the body find out.
     """
 
     curve: Curve
@@ -28,7 +34,13 @@ class Edge:
 
 @dataclass(frozen=True)
 class Apex:
-    """A side of a face that has collapsed to a vertex: u from lo to hi at v = level."""
+    """A side of a face that has collapsed to a vertex: u from lo to hi at v = level.
+
+    Parameters
+    ----------
+    vertex : int
+    level, lo, hi : float
+    """
 
     vertex: int
     level: float
@@ -40,8 +52,15 @@ class Apex:
 class Face:
     """A surface, or an atlas of overlapping charts of one surface, and its loops of edges.
 
-    loop : (edge, +1 | -1) pairs in any order of loops, counterclockwise seen from outside; -1
-        where the face's boundary runs against the edge's parameter.
+    Parameters
+    ----------
+    charts : tuple of Surface
+        One surface, or the charts of an atlas.
+    loop : tuple of pairs
+        (edge, +1 or -1) in any order of loops, counterclockwise seen from outside; -1 where the
+        face's boundary runs against the edge's parameter.
+    apexes : tuple of Apex
+        Its collapsed sides.
     """
 
     charts: tuple[Surface, ...]

@@ -45,7 +45,7 @@ def max_gain(integrator: str, dt: float) -> float:
     """The largest stable gain of the paper's law, 1/s, for an integrator and a step in s.
 
     The errors obey dPsi/dt = -K Psi, so the limit is that of the integrator on the negative real
-    axis: K dt < 2 for Euler, Heun and midpoint, 2.785 for RK4 (docs/index.md).
+    axis: K dt < 2 for Euler, Heun and midpoint, 2.785 for RK4 (docs/laws.md).
     """
     number = choice(integrator, "integrator", INTEGRATORS)
     return I.STABILITY_LIMITS[number] / positive_number(dt, "dt")

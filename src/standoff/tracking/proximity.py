@@ -35,12 +35,20 @@ class Feature:
 class Counts(NamedTuple):
     """What an answer took.
 
-    evaluations : second-order evaluations of the pair system (one a frame while tracking).
-    corrections : feedback steps applied.
-    switches : changes of feature between the last frame and this one.
-    chart_changes : changes between charts of one face.
-    restarts : global starts after the first.
-    regularised : solves in which the Hessian had to be decomposed.
+    Attributes
+    ----------
+    evaluations : int
+        Second-order evaluations of the pair system (one a frame while tracking).
+    corrections : int
+        Feedback steps applied.
+    switches : int
+        Changes of feature between the last frame and this one.
+    chart_changes : int
+        Changes between charts of one face.
+    restarts : int
+        Global starts after the first.
+    regularised : int
+        Solves in which the Hessian had to be decomposed.
     """
 
     evaluations: int
@@ -54,9 +62,17 @@ class Counts(NamedTuple):
 class Event(NamedTuple):
     """A switch of one body's feature, dated to its frame.
 
-    value : slope of the energy (length) for a release; 1 - s, the part of the step that did not
-        fit, for a boundary reached; nan where a restart changed the feature.
-    slope : slope of the distance along the direction of release; 0 for a boundary reached.
+    Attributes
+    ----------
+    time : float
+        Time of the frame since the tracker's start, s.
+    body : "A" or "B"
+    source, target : Feature
+    value : float
+        Slope of the energy (length) for a release; 1 - s, the part of the step that did not fit,
+        for a boundary reached; nan where a restart changed the feature.
+    slope : float
+        Slope of the distance along the direction of release; 0 for a boundary reached.
     """
 
     time: float
@@ -91,7 +107,7 @@ class Proximity:
     distance : float
         Between the witness points, an upper bound of the true distance. nan while overlapping.
     lower_bound : float
-        A certified lower bound of the true distance (docs/index.md).
+        A certified lower bound of the true distance (docs/certificate.md).
     point_a, point_b : (3,) arrays
         Witness points on A and B.
     normal : (3,) array

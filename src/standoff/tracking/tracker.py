@@ -38,8 +38,10 @@ class TrackerState:
 
     Attributes
     ----------
-    data : (39,) read-only array, laid out in ``standoff.kernels.frame``.
-    proximity : the answer at the frame of this state.
+    data : (39,) array
+        Read-only, laid out in ``standoff.kernels.frame``.
+    proximity : Proximity
+        The answer at the frame of this state.
     """
 
     data: Array
@@ -67,7 +69,7 @@ class Tracker:
     dt : float
         Frame time, s; ``step`` may be given another where frames are uneven.
     law : "predictor-corrector" or "paper"
-        Predict with the feedforward and correct with one Newton step (docs/index.md), or integrate
+        Predict with the feedforward and correct with one Newton step (docs/laws.md), or integrate
         the paper's law w = -M⁻¹(K Psi + b), Eq. (12), from the previous frame to this one.
     predictor : "feedforward-2", "feedforward", "secant" or "none"
         Two-step or one-step prediction with the twists; the secant of the last two frames, which
@@ -116,7 +118,22 @@ class Tracker:
     ) -> TrackerState:
         """Find the witness points globally and certify them.
 
-        Poses are world poses of the bodies' frames; twists are (v, omega) in world axes.
+        Parameters
+        ----------
+        pose_a, pose_b : Pose or what ``Pose.of`` reads
+            World poses of the bodies' frames.
+        twist_a, twist_b : Twist or what ``Twist.of`` reads, optional
+            Velocities at this instant, (v, omega) in world axes.
+
+        Returns
+        -------
+        TrackerState
+            Its ``proximity`` is the answer at these poses.
+
+        Raises
+        ------
+        ValueError
+            No pose or twist, or a planar pair out of its plane.
         """
         return self._start(pose_a, pose_b, twist_a, twist_b, np.zeros(K.N_STATE), 0)
 
@@ -134,12 +151,24 @@ class Tracker:
     ) -> TrackerState:
         """Begin at given features and parameters, as ``Proximity`` gives them.
 
-        Parameters are (u, v) on a face, (u, v, chart) on a face with an atlas (without the
-        chart: the first that holds them), (t,) on an edge, () on a vertex.
-
-        settle : True descends from there to the certified minimum (the default of the
+        Parameters
+        ----------
+        pose_a, pose_b, twist_a, twist_b
+            As in ``start``.
+        feature_a, feature_b : Feature or pair
+            ``("face", 0)`` and the like.
+        parameters_a, parameters_b : sequence of float
+            (u, v) on a face, (u, v, chart) on a face with an atlas (without the chart: the first
+            that holds them), (t,) on an edge, () on a vertex.
+        settle : bool
+            True descends from there to the certified minimum (the default of the
             predictor-corrector), False begins there as it stands (the default of the paper's
             law, whose feedback then does the work).
+
+        Raises
+        ------
+        ValueError
+            As ``start``; no such feature, or parameters outside it.
         """
         state = np.zeros(K.N_STATE)
         place(state, 0, self.a, feature_a, parameters_a)
@@ -158,8 +187,29 @@ class Tracker:
     ) -> tuple[TrackerState, Proximity]:
         """The witness points at the given poses, from the state of the frame before.
 
-        The twists are those at this instant; without any, the prediction is the secant of the
-        last two frames and the rates are nan. One twist given, the other body is at rest.
+        Parameters
+        ----------
+        state : TrackerState
+            Of this pair; it is not changed.
+        pose_a, pose_b : Pose or what ``Pose.of`` reads
+            World poses at the end of the step: the answer holds for them.
+        twist_a, twist_b : Twist or what ``Twist.of`` reads, optional
+            Those at this instant; without any, the prediction is the secant of the last two
+            frames and the rates are nan. One twist given, the other body is at rest.
+        dt : float, optional
+            Time since the frame before, s; the tracker's own if not given.
+
+        Returns
+        -------
+        (TrackerState, Proximity)
+
+        Raises
+        ------
+        TypeError
+            ``state`` is none.
+        ValueError
+            A state of another pair; no pose or twist; a time that is not positive, or too long for
+            the paper's law; a planar pair out of its plane.
         """
         self._check_state(state)
         flat_a, flat_b, xi_a, xi_b, has_twist = self._motion(pose_a, pose_b, twist_a, twist_b)
@@ -367,10 +417,24 @@ def _matrix(flat: Array) -> Array:
 def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
     """The minimum distance of two bodies at two poses: cold, global, certified.
 
+    Parameters
+    ----------
+    a, b : Body
+        Two spatial bodies, or two planar ones.
+    pose_a, pose_b : Pose or what ``Pose.of`` reads
+        World poses of the bodies' frames.
+
     Returns
     -------
     Proximity
         ``status`` is OVERLAPPING and ``distance`` nan where the bodies touch or overlap.
+
+    Raises
+    ------
+    TypeError
+        Not a body.
+    ValueError
+        No pose; a planar body with a spatial one or out of its plane; two half-spaces.
     """
     return Tracker(a, b).start(pose_a, pose_b).proximity
 
