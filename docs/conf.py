@@ -45,10 +45,10 @@ python_use_unqualified_type_names = True
 python_maximum_signature_line_length = 70
 add_module_names = False
 
-# Every reference to a name of this package must lead somewhere; words of a type ("array_like",
-# "shape") and names of other packages are no references.
+# Every reference to a public name must lead somewhere; words of a type ("array_like", "shape"),
+# names of other packages and private types in signatures are no references.
 nitpicky = True
-nitpick_ignore_regex = [("py:.*", r"(?!standoff\.|so\.).*")]
+nitpick_ignore_regex = [("py:.*", r"(?!(standoff|so)(\.(shapes|geometry|motion|scene))?\.\w+$).*")]
 
 # Attributes of several classes share a name (start, end); the type names tell which is meant.
 suppress_warnings = ["ref.python"]
