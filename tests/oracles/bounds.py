@@ -123,7 +123,7 @@ def _nearest_direction(columns: Array) -> tuple[Array | None, Array]:
     return -residual[:3] / residual[3], weights
 
 
-def _cut(a: Placed, b: Placed, start: Array) -> Separation | None:
+def cut(a: Placed, b: Placed, start: Array) -> Separation | None:
     """Bracket the distance of two separated bodies; None once they are shown to overlap."""
     size = pair_size(a, b) + float(np.linalg.norm(b.position - a.position))
     normal = unit(start[None])[0]
@@ -198,7 +198,7 @@ def maximise_separation(a: Placed, b: Placed, n0: ArrayLike | None = None) -> Se
     start = b.position - a.position if n0 is None else np.asarray(n0, dtype=float)
     if not np.linalg.norm(start) > 0:
         start = np.array([1.0, 0.0, 0.0])
-    return _cut(a, b, start) or _deepest(a, b, start)
+    return cut(a, b, start) or _deepest(a, b, start)
 
 
 def overlap(a: Placed, b: Placed) -> bool:
@@ -209,5 +209,5 @@ def overlap(a: Placed, b: Placed) -> bool:
     if _plane_normal(a, b) is not None:
         return maximise_separation(a, b).value <= 0
     start = b.position - a.position
-    found = _cut(a, b, start if np.linalg.norm(start) > 0 else np.array([1.0, 0.0, 0.0]))
+    found = cut(a, b, start if np.linalg.norm(start) > 0 else np.array([1.0, 0.0, 0.0]))
     return found is None or found.value <= 0

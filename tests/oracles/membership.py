@@ -7,10 +7,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .between_poles import Gore, Spindle
 from .features import core_point
+from .formulas import FormulaShape
+from .patches import BezierBody
+from .revolved import Egg, RevolvedHull
+from .rounded_polytopes import RoundedPolytope
 from .shape import Affine, Shape
+from .superellipsoids import Superellipsoid
 from .support import Box, Capsule, Cone, Sphere
 from .surfaces import quadrics
+
+Curved = Superellipsoid | RoundedPolytope | Spindle | Gore | Egg | RevolvedHull
+Curved = Curved | FormulaShape | BezierBody
 
 Array = NDArray[Any]
 
@@ -24,10 +33,12 @@ def outside(shape: Shape, point: ArrayLike) -> float:
     Raises
     ------
     TypeError
-        The shape is neither a set of quadratic inequalities nor a cone, nor swept.
+        The shape is no set of quadratic inequalities, no cone, not swept, nor one that knows.
     """
     p = np.asarray(point, dtype=float)
-    if isinstance(shape, Affine) and isinstance(shape.shape, Cone):
+    if isinstance(shape, Curved):
+        return shape.outside(p)
+    if isinstance(shape, Affine) and isinstance(shape.shape, Cone | Curved):
         back = np.linalg.solve(shape.matrix, p - shape.shift)
         return outside(shape.shape, back) * float(np.linalg.norm(shape.matrix, 2))
     if isinstance(shape, Sphere | Capsule | Box):

@@ -1,0 +1,158 @@
+"""Bodies of revolution about z: the egg, and hulls of revolved planar curves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .loops import Curve, curve_maximum
+from .shape import Shape, directions, unit
+
+Array = NDArray[Any]
+
+BISECTIONS = 70
+"""Halvings of a bracket of angles: enough for extended precision."""
+ANGLES = 720
+"""Directions of half a turn that are looked through for jumps of the support point."""
+JUMP = 1e-6
+"""A support point that moves this far, over the size, in a bisected bracket has jumped."""
+ZOOM = 40
+"""Directions of one round of the search for the direction along which a point is farthest."""
+
+
+def revolve(normals: Array, r: Array, z: Array) -> Array:
+    """Return the points at radius r and height z whose radial direction is that of a normal."""
+    point = r[:, None] * unit(normals * np.array([1.0, 1.0, 0.0]))
+    point[:, 2] = z
+    return point
+
+
+class Egg(Shape):
+    """``r = b sqrt(1 - t²)/(1 + k t)``, ``z = half t``: a circle seen in a partial perspective.
+
+    ``radius`` is the greatest r, at t = -k; b = radius sqrt(1 - k²). Convex for |k| <= sqrt(1/2).
+    """
+
+    def __init__(self, radius: float, length: float, taper: float) -> None:
+        self.half, self.taper = length / 2, float(taper)
+        self.width = radius * float(np.sqrt(1 - taper * taper))
+        self.bounding_radius = float(np.hypot(radius, length / 2))
+
+    def points(self, normals: Array) -> Array:
+        """Bisect the slope of ``n.x`` over the polar angle, which falls through one zero."""
+        across = np.sqrt((normals[:, :2] ** 2).sum(axis=1))
+        pi = np.arctan2(np.zeros_like(across), -np.ones_like(across))
+        low, high = np.zeros_like(across), pi
+        for _ in range(BISECTIONS):
+            angle = (low + high) / 2
+            cos, sin = np.cos(angle), np.sin(angle)
+            wide = self.width * (cos + self.taper) / (1 + self.taper * cos) ** 2
+            rising = across * wide - normals[:, 2] * self.half * sin > 0
+            low, high = np.where(rising, angle, low), np.where(rising, high, angle)
+        angle = (low + high) / 2
+        cos = np.cos(angle)
+        return revolve(
+            normals, self.width * np.sin(angle) / (1 + self.taper * cos), self.half * cos
+        )
+
+    def outside(self, point: ArrayLike) -> float:
+        """How far a point lies outside: first-order, from the quartic."""
+        x, y, z = np.asarray(point, dtype=float)
+        t = z / self.half
+        wide, r2 = 1 + self.taper * t, x * x + y * y
+        if wide <= 0:
+            return float(abs(z) - self.half)
+        value = r2 * wide**2 - self.width**2 * (1 - t * t)
+        across = 2 * np.sqrt(r2) * wide**2
+        along = (2 * r2 * wide * self.taper + 2 * self.width**2 * t) / self.half
+        return float(value / np.hypot(across, along))
+
+
+class RevolvedHull(Shape):
+    """The convex hull of planar ``curves`` (r, z), r >= 0, revolved about the z axis."""
+
+    def __init__(self, curves: Sequence[Curve]) -> None:
+        self.curves = list(curves)
+        rows = np.vstack([c.jet(np.linspace(*c.span, 513))[0] for c in self.curves])
+        self.bounding_radius = float(np.linalg.norm(rows, axis=1).max()) * 1.001
+        self.pieces = self._straight()
+
+    def profile(self, flat: Array) -> Array:
+        """Return the (r, z) farthest along directions (k, 2) with r >= 0."""
+        found = np.stack([curve_maximum(curve, flat.astype(float))[1] for curve in self.curves])
+        chosen = (found * flat).sum(axis=2).argmax(axis=0)
+        return found[chosen, np.arange(len(flat))]
+
+    def points(self, normals: Array) -> Array:
+        across = np.sqrt((normals[:, :2] ** 2).sum(axis=1))
+        found = self.profile(np.column_stack([across, normals[:, 2]]).astype(float))
+        return revolve(normals, found[:, 0], found[:, 1]).astype(normals.dtype)
+
+    def _straight(self) -> list[tuple[float, Array]]:
+        """Return (angle, two end points) of the profile's straight pieces, discs excluded."""
+        edges = np.linspace(-np.pi / 2, np.pi / 2, ANGLES + 1)
+        low, high = edges[:-1], edges[1:]
+        first, last = self._at(low), self._at(high)
+        for _ in range(BISECTIONS):
+            jumps = np.linalg.norm(last - first, axis=1) > JUMP * self.bounding_radius
+            low, high, first, last = low[jumps], high[jumps], first[jumps], last[jumps]
+            if not len(low):
+                break
+            middle = (low + high) / 2
+            half = self._at(middle)
+            nearer = np.linalg.norm(half - first, axis=1) > np.linalg.norm(last - half, axis=1)
+            low, high = np.where(nearer, low, middle), np.where(nearer, middle, high)
+            first = np.where(nearer[:, None], first, half)
+            last = np.where(nearer[:, None], half, last)
+        middle = (low + high) / 2
+        return [(float(a), np.array(e)) for a, *e in zip(middle, first, last, strict=True)]
+
+    def _at(self, angles: Array) -> Array:
+        return self.profile(np.column_stack([np.abs(np.cos(angles)), np.sin(angles)]))
+
+    def maximisers(self, normal: ArrayLike, tolerance: float) -> Array:
+        """A triangle of a disc's rim, both ends of a cone's generator, or the support point."""
+        direction = unit(directions(normal))
+        point = self.points(direction)
+        across = float(np.hypot(direction[0, 0], direction[0, 1]))
+        if across <= tolerance and self._at(np.array([np.pi / 2]))[0, 0] >= 0:
+            rim = self.profile(np.array([[1e-300, np.sign(direction[0, 2])]]))[0]
+            angle = 2 * np.pi * np.arange(3) / 3
+            height = np.full(3, rim[1])
+            return np.stack([rim[0] * np.cos(angle), rim[0] * np.sin(angle), height], axis=1)
+        angle = np.arctan2(direction[0, 2], across)
+        for piece, ends in self.pieces:
+            if abs(piece - angle) <= tolerance:
+                radial = direction[0] * np.array([1, 1, 0]) / across
+                return ends[:, :1] * radial + ends[:, 1:] * np.array([0, 0, 1])
+        return point
+
+    def special_normals(self, rng: np.random.Generator) -> Array:
+        """The axis both ways, and a random normal of every cone."""
+        rows = [np.array([0, 0, 1.0]), np.array([0, 0, -1.0])]
+        for piece, _ in self.pieces:
+            turn = rng.uniform(0, 2 * np.pi)
+            rows.append(
+                np.array(
+                    [np.cos(piece) * np.cos(turn), np.cos(piece) * np.sin(turn), np.sin(piece)]
+                )
+            )
+        return np.array(rows)
+
+    def outside(self, point: ArrayLike) -> float:
+        """How far a point lies outside: greatest height over a supporting line, by zooming in."""
+        x, y, z = np.asarray(point, dtype=float)
+        spot = np.array([np.hypot(x, y), z])
+        low, high = -np.pi / 2, np.pi / 2
+        best = -np.inf
+        for _ in range(7):
+            angles = np.linspace(low, high, ZOOM + 1)
+            flat = np.column_stack([np.abs(np.cos(angles)), np.sin(angles)])
+            heights = flat @ spot - (flat * self.profile(flat)).sum(axis=1)
+            step, centre = (high - low) / ZOOM, angles[heights.argmax()]
+            best = max(best, float(heights.max()))
+            low, high = max(centre - step, -np.pi / 2), min(centre + step, np.pi / 2)
+        return best
