@@ -11,11 +11,16 @@ from standoff.tracking import (
     Feature,
     FrameBuffer,
     Proximity,
+    RecordedEvent,
+    Recording,
+    RunInfo,
     Status,
     Tracker,
     TrackerState,
+    Visit,
     distance,
     max_gain,
+    simulate,
 )
 
 __version__ = "0.1.0"
@@ -32,11 +37,16 @@ __all__ = [
     "FrameBuffer",
     "Pose",
     "Proximity",
+    "RecordedEvent",
+    "Recording",
+    "RunInfo",
     "Status",
     "Tracker",
     "TrackerState",
     "Twist",
+    "Visit",
     "distance",
     "max_gain",
     "shapes",
+    "simulate",
 ]

@@ -34,11 +34,11 @@ def test_example_is_certified_throughout(standoff: Standoff, file: Path) -> None
 def test_demo_visits_faces_edges_and_a_vertex_and_equals_cold_queries() -> None:
     scene = load_scene(EXAMPLES / "demo.toml")
     recording = record(scene)
-    assert {feature.kind for feature in recording.features_b} == {"face", "edge", "vertex"}
+    assert {feature.kind for feature in recording.feature_b} == {"face", "edge", "vertex"}
     assert len(recording.events) > 10
     size = max(body.size for body in scene.pair_bodies)
-    for frame in range(0, len(recording.times), 20):
-        cold = query(scene, float(recording.times[frame]))[1].distance
+    for frame in range(0, len(recording.time), 20):
+        cold = query(scene, float(recording.time[frame]))[1].distance
         assert abs(cold - recording.distance[frame]) <= 1e-10 * size
 
 

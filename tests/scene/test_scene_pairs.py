@@ -58,7 +58,7 @@ def test_each_pair_gives_what_it_gives_alone(load_text: LoadText) -> None:
         assert query(scene.select(name), 0.1)[1].distance == query(other, 0.1)[1].distance
     # The finger sinks at 0.02 m/s towards the table, 0.07 m below its centre's first height.
     found = record(scene.select("finger-table"))
-    np.testing.assert_allclose(found.distance, 0.07 - 0.02 * found.times, atol=1e-14)
+    np.testing.assert_allclose(found.distance, 0.07 - 0.02 * found.time, atol=1e-14)
 
 
 def test_the_single_pair_is_still_one(load_text: LoadText) -> None:

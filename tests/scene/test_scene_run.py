@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -117,11 +117,11 @@ def test_a_run_is_the_tracker_s_own_answers(load_text: LoadText) -> None:
     twist = so.Twist((1.0, 0.0, 0.0), (0.0, 0.5, 1.0))
     path = ConstantTwist(so.Pose(np.eye(3), (-1.0, 0.2, 0.9)), twist)
     rest, still = so.Pose.identity(), so.Twist.zero()
-    steps = np.diff(recording.times)
+    steps = np.diff(recording.time)
     tracker = so.Tracker(a, b, dt=float(steps.max()), predictor="feedforward")
     state = tracker.start(path.pose(0.0), rest, path.twist(0.0), still)
     answers = [state.proximity]
-    for time, step in zip(recording.times[1:].tolist(), steps.tolist(), strict=True):
+    for time, step in zip(recording.time[1:].tolist(), steps.tolist(), strict=True):
         state, answer = tracker.step(state, path.pose(time), rest, path.twist(time), still, step)
         answers.append(answer)
     assert len(answers) == 101
@@ -130,11 +130,11 @@ def test_a_run_is_the_tracker_s_own_answers(load_text: LoadText) -> None:
         np.testing.assert_array_equal(
             getattr(recording, name), [getattr(answer, name) for answer in answers]
         )
-    assert recording.features_b == [answer.feature_b for answer in answers]
+    assert recording.feature_b.tolist() == [answer.feature_b for answer in answers]
     assert [tuple(row) for row in recording.counts] == [answer.counts for answer in answers]
-    assert [r.event for r in recording.events] == [e for answer in answers for e in answer.events]
+    told = [(k, *event[1:4]) for k, answer in enumerate(answers) for event in answer.events]
+    assert [(e.frame, e.body, e.source, e.target) for e in recording.events] == told
     assert recording.events
-    assert all(recording.times[r.frame] == r.time for r in recording.events)
     assert recording.closest() == int(np.argmin(recording.distance))
     assert recording.widest_gap() == int(np.argmax(recording.distance - recording.lower_bound))
     assert recording.total_counts().evaluations == sum(a.counts.evaluations for a in answers)
@@ -143,24 +143,20 @@ def test_a_run_is_the_tracker_s_own_answers(load_text: LoadText) -> None:
 def test_parameters_fill_as_many_columns_as_the_feature_has(load_text: LoadText) -> None:
     recording = record(load_text(f"{HEAD}{TWIST}[track]\nstep = 0.02\nduration = 2\n"))
     wanted = {"face": 2, "edge": 1, "vertex": 0}
-    seen = [wanted[feature.kind] for feature in recording.features_b]
+    seen = [wanted[feature.kind] for feature in recording.feature_b]
     assert (~np.isnan(recording.parameters_b)).sum(axis=1).tolist() == seen
     assert len(set(seen)) > 1
 
 
-def test_the_watcher_sees_every_answer(load_text: LoadText) -> None:
-    seen: list[so.Proximity] = []
-    totals: list[int] = []
-
-    def watch(answers: Iterable[so.Proximity], total: int) -> Iterable[so.Proximity]:
-        totals.append(total)
-        for answer in answers:
-            seen.append(answer)
-            yield answer
-
-    recording = record(load_text(f"{HEAD}{TWIST}[track]\nstep = 0.1\nduration = 1\n"), watch=watch)
-    assert totals == [11]
-    assert [answer.distance for answer in seen] == recording.distance.tolist()
+def test_progress_is_told_to_the_end(load_text: LoadText) -> None:
+    told: list[tuple[int, int]] = []
+    scene = load_text(f"{HEAD}{TWIST}[track]\nstep = 0.005\nduration = 2\n")
+    recording = record(scene, progress=lambda done, total: told.append((done, total)))
+    assert len(recording) == 401
+    assert len(told) > 2
+    assert told == sorted(told)
+    assert {total for _, total in told} == {401}
+    assert told[-1][0] == 401
 
 
 def test_overlap_has_no_distance(load_text: LoadText) -> None:

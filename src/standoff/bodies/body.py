@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -157,6 +158,15 @@ class Body:
     def check(self) -> BodyReport:
         """What construction found and turned."""
         return self.report
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of the packed body, hexadecimal: the same on every machine."""
+        packed = hashlib.sha256()
+        for array, kind in ((self.ints, "<i8"), (self.reals, "<f8")):
+            packed.update(array.size.to_bytes(8, "little"))
+            packed.update(array.astype(kind).tobytes())
+        return packed.hexdigest()
 
     @property
     def bounded(self) -> bool:

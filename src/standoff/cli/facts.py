@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from standoff import __version__
-from standoff.scene import RecordedEvent, Recording, Scene, TrackSettings
+from standoff.scene import Scene, TrackSettings
 from standoff.scene.reader import Array
-from standoff.tracking import Proximity
+from standoff.tracking import Proximity, RecordedEvent, Recording
 
 
 def json_text(facts: Mapping[str, Any]) -> str:
@@ -75,31 +75,23 @@ def frame_facts(recording: Recording, frame: int | None) -> dict[str, Any] | Non
         return None
     return {
         "frame": frame,
-        "time": float(recording.times[frame]),
+        "time": float(recording.time[frame]),
         "distance": float(recording.distance[frame]),
         "lower_bound": float(recording.lower_bound[frame]),
         "point_a": _numbers(recording.point_a[frame]),
         "point_b": _numbers(recording.point_b[frame]),
         "normal": _numbers(recording.normal[frame]),
-        "feature_a": str(recording.features_a[frame]),
-        "feature_b": str(recording.features_b[frame]),
-        "status": recording.statuses[frame].name,
+        "feature_a": str(recording.feature_a[frame]),
+        "feature_b": str(recording.feature_b[frame]),
+        "status": recording.status[frame].name,
     }
 
 
 def event_facts(events: Iterable[RecordedEvent]) -> list[dict[str, Any]]:
     """Return the switching events."""
     return [
-        {
-            "frame": recorded.frame,
-            "time": recorded.time,
-            "body": recorded.event.body,
-            "source": str(recorded.event.source),
-            "target": str(recorded.event.target),
-            "value": recorded.event.value,
-            "slope": recorded.event.slope,
-        }
-        for recorded in events
+        event._asdict() | {"source": str(event.source), "target": str(event.target)}
+        for event in events
     ]
 
 
@@ -110,9 +102,9 @@ def recording_facts(
     widest = recording.widest_gap()
     return scene_facts(scene) | {
         "settings": asdict(settings),
-        "frames": len(recording.times),
-        "start": float(recording.times[0]),
-        "end": float(recording.times[-1]),
+        "frames": len(recording.time),
+        "start": float(recording.time[0]),
+        "end": float(recording.time[-1]),
         "closest": frame_facts(recording, recording.closest()),
         "certified_frames": int(np.count_nonzero(recording.certified)),
         "certified_share": float(np.mean(recording.certified)),

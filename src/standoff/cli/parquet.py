@@ -14,9 +14,9 @@ import numpy as np
 
 from standoff.cli.errors import MissingExtra
 from standoff.cli.facts import event_facts, scene_facts
-from standoff.scene import Recording, Scene, TrackSettings
+from standoff.scene import Scene, TrackSettings
 from standoff.scene.reader import Array
-from standoff.tracking import Counts
+from standoff.tracking import Counts, Recording
 
 try:
     import pyarrow as pa
@@ -35,6 +35,7 @@ EVENT = pa.struct(
         ("target", pa.string()),
         ("value", pa.float64()),
         ("slope", pa.float64()),
+        ("located", pa.bool_()),
     ]
 )
 
@@ -75,7 +76,7 @@ def run_metadata(scene: Scene, settings: TrackSettings) -> dict[str, Any]:
 
 def _columns(recording: Recording) -> dict[str, Any]:
     return {
-        "time": recording.times,
+        "time": recording.time,
         "distance": recording.distance,
         "lower_bound": recording.lower_bound,
         **_components("point_a", recording.point_a),
@@ -85,11 +86,11 @@ def _columns(recording: Recording) -> dict[str, Any]:
         **_components("velocity_a", recording.velocity_a),
         **_components("velocity_b", recording.velocity_b),
         "residual": recording.residual,
-        "feature_a": _words(map(str, recording.features_a)),
-        "feature_b": _words(map(str, recording.features_b)),
+        "feature_a": _words(map(str, recording.feature_a)),
+        "feature_b": _words(map(str, recording.feature_b)),
         "parameters_a": _parameters(recording.parameters_a),
         "parameters_b": _parameters(recording.parameters_b),
-        "status": _words(status.name for status in recording.statuses),
+        "status": _words(status.name for status in recording.status),
         "certified": recording.certified,
         **{name: recording.counts[:, k] for k, name in enumerate(Counts._fields)},
         "events": _events(recording),
@@ -109,7 +110,7 @@ def _parameters(rows: Array) -> Any:
 
 
 def _events(recording: Recording) -> Any:
-    by_frame: list[list[dict[str, Any]]] = [[] for _ in recording.times]
+    by_frame: list[list[dict[str, Any]]] = [[] for _ in recording.time]
     for facts in event_facts(recording.events):
         by_frame[facts.pop("frame")].append(facts)
     return pa.array(by_frame, pa.list_(EVENT))

@@ -10,9 +10,9 @@ from typing import TypeAlias, TypeVar
 import numpy as np
 
 from standoff.cli.errors import MissingExtra
-from standoff.scene import Recording, Scene
+from standoff.scene import Scene
 from standoff.scene.reader import Array
-from standoff.tracking import Feature, Status
+from standoff.tracking import Feature, Recording, Status
 
 try:
     from matplotlib import colormaps
@@ -80,8 +80,8 @@ def write_plot(path: Path, ending: str, scene: Scene, recording: Recording) -> N
     far, gap, band_a, band_b = figure.subplots(
         4, 1, sharex=True, gridspec_kw={"height_ratios": [5.0, 2.5, 1.0, 1.0], **MARGINS}
     )
-    origin = float(recording.times[0]) if abs(recording.times[0]) > LONG_WAY_OFF else 0.0
-    times = recording.times - origin
+    origin = float(recording.time[0]) if abs(recording.time[0]) > LONG_WAY_OFF else 0.0
+    times = recording.time - origin
     _draw_distance(far, times, scene, recording)
     _draw_gap(gap, times, scene, recording)
     _draw_band(band_a, times, recording, "A", scene.pair[0])
@@ -122,7 +122,7 @@ def _draw_distance(axes: Axes, times: Array, scene: Scene, recording: Recording)
 def _shade_overlaps(axes: Axes, times: Array, recording: Recording, *, named: bool) -> None:
     edges = _frame_edges(times)
     label = "overlapping: no distance" if named else "_"
-    for status, first, last in _runs(recording.statuses):
+    for status, first, last in _runs(recording.status.tolist()):
         if status is Status.OVERLAPPING:
             axes.axvspan(edges[first], edges[last], color="0.8", linewidth=0, label=label)
             label = "_"  # one legend entry for all
@@ -171,10 +171,10 @@ def _decades(values: Array) -> tuple[float, float]:
 
 
 def _draw_band(axes: Axes, times: Array, recording: Recording, body: str, name: str) -> None:
-    tracked = recording.features_a if body == "A" else recording.features_b
+    tracked = recording.feature_a if body == "A" else recording.feature_b
     features = [
         None if status is Status.OVERLAPPING else feature
-        for feature, status in zip(tracked, recording.statuses, strict=True)
+        for feature, status in zip(tracked, recording.status, strict=True)
     ]
     colours = _colours({feature for feature in features if feature is not None})
     edges = _frame_edges(times)
@@ -188,11 +188,11 @@ def _draw_band(axes: Axes, times: Array, recording: Recording, body: str, name: 
         )
         if end - start >= LABEL_SHARE * (times[-1] - times[0]):
             _name_run(axes, 0.5 * (start + end), str(feature))
-    offset = float(recording.times[0] - times[0])
+    offset = float(recording.time[0] - times[0])
     switches = [
-        recorded.time - offset
-        for recorded in recording.events
-        if recorded.event.body == body and features[recorded.frame] is not None
+        event.time - offset
+        for event in recording.events
+        if event.body == body and features[event.frame] is not None
     ]
     _shade_overlaps(axes, times, recording, named=False)
     ticks = axes.plot(

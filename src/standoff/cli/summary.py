@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
-from standoff.scene import RecordedEvent, Recording, Scene, TrackSettings
+from standoff.scene import Scene, TrackSettings
 from standoff.scene.reader import Array
-from standoff.tracking import Counts, Event, Proximity, Status
+from standoff.tracking import Counts, Proximity, RecordedEvent, Recording, Status
 
 FIRST_EVENTS = 8
 """How many switching events the summary lists: they fit on a screen with the rest. All of them are
@@ -51,7 +50,7 @@ def recording_lines(
     scene: Scene, settings: TrackSettings, recording: Recording, written: Sequence[Path]
 ) -> list[str]:
     """Return the lines that sum up a run."""
-    frames, certified = len(recording.times), int(np.count_nonzero(recording.certified))
+    frames, certified = len(recording.time), int(np.count_nonzero(recording.certified))
     return [
         *_scene_lines(scene),
         *(line("", note) for note in scene.notes),
@@ -78,17 +77,17 @@ def _scene_lines(scene: Scene) -> list[str]:
 def _law_text(settings: TrackSettings, recording: Recording) -> str:
     if settings.law != "paper":
         return f"{settings.law}, predictor {settings.predictor}"
-    gain = settings.gain or 1.0 / float(np.diff(recording.times).max())
+    gain = settings.gain or 1.0 / float(np.diff(recording.time).max())
     feedforward = ", no feedforward" if settings.predictor == "none" else ""
     return f"{settings.law}, {settings.integrator}, gain {gain:.6g} 1/s{feedforward}"
 
 
 def _frames_text(recording: Recording) -> str:
-    steps = 1e3 * np.diff(recording.times)
+    steps = 1e3 * np.diff(recording.time)
     least, most = f"{steps.min():.4g}", f"{steps.max():.4g}"
     every = f"{most} ms" if least == most else f"{least} to {most} ms"
-    first, last = recording.times[[0, -1]].tolist()
-    return f"{len(recording.times)} from {_time(first)} to {_time(last)}, {every} apart"
+    first, last = recording.time[[0, -1]].tolist()
+    return f"{len(recording.time)} from {_time(first)} to {_time(last)}, {every} apart"
 
 
 def _time(seconds: float) -> str:
@@ -102,8 +101,8 @@ def _closest_text(scene: Scene, recording: Recording) -> str:
         return "no frame has a distance"
     a, b = scene.pair
     return (
-        f"{recording.distance[frame]:.12g} {scene.length_unit} at {_time(recording.times[frame])}, "
-        f"{a} {recording.features_a[frame]} to {b} {recording.features_b[frame]}"
+        f"{recording.distance[frame]:.12g} {scene.length_unit} at {_time(recording.time[frame])}, "
+        f"{a} {recording.feature_a[frame]} to {b} {recording.feature_b[frame]}"
     )
 
 
@@ -113,7 +112,7 @@ def _gap_text(scene: Scene, recording: Recording) -> str:
         return "no frame has a distance"
     return (
         f"{recording.gap[frame]:.3g} {scene.length_unit} (distance − lower bound) "
-        f"at {_time(recording.times[frame])}"
+        f"at {_time(recording.time[frame])}"
     )
 
 
@@ -141,23 +140,12 @@ def _event_lines(scene: Scene, events: Sequence[RecordedEvent]) -> list[str]:
     more = f", the first {FIRST_EVENTS}:" if len(events) > FIRST_EVENTS else ":"
     lines = [line("events", f"{len(events)}{more}")]
     names = dict(zip("AB", scene.pair, strict=True))
-    for recorded in events[:FIRST_EVENTS]:
-        event = recorded.event
-        lines.append(
-            line(
-                "",
-                f"{_time(recorded.time):<12} {names[event.body]}: "
-                f"{event.source} to {event.target}{_cause(event)}",
-            )
-        )
-    return lines
-
-
-def _cause(event: Event) -> str:
-    # The tracker gives a restart no value.
-    if math.isnan(event.value):
-        return ", by a restart"
-    return f", value {event.value:.3g}, slope {event.slope:.3g}"
+    told = (
+        f"{_time(event.time):<12} {names[event.body]}: {event.source} to {event.target}"
+        f"{'' if event.located else ', not located'}"
+        for event in events[:FIRST_EVENTS]
+    )
+    return [*lines, *(line("", text) for text in told)]
 
 
 def _vector(vector: Array) -> str:

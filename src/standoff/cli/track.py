@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
 from rich.console import Console
-from rich.progress import Progress
+from rich.progress import Progress as Bar
 
 from standoff.cli.arguments import TrackCommand
 from standoff.cli.errors import CommandError, ExitCode
@@ -17,7 +18,6 @@ from standoff.cli.output import Writer, check_target, write_whole
 from standoff.cli.selection import chosen, target_of
 from standoff.cli.summary import recording_lines
 from standoff.scene import (
-    Recording,
     Scene,
     SceneError,
     TrackSettings,
@@ -26,7 +26,8 @@ from standoff.scene import (
     record,
 )
 from standoff.scene.settings import SAMPLES
-from standoff.tracking import Proximity
+from standoff.tracking import Recording
+from standoff.tracking.simulate import Progress
 
 TABLE_ENDINGS = (".parquet",)
 PLOT_ENDINGS = (".png", ".svg", ".pdf")
@@ -51,7 +52,8 @@ def run_track(command: TrackCommand) -> int:
         prepare(run.scene, run.settings)
     for run in runs:
         run.check_files()
-    recordings = [record(run.scene, run.settings, _watch) for run in runs]
+    with _progress() as progress:
+        recordings = [record(run.scene, run.settings, progress) for run in runs]
     done = list(zip(runs, recordings, strict=True))
     write_whole({path: write for run, told in done for path, write in run.files(told).items()})
     if command.json:
@@ -121,15 +123,17 @@ def _settings(scene: Scene, command: TrackCommand) -> TrackSettings:
         raise CommandError(f"--{error.key}: {error.problem}") from error
 
 
-def _watch(answers: Iterable[Proximity], total: int) -> Iterable[Proximity]:
+@contextmanager
+def _progress() -> Iterator[Progress | None]:
     """Show a progress bar on stderr where that is a terminal."""
-    return _with_bar(answers, total) if sys.stderr.isatty() else answers
-
-
-def _with_bar(answers: Iterable[Proximity], total: int) -> Iterator[Proximity]:
-    with Progress(console=Console(stderr=True), transient=True) as bar:
+    if not sys.stderr.isatty():
+        yield None
+        return
+    with Bar(console=Console(stderr=True), transient=True) as bar:
         # The kernels are compiled before the first answer and kept on disk for later runs.
-        task = bar.add_task("starting (the very first run compiles)", total=total)
-        for answer in answers:
-            bar.update(task, advance=1, description="tracking")
-            yield answer
+        task = bar.add_task("starting (the very first run compiles)", total=None)
+
+        def show(done: int, total: int) -> None:
+            bar.update(task, completed=done, total=total, description="tracking")
+
+        yield show

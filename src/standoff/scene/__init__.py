@@ -5,15 +5,12 @@ The format is described in ``docs/scene-format.md``.
 
 from standoff.scene.errors import SceneError
 from standoff.scene.motions import Motion
-from standoff.scene.recording import RecordedEvent, Recording
 from standoff.scene.run import prepare, query, record
 from standoff.scene.scene import Scene, load_scene
 from standoff.scene.settings import TrackSettings
 
 __all__ = [
     "Motion",
-    "RecordedEvent",
-    "Recording",
     "Scene",
     "SceneError",
     "TrackSettings",

@@ -11,17 +11,7 @@ from standoff.scene.errors import SceneError
 from standoff.scene.motions import Motion
 from standoff.scene.reader import Array
 from standoff.scene.settings import DEFAULT_STEP, SAMPLES, TrackSettings
-
-MOST_FRAMES = 10_000_000
-"""Most frames of one run. A frame is kept in some 400 bytes, so this many take 4 GB; a greater
-number comes from a step or a duration in the wrong unit."""
-
-WHOLE_STEPS = 1e-9
-"""Part of a step by which a duration may miss a whole number of steps and still count as one.
-
-0.3 / 0.1 is a little less than 3 in double precision; a duration of a million steps is off by a
-few 1e-10 of a step.
-"""
+from standoff.tracking.simulate import MOST_FRAMES, WHOLE_STEPS
 
 
 def time_span(motions: Iterable[Motion]) -> tuple[float, float]:

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+import hashlib
+from dataclasses import asdict, replace
+from typing import Any
 
 import numpy as np
 
 from standoff.scene.errors import SceneError
 from standoff.scene.reader import Array
-from standoff.scene.recording import Recording
 from standoff.scene.scene import Scene
 from standoff.scene.settings import TrackSettings
-from standoff.tracking import Proximity, Tracker, distance
-
-Watch = Callable[[Iterable[Proximity], int], Iterable[Proximity]]
-"""Passes the answers through, given how many will come, and may look on, as a progress bar does."""
+from standoff.tracking import Proximity, Recording, Tracker, distance
+from standoff.tracking.simulate import Progress, track_along
 
 
 def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity]:
@@ -73,7 +72,7 @@ def prepare(scene: Scene, settings: TrackSettings) -> tuple[Tracker, Array]:
 
 
 def record(
-    scene: Scene, settings: TrackSettings | None = None, watch: Watch | None = None
+    scene: Scene, settings: TrackSettings | None = None, progress: Progress | None = None
 ) -> Recording:
     """Track the scene's pair over all frames.
 
@@ -82,8 +81,8 @@ def record(
     scene : Scene
     settings : TrackSettings, optional
         In place of the scene's own.
-    watch : callable, optional
-        What the answers pass through, one by one as they come.
+    progress : callable, optional
+        Called now and then with the frames done and the frames in all.
 
     Returns
     -------
@@ -94,26 +93,33 @@ def record(
     SceneError
         As `prepare`, or if the pair cannot be tracked, as a planar body out of its plane.
     """
-    tracker, times = prepare(scene, settings or scene.settings)
-    recording = Recording.empty(times)
-    answers: Iterable[Proximity] = _answers(tracker, scene, times)
-    for answer in watch(answers, len(times)) if watch is not None else answers:
-        recording.append(answer)
-    return recording
-
-
-def _answers(tracker: Tracker, scene: Scene, times: Array) -> Iterator[Proximity]:
+    settings = settings or scene.settings
+    tracker, times = prepare(scene, settings)
     path_a, path_b = (motion.path for motion in scene.pair_motions)
-    previous = float(times[0])
     try:
-        poses = path_a.pose(previous), path_b.pose(previous)
-        state = tracker.start(*poses, path_a.twist(previous), path_b.twist(previous))
-        yield state.proximity
-        for time in times[1:].tolist():
-            poses = path_a.pose(time), path_b.pose(time)
-            twists = path_a.twist(time), path_b.twist(time)
-            state, answer = tracker.step(state, *poses, *twists, dt=time - previous)
-            previous = time
-            yield answer
+        recording = track_along(tracker, path_a, path_b, times, progress=progress)
     except (ValueError, TypeError) as error:
         raise SceneError(str(error), key="pair", file=scene.file) from error
+    info = replace(
+        recording.info,
+        bodies=scene.pair,
+        title=scene.title,
+        length_unit=scene.length_unit,
+        source=_source(scene, settings),
+    )
+    return replace(recording, info=info)
+
+
+def _source(scene: Scene, settings: TrackSettings) -> dict[str, Any]:
+    """Return what tells a recording's reader how it came about, without this machine's paths."""
+    files = [motion.file for motion in scene.pair_motions if motion.file is not None]
+    return {
+        "scene": scene.file.name,
+        "pair": scene.selected.name,
+        "scene_text": scene.text,
+        "settings": asdict(settings),
+        "notes": scene.notes,
+        "samples_sha256": {
+            file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files
+        },
+    }

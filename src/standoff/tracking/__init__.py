@@ -2,6 +2,8 @@
 
 from standoff.tracking.options import max_gain
 from standoff.tracking.proximity import Counts, Event, Feature, Proximity
+from standoff.tracking.recording import RecordedEvent, Recording, RunInfo, Visit
+from standoff.tracking.simulate import simulate
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import FrameBuffer, Tracker, TrackerState, distance
 
@@ -11,9 +13,14 @@ __all__ = [
     "Feature",
     "FrameBuffer",
     "Proximity",
+    "RecordedEvent",
+    "Recording",
+    "RunInfo",
     "Status",
     "Tracker",
     "TrackerState",
+    "Visit",
     "distance",
     "max_gain",
+    "simulate",
 ]

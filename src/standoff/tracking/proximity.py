@@ -151,6 +151,11 @@ class Proximity:
         return self._a, self._b
 
     @property
+    def row(self) -> Array:
+        """The answer as the kernels write it, read-only; laid out in ``kernels.frame``."""
+        return self._out
+
+    @property
     def distance(self) -> float:
         return float(self._out[K.DISTANCE])
 

@@ -104,10 +104,10 @@ class Tracker:
         check_pair(a, b)
         self.a, self.b = a, b
         self.dt = positive_number(dt, "dt")
-        self.law, self.integrator = law, integrator
-        self._options = pack_options(law, predictor, integrator, gain, dt, tolerance)
-        self._pair = (a.ints, a.reals, b.ints, b.reals)
-        self._planar = a.dimension == 2 or b.dimension == 2
+        self.law, self.predictor, self.integrator = law, predictor, integrator
+        self.options = pack_options(law, predictor, integrator, gain, dt, tolerance)
+        self.packed = (a.ints, a.reals, b.ints, b.reals)
+        self.planar = a.dimension == 2 or b.dimension == 2
 
     def start(
         self,
@@ -218,7 +218,7 @@ class Tracker:
         out = np.empty(K.N_OUT)
         events = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
         bad = kernels.step(
-            self._pair, flat_a, flat_b, xi_a, xi_b, has_twist, h, self._options, data, out, events
+            self.packed, flat_a, flat_b, xi_a, xi_b, has_twist, h, self.options, data, out, events
         )
         self._refuse(bad, pose_a, pose_b)
         return self._answer(data, out, events, flat_a, flat_b)
@@ -236,17 +236,17 @@ class Tracker:
         """
         if buffer.tracker is not self:
             raise ValueError("The buffer belongs to another tracker: make one with tracker.buffer.")
-        if self._planar:
+        if self.planar:
             check_in_plane(buffer.pose_a, buffer.pose_b)
         bad = kernels.step(
-            self._pair,
+            self.packed,
             buffer.pose_a,
             buffer.pose_b,
             buffer.twist_a,
             buffer.twist_b,
             buffer.has_twist,
             self.dt if dt is None else self._frame_time(dt),
-            self._options,
+            self.options,
             buffer.state,
             buffer.out,
             buffer.events,
@@ -266,7 +266,7 @@ class Tracker:
         """A frame's own time, s: positive, and short enough for the paper's law to be stable."""
         dt = positive_number(dt, "dt")
         if self.law == "paper":
-            check_stable(self.integrator, float(self._options[K.O_GAIN]), dt)
+            check_stable(self.integrator, float(self.options[K.O_GAIN]), dt)
         return dt
 
     def _check_state(self, state: TrackerState) -> None:
@@ -290,7 +290,7 @@ class Tracker:
         flat_a, flat_b = flat_pose(pose_a), flat_pose(pose_b)
         xi_a, xi_b = flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
         has_twist = twist_a is not None or twist_b is not None
-        if self._planar:
+        if self.planar:
             check_in_plane(flat_a, flat_b)
         return flat_a, flat_b, xi_a, xi_b, has_twist
 
@@ -306,7 +306,7 @@ class Tracker:
         flat_a, flat_b, xi_a, xi_b, has_twist = self._motion(pose_a, pose_b, twist_a, twist_b)
         out = np.empty(K.N_OUT)
         bad = kernels.start(
-            self._pair, flat_a, flat_b, xi_a, xi_b, has_twist, self._options, data, given, out
+            self.packed, flat_a, flat_b, xi_a, xi_b, has_twist, self.options, data, given, out
         )
         self._refuse(bad, pose_a, pose_b)
         events = np.empty(0)

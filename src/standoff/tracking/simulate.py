@@ -1,0 +1,353 @@
+"""A pair tracked along two paths: the frames in compiled blocks, the switches one by one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.kernels import events as N
+from standoff.kernels import frame as K
+from standoff.kernels import tracker as kernels
+from standoff.motion import Fixed, Pose, PoseLike, TwistLike
+from standoff.tracking.inputs import check_in_plane, flat_pose, flat_twist
+from standoff.tracking.options import positive_number
+from standoff.tracking.proximity import Event, Proximity
+from standoff.tracking.recording import RecordedEvent, Recording, RunInfo
+from standoff.tracking.tracker import Tracker, TrackerState
+
+Array = NDArray[np.float64]
+
+MOST_FRAMES = 10_000_000
+"""Most frames of one run. A frame is kept in some 600 bytes, so this many take 6 GB; a greater
+number comes from a step or a duration in the wrong unit."""
+
+WHOLE_STEPS = 1e-9
+"""Part of a step by which a duration may miss a whole number of steps and still count as one.
+
+0.3 / 0.1 is a little less than 3 in double precision; a duration of a million steps is off by a
+few 1e-10 of a step.
+"""
+
+BLOCK = 128
+"""Frames of one compiled loop. It is run again up to a frame that needs a look, one with a switch
+or a doubtful answer: shorter blocks would call more often, longer ones repeat more."""
+
+AFTER_A_LOOK = 4
+"""Frames of the compiled loop after such a frame, doubled while none needs a look."""
+
+Progress = Callable[[int, int], None]
+"""Told, as a run goes on, how many frames are done, and of how many."""
+
+
+class Moving(Protocol):
+    """Where a body is and how it moves: any of ``standoff.motion``'s paths, or your own."""
+
+    def pose(self, t: float) -> PoseLike:
+        """Return where the body is at time `t` [s]."""
+        ...
+
+    def twist(self, t: float) -> TwistLike:
+        """Return how it moves at time `t` [s]: the derivative of `pose`."""
+        ...
+
+
+def simulate(
+    a: Body,
+    b: Body,
+    path_a: Moving | PoseLike,
+    path_b: Moving | PoseLike,
+    duration: float,
+    dt: float = 1e-3,
+    *,
+    start: float = 0.0,
+    law: str = "predictor-corrector",
+    predictor: str = "feedforward-2",
+    integrator: str = "heun",
+    gain: float | None = None,
+    tolerance: float = 1e-10,
+    progress: Progress | None = None,
+) -> Recording:
+    """Track a pair along two paths and record every frame.
+
+    Parameters
+    ----------
+    a, b : Body
+    path_a, path_b : path or pose
+        A path of ``standoff.motion``, or anything with ``pose(t)`` and ``twist(t)``; with a pose
+        the body is at rest.
+    duration : float
+        Time from the first frame to the last [s]; frames are at ``start + k dt``, as many as fit.
+    dt : float
+        Time from frame to frame [s].
+    start : float
+        Time of the first frame on the paths' clock [s].
+    law, predictor, integrator, gain, tolerance
+        As `Tracker` takes them.
+    progress : callable, optional
+        Called now and then with the frames done and the frames in all.
+
+    Returns
+    -------
+    Recording
+
+    Raises
+    ------
+    ValueError
+        As `Tracker`, or times that give fewer than two frames or more than ten million, or what
+        a path refuses.
+    TypeError
+        If a path is neither path nor pose.
+    """
+    dt = positive_number(dt, "dt")
+    times = even_times(start, positive_number(duration, "duration"), dt)
+    tracker = Tracker(a, b, dt, law, predictor, integrator, gain, tolerance)
+    paths = moving(path_a, "path_a"), moving(path_b, "path_b")
+    return track_along(tracker, *paths, times, progress=progress)
+
+
+def even_times(start: float, duration: float, step: float) -> Array:
+    """Return ``start + k step`` within the duration [s], shape (n,).
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two, or more than `MOST_FRAMES`.
+    """
+    if not math.isfinite(start):
+        raise ValueError(f"start = {start}: give a finite time in s.")
+    steps = duration / step + WHOLE_STEPS
+    if steps >= MOST_FRAMES:
+        raise ValueError(
+            f"{duration:g} s in steps of {step:g} s are {steps:.3g} frames, more than "
+            f"{MOST_FRAMES:g}; give a longer step or a shorter duration"
+        )
+    # The last step may end a rounding error beyond the end, where samples refuse to be asked.
+    times = np.minimum(start + step * np.arange(math.floor(steps) + 1), start + duration)
+    if len(times) < 2 or not (np.diff(times) > 0.0).all():
+        raise ValueError(
+            f"from {start:g} s to {start + duration:g} s there are {len(times)} frames {step:g} s "
+            "apart: at least 2 at different times are needed; give a longer duration or another "
+            "step"
+        )
+    return np.asarray(times)
+
+
+def moving(given: Any, name: str) -> Moving:
+    """Return a path; a pose is one at rest."""
+    if callable(getattr(given, "pose", None)) and callable(getattr(given, "twist", None)):
+        return given  # type: ignore[no-any-return]
+    try:
+        return Fixed(Pose.of(given))
+    except (ValueError, TypeError) as error:
+        raise TypeError(
+            f"{name} = {given!r} is neither a path with pose(t) and twist(t), such as those of "
+            f"standoff.motion, nor a pose: {error}"
+        ) from error
+
+
+def track_along(
+    tracker: Tracker,
+    path_a: Moving,
+    path_b: Moving,
+    times: Array,
+    *,
+    progress: Progress | None = None,
+    info: RunInfo | None = None,
+) -> Recording:
+    """Track a pair at given times along two paths; `simulate` with the parts in hand.
+
+    Parameters
+    ----------
+    tracker : Tracker
+    path_a, path_b : Moving
+    times : ndarray, shape (n,)
+        Frame times [s], strictly increasing, at least one.
+    progress : callable, optional
+    info : RunInfo, optional
+        In place of what the tracker itself tells.
+
+    Returns
+    -------
+    Recording
+
+    Raises
+    ------
+    ValueError
+        What a path or the tracker refuses.
+    """
+    run = _Run(tracker, path_a, path_b, times)
+    run.go(progress)
+    pair = tracker.a, tracker.b
+    about = info if info is not None else run_info(tracker)
+    return Recording.of_answers(times, run.answers, tuple(run.events), pair, about)
+
+
+def run_info(
+    tracker: Tracker, title: str = "", length_unit: str = "", source: dict[str, Any] | None = None
+) -> RunInfo:
+    """Return what a tracker's recordings are of."""
+    from standoff import __version__  # the package's own module is complete by now
+
+    options = {
+        "law": tracker.law,
+        "predictor": tracker.predictor,
+        "integrator": tracker.integrator,
+        "gain": float(tracker.options[K.O_GAIN]),
+        "tolerance": float(tracker.options[K.O_TOLERANCE]),
+        "dt": tracker.dt,
+    }
+    pair = tracker.a, tracker.b
+    names, digests = tuple(x.name for x in pair), tuple(x.digest for x in pair)
+    return RunInfo(
+        (names[0], names[1]),
+        (digests[0], digests[1]),
+        options,
+        title or " and ".join(names),
+        length_unit,
+        __version__,
+        source or {},
+    )
+
+
+class _Run:
+    """One run under way."""
+
+    def __init__(self, tracker: Tracker, path_a: Moving, path_b: Moving, times: Array) -> None:
+        self.tracker = tracker
+        self.paths = path_a, path_b
+        self.times = times
+        self.answers = np.empty((len(times), K.N_OUT))
+        self.stretch = BLOCK
+        self.events: list[RecordedEvent] = []
+
+    def go(self, progress: Progress | None) -> None:
+        total = len(self.times)
+        state = self._start()
+        self.answers[0] = state.proximity.row
+        done = 1
+        while done < total:
+            if progress is not None:
+                progress(done, total)
+            state = self._block(state, done, min(done + BLOCK, total))
+            done = min(done + BLOCK, total)
+        if progress is not None:
+            progress(total, total)
+
+    def placed(self, time: float) -> tuple[PoseLike, PoseLike, TwistLike, TwistLike]:
+        """Return the poses and twists of A and B at a time [s]."""
+        a, b = self.paths
+        return a.pose(time), b.pose(time), a.twist(time), b.twist(time)
+
+    def _start(self) -> TrackerState:
+        return self.tracker.start(*self.placed(float(self.times[0])))
+
+    def _block(self, state: TrackerState, first: int, end: int) -> TrackerState:
+        """Answer frames first .. end - 1 from the state of the frame before."""
+        moves = self._moves(first, end)
+        steps = np.diff(self.times[first - 1 : end])
+        at = first
+        while at < end:
+            stop = min(at + self.stretch, end)
+            state, at = self._quiet(state, moves, steps, first, at, stop)
+            if at < stop:
+                state = self._watched(state, at)
+                at += 1
+                self.stretch = AFTER_A_LOOK
+            else:
+                self.stretch = min(2 * self.stretch, BLOCK)
+        return state
+
+    def _moves(self, first: int, end: int) -> tuple[Array, Array, Array, Array]:
+        count = end - first
+        poses = np.empty((count, 12)), np.empty((count, 12))
+        twists = np.empty((count, 6)), np.empty((count, 6))
+        for k, time in enumerate(self.times[first:end].tolist()):
+            pose_a, pose_b, twist_a, twist_b = self.placed(time)
+            poses[0][k], poses[1][k] = flat_pose(pose_a), flat_pose(pose_b)
+            twists[0][k], twists[1][k] = flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
+            if self.tracker.planar:
+                check_in_plane(poses[0][k], poses[1][k])
+        return *poses, *twists
+
+    def _quiet(
+        self,
+        state: TrackerState,
+        moves: tuple[Array, Array, Array, Array],
+        steps: Array,
+        first: int,
+        at: int,
+        end: int,
+    ) -> tuple[TrackerState, int]:
+        """Answer frames from `at` on up to one that needs a look: it switches, may
+        overlap, or is refused.
+
+        Returns the state before that frame, and its number; `end` where there is none.
+        """
+        data = self._loop(state, moves, steps, first, at, end)
+        rows = self.answers[at:end]
+        doubtful = np.isin(rows[:, K.STATUS], (K.TRACKING, K.NOT_CERTIFIED))
+        looks = (rows[:, K.OUT_COUNTS + N.EVENTS] > 0.0) | (
+            doubtful & ~(rows[:, K.LOWER_BOUND] > 0.0)
+        )
+        stop = at + int(looks.argmax()) if looks.any() else end
+        if stop == at:
+            return state, at
+        if stop < end:
+            data = self._loop(state, moves, steps, first, at, stop)
+        data.flags.writeable = False
+        a, b = self.tracker.a, self.tracker.b
+        answer = Proximity(a, b, self.answers[stop - 1].copy(), (), float(data[K.TIME]))
+        return TrackerState(data, answer), stop
+
+    def _loop(
+        self,
+        state: TrackerState,
+        moves: tuple[Array, Array, Array, Array],
+        steps: Array,
+        first: int,
+        at: int,
+        end: int,
+    ) -> Array:
+        """Answer frames at .. end - 1 in compiled code; returns the last one's state."""
+        tracker, part = self.tracker, slice(at - first, end - first)
+        poses_a, poses_b, twists_a, twists_b = moves
+        data, log = state.data.copy(), np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
+        rows = self.answers[at:end]
+        refused, _ = kernels.run(
+            tracker.packed,
+            poses_a[part],
+            poses_b[part],
+            twists_a[part],
+            twists_b[part],
+            True,
+            steps[part],
+            tracker.options,
+            data,
+            rows,
+            log,
+        )
+        if refused >= 0:  # the single step will say why
+            rows[refused:, K.STATUS], rows[refused:, K.LOWER_BOUND] = K.NOT_CERTIFIED, np.nan
+        return data
+
+    def _watched(self, state: TrackerState, frame: int) -> TrackerState:
+        """Answer one frame by itself and note its events."""
+        time, before = float(self.times[frame]), float(self.times[frame - 1])
+        following, answer = self.tracker.step(state, *self.placed(time), dt=time - before)
+        self.answers[frame] = answer.row
+        self.events += [dated(event, frame, time) for event in answer.events]
+        return following
+
+
+def dated(event: Event, frame: int, time: float) -> RecordedEvent:
+    """Return an event that is dated to its frame."""
+    # Only a release tells its switching function; at a boundary reached it is not evaluated.
+    value = event.slope if event.slope < 0.0 else math.nan
+    return RecordedEvent(
+        frame, time, event.body, event.source, event.target, value, math.nan, located=False
+    )
