@@ -1,0 +1,59 @@
+"""Intersections of balls."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from standoff.bodies.body import Body
+from standoff.bodies.shapes.quadrics import SINGLE_CHART_REACH, sphere_atlas
+from standoff.bodies.topology import Edge, Face
+from standoff.geometry.curves import ConicArc
+from standoff.geometry.surfaces import Sphere
+from standoff.geometry.validation import positive
+
+# A lens's offset, and its radius less the offset, are at least this part of its radius: what
+# float64 can still tell from a ball and from nothing.
+THIN_LENS = 1e-9
+
+
+def lens(radius: float, offset: float) -> Body:
+    """The paper's body: the intersection of three balls centred `offset` from the origin.
+
+    The centres are -offset (cos 120°i, sin 120°i, 0), i = 0, 1, 2. Three spherical faces, three
+    edges, two vertices.
+    """
+    r, c = positive(radius, "radius"), positive(offset, "offset")
+    if c >= r:
+        raise ValueError(
+            f"Empty lens: offset = {c} is not below radius = {r}, so the balls share no interior."
+        )
+    if c < THIN_LENS * r or r - c < THIN_LENS * r:
+        raise ValueError(
+            f"lens({r}, {c}): offset / radius must be from {THIN_LENS:g} to 1 - {THIN_LENS:g}; "
+            "below it is a ball (so.shapes.sphere), above it is thinner than roundoff."
+        )
+    top = np.array([0.0, 0.0, np.sqrt((r - c) * (r + c))])
+    angles = 2.0 * np.pi / 3.0 * np.arange(3)
+    centres = [-c * np.array([np.cos(t), np.sin(t), 0.0]) for t in angles]
+    edges = []
+    for i in range(3):
+        # the edge where balls i and i + 1 meet: opposite to ball i + 2's centre, a circle
+        # about the midpoint of their centres, in the plane that bisects them
+        a, b = centres[i], centres[(i + 1) % 3]
+        middle = 0.5 * (a + b)
+        out = -middle / np.linalg.norm(middle)
+        reach = np.sqrt(r * r - 0.25 * float((a - b) @ (a - b)))
+        x_axis, z_axis = reach * out, np.array([0.0, 0.0, reach])
+        half = float(np.arctan2(top[2], float(-middle @ out)))
+        edges.append(Edge(ConicArc(middle, x_axis, z_axis, -half, half), 0, 1))
+    faces = []
+    for i in range(3):
+        z = -centres[i] / c
+        x = np.cross([0.0, 0.0, 1.0], z)
+        frame = r * np.column_stack([x, np.array([0.0, 0.0, 1.0]), z])
+        charts: tuple[Sphere, ...] = (Sphere(frame, centres[i]),)
+        if top[2] / c > SINGLE_CHART_REACH:
+            charts = sphere_atlas(frame, centres[i])
+        # seen from outside, edge i lies at greater angle about z, edge i - 1 at lesser
+        faces.append(Face(charts, ((i, 1), ((i + 2) % 3, -1))))
+    return Body.from_brep([-top, top], edges, faces, name="lens")

@@ -1,0 +1,28 @@
+"""Planar bodies: closed loops of curves in z = 0."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from standoff.bodies.body import Body
+from standoff.bodies.topology import BodyError, Edge
+from standoff.geometry.curves import Curve
+
+
+def planar_loop(curves: Sequence[Curve], radius: float = 0.0) -> Body:
+    """A planar convex body: curves in z = 0, each beginning where the one before ends.
+
+    One closed conic (an ellipse) is a loop by itself.
+    """
+    curves = list(curves)
+    if len(curves) == 1 and curves[0].closed:
+        edges = [Edge(curves[0])]
+        return Body.from_brep(edges=edges, dimension=2, radius=radius, name="planar loop")
+    if len(curves) < 2:
+        raise BodyError(f"A planar loop of {len(curves)} open curves: give at least two.")
+    vertices = np.array([c.point(c.first) for c in curves])
+    n = len(curves)
+    edges = [Edge(c, i, (i + 1) % n) for i, c in enumerate(curves)]
+    return Body.from_brep(vertices, edges, dimension=2, radius=radius, name="planar loop")

@@ -1,0 +1,102 @@
+"""Bodies of planes, sharp or swept by a ball."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+from standoff.bodies.body import Body
+from standoff.bodies.topology import BodyError, Edge, Face
+from standoff.geometry.curves import Line
+from standoff.geometry.surfaces import Plane
+from standoff.geometry.validation import Array, finite, not_negative, positive
+
+# Facets of a polytope whose normals differ by less (sine) are one face; hull facets of one
+# plane differ by the roundoff of their vertices.
+COPLANAR = 1e-9
+
+
+def box(x: float, y: float, z: float, rounding: float = 0.0) -> Body:
+    """Outer lengths x, y, z; `rounding` is the radius of its edges and corners.
+
+    The core is the box of x - 2 rounding, ..., swept by a ball.
+    """
+    lengths = np.array([positive(x, "x"), positive(y, "y"), positive(z, "z")])
+    rounding = not_negative(rounding, "rounding")
+    core = lengths - 2.0 * rounding
+    if core.min() <= 0.0:
+        raise ValueError(
+            f"rounding = {rounding} leaves no core in a box {lengths}: give less than half the "
+            "least length, or use a capsule or a sphere."
+        )
+    signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
+    return _polyhedron(0.5 * core * signs, radius=rounding, name="box")
+
+
+def polytope(vertices: Any) -> Body:
+    """The convex hull of points, (n, 3), n >= 4, not in one plane."""
+    return _polyhedron(finite(vertices, "vertices", (-1, 3)), name="polytope")
+
+
+def _polyhedron(points: Array, radius: float = 0.0, name: str = "polytope") -> Body:
+    try:
+        hull = ConvexHull(points)
+    except (QhullError, ValueError) as error:
+        raise BodyError(
+            f"The {len(points)} vertices span no volume (flat polytope): give at least four "
+            "points that are not in one plane."
+        ) from error
+    loops = _facets(points, hull)
+    used = sorted({k for loop, _ in loops for k in loop})
+    number = {k: i for i, k in enumerate(used)}
+    edge_number: dict[tuple[int, int], int] = {}
+    edges: list[Edge] = []
+    faces = []
+    for loop, normal in loops:
+        coedges = []
+        for a, b in zip(loop, loop[1:] + loop[:1], strict=True):
+            key = (min(a, b), max(a, b))
+            if key not in edge_number:
+                edge_number[key] = len(edges)
+                edges.append(Edge(Line(points[a], points[b]), number[a], number[b]))
+            edge = edges[edge_number[key]]
+            coedges.append((edge_number[key], 1 if edge.first == number[a] else -1))
+        centre = points[loop].mean(axis=0)
+        along = points[loop[1]] - points[loop[0]]
+        along = along / np.linalg.norm(along)
+        faces.append(Face((Plane.through(centre, along, np.cross(normal, along)),), tuple(coedges)))
+    return Body.from_brep(points[used], edges, faces, radius=radius, name=name)
+
+
+def _facets(points: Array, hull: Any) -> list[tuple[list[int], Array]]:
+    """Facets merged by plane: (vertex loop counterclockwise from outside, outward normal)."""
+    group = -np.ones(len(hull.simplices), dtype=int)
+    groups: list[tuple[Array, set[int]]] = []
+    for seed in range(len(group)):
+        if group[seed] >= 0:
+            continue
+        normal = hull.equations[seed, :3]
+        members: set[int] = set()
+        front = [seed]
+        group[seed] = len(groups)
+        while front:  # spread over neighbours in the seed's plane
+            k = front.pop()
+            members.update(int(v) for v in hull.simplices[k])
+            for m in hull.neighbors[k]:
+                if group[m] < 0 and np.abs(hull.equations[m, :3] - normal).max() < COPLANAR:
+                    group[m] = len(groups)
+                    front.append(int(m))
+        groups.append((normal, members))
+    facets = []
+    for normal, members in groups:
+        corner = sorted(members)
+        centre = points[corner].mean(axis=0)
+        first = points[corner[0]] - centre
+        x = first / np.linalg.norm(first)
+        y = np.cross(normal, x)
+        rel = points[corner] - centre
+        order = np.argsort(np.arctan2(rel @ y, rel @ x))
+        facets.append(([corner[k] for k in order], normal))
+    return facets

@@ -1,0 +1,98 @@
+"""Bodies of planes and quadrics of revolution, and ellipsoids."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from standoff.bodies.body import Body
+from standoff.bodies.topology import Apex, Edge, Face
+from standoff.geometry.curves import ConicArc
+from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere
+from standoff.geometry.validation import Array, finite, positive
+
+# A gnomonic chart alone serves a face up to this tangent of the angle from its centre.
+SINGLE_CHART_REACH = 3.0
+
+# Rotations that take e_z to the six axes: the charts of an ellipsoid's atlas.
+_AXES = np.array(
+    [
+        [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+        [[1, 0, 0], [0, -1, 0], [0, 0, -1]],
+        [[0, 0, 1], [1, 0, 0], [0, 1, 0]],
+        [[0, 0, -1], [-1, 0, 0], [0, 1, 0]],
+        [[0, 1, 0], [0, 0, 1], [1, 0, 0]],
+        [[0, -1, 0], [0, 0, -1], [1, 0, 0]],
+    ],
+    dtype=np.float64,
+)
+
+
+def sphere_atlas(linear: Array, centre: Array) -> tuple[Sphere, ...]:
+    """Six overlapping gnomonic charts of the ellipsoid linear @ (unit sphere) + centre."""
+    return tuple(Sphere(linear @ turn, centre) for turn in _AXES)
+
+
+def ellipsoid(a: float, b: float, c: float) -> Body:
+    """Semi-axes a, b, c along x, y, z: one smooth face with an atlas of six charts."""
+    axes = np.diag([positive(a, "a"), positive(b, "b"), positive(c, "c")])
+    return Body.from_brep(faces=[Face(sphere_atlas(axes, np.zeros(3)))], name="ellipsoid")
+
+
+def cylinder(r: float, length: float) -> Body:
+    """Two discs and a side without a seam; the rims are closed edges."""
+    r, half = positive(r, "r"), 0.5 * positive(length, "length")
+    x, y = np.array([r, 0.0, 0.0]), np.array([0.0, r, 0.0])
+    low, high = np.array([0.0, 0.0, -half]), np.array([0.0, 0.0, half])
+    edges = [Edge(ConicArc(low, x, y)), Edge(ConicArc(high, x, y))]
+    faces = [
+        Face((Cylinder(np.diag([r, r, 1.0]), np.zeros(3)),), ((0, 1), (1, -1))),
+        Face((Plane.through(low, y / r, x / r),), ((0, -1),)),
+        Face((Plane.through(high, x / r, y / r),), ((1, 1),)),
+    ]
+    return Body.from_brep(edges=edges, faces=faces, name="cylinder")
+
+
+def cone(r: float, height: float) -> Body:
+    """Base of radius r at -height/2, apex at +height/2."""
+    r, height = positive(r, "r"), positive(height, "height")
+    x, y = np.array([r, 0.0, 0.0]), np.array([0.0, r, 0.0])
+    base, apex = np.array([0.0, 0.0, -0.5 * height]), np.array([0.0, 0.0, 0.5 * height])
+    side = Cone(np.diag([r, r, -height]), apex)
+    return Body.from_brep(
+        [apex],
+        [Edge(ConicArc(base, x, y))],
+        [
+            Face((side,), ((0, 1),), (Apex(0, 0.0, 0.0, 2.0 * np.pi),)),
+            Face((Plane.through(base, y / r, x / r),), ((0, -1),)),
+        ],
+        name="cone",
+    )
+
+
+def cap(radius: float, offset: float) -> Body:
+    """The part z >= offset of a ball, -radius < offset < radius: a disc and a spherical face."""
+    r = positive(radius, "radius")
+    h = float(finite(offset, "offset", ()))
+    if not -r < h < r:
+        raise ValueError(f"Cap with offset = {h} outside (-{r}, {r}): nothing or a ball is left.")
+    rim = float(np.sqrt((r - h) * (r + h)))
+    x, y = np.array([rim, 0.0, 0.0]), np.array([0.0, rim, 0.0])
+    base = np.array([0.0, 0.0, h])
+    frame = r * np.eye(3)
+    charts: tuple[Sphere, ...] = (Sphere(frame, np.zeros(3)),)
+    if h <= 0.0 or rim / h > SINGLE_CHART_REACH:
+        charts = sphere_atlas(frame, np.zeros(3))
+    return Body.from_brep(
+        edges=[Edge(ConicArc(base, x, y))],
+        faces=[
+            Face(charts, ((0, 1),)),
+            Face((Plane.through(base, y / rim, x / rim),), ((0, -1),)),
+        ],
+        name="cap",
+    )
+
+
+def halfspace() -> Body:
+    """z <= 0: one plane without a boundary."""
+    plane = Plane.through(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 1.0, 0]))
+    return Body.from_brep(faces=[Face((plane,))], name="halfspace")
