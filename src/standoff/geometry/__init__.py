@@ -1,6 +1,7 @@
 """Geometry: surfaces, curves and their trimming curves, validated and immutable."""
 
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
+from standoff.geometry.formulas import FormulaCurve, FormulaError, FormulaSurface
 from standoff.geometry.pcurves import Pcurve, pcurve_of
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
 
@@ -9,6 +10,9 @@ __all__ = [
     "ConicArc",
     "Curve",
     "Cylinder",
+    "FormulaCurve",
+    "FormulaError",
+    "FormulaSurface",
     "Line",
     "Pcurve",
     "Plane",

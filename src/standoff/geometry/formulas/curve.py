@@ -1,0 +1,136 @@
+"""Curves given by formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from standoff.geometry.curves import Curve
+from standoff.geometry.formulas.checks import (
+    CURVE_VARIABLES,
+    check_finite,
+    check_tangent,
+    limits,
+    read_formula,
+)
+from standoff.geometry.formulas.compiled import Formula, compiled
+from standoff.geometry.formulas.enclosures import Enclosure, grid, hull
+from standoff.geometry.intervals import Interval
+from standoff.geometry.validation import Array
+
+# Boxes whose hull is the box of a curve: its excess falls with the square.
+BOX_GRID = 256
+# A curve whose ends are nearer than this part of its size is closed if its tangents agree too.
+CLOSED = 1e-12
+
+
+class FormulaCurve(Curve):
+    """A curve from formulas in t: x(t), y(t), z(t), lengths in the body's frame.
+
+    Parameters
+    ----------
+    x, y, z : str, SymPy expression or number
+        As for `FormulaSurface`, in t.
+    first, last : float
+        The range of t.
+    parameters : {name: number}, optional
+
+    Raises
+    ------
+    FormulaError
+        As `FormulaSurface`; a tangent that vanishes.
+    ImportError
+        SymPy is not installed: it comes with the extra `formulas`.
+
+    Notes
+    -----
+    `data` is an affine map (3x3 row-major, shift) and the address of the compiled jet.
+    """
+
+    kind = 4
+    formula: Formula
+
+    def __init__(
+        self,
+        x: Any,
+        y: Any,
+        z: Any,
+        first: float,
+        last: float,
+        parameters: Mapping[str, Any] | None = None,
+    ) -> None:
+        inside = limits((first, last), ("first", "last"), "FormulaCurve (first, last)")
+        formula = read_formula((x, y, z), CURVE_VARIABLES, parameters)
+        check_finite(formula, inside)
+        check_tangent(formula, inside)
+        _fill(self, formula, inside, np.eye(3), np.zeros(3))
+
+    @property
+    def linear(self) -> Array:
+        return self.data[0:9].reshape(3, 3)
+
+    @property
+    def shift(self) -> Array:
+        return self.data[9:12]
+
+    def jet(self, t: float) -> tuple[Array, Array, Array]:
+        """(x, x_t, x_tt), each (3,), body frame."""
+        rows = self.formula.values(t) @ self.linear.T
+        return rows[0] + self.shift, rows[1], rows[2]
+
+    @property
+    def closed(self) -> bool:
+        """Whether both ends and their tangents are the same, to roundoff."""
+        (a, at, _), (b, bt, _) = self.jet(self.first), self.jet(self.last)
+        low, high = self.box()
+        ends = np.linalg.norm(a - b) <= CLOSED * np.linalg.norm(high - low)
+        return bool(ends and np.linalg.norm(at - bt) <= CLOSED * np.linalg.norm(at))
+
+    def transformed(self, linear: Array, shift: Array) -> FormulaCurve:
+        """The exact image under x -> linear x + shift, by the same compiled function."""
+        linear = np.asarray(linear, dtype=np.float64)
+        image = linear @ self.linear, linear @ self.shift + shift
+        return _curve(self.formula, (self.first, self.last), *image)
+
+    def box(self) -> tuple[Array, Array]:
+        """(low, high), each (3,), body frame: surely around the curve, by interval bounds."""
+        boxes = grid((self.first, self.last), BOX_GRID)
+        bounds = Enclosure(self.formula.jet[:6], CURVE_VARIABLES)
+        rows, middle = bounds(boxes), bounds.at_middle(boxes)
+
+        def part(of: Interval, k: int) -> Interval:
+            return Interval(of.lo[k : k + 3], of.hi[k : k + 3])
+
+        return hull(part(rows, 0), part(middle, 0), [part(rows, 3)], boxes, self.linear, self.shift)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        limits = (self.first, self.last)
+        return _rebuilt_curve, (self.formula.expressions, limits, self.linear, self.shift)
+
+
+def _fill(
+    curve: FormulaCurve, formula: Formula, inside: tuple[float, ...], linear: Array, shift: Array
+) -> None:
+    data = np.concatenate([np.ravel(linear), shift, [formula.address]])
+    data.flags.writeable = False
+    for name, value in (("data", data), ("formula", formula)):
+        object.__setattr__(curve, name, value)
+    object.__setattr__(curve, "first", inside[0])
+    object.__setattr__(curve, "last", inside[1])
+
+
+def _curve(
+    formula: Formula, inside: tuple[float, ...], linear: Array, shift: Array
+) -> FormulaCurve:
+    curve = object.__new__(FormulaCurve)
+    _fill(curve, formula, inside, linear, shift)
+    return curve
+
+
+def _rebuilt_curve(
+    expressions: tuple[Any, ...], inside: tuple[float, ...], linear: Array, shift: Array
+) -> FormulaCurve:
+    """A curve in another process: its formula is compiled anew there."""
+    return _curve(compiled(expressions, CURVE_VARIABLES), inside, linear, shift)

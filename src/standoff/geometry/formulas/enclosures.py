@@ -1,0 +1,158 @@
+"""Bounds of expressions over boxes of parameters, and what they prove of a formula's jet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.geometry.formulas.programs import Writer
+from standoff.geometry.intervals import FUNCTIONS, Interval, interval
+from standoff.geometry.validation import Array
+
+# Boxes a side that a search begins with.
+FIRST_GRID = 8
+# A box this small (part of the domain's side) in which a formula still has no bound holds a pole,
+# or a point where the compiled jet loses all its digits, such as sin(u)/u at 0.
+SMALLEST = 2.0**-26
+# Boxes evaluated at once, and in one search: a few milliseconds, about a second.
+CHUNK = 256
+# Boxes that are cut on first, so that a place is found before all of a pole's line is covered.
+DIVE = 16
+MOST_BOXES = 30_000
+
+
+class Boxes:
+    """n boxes of d parameters: `low` and `high`, each (n, d)."""
+
+    def __init__(self, low: Array, high: Array) -> None:
+        self.low = low
+        self.high = high
+
+    def __len__(self) -> int:
+        return len(self.low)
+
+    def __getitem__(self, which: Any) -> Boxes:
+        return Boxes(self.low[which], self.high[which])
+
+    @property
+    def middle(self) -> Array:
+        return 0.5 * (self.low + self.high)
+
+    @property
+    def sides(self) -> list[Interval]:
+        return [Interval(self.low[:, k], self.high[:, k]) for k in range(self.low.shape[1])]
+
+    def halves(self, axis: NDArray[np.int64]) -> Boxes:
+        """Each box cut in two across its `axis` (n,)."""
+        rows = np.arange(len(self))
+        middle = self.middle[rows, axis]
+        left, right = self.high.copy(), self.low.copy()
+        left[rows, axis] = middle
+        right[rows, axis] = middle
+        return Boxes(np.concatenate([self.low, right]), np.concatenate([left, self.high]))
+
+
+def grid(domain: Sequence[float], sides: int) -> Boxes:
+    """sides^d boxes that tile (u0, u1, v0, v1), or (t0, t1)."""
+    cuts = [np.linspace(domain[k], domain[k + 1], sides + 1) for k in range(0, len(domain), 2)]
+    low = np.stack([a.ravel() for a in np.meshgrid(*(c[:-1] for c in cuts), indexing="ij")], 1)
+    high = np.stack([a.ravel() for a in np.meshgrid(*(c[1:] for c in cuts), indexing="ij")], 1)
+    return Boxes(low, high)
+
+
+class Enclosure:
+    """k expressions as a program over intervals."""
+
+    def __init__(self, expressions: Sequence[Any], variables: tuple[str, ...]) -> None:
+        lines, outputs = Writer("near({})").body(expressions)
+        text = [f"def bounds({', '.join(variables)}):", *lines, f"return [{', '.join(outputs)}]"]
+        namespace: dict[str, Any] = dict(FUNCTIONS)
+        exec("\n    ".join(text), namespace)
+        self._bounds = namespace["bounds"]
+
+    def __call__(self, boxes: Boxes) -> Interval:
+        """Bounds (k, n) of each expression over each box."""
+        return self.at(*boxes.sides)
+
+    def at(self, *sides: Interval) -> Interval:
+        shape = np.shape(sides[0].lo)
+        with np.errstate(all="ignore"):
+            rows = [interval(r) for r in self._bounds(*sides)]
+        return Interval(
+            np.stack([np.broadcast_to(r.lo, shape) for r in rows]),
+            np.stack([np.broadcast_to(r.hi, shape) for r in rows]),
+        )
+
+    def at_middle(self, boxes: Boxes) -> Interval:
+        """Bounds (k, n) at the middle of each box."""
+        return self.at(*(interval(c) for c in boxes.middle.T))
+
+
+def mean_value(value: Interval, middle: Interval, slopes: Sequence[Interval], boxes: Boxes) -> Any:
+    """Bounds by value at the middle + slope over the box * distance from the middle.
+
+    All (k, n); they sharpen quadratically as boxes shrink.
+    """
+    centre = boxes.middle
+    with np.errstate(all="ignore"):
+        result = middle
+        for k, slope in enumerate(slopes):
+            away = interval(boxes.sides[k]) - interval(centre[:, k])
+            result = result + slope * away
+    return value.within(result)
+
+
+def without_bounds(enclosure: Enclosure, domain: Sequence[float]) -> Array | None:
+    """A place where the expressions have no finite bound, None where they are finite all over."""
+    size = np.diff(np.reshape(domain, (-1, 2)), axis=1).ravel()
+    waiting = [grid(domain, FIRST_GRID)]
+    evaluated = 0
+    while waiting:
+        boxes = waiting.pop()
+        if len(boxes) > CHUNK:
+            waiting.append(boxes[CHUNK:])
+            boxes = boxes[:CHUNK]
+        evaluated += len(boxes)
+        boxes = boxes[~enclosure(boxes).known.all(axis=0)]
+        if not len(boxes):
+            continue
+        if len(boxes) > DIVE:
+            waiting.append(boxes[DIVE:])
+            boxes = boxes[:DIVE]
+        extent = (boxes.high - boxes.low) / size
+        if extent.max() <= SMALLEST or evaluated > MOST_BOXES:
+            return np.asarray(boxes.middle[0])
+        waiting.append(boxes.halves(extent.argmax(axis=1)))
+    return None
+
+
+def hull(
+    rows: Interval,
+    middle: Interval,
+    slopes: Sequence[Interval],
+    boxes: Boxes,
+    linear: Array,
+    shift: Array,
+) -> tuple[Array, Array]:
+    """(low, high), each (3,), of linear @ x + shift over all boxes.
+
+    rows, middle, slopes : (3, n) bounds of x, of x at the middles, of its partial derivatives
+    """
+    by = interval(shift[:, None])
+    value, centre = mapped(linear, rows) + by, mapped(linear, middle) + by
+    bounds = mean_value(value, centre, [mapped(linear, s) for s in slopes], boxes)
+    return bounds.lo.min(axis=1), bounds.hi.max(axis=1)
+
+
+def mapped(linear: Array, x: Interval) -> Interval:
+    """(3, n) bounds of linear @ x."""
+    rows = []
+    for row in linear:
+        total = interval(0.0)
+        for a, low, high in zip(row, x.lo, x.hi, strict=True):
+            total = total + interval(float(a)) * Interval(low, high)
+        rows.append(total)
+    return Interval(np.stack([r.lo for r in rows]), np.stack([r.hi for r in rows]))

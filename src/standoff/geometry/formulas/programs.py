@@ -1,0 +1,97 @@
+"""Straight-line programs from SymPy expressions: one text for numbers, intervals and kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from standoff.geometry.formulas.expressions import sympy_module
+
+# Common subexpressions are named r0, r1, ...
+SHARED = "r"
+
+
+def jet_expressions(formula: Sequence[Any], variables: tuple[str, ...]) -> list[Any]:
+    """Coordinates, first and second partial derivatives, three expressions each.
+
+    u, v: x, x_u, x_v, x_uu, x_uv, x_vv; t: x, x_t, x_tt.
+    """
+    sympy = sympy_module()
+    symbols = [sympy.Symbol(v) for v in variables]
+    first = [[sympy.diff(c, s) for c in formula] for s in symbols]
+    second = [
+        [sympy.diff(c, t) for c in first[i]] for i in range(len(symbols)) for t in symbols[i:]
+    ]
+    rows = [list(formula), *first, *second]
+    return [shorter(c) for row in rows for c in row]
+
+
+def shorter(expression: Any) -> Any:
+    """The shorter of an expression and itself with common factors taken out."""
+    sympy = sympy_module()
+    factored = sympy.factor_terms(expression)
+    return factored if factored.count_ops() < expression.count_ops() else expression
+
+
+class Writer:
+    """Python text of expressions over +, -, *, /, ** (whole), power() and named functions.
+
+    near : how a number that float64 cannot hold is written; "{}" for its nearest, "near({})" for
+        intervals, which must hold it.
+    """
+
+    def __init__(self, near: str = "{}") -> None:
+        self.near = near
+
+    def body(self, expressions: Sequence[Any]) -> tuple[list[str], list[str]]:
+        """(assignments of shared parts, one line each; the expressions in their terms)."""
+        sympy = sympy_module()
+        names = sympy.numbered_symbols(SHARED)
+        shared, reduced = sympy.cse(list(expressions), symbols=names, order="none")
+        lines = [f"{name} = {self.code(e)}" for name, e in shared]
+        return lines, [self.code(e) for e in reduced]
+
+    def code(self, e: Any) -> str:
+        sympy = sympy_module()
+        if e.is_Symbol:
+            return str(e.name)
+        if e.is_Rational or e is sympy.pi or e is sympy.E:
+            return self.number(e)
+        if e.is_Add:
+            return "(" + " + ".join(self.code(a) for a in e.args) + ")"
+        if e.is_Mul:
+            return self.product(e)
+        if isinstance(e, sympy.exp):
+            return f"exp({self.code(e.args[0])})"
+        if e.is_Pow:
+            return self.power(e.base, e.exp)
+        if e.is_Function:
+            return f"{e.func.__name__}({', '.join(self.code(a) for a in e.args)})"
+        raise TypeError(f"No code for {type(e).__name__}: {e}")
+
+    def number(self, e: Any) -> str:
+        text = repr(float(e))
+        if not (e.is_Rational and sympy_module().Rational(float(e)) == e):
+            return self.near.format(text)
+        return f"({text})" if e < 0 else text
+
+    def product(self, e: Any) -> str:
+        above, below = [], []
+        for a in e.args:
+            if a.is_Pow and a.exp.is_Rational and a.exp < 0:
+                below.append(self.power(a.base, -a.exp))
+            else:
+                above.append(self.code(a))
+        top = "*".join(above) or "1.0"
+        return f"({top}/({'*'.join(below)}))" if below else f"({top})"
+
+    def power(self, base: Any, exponent: Any) -> str:
+        if exponent.is_Rational and exponent < 0:
+            return f"(1.0/{self.power(base, -exponent)})"
+        inner = self.code(base)
+        if exponent.is_Integer:
+            return inner if exponent == 1 else f"({inner}**{int(exponent)})"
+        if exponent.is_Rational and exponent.q == 2:
+            root, whole = f"sqrt({inner})", exponent.p // 2
+            return root if whole == 0 else f"({root}**{int(exponent.p)})"
+        return f"power({inner}, {self.code(exponent)})"

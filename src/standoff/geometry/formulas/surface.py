@@ -1,0 +1,146 @@
+"""Surfaces given by formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from standoff.geometry.formulas.checks import (
+    SURFACE_VARIABLES,
+    check_finite,
+    check_normal,
+    limits,
+    read_formula,
+)
+from standoff.geometry.formulas.compiled import Formula, compiled
+from standoff.geometry.formulas.enclosures import Enclosure, grid, hull
+from standoff.geometry.formulas.expressions import FormulaError
+from standoff.geometry.intervals import Interval
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
+
+# Boxes a side whose hull is the box of a patch: its excess falls with the square.
+BOX_GRID = 24
+ENDS = ("u0", "u1", "v0", "v1")
+
+
+class FormulaSurface(Surface):
+    """A patch from formulas in u and v: x(u, v), y(u, v), z(u, v), lengths in the body's frame.
+
+    Parameters
+    ----------
+    x, y, z : str, SymPy expression or number
+        In u, v, the parameters, pi, E, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh,
+        exp, log, sqrt, abs, + - * / ** and parentheses. Text is never run as Python.
+    domain : (u0, u1, v0, v1)
+        Ranges of u and v, finite.
+    parameters : {name: number}, optional
+        They become part of the formula.
+
+    Raises
+    ------
+    FormulaError
+        An unknown symbol, bad syntax or anything but arithmetic; an empty domain; a parameter
+        without a value; a pole, or a value that is not real, in the patch (proven over all of it,
+        the place is named); a point or a curve instead of a patch; a normal that vanishes inside.
+    ImportError
+        SymPy is not installed: it comes with the extra `formulas`.
+
+    Notes
+    -----
+    Differentiated twice by SymPy, with common parts taken out, and compiled once a process.
+    A formula must be C² with a normal everywhere inside; a side may collapse to a point (a pole)
+    as long as its second derivatives stay finite.
+    """
+
+    kind = 10
+    domain: tuple[float, ...]
+    formula: Formula
+
+    def __init__(
+        self,
+        x: Any,
+        y: Any,
+        z: Any,
+        domain: Sequence[float],
+        parameters: Mapping[str, Any] | None = None,
+    ) -> None:
+        inside = limits(domain, ENDS, "FormulaSurface.domain")
+        formula = read_formula((x, y, z), SURFACE_VARIABLES, parameters)
+        check_finite(formula, inside)
+        check_normal(formula, inside)
+        _fill(self, formula, inside, np.eye(3), np.zeros(3))
+
+    def _data(self) -> Array:
+        return np.array([self.formula.address])
+
+    def jet(self, u: float, v: float) -> tuple[Array, ...]:
+        rows = self.formula.values(u, v) @ self.linear.T
+        rows[0] += self.shift
+        return tuple(rows)
+
+    def transformed(self, linear: Array, shift: Array) -> FormulaSurface:
+        """The exact image under x -> linear x + shift, by the same compiled function."""
+        linear = np.asarray(linear, dtype=np.float64)
+        return _surface(
+            self.formula, self.domain, linear @ self.linear, linear @ self.shift + shift
+        )
+
+    def restricted(self, u0: float, u1: float, v0: float, v1: float) -> FormulaSurface:
+        """The same surface on a smaller domain; parameters stay the same.
+
+        Raises
+        ------
+        FormulaError
+            The domain is empty or leaves the present one.
+        """
+        smaller = limits((u0, u1, v0, v1), ENDS, "FormulaSurface.domain")
+        a, b, c, d = self.domain
+        if not (a <= smaller[0] and smaller[1] <= b and c <= smaller[2] and smaller[3] <= d):
+            raise FormulaError(f"The domain {smaller} leaves the surface's own, {self.domain}.")
+        return _surface(self.formula, smaller, self.linear, self.shift)
+
+    def box(self) -> tuple[Array, Array]:
+        """(low, high), each (3,), body frame: surely around the patch, by interval bounds."""
+        boxes = grid(self.domain, BOX_GRID)
+        bounds = Enclosure(self.formula.jet[:9], SURFACE_VARIABLES)
+        rows, middle = bounds(boxes), bounds.at_middle(boxes)
+        slopes = [_rows(rows, 3, 6), _rows(rows, 6, 9)]
+        return hull(_rows(rows, 0, 3), _rows(middle, 0, 3), slopes, boxes, self.linear, self.shift)
+
+    def highest(self, direction: Array) -> None:
+        """None: `box` serves."""
+        return
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        parts = (self.formula.expressions, self.domain, self.linear, self.shift)
+        return _rebuilt_surface, parts
+
+
+def _rows(bounds: Interval, first: int, last: int) -> Interval:
+    return Interval(bounds.lo[first:last], bounds.hi[first:last])
+
+
+def _fill(
+    surface: FormulaSurface, formula: Formula, domain: Sequence[float], linear: Array, shift: Array
+) -> None:
+    object.__setattr__(surface, "formula", formula)
+    object.__setattr__(surface, "domain", tuple(float(x) for x in domain))
+    Surface.__init__(surface, linear, shift)
+
+
+def _surface(
+    formula: Formula, domain: Sequence[float], linear: Array, shift: Array
+) -> FormulaSurface:
+    surface = object.__new__(FormulaSurface)
+    _fill(surface, formula, domain, linear, shift)
+    return surface
+
+
+def _rebuilt_surface(
+    expressions: tuple[Any, ...], domain: Sequence[float], linear: Array, shift: Array
+) -> FormulaSurface:
+    """A surface in another process: its formula is compiled anew there."""
+    return _surface(compiled(expressions, SURFACE_VARIABLES), domain, linear, shift)
