@@ -1,0 +1,92 @@
+"""The pages' commands print what they say, and the diagrams are what their script draws."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from standoff.cli import main
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+QUICK_START = (DOCS / "quick-start.md").read_text("utf-8")
+NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]\d+)?")
+
+
+def block_after(words: str, language: str) -> str:
+    """The first block of a language after some words of the quick start."""
+    rest = QUICK_START[QUICK_START.index(words) :]
+    (block,) = re.findall(rf"^```{language}\n(.*?)^```$", rest, re.DOTALL | re.MULTILINE)[:1]
+    return str(block)
+
+
+def assert_same_but_roundoff(printed: str, promised: str) -> None:
+    """Line by line the same words; numbers to 1e-9, but those that are themselves roundoff."""
+    lines = printed.splitlines()
+    for line in promised.splitlines():
+        found = lines.pop(0)
+        assert NUMBER.sub("#", found).split() == NUMBER.sub("#", line).split()
+        if not line.startswith("worst gap"):
+            numbers = [[float(x) for x in NUMBER.findall(text)] for text in (found, line)]
+            np.testing.assert_allclose(*numbers, rtol=1e-9)
+
+
+def test_demo_prints_what_the_quick_start_says(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    recipe = (ROOT / "Makefile").read_text("utf-8")
+    (command,) = re.findall(r"\$\(BIN\)/standoff (.*)", recipe)
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    (tmp_path / "build").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert main(command.split()) == 0
+    assert_same_but_roundoff(capsys.readouterr().out, block_after("`make demo` tracks it", "text"))
+    assert (tmp_path / "build" / "demo.png").exists()
+    assert (tmp_path / "build" / "demo.parquet").exists()
+
+
+def test_scene_of_the_quick_start_prints_what_it_says(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "helix.toml").write_text(block_after("## A scene", "toml"), encoding="utf-8")
+    command = block_after("\nand run\n", "sh").split()
+    assert command[0] == ".venv/bin/standoff"
+    assert main(command[1:]) == 0
+    assert_same_but_roundoff(capsys.readouterr().out, block_after("\nand run\n", "text"))
+
+
+def test_diagrams_are_what_their_script_draws(tmp_path: Path) -> None:
+    script = DOCS / "images" / "draw_diagrams.py"
+    subprocess.run([sys.executable, str(script), str(tmp_path)], check=True)
+    drawn = sorted(tmp_path.iterdir())
+    assert len(drawn) == 2
+    for file in drawn:
+        assert file.read_bytes() == (script.parent / file.name).read_bytes(), file.name
+
+
+def test_laws_table_has_the_integrators_and_their_limits() -> None:
+    from standoff.kernels.integrators import NAMES, STABILITY_LIMITS, STAGES
+
+    page = (DOCS / "laws.md").read_text("utf-8")
+    rows = re.findall(r"^\| `(\w+)` \| (\d) \|.*\| ([\d.]+) \|$", page, re.MULTILINE)
+    limits = zip(NAMES, STAGES, STABILITY_LIMITS, strict=True)
+    assert rows == [(name, str(stages), f"{limit:.4g}") for name, stages, limit in limits]
+
+
+def test_symbols_table_names_what_is_in_the_code() -> None:
+    """Every function that the table of symbols names in a kernel is there."""
+    page = (DOCS / "symbols.md").read_text("utf-8")
+    rows = [row for row in page.splitlines() if row.startswith("|") and ".py`" in row]
+    assert len(rows) > 30
+    for row in rows:
+        cells = [cell.strip() for cell in row.split("|")[1:-1]]
+        (file,) = re.findall(r"`([\w/]+\.py)`", cells[-1])
+        folder = ROOT / "src" if file.startswith("standoff") else ROOT / "src/standoff/kernels"
+        source = (folder / file).read_text("utf-8")
+        for name in re.findall(r"`(\w+)`", cells[1] + cells[-1]):
+            assert re.search(rf"\b{name}\b", source), f"{file} has no {name}: {row}"
