@@ -10,7 +10,7 @@ import numpy as np
 from standoff.bodies.charts import interior_point, make_charts, surface_normal
 from standoff.bodies.orientation import chart_at, orient
 from standoff.bodies.packing import Assembled, Chart, Sector
-from standoff.bodies.topology import BodyError, Edge, Face
+from standoff.bodies.topology import SIDES, Apex, BodyError, Edge, Face
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
 
@@ -18,6 +18,8 @@ from standoff.kernels import layout as L
 JOIN_TOLERANCE = 1e-9
 # A face's angle at a vertex of 180 degrees less this (radians) counts as wide.
 WIDE_ANGLE = 1e-6
+# Generators that a collapsed side gives to its vertex's normal cone.
+APEX_NORMALS = 9
 
 
 def _check_joins(vertices: Array, edges: Sequence[Edge], size: float) -> None:
@@ -82,13 +84,18 @@ def _vertex_geometry(
     for i, face in enumerate(faces):
         number = bisect_left(charts, i, key=lambda chart: chart.face)
         for a in face.apexes:
-            sectors[a.vertex].append(Sector(number, L.SECTOR_APEX, 0.0, a.level, a.lo, a.hi))
+            side = float(SIDES.index(a.side))
+            sectors[a.vertex].append(Sector(number, L.SECTOR_APEX, side, a.level, a.lo, a.hi))
+            cones[a.vertex] += _apex_normals(charts[number], a)
         touching: dict[int, list[tuple[int, int]]] = {}
         for j, _ in face.loop:
             for end, vertex in enumerate((edges[j].first, edges[j].last)):
                 if vertex is not None:
                     touching.setdefault(vertex, []).append((j, end))
+        collapsed = {a.vertex for a in face.apexes}
         for vertex, ends in touching.items():
+            if vertex in collapsed:
+                continue
             j, end = ends[0]
             curve = edges[j].curve
             chart, u, v = chart_at(charts, i, j, curve.last if end else curve.first)
@@ -97,6 +104,16 @@ def _vertex_geometry(
             if sector is not None:
                 sectors[vertex].append(sector)
     return sectors, [_around(cone) for cone in cones]
+
+
+def _apex_normals(chart: Chart, apex: Apex) -> list[Array]:
+    """Outward normals along a collapsed side: generators of the vertex's cone, none if it is all
+    of a turn, where the kernels' sector serves alone."""
+    if chart.surface.periodic:
+        return []
+    ts = [float(t) for t in np.linspace(apex.lo, apex.hi, APEX_NORMALS)]
+    spots = [(t, apex.level) if apex.side[0] == "v" else (apex.level, t) for t in ts]
+    return [chart.outward * surface_normal(chart.surface, u, v) for u, v in spots]
 
 
 def _around(cone: list[Array]) -> list[Array]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -136,13 +136,14 @@ class Body:
             radius *= float(stretch[0])
         if self.dimension == 2 and (np.abs(linear[2, :2]).max() > 0.0 or shift[2] != 0.0):
             raise ValueError("The map takes a planar body out of z = 0.")
-        edges = [Edge(e.curve.transformed(linear, shift), e.first, e.last) for e in self.edge_parts]
+        edges = [replace(e, curve=e.curve.transformed(linear, shift)) for e in self.edge_parts]
         flip = 1 if np.linalg.det(linear) > 0.0 else -1
         faces = [
             Face(
                 tuple(s.transformed(linear, shift) for s in f.charts),
                 tuple((j, flip * s) for j, s in f.loop),
                 f.apexes,
+                f.pcurves,
             )
             for f in self.face_parts
         ]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from standoff.bodies.packing import Chart, Coedge
-from standoff.bodies.topology import BodyError, Edge, Face
+from standoff.bodies.topology import Apex, BodyError, Edge, Face
 from standoff.geometry.pcurves import Pcurve, pcurve_of
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
@@ -17,6 +17,10 @@ from standoff.kernels import layout as L
 ATLAS_LIMIT = 2.0
 # A chart sees a point whose depth (cosine from its centre) is above this.
 CHART_RIM = 1e-3
+# A tangent shorter than this part of the other has collapsed: its direction is roundoff.
+COLLAPSED_TANGENT = 1e-11
+# How far towards the middle of the domain the sign of a collapsed side's normal is taken.
+INWARD_STEP = 1e-3
 EDGE_POINTS = np.linspace(0.05, 0.95, 7)
 
 
@@ -43,18 +47,46 @@ def _amid(face: Face, edges: Sequence[Edge]) -> Array:
         return np.zeros((0, 3))
     if len(face.charts) > 1:
         return surface.jet(0.0, 0.0)[0][None]
-    curves = [edges[j].curve for j, _ in face.loop if 0 <= j < len(edges)]
-    spots = [
-        pcurve_of(c, surface).point(t) for c in curves for t in np.linspace(c.first, c.last, 9)
-    ]
+    spots = []
+    for k, (j, _) in enumerate(face.loop):
+        if 0 <= j < len(edges):
+            c = edges[j].curve
+            pcurve = loop_pcurve(face, k, edges, surface)
+            spots += [pcurve.point(t) for t in np.linspace(c.first, c.last, 9)]
     u, v = np.mean([p[:2] for p in spots if p[2] > 0.0] or [(0.0, 0.0)], axis=0)
     return surface.jet(float(u), float(v))[0][None]
 
 
+def loop_pcurve(face: Face, entry: int, edges: Sequence[Edge], surface: Surface) -> Pcurve:
+    """The trimming curve of an entry of a face's loop: as given, or found exactly."""
+    given = face.pcurves[entry] if face.pcurves else None
+    return given or pcurve_of(edges[face.loop[entry][0]].curve, surface)
+
+
 def surface_normal(surface: Surface, u: float, v: float) -> Array:
-    jet = surface.jet(u, v)
-    normal = np.cross(jet[1], jet[2])
-    return np.asarray(normal / np.linalg.norm(normal))
+    """Unit f_u x f_v; its limit from inside the domain where one of the two has collapsed."""
+    _, xu, xv, _, xuv, _ = surface.jet(u, v)
+    normal = np.cross(xu, xv)
+    length = float(np.linalg.norm(normal))
+    a, b = float(np.linalg.norm(xu)), float(np.linalg.norm(xv))
+    if min(a, b) > COLLAPSED_TANGENT * max(a, b) and length > 0.0:
+        return np.asarray(normal / length)
+    _, near_u, near_v, *_ = surface.jet(*_inwards(surface, u, v))
+    near = np.cross(near_u, near_v)
+    normal = np.cross(xuv, xv) if a < b else np.cross(xu, xuv)
+    length = float(np.linalg.norm(normal))
+    if length == 0.0:
+        return np.asarray(near / np.linalg.norm(near))
+    return np.asarray(np.copysign(1.0, normal @ near) * normal / length)
+
+
+def _inwards(surface: Surface, u: float, v: float) -> tuple[float, float]:
+    """Parameters a little further inside the domain; a cone's domain is v >= 0."""
+    u0, u1, v0, v1 = surface.domain
+    if not np.isfinite([u0, u1, v0, v1]).all():
+        return u, v + 1.0
+    step = INWARD_STEP
+    return u + step * (0.5 * (u0 + u1) - u), v + step * (0.5 * (v0 + v1) - v)
 
 
 def make_charts(
@@ -65,20 +97,23 @@ def make_charts(
         for surface in face.charts:
             chart = Chart(surface, i, limit=ATLAS_LIMIT if len(face.charts) > 1 else np.inf)
             for a in face.apexes:
-                line = Pcurve(L.LINE, np.array([[1.0, 0, 0], [0, 0, a.level], [0, 0, 1.0]]))
-                chart.coedges.append(Coedge(-1 - a.vertex, line, a.lo, a.hi, 1))
-            for j, orientation in face.loop:
+                chart.coedges.append(_collapsed_side(a))
+            for k, (j, orientation) in enumerate(face.loop):
                 if not 0 <= j < len(edges):
                     raise BodyError(f"Face {i} names edge {j}; there are {len(edges)} edges.")
                 curve = edges[j].curve
-                pcurve = pcurve_of(curve, surface)
+                pcurve = loop_pcurve(face, k, edges, surface)
                 spans = visible_spans(pcurve, curve.first, curve.last)
                 if len(face.charts) == 1 and spans != [(curve.first, curve.last)]:
                     raise BodyError(
                         f"Face {i} does not see the whole of edge {j} in its one gnomonic chart: "
                         "the face reaches past a hemisphere; give it an atlas of charts."
                     )
-                chart.coedges += [Coedge(j, pcurve, a, b, orientation) for a, b in spans]
+                chart.coedges += [
+                    Coedge(j, piece, first, last, orientation)
+                    for a, b in spans
+                    for piece, first, last in pcurve.pieces(a, b)
+                ]
             if surface.periodic:
                 _join_angles(chart, edges)
             u, v = _somewhere(chart, edges)
@@ -87,6 +122,15 @@ def make_charts(
             chart.outward = 1.0 if facing > 0.0 else -1.0
             charts.append(chart)
     return charts
+
+
+def _collapsed_side(apex: Apex) -> Coedge:
+    """A coedge whose left is the face: u grows along v0, falls along v1."""
+    along, across = [1.0, 0.0, 0.0], [0.0, 0.0, apex.level]
+    rows = [along, across] if apex.side[0] == "v" else [across, along]
+    line = Pcurve(L.LINE, np.array([*rows, [0.0, 0.0, 1.0]]))
+    side = 1 if apex.side in ("v0", "u1") else -1
+    return Coedge(-1 - apex.vertex, line, apex.lo, apex.hi, side)
 
 
 def _join_angles(chart: Chart, edges: Sequence[Edge]) -> None:
@@ -117,8 +161,10 @@ def _ends(c: Coedge, edges: Sequence[Edge]) -> dict[int, float]:
 
 def visible_spans(pcurve: Pcurve, first: float, last: float) -> list[tuple[float, float]]:
     """The parameter ranges of a pcurve that its chart sees, with a small margin to its rim."""
-    if pcurve.kind == L.LINE:
+    if pcurve.kind == L.BEZIER:
         return [(first, last)]
+    if pcurve.kind == L.LINE:
+        return _visible_line(pcurve, first, last)
     a, b, c = pcurve.matrix[2]
     reach = float(np.hypot(a, b))
     rim = CHART_RIM * float(np.abs(pcurve.matrix).max()) - c
@@ -133,6 +179,15 @@ def visible_spans(pcurve: Pcurve, first: float, last: float) -> list[tuple[float
             spans.append((low, high))
         start += 2.0 * np.pi
     return spans
+
+
+def _visible_line(pcurve: Pcurve, first: float, last: float) -> list[tuple[float, float]]:
+    slope, level = float(pcurve.matrix[2, 0]), float(pcurve.matrix[2, 2])
+    if slope == 0.0:
+        return [(first, last)] if level > 0.0 else []
+    rim = (CHART_RIM * float(np.abs(pcurve.matrix).max()) - level) / slope
+    first, last = (max(first, rim), last) if slope > 0.0 else (first, min(last, rim))
+    return [(first, last)] if first < last else []
 
 
 def _somewhere(chart: Chart, edges: Sequence[Edge]) -> tuple[float, float]:

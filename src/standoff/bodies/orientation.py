@@ -11,6 +11,7 @@ from standoff.bodies.charts import surface_normal
 from standoff.bodies.packing import Chart
 from standoff.bodies.topology import BodyError, Edge, Face
 from standoff.geometry.validation import Array
+from standoff.kernels import layout as L
 
 # Dihedral angles below this (sine) make an edge smooth (G1).
 SMOOTH_ANGLE = 1e-7
@@ -66,12 +67,14 @@ def _compare_faces(
         n0, n1 = (_normal_at(charts, f, j, t) for f in (f0, f1))
         angle = float(np.linalg.norm(np.cross(n0, n1)))
         smooth[j] = angle < SMOOTH_ANGLE
-        if edges[j].smooth is not None and edges[j].smooth != smooth[j]:
+        if edges[j].smooth and not smooth[j]:
             raise BodyError(
-                f"Edge {j} is said to be {'smooth' if edges[j].smooth else 'sharp'}, but its "
-                f"faces' normals differ by {angle:.3g} (sine)."
+                f"Edge {j} is said to be smooth, but its faces' normals differ by {angle:.3g} "
+                "(sine)."
             )
-        if not smooth[j]:
+        seam = smooth[j]
+        smooth[j] = seam and edges[j].smooth is not False
+        if not seam:
             wrong[f0][j] = bool(s0 * (np.cross(n0, tangent) @ n1) > 0.0)
             wrong[f1][j] = bool(s1 * (np.cross(n1, tangent) @ n0) > 0.0)
     return smooth, wrong
@@ -124,6 +127,8 @@ def chart_at(charts: list[Chart], face: int, edge: int, t: float) -> tuple[Chart
             break
         for c in chart.coedges:
             if c.edge == edge:
+                if c.pcurve.kind == L.BEZIER and not c.first <= t <= c.last:
+                    continue
                 u, v, depth = c.pcurve.point(t)
                 reach = max(abs(u), abs(v))
                 if depth > 0.0 and (best is None or reach < best[0]):

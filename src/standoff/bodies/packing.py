@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.topology import Apex, Edge, Face
-from standoff.geometry.pcurves import Pcurve
+from standoff.bodies.topology import Apex, BodyError, Edge, Face
+from standoff.geometry.pcurves import Pcurve, SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
@@ -158,25 +158,47 @@ def _pack_faces(w: Writer, body: Assembled) -> None:
         reals[L.LIMIT] = chart.limit
         offset = w.real_block(reals)
         chart_rows.append(
-            (chart.surface.kind, offset, len(coedge_rows), len(chart.coedges), chart.face)
+            (
+                chart.surface.kind,
+                offset,
+                len(coedge_rows),
+                len(chart.coedges),
+                chart.face,
+                int(chart.surface.periodic),
+            )
         )
         for c in chart.coedges:
-            block = w.real_block([c.first, c.last, *c.pcurve.matrix.ravel()])
+            block = w.real_block([c.first, c.last, *c.pcurve.data])
             coedge_rows.append((c.edge, c.pcurve.kind, block, c.side, k))
     w.table(L.CHARTS, chart_rows)
     w.table(L.COEDGES, coedge_rows)
 
 
 def _coedges_of_edges(body: Assembled) -> list[list[int]]:
-    """For every edge the first coedge of each face (each chart of an atlas has one more)."""
+    """For every edge the first coedge of each face (each chart of an atlas has one more).
+
+    A curve on a surface is evaluated on its first coedge, so there that surface's comes first.
+    """
     found: list[dict[int, int]] = [{} for _ in body.edges]
+    own: list[set[int]] = [set() for _ in body.edges]
     number = 0
     for chart in body.charts:
         for c in chart.coedges:
             if c.edge >= 0:
                 found[c.edge].setdefault(chart.face, number)
+                curve = body.edges[c.edge].curve
+                if isinstance(curve, SurfaceCurve) and curve.lies_on(chart.surface):
+                    own[c.edge].add(chart.face)
             number += 1
-    return [list(faces.values()) for faces in found]
+    for j, edge in enumerate(body.edges):
+        if isinstance(edge.curve, SurfaceCurve) and not own[j]:
+            raise BodyError(
+                f"Edge {j} is a curve on a surface that none of its faces has as a chart."
+            )
+    return [
+        [faces[f] for f in sorted(faces, key=lambda f: f not in own[j])]
+        for j, faces in enumerate(found)
+    ]
 
 
 def _pack_edges(w: Writer, body: Assembled) -> None:
@@ -189,6 +211,7 @@ def _pack_edges(w: Writer, body: Assembled) -> None:
             (L.CLOSED if curve.closed else 0)
             | (L.SMOOTH if body.smooth[j] else 0)
             | (L.OUTWARD_RIGHT if body.outward_right[j] else 0)
+            | (L.CREASED if edge.creased else 0)
         )
         coedges = [*coedges_of[j], -1, -1][:2]
         first = -1 if edge.first is None else edge.first

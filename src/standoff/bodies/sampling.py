@@ -8,7 +8,7 @@ import numpy as np
 
 from standoff.bodies.packing import Assembled, Chart, Ints, Sample
 from standoff.bodies.topology import BodyError, Edge
-from standoff.geometry.curves import ConicArc, RationalBezier
+from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
 from standoff.geometry.validation import Array
 from standoff.kernels.features import chart_normal, planar_edge_normal
 from standoff.kernels.trimming import on_face
@@ -17,6 +17,8 @@ from standoff.kernels.trimming import on_face
 FACE_BUDGET = 120
 EDGE_BUDGET = 60
 VERTEX_BUDGET = 120
+# Samples that bound a curve whose kind has no box.
+CURVE_SAMPLES = 65
 # A sampled point may rise above a sampled tangent plane by this fraction of the body's size:
 # the roundoff of building it.
 CONVEXITY_TOLERANCE = 1e-9
@@ -128,6 +130,11 @@ def curve_box(edge: Edge) -> tuple[Array, Array]:
         h = c.data[1:].reshape(-1, 4)
         points = h[:, :3] / h[:, 3:]
         return points.min(axis=0), points.max(axis=0)
+    box = c.box()
+    if box is not None:
+        return box
+    if not isinstance(c, Line | ConicArc):
+        return _sampled_box(c)
     ends = [c.point(c.first), c.point(c.last)]
     if isinstance(c, ConicArc):
         basis = c.basis()
@@ -140,6 +147,16 @@ def curve_box(edge: Edge) -> tuple[Array, Array]:
     return np.min(ends, axis=0), np.max(ends, axis=0)
 
 
+def _sampled_box(curve: Curve) -> tuple[Array, Array]:
+    """Around a curve without bounds of its own: its samples, and how far it can bend between."""
+    ts = np.linspace(curve.first, curve.last, CURVE_SAMPLES)
+    jets = [curve.jet(float(t)) for t in ts]
+    points = np.array([jet[0] for jet in jets])
+    bend = np.max([np.abs(jet[2]) for jet in jets], axis=0)
+    margin = 0.5 * bend * ((curve.last - curve.first) / (CURVE_SAMPLES - 1)) ** 2
+    return points.min(axis=0) - margin, points.max(axis=0) + margin
+
+
 def body_box(body: Assembled, ints: Ints, reals: Array) -> tuple[Array, Array] | None:
     """(low, high) around the core; None for an unbounded body.
 
@@ -147,7 +164,10 @@ def body_box(body: Assembled, ints: Ints, reals: Array) -> tuple[Array, Array] |
     if that lies on the face, or on the face's boundary.
     """
     lows, highs = [], []
-    for edge in body.edges:
+    boxed = {c.edge for chart in body.charts if chart.surface.box() for c in chart.coedges}
+    for j, edge in enumerate(body.edges):
+        if j in boxed:
+            continue
         low, high = curve_box(edge)
         lows.append(low)
         highs.append(high)
@@ -157,6 +177,11 @@ def body_box(body: Assembled, ints: Ints, reals: Array) -> tuple[Array, Array] |
     for k, chart in enumerate(body.charts):
         if not chart.coedges and chart.limit == np.inf:
             return None
+        box = chart.surface.box()
+        if box is not None:
+            lows.append(box[0])
+            highs.append(box[1])
+            continue
         for direction in (*np.eye(3), *-np.eye(3)):
             top = chart.surface.highest(direction)
             if top is None or max(abs(top[0]), abs(top[1])) > chart.limit:

@@ -9,8 +9,12 @@ from typing import Any
 import numpy as np
 
 from standoff.geometry.curves import Curve, Line
+from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
+
+SIDES = ("v0", "v1", "u0", "u1")
+"""Sides of a patch, in the order of the kernels' SIDE_ numbers."""
 
 
 @dataclass(frozen=True)
@@ -23,29 +27,37 @@ class Edge:
     first, last : int or None
         Numbers of the vertices at its ends.
     smooth : bool or None
-        Both faces share their normal along it (G1). None lets the body find out.
+        Both faces share their normal along it (G1). None lets the body find out;
+        False keeps a seam as an edge of its own all the same.
+    creased : bool
+        The normals agree along it, but the curvature across it is infinite.
     """
 
     curve: Curve
     first: int | None = None
     last: int | None = None
     smooth: bool | None = None
+    creased: bool = False
 
 
 @dataclass(frozen=True)
 class Apex:
-    """A side of a face that has collapsed to a vertex: u from lo to hi at v = level.
+    """A side of a face that has collapsed to a vertex.
 
     Parameters
     ----------
     vertex : int
     level, lo, hi : float
+    side : str
+        "v0": u from lo to hi at v = level, the face at greater v; "v1": at lesser v; "u0" and
+        "u1": the same with u and v exchanged.
     """
 
     vertex: int
     level: float
     lo: float
     hi: float
+    side: str = "v0"
 
 
 @dataclass(frozen=True)
@@ -61,11 +73,15 @@ class Face:
         face's boundary runs against the edge's parameter.
     apexes : tuple of Apex
         Its collapsed sides.
+    pcurves : tuple of Pcurve or None
+        For every entry of the loop its trimming curve on the one chart, with the edge's
+        parameter; None (or none at all) where the kinds of curve and surface give it exactly.
     """
 
     charts: tuple[Surface, ...]
     loop: tuple[tuple[int, int], ...] = ()
     apexes: tuple[Apex, ...] = ()
+    pcurves: tuple[Pcurve | None, ...] = ()
 
 
 class BodyError(ValueError):
@@ -85,6 +101,13 @@ def check_parts(
     for k, face in enumerate(faces):
         if not face.charts or not all(isinstance(s, Surface) for s in face.charts):
             raise BodyError(f"Face {k} has the charts {face.charts!r}: give at least one Surface.")
+        if face.pcurves and (len(face.pcurves) != len(face.loop) or len(face.charts) != 1):
+            raise BodyError(
+                f"Face {k} has {len(face.pcurves)} pcurves, {len(face.loop)} edges and "
+                f"{len(face.charts)} charts: give a pcurve (or None) an edge, and one chart."
+            )
+        if bad := [a.side for a in face.apexes if a.side not in SIDES]:
+            raise BodyError(f"Face {k} has an apex on side {bad[0]!r}: give one of {SIDES}.")
     if not (len(vertices) or edges or faces):
         raise BodyError("A body needs at least one vertex, edge or face.")
     used = {v for e in edges for v in (e.first, e.last) if v is not None}

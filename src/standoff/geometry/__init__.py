@@ -2,7 +2,7 @@
 
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
 from standoff.geometry.formulas import FormulaCurve, FormulaError, FormulaSurface
-from standoff.geometry.pcurves import Pcurve, pcurve_of
+from standoff.geometry.pcurves import NurbsPcurve, Pcurve, SurfaceCurve, pcurve_of
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
 
 __all__ = [
@@ -14,10 +14,12 @@ __all__ = [
     "FormulaError",
     "FormulaSurface",
     "Line",
+    "NurbsPcurve",
     "Pcurve",
     "Plane",
     "RationalBezier",
     "Sphere",
     "Surface",
+    "SurfaceCurve",
     "pcurve_of",
 ]

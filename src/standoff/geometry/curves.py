@@ -35,6 +35,10 @@ class Curve:
     def closed(self) -> bool:
         return False
 
+    def box(self) -> tuple[Array, Array] | None:
+        """(low, high), each (3,): surely around the curve; None where its kind gives none."""
+        return None
+
     def transformed(self, linear: Array, shift: Array) -> Curve:
         """The exact image under x -> linear x + shift; the parameter stays the same."""
         data = self.data.copy()
@@ -72,7 +76,7 @@ class Line(Curve):
             raise ValueError(f"Line from {p} to itself: give two different points.")
         linear = np.zeros((3, 3))
         linear[:, 0] = q - p
-        _fill(self, _affine(linear, p), 0.0, 1.0)
+        fill_curve(self, _affine(linear, p), 0.0, 1.0)
 
 
 class ConicArc(Curve):
@@ -97,7 +101,7 @@ class ConicArc(Curve):
             )
         linear = np.zeros((3, 3))
         linear[:, 0], linear[:, 1] = a, b
-        _fill(self, _affine(linear, centre), first, last)
+        fill_curve(self, _affine(linear, centre), first, last)
 
     @property
     def closed(self) -> bool:
@@ -128,7 +132,7 @@ class RationalBezier(Curve):
                     "tangent there; leave one out."
                 )
         homogeneous = np.column_stack([points * w[:, None], w])
-        _fill(self, np.concatenate([[float(len(points) - 1)], homogeneous.ravel()]), 0.0, 1.0)
+        fill_curve(self, np.concatenate([[float(len(points) - 1)], homogeneous.ravel()]), 0.0, 1.0)
 
     @property
     def degree(self) -> int:
@@ -147,7 +151,8 @@ def _planar(point: Any) -> Any:
     return np.append(array, 0.0) if array.shape == (2,) else point
 
 
-def _fill(curve: Curve, data: Array, first: float, last: float) -> None:
+def fill_curve(curve: Curve, data: Array, first: float, last: float) -> None:
+    """Set a curve's fields; its data become read-only."""
     data.flags.writeable = False
     object.__setattr__(curve, "data", data)
     object.__setattr__(curve, "first", float(first))

@@ -7,14 +7,27 @@ here. Lengths in the body's frame.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
-from typing import ClassVar
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from standoff.geometry.validation import Array, finite, matrix3, vector3
 from standoff.kernels import layout as L
 from standoff.kernels.jets import surface_jet
+
+Domain = tuple[float, float, float, float]
+UNBOUNDED: Domain = (-np.inf, np.inf, -np.inf, np.inf)
+
+
+def checked_domain(domain: Any, name: str) -> Domain:
+    """(u0, u1, v0, v1) as floats; raises ValueError where it is empty or not a number."""
+    if np.shape(domain) != (4,):
+        raise ValueError(f"{name}.domain = {domain!r}: give (u0, u1, v0, v1).")
+    u0, u1, v0, v1 = (float(x) for x in domain)
+    if not (u0 < u1 and v0 < v1):
+        raise ValueError(f"{name}.domain = {(u0, u1, v0, v1)} is empty: give u0 < u1, v0 < v1.")
+    return u0, u1, v0, v1
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,15 +38,18 @@ class Surface(ABC):
     ----------
     linear : (3, 3) array, regular
     shift : (3,) array, length
+    domain : (u0, u1, v0, v1), parameters; a *patch* is a surface whose domain is finite
     """
 
     linear: Array
     shift: Array
+    domain: Domain = UNBOUNDED
     kind: ClassVar[int]
     periodic: ClassVar[bool] = False  # u is an angle
     reals: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "domain", checked_domain(self.domain, type(self).__name__))
         linear = matrix3(self.linear, f"{type(self).__name__}.linear")
         shift = vector3(self.shift, f"{type(self).__name__}.shift")
         scale = np.abs(linear).max()
@@ -44,7 +60,9 @@ class Surface(ABC):
             )
         object.__setattr__(self, "linear", linear)
         object.__setattr__(self, "shift", shift)
-        reals = np.zeros(L.SURFACE_DATA)
+        data = self._data()
+        reals = np.zeros(L.SURFACE_DATA + len(data))
+        reals[L.SURFACE_DATA :] = data
         reals[0:9] = linear.ravel()
         reals[9:12] = shift
         reals[L.INVERSE : L.INVERSE + 9] = np.linalg.inv(linear).ravel()
@@ -53,13 +71,47 @@ class Surface(ABC):
         reals.flags.writeable = False
         object.__setattr__(self, "reals", reals)
 
+    def _data(self) -> Array:
+        """What the kind's kernel reads behind the affine map."""
+        return np.zeros(0)
+
+    @property
+    def data(self) -> Array:
+        """What the kind's kernel reads behind the affine map (see ``standoff.kernels.layout``)."""
+        return self.reals[L.SURFACE_DATA :]
+
     def jet(self, u: float, v: float) -> tuple[Array, ...]:
         """(x, x_u, x_v, x_uu, x_uv, x_vv), each (3,), body frame."""
         return tuple(np.array(c) for c in surface_jet(self.reals, self.kind, 0, u, v))
 
-    def transformed(self, linear: Array, shift: Array) -> Surface:
+    def transformed(self, linear: Array, shift: Array) -> Self:
         """The exact image under x -> linear x + shift; parameters stay the same."""
-        return type(self)(linear @ self.linear, linear @ self.shift + shift)
+        return replace(self, linear=linear @ self.linear, shift=linear @ self.shift + shift)
+
+    def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Self:
+        """The same surface on a smaller domain; parameters stay the same.
+
+        Raises
+        ------
+        ValueError
+            The domain is empty or leaves the present one.
+        """
+        smaller = checked_domain((u0, u1, v0, v1), type(self).__name__)
+        a, b, c, d = self.domain
+        if not (a <= smaller[0] and smaller[1] <= b and c <= smaller[2] and smaller[3] <= d):
+            raise ValueError(f"The domain {smaller} leaves the surface's own, {self.domain}.")
+        return replace(self, domain=smaller)
+
+    def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Parameters (us, vs) inside the domain where the surface is not C²."""
+        return (), ()
+
+    def box(self) -> tuple[Array, Array] | None:
+        """(low, high), each (3,), body frame: surely around the surface over its domain.
+
+        None where `highest` serves instead.
+        """
+        return None
 
     @abstractmethod
     def highest(self, direction: Array) -> tuple[float, float] | None:

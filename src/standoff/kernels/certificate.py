@@ -5,7 +5,6 @@ from math import inf
 from standoff.kernels import layout as L
 from standoff.kernels.compiling import kernel
 from standoff.kernels.features import (
-    chart_jet,
     chart_normal,
     coedge_conormal,
     dimension,
@@ -14,7 +13,7 @@ from standoff.kernels.features import (
     planar_edge_normal,
     vertex_record,
 )
-from standoff.kernels.switching import end_direction, steepest_in_sector
+from standoff.kernels.switching import apex_normal, end_direction, steepest_in_sector
 from standoff.kernels.tolerances import EPS
 from standoff.kernels.vectors import axpy, cross, dot, norm, rotate, rotate_back, scale, sub, unit
 
@@ -70,12 +69,7 @@ def vertex_cone(ints, reals, feature, n):
             o = ints[sector + 1]
             chart = ints[sector]
             if reals[o] == L.SECTOR_APEX:
-                # the normal along a generator is the same at any distance from the apex
-                jet = chart_jet(ints, reals, chart, angle, reals[o + 2] + 1.0)
-                sign = reals[
-                    ints[ints[L.CHARTS] + L.CHART_STRIDE * chart + L.CHART_REALS] + L.OUTWARD
-                ]
-                best = scale(sign, unit(cross(jet[1], jet[2])))
+                best = apex_normal(ints, reals, sector, angle)
             else:
                 best = chart_normal(ints, reals, chart, reals[o + 1], reals[o + 2])
     if at < 0:

@@ -4,8 +4,9 @@ from standoff.kernels.certificate import certify
 from standoff.kernels.compiling import kernel
 from standoff.kernels.contact import polish
 from standoff.kernels.descent import ORIGIN, pair_jets, release_along, settle
-from standoff.kernels.features import pair_span
+from standoff.kernels.features import dimension, pair_span
 from standoff.kernels.tolerances import MAX_STALLS, SLOPE, TOUCHING
+from standoff.kernels.trimming import on_face
 
 # Outcomes of a query.
 CERTIFIED = 0
@@ -18,11 +19,22 @@ def weigh(pair, R, p, mode, q, jet_a, jet_b, hint, tolerance):
     """(outcome, d, bound, normal) of witness points; d and bound are those of the cores."""
     d, bound, normal = certify(pair, R, p, mode, q, jet_a[0], jet_b[0], hint)
     span = pair_span(pair, p, d)
+    if not on_feature(pair, mode, q):
+        return UNCERTIFIED, d, bound, normal
     if bound > 0.0 and d - bound <= tolerance * span:
         return CERTIFIED, d, bound, normal
     if bound <= 0.0 and d <= TOUCHING * span:
         return TOUCHING_OR_OVERLAPPING, d, bound, normal
     return UNCERTIFIED, d, bound, normal
+
+
+@kernel
+def on_feature(pair, mode, q):
+    """Do both witness points lie on their faces? Ends bound edges; a vertex is a point."""
+    ia, ra, ib, rb = pair
+    if dimension(ia, mode[0]) == 2 and not on_face(ia, ra, mode[1], q[0], q[1]):
+        return False
+    return dimension(ib, mode[2]) != 2 or on_face(ib, rb, mode[3], q[2], q[3])
 
 
 @kernel

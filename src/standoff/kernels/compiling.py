@@ -5,7 +5,10 @@ the middle of a step. `small` asks LLVM to inline: measured in docs/spikes/dispa
 it a step takes 1.6 times as long.
 """
 
+import numpy as np
+from llvmlite import ir
 from numba import config, njit, types
+from numba.core import cgutils
 from numba.extending import intrinsic
 
 kernel = njit(cache=True, error_model="numpy")
@@ -21,12 +24,29 @@ def _pointer(typingctx, array, offset):  # type: ignore[no-untyped-def]
     return types.CPointer(array.dtype)(array, types.intp), codegen
 
 
+STACK_REALS = 32
+
+
 if config.DISABLE_JIT:
+
+    def stack_reals():  # type: ignore[no-untyped-def]
+        return np.zeros(STACK_REALS)
 
     def pointer(array, offset):  # type: ignore[no-untyped-def]
         return array[offset:]
 
 else:
+
+    @intrinsic
+    def stack_reals(typingctx):  # type: ignore[no-untyped-def]
+        """STACK_REALS numbers of the caller's stack, not yet set: no allocation, gone with it."""
+
+        def codegen(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            block = cgutils.alloca_once(builder, ir.ArrayType(ir.DoubleType(), STACK_REALS))
+            zero = ir.IntType(64)(0)
+            return builder.gep(block, [zero, zero], inbounds=True)
+
+        return types.CPointer(types.float64)(), codegen
 
     @small
     def pointer(array, offset):

@@ -6,9 +6,9 @@ A body in the kernels is the pair (ints, reals) of ``layout``. A *mode* of one b
 
 from standoff.kernels import layout as L
 from standoff.kernels.compiling import kernel
-from standoff.kernels.jets import chart_parameters, curve_jet, pcurve_point, surface_jet
+from standoff.kernels.jets import chart_parameters, curve_jet, pcurve_jet, surface_jet
 from standoff.kernels.tolerances import COLLAPSED
-from standoff.kernels.vectors import add, cross, dot, norm, rotate, scale, unit
+from standoff.kernels.vectors import add, axpy, cross, dot, norm, rotate, scale, unit
 
 ZERO = (0.0, 0.0, 0.0)
 
@@ -72,7 +72,25 @@ def chart_jet(ints, reals, chart, u, v):
 @kernel
 def edge_jet(ints, reals, feature, t):
     e = edge_record(ints, feature)
+    if ints[e + L.EDGE_KIND] == L.ON_SURFACE:
+        return coedge_jet(ints, reals, ints[e + L.EDGE_COEDGE_0], t)
     return curve_jet(reals, ints[e + L.EDGE_KIND], ints[e + L.EDGE_REALS] + L.CURVE_DATA, t)
+
+
+@kernel
+def coedge_jet(ints, reals, coedge, t):
+    """Jet of the pcurve's image on its surface, by the chain rule."""
+    k = best_coedge(ints, reals, coedge, t)
+    c = coedge_record(ints, k)
+    o = ints[c + L.COEDGE_REALS] + L.PCURVE_DATA
+    h, ht, htt = pcurve_jet(reals, ints[c + L.COEDGE_KIND], o, t)
+    u, v = h[0] / h[2], h[1] / h[2]
+    ut, vt = (ht[0] - u * ht[2]) / h[2], (ht[1] - v * ht[2]) / h[2]
+    utt = (htt[0] - 2.0 * ut * ht[2] - u * htt[2]) / h[2]
+    vtt = (htt[1] - 2.0 * vt * ht[2] - v * htt[2]) / h[2]
+    x, xu, xv, xuu, xuv, xvv = chart_jet(ints, reals, ints[c + L.COEDGE_CHART], u, v)
+    xtt = axpy(ut * ut, xuu, axpy(2.0 * ut * vt, xuv, scale(vt * vt, xvv)))
+    return x, axpy(ut, xu, scale(vt, xv)), add(xtt, axpy(utt, xu, scale(vtt, xv)))
 
 
 @kernel
@@ -90,6 +108,8 @@ def feature_jet(ints, reals, feature, chart, p, q):
         tiny = COLLAPSED * reals[L.SIZE]
         if dot(xu, xu) <= tiny * tiny:
             return x, ZERO, xv, ZERO, ZERO, xvv
+        if dot(xv, xv) <= tiny * tiny:
+            return x, xu, ZERO, xuu, ZERO, ZERO
         return x, xu, xv, xuu, xuv, xvv
     if dim == 1:
         x, xt, xtt = edge_jet(ints, reals, feature, p)
@@ -132,8 +152,8 @@ def planar_edge_normal(ints, reals, feature, t):
 def coedge_parameters(ints, reals, coedge, t):
     """(u, v, du, dv, depth) of the pcurve at t; depth <= 0 where its chart does not see it."""
     c = coedge_record(ints, coedge)
-    o = ints[c + L.COEDGE_REALS] + L.PCURVE_MATRIX
-    h, ht = pcurve_point(reals, ints[c + L.COEDGE_KIND], o, t)
+    o = ints[c + L.COEDGE_REALS] + L.PCURVE_DATA
+    h, ht, _ = pcurve_jet(reals, ints[c + L.COEDGE_KIND], o, t)
     if h[2] <= 0.0:
         return 0.0, 0.0, 0.0, 0.0, h[2]
     u, v = h[0] / h[2], h[1] / h[2]
@@ -142,28 +162,42 @@ def coedge_parameters(ints, reals, coedge, t):
 
 @kernel
 def best_coedge(ints, reals, coedge, t):
-    """The coedge of the same edge and face whose chart sees the point at t most centrally.
+    """The coedge of the same edge and face that sees the point at t most centrally.
 
-    A face with one chart has one; with an atlas every chart that meets the edge has its own.
+    A face with one chart and a plain pcurve has one coedge; in an atlas every chart that meets
+    the edge has its own, and a NURBS pcurve has one for each piece.
     """
     c = coedge_record(ints, coedge)
     edge = ints[c + L.COEDGE_EDGE]
     face = ints[chart_record(ints, ints[c + L.COEDGE_CHART]) + L.CHART_FACE]
     f = ints[L.FACES] + L.FACE_STRIDE * face
-    if ints[f + 1] == 1:
+    if ints[f + 1] == 1 and ints[c + L.COEDGE_KIND] != L.BEZIER:
         return coedge
     best = coedge
-    best_reach = 1e300
+    best_miss, best_reach = 1e300, 1e300
     for chart in range(ints[f], ints[f] + ints[f + 1]):
         r = chart_record(ints, chart)
         first = ints[r + L.CHART_COEDGE]
         for k in range(first, first + ints[r + L.CHART_N_COEDGES]):
-            if ints[coedge_record(ints, k) + L.COEDGE_EDGE] == edge:
-                u, v, _, _, depth = coedge_parameters(ints, reals, k, t)
-                if depth > 0.0 and max(abs(u), abs(v)) < best_reach:
-                    best_reach = max(abs(u), abs(v))
-                    best = k
+            if not same_side(ints, k, coedge, edge):
+                continue
+            miss = 0.0
+            row = coedge_record(ints, k)
+            if ints[row + L.COEDGE_KIND] == L.BEZIER:
+                o = ints[row + L.COEDGE_REALS]
+                miss = max(max(reals[o] - t, t - reals[o + 1]), 0.0)
+            u, v, _, _, depth = coedge_parameters(ints, reals, k, t)
+            reach = max(abs(u), abs(v)) if ints[f + 1] > 1 else 0.0
+            if depth > 0.0 and (miss < best_miss or (miss == best_miss and reach < best_reach)):
+                best_miss, best_reach, best = miss, reach, k
     return best
+
+
+@kernel
+def same_side(ints, k, coedge, edge):
+    """Is coedge k a piece of the same side of the edge? A seam bounds its face from both sides."""
+    a, b = coedge_record(ints, k), coedge_record(ints, coedge)
+    return ints[a + L.COEDGE_EDGE] == edge and ints[a + L.COEDGE_SIDE] == ints[b + L.COEDGE_SIDE]
 
 
 @kernel

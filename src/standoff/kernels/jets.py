@@ -1,21 +1,18 @@
 """Jets: a point of a surface or curve with its first and second partial derivatives.
 
 Canonical forms stand behind an affine map, so an affine image of a body is exact. Adding a kind
-is one function here, one number in ``layout`` and one line in the chain of ``surface_jet``.
+is one function, one number in ``layout`` and one line in a chain here: of ``canonical_jet``, which
+is inlined wherever a jet is taken and so holds the small kinds, or of ``patch_jet``, a call.
 """
 
 from math import cos, sin, sqrt
 
-from standoff.kernels.compiling import small
-from standoff.kernels.layout import (
-    AFFINE,
-    BEZIER,
-    CONE,
-    CONIC,
-    CYLINDER,
-    PLANE,
-    SPHERE,
-)
+from standoff.kernels import layout as L
+from standoff.kernels.compiling import kernel, small, stack_reals
+from standoff.kernels.formulas import formula_curve_jet, formula_jet
+from standoff.kernels.layout import AFFINE, CONE, CYLINDER, PLANE, SPHERE, SURFACE_DATA
+from standoff.kernels.nurbs import bernstein_basis, bezier_jet, nurbs_curve_jet, nurbs_jet
+from standoff.kernels.superellipsoid import superellipsoid_jet
 
 ZERO = (0.0, 0.0, 0.0)
 
@@ -83,8 +80,124 @@ def affine_map(reals, o, a):
     return (x[0] + reals[o + 9], x[1] + reals[o + 10], x[2] + reals[o + 11])
 
 
+@kernel
+def piecewise_jet(reals, kind, o, t):
+    """(x, x_t, x_tt) of the curve kinds that have no affine map."""
+    if kind == L.BEZIER:
+        return bezier_jet(reals, o + 1, int(reals[o]), t)
+    if kind == L.NURBS_CURVE:
+        return nurbs_curve_jet(reals, o, t)
+    return formula_curve_jet(int(reals[o + 12]), t)
+
+
 @small
-def canonical_jet(kind, u, v):
+def curve_jet(reals, kind, o, t):
+    """(x, x_t, x_tt) of the curve whose data begin at o."""
+    if kind == L.BEZIER or kind == L.NURBS_CURVE:
+        return piecewise_jet(reals, kind, o, t)
+    if kind == L.CONIC:
+        c, s = cos(t), sin(t)
+        y, yt, ytt = (c, s, 0.0), (-s, c, 0.0), (-c, -s, 0.0)
+    elif kind == L.LINE:
+        y, yt, ytt = (t, 0.0, 0.0), (1.0, 0.0, 0.0), ZERO
+    else:
+        y, yt, ytt = piecewise_jet(reals, kind, o, t)
+    return affine_map(reals, o, y), linear_map(reals, o, yt), linear_map(reals, o, ytt)
+
+
+@kernel
+def pcurve_jet(reals, kind, o, t):
+    """(h, h_t, h_tt): homogeneous (u, v) of the pcurve whose data begin at o, by t."""
+    if kind == L.BEZIER:
+        first, last = reals[o - 2], reals[o - 1]
+        rate = 1.0 / (last - first)
+        n = int(reals[o])
+        basis = stack_reals()
+        bernstein_basis(n, (t - first) * rate, basis)
+        h = stack_reals()
+        for k in range(9):
+            h[k] = 0.0
+        for i in range(n + 1):
+            for c in range(3):
+                x = reals[o + 1 + 3 * i + c]
+                h[c] += basis[i] * x
+                h[3 + c] += basis[n + 1 + i] * x * rate
+                h[6 + c] += basis[2 * (n + 1) + i] * x * rate * rate
+        return (h[0], h[1], h[2]), (h[3], h[4], h[5]), (h[6], h[7], h[8])
+    if kind == L.CONIC:
+        c, s = cos(t), sin(t)
+        y, yt, ytt = (c, s, 1.0), (-s, c, 0.0), (-c, -s, 0.0)
+    else:
+        y, yt, ytt = (t, 0.0, 1.0), (1.0, 0.0, 0.0), ZERO
+    return linear_map(reals, o, y), linear_map(reals, o, yt), linear_map(reals, o, ytt)
+
+
+@small
+def torus_jet(reals, o, u, v):
+    """((R + r cos v) cos u, (R + r cos v) sin u, r sin v); R and r at reals[o:]."""
+    cu, su, cv, sv = cos(u), sin(u), cos(v), sin(v)
+    r = reals[o + 1]
+    ring = reals[o] + r * cv
+    rc, rs = r * cv, r * sv
+    return (
+        (ring * cu, ring * su, rs),
+        (-ring * su, ring * cu, 0.0),
+        (-rs * cu, -rs * su, rc),
+        (-ring * cu, -ring * su, 0.0),
+        (rs * su, -rs * cu, 0.0),
+        (-rc * cu, -rc * su, -rs),
+    )
+
+
+@small
+def revolution_jet(reals, o, u, v):
+    """(r(v) cos u, r(v) sin u, z(v)) of a profile (r, 0, z); its kind and data at reals[o:]."""
+    y, yt, ytt = curve_jet(reals, int(reals[o]), o + 1, v)
+    c, s = cos(u), sin(u)
+    return (
+        (y[0] * c, y[0] * s, y[2]),
+        (-y[0] * s, y[0] * c, 0.0),
+        (yt[0] * c, yt[0] * s, yt[2]),
+        (-y[0] * c, -y[0] * s, 0.0),
+        (-yt[0] * s, yt[0] * c, 0.0),
+        (ytt[0] * c, ytt[0] * s, ytt[2]),
+    )
+
+
+@small
+def extrusion_jet(reals, o, u, v):
+    """c(u) + v d: kind of the profile c, direction d, then the profile's data at reals[o:]."""
+    y, yt, ytt = curve_jet(reals, int(reals[o]), o + 4, u)
+    d = (reals[o + 1], reals[o + 2], reals[o + 3])
+    return (
+        (y[0] + v * d[0], y[1] + v * d[1], y[2] + v * d[2]),
+        yt,
+        d,
+        ytt,
+        ZERO,
+        ZERO,
+    )
+
+
+@kernel
+def patch_jet(reals, kind, o, u, v):
+    """Canonical jet of the kinds that have data at reals[o:]."""
+    if kind == L.NURBS:
+        return nurbs_jet(reals, o, u, v)
+    if kind == L.TORUS:
+        return torus_jet(reals, o, u, v)
+    if kind == L.SUPERELLIPSOID_POLE or kind == L.SUPERELLIPSOID_SIDE:
+        pole = kind == L.SUPERELLIPSOID_POLE
+        return superellipsoid_jet(reals[o], reals[o + 1], pole, u, v)
+    if kind == L.REVOLUTION:
+        return revolution_jet(reals, o, u, v)
+    if kind == L.EXTRUSION:
+        return extrusion_jet(reals, o, u, v)
+    return formula_jet(int(reals[o]), u, v)
+
+
+@small
+def canonical_jet(reals, kind, o, u, v):
     if kind == PLANE:
         return plane_jet(u, v)
     if kind == SPHERE:
@@ -93,13 +206,13 @@ def canonical_jet(kind, u, v):
         return cylinder_jet(u, v)
     if kind == CONE:
         return cone_jet(u, v)
-    return ZERO, ZERO, ZERO, ZERO, ZERO, ZERO
+    return patch_jet(reals, kind, o, u, v)
 
 
 @small
 def surface_jet(reals, kind, o, u, v):
     """(x, x_u, x_v, x_uu, x_uv, x_vv) of the chart whose reals begin at o."""
-    x, xu, xv, xuu, xuv, xvv = canonical_jet(kind, u, v)
+    x, xu, xv, xuu, xuv, xvv = canonical_jet(reals, kind, o + SURFACE_DATA, u, v)
     m = o + AFFINE
     return (
         affine_map(reals, m, x),
@@ -120,83 +233,3 @@ def chart_parameters(reals, o, x):
     if y[2] <= 0.0:
         return 0.0, 0.0, y[2]
     return y[0] / y[2], y[1] / y[2], y[2]
-
-
-@small
-def bezier_jet(reals, o, t):
-    """Rational Bezier curve of any degree, by Bernstein sums over homogeneous control points.
-
-    reals[o] is the degree n, then n + 1 points (w x, w y, w z, w).
-    """
-    n = int(reals[o])
-    s = 1.0 - t
-    # h, d, e: value, first and second derivative of each homogeneous coordinate
-    hx = hy = hz = hw = 0.0
-    dx = dy = dz = dw = 0.0
-    ex = ey = ez = ew = 0.0
-    for i in range(n + 1):
-        b0 = bernstein(n, i, s, t)
-        b1 = n * (bernstein(n - 1, i - 1, s, t) - bernstein(n - 1, i, s, t))
-        b2 = (
-            n
-            * (n - 1)
-            * (
-                bernstein(n - 2, i - 2, s, t)
-                - 2.0 * bernstein(n - 2, i - 1, s, t)
-                + bernstein(n - 2, i, s, t)
-            )
-        )
-        k = o + 1 + 4 * i
-        hx += b0 * reals[k]
-        hy += b0 * reals[k + 1]
-        hz += b0 * reals[k + 2]
-        hw += b0 * reals[k + 3]
-        dx += b1 * reals[k]
-        dy += b1 * reals[k + 1]
-        dz += b1 * reals[k + 2]
-        dw += b1 * reals[k + 3]
-        ex += b2 * reals[k]
-        ey += b2 * reals[k + 1]
-        ez += b2 * reals[k + 2]
-        ew += b2 * reals[k + 3]
-    x = (hx / hw, hy / hw, hz / hw)
-    xt = ((dx - dw * x[0]) / hw, (dy - dw * x[1]) / hw, (dz - dw * x[2]) / hw)
-    xtt = (
-        (ex - 2.0 * dw * xt[0] - ew * x[0]) / hw,
-        (ey - 2.0 * dw * xt[1] - ew * x[1]) / hw,
-        (ez - 2.0 * dw * xt[2] - ew * x[2]) / hw,
-    )
-    return x, xt, xtt
-
-
-@small
-def bernstein(n, i, s, t):
-    if n < 0 or i < 0 or i > n:
-        return 0.0
-    c = 1.0
-    for k in range(i):
-        c = c * (n - k) / (k + 1)
-    return c * s ** (n - i) * t**i
-
-
-@small
-def curve_jet(reals, kind, o, t):
-    """(x, x_t, x_tt) of the curve whose data begin at o."""
-    if kind == BEZIER:
-        return bezier_jet(reals, o, t)
-    if kind == CONIC:
-        c, s = cos(t), sin(t)
-        y, yt, ytt = (c, s, 0.0), (-s, c, 0.0), (-c, -s, 0.0)
-    else:
-        y, yt, ytt = (t, 0.0, 0.0), (1.0, 0.0, 0.0), ZERO
-    return affine_map(reals, o, y), linear_map(reals, o, yt), linear_map(reals, o, ytt)
-
-
-@small
-def pcurve_point(reals, kind, o, t):
-    """Homogeneous (u, v) and its derivative by t of the pcurve whose matrix begins at o."""
-    if kind == CONIC:
-        y, yt = (cos(t), sin(t), 1.0), (-sin(t), cos(t), 0.0)
-    else:
-        y, yt = (t, 0.0, 1.0), (1.0, 0.0, 0.0)
-    return linear_map(reals, o, y), linear_map(reals, o, yt)

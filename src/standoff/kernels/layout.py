@@ -34,9 +34,10 @@ REAL_HEADER = 9
 # A face: first chart, number of charts.
 FACE_STRIDE = 2
 
-# A chart: surface kind, offset in reals, first coedge, number of coedges, face.
-CHART_STRIDE = 5
-CHART_KIND, CHART_REALS, CHART_COEDGE, CHART_N_COEDGES, CHART_FACE = range(5)
+# A chart: surface kind, offset in reals, first coedge, number of coedges, face, and 1 where u is
+# an angle.
+CHART_STRIDE = 6
+CHART_KIND, CHART_REALS, CHART_COEDGE, CHART_N_COEDGES, CHART_FACE, CHART_PERIODIC = range(6)
 # Its reals: affine map (3x3 row-major, shift), inverse of the 3x3, then the two below, then
 # what the surface kind needs.
 AFFINE = 0
@@ -50,11 +51,12 @@ COEDGE_STRIDE = 5
 COEDGE_EDGE, COEDGE_KIND, COEDGE_REALS, COEDGE_SIDE, COEDGE_CHART = range(5)
 # side: +1 where the face lies on the left of the pcurve as its parameter grows, else -1.
 # Its reals: the first and last parameter, then a 3x3 matrix P (row-major): homogeneous (u, v) is
-# P (t, 0, 1) for a line and P (cos t, sin t, 1) for a conic.
+# P (t, 0, 1) for a line and P (cos t, sin t, 1) for a conic. For a Bezier piece of a NURBS pcurve
+# the degree and homogeneous points (w u, w v, w); it turns by less than 180 degrees, so that no
+# line meets it more than twice, and an edge has as many coedges in a chart as it has pieces.
 PCURVE_FIRST = 0
 PCURVE_LAST = 1
-PCURVE_MATRIX = 2
-PCURVE_STRIDE = 11
+PCURVE_DATA = 2
 
 # An edge: curve kind, offset in reals, flags, first vertex, last vertex, coedge, coedge.
 EDGE_STRIDE = 7
@@ -62,8 +64,8 @@ EDGE_KIND, EDGE_REALS, EDGE_FLAGS, EDGE_FIRST, EDGE_LAST, EDGE_COEDGE_0, EDGE_CO
 CLOSED = 1  # a period and no vertex
 SMOOTH = 2  # both faces share their normal along it: passed by its reset, not a mode
 OUTWARD_RIGHT = 4  # planar bodies: the outward normal is on the right of the tangent
-# Its reals: first and last parameter, then the affine map (line, conic), or degree and
-# homogeneous control points (w x, w y, w z, w) (rational Bezier).
+CREASED = 8  # one normal along it, but infinite curvature across it (superellipsoids)
+# Its reals: first and last parameter, then what the curve kind needs (see the jets).
 EDGE_T0 = 0
 EDGE_T1 = 1
 CURVE_DATA = 2
@@ -82,19 +84,31 @@ VERTEX_STRIDE = 7
 ) = range(7)
 # A fan entry: edge, end (0 or 1). A sector entry: chart, offset in reals.
 # A sector's reals: kind, u, v, lo, hi.
-SECTOR_APEX = 0  # collapsed side: start anywhere on u in [lo, hi] at v, heading to growing v
+SECTOR_APEX = 0  # collapsed side: start anywhere in [lo, hi] of it; its side and level for u, v
 SECTOR_WIDE = 1  # a face's angle of 180 degrees or more: directions lo .. hi in the (u, v) plane
+# Sides of a patch: v = level with the face at greater v, at lesser v; u = level likewise.
+SIDE_V0, SIDE_V1, SIDE_U0, SIDE_U1 = range(4)
 
 # A sample's reals: point, outward normal (zero at edges and vertices), parameters.
 SAMPLE_STRIDE = 8
 
-# Surface kinds.
+# Surface kinds; what stands at SURFACE_DATA.
 PLANE = 0
 SPHERE = 1  # gnomonic
 CYLINDER = 2
 CONE = 3
+NURBS = 4  # degrees p, q; spans m, n; m + 1 and n + 1 breaks; m n Bezier nets of homogeneous points
+TORUS = 5  # major and minor radius
+SUPERELLIPSOID_POLE = 6  # 2/e1, 2/e2: gnomonic chart about the axis
+SUPERELLIPSOID_SIDE = 7  # the same about a point of the equator
+REVOLUTION = 8  # kind of the profile curve, then its data
+EXTRUSION = 9  # kind of the profile curve, direction, then its data
+FORMULA = 10  # address of a compiled jet
 
-# Curve and pcurve kinds.
-LINE = 0
-CONIC = 1
-BEZIER = 2
+# Curve kinds; pcurves are lines, conics or Bezier pieces.
+LINE = 0  # affine map
+CONIC = 1  # affine map
+BEZIER = 2  # degree, homogeneous points
+NURBS_CURVE = 3  # degree, spans n, n + 1 breaks, n times the homogeneous points of a Bezier curve
+FORMULA_CURVE = 4  # address of a compiled jet
+ON_SURFACE = 5  # the image of the edge's own pcurve: nothing

@@ -23,8 +23,8 @@ from standoff.kernels.features import (
     edge_record,
     vertex_record,
 )
-from standoff.kernels.trimming import HIT_COEDGE, HIT_END, wrapped
-from standoff.kernels.vectors import axpy, dot, scale, unit
+from standoff.kernels.trimming import HIT_COEDGE, HIT_END, TURN, wrapped
+from standoff.kernels.vectors import axpy, cross, dot, scale, unit
 
 FAN_SCAN = 24  # directions tried around an apex or in a wide sector, before refinement
 FAN_REFINE = 60  # golden-section steps: shrinks the bracket by 1e-12, the fan's own roundoff
@@ -91,14 +91,42 @@ def normalised_parameter(ints, reals, feature, p):
 
 
 @kernel
+def sector_parameters(reals, o, angle):
+    """(u, v) where a sector whose reals begin at o starts, at the sector's angle."""
+    if reals[o] != L.SECTOR_APEX:
+        return reals[o + 1], reals[o + 2]
+    if reals[o + 1] < L.SIDE_U0:
+        return angle, reals[o + 2]
+    return reals[o + 2], angle
+
+
+@kernel
 def sector_direction(ints, reals, sector, angle):
     """Unit direction that leaves a vertex into a face's sector, at the sector's angle."""
     chart, o = ints[sector], ints[sector + 1]
-    u, v = reals[o + 1], reals[o + 2]
-    if reals[o] == L.SECTOR_APEX:
-        return unit(chart_jet(ints, reals, chart, angle, v)[2])
+    u, v = sector_parameters(reals, o, angle)
     jet = chart_jet(ints, reals, chart, u, v)
+    if reals[o] == L.SECTOR_APEX:
+        side = int(reals[o + 1])
+        out = unit(jet[2] if side < L.SIDE_U0 else jet[1])
+        return scale(-1.0, out) if side == L.SIDE_V1 or side == L.SIDE_U1 else out
     return unit(axpy(cos(angle), jet[1], scale(sin(angle), jet[2])))
+
+
+@kernel
+def apex_normal(ints, reals, sector, angle):
+    """Outward unit normal of a face at its collapsed side.
+
+    One tangent is zero there; beside it, it is the mixed derivative times the way off the side.
+    """
+    chart, o = ints[sector], ints[sector + 1]
+    u, v = sector_parameters(reals, o, angle)
+    _, xu, xv, _, xuv, _ = chart_jet(ints, reals, chart, u, v)
+    side = int(reals[o + 1])
+    normal = cross(xuv, xv) if side < L.SIDE_U0 else cross(xu, xuv)
+    outward = reals[ints[chart_record(ints, chart) + L.CHART_REALS] + L.OUTWARD]
+    sign = -outward if side == L.SIDE_V1 or side == L.SIDE_U1 else outward
+    return scale(sign, unit(normal))
 
 
 @kernel
@@ -112,9 +140,9 @@ def steepest_in_sector(ints, reals, sector, n):
         slope = -dot(n, sector_direction(ints, reals, sector, lo + k * width))
         if slope < best:
             best, at = slope, lo + k * width
-    # golden section around the best direction; an apex's fan is periodic, so it may pass lo, hi
+    # golden section around the best direction; the fan of a whole turn may pass lo, hi
     a, b = at - width, at + width
-    if reals[o] == L.SECTOR_WIDE:
+    if not ints[chart_record(ints, ints[sector]) + L.CHART_PERIODIC] or hi - lo < TURN:
         a, b = max(a, lo), min(b, hi)
     ratio = 0.5 * (sqrt(5.0) - 1.0)
     c, d = b - ratio * (b - a), a + ratio * (b - a)
@@ -175,9 +203,8 @@ def steepest_release(ints, reals, feature, p, n):
             sector = sectors + 2 * k
             slope, angle = steepest_in_sector(ints, reals, sector, n)
             if slope < best:
-                o = ints[sector + 1]
                 c = ints[sector]
                 face = ints[chart_record(ints, c) + L.CHART_FACE]
-                u = angle if reals[o] == L.SECTOR_APEX else reals[o + 1]
-                best, to, chart, a, b = slope, face, c, u, reals[o + 2]
+                u, v = sector_parameters(reals, ints[sector + 1], angle)
+                best, to, chart, a, b = slope, face, c, u, v
     return best, to, chart, a, b

@@ -41,9 +41,6 @@ ENERGY_NOISE = 8.0
 SLOPE = 1e-10
 SLOPE_NOISE = 8.0
 
-# A hit may lie this far behind the start of a step (in steps): the start is on the boundary.
-HIT_BEHIND = 1e-9
-
 # A pcurve hit may lie this far (radians or parameter units) outside its range: at a corner the
 # line must not slip between two edges.
 PCURVE_OVERLAP = 1e-12
@@ -85,3 +82,6 @@ CONTACT_STEPS = 12
 
 # Positions (length) must stay below this: squares of distances must not overflow.
 FARTHEST = 1e100
+
+# Greatest degree of a NURBS: the kernels' blocks of the stack hold this much.
+MAX_DEGREE = 9

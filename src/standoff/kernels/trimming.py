@@ -1,6 +1,6 @@
 """Walking on a feature until its boundary: trimming loops, ends of edges, limits of charts."""
 
-from math import atan2, hypot, inf, pi, sqrt
+from math import hypot, inf, pi, sqrt
 
 from standoff.kernels import layout as L
 from standoff.kernels.compiling import kernel
@@ -11,7 +11,8 @@ from standoff.kernels.features import (
     dimension,
     edge_record,
 )
-from standoff.kernels.tolerances import HIT_BEHIND, PCURVE_OVERLAP
+from standoff.kernels.line_roots import TOUCHING_LINE, line_roots
+from standoff.kernels.tolerances import PCURVE_OVERLAP
 
 NO_HIT = 0
 HIT_COEDGE = 1  # index: the coedge; t: its parameter
@@ -21,6 +22,9 @@ HIT_LIMIT = 3  # the chart's limit: change charts
 TURN = 2.0 * pi
 # A point known no better than this (parameter units, relative) may lie outside by roundoff.
 PARAMETER_NOISE = 1e-14
+# How far (parameter units) along a tangent a curve stays within PARAMETER_NOISE of it: a line that
+# starts on a curve and touches it this near touches it at its start.
+TOUCH_WIDTH = 1e-6
 # Rays tried to tell inside from outside: one suffices but where it grazes a corner.
 RAYS = 6
 
@@ -31,34 +35,14 @@ def wrapped(t, t0):
 
 
 @kernel
-def line_roots(reals, kind, o, u, v, du, dv):
-    """(count, t1, t2): parameters where the pcurve meets the line through (u, v) along (du, dv)."""
-    a, b = dv, -du
-    c = -(a * u + b * v)
-    m0 = a * reals[o] + b * reals[o + 3] + c * reals[o + 6]
-    m1 = a * reals[o + 1] + b * reals[o + 4] + c * reals[o + 7]
-    m2 = a * reals[o + 2] + b * reals[o + 5] + c * reals[o + 8]
-    if kind == L.LINE:
-        if m0 == 0.0:
-            return 0, 0.0, 0.0
-        return 1, -m2 / m0, 0.0
-    amplitude = hypot(m0, m1)
-    if abs(m2) > amplitude or amplitude == 0.0:
-        return 0, 0.0, 0.0
-    middle = atan2(m1, m0)
-    half = atan2(sqrt((amplitude - m2) * (amplitude + m2)), -m2)
-    return 2, middle + half, middle - half
-
-
-@kernel
 def in_range(ints, reals, coedge, t):
     """(inside, t) with t brought into the pcurve's range, periods included."""
     c = coedge_record(ints, coedge)
     o = ints[c + L.COEDGE_REALS]
     t0, t1 = reals[o + L.PCURVE_FIRST], reals[o + L.PCURVE_LAST]
     kind = ints[c + L.COEDGE_KIND]
-    surface = ints[chart_record(ints, ints[c + L.COEDGE_CHART]) + L.CHART_KIND]
-    around = (surface == L.CYLINDER or surface == L.CONE) and reals[o + L.PCURVE_MATRIX] != 0.0
+    periodic = ints[chart_record(ints, ints[c + L.COEDGE_CHART]) + L.CHART_PERIODIC] != 0
+    around = periodic and kind == L.LINE and reals[o + L.PCURVE_DATA] != 0.0
     if kind == L.CONIC or around:
         t = wrapped(t, t0)
         if t > t1 and t - TURN >= t0 - PCURVE_OVERLAP:
@@ -72,16 +56,18 @@ def in_range(ints, reals, coedge, t):
 def crossings(ints, reals, coedge, u, v, du, dv):
     """Both crossings of a step with a coedge: (count, s, outward, t, s, outward, t).
 
-    s counts steps from (u, v); outward is +1 where the step leaves the face, -1 where it enters.
+    s counts steps from (u, v), and is 0 where (u, v) is on the coedge but for roundoff; outward
+    is +1 where the step leaves the face, -1 where it enters.
     """
     c = coedge_record(ints, coedge)
-    o = ints[c + L.COEDGE_REALS] + L.PCURVE_MATRIX
-    n, ta, tb = line_roots(reals, ints[c + L.COEDGE_KIND], o, u, v, du, dv)
+    o = ints[c + L.COEDGE_REALS] + L.PCURVE_DATA
+    noise = PARAMETER_NOISE * (1.0 + abs(u) + abs(v))
+    n, ta, tb = line_roots(reals, ints[c + L.COEDGE_KIND], o, u, v, du, dv, noise)
     count = 0
     s1 = s2 = t1 = t2 = 0.0
     out1 = out2 = 0
     length2 = du * du + dv * dv
-    for k in range(n):
+    for k in range(2 if n == TOUCHING_LINE else n):
         t = ta if k == 0 else tb
         x, y, tx, ty, depth = coedge_parameters(ints, reals, coedge, t)
         inside, t = in_range(ints, reals, coedge, t)
@@ -89,14 +75,25 @@ def crossings(ints, reals, coedge, u, v, du, dv):
             continue
         s = ((x - u) * du + (y - v) * dv) / length2
         inward = ints[c + L.COEDGE_SIDE] * (tx * dv - ty * du)
+        if n == TOUCHING_LINE:
+            # the line only touches the curve: outside all along, if the face is on its side
+            along = ints[c + L.COEDGE_SIDE] * (tx * du + ty * dv)
+            if (along > 0.0) != (tb < 0.0):
+                break
+            inward = -1.0
+            s = min(s, 0.0) if abs(s) * sqrt(length2) < TOUCH_WIDTH else s
         if inward == 0.0:
             continue
         out = 1 if inward < 0.0 else -1
+        if n != TOUCHING_LINE and abs(s) * abs(inward) <= noise * hypot(tx, ty):
+            s = 0.0
         if count == 0:
             s1, out1, t1 = s, out, t
         else:
             s2, out2, t2 = s, out, t
         count += 1
+        if n == TOUCHING_LINE:
+            break
     return count, s1, out1, t1, s2, out2, t2
 
 
@@ -106,8 +103,7 @@ def walk_face(ints, reals, chart, u, v, du, dv):
     r = chart_record(ints, chart)
     first = ints[r + L.CHART_COEDGE]
     best, hit, index, where = 1.0, NO_HIT, -1, 0.0
-    length = hypot(du, dv)
-    if length == 0.0:
+    if du == 0.0 and dv == 0.0:
         return best, hit, index, where
     limit = reals[ints[r + L.CHART_REALS] + L.LIMIT]
     if limit < inf:
@@ -117,13 +113,21 @@ def walk_face(ints, reals, chart, u, v, du, dv):
                 s = max(((limit if da > 0.0 else -limit) - a) / da, 0.0)
                 if s < best:
                     best, hit = s, HIT_LIMIT
-    behind = -(HIT_BEHIND + PARAMETER_NOISE * (1.0 + abs(u) + abs(v)) / length)
+    # the nearest crossings behind: the last one inward where the start is on the face
+    left, entered, left_at, left_t = -inf, -inf, -1, 0.0
     for k in range(first, first + ints[r + L.CHART_N_COEDGES]):
         count, s1, out1, t1, s2, out2, t2 = crossings(ints, reals, k, u, v, du, dv)
-        if count > 0 and out1 > 0 and behind <= s1 <= best:
-            best, hit, index, where = max(s1, 0.0), HIT_COEDGE, k, t1
-        if count > 1 and out2 > 0 and behind <= s2 <= best:
-            best, hit, index, where = max(s2, 0.0), HIT_COEDGE, k, t2
+        for m in range(count):
+            s, out, t = (s1, out1, t1) if m == 0 else (s2, out2, t2)
+            if out > 0 and 0.0 <= s <= best:
+                best, hit, index, where = s, HIT_COEDGE, k, t
+            elif out > 0 and left < s < 0.0:
+                left, left_at, left_t = s, k, t
+            elif out < 0 and entered < s <= 0.0:
+                entered = s
+    if left > entered:
+        # roundoff has carried the start outside: back to where it left
+        return 0.0, HIT_COEDGE, left_at, left_t
     return best, hit, index, where
 
 
@@ -161,14 +165,18 @@ def on_face(ints, reals, chart, u, v):
         o = ints[aim + L.COEDGE_REALS]
         t = reals[o] + (0.2371 + 0.1113 * k) * (reals[o + 1] - reals[o])
         x, y, _, _, depth = coedge_parameters(ints, reals, first + k % n, t)
-        if depth <= 0.0 or hypot(x - u, y - v) == 0.0:
+        if depth <= 0.0:
             continue
+        if hypot(x - u, y - v) <= PARAMETER_NOISE * (1.0 + abs(u) + abs(v)):
+            return True
         nearest, side = inf, 0
         for j in range(first, first + n):
             count, s1, out1, _, s2, out2, _ = crossings(ints, reals, j, u, v, x - u, y - v)
-            if count > 0 and 0.0 <= s1 < nearest:
+            if (count > 0 and s1 == 0.0) or (count > 1 and s2 == 0.0):
+                return True  # on the boundary
+            if count > 0 and 0.0 < s1 < nearest:
                 nearest, side = s1, out1
-            if count > 1 and 0.0 <= s2 < nearest:
+            if count > 1 and 0.0 < s2 < nearest:
                 nearest, side = s2, out2
         if side != 0:
             return side > 0

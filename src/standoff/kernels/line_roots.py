@@ -1,0 +1,103 @@
+"""Where a straight line of the (u, v) plane meets a trimming curve.
+
+Lines and conics in closed form; a Bezier piece turns by less than 180 degrees, so a line meets it
+at most twice, on both sides of the one point that is farthest along the line's normal.
+"""
+
+from math import atan2, hypot, pi, sqrt
+
+from standoff.kernels import layout as L
+from standoff.kernels.compiling import kernel
+from standoff.kernels.jets import pcurve_jet
+from standoff.kernels.tolerances import PCURVE_OVERLAP
+
+HALF_TURN = pi
+# Instead of a count: the line touches the curve but for noise. Then t1 is where, and t2 is the
+# side of the line on which the curve lies: negative on its left.
+TOUCHING_LINE = -1
+# Steps of a bracketed root: regula falsi (Illinois) needs some ten, bisection never more.
+ROOT_STEPS = 80
+
+
+@kernel
+def line_roots(reals, kind, o, u, v, du, dv, noise):
+    """(count, t1, t2): parameters where the pcurve meets the line through (u, v) along (du, dv).
+
+    noise : how far (parameter units) a curve may miss the line and still touch it.
+    """
+    a, b = dv, -du
+    c = -(a * u + b * v)
+    if kind == L.BEZIER:
+        return bezier_roots(reals, o, a, b, c, noise)
+    m0 = a * reals[o] + b * reals[o + 3] + c * reals[o + 6]
+    m1 = a * reals[o + 1] + b * reals[o + 4] + c * reals[o + 7]
+    m2 = a * reals[o + 2] + b * reals[o + 5] + c * reals[o + 8]
+    if kind == L.LINE:
+        if m0 == 0.0:
+            return 0, 0.0, 0.0
+        return 1, -m2 / m0, 0.0
+    amplitude = hypot(m0, m1)
+    if amplitude == 0.0:
+        return 0, 0.0, 0.0
+    middle = atan2(m1, m0)
+    if abs(m2) > amplitude:
+        t = middle if m2 < 0.0 else middle + HALF_TURN
+        h = pcurve_jet(reals, kind, o, t)[0]
+        if h[2] > 0.0 and abs(m2) - amplitude <= noise * h[2] * hypot(a, b):
+            return TOUCHING_LINE, t, m2
+        return 0, 0.0, 0.0
+    half = atan2(sqrt((amplitude - m2) * (amplitude + m2)), -m2)
+    return 2, middle + half, middle - half
+
+
+@kernel
+def level(reals, o, a, b, c, t):
+    """(f, slope): height over the line of the pcurve's homogeneous point, and h_2² d(f/h_2)/dt."""
+    h, ht, _ = pcurve_jet(reals, L.BEZIER, o, t)
+    f = a * h[0] + b * h[1] + c * h[2]
+    ft = a * ht[0] + b * ht[1] + c * ht[2]
+    return f, ft * h[2] - f * ht[2]
+
+
+@kernel
+def bracketed(reals, o, a, b, c, which, t0, f0, t1, f1):
+    """Root of `level`'s value (which 0) or slope (1) between t0 and t1, where its signs differ."""
+    for k in range(ROOT_STEPS):
+        # every third step halves, so that no bracket stays wide
+        t = 0.5 * (t0 + t1) if k % 3 == 2 else (t0 * f1 - t1 * f0) / (f1 - f0)
+        if not (min(t0, t1) < t < max(t0, t1)):
+            break
+        f, slope = level(reals, o, a, b, c, t)
+        if which == 1:
+            f = slope
+        if f == 0.0:
+            return t
+        if (f > 0.0) == (f1 > 0.0):
+            t1, f1 = t, f
+            f0 *= 0.5
+        else:
+            t0, f0 = t1, f1
+            t1, f1 = t, f
+    return t1
+
+
+@kernel
+def bezier_roots(reals, o, a, b, c, noise):
+    first, last = reals[o - 2], reals[o - 1]
+    margin = PCURVE_OVERLAP * (last - first)
+    t0, t1 = first - margin, last + margin
+    f0, slope0 = level(reals, o, a, b, c, t0)
+    f1, slope1 = level(reals, o, a, b, c, t1)
+    if (f0 > 0.0) != (f1 > 0.0):
+        return 1, bracketed(reals, o, a, b, c, 0, t0, f0, t1, f1), 0.0
+    if (slope0 > 0.0) == (slope1 > 0.0):
+        return 0, 0.0, 0.0
+    t = bracketed(reals, o, a, b, c, 1, t0, slope0, t1, slope1)
+    f = level(reals, o, a, b, c, t)[0]
+    if (f > 0.0) != (f0 > 0.0):
+        before = bracketed(reals, o, a, b, c, 0, t0, f0, t, f)
+        return 2, before, bracketed(reals, o, a, b, c, 0, t, f, t1, f1)
+    h = pcurve_jet(reals, L.BEZIER, o, t)[0]
+    if abs(f) <= noise * h[2] * hypot(a, b):
+        return TOUCHING_LINE, t, f0
+    return 0, 0.0, 0.0
