@@ -67,7 +67,50 @@ class DistanceCommand:
     """Print the answer as JSON."""
 
 
-Command = TrackCommand | DistanceCommand
+@dataclass(frozen=True)
+class CheckCommand:
+    """Tell what a body's checks at construction found and proved.
+
+    Exit codes: 0 done, 1 the picture could not be written, 2 bad input: also a body that is
+    refused.
+    """
+
+    what: Annotated[Positional[str], arg(metavar="SCENE.toml|BODY.json|SHAPE")]
+    """A scene, a file of patches, or a shape written as in a scene, such as
+    'shape = "box", size = [1, 2, 3]'."""
+    body: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
+    """Only this one of a scene's bodies."""
+    plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
+    """Draw the body with its features and normals to this file (.png, .svg or .pdf); of several
+    bodies each to its own, OUT-NAME.png."""
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Print the report as JSON."""
+
+
+@dataclass(frozen=True)
+class AutomatonCommand:
+    """List or draw the modes, switching functions and resets of a scene's pairs.
+
+    Exit codes: 0 done, 1 the file could not be written, 2 bad input, 3 with --visited: finished
+    but not certified.
+    """
+
+    scene: SceneFile
+    """Scene file; docs/scene-format.md describes the format."""
+    pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
+    """Only this one of the scene's [[pairs]]."""
+    format: Annotated[str | None, arg(metavar="FORMAT", help_behavior_hint="")] = None
+    """text, mermaid or svg; if not given, by the ending of OUT, else text."""
+    output: Annotated[
+        Path | None, arg(aliases=["-o"], metavar="OUT.svg", help_behavior_hint="")
+    ] = None
+    """Write to this file (.txt, .mmd or .svg) in place of stdout; of several pairs each to its
+    own, OUT-NAME.svg."""
+    visited: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Track the scene first, and mark the visited modes and switches with their times."""
+
+
+Command = TrackCommand | DistanceCommand | CheckCommand | AutomatonCommand
 
 DESCRIPTION = """Exact, certified minimum distance of curved convex bodies in motion.
 
@@ -84,7 +127,9 @@ def parse(arguments: Sequence[str]) -> Command:
     """
     return tyro.cli(
         Annotated[TrackCommand, subcommand("track")]
-        | Annotated[DistanceCommand, subcommand("distance")],
+        | Annotated[DistanceCommand, subcommand("distance")]
+        | Annotated[CheckCommand, subcommand("check")]
+        | Annotated[AutomatonCommand, subcommand("automaton")],
         prog="standoff",
         description=DESCRIPTION,
         args=arguments,

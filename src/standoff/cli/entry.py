@@ -47,17 +47,16 @@ def _run(given: list[str]) -> int:
         import tyro  # noqa: F401
     except ModuleNotFoundError as error:
         return _complain(str(MissingExtra(str(error.name))), ExitCode.BAD_INPUT)
-    from standoff.cli.arguments import TrackCommand, parse
+    from standoff.cli.arguments import parse
 
     command = parse(given or ["--help"])
 
     # The library comes after the parse, so that help and typing errors need not wait for it.
-    from standoff.cli.distance import run_distance
-    from standoff.cli.track import run_track
+    from standoff.cli.commands import run
     from standoff.scene import SceneError
 
     try:
-        return run_track(command) if isinstance(command, TrackCommand) else run_distance(command)
+        return run(command)
     except (CommandError, SceneError) as error:
         return _complain(str(error), ExitCode.BAD_INPUT)
     except WriteError as error:

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
-
-from rich.console import Console
-from rich.progress import Progress as Bar
 
 from standoff.cli.arguments import TrackCommand
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import pairs_text, recording_facts
 from standoff.cli.output import Writer, check_target, write_whole
+from standoff.cli.progress import progress_bar
 from standoff.cli.selection import chosen, target_of
 from standoff.cli.summary import recording_lines
 from standoff.scene import (
@@ -27,7 +22,6 @@ from standoff.scene import (
 )
 from standoff.scene.settings import SAMPLES
 from standoff.tracking import Recording
-from standoff.tracking.simulate import Progress
 
 TABLE_ENDINGS = (".parquet",)
 PLOT_ENDINGS = (".png", ".svg", ".pdf")
@@ -52,7 +46,7 @@ def run_track(command: TrackCommand) -> int:
         prepare(run.scene, run.settings)
     for run in runs:
         run.check_files()
-    with _progress() as progress:
+    with progress_bar() as progress:
         recordings = [record(run.scene, run.settings, progress) for run in runs]
     done = list(zip(runs, recordings, strict=True))
     write_whole({path: write for run, told in done for path, write in run.files(told).items()})
@@ -121,19 +115,3 @@ def _settings(scene: Scene, command: TrackCommand) -> TrackSettings:
         return scene.settings.overridden(given)
     except SceneError as error:
         raise CommandError(f"--{error.key}: {error.problem}") from error
-
-
-@contextmanager
-def _progress() -> Iterator[Progress | None]:
-    """Show a progress bar on stderr where that is a terminal."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    with Bar(console=Console(stderr=True), transient=True) as bar:
-        # The kernels are compiled before the first answer and kept on disk for later runs.
-        task = bar.add_task("starting (the very first run compiles)", total=None)
-
-        def show(done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total, description="tracking")
-
-        yield show

@@ -1,0 +1,115 @@
+"""``standoff automaton``: a pair's modes, switching functions and resets, listed or drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from standoff.cli.arguments import AutomatonCommand
+from standoff.cli.errors import CommandError, ExitCode, MissingExtra
+from standoff.cli.output import Writer, check_target, write_whole
+from standoff.cli.progress import progress_bar
+from standoff.cli.selection import chosen, target_of
+from standoff.scene import Scene, load_scene, prepare, record
+from standoff.scene.reader import unknown_name
+from standoff.tracking import Recording
+from standoff.tracking.automaton import Automaton, automaton
+from standoff.tracking.automaton_text import automaton_mermaid, automaton_text
+
+ENDINGS = {"text": ".txt", "mermaid": ".mmd", "svg": ".svg"}
+"""Each format, and the ending of its files."""
+
+TEXTS: Mapping[str, Callable[[Automaton, tuple[str, str]], str]] = {
+    "text": automaton_text,
+    "mermaid": automaton_mermaid,
+}
+
+
+def run_automaton(command: AutomatonCommand) -> int:
+    """List or draw the automata of the scene's pairs.
+
+    Raises
+    ------
+    SceneError, CommandError
+        If the scene, an option or the output file is not usable.
+    WriteError
+        If the files could not be written.
+    """
+    form = _format(command)
+    scenes = chosen(load_scene(command.scene), command.pair)
+    targets = [target_of(command.output, scene, scenes) for scene in scenes]
+    for target in targets:
+        if target is not None:
+            check_target(target, "-o", [ENDINGS[form]])
+    if form == "svg":
+        _check_plotting()
+    runs = _runs(scenes) if command.visited else []
+    automata = _automata(scenes, runs)
+    files = {
+        target: _writer(form, scene, found)
+        for target, scene, found in zip(targets, scenes, automata, strict=True)
+        if target is not None
+    }
+    write_whole(files)
+    for target in files:
+        print(f"wrote {target}")
+    if not files:
+        texts = [TEXTS[form](m, s.pair) for s, m in zip(scenes, automata, strict=True)]
+        print("\n\n".join(texts))
+    certified = all(run.certified.all() for run in runs)
+    return ExitCode.DONE if certified else ExitCode.NOT_CERTIFIED
+
+
+def _format(command: AutomatonCommand) -> str:
+    """The format that is asked for, by name or by the file's ending."""
+    if command.format is None:
+        if command.output is None:
+            return "text"
+        ending = command.output.suffix.lower()
+        found = next((form for form, known in ENDINGS.items() if known == ending), None)
+        if found is None:
+            raise CommandError(
+                f"-o {command.output}: the ending '{command.output.suffix}' is not known here; "
+                f"name a file that ends in {' or '.join(ENDINGS.values())}"
+            )
+        return found
+    if command.format not in ENDINGS:
+        raise CommandError(f"--format: {unknown_name(command.format, ENDINGS, 'format')}")
+    if command.format == "svg" and command.output is None:
+        raise CommandError("--format svg: a picture needs a file; add -o automaton.svg")
+    return command.format
+
+
+def _check_plotting() -> None:
+    """Tell a missing library before the run."""
+    try:
+        import standoff.tracking.automaton_picture  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise MissingExtra(str(error.name)) from error
+
+
+def _runs(scenes: tuple[Scene, ...]) -> list[Recording]:
+    for scene in scenes:
+        prepare(scene, scene.settings)
+    with progress_bar() as progress:
+        return [record(scene, None, progress) for scene in scenes]
+
+
+def _automata(scenes: tuple[Scene, ...], runs: list[Recording]) -> list[Automaton]:
+    bare = [automaton(*scene.pair_bodies) for scene in scenes]
+    if not runs:
+        return bare
+    return [m.marked(run.modes(), run.events) for m, run in zip(bare, runs, strict=True)]
+
+
+def _writer(form: str, scene: Scene, found: Automaton) -> Writer:
+    if form == "svg":
+        from standoff.tracking.automaton_picture import write_automaton
+
+        title = f"{scene.title}: modes of {scene.pair[0]} and {scene.pair[1]}"
+        return lambda path: write_automaton(path, "svg", found, scene.pair, title)
+
+    def write(path: Path) -> None:
+        path.write_text(TEXTS[form](found, scene.pair) + "\n", encoding="utf-8")
+
+    return write

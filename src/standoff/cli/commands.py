@@ -1,0 +1,36 @@
+"""From a command, as the arguments give it, to what runs it."""
+
+from __future__ import annotations
+
+from standoff.cli.arguments import (
+    AutomatonCommand,
+    CheckCommand,
+    Command,
+    DistanceCommand,
+    TrackCommand,
+)
+from standoff.cli.automaton import run_automaton
+from standoff.cli.check import run_check
+from standoff.cli.distance import run_distance
+from standoff.cli.track import run_track
+
+
+def run(command: Command) -> int:
+    """Run a command; returns its exit code.
+
+    Raises
+    ------
+    CommandError, SceneError
+        If the input is not usable.
+    WriteError
+        If results could not be written.
+    """
+    match command:
+        case TrackCommand():
+            return run_track(command)
+        case DistanceCommand():
+            return run_distance(command)
+        case CheckCommand():
+            return run_check(command)
+        case AutomatonCommand():
+            return run_automaton(command)

@@ -1,0 +1,28 @@
+"""How far a run has come, shown where somebody can see it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import Progress as Bar
+
+from standoff.tracking.simulate import Progress
+
+
+@contextmanager
+def progress_bar() -> Iterator[Progress | None]:
+    """Show a progress bar on stderr where that is a terminal."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    with Bar(console=Console(stderr=True), transient=True) as bar:
+        # The kernels are compiled before the first answer and kept on disk for later runs.
+        task = bar.add_task("starting (the very first run compiles)", total=None)
+
+        def show(done: int, total: int) -> None:
+            bar.update(task, completed=done, total=total, description="tracking")
+
+        yield show

@@ -1,0 +1,71 @@
+"""What ``standoff check`` is asked about: a scene, a file of patches, or a shape in a line."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import NamedTuple
+
+from standoff.bodies.body import Body
+from standoff.cli.errors import CommandError
+from standoff.scene import load_scene
+from standoff.scene.reader import Table, missing_file, unknown_name
+from standoff.scene.scene import DEFAULT_LENGTH_UNIT
+from standoff.scene.shapes import read_body
+
+EXAMPLE = "'shape = \"box\", size = [0.3, 0.2, 0.1]'"
+
+
+class Subject(NamedTuple):
+    """A body to be told about, what it is called, and the label of its lengths."""
+
+    name: str
+    body: Body
+    unit: str
+
+
+def subjects(what: str, body: str | None) -> list[Subject]:
+    """Return the bodies that a command names; `body` picks one of a scene's.
+
+    Raises
+    ------
+    CommandError
+        If `what` names no scene, no file of patches and no shape, or the scene has no such body.
+    SceneError
+        If the scene or the shape is refused.
+    """
+    path = Path(what)
+    if "=" in what and not path.exists():
+        found = [_shape(what)]
+    elif path.suffix.lower() == ".toml":
+        scene = load_scene(path)
+        found = [Subject(name, made, scene.length_unit) for name, made in scene.bodies.items()]
+    elif path.suffix.lower() == ".json":
+        if not path.is_file():
+            raise CommandError(missing_file(path, what, "the current folder"))
+        table = Table({"shape": "patches", "file": what}, path="body")
+        found = [Subject(path.stem, read_body(table), DEFAULT_LENGTH_UNIT)]
+    else:
+        raise CommandError(
+            f"'{what}' is no scene (.toml), no file of patches (.json) and no shape such as "
+            f"{EXAMPLE}"
+        )
+    if body is None:
+        return found
+    chosen = [subject for subject in found if subject.name == body]
+    if not chosen:
+        known = [subject.name for subject in found]
+        raise CommandError(f"--body: {unknown_name(body, known, 'body')}")
+    return chosen
+
+
+def _shape(text: str) -> Subject:
+    """The body of a line such as ``shape = "box", size = [1, 2, 3]``."""
+    try:
+        content = tomllib.loads(f"body = {{{text}}}")["body"]
+    except tomllib.TOMLDecodeError as error:
+        raise CommandError(
+            f"'{text}' is no shape as a scene writes it ({error}); write one such as {EXAMPLE}"
+        ) from error
+    body = read_body(Table(content, path="body"))
+    return Subject(body.name, body, DEFAULT_LENGTH_UNIT)
