@@ -15,9 +15,11 @@ from standoff.kernels import frame as K
 from standoff.kernels import tracker as kernels
 from standoff.motion import Fixed, Pose, PoseLike, TwistLike
 from standoff.tracking.inputs import check_in_plane, flat_pose, flat_twist
+from standoff.tracking.instants import Motion, Step, located_events
 from standoff.tracking.options import positive_number
 from standoff.tracking.proximity import Event, Proximity
 from standoff.tracking.recording import RecordedEvent, Recording, RunInfo
+from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker, TrackerState
 
 Array = NDArray[np.float64]
@@ -70,6 +72,7 @@ def simulate(
     integrator: str = "heun",
     gain: float | None = None,
     tolerance: float = 1e-10,
+    locate: bool = True,
     progress: Progress | None = None,
 ) -> Recording:
     """Track a pair along two paths and record every frame.
@@ -88,6 +91,9 @@ def simulate(
         Time of the first frame on the paths' clock [s].
     law, predictor, integrator, gain, tolerance
         As `Tracker` takes them.
+    locate : bool
+        Find the instants of the switches within their steps; else they are dated to the frames.
+        Paths are asked for poses between the frames.
     progress : callable, optional
         Called now and then with the frames done and the frames in all.
 
@@ -107,7 +113,7 @@ def simulate(
     times = even_times(start, positive_number(duration, "duration"), dt)
     tracker = Tracker(a, b, dt, law, predictor, integrator, gain, tolerance)
     paths = moving(path_a, "path_a"), moving(path_b, "path_b")
-    return track_along(tracker, *paths, times, progress=progress)
+    return track_along(tracker, *paths, times, locate=locate, progress=progress)
 
 
 def even_times(start: float, duration: float, step: float) -> Array:
@@ -156,8 +162,8 @@ def track_along(
     path_b: Moving,
     times: Array,
     *,
+    locate: bool = True,
     progress: Progress | None = None,
-    info: RunInfo | None = None,
 ) -> Recording:
     """Track a pair at given times along two paths; `simulate` with the parts in hand.
 
@@ -167,9 +173,8 @@ def track_along(
     path_a, path_b : Moving
     times : ndarray, shape (n,)
         Frame times [s], strictly increasing, at least one.
+    locate : bool
     progress : callable, optional
-    info : RunInfo, optional
-        In place of what the tracker itself tells.
 
     Returns
     -------
@@ -180,19 +185,17 @@ def track_along(
     ValueError
         What a path or the tracker refuses.
     """
-    run = _Run(tracker, path_a, path_b, times)
+    run = _Run(tracker, path_a, path_b, times, locate)
     run.go(progress)
     pair = tracker.a, tracker.b
-    about = info if info is not None else run_info(tracker)
-    return Recording.of_answers(times, run.answers, tuple(run.events), pair, about)
+    info = _run_info(tracker, locate)
+    return Recording.of_answers(times, run.answers, tuple(run.events), pair, info)
 
 
-def run_info(
-    tracker: Tracker, title: str = "", length_unit: str = "", source: dict[str, Any] | None = None
-) -> RunInfo:
-    """Return what a tracker's recordings are of."""
+def _run_info(tracker: Tracker, locate: bool) -> RunInfo:
     from standoff import __version__  # the package's own module is complete by now
 
+    a, b = tracker.a, tracker.b
     options = {
         "law": tracker.law,
         "predictor": tracker.predictor,
@@ -200,25 +203,24 @@ def run_info(
         "gain": float(tracker.options[K.O_GAIN]),
         "tolerance": float(tracker.options[K.O_TOLERANCE]),
         "dt": tracker.dt,
+        "locate": locate,
     }
-    pair = tracker.a, tracker.b
-    names, digests = tuple(x.name for x in pair), tuple(x.digest for x in pair)
     return RunInfo(
-        (names[0], names[1]),
-        (digests[0], digests[1]),
+        (a.name, b.name),
+        (a.digest, b.digest),
         options,
-        title or " and ".join(names),
-        length_unit,
-        __version__,
-        source or {},
+        title=f"{a.name} and {b.name}",
+        version=__version__,
     )
 
 
 class _Run:
     """One run under way."""
 
-    def __init__(self, tracker: Tracker, path_a: Moving, path_b: Moving, times: Array) -> None:
-        self.tracker = tracker
+    def __init__(
+        self, tracker: Tracker, path_a: Moving, path_b: Moving, times: Array, locate: bool
+    ) -> None:
+        self.tracker, self.locate = tracker, locate
         self.paths = path_a, path_b
         self.times = times
         self.answers = np.empty((len(times), K.N_OUT))
@@ -267,9 +269,7 @@ class _Run:
         poses = np.empty((count, 12)), np.empty((count, 12))
         twists = np.empty((count, 6)), np.empty((count, 6))
         for k, time in enumerate(self.times[first:end].tolist()):
-            pose_a, pose_b, twist_a, twist_b = self.placed(time)
-            poses[0][k], poses[1][k] = flat_pose(pose_a), flat_pose(pose_b)
-            twists[0][k], twists[1][k] = flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
+            poses[0][k], poses[1][k], twists[0][k], twists[1][k] = self._flat(time)
             if self.tracker.planar:
                 check_in_plane(poses[0][k], poses[1][k])
         return *poses, *twists
@@ -340,8 +340,25 @@ class _Run:
         time, before = float(self.times[frame]), float(self.times[frame - 1])
         following, answer = self.tracker.step(state, *self.placed(time), dt=time - before)
         self.answers[frame] = answer.row
-        self.events += [dated(event, frame, time) for event in answer.events]
+        if answer.events:
+            self.events += self._events(state, answer, frame, before, time)
         return following
+
+    def _events(
+        self, state: TrackerState, answer: Proximity, frame: int, before: float, time: float
+    ) -> list[RecordedEvent]:
+        known = answer.status in (Status.CONVERGED, Status.TRACKING)
+        if self.locate and known and state.data[K.LOST] == 0.0:
+            step = Step(self.tracker, self._flat, state, before, time, answer.row)
+            events = located_events(step, frame, answer.events)
+            if events is not None:
+                return events
+        return [dated(event, frame, time) for event in answer.events]
+
+    def _flat(self, time: float) -> Motion:
+        pose_a, pose_b, twist_a, twist_b = self.placed(time)
+        poses = flat_pose(pose_a), flat_pose(pose_b)
+        return *poses, flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
 
 
 def dated(event: Event, frame: int, time: float) -> RecordedEvent:

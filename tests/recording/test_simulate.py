@@ -1,0 +1,197 @@
+"""`so.simulate`: the tracker's own answers, its frames, its refusals, and the visited modes."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from moving_pairs import REST, random_pairs, straight
+
+import standoff as so
+from standoff.geometry import Line
+from standoff.motion import ConstantTwist, Fixed
+
+BOX = so.shapes.box(1.0, 1.0, 1.0)
+POINT = so.shapes.point()
+PAST = straight((-1.0, -0.9, 0.8), (1.0, 0.77, 0.013))
+THROUGH = straight((-1.0, 0.1, 0.2), (1.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("law", ["predictor-corrector", "paper"])
+@pytest.mark.parametrize("number", [0, 3, 6])
+def test_frames_are_the_tracker_s_own_steps(number: int, law: str) -> None:
+    a, b, path_a, path_b = random_pairs(7)[number]
+    recording = so.simulate(a, b, path_a, path_b, 0.8, 2e-3, law=law, start=0.25)
+    check_against_steps(recording, a, b, path_a, path_b, so.Tracker(a, b, 2e-3, law))
+    assert recording.time[0] == 0.25
+    assert len(recording) == 401
+
+
+def test_overlaps_are_the_tracker_s_own() -> None:
+    small = so.shapes.box(0.3, 0.2, 0.25)
+    recording = so.simulate(small, BOX, THROUGH, REST, 2.0, 5e-3)
+    statuses = set(recording.status)
+    assert {so.Status.CONVERGED, so.Status.OVERLAPPING} <= statuses
+    check_against_steps(recording, small, BOX, THROUGH, Fixed(REST), so.Tracker(small, BOX, 5e-3))
+    np.testing.assert_array_equal(
+        np.isnan(recording.distance), recording.status == so.Status.OVERLAPPING
+    )
+
+
+def check_against_steps(recording, a, b, path_a, path_b, tracker) -> None:
+    times = recording.time.tolist()
+
+    def moved(t):
+        return path_a.pose(t), path_b.pose(t), path_a.twist(t), path_b.twist(t)
+
+    state = tracker.start(*moved(times[0]))
+    answers = [state.proximity]
+    for before, time in pairwise(times):
+        state, answer = tracker.step(state, *moved(time), dt=time - before)
+        answers.append(answer)
+    for name in (
+        *("distance", "lower_bound", "rate", "residual", "point_a", "point_b", "normal"),
+        *("velocity_a", "velocity_b", "certified"),
+    ):
+        np.testing.assert_array_equal(
+            getattr(recording, name), [getattr(answer, name) for answer in answers], err_msg=name
+        )
+    for name in ("feature_a", "feature_b", "status"):
+        assert getattr(recording, name).tolist() == [getattr(answer, name) for answer in answers]
+    for name in ("parameters_a", "parameters_b"):
+        for row, answer in zip(getattr(recording, name), answers, strict=True):
+            assert tuple(row[~np.isnan(row)]) == getattr(answer, name)
+    assert [so.Counts(*row) for row in recording.counts.tolist()] == [x.counts for x in answers]
+
+
+def test_a_pose_is_a_body_at_rest() -> None:
+    one = so.simulate(POINT, BOX, PAST, REST, 0.5, 1e-2)
+    two = so.simulate(POINT, BOX, PAST, np.eye(4), 0.5, 1e-2)
+    three = so.simulate(POINT, BOX, PAST, Fixed(REST), 0.5, 1e-2)
+    np.testing.assert_array_equal(one.distance, two.distance)
+    np.testing.assert_array_equal(one.distance, three.distance)
+
+
+def test_frame_times() -> None:
+    recording = so.simulate(POINT, BOX, PAST, REST, 0.3, 0.1)
+    np.testing.assert_allclose(recording.time, [0.0, 0.1, 0.2, 0.3], rtol=1e-15)
+    assert len(so.simulate(POINT, BOX, PAST, REST, 0.35, 0.1)) == 4
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "piece"),
+    [
+        ({"duration": -1.0}, ValueError, "duration = -1.0"),
+        ({"duration": float("inf")}, ValueError, "duration = inf"),
+        ({"dt": 0.0}, ValueError, "dt = 0.0"),
+        ({"dt": 3.0}, ValueError, "there are 1 frames"),
+        ({"dt": 1e-9}, ValueError, "2e+09 frames"),
+        ({"start": float("nan")}, ValueError, "start = nan"),
+        ({"start": 1e17}, ValueError, "at different times"),
+        ({"path_a": "left"}, TypeError, "path_a = 'left' is neither a path"),
+        ({"path_b": (1.0, 0.0, 0.0, 0.0)}, TypeError, "path_b"),
+        ({"law": "papre"}, ValueError, "Did you mean 'paper'"),
+        ({"law": "paper", "gain": 1e4}, ValueError, "not stable"),
+    ],
+)
+def test_what_is_refused(arguments: dict, error: type[Exception], piece: str) -> None:
+    given = {"path_a": PAST, "path_b": REST, "duration": 2.0, "dt": 1e-2} | arguments
+    with pytest.raises(error) as caught:
+        so.simulate(POINT, BOX, **given)
+    assert piece in str(caught.value)
+
+
+def test_a_pose_that_goes_wrong_on_the_way_is_named() -> None:
+    class Broken:
+        def pose(self, t):
+            matrix = np.eye(4)
+            matrix[0, 3] = 3.0 if t < 0.5 else np.nan
+            return matrix
+
+        def twist(self, t):
+            return so.Twist.zero()
+
+    with pytest.raises(ValueError, match="nan"):
+        so.simulate(POINT, BOX, Broken(), REST, 1.0, 1e-2)
+
+
+def test_planar_pairs_stay_in_their_plane() -> None:
+    corners = [(-0.5, -0.5, 0.0), (0.5, -0.5, 0.0), (0.5, 0.5, 0.0), (-0.5, 0.5, 0.0)]
+    loop = so.shapes.planar_loop([Line(corners[k], corners[(k + 1) % 4]) for k in range(4)])
+    with pytest.raises(ValueError, match="z = 0"):
+        so.simulate(POINT, loop, straight((2.0, 0.0, 0.0), (0.0, 0.0, 1.0)), REST, 1.0, 1e-2)
+
+
+def test_progress_reaches_the_end() -> None:
+    told: list[tuple[int, int]] = []
+    so.simulate(POINT, BOX, PAST, REST, 2.0, 2e-3, progress=lambda *done: told.append(done))
+    assert told[-1] == (1001, 1001)
+    assert len(told) > 5
+    assert told == sorted(told)
+
+
+def test_modes_are_the_visits_between_the_switches() -> None:
+    recording = so.simulate(POINT, BOX, PAST, REST, 2.0, 1e-2)
+    visits = recording.modes()
+    times = [event.time for event in recording.events]
+    assert [visit.start for visit in visits] == [0.0, *times]
+    assert [visit.end for visit in visits] == [*times, 2.0]
+    assert [v.feature_b.kind for v in visits] == ["vertex", "edge", "face", "edge", "vertex"]
+    assert {v.feature_a for v in visits} == {so.Feature("vertex", 0)}
+    for visit in visits:
+        inside = (recording.time > visit.start) & (recording.time < visit.end)
+        assert (recording.feature_b[inside] == visit.feature_b).all()
+
+
+def test_there_is_no_mode_in_an_overlap() -> None:
+    recording = so.simulate(so.shapes.sphere(0.2), BOX, THROUGH, REST, 2.5, 1e-2)
+    overlapping = recording.status == so.Status.OVERLAPPING
+    first, last = np.flatnonzero(overlapping)[[0, -1]]
+    visits = recording.modes()
+    ends = [visit.end for visit in visits if visit.end <= recording.time[first]]
+    starts = [visit.start for visit in visits if visit.start >= recording.time[last]]
+    assert max(ends) == recording.time[first - 1]
+    assert min(starts) == recording.time[last + 1]
+    assert len(ends) + len(starts) == len(visits)
+
+
+def test_info_tells_the_run() -> None:
+    recording = so.simulate(POINT, BOX, PAST, REST, 0.1, 1e-2, law="paper", gain=50.0)
+    info = recording.info
+    assert info.bodies == ("point", "box")
+    assert info.digests == (POINT.digest, BOX.digest)
+    assert info.version == so.__version__
+    assert info.options == {
+        "law": "paper",
+        "predictor": "feedforward-2",
+        "integrator": "heun",
+        "gain": 50.0,
+        "tolerance": 1e-10,
+        "dt": 1e-2,
+        "locate": True,
+    }
+    assert recording.pair == (POINT, BOX)
+
+
+def test_a_digest_names_the_geometry() -> None:
+    assert BOX.digest == so.shapes.box(1.0, 1.0, 1.0).digest
+    assert BOX.digest != so.shapes.box(1.0, 1.0, 1.0 + 1e-15).digest
+    assert BOX.digest != so.shapes.box(1.0, 1.0, 1.0, rounding=0.1).digest
+    assert len(BOX.digest) == 64
+
+
+def test_a_world_twist_path_and_a_body_twist_path_agree() -> None:
+    class InBody:
+        def __init__(self, path):
+            self.pose, self._path = path.pose, path
+
+        def twist(self, t):
+            twist, pose = self._path.twist(t), self.pose(t)
+            return so.Twist(pose.rotation.T @ twist.v, pose.rotation.T @ twist.omega, "body")
+
+    path = ConstantTwist(so.Pose(np.eye(3), (1.5, 0.2, 0.4)), so.Twist((-0.2, 0, 0), (1, 2, 3)))
+    a = so.shapes.ellipsoid(0.3, 0.1, 0.2)
+    one = so.simulate(a, BOX, path, REST, 0.5, 1e-2)
+    two = so.simulate(a, BOX, InBody(path), REST, 0.5, 1e-2)
+    np.testing.assert_allclose(one.rate, two.rate, atol=1e-13)
