@@ -34,17 +34,25 @@ COUNT_COLUMNS = [
 class RecordedEvent(NamedTuple):
     """A switch of one body's feature in a recording.
 
-    frame : index of the frame whose step met it.
-    time : s, on the recording's clock. Where `located`, the first instant known to be in the
-        target feature; else that of the frame.
-    body : "A" or "B".
-    source, target : the features before and after.
-    value : the switching function at `time`: slope of the distance (dimensionless) along the
+    Attributes
+    ----------
+    frame : int
+        Index of the frame whose step met it.
+    time : float
+        s, on the recording's clock. Where `located`, the first instant known to be in the target
+        feature; else that of the frame.
+    body : "A" or "B"
+    source, target : Feature
+        The features before and after.
+    value : float
+        The switching function at `time`: slope of the distance (dimensionless) along the
         direction that leads from the lower of the two features into the higher. Zero at a
         located instant, to roundoff; nan where it is not known.
-    slope : rate of the switching function at `time`, 1/s: positive where the higher feature is
+    slope : float
+        Rate of the switching function at `time`, 1/s: positive where the higher feature is
         left, negative where it is entered; nan where it is not known.
-    located : was the instant found within the step, or is it only dated to the frame?
+    located : bool
+        Was the instant found within the step, or is it only dated to the frame?
     """
 
     frame: int
