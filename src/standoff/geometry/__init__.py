@@ -1,11 +1,15 @@
 """Geometry: surfaces, curves and their trimming curves, validated and immutable."""
 
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
+from standoff.geometry.ellipsoid_patches import ellipsoid_octants, ellipsoid_patches
 from standoff.geometry.formulas import FormulaCurve, FormulaError, FormulaSurface
+from standoff.geometry.nurbs import BezierPatch, NurbsSurface
+from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.pcurves import NurbsPcurve, Pcurve, SurfaceCurve, pcurve_of
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
 
 __all__ = [
+    "BezierPatch",
     "Cone",
     "ConicArc",
     "Curve",
@@ -14,12 +18,16 @@ __all__ = [
     "FormulaError",
     "FormulaSurface",
     "Line",
+    "NurbsCurve",
     "NurbsPcurve",
+    "NurbsSurface",
     "Pcurve",
     "Plane",
     "RationalBezier",
     "Sphere",
     "Surface",
     "SurfaceCurve",
+    "ellipsoid_octants",
+    "ellipsoid_patches",
     "pcurve_of",
 ]

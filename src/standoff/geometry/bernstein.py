@@ -1,0 +1,146 @@
+"""Polynomials in Bernstein form on the unit interval and the unit square.
+
+A polynomial of degrees (p, q) is an array (..., p + 1, q + 1) of its coefficients: the last two
+axes belong to u and v, those before are components. Its values lie between its least and greatest
+coefficient; products, derivatives, elevation and subdivision keep the form. Products are scaled
+convolutions: no change of basis, so no loss of digits (Farouki and Rajan, CAGD 1988).
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from math import comb
+
+import numpy as np
+
+from standoff.geometry.validation import Array
+
+
+@cache
+def binomials(degree: int) -> Array:
+    """(degree + 1,) binomial coefficients."""
+    row = np.array([comb(degree, i) for i in range(degree + 1)], dtype=np.float64)
+    row.flags.writeable = False
+    return row
+
+
+@cache
+def halves(degree: int) -> tuple[Array, Array]:
+    """Matrices (n, n) that give the coefficients on [0, 1/2] and [1/2, 1] (de Casteljau)."""
+    n = degree + 1
+    left = np.zeros((n, n))
+    for i in range(n):
+        left[i, : i + 1] = binomials(i) / 2.0**i
+    right = np.ascontiguousarray(left[::-1, ::-1])
+    left.flags.writeable = right.flags.writeable = False
+    return left, right
+
+
+@cache
+def elevation(degree: int, times: int) -> Array:
+    """The matrix (degree + times + 1, degree + 1) that raises the degree."""
+    total = degree + times
+    matrix = np.zeros((total + 1, degree + 1))
+    for i in range(total + 1):
+        for j in range(max(0, i - times), min(degree, i) + 1):
+            matrix[i, j] = comb(degree, j) * comb(times, i - j) / comb(total, i)
+    matrix.flags.writeable = False
+    return matrix
+
+
+def elevate(c: Array, degree_u: int, degree_v: int) -> Array:
+    """The same polynomial with higher degrees."""
+    p, q = c.shape[-2] - 1, c.shape[-1] - 1
+    left, right = elevation(p, degree_u - p), elevation(q, degree_v - q)
+    raised: Array = left @ c @ right.T
+    return raised
+
+
+def along_u(c: Array) -> Array:
+    """The partial derivative by u, of degrees (p - 1, q)."""
+    derivative: Array = (c.shape[-2] - 1) * np.diff(c, axis=-2)
+    return derivative
+
+
+def along_v(c: Array) -> Array:
+    """The partial derivative by v, of degrees (p, q - 1)."""
+    derivative: Array = (c.shape[-1] - 1) * np.diff(c, axis=-1)
+    return derivative
+
+
+def scaled(c: Array) -> Array:
+    """Coefficients times their binomials: products of these are plain convolutions."""
+    weights: Array = np.outer(binomials(c.shape[-2] - 1), binomials(c.shape[-1] - 1))
+    return c * weights
+
+
+def unscaled(c: Array) -> Array:
+    """The inverse of `scaled`."""
+    weights: Array = np.outer(binomials(c.shape[-2] - 1), binomials(c.shape[-1] - 1))
+    return c / weights
+
+
+def convolve(a: Array, b: Array) -> Array:
+    """The product of two scaled polynomials, component by component (they broadcast)."""
+    rows, columns = b.shape[-2], b.shape[-1]
+    shape = np.broadcast_shapes(a.shape[:-2], b.shape[:-2])
+    whole = (*shape, a.shape[-2] + rows - 1, a.shape[-1] + columns - 1)
+    out = np.zeros(whole, dtype=np.result_type(a, b))
+    for i in range(rows):
+        for j in range(columns):
+            part = a * b[..., i : i + 1, j : j + 1]
+            out[..., i : i + a.shape[-2], j : j + a.shape[-1]] += part
+    return out
+
+
+def product(a: Array, b: Array) -> Array:
+    """The product of two polynomials, component by component."""
+    return unscaled(convolve(scaled(a), scaled(b)))
+
+
+def split_u(c: Array) -> tuple[Array, Array]:
+    """The polynomial on u in [0, 1/2] and on [1/2, 1]."""
+    left, right = halves(c.shape[-2] - 1)
+    return left @ c, right @ c
+
+
+def split_v(c: Array) -> tuple[Array, Array]:
+    """The polynomial on v in [0, 1/2] and on [1/2, 1]."""
+    left, right = halves(c.shape[-1] - 1)
+    return c @ left.T, c @ right.T
+
+
+def basis(degree: int, t: Array | float) -> Array:
+    """(..., degree + 1) values of the Bernstein polynomials at t in [0, 1]."""
+    t = np.asarray(t, dtype=np.float64)[..., None]
+    i = np.arange(degree + 1)
+    values: Array = binomials(degree) * t**i * (1.0 - t) ** (degree - i)
+    return values
+
+
+def value(c: Array, u: float, v: float) -> Array:
+    """The polynomial's components at one point of the unit square."""
+    at: Array = (c @ basis(c.shape[-1] - 1, v)) @ basis(c.shape[-2] - 1, u)
+    return at
+
+
+def grid_values(c: Array, u: Array, v: Array) -> Array:
+    """The polynomial's components, (..., len(u), len(v)), on a grid of the unit square."""
+    at: Array = basis(c.shape[-2] - 1, u) @ c @ basis(c.shape[-1] - 1, v).T
+    return at
+
+
+def segment(degree: int, first: float, last: float) -> Array:
+    """The matrix (n, n) that gives the coefficients on [first, last] within [0, 1].
+
+    Row i holds the blossom at (first, ... , last ...): all its weights are positive.
+    """
+    n = degree + 1
+    matrix = np.empty((n, n))
+    for i in range(n):
+        rows = np.eye(n)
+        for step in range(degree):
+            t = last if step < i else first
+            rows = (1.0 - t) * rows[:-1] + t * rows[1:]
+        matrix[i] = rows[0]
+    return matrix

@@ -1,0 +1,221 @@
+"""Knot vectors of B-splines: checks, Bezier spans, insertion, elevation.
+
+All of it rests on the blossom (polar form) of a polynomial piece: its value at p arguments, by de
+Boor's recursion with another argument in every step (Ramshaw 1989). The Bezier points of a span
+are blossoms at its ends, those of an elevated spline at its own knots; single knots are inserted
+by Boehm's rule (1980). `coefficients` have one row a basis function.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+from typing import Any
+
+import numpy as np
+
+from standoff.geometry.validation import Array, finite
+
+# The compiled jets hold one row of basis functions of this degree.
+GREATEST_DEGREE = 9
+
+
+@dataclass(frozen=True, eq=False)
+class KnotVector:
+    """A checked knot vector: `knots` (n + p + 1,) for n coefficients of degree p."""
+
+    knots: Array
+    degree: int
+
+    @property
+    def count(self) -> int:
+        """Number of coefficients."""
+        return len(self.knots) - self.degree - 1
+
+    @property
+    def domain(self) -> tuple[float, float]:
+        """Where the basis functions sum to one."""
+        return float(self.knots[self.degree]), float(self.knots[self.count])
+
+    @property
+    def breaks(self) -> Array:
+        """Distinct knots from one end of the domain to the other, (spans + 1,)."""
+        return np.unique(self.knots[self.degree : self.count + 1])
+
+    def multiplicity(self, knot: float) -> int:
+        return int(np.count_nonzero(self.knots == knot))
+
+    def rough(self) -> tuple[float, ...]:
+        """Interior knots where continuity is below C2: of multiplicity above p - 2."""
+        inside = self.breaks[1:-1]
+        return tuple(float(t) for t in inside if self.multiplicity(t) > self.degree - 2)
+
+    def span_of(self, t: float) -> int:
+        """s with knots[s] <= t < knots[s + 1], kept inside the domain."""
+        s = int(np.searchsorted(self.knots, t, side="right")) - 1
+        s = min(max(s, self.degree), self.count - 1)
+        while self.knots[s] == self.knots[s + 1]:
+            s -= 1
+        return s
+
+
+def knot_vector(knots: Any, count: int, name: str, points: str) -> KnotVector:
+    """A knot vector for `count` control points; the degree follows from the two counts.
+
+    Raises
+    ------
+    ValueError
+        Unsorted, not finite, counts that disagree, a degree outside 1 .. 9, too many equal knots,
+        or an empty domain. `name` and `points` name the arguments.
+    """
+    t = finite(knots, name, (-1,))
+    degree = len(t) - count - 1
+    if not 1 <= degree <= GREATEST_DEGREE:
+        raise ValueError(
+            f"{name} has {len(t)} knots for {count} {points}, so degree {degree} (knots - points "
+            f"- 1): give {count + 2} to {count + GREATEST_DEGREE + 1} knots, for a degree of 1 to "
+            f"{GREATEST_DEGREE}."
+        )
+    if count < degree + 1:
+        raise ValueError(
+            f"{name} has {len(t)} knots for {count} {points}, so degree {degree}: a degree-{degree}"
+            f" spline needs at least {degree + 1} {points}; give fewer knots or more points."
+        )
+    falling = np.flatnonzero(np.diff(t) < 0.0)
+    if falling.size:
+        i = int(falling[0])
+        raise ValueError(
+            f"{name} is not sorted: knot {i} = {t[i]} is above knot {i + 1} = {t[i + 1]}; sort "
+            "the knots in ascending order."
+        )
+    if t[degree] == t[count]:
+        raise ValueError(
+            f"{name} has an empty domain: knots {degree} and {count} are both {t[degree]}; spread "
+            "the knots."
+        )
+    values, counts = np.unique(t, return_counts=True)
+    for knot, times in zip(values, counts, strict=True):
+        most = degree if t[degree] < knot < t[count] else degree + 1
+        if times > most:
+            where = "inside the domain (the spline would tear)" if most == degree else "at an end"
+            raise ValueError(
+                f"{name}: knot {knot} stands {times} times; at most {most} times {where} for "
+                f"degree {degree}."
+            )
+    return KnotVector(t, degree)
+
+
+def blossom(
+    vector: KnotVector, coefficients: Array, span: int, arguments: Sequence[float]
+) -> Array:
+    """The polar form of one polynomial piece at `degree` arguments: one row of coefficients."""
+    p, t = vector.degree, vector.knots
+    rows = coefficients[span - p : span + 1]
+    for step, argument in enumerate(arguments):
+        low = t[span - p + 1 + step : span + 1]
+        high = t[span + 1 : span + 1 + p - step]
+        a = ((argument - low) / (high - low)).reshape((-1,) + (1,) * (rows.ndim - 1))
+        rows = (1.0 - a) * rows[:-1] + a * rows[1:]
+    return np.asarray(rows[0])
+
+
+def bezier_spans(vector: KnotVector) -> list[tuple[int, Array]]:
+    """For every span of the domain its first coefficient and the matrix to its Bezier points.
+
+    The matrices, (p + 1, p + 1), have no negative entry: nothing is lost to cancellation.
+    """
+    p = vector.degree
+    spans = []
+    breaks = vector.breaks
+    for low, high in pairwise(breaks):
+        s = vector.span_of(float(low))
+        unit = np.zeros((vector.count, p + 1))
+        unit[s - p : s + 1] = np.eye(p + 1)
+        rows = [blossom(vector, unit, s, [low] * (p - j) + [high] * j) for j in range(p + 1)]
+        spans.append((s - p, np.array(rows)))
+    return spans
+
+
+def refine(vector: KnotVector, new: Sequence[float], name: str) -> tuple[KnotVector, Array]:
+    """Insert knots inside the domain: the new vector and the matrix (n', n) of coefficients.
+
+    Raises
+    ------
+    ValueError
+        A knot outside the open domain, or one that would then stand more than p times.
+    """
+    extra = finite(list(new), name, (-1,))
+    first, last = vector.domain
+    outside = extra[(extra <= first) | (extra >= last)]
+    if outside.size:
+        raise ValueError(f"{name}: knot {outside[0]} is not inside the domain ({first}, {last}).")
+    knots = np.sort(np.concatenate([vector.knots, extra]))
+    knot_vector(knots, vector.count + len(extra), name, "control points")
+    refined, matrix = vector, np.eye(vector.count)
+    for knot in extra:
+        refined, step = _inserted(refined, float(knot))
+        matrix = step @ matrix
+    return refined, matrix
+
+
+def _inserted(vector: KnotVector, knot: float) -> tuple[KnotVector, Array]:
+    """One knot inserted by Boehm's rule: every new coefficient lies between two old ones."""
+    p, t, s = vector.degree, vector.knots, vector.span_of(knot)
+    matrix = np.zeros((vector.count + 1, vector.count))
+    for i in range(vector.count + 1):
+        a = 1.0 if i <= s - p else 0.0
+        if s - p < i <= s:
+            a = float((knot - t[i]) / (t[i + p] - t[i]))
+        if a > 0.0:
+            matrix[i, i] = a
+        if a < 1.0:
+            matrix[i, i - 1] = 1.0 - a
+    return KnotVector(np.insert(t, s + 1, knot), p), matrix
+
+
+def elevate_knots(vector: KnotVector, times: int) -> tuple[KnotVector, Array]:
+    """Raise the degree: the new vector and the matrix (n', n) of coefficients."""
+    degree = vector.degree + times
+    if times < 0 or degree > GREATEST_DEGREE:
+        raise ValueError(
+            f"Degree {degree} asked of a spline of degree {vector.degree}: give a degree from "
+            f"{vector.degree} to {GREATEST_DEGREE}."
+        )
+    clamped, unit = _clamped(vector)
+    values, counts = np.unique(clamped.knots, return_counts=True)
+    knots = np.repeat(values, counts + times)
+    elevated = KnotVector(knots, degree)
+    return elevated, _raised(clamped, elevated, degree) @ unit
+
+
+def _clamped(vector: KnotVector) -> tuple[KnotVector, Array]:
+    """The same spline on its domain with end knots of multiplicity p + 1."""
+    p, (first, last) = vector.degree, vector.domain
+    matrix = np.eye(vector.count)
+    for end in (first, last):
+        for _ in range(p - vector.multiplicity(end)):
+            vector, step = _inserted(vector, end)
+            matrix = step @ matrix
+    # coefficient i is the blossom at knots i + 1 .. i + p: all first, or all last, at the ends
+    low = int(np.searchsorted(vector.knots, first, side="right")) - p - 1
+    high = int(np.searchsorted(vector.knots, last, side="left"))
+    inside = vector.knots[low + p + 1 : high]
+    knots = np.concatenate([np.full(p + 1, first), inside, np.full(p + 1, last)])
+    return KnotVector(knots, p), matrix[low:high]
+
+
+def _raised(old: KnotVector, new: KnotVector, degree: int) -> Array:
+    """The matrix from the coefficients on `old` to those on the elevated `new`.
+
+    A blossom of the raised degree is the mean of the old one over all choices of its arguments.
+    """
+    unit = np.eye(old.count)
+    rows = np.empty((new.count, old.count))
+    for i in range(new.count):
+        arguments = new.knots[i + 1 : i + 1 + degree]
+        span = old.span_of(float(new.knots[i]))
+        # descending: then no step leaves the span it may stand in, and no digits are lost
+        chosen = list(combinations(arguments[::-1], old.degree))
+        rows[i] = sum(blossom(old, unit, span, c) for c in chosen) / len(chosen)
+    return rows

@@ -1,0 +1,300 @@
+"""NURBS surfaces and rational Bezier patches of degree 1 to 9.
+
+The kernels read a NURBS as its grid of Bezier patches, found once and exactly (to roundoff) by
+knot insertion; in any span the jet is then that of one rational Bezier patch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, Self
+
+import numpy as np
+
+from standoff.geometry.bernstein import segment
+from standoff.geometry.knots import (
+    GREATEST_DEGREE,
+    KnotVector,
+    bezier_spans,
+    elevate_knots,
+    knot_vector,
+    refine,
+)
+from standoff.geometry.surfaces import Domain, Surface, checked_domain
+from standoff.geometry.validation import Array, finite
+from standoff.kernels import layout as L
+
+
+@dataclass(frozen=True, eq=False)
+class Span:
+    """A Bezier patch of a NURBS: its part of the domain and its homogeneous points.
+
+    Attributes
+    ----------
+    domain : (u0, u1, v0, v1)
+    points : (4, p + 1, q + 1), components (w x, w y, w z, w), body frame.
+    """
+
+    domain: Domain
+    points: Array
+
+
+class NurbsSurface(Surface):
+    """A rational B-spline surface of degrees 1 to 9 with positive weights, clamped or not.
+
+    Parameters
+    ----------
+    control_points : (n, m, 3) array, length, body frame; n along u, m along v.
+    knots_u, knots_v : (n + p + 1,), (m + q + 1,) arrays, ascending. The degrees p and q follow
+        from the counts. The domain runs from knot p to knot n (q to m); inside it a knot may
+        stand p times at most.
+    weights : (n, m) positive array; ones when left out.
+
+    Raises
+    ------
+    ValueError
+        A NaN, a wrong shape, unsorted or too many equal knots, counts that disagree, a degree
+        outside 1 .. 9, a weight that is not positive, or control points without extent.
+    """
+
+    kind = L.NURBS
+
+    control_points: Array
+    weights: Array
+    vector_u: KnotVector
+    vector_v: KnotVector
+    blocks: Array
+
+    def __init__(
+        self, control_points: Any, knots_u: Any, knots_v: Any, weights: Any = None
+    ) -> None:
+        points = finite(control_points, "control_points", (-1, -1, 3))
+        n, m = points.shape[:2]
+        vector_u = knot_vector(knots_u, n, "knots_u", "rows of control points")
+        vector_v = knot_vector(knots_v, m, "knots_v", "columns of control points")
+        w = checked_weights(weights, points)
+        self._set(points, w, vector_u, vector_v, (*vector_u.domain, *vector_v.domain))
+
+    def _set(
+        self, points: Array, w: Array, vector_u: KnotVector, vector_v: KnotVector, domain: Domain
+    ) -> None:
+        values = {
+            "control_points": points,
+            "weights": w,
+            "vector_u": vector_u,
+            "vector_v": vector_v,
+            "blocks": _bezier_blocks(points, w, vector_u, vector_v),
+        }
+        for name, value in values.items():
+            if isinstance(value, np.ndarray) and value.flags.writeable:
+                value.flags.writeable = False
+            object.__setattr__(self, name, value)
+        # the affine map stays the identity: maps of the surface go into its control points
+        super().__init__(np.eye(3), np.zeros(3), domain)
+
+    def _data(self) -> Array:
+        nu, nv, rows, columns = self.blocks.shape[:4]
+        head = [rows - 1.0, columns - 1.0, float(nu), float(nv)]
+        breaks = (self.vector_u.breaks, self.vector_v.breaks)
+        return np.concatenate([head, *breaks, self.blocks.ravel()])
+
+    @property
+    def degrees(self) -> tuple[int, int]:
+        return self.vector_u.degree, self.vector_v.degree
+
+    @property
+    def knots_u(self) -> Array:
+        return self.vector_u.knots
+
+    @property
+    def knots_v(self) -> Array:
+        return self.vector_v.knots
+
+    def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Knots inside the domain where the surface may be less than C2."""
+        u0, u1, v0, v1 = self.domain
+        return (
+            tuple(t for t in self.vector_u.rough() if u0 < t < u1),
+            tuple(t for t in self.vector_v.rough() if v0 < t < v1),
+        )
+
+    def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Self:
+        """The same surface on a smaller domain; parameters stay the same.
+
+        Raises
+        ------
+        ValueError
+            The domain is empty or leaves the present one.
+        """
+        smaller = checked_domain((u0, u1, v0, v1), type(self).__name__)
+        a, b, c, d = self.domain
+        if not (a <= smaller[0] and smaller[1] <= b and c <= smaller[2] and smaller[3] <= d):
+            raise ValueError(f"The domain {smaller} leaves the surface's own, {self.domain}.")
+        return self._with(self.control_points, smaller)
+
+    def transformed(self, linear: Array, shift: Array) -> Self:
+        """The exact image under x -> linear x + shift; parameters stay the same."""
+        points = self.control_points @ np.asarray(linear).T + np.asarray(shift)
+        return self._with(points, self.domain)
+
+    def _with(self, points: Array, domain: Domain) -> Self:
+        surface = object.__new__(type(self))
+        surface._set(points, self.weights, self.vector_u, self.vector_v, domain)
+        return surface
+
+    def spans(self) -> list[Span]:
+        """The Bezier patches of the domain, u major, those on its rim cut to it."""
+        u0, u1, v0, v1 = self.domain
+        parts_u, parts_v = _cuts(self.vector_u, u0, u1), _cuts(self.vector_v, v0, v1)
+        return [
+            Span(
+                (low_u, high_u, low_v, high_v),
+                cut_u @ np.moveaxis(self.blocks[i, j], 2, 0) @ cut_v.T,
+            )
+            for i, low_u, high_u, cut_u in parts_u
+            for j, low_v, high_v, cut_v in parts_v
+        ]
+
+    def box(self) -> tuple[Array, Array]:
+        """(low, high) corners of the box round the Bezier points of the domain: it holds it."""
+        clouds = [(s.points[:3] / s.points[3]).reshape(3, -1) for s in self.spans()]
+        cloud = np.concatenate(clouds, axis=1)
+        return cloud.min(axis=1), cloud.max(axis=1)
+
+    def highest(self, direction: Array) -> None:
+        """None: the box of the control points serves instead."""
+        return
+
+    def refined(self, knots_u: Sequence[float] = (), knots_v: Sequence[float] = ()) -> NurbsSurface:
+        """The same surface with further knots inserted inside its domain."""
+        vector_u, rows = refine(self.vector_u, knots_u, "knots_u")
+        vector_v, columns = refine(self.vector_v, knots_v, "knots_v")
+        return self._mapped(rows, columns, vector_u, vector_v)
+
+    def elevated(self, degree_u: int, degree_v: int) -> NurbsSurface:
+        """The same surface with clamped ends and higher degrees, at most 9.
+
+        Raises
+        ------
+        ValueError
+            A degree below the present one or above 9.
+        """
+        p, q = self.degrees
+        vector_u, rows = elevate_knots(self.vector_u, degree_u - p)
+        vector_v, columns = elevate_knots(self.vector_v, degree_v - q)
+        return self._mapped(rows, columns, vector_u, vector_v)
+
+    def _mapped(
+        self, rows: Array, columns: Array, vector_u: KnotVector, vector_v: KnotVector
+    ) -> NurbsSurface:
+        h = np.concatenate(
+            [self.control_points * self.weights[..., None], self.weights[..., None]], axis=2
+        )
+        h = np.einsum("ia,abc,jb->ijc", rows, h, columns)
+        return _new(h[..., :3] / h[..., 3:], h[..., 3], vector_u, vector_v, self.domain)
+
+    def reversed_u(self) -> NurbsSurface:
+        """The same points with -u for u: the normal f_u x f_v turns round."""
+        u0, u1, v0, v1 = self.domain
+        mirrored = KnotVector(_read_only(-self.knots_u[::-1]), self.degrees[0])
+        points, w = self.control_points[::-1], self.weights[::-1]
+        return _new(points, w, mirrored, self.vector_v, (-u1, -u0, v0, v1))
+
+    def reversed_v(self) -> NurbsSurface:
+        """The same points with -v for v: the normal f_u x f_v turns round."""
+        return self.swapped().reversed_u().swapped()
+
+    def swapped(self) -> NurbsSurface:
+        """The same points with u and v exchanged: the normal f_u x f_v turns round."""
+        u0, u1, v0, v1 = self.domain
+        points, w = self.control_points.swapaxes(0, 1), self.weights.T
+        return _new(points, w, self.vector_v, self.vector_u, (v0, v1, u0, u1))
+
+
+class BezierPatch(NurbsSurface):
+    """A rational Bezier patch on u, v in [0, 1], of degrees 1 to 9 with positive weights.
+
+    Parameters
+    ----------
+    control_points : (p + 1, q + 1, 3) array, length, body frame.
+    weights : (p + 1, q + 1) positive array; ones when left out.
+
+    Raises
+    ------
+    ValueError
+        As `NurbsSurface`.
+    """
+
+    def __init__(self, control_points: Any, weights: Any = None) -> None:
+        points = finite(control_points, "control_points", (-1, -1, 3))
+        for count, axis in zip(points.shape[:2], "uv", strict=True):
+            if not 2 <= count <= GREATEST_DEGREE + 1:
+                raise ValueError(
+                    f"Bezier patch with {count} control points along {axis}, so degree "
+                    f"{count - 1}: give 2 to {GREATEST_DEGREE + 1}."
+                )
+        ends_u, ends_v = (np.repeat([0.0, 1.0], count) for count in points.shape[:2])
+        super().__init__(points, ends_u, ends_v, weights)
+
+
+def _new(
+    points: Array, w: Array, vector_u: KnotVector, vector_v: KnotVector, domain: Domain
+) -> NurbsSurface:
+    """A surface of numbers that are known to be good."""
+    surface = object.__new__(NurbsSurface)
+    surface._set(_read_only(points), _read_only(w), vector_u, vector_v, domain)
+    return surface
+
+
+def checked_weights(weights: Any, points: Array) -> Array:
+    """Positive weights, one a control point; and the points must have an extent."""
+    shape = points.shape[:-1]
+    w = finite(np.ones(shape) if weights is None else weights, "weights", shape)
+    if (w <= 0.0).any():
+        at = tuple(int(i) for i in np.argwhere(w <= 0.0)[0])
+        place = at[0] if len(at) == 1 else at
+        raise ValueError(f"weights[{place}] = {w[at]}: every weight must be positive.")
+    if np.ptp(points.reshape(-1, points.shape[-1]), axis=0).max() == 0.0:
+        raise ValueError(
+            f"All control points are {points.reshape(-1, points.shape[-1])[0]}: spread them; a "
+            "point has no surface or curve."
+        )
+    return w
+
+
+def _bezier_blocks(points: Array, w: Array, vector_u: KnotVector, vector_v: KnotVector) -> Array:
+    """(nu, nv, p + 1, q + 1, 4) homogeneous Bezier points of every span."""
+    h = np.concatenate([points * w[..., None], w[..., None]], axis=2)
+    p, q = vector_u.degree, vector_v.degree
+    rows, columns = bezier_spans(vector_u), bezier_spans(vector_v)
+    blocks = np.empty((len(rows), len(columns), p + 1, q + 1, 4))
+    for i, (a, left) in enumerate(rows):
+        for j, (b, right) in enumerate(columns):
+            part = h[a : a + p + 1, b : b + q + 1]
+            blocks[i, j] = np.einsum("ia,abc,jb->ijc", left, part, right)
+    return blocks
+
+
+def _cuts(vector: KnotVector, first: float, last: float) -> list[tuple[int, float, float, Array]]:
+    """Spans that meet [first, last]: number, ends, and the matrix that cuts its Bezier points."""
+    breaks = vector.breaks
+    cuts = []
+    for i, (a, b) in enumerate(pairwise(breaks)):
+        low, high = max(float(a), first), min(float(b), last)
+        if low < high:
+            whole = low == a and high == b
+            matrix = (
+                np.eye(vector.degree + 1)
+                if whole
+                else segment(vector.degree, (low - a) / (b - a), (high - a) / (b - a))
+            )
+            cuts.append((i, low, high, matrix))
+    return cuts
+
+
+def _read_only(array: Array) -> Array:
+    array = np.array(array)
+    array.flags.writeable = False
+    return array

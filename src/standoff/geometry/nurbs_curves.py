@@ -1,0 +1,140 @@
+"""NURBS curves of degree 1 to 9."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from standoff.geometry.curves import Curve
+from standoff.geometry.knots import KnotVector, bezier_spans, elevate_knots, knot_vector, refine
+from standoff.geometry.nurbs import checked_weights
+from standoff.geometry.validation import Array, finite
+from standoff.kernels import layout as L
+
+# Ends closer than this fraction of the curve's extent, with tangents parallel to this sine, are
+# one smooth joint: roundoff of control points computed by trigonometry.
+JOINT_TOLERANCE = 1e-12
+
+
+class NurbsCurve(Curve):
+    """A rational B-spline curve of degree 1 to 9 with positive weights, clamped or not.
+
+    Parameters
+    ----------
+    control_points : (n, 3) array, or (n, 2) in the plane z = 0; length, body frame.
+    knots : (n + p + 1,) array, ascending; the degree p follows from the counts. The curve runs
+        from knot p to knot n; inside, a knot may stand p times at most.
+    weights : (n,) positive array; ones when left out.
+
+    Raises
+    ------
+    ValueError
+        As `NurbsSurface`.
+    """
+
+    kind = L.NURBS_CURVE
+
+    control_points: Array
+    weights: Array
+    vector: KnotVector
+    blocks: Array
+
+    def __init__(self, control_points: Any, knots: Any, weights: Any = None) -> None:
+        if np.ndim(control_points) == 2 and np.shape(control_points)[1] == 2:
+            flat = finite(control_points, "control_points", (-1, 2))
+            control_points = np.column_stack([flat, np.zeros(len(flat))])
+        points = finite(control_points, "control_points", (-1, 3))
+        vector = knot_vector(knots, len(points), "knots", "control points")
+        self._set(points, checked_weights(weights, points), vector)
+
+    def _set(self, points: Array, w: Array, vector: KnotVector) -> None:
+        blocks = bezier_blocks(points, w, vector)
+        head = [float(vector.degree), float(len(blocks))]
+        first, last = vector.domain
+        values = {
+            "control_points": points,
+            "weights": w,
+            "vector": vector,
+            "blocks": blocks,
+            "data": np.concatenate([head, vector.breaks, blocks.ravel()]),
+            "first": first,
+            "last": last,
+        }
+        for name, value in values.items():
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+            object.__setattr__(self, name, value)
+
+    @property
+    def degree(self) -> int:
+        return self.vector.degree
+
+    @property
+    def knots(self) -> Array:
+        return self.vector.knots
+
+    @property
+    def closed(self) -> bool:
+        """Do its ends meet in a smooth joint."""
+        start, stop = self.blocks[0], self.blocks[-1]
+        a, b = start[:, :3] / start[:, 3:], stop[:, :3] / stop[:, 3:]
+        extent = float(np.ptp(self.control_points, axis=0).max())
+        if np.abs(a[0] - b[-1]).max() > JOINT_TOLERANCE * extent:
+            return False
+        out, back = a[1] - a[0], b[-1] - b[-2]
+        size = float(np.linalg.norm(out) * np.linalg.norm(back))
+        turn = float(np.linalg.norm(np.cross(out, back)))
+        return bool(out @ back > 0.0) and turn <= JOINT_TOLERANCE * size
+
+    def box(self) -> tuple[Array, Array]:
+        """(low, high) corners of the box round the Bezier points: it holds the curve."""
+        cloud = self.blocks[..., :3] / self.blocks[..., 3:]
+        return cloud.min(axis=(0, 1)), cloud.max(axis=(0, 1))
+
+    def breaks(self) -> tuple[float, ...]:
+        """Knots inside the domain where the curve may be less than C2."""
+        return self.vector.rough()
+
+    def transformed(self, linear: Array, shift: Array) -> NurbsCurve:
+        """The exact image under x -> linear x + shift; the parameter stays the same."""
+        return self._new(
+            self.control_points @ np.asarray(linear).T + shift, self.weights, self.vector
+        )
+
+    def refined(self, knots: Sequence[float]) -> NurbsCurve:
+        """The same curve with further knots inserted inside its domain."""
+        vector, matrix = refine(self.vector, knots, "knots")
+        return self._mapped(matrix, vector)
+
+    def elevated(self, degree: int) -> NurbsCurve:
+        """The same curve with clamped ends and a higher degree, at most 9."""
+        vector, matrix = elevate_knots(self.vector, degree - self.degree)
+        return self._mapped(matrix, vector)
+
+    def reversed(self) -> NurbsCurve:
+        """The same points run through backwards: t becomes -t."""
+        knots = -self.knots[::-1]
+        knots.flags.writeable = False
+        return self._new(
+            self.control_points[::-1], self.weights[::-1], KnotVector(knots, self.degree)
+        )
+
+    def _mapped(self, matrix: Array, vector: KnotVector) -> NurbsCurve:
+        w = matrix @ self.weights
+        return self._new(
+            (matrix @ (self.control_points * self.weights[:, None])) / w[:, None], w, vector
+        )
+
+    def _new(self, points: Array, w: Array, vector: KnotVector) -> NurbsCurve:
+        curve = object.__new__(NurbsCurve)
+        curve._set(points.copy(), w.copy(), vector)
+        return curve
+
+
+def bezier_blocks(points: Array, w: Array, vector: KnotVector) -> Array:
+    """(spans, p + 1, d + 1) homogeneous Bezier points (w x, ..., w) of every span."""
+    h = np.column_stack([points * w[:, None], w])
+    p = vector.degree
+    return np.array([matrix @ h[a : a + p + 1] for a, matrix in bezier_spans(vector)])
