@@ -10,6 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from standoff.motion import (
+    Carried,
     ConstantTwist,
     Fixed,
     Helix,
@@ -42,6 +43,11 @@ PATHS: dict[str, Path] = {
     "samples": SAMPLES,
     "offset from a screw": Offset(Screw(PLACED, TILTED, angular_rate=1.3, pitch=0.7), PLACED),
     "offset from samples": Offset(SAMPLES, PLACED),
+    "carried by a helix, turning on its own": Carried(
+        Helix(1.5, 0.4, 2.0, orientation="turning"),
+        ConstantTwist(PLACED, Twist(V, OMEGA, "body")),
+    ),
+    "carried by samples": Carried(SAMPLES, Screw(PLACED, TILTED, angular_rate=1.3)),
 }
 TIMES = (0.0, 0.1, 0.7, 1.9, 3.3)
 
@@ -82,8 +88,9 @@ def test_time_must_be_a_finite_number(path: Path, t: Any) -> None:
 
 def test_paths_given_by_a_formula_start_at_zero_and_do_not_end() -> None:
     for name, path in PATHS.items():
-        if "samples" in name:
-            assert (path.start, path.end) == (-1.0, 4.0)
+        if "samples" in name:  # also where the samples carry another path
+            start = 0.0 if "carried" in name else -1.0
+            assert (path.start, path.end) == (start, 4.0)
         else:
             assert (path.start, path.end) == (0.0, math.inf)
 
@@ -193,3 +200,9 @@ def test_offset_follows_any_path_and_its_times() -> None:
 def test_bad_input_is_refused(make: Any, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         make()
+
+
+def test_a_carried_path_is_known_while_both_are() -> None:
+    path = Carried(SAMPLES, PoseSamples([0.0, 9.0], [PLACED, PLACED]))
+    assert (path.start, path.end) == (0.0, 4.0)
+    assert Carried(Fixed(PLACED), Fixed(PLACED)).end == math.inf

@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from standoff.motion import (
+    Carried,
     ConstantTwist,
     Fixed,
     Helix,
@@ -100,6 +101,18 @@ MOTION_CASES: list[tuple[str, MotionPath]] = [
         '[motions.a]\nkind = "helix"\nradius = 2\npitch = 0.5\nrate = 1.5\n'
         "offset = {position = [0, 0, 1], angle = 0.5}",
         Offset(Helix(2.0, 0.5, 1.5), Pose.exp((0.0, 0.0, 0.5), (0.0, 0.0, 1.0))),
+    ),
+]
+
+SPIN = Twist((0.0, 0.0, 0.0), (0.1, 2.0, 0.3), "body")
+MOTION_CASES += [
+    (
+        '[motions.a]\nkind = "helix"\nradius = 2\npitch = 0\nrate = 1.5\nspin = [0.1, 2, 0.3]\n'
+        "offset = {position = [0, 0, 1], angle = 0.5}",
+        Carried(
+            Offset(Helix(2.0, 0.0, 1.5), Pose.exp((0.0, 0.0, 0.5), (0.0, 0.0, 1.0))),
+            ConstantTwist(Pose.identity(), SPIN),
+        ),
     ),
 ]
 

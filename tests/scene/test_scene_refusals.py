@@ -210,6 +210,11 @@ MOTIONS = [
         "motions.a.kind",
         ["remove the placement", "'offset'"],
     ),
+    (
+        moved('kind = "helix"\nradius = 1\npitch = 1\nrate = 1\nspin = 3'),
+        "motions.a.spin",
+        ["3 numbers", "got 3"],
+    ),
     (moved('kind = "samples"'), "motions.a", ["'file' is missing"]),
     (moved('kind = "samples"\nfile = "hnad.tum"'), "motions.a.file", ["did you mean 'hand.tum'?"]),
     (moved('kind = "samples"\nfile = "x/hand.tum"'), "motions.a.file", ["folder does not exist"]),

@@ -1,6 +1,6 @@
 """Poses, twists, and paths in time."""
 
-from standoff.motion.paths import ConstantTwist, Fixed, Offset, Path, Screw
+from standoff.motion.paths import Carried, ConstantTwist, Fixed, Offset, Path, Screw
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.samples import PoseSamples
 from standoff.motion.samples_file import read_pose_samples
@@ -8,6 +8,7 @@ from standoff.motion.twist import Frame, Twist, TwistLike
 from standoff.motion.winding import Helix, Orientation, Spiral
 
 __all__ = [
+    "Carried",
     "ConstantTwist",
     "Fixed",
     "Frame",

@@ -202,3 +202,42 @@ class Offset:
         twist = self._path.twist(t).in_world(carrier)
         arm = carrier.rotation @ self._offset.translation
         return Twist(twist.v + np.cross(twist.omega, arm), twist.omega)
+
+
+class Carried:
+    """A body that follows a path of its own in the axes of a body that follows another.
+
+    Parameters
+    ----------
+    carrier : Path
+        Of the body that carries, in the world.
+    within : Path
+        Of the carried body in the axes of the carrying one.
+    """
+
+    def __init__(self, carrier: Path, within: Path) -> None:
+        self._carrier = carrier
+        self._within = within
+
+    @property
+    def start(self) -> float:
+        """The later start of the two [s]."""
+        return max(self._carrier.start, self._within.start)
+
+    @property
+    def end(self) -> float:
+        """The earlier end of the two [s]."""
+        return min(self._carrier.end, self._within.end)
+
+    def pose(self, t: float) -> Pose:
+        """Return where the carried body is at time `t` [s]."""
+        return self._carrier.pose(t) @ self._within.pose(t)
+
+    def twist(self, t: float) -> Twist:
+        """Return how the carried body moves at time `t` [s], in world axes."""
+        carrier, within = self._carrier.pose(t), self._within.pose(t)
+        outer = self._carrier.twist(t).in_world(carrier)
+        inner = self._within.twist(t).in_world(within)
+        turn = carrier.rotation
+        v = outer.v + np.cross(outer.omega, turn @ within.translation) + turn @ inner.v
+        return Twist(v, outer.omega + turn @ inner.omega)

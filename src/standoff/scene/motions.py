@@ -10,6 +10,7 @@ from typing import NamedTuple, cast, get_args
 import numpy as np
 
 from standoff.motion import (
+    Carried,
     ConstantTwist,
     Fixed,
     Frame,
@@ -141,7 +142,7 @@ def read_motion(table: Table, placement: Pose | None) -> Motion:
     Parameters
     ----------
     table : Table
-        With ``kind``, the kind's own keys, and optionally ``offset``.
+        With ``kind``, the kind's own keys, and optionally ``offset`` and ``spin``.
     placement : Pose or None
         The body's own placement, if the scene gives one.
 
@@ -152,7 +153,7 @@ def read_motion(table: Table, placement: Pose | None) -> Motion:
         to be read, or a placement beside a motion that gives the whole pose itself.
     """
     kind = MOTIONS[table.choice("kind", list(MOTIONS))]
-    table.expect("kind", "offset", *kind.keys)
+    table.expect("kind", "offset", "spin", *kind.keys)
     if placement is not None and not kind.placed:
         raise table.error(
             "this kind of motion gives the whole pose, and the body has a placement too; "
@@ -160,9 +161,12 @@ def read_motion(table: Table, placement: Pose | None) -> Motion:
             "kind",
         )
     motion = kind.read(table, placement or Pose.identity())
-    if "offset" not in table:
-        return motion
-    offset = read_pose(table.table("offset"))
-    return replace(
-        motion, path=Offset(motion.path, offset), rounded=motion.rounded + offset.normalised
-    )
+    if "offset" in table:
+        offset = read_pose(table.table("offset"))
+        rounded = motion.rounded + offset.normalised
+        motion = replace(motion, path=Offset(motion.path, offset), rounded=rounded)
+    if "spin" in table:
+        turning = Twist(np.zeros(3), table.vector("spin", 3), "body")
+        spinning = ConstantTwist(Pose.identity(), turning)
+        motion = replace(motion, path=Carried(motion.path, spinning))
+    return motion
