@@ -59,6 +59,7 @@ html_static_path = ["_static"]
 html_css_files = ["standoff.css"]
 html_copy_source = False
 html_show_sphinx = False
+html_show_copyright = False
 
 
 def _plain_aliases(_app: Sphinx, _kind: str, _name: str, *rest: Any) -> tuple[Any, Any]:

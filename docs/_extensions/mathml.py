@@ -2,11 +2,12 @@
 
 A page of MathML needs no script, no font file and no network in the reader's browser, and no LaTeX
 where it is built: docutils, on which Sphinx stands, has the translator. A formula that it cannot
-read is a warning, so it fails the build.
+read, or would misread, is a warning, so it fails the build.
 """
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from docutils import nodes
@@ -17,9 +18,21 @@ from sphinx.util import logging
 
 logger = logging.getLogger(__name__)
 
+# What the translator takes without a complaint and sets wrongly, and what to write instead.
+MISREAD = (
+    (re.compile(r"\\[td]?frac\s*\d\s*\d"), r"write \frac{1}{2} with braces"),
+    (
+        re.compile(r"\\d?dot(\s*[a-zA-Z]|\s*\{[a-zA-Z]\}|\s+\\[a-zA-Z]+)\s*_"),
+        "an accent with an index puts the index below: write dx_f/dt",
+    ),
+)
+
 
 def _mathml(node: nodes.Element, as_block: bool) -> str:
     source = node.astext()
+    for form, advice in MISREAD:
+        if form.search(source):
+            logger.warning("formula %r: %s", source, advice, location=node)
     try:
         return str(tex2mathml(source, as_block=as_block))
     except MathError as error:
