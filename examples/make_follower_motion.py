@@ -1,9 +1,9 @@
 """Write `follower_motion.csv`: the lift that keeps a roller 0.2 mm off the cam of `cam.toml`.
 
-The cam is a tangent cam: a base circle, a nose circle, and the two lines that touch both. The roller
-follower moves along y above the cam's axis while the cam turns. With the roller's radius and the
-clearance added, the follower's centre runs on a curve parallel to the cam, whose height over the
-axis is known for each cam angle:
+The cam is a tangent cam: a base circle, a nose circle, and the two lines that touch both. The
+roller follower moves along y above the cam's axis while the cam turns. With the roller's radius and
+the clearance added, the follower's centre runs on a curve parallel to the cam, whose height over
+the axis is known for each cam angle:
 
     python examples/make_follower_motion.py
 """

@@ -12,11 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+
+import standoff as so
 from oracles.bounds import maximise_separation
 from oracles.loops import ConicArc, PlanarLoop, line
 from oracles.support import Affine, Box, Lens, Placed, Point, Polytope, Shape
-
-import standoff as so
 from standoff.scene import Scene, load_scene, record
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
