@@ -71,6 +71,34 @@ def _plain_aliases(_app: Sphinx, _kind: str, _name: str, *rest: Any) -> tuple[An
     )
 
 
+def _one_name_an_attribute(
+    _app: Sphinx, _kind: str, _name: str, _what: Any, _options: Any, lines: list[str]
+) -> None:
+    """An entry "a, b : type" of a section Attributes as two, as napoleon does for Parameters."""
+    written: list[str] = []
+    inside = False
+    block: list[str] = []
+    for number, line in enumerate([*lines, ""]):
+        ruled = number + 1 < len(lines) and set(lines[number + 1].strip()) == {"-"}
+        if ruled or not line[:1].isspace():
+            names, colon, rest = block[0].partition(" : ") if block else ("", "", "")
+            each = [name.strip() for name in names.split(",")]
+            if len(each) > 1 and all(name.isidentifier() for name in each):
+                for name in each:
+                    written += [name + colon + rest, *block[1:]]
+            else:
+                written += block
+            block = []
+        if ruled:
+            inside = line.strip() == "Attributes"
+        if inside and line.strip():
+            block.append(line)
+        else:
+            written.append(line)
+    lines[:] = written
+
+
 def setup(app: Sphinx) -> None:
     """Connect what the settings above cannot say."""
+    app.connect("autodoc-process-docstring", _one_name_an_attribute, priority=400)
     app.connect("autodoc-process-signature", _plain_aliases)
