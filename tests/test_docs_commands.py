@@ -60,6 +60,29 @@ def test_scene_of_the_quick_start_prints_what_it_says(
     assert_same_but_roundoff(capsys.readouterr().out, block_after("\nand run\n", "text"))
 
 
+def commands_with_their_output() -> list[tuple[str, str, str]]:
+    """(page, arguments, promised) of every block of one `standoff` command with a text block."""
+    fence = re.compile(r"^```sh\nstandoff ([^\n]*)\n```\n\n```text\n(.*?)^```$", re.S | re.M)
+    return [
+        (page.name, arguments, promised)
+        for page in sorted(DOCS.rglob("*.md"))
+        for arguments, promised in fence.findall(page.read_text("utf-8"))
+    ]
+
+
+@pytest.mark.parametrize(("page", "arguments", "promised"), commands_with_their_output())
+def test_commands_print_what_the_pages_say(
+    page: str,
+    arguments: str,
+    promised: str,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(ROOT)
+    assert main(arguments.split()) == 0
+    assert_same_but_roundoff(capsys.readouterr().out, promised)
+
+
 def test_diagrams_are_what_their_script_draws(tmp_path: Path) -> None:
     script = DOCS / "images" / "draw_diagrams.py"
     subprocess.run([sys.executable, str(script), str(tmp_path)], check=True)
