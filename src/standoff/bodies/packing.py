@@ -187,7 +187,7 @@ def _coedges_of_edges(body: Assembled) -> list[list[int]]:
             if c.edge >= 0:
                 found[c.edge].setdefault(chart.face, number)
                 curve = body.edges[c.edge].curve
-                if isinstance(curve, SurfaceCurve) and curve.lies_on(chart.surface):
+                if isinstance(curve, SurfaceCurve) and curve.pcurve_on(chart.surface):
                     own[c.edge].add(chart.face)
             number += 1
     for j, edge in enumerate(body.edges):

@@ -6,6 +6,7 @@ from standoff.geometry.formulas import FormulaCurve, FormulaError, FormulaSurfac
 from standoff.geometry.nurbs import BezierPatch, NurbsSurface
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.pcurves import NurbsPcurve, Pcurve, SurfaceCurve, pcurve_of
+from standoff.geometry.superellipsoids import SuperellipsoidPole, SuperellipsoidSide
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
 
 __all__ = [
@@ -25,6 +26,8 @@ __all__ = [
     "Plane",
     "RationalBezier",
     "Sphere",
+    "SuperellipsoidPole",
+    "SuperellipsoidSide",
     "Surface",
     "SurfaceCurve",
     "ellipsoid_octants",

@@ -10,7 +10,7 @@ from math import sqrt
 import numpy as np
 
 from standoff.kernels.compiling import kernel
-from standoff.kernels.tolerances import EPS, GRADIENT_NOISE, NEGATIVE, PIVOT, REACH, STIFF
+from standoff.kernels.tolerances import EPS, GRADIENT_NOISE, NEGATIVE, PIVOT, REACH, SHARP, STIFF
 from standoff.kernels.vectors import dot
 
 
@@ -182,6 +182,14 @@ def stiff_step(jet_a, jet_b, g, H):
 
 
 @kernel
+def levelled(inverse, first, second):
+    """An inverse metric whose whitened Hessian has a diagonal of at most 1."""
+    a = 1.0 / sqrt(max(first, 1.0))
+    b = 1.0 / sqrt(max(second, 1.0))
+    return inverse[0] * a, inverse[1] * b, inverse[2] * b
+
+
+@kernel
 def law(jet_a, jet_b, g, H, g_t, scale):
     """(p, w_ff, slope, regularised, flat): p = -H⁻¹ g, w_ff = -H⁻¹ g_t, |g| in the metric D.
 
@@ -194,8 +202,15 @@ def law(jet_a, jet_b, g, H, g_t, scale):
     tw = whiten_gradient(ia, ib, g_t)
     Hw = whiten_hessian(ia, ib, H)
     slope = sqrt(gw[0] * gw[0] + gw[1] * gw[1] + gw[2] * gw[2] + gw[3] * gw[3])
-    f = ldl(Hw)
     top = max(max(Hw[0], Hw[4]), max(Hw[7], Hw[9]))
+    sharp = top > SHARP
+    if sharp:
+        # a direction of great curvature must not make the others look flat
+        ia, ib = levelled(ia, Hw[0], Hw[4]), levelled(ib, Hw[7], Hw[9])
+        gw, tw = whiten_gradient(ia, ib, g), whiten_gradient(ia, ib, g_t)
+        Hw = whiten_hessian(ia, ib, H)
+        top = 1.0
+    f = ldl(Hw)
     least = min(min(f[0], f[1]), min(f[2], f[3]))
     if least > PIVOT * top:
         p, w = negate(ldl_solve(f, gw)), negate(ldl_solve(f, tw))

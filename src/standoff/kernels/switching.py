@@ -6,7 +6,7 @@ slope along an edge at its end is the vertex-edge Voronoi plane, the sign along 
 conormal the edge-face Voronoi surface. No Voronoi boundary is ever built.
 """
 
-from math import cos, sin, sqrt
+from math import cos, exp, log, sin, sqrt
 
 from standoff.kernels import layout as L
 from standoff.kernels.compiling import kernel
@@ -21,8 +21,10 @@ from standoff.kernels.features import (
     dimension,
     edge_jet,
     edge_record,
+    feature_jet,
     vertex_record,
 )
+from standoff.kernels.tolerances import CREASE_FIRST, CREASE_LAST, CREASE_STEPS
 from standoff.kernels.trimming import HIT_COEDGE, HIT_END, TURN, wrapped
 from standoff.kernels.vectors import axpy, cross, dot, scale, unit
 
@@ -208,3 +210,43 @@ def steepest_release(ints, reals, feature, p, n):
                 u, v = sector_parameters(reals, ints[sector + 1], angle)
                 best, to, chart, a, b = slope, face, c, u, v
     return best, to, chart, a, b
+
+
+@kernel
+def is_creased(ints, feature):
+    return (
+        dimension(ints, feature) == 1
+        and ints[edge_record(ints, feature) + L.EDGE_FLAGS] & L.CREASED != 0
+    )
+
+
+@kernel
+def off_crease(ints, reals, source, feature, chart, p, q, n):
+    """(p, q) a little inside the feature that was released, where it leaves a crease.
+
+    Across a crease the curvature is infinite, and no Newton step leads off it. The slope along n
+    (as in `steepest_release`) changes its sign at a parameter of any order of magnitude: it is
+    sought on a logarithmic scale along the way inwards.
+    """
+    dim = dimension(ints, feature)
+    if dim == 1:
+        if not is_creased(ints, feature):
+            return p, q
+        o = ints[edge_record(ints, feature) + L.EDGE_REALS]
+        dp, dq = (1.0 if p == reals[o + L.EDGE_T0] else -1.0), 0.0
+    elif is_creased(ints, source):
+        # seams lie on u = 0 or v = 0 of their charts, the face at greater u and v
+        dp, dq = (1.0, 0.0) if abs(p) < abs(q) else (0.0, 1.0)
+    else:
+        return p, q
+    low, high = log(CREASE_FIRST), log(CREASE_LAST)
+    for _ in range(CREASE_STEPS):
+        middle = 0.5 * (low + high)
+        s = exp(middle)
+        jet = feature_jet(ints, reals, feature, chart, p + s * dp, q + s * dq)
+        if dot(n, jet[1]) * dp + dot(n, jet[2]) * dq > 0.0:
+            low = middle
+        else:
+            high = middle
+    s = exp(0.5 * (low + high))
+    return p + s * dp, q + s * dq

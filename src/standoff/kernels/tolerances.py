@@ -29,6 +29,10 @@ REACH = 4.0
 STIFF = 1e-3
 VALLEY_STEPS = 2
 
+# A diagonal of the whitened H above SHARP (dimensionless: the distance over a radius of curvature)
+# is scaled to 1 before the rank rule: across a crease it has no bound.
+SHARP = 1e4
+
 # Armijo's sufficient decrease (dimensionless): small, as Newton steps are nearly always right.
 ARMIJO = 1e-4
 MAX_HALVINGS = 30
@@ -85,3 +89,9 @@ FARTHEST = 1e100
 
 # Greatest degree of a NURBS: the kernels' blocks of the stack hold this much.
 MAX_DEGREE = 9
+
+# Off a crease the curvature falls from infinity: the first parameter inside is sought between
+# CREASE_FIRST and CREASE_LAST (gnomonic, dimensionless) in CREASE_STEPS halvings of its logarithm.
+CREASE_FIRST = 1e-110
+CREASE_LAST = 0.5
+CREASE_STEPS = 30

@@ -16,6 +16,7 @@ from standoff.bodies.shapes.quadrics import (
     halfspace,
     sphere_atlas,
 )
+from standoff.bodies.shapes.superellipsoids import superellipsoid
 
 __all__ = [
     "box",
@@ -32,4 +33,5 @@ __all__ = [
     "segment",
     "sphere",
     "sphere_atlas",
+    "superellipsoid",
 ]

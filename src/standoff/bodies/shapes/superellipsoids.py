@@ -1,0 +1,106 @@
+"""Superellipsoids: smooth ones as an atlas, those with creases as eight octants."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from standoff.bodies.body import Body
+from standoff.bodies.topology import Edge, Face
+from standoff.geometry.pcurves import Pcurve, SurfaceCurve
+from standoff.geometry.superellipsoids import (
+    SuperellipsoidPole,
+    SuperellipsoidSide,
+    checked_exponent,
+)
+from standoff.geometry.validation import Array, positive
+from standoff.kernels import layout as L
+
+Signs = tuple[int, int, int]
+
+
+def superellipsoid(a: float, b: float, c: float, e1: float, e2: float) -> Body:
+    """Semi-axes a, b, c along x, y, z and exponents e1 (along z) and e2 (about z).
+
+    ((|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) = 1: an ellipsoid at e1 = e2 = 1, towards
+    0 a box (e1, e2) or a cylinder (e1 alone), towards 2 an octahedron. Up to 1 the surface is one
+    smooth face. Above 1 its curvature is infinite on coordinate planes: it is kept as eight
+    octants, whose seams are edges, each of two halves.
+
+    Parameters
+    ----------
+    a, b, c : float, length, positive
+    e1, e2 : float, 0.05 to 1.95
+
+    Raises
+    ------
+    ValueError
+        A semi-axis that is not positive, an exponent out of range.
+    """
+    axes = np.array([positive(a, "a"), positive(b, "b"), positive(c, "c")])
+    e1, e2 = checked_exponent(e1, "e1"), checked_exponent(e2, "e2")
+    if max(e1, e2) <= 1.0:
+        charts = [
+            chart
+            for sign in (1, -1)
+            for chart in _charts(axes, (sign, sign, sign), e1, e2)
+        ]
+        return Body.from_brep(faces=[Face(tuple(charts))], name="superellipsoid")
+    octants = list(product((1, -1), repeat=3))
+    charts_of = {signs: _charts(axes, signs, e1, e2) for signs in octants}
+    vertices = [sign * axes[k] * np.eye(3)[k] for sign in (1, -1) for k in range(3)]
+    edges: list[Edge] = []
+    loops: dict[Signs, list[tuple[int, int]]] = {signs: [] for signs in octants}
+    for missing in range(3):
+        i, j = (missing + 1) % 3, (missing + 2) % 3
+        for si, sj in product((1, -1), repeat=2):
+            middle = len(vertices)
+            for start, end, s_start, turn in ((i, j, si, 1), (j, i, sj, -1)):
+                seen = []
+                for side in (1, -1):
+                    signs = _signs({missing: side, i: si, j: sj})
+                    loops[signs].append((len(edges), si * sj * side * turn))
+                    pcurves = [_pcurve(k, start, end) for k in range(3)]
+                    seen += list(zip(charts_of[signs], pcurves, strict=True))
+                (surface, pcurve), *others = seen
+                curve = SurfaceCurve(surface, pcurve, 0.0, 1.0, others)
+                first = start + (0 if s_start > 0 else 3)
+                edges.append(Edge(curve, first, middle, smooth=False, creased=True))
+            vertices.append(edges[-1].curve.point(1.0))
+    faces = [Face(charts_of[signs], tuple(loops[signs])) for signs in octants]
+    return Body.from_brep(np.array(vertices), edges, faces, name="superellipsoid")
+
+
+def _signs(by_axis: dict[int, int]) -> Signs:
+    return by_axis[0], by_axis[1], by_axis[2]
+
+
+# The coordinates towards u, v and the centre of an octant's charts.
+_COORDINATES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))
+
+
+def _charts(
+    axes: Array, signs: Signs, e1: float, e2: float
+) -> tuple[SuperellipsoidPole, ...]:
+    """The charts about the three half-axes of an octant."""
+    scaled = np.diag(axes * signs)
+    kinds = (SuperellipsoidPole, SuperellipsoidSide, SuperellipsoidSide)
+    return tuple(
+        kind(scaled[:, list(order)], np.zeros(3), e1=e1, e2=e2)
+        for kind, order in zip(kinds, _COORDINATES, strict=True)
+    )
+
+
+def _pcurve(chart: int, start: int, end: int) -> Pcurve:
+    """Half a seam, of directions e_start + t e_end up to their signs: straight in every chart.
+
+    It begins at the tip, where t tells orders of magnitude apart.
+    """
+    matrix = np.zeros((3, 3))
+    for row, axis in enumerate(_COORDINATES[chart]):
+        if axis == start:
+            matrix[row] = (0.0, 0.0, 1.0)
+        elif axis == end:
+            matrix[row] = (1.0, 0.0, 0.0)
+    return Pcurve(L.LINE, matrix)

@@ -1,0 +1,61 @@
+"""Charts of superellipsoids: ((|x|^(2/e2) + |y|^(2/e2))^(e2/e1) + |z|^(2/e1) = 1."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array, finite
+from standoff.kernels import layout as L
+
+# Exponents: from where float64 still tells the roundings from edges (a box, an octahedron).
+LEAST_EXPONENT = 0.05
+GREATEST_EXPONENT = 1.95
+
+
+def checked_exponent(value: object, name: str) -> float:
+    """A convex superellipsoid's exponent; raises ValueError with the range."""
+    e = float(finite(value, name, ()))
+    if not LEAST_EXPONENT <= e <= GREATEST_EXPONENT:
+        raise ValueError(
+            f"{name} = {e}: a superellipsoid's exponents must be from {LEAST_EXPONENT} to "
+            f"{GREATEST_EXPONENT}; below it is a box or a cylinder, at 2 an octahedron, above 2 "
+            "not convex."
+        )
+    return e
+
+
+@dataclass(frozen=True, eq=False)
+class SuperellipsoidPole(Surface):
+    """Gnomonic chart (u, v, 1) F(u, v)^(-e1/2) of a superellipsoid, about its axis.
+
+    The columns of `linear` are the semi-axes towards u, v and the chart's centre.
+    """
+
+    e1: float = 1.0
+    e2: float = 1.0
+    kind = L.SUPERELLIPSOID_POLE
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "e1", checked_exponent(self.e1, "e1"))
+        object.__setattr__(self, "e2", checked_exponent(self.e2, "e2"))
+        super().__post_init__()
+
+    def _data(self) -> Array:
+        return np.array([2.0 / self.e1, 2.0 / self.e2])
+
+    def highest(self, direction: Array) -> None:
+        return None
+
+    def box(self) -> tuple[Array, Array]:
+        """Of the whole superellipsoid."""
+        reach = np.abs(self.linear).sum(axis=1)
+        return self.shift - reach, self.shift + reach
+
+
+class SuperellipsoidSide(SuperellipsoidPole):
+    """The same about a point of the equator: u runs along it, v along the axis."""
+
+    kind = L.SUPERELLIPSOID_SIDE
