@@ -137,11 +137,11 @@ def release_along(pair, R, mode, q, n, d, slope_floor, counts, events):
         return False
     if sa <= sb:
         log_event(events, counts, 0, mode[0], fa, sa * d, sa)
-        ua, va = off_crease(ia, ra, mode[0], fa, ca, ua, va, n)
+        ua, va = off_crease(ia, ra, mode[0], fa, ca, ua, va, scale(d, n))
         set_mode(mode, q, 0, fa, ca, ua, va)
     else:
         log_event(events, counts, 1, mode[2], fb, sb * d, sb)
-        ub, vb = off_crease(ib, rb, mode[2], fb, cb, ub, vb, scale(-1.0, rotate_back(R, n)))
+        ub, vb = off_crease(ib, rb, mode[2], fb, cb, ub, vb, scale(-d, rotate_back(R, n)))
         set_mode(mode, q, 1, fb, cb, ub, vb)
     return True
 

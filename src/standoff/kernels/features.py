@@ -94,6 +94,15 @@ def coedge_jet(ints, reals, coedge, t):
 
 
 @kernel
+def is_creased(ints, feature):
+    """Has the curvature across an edge no bound?"""
+    return (
+        dimension(ints, feature) == 1
+        and ints[edge_record(ints, feature) + L.EDGE_FLAGS] & L.CREASED != 0
+    )
+
+
+@kernel
 def vertex_point(ints, reals, feature):
     o = ints[vertex_record(ints, feature) + L.VERTEX_REALS]
     return (reals[o], reals[o + 1], reals[o + 2])
@@ -179,10 +188,10 @@ def best_coedge(ints, reals, coedge, t):
         r = chart_record(ints, chart)
         first = ints[r + L.CHART_COEDGE]
         for k in range(first, first + ints[r + L.CHART_N_COEDGES]):
-            if not same_side(ints, k, coedge, edge):
+            row = coedge_record(ints, k)
+            if ints[row + L.COEDGE_EDGE] != edge:
                 continue
             miss = 0.0
-            row = coedge_record(ints, k)
             if ints[row + L.COEDGE_KIND] == L.BEZIER:
                 o = ints[row + L.COEDGE_REALS]
                 miss = max(max(reals[o] - t, t - reals[o + 1]), 0.0)
@@ -191,13 +200,6 @@ def best_coedge(ints, reals, coedge, t):
             if depth > 0.0 and (miss < best_miss or (miss == best_miss and reach < best_reach)):
                 best_miss, best_reach, best = miss, reach, k
     return best
-
-
-@kernel
-def same_side(ints, k, coedge, edge):
-    """Is coedge k a piece of the same side of the edge? A seam bounds its face from both sides."""
-    a, b = coedge_record(ints, k), coedge_record(ints, coedge)
-    return ints[a + L.COEDGE_EDGE] == edge and ints[a + L.COEDGE_SIDE] == ints[b + L.COEDGE_SIDE]
 
 
 @kernel

@@ -22,11 +22,12 @@ from standoff.kernels.features import (
     edge_jet,
     edge_record,
     feature_jet,
+    is_creased,
     vertex_record,
 )
 from standoff.kernels.tolerances import CREASE_FIRST, CREASE_LAST, CREASE_STEPS
 from standoff.kernels.trimming import HIT_COEDGE, HIT_END, TURN, wrapped
-from standoff.kernels.vectors import axpy, cross, dot, scale, unit
+from standoff.kernels.vectors import add, axpy, cross, dot, scale, sub, unit
 
 FAN_SCAN = 24  # directions tried around an apex or in a wide sector, before refinement
 FAN_REFINE = 60  # golden-section steps: shrinks the bracket by 1e-12, the fan's own roundoff
@@ -213,20 +214,24 @@ def steepest_release(ints, reals, feature, p, n):
 
 
 @kernel
-def is_creased(ints, feature):
-    return (
-        dimension(ints, feature) == 1
-        and ints[edge_record(ints, feature) + L.EDGE_FLAGS] & L.CREASED != 0
-    )
+def on_crease(ints, feature):
+    """Is the feature an edge with a crease, or a vertex of one?"""
+    if dimension(ints, feature) > 0:
+        return is_creased(ints, feature)
+    fan = ints[vertex_record(ints, feature) + L.VERTEX_FAN]
+    for k in range(ints[vertex_record(ints, feature) + L.VERTEX_N_FAN]):
+        if is_creased(ints, ints[L.N_FACES] + ints[fan + 2 * k]):
+            return True
+    return False
 
 
 @kernel
-def off_crease(ints, reals, source, feature, chart, p, q, n):
+def off_crease(ints, reals, source, feature, chart, p, q, gap):
     """(p, q) a little inside the feature that was released, where it leaves a crease.
 
-    Across a crease the curvature is infinite, and no Newton step leads off it. The slope along n
-    (as in `steepest_release`) changes its sign at a parameter of any order of magnitude: it is
-    sought on a logarithmic scale along the way inwards.
+    Across a crease the curvature is infinite, and no Newton step leads off it. The slope of the
+    distance to the other body's witness point, `gap` from here, changes its sign at a parameter
+    of any order of magnitude: it is sought on a logarithmic scale along the way inwards.
     """
     dim = dimension(ints, feature)
     if dim == 1:
@@ -234,17 +239,19 @@ def off_crease(ints, reals, source, feature, chart, p, q, n):
             return p, q
         o = ints[edge_record(ints, feature) + L.EDGE_REALS]
         dp, dq = (1.0 if p == reals[o + L.EDGE_T0] else -1.0), 0.0
-    elif is_creased(ints, source):
+    elif on_crease(ints, source):
         # seams lie on u = 0 or v = 0 of their charts, the face at greater u and v
         dp, dq = (1.0, 0.0) if abs(p) < abs(q) else (0.0, 1.0)
     else:
         return p, q
+    target = add(feature_jet(ints, reals, feature, chart, p, q)[0], gap)
     low, high = log(CREASE_FIRST), log(CREASE_LAST)
     for _ in range(CREASE_STEPS):
         middle = 0.5 * (low + high)
         s = exp(middle)
         jet = feature_jet(ints, reals, feature, chart, p + s * dp, q + s * dq)
-        if dot(n, jet[1]) * dp + dot(n, jet[2]) * dq > 0.0:
+        way = sub(target, jet[0])
+        if dot(way, jet[1]) * dp + dot(way, jet[2]) * dq > 0.0:
             low = middle
         else:
             high = middle

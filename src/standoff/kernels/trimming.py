@@ -10,6 +10,7 @@ from standoff.kernels.features import (
     coedge_record,
     dimension,
     edge_record,
+    is_creased,
 )
 from standoff.kernels.line_roots import TOUCHING_LINE, line_roots
 from standoff.kernels.tolerances import PCURVE_OVERLAP
@@ -53,15 +54,14 @@ def in_range(ints, reals, coedge, t):
 
 
 @kernel
-def crossings(ints, reals, coedge, u, v, du, dv):
+def crossings(ints, reals, coedge, u, v, du, dv, noise):
     """Both crossings of a step with a coedge: (count, s, outward, t, s, outward, t).
 
-    s counts steps from (u, v), and is 0 where (u, v) is on the coedge but for roundoff; outward
-    is +1 where the step leaves the face, -1 where it enters.
+    s counts steps from (u, v), and is 0 where (u, v) is on the coedge but for noise (parameter
+    units); outward is +1 where the step leaves the face, -1 where it enters.
     """
     c = coedge_record(ints, coedge)
     o = ints[c + L.COEDGE_REALS] + L.PCURVE_DATA
-    noise = PARAMETER_NOISE * (1.0 + abs(u) + abs(v))
     n, ta, tb = line_roots(reals, ints[c + L.COEDGE_KIND], o, u, v, du, dv, noise)
     count = 0
     s1 = s2 = t1 = t2 = 0.0
@@ -116,7 +116,10 @@ def walk_face(ints, reals, chart, u, v, du, dv):
     # the nearest crossings behind: the last one inward where the start is on the face
     left, entered, left_at, left_t = -inf, -inf, -1, 0.0
     for k in range(first, first + ints[r + L.CHART_N_COEDGES]):
-        count, s1, out1, t1, s2, out2, t2 = crossings(ints, reals, k, u, v, du, dv)
+        # beside a crease parameters of any order of magnitude differ
+        creased = is_creased(ints, ints[L.N_FACES] + ints[coedge_record(ints, k) + L.COEDGE_EDGE])
+        noise = 0.0 if creased else PARAMETER_NOISE * (1.0 + abs(u) + abs(v))
+        count, s1, out1, t1, s2, out2, t2 = crossings(ints, reals, k, u, v, du, dv, noise)
         for m in range(count):
             s, out, t = (s1, out1, t1) if m == 0 else (s2, out2, t2)
             if out > 0 and 0.0 <= s <= best:
@@ -154,6 +157,7 @@ def on_face(ints, reals, chart, u, v):
     r = chart_record(ints, chart)
     first = ints[r + L.CHART_COEDGE]
     n = ints[r + L.CHART_N_COEDGES]
+    noise = PARAMETER_NOISE * (1.0 + abs(u) + abs(v))
     limit = reals[ints[r + L.CHART_REALS] + L.LIMIT]
     if abs(u) > limit or abs(v) > limit:
         return False
@@ -167,11 +171,11 @@ def on_face(ints, reals, chart, u, v):
         x, y, _, _, depth = coedge_parameters(ints, reals, first + k % n, t)
         if depth <= 0.0:
             continue
-        if hypot(x - u, y - v) <= PARAMETER_NOISE * (1.0 + abs(u) + abs(v)):
+        if hypot(x - u, y - v) <= noise:
             return True
         nearest, side = inf, 0
         for j in range(first, first + n):
-            count, s1, out1, _, s2, out2, _ = crossings(ints, reals, j, u, v, x - u, y - v)
+            count, s1, out1, _, s2, out2, _ = crossings(ints, reals, j, u, v, x - u, y - v, noise)
             if (count > 0 and s1 == 0.0) or (count > 1 and s2 == 0.0):
                 return True  # on the boundary
             if count > 0 and 0.0 < s1 < nearest:

@@ -41,11 +41,7 @@ def superellipsoid(a: float, b: float, c: float, e1: float, e2: float) -> Body:
     axes = np.array([positive(a, "a"), positive(b, "b"), positive(c, "c")])
     e1, e2 = checked_exponent(e1, "e1"), checked_exponent(e2, "e2")
     if max(e1, e2) <= 1.0:
-        charts = [
-            chart
-            for sign in (1, -1)
-            for chart in _charts(axes, (sign, sign, sign), e1, e2)
-        ]
+        charts = [chart for sign in (1, -1) for chart in _charts(axes, (sign, sign, sign), e1, e2)]
         return Body.from_brep(faces=[Face(tuple(charts))], name="superellipsoid")
     octants = list(product((1, -1), repeat=3))
     charts_of = {signs: _charts(axes, signs, e1, e2) for signs in octants}
@@ -80,9 +76,7 @@ def _signs(by_axis: dict[int, int]) -> Signs:
 _COORDINATES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))
 
 
-def _charts(
-    axes: Array, signs: Signs, e1: float, e2: float
-) -> tuple[SuperellipsoidPole, ...]:
+def _charts(axes: Array, signs: Signs, e1: float, e2: float) -> tuple[SuperellipsoidPole, ...]:
     """The charts about the three half-axes of an octant."""
     scaled = np.diag(axes * signs)
     kinds = (SuperellipsoidPole, SuperellipsoidSide, SuperellipsoidSide)
