@@ -20,6 +20,7 @@ from standoff.tracking import (
     Visit,
     distance,
     max_gain,
+    open_recording,
     simulate,
 )
 
@@ -47,6 +48,7 @@ __all__ = [
     "Visit",
     "distance",
     "max_gain",
+    "open_recording",
     "shapes",
     "simulate",
 ]

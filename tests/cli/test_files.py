@@ -68,10 +68,10 @@ def test_metadata_tells_how_the_file_came_about(standoff: Standoff, tmp_path: Pa
     standoff("track", scene, "-o", target, "--step", "0.1")
     raw = pq.read_schema(target).metadata[b"standoff"]
     metadata = json.loads(raw)
-    assert (metadata["format"], metadata["format_version"]) == ("standoff-recording", 1)
-    assert metadata["scene_text"] == scene.read_text()
-    assert metadata["settings"]["step"] == 0.1
-    assert metadata["samples_sha256"] == {
+    assert (metadata["format"], metadata["format_version"]) == ("standoff-recording", 2)
+    assert metadata["source"]["scene_text"] == scene.read_text()
+    assert metadata["source"]["settings"]["step"] == 0.1
+    assert metadata["source"]["samples_sha256"] == {
         "tool.tum": hashlib.sha256(samples.read_bytes()).hexdigest()
     }
     assert {"python", "numpy", "numba", "pyarrow"} == set(metadata["versions"])
@@ -114,7 +114,8 @@ def test_plot_names_what_it_shows(standoff: Standoff, passing: Path) -> None:
         "Tool past a box: A = tool, B = part",
         "distance (cm)",
         "certified lower bound",
-        "gap (cm)",
+        "error (cm)",
+        "residual",
         "time (s)",
         "B: active features of part",
         "face 0",

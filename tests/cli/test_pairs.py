@@ -66,7 +66,7 @@ def test_each_pair_has_its_own_files(standoff: Standoff, pairs: Path) -> None:
         recording = record(load_scene(pairs).select(name))
         np.testing.assert_array_equal(table["distance"], recording.distance)
         metadata = json.loads(table.schema.metadata[b"standoff"])
-        assert metadata["pair"] == name
+        assert metadata["source"]["pair"] == name
         assert str(folder / f"run-{name}.parquet") in ended.out
     assert "B = wall" in (folder / "run-far.svg").read_text()
 

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import secrets
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from standoff.cli.errors import CommandError, WriteError
-
-Writer = Callable[[Path], None]
-"""Writes one file at the path that it is given."""
+from standoff.tracking import whole_files
+from standoff.tracking.whole_files import Writer as Writer
 
 
 def check_target(target: Path, option: str, endings: Sequence[str]) -> None:
@@ -59,24 +56,13 @@ def check_target(target: Path, option: str, endings: Sequence[str]) -> None:
 def write_whole(files: Mapping[Path, Writer]) -> None:
     """Write all of `files`, or, if one fails, none.
 
-    Each is written beside its target under a name of its own and then moved onto it, which a
-    reader sees at once.
-
     Raises
     ------
     WriteError
         If a file cannot be written, as on a full disk.
     """
-    staged: dict[Path, Path] = {}
     try:
-        for target, write in files.items():
-            staged[target] = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
-            write(staged[target])
-        for target, written in staged.items():
-            os.replace(written, target)
+        whole_files.write_whole(files)
     except OSError as error:
         names = ", ".join(map(str, files))
         raise WriteError(f"{names} could not be written: {error}") from error
-    finally:
-        for written in staged.values():
-            written.unlink(missing_ok=True)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from standoff.cli.arguments import TrackCommand
-from standoff.cli.errors import CommandError, ExitCode
+from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import pairs_text, recording_facts
 from standoff.cli.output import Writer, check_target, write_whole
 from standoff.cli.progress import progress_bar
@@ -76,25 +76,28 @@ class _Run(NamedTuple):
     def check_files(self) -> None:
         if self.output is not None:
             check_target(self.output, "-o", TABLE_ENDINGS)
-            # Imported now, so that a missing library is told before the run.
-            import standoff.cli.parquet
         if self.plot is not None:
             check_target(self.plot, "--plot", PLOT_ENDINGS)
-            import standoff.cli.plot  # noqa: F401
+        try:
+            # Imported now, so that a missing library is told before the run.
+            if self.output is not None:
+                import standoff.tracking.recording_file
+            if self.plot is not None:
+                import standoff.tracking.recording_plot  # noqa: F401
+        except ModuleNotFoundError as error:
+            raise MissingExtra(str(error.name)) from error
 
     def files(self, recording: Recording) -> dict[Path, Writer]:
         files: dict[Path, Writer] = {}
         if self.output is not None:
-            from standoff.cli.parquet import write_table
+            from standoff.tracking.recording_file import write_table
 
-            files[self.output] = lambda path: write_table(
-                path, self.scene, self.settings, recording
-            )
+            files[self.output] = lambda path: write_table(recording, path)
         if self.plot is not None:
-            from standoff.cli.plot import write_plot
+            from standoff.tracking.recording_plot import write_plot
 
             ending = self.plot.suffix.lower().removeprefix(".")
-            files[self.plot] = lambda path: write_plot(path, ending, self.scene, recording)
+            files[self.plot] = lambda path: write_plot(recording, path, ending)
         return files
 
     def shown(self, recording: Recording) -> tuple[Scene, TrackSettings, Recording, list[Path]]:

@@ -2,7 +2,13 @@
 
 from standoff.tracking.options import max_gain
 from standoff.tracking.proximity import Counts, Event, Feature, Proximity
-from standoff.tracking.recording import RecordedEvent, Recording, RunInfo, Visit
+from standoff.tracking.recording import (
+    RecordedEvent,
+    Recording,
+    RunInfo,
+    Visit,
+    open_recording,
+)
 from standoff.tracking.simulate import simulate
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import FrameBuffer, Tracker, TrackerState, distance
@@ -22,5 +28,6 @@ __all__ = [
     "Visit",
     "distance",
     "max_gain",
+    "open_recording",
     "simulate",
 ]

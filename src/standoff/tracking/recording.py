@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,12 @@ from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.tracking.proximity import Counts, Feature, charts_of, feature_of
 from standoff.tracking.status import Status
+from standoff.tracking.whole_files import write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from standoff.tracking.automaton import Automaton
 
 Array = NDArray[np.float64]
 # Where the fields of Counts stand in the kernels' own counts.
@@ -252,6 +259,97 @@ class Recording:
                     mode["AB".index(event.body)] = event.target
         leave(float(self.time[-1]))
         return visits
+
+    def automaton(self) -> Automaton:
+        """Return the pair's automaton with the visited modes and the switches marked.
+
+        Raises
+        ------
+        ValueError
+            In a recording opened from a file, which does not hold the bodies.
+        """
+        from standoff.tracking.automaton import automaton  # it reads recordings itself
+
+        if self.pair is None:
+            raise ValueError(
+                "A recording from a file does not hold its bodies: make the pair's with "
+                "standoff.tracking.automaton.automaton(a, b) and mark it with "
+                ".marked(recording.modes(), recording.events)."
+            )
+        return automaton(*self.pair).marked(self.modes(), self.events)
+
+    def plot(self, path: str | Path | None = None) -> Figure:
+        """Draw distance and bound, gap and residual, modes and parameters over time.
+
+        Parameters
+        ----------
+        path : str or path, optional
+            Also write the picture there, whole or not at all: .png, .svg or .pdf.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If matplotlib is not installed; the message names the extra.
+        ValueError
+            If the file's ending is another.
+        OSError
+            If the file cannot be written.
+        """
+        from standoff.tracking import recording_plot
+
+        if path is None:
+            return recording_plot.draw(self)
+        target = Path(path)
+        ending = target.suffix.lower().removeprefix(".")
+        if ending not in recording_plot.FORMATS:
+            raise ValueError(
+                f"{target}: the ending '{target.suffix}' is not known here; name a file that ends "
+                f"in .{', .'.join(recording_plot.FORMATS)}"
+            )
+        figure = recording_plot.draw(self)
+        write_whole({target: lambda file: figure.savefig(file, format=ending)})
+        return figure
+
+    def save(self, path: str | Path) -> None:
+        """Write a Parquet file, whole or not at all; `open_recording` reads it.
+
+        docs/scene-format.md lists the columns; any reader of Parquet understands them.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If pyarrow is not installed; the message names the extra.
+        OSError
+            If the file cannot be written.
+        """
+        from standoff.tracking.recording_file import write_table
+
+        write_whole({Path(path): lambda file: write_table(self, file)})
+
+
+def open_recording(path: str | Path) -> Recording:
+    """Read a recording that `Recording.save` or ``standoff track -o`` wrote.
+
+    Everything is as it was, but for ``pair``: the file holds the bodies' names and digests, not
+    the bodies.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is no Parquet file or cut off, is no recording, or is of a format that this Standoff
+        does not read.
+    ModuleNotFoundError
+        If pyarrow is not installed; the message names the extra.
+    """
+    from standoff.tracking.recording_file import read_table
+
+    return read_table(Path(path))
 
 
 def _objects(numbers: Array, meaning: Any) -> NDArray[np.object_]:

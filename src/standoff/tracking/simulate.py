@@ -209,7 +209,6 @@ def _run_info(tracker: Tracker, locate: bool) -> RunInfo:
         (a.name, b.name),
         (a.digest, b.digest),
         options,
-        title=f"{a.name} and {b.name}",
         version=__version__,
     )
 

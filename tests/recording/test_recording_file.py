@@ -1,0 +1,198 @@
+"""Recordings in Parquet: round trip, other readers, refusals, whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from moving_pairs import REST, random_pairs, straight
+
+import standoff as so
+
+SMALL, BOX = so.shapes.box(0.3, 0.2, 0.25), so.shapes.box(1.0, 1.0, 1.0)
+THROUGH = straight((-1.0, 0.1, 0.3), (1.0, 0.05, 0.0))
+
+
+@pytest.fixture(scope="module")
+def recordings() -> list[so.Recording]:
+    """An atlas, edges and vertices, an overlap, and a law without a tolerance."""
+    a, b, path_a, path_b = random_pairs(1)[0]
+    egg = so.shapes.ellipsoid(0.3, 0.2, 0.1)
+    return [
+        so.simulate(a, b, path_a, path_b, 1.0, 1e-2),
+        so.simulate(egg, b, path_a, path_b, 0.5, 1e-2, tolerance=math.inf, start=3.0),
+        so.simulate(SMALL, BOX, THROUGH, REST, 2.0, 1e-2),
+    ]
+
+
+def same(one: object, two: object) -> bool:
+    """Equal, with nan equal to nan."""
+    if isinstance(one, np.ndarray) and one.dtype != object:
+        return np.array_equal(one, two, equal_nan=True) and one.dtype == two.dtype
+    if isinstance(one, np.ndarray):
+        return one.tolist() == two.tolist()
+    if isinstance(one, tuple) and not isinstance(one, str):
+        return len(one) == len(two) and all(map(same, one, two))
+    return one == two or (one != one and two != two)
+
+
+def test_a_recording_comes_back_as_it_was(recordings: list[so.Recording], tmp_path: Path) -> None:
+    assert any(recording.events for recording in recordings)
+    for recording in recordings:
+        recording.save(tmp_path / "run.parquet")
+        again = so.open_recording(tmp_path / "run.parquet")
+        for field in fields(so.Recording):
+            if field.name != "pair":
+                was, read = getattr(recording, field.name), getattr(again, field.name)
+                assert same(was, read), field.name
+        assert again.pair is None
+        assert again.modes() == recording.modes()
+        with pytest.raises(ValueError, match="does not hold its bodies"):
+            again.automaton()
+
+
+def test_another_reader_needs_nothing_of_ours(
+    recordings: list[so.Recording], tmp_path: Path
+) -> None:
+    recording = recordings[0]
+    recording.save(tmp_path / "run.parquet")
+    table = pq.read_table(tmp_path / "run.parquet")
+    np.testing.assert_array_equal(table["distance"], recording.distance)
+    events = [event for row in table["events"].to_pylist() for event in row]
+    assert [event["time"] for event in events] == [event.time for event in recording.events]
+    assert all(event["located"] for event in events)
+    told = json.loads(table.schema.metadata[b"standoff"])
+    assert (told["format"], told["format_version"]) == ("standoff-recording", 2)
+    assert told["standoff"] == so.__version__
+    assert (told["a"], told["b"]) == recording.info.bodies
+    assert (told["a_sha256"], told["b_sha256"]) == tuple(x.digest for x in recording.pair)
+    assert told["options"]["law"] == "predictor-corrector"
+    assert told["options"]["dt"] == 1e-2
+    assert told["units"] == {"length": "", "time": "s", "angle": "rad"}
+    assert str(tmp_path) not in table.schema.metadata[b"standoff"].decode()
+
+
+def test_the_automaton_of_a_recording(recordings: list[so.Recording]) -> None:
+    found = recordings[0].automaton()
+    assert found.visits == tuple(recordings[0].modes())
+    assert len(found.taken) + len(found.restarts) == len(recordings[0].events)
+
+
+def test_the_metadata_is_strict_json(recordings: list[so.Recording], tmp_path: Path) -> None:
+    def refuse(constant: str) -> None:
+        raise AssertionError(constant)
+
+    recordings[1].save(tmp_path / "run.parquet")
+    text = pq.read_schema(tmp_path / "run.parquet").metadata[b"standoff"]
+    assert json.loads(text, parse_constant=refuse)["options"]["tolerance"] == "inf"
+
+
+def test_the_same_run_gives_the_same_bytes(recordings: list[so.Recording], tmp_path: Path) -> None:
+    again = so.simulate(SMALL, BOX, THROUGH, REST, 2.0, 1e-2)
+    again.save(tmp_path / "1.parquet")
+    recordings[2].save(tmp_path / "2.parquet")
+    assert (tmp_path / "1.parquet").read_bytes() == (tmp_path / "2.parquet").read_bytes()
+
+
+def test_nothing_is_left_where_writing_fails(
+    recordings: list[so.Recording], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target = tmp_path / "run.parquet"
+    target.write_text("before")
+
+    def fail(_: object, path: Path) -> None:
+        Path(path).write_text("half")
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("pyarrow.parquet.write_table", fail)
+        with pytest.raises(OSError, match="No space left"):
+            recordings[0].save(target)
+    assert target.read_text() == "before"
+    assert list(tmp_path.iterdir()) == [target]
+    unfit = replace(recordings[0].info, source={"when": object()})
+    with pytest.raises(TypeError):
+        replace(recordings[0], info=unfit).save(target)
+    assert target.read_text() == "before"
+    assert list(tmp_path.iterdir()) == [target]
+    with pytest.raises(FileNotFoundError):
+        recordings[0].save(tmp_path / "no" / "run.parquet")
+    assert list(tmp_path.iterdir()) == [target]
+
+
+def rewritten(path: Path, change: dict) -> None:
+    """Write a recording's table with other metadata."""
+    table = pq.read_table(path)
+    told = json.loads(table.schema.metadata[b"standoff"]) | change
+    pq.write_table(table.replace_schema_metadata({"standoff": json.dumps(told)}), path)
+
+
+def test_what_is_no_recording(recordings: list[so.Recording], tmp_path: Path) -> None:
+    file = tmp_path / "run.parquet"
+    with pytest.raises(FileNotFoundError, match="does not exist"):
+        so.open_recording(file)
+    with pytest.raises(FileNotFoundError, match="is a folder"):
+        so.open_recording(tmp_path)
+    file.write_text("time,distance\n0,1\n")
+    with pytest.raises(ValueError, match="no Parquet file, or is cut off"):
+        so.open_recording(str(file))
+    pq.write_table(pa.table({"time": [0.0]}), file)
+    with pytest.raises(ValueError, match="no recording of Standoff"):
+        so.open_recording(file)
+    recordings[0].save(file)
+    whole = file.read_bytes()
+    for part in (4, len(whole) // 2, len(whole) - 1):
+        file.write_bytes(whole[:part])
+        with pytest.raises(ValueError, match="no Parquet file, or is cut off"):
+            so.open_recording(file)
+
+
+@pytest.mark.parametrize(
+    ("version", "fix"), [(1, "record again"), (3, "install the Standoff"), ("two", "install")]
+)
+def test_another_format_version(
+    recordings: list[so.Recording], tmp_path: Path, version: object, fix: str
+) -> None:
+    file = tmp_path / "run.parquet"
+    recordings[0].save(file)
+    rewritten(file, {"format_version": version})
+    with pytest.raises(ValueError, match=f"version {version!r}.*reads version 2: {fix}"):
+        so.open_recording(file)
+
+
+def test_a_recording_that_was_changed(recordings: list[so.Recording], tmp_path: Path) -> None:
+    file = tmp_path / "run.parquet"
+    recordings[0].save(file)
+    table = pq.read_table(file)
+    pq.write_table(table.drop_columns(["normal_y"]), file)
+    with pytest.raises(ValueError, match=r"does not fit .*normal_y"):
+        so.open_recording(file)
+    recordings[0].save(file)
+    rewritten(file, {"format": "other"})
+    with pytest.raises(ValueError, match="no recording of Standoff"):
+        so.open_recording(file)
+
+
+def test_a_missing_library_is_named(
+    recordings: list[so.Recording], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import sys
+
+    for name, module, use in (
+        ("pyarrow", "recording_file", lambda: recordings[0].save(tmp_path / "run.parquet")),
+        ("pyarrow", "recording_file", lambda: so.open_recording(tmp_path / "run.parquet")),
+        ("matplotlib", "recording_plot", lambda: recordings[0].plot(tmp_path / "run.png")),
+    ):
+        with monkeypatch.context() as patch:
+            patch.setitem(sys.modules, name, None)
+            patch.delitem(sys.modules, f"standoff.tracking.{module}", raising=False)
+            patch.delattr(f"standoff.tracking.{module}", raising=False)
+            with pytest.raises(ModuleNotFoundError, match=rf"{name} .*standoff\[cli\]"):
+                use()
+    assert not list(tmp_path.iterdir())
