@@ -1,0 +1,197 @@
+"""Convexity of NURBS and rational Bezier patches, by Bernstein bounds with subdivision.
+
+Every span of a NURBS is a rational Bezier patch whose curvature is the quotient of polynomials
+(see ``forms``). Where all coefficients of the 2x2 polynomial P are semidefinite matrices, so is P
+on the whole box; where they are not, the box is halved, the worst first, until each box is proven
+or the least curvature and its places are known well. No sampling decides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from heapq import heappop, heappush
+
+import numpy as np
+
+from standoff.bodies.proofs.boxes import ROOT, Cell, CurvatureBound, curvature_bound, deep_enough
+from standoff.bodies.proofs.defects import Dent, dents_total
+from standoff.bodies.proofs.forms import Forms, forms_of, with_poles
+from standoff.bodies.proofs.normals import in_hemisphere
+from standoff.bodies.proofs.proof import PatchProof
+from standoff.geometry import bernstein
+from standoff.geometry.nurbs import NurbsSurface
+from standoff.geometry.validation import Array
+
+# Boxes looked at in one span before what is left counts as a dent of its bound.
+MOST_BOXES = 3000
+# Enough boxes to show the size of the dents of a patch that is not convex.
+FINE_BOXES = 300
+# Curvature found below minus this, 1 / size, is no rounding: the patch is not convex.
+ROUNDING = 1e-14
+# A convex patch has no greater defect, as a fraction of its size: rounding of control points
+# bends a patch of degree 9 by some 1e-13.
+PROVEN = 1e-12
+# Curvature below this, 1 / size, everywhere: the patch may be flat, which is then tried.
+NEARLY_FLAT = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A span with its homogeneous points and forms, scaled to the size one of its surface.
+
+    `moved` is the length by which points of a pole were brought together.
+    """
+
+    domain: tuple[float, float, float, float]
+    points: Array
+    moved: float
+    forms: Forms
+
+    def parameters(self, cell: Cell) -> tuple[float, float]:
+        """(u, v) of the surface at a box's centre."""
+        s, t = cell.centre
+        u0, u1, v0, v1 = self.domain
+        return u0 + s * (u1 - u0), v0 + t * (v1 - v0)
+
+
+@dataclass(frozen=True, eq=False)
+class SpanBound:
+    """What the search found in one span: dents, the least curvature found and its box."""
+
+    dents: list[Dent]
+    convex: bool
+    found: float
+    cell: Cell
+
+
+def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
+    """Prove that a NURBS or rational Bezier patch is convex, or bound how far it is not.
+
+    Parameters
+    ----------
+    surface : of any degree; C1 at least inside its domain.
+    outward : +1 where f_u x f_v is to point outward, -1 where inward; when left out, the side
+        to which the patch bulges more.
+
+    Raises
+    ------
+    ValueError
+        A knot where the surface may be creased: a proof needs each smooth part by itself.
+    """
+    _refuse_creases(surface)
+    pieces, size = _pieces(surface)
+    bends = np.concatenate([_bends(piece.forms) for piece in pieces])
+    sense = outward if outward is not None else (-1 if float(bends.sum()) > 0.0 else 1)
+    results = [_search(piece, sense) for piece in pieces]
+    dents = [dent for r in results for dent in r.dents]
+    rise, tilt = dents_total(dents)
+    worst = int(np.argmin([np.nan_to_num(r.found, nan=np.inf) for r in results]))
+    convex = rise <= PROVEN and all(r.convex for r in results)
+    rise += max(piece.moved for piece in pieces)
+    flat = convex and float(np.abs(bends).max(initial=0.0)) <= NEARLY_FLAT and _flat(pieces, sense)
+    return PatchProof(
+        convex=convex,
+        defect=rise * size,
+        method="bernstein",
+        hemisphere=in_hemisphere([piece.forms for piece in pieces]),
+        place=pieces[worst].parameters(results[worst].cell),
+        sense=0 if flat else sense,
+        tilt=tilt,
+        curvature=-max((d.curvature for d in dents), default=0.0) / size,
+    )
+
+
+def _refuse_creases(surface: NurbsSurface) -> None:
+    vectors = (surface.vector_u, surface.vector_v)
+    for name, vector, knots in zip("uv", vectors, surface.breaks(), strict=True):
+        for knot in knots:
+            if vector.multiplicity(knot) >= vector.degree:
+                raise ValueError(
+                    f"The surface may be creased at {name} = {knot}, a knot of multiplicity "
+                    f"{vector.multiplicity(knot)} with degree {vector.degree}: split it there "
+                    "(surface.restricted) and prove its parts."
+                )
+
+
+def _pieces(surface: NurbsSurface) -> tuple[list[Piece], float]:
+    """The spans of a surface about its centre, scaled to the size one; and the size, length."""
+    low, high = surface.box()
+    centre, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
+    pieces = []
+    for span in surface.spans():
+        h = span.points / span.points[3].max()
+        points = np.concatenate([(h[:3] - centre[:, None, None] * h[3:]) / size, h[3:]])
+        points, moved = with_poles(points)
+        pieces.append(Piece(span.domain, points, moved, forms_of(points)))
+    return pieces, size
+
+
+def _bends(forms: Forms) -> Array:
+    """Twice the mean curvature along f_u x f_v at some points, 1 / size; regular points only."""
+    t = np.array([0.125, 0.5, 0.875])
+    jacobian = bernstein.grid_values(forms.jacobian, t, t)
+    uu, uv, vv = bernstein.grid_values(forms.second, t, t)
+    normal = np.linalg.norm(bernstein.grid_values(forms.normal, t, t), axis=0)
+    weight = bernstein.grid_values(forms.weight, t, t)
+    g = np.einsum("acij,bcij->abij", jacobian, jacobian)
+    area = g[0, 0] * g[1, 1] - g[0, 1] ** 2
+    for side in forms.sharp:
+        distance = (t[:, None], 1.0 - t[:, None], t, 1.0 - t)[side]
+        normal = normal * distance
+    regular = (area > 0.0) & (normal > 0.0)
+    total = g[1, 1] * uu - 2.0 * g[0, 1] * uv + g[0, 0] * vv
+    bends: Array = (total * weight**3)[regular] / (area * normal)[regular]
+    return bends
+
+
+def _flat(pieces: Sequence[Piece], sense: int) -> bool:
+    """Is the patch convex to both sides."""
+    return all(curvature_bound(piece.forms, ROOT, -sense).convex for piece in pieces)
+
+
+def _search(piece: Piece, sense: int) -> SpanBound:
+    """Halve the box that may dent most, until all are proven or the dents are known well."""
+    open_cells: list[tuple[float, int, Cell, CurvatureBound]] = []
+    settled: list[tuple[Cell, CurvatureBound]] = []
+    found, place, count = np.inf, ROOT, 0
+
+    def look(cell: Cell) -> None:
+        nonlocal found, place, count
+        count += 1
+        bound = curvature_bound(piece.forms, cell, sense)
+        if bound.found < found:
+            found, place = bound.found, cell
+        known = bound.least >= 0.0 or (bound.convex and bound.tight)
+        if known or deep_enough(piece.forms, cell):
+            settled.append((cell, bound))
+        else:
+            heappush(open_cells, (_weight(bound), count, cell, bound))
+
+    look(ROOT)
+    while open_cells and count < (FINE_BOXES if found < -ROUNDING else MOST_BOXES):
+        _, _, cell, bound = heappop(open_cells)
+        for half in cell.halves(bound.along_u):
+            look(half)
+    left = [(cell, bound) for _, _, cell, bound in open_cells]
+    dents = [_dent(piece, c, b) for c, b in settled + left if b.least < 0.0]
+    return SpanBound(dents, not left and all(b.convex for _, b in settled), found, place)
+
+
+def _weight(bound: CurvatureBound) -> float:
+    """Minus the turn of normals the wrong way that a box may hide, about."""
+    by_curvature = -bound.least * bound.width if bound.width > 0.0 else np.inf
+    return -min(by_curvature, bound.turn)
+
+
+def _dent(piece: Piece, cell: Cell, bound: CurvatureBound) -> Dent:
+    h = cell.part(piece.points)
+    x = (h[:3] / h[3]).reshape(3, -1)
+    low, high = x.min(axis=1), x.max(axis=1)
+    if bound.least > -np.inf:
+        return Dent(-bound.least, low, high)
+    turn = bound.turn
+    if bound.convex and bound.tight:
+        # at a sharp apex curvature grows as 1 / distance, and the turn by rounding stays
+        turn = min(turn, bound.apex)
+    return Dent(np.inf, low, high, turn)
