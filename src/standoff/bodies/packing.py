@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.topology import Apex, BodyError, Edge, Face
-from standoff.geometry.pcurves import Pcurve, SurfaceCurve
+from standoff.geometry.pcurves import Pcurve
+from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L

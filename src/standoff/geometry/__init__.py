@@ -5,8 +5,10 @@ from standoff.geometry.ellipsoid_patches import ellipsoid_octants, ellipsoid_pat
 from standoff.geometry.formulas import FormulaCurve, FormulaError, FormulaSurface
 from standoff.geometry.nurbs import BezierPatch, NurbsSurface
 from standoff.geometry.nurbs_curves import NurbsCurve
-from standoff.geometry.pcurves import NurbsPcurve, Pcurve, SurfaceCurve, pcurve_of
+from standoff.geometry.nurbs_pcurves import NurbsPcurve
+from standoff.geometry.pcurves import Pcurve, pcurve_of
 from standoff.geometry.superellipsoids import SuperellipsoidPole, SuperellipsoidSide
+from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
 
 __all__ = [

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from standoff.geometry.validation import Array, finite, vector3
 from standoff.kernels import layout as L
 from standoff.kernels.jets import curve_jet
+
+if TYPE_CHECKING:
+    from standoff.geometry.pcurves import Pcurve
+    from standoff.geometry.surfaces import Surface
 
 FULL_TURN = 2.0 * np.pi
 
@@ -34,6 +38,10 @@ class Curve:
     @property
     def closed(self) -> bool:
         return False
+
+    def pcurve_on(self, surface: Surface) -> Pcurve | None:
+        """The trimming curve on a surface that the curve was made on, else None."""
+        return None
 
     def box(self) -> tuple[Array, Array] | None:
         """(low, high), each (3,): surely around the curve; None where its kind gives none."""

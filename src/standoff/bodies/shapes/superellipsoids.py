@@ -8,12 +8,13 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.bodies.topology import Edge, Face
-from standoff.geometry.pcurves import Pcurve, SurfaceCurve
+from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.superellipsoids import (
     SuperellipsoidPole,
     SuperellipsoidSide,
     checked_exponent,
 )
+from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.validation import Array, positive
 from standoff.kernels import layout as L
 
@@ -43,7 +44,7 @@ def superellipsoid(a: float, b: float, c: float, e1: float, e2: float) -> Body:
     if max(e1, e2) <= 1.0:
         charts = [chart for sign in (1, -1) for chart in _charts(axes, (sign, sign, sign), e1, e2)]
         return Body.from_brep(faces=[Face(tuple(charts))], name="superellipsoid")
-    octants = list(product((1, -1), repeat=3))
+    octants: list[Signs] = [(i, j, k) for i, j, k in product((1, -1), repeat=3)]
     charts_of = {signs: _charts(axes, signs, e1, e2) for signs in octants}
     vertices = [sign * axes[k] * np.eye(3)[k] for sign in (1, -1) for k in range(3)]
     edges: list[Edge] = []

@@ -1,0 +1,144 @@
+"""NURBS trimming curves, kept as Bezier pieces that a straight line meets at most twice."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from standoff.geometry.knots import bezier_spans, knot_vector
+from standoff.geometry.nurbs import checked_weights
+from standoff.geometry.pcurves import Pcurve
+from standoff.geometry.validation import Array, finite
+from standoff.kernels import layout as L
+from standoff.kernels.jets import pcurve_jet
+
+# A piece of a NURBS pcurve turns by less than this (radians): 180 degrees with a margin.
+MOST_TURN = 0.9 * np.pi
+TURN_POINTS = 65
+# Curvature below this part of the greatest (dimensionless) is roundoff of a straight piece.
+STRAIGHT = 1e-11
+
+
+class BezierPcurve(Pcurve):
+    """A rational Bezier curve of (u, v) over [first, last]: points (n + 1, 3), (w u, w v, w)."""
+
+    first: float
+    last: float
+
+    def __init__(self, points: Array, first: float, last: float) -> None:
+        object.__setattr__(self, "kind", L.BEZIER)
+        object.__setattr__(self, "matrix", np.asarray(points, dtype=np.float64))
+        object.__setattr__(self, "first", float(first))
+        object.__setattr__(self, "last", float(last))
+
+    @property
+    def data(self) -> Array:
+        return np.concatenate([[len(self.matrix) - 1.0], self.matrix.ravel()])
+
+    def homogeneous(self, t: float) -> tuple[Array, Array, Array]:
+        block = np.concatenate([[self.first, self.last], self.data])
+        h, ht, htt = pcurve_jet(block, self.kind, 2, t)
+        return np.array(h), np.array(ht), np.array(htt)
+
+
+class NurbsPcurve(Pcurve):
+    """A NURBS of (u, v) whose parameter is its edge's.
+
+    Parameters
+    ----------
+    control_points : (n, 2) array, surface parameters
+    knots : (n + degree + 1,) array, edge parameter; clamped or not, uneven allowed
+    weights : (n,) array, positive; default 1
+
+    Raises
+    ------
+    ValueError
+        As `NurbsSurface`.
+    """
+
+    spans: list[BezierPcurve]
+
+    def __init__(self, control_points: Any, knots: Any, weights: Any = None) -> None:
+        points = finite(control_points, "control_points", (-1, 2))
+        w = checked_weights(weights, points)
+        vector = knot_vector(knots, len(points), "knots", "control points")
+        rows = np.column_stack([points * w[:, None], w])
+        spans = [
+            BezierPcurve(matrix @ rows[start : start + vector.degree + 1], a, b)
+            for (start, matrix), (a, b) in zip(
+                bezier_spans(vector), pairwise(vector.breaks), strict=True
+            )
+        ]
+        object.__setattr__(self, "kind", L.BEZIER)
+        object.__setattr__(self, "matrix", rows)
+        object.__setattr__(self, "spans", spans)
+
+    def homogeneous(self, t: float) -> tuple[Array, Array, Array]:
+        return next((s for s in self.spans if t <= s.last), self.spans[-1]).homogeneous(t)
+
+    def pieces(self, first: float, last: float) -> list[tuple[Pcurve, float, float]]:
+        found: list[tuple[Pcurve, float, float]] = []
+        for span in self.spans:
+            a = max(first, span.first)
+            b = min(last, span.last)
+            if a < b:
+                found += [(p, p.first, p.last) for p in _turning_pieces(_part(span, a, b))]
+        return found
+
+
+def _part(span: BezierPcurve, a: float, b: float) -> BezierPcurve:
+    """The part of a Bezier span over [a, b], by de Casteljau."""
+    first, last = span.first, span.last
+    points = span.matrix
+    if b < last:
+        points = _split(points, (b - first) / (last - first))[0]
+    if a > first:
+        points = _split(points, (a - first) / (b - first))[1]
+    return BezierPcurve(points, a, b)
+
+
+def _split(points: Array, s: float) -> tuple[Array, Array]:
+    left, right = [points[0]], [points[-1]]
+    while len(points) > 1:
+        points = (1.0 - s) * points[:-1] + s * points[1:]
+        left.append(points[0])
+        right.append(points[-1])
+    return np.array(left), np.array(right[::-1])
+
+
+def _turning_pieces(piece: BezierPcurve) -> list[BezierPcurve]:
+    """Cut at inflections, then until each part turns by less than 180 degrees."""
+    first, last = piece.first, piece.last
+
+    def bend(t: float) -> float:
+        return float(np.linalg.det(np.array(piece.homogeneous(t))))
+
+    ts = np.linspace(first, last, 16 * len(piece.matrix))
+    bends = np.array([bend(t) for t in ts])
+    bends[np.abs(bends) <= STRAIGHT * np.abs(bends).max(initial=0.0)] = 0.0
+    cuts = [
+        float(brentq(bend, ts[k], ts[k + 1], xtol=1e-15))
+        for k in range(len(ts) - 1)
+        if bends[k] * bends[k + 1] < 0.0
+    ]
+    parts = [_part(piece, a, b) for a, b in pairwise([first, *cuts, last]) if a < b]
+    return [q for p in parts for q in _halved(p)]
+
+
+def _halved(piece: BezierPcurve) -> list[BezierPcurve]:
+    first, last = piece.first, piece.last
+    total, before = 0.0, None
+    for t in np.linspace(first, last, TURN_POINTS):
+        h, ht, _ = piece.homogeneous(float(t))
+        way = (ht[:2] - ht[2] * h[:2] / h[2]) / h[2]
+        angle = float(np.arctan2(way[1], way[0]))
+        if before is not None:
+            total += abs((angle - before + np.pi) % (2.0 * np.pi) - np.pi)
+        before = angle
+    if total < MOST_TURN:
+        return [piece]
+    middle = 0.5 * (first + last)
+    return [*_halved(_part(piece, first, middle)), *_halved(_part(piece, middle, last))]

@@ -1,0 +1,99 @@
+"""Curves on surfaces: the images of pcurves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from standoff.geometry.curves import Curve, fill_curve
+from standoff.geometry.pcurves import Pcurve
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
+from standoff.kernels import layout as L
+
+
+class SurfaceCurve(Curve):
+    """The image of a pcurve on a surface, t from first to last: exact on every kind of surface.
+
+    Its packed edge has no data: kernels evaluate the pcurve on the chart of the edge's first
+    coedge, so one of the edge's two faces must have this surface as a chart.
+
+    Parameters
+    ----------
+    surface, pcurve : a chart, and the trimming curve in it
+    first, last : float
+    others : the same curve in other charts: pairs (surface, pcurve). A point is taken from the
+        chart that sees it most centrally.
+    """
+
+    kind = L.ON_SURFACE
+    surface: Surface
+    pcurve: Pcurve
+    others: tuple[tuple[Surface, Pcurve], ...]
+
+    def __init__(
+        self,
+        surface: Surface,
+        pcurve: Pcurve,
+        first: float,
+        last: float,
+        others: Sequence[tuple[Surface, Pcurve]] = (),
+    ) -> None:
+        if not first < last:
+            raise ValueError(f"SurfaceCurve from t = {first} to {last}: give first < last.")
+        object.__setattr__(self, "surface", surface)
+        object.__setattr__(self, "pcurve", pcurve)
+        object.__setattr__(self, "others", tuple(others))
+        fill_curve(self, np.zeros(0), first, last)
+
+    @staticmethod
+    def isoline(surface: Surface, *, u: Any = None, v: Any = None) -> SurfaceCurve:
+        """The curve u = const (v its parameter) or v = const over the surface's domain."""
+        u0, u1, v0, v1 = surface.domain
+        if u is not None:
+            matrix = np.array([[0.0, 0.0, u], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+            return SurfaceCurve(surface, Pcurve(L.LINE, matrix), v0, v1)
+        matrix = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, v], [0.0, 0.0, 1.0]])
+        return SurfaceCurve(surface, Pcurve(L.LINE, matrix), u0, u1)
+
+    def jet(self, t: float) -> tuple[Array, Array, Array]:
+        surface, (h, ht, htt) = self._central(t)
+        p = h[:2] / h[2]
+        pt = (ht[:2] - p * ht[2]) / h[2]
+        ptt = (htt[:2] - 2.0 * pt * ht[2] - p * htt[2]) / h[2]
+        x, xu, xv, xuu, xuv, xvv = surface.jet(float(p[0]), float(p[1]))
+        xtt = pt[0] ** 2 * xuu + 2.0 * pt[0] * pt[1] * xuv + pt[1] ** 2 * xvv
+        return x, pt[0] * xu + pt[1] * xv, xtt + ptt[0] * xu + ptt[1] * xv
+
+    @property
+    def closed(self) -> bool:
+        """Once round a surface whose u is an angle."""
+        if not self.surface.periodic:
+            return False
+        turn = abs(self.pcurve.point(self.last)[0] - self.pcurve.point(self.first)[0])
+        return bool(abs(turn - 2.0 * np.pi) <= 1e-14 * turn)
+
+    def _central(self, t: float) -> tuple[Surface, tuple[Array, Array, Array]]:
+        """The surface that sees the point at t most centrally, and the pcurve there."""
+        seen = [(s, p.homogeneous(t)) for s, p in ((self.surface, self.pcurve), *self.others)]
+        if len(seen) == 1:
+            return seen[0]
+        return max(seen, key=lambda one: one[1][0][2] / np.abs(one[1][0]).max())
+
+    def pcurve_on(self, surface: Surface) -> Pcurve | None:
+        """The trimming curve on a surface that the curve was made on, else None."""
+        for s, p in ((self.surface, self.pcurve), *self.others):
+            if s.kind == surface.kind and np.array_equal(s.reals, surface.reals):
+                return p
+        return None
+
+    def transformed(self, linear: Array, shift: Array) -> Curve:
+        return SurfaceCurve(
+            self.surface.transformed(linear, shift),
+            self.pcurve,
+            self.first,
+            self.last,
+            [(s.transformed(linear, shift), p) for s, p in self.others],
+        )
