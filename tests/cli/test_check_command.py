@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import pytest
+from matplotlib.image import imread
 
 import standoff as so
 from standoff.scene import load_scene
@@ -74,3 +76,55 @@ def test_refused(
     assert ended.err.startswith("standoff: ")
     assert ended.err.count("\n") == 1
     assert piece in ended.err
+
+
+def test_pictures_of_each_body(standoff: Standoff, passing: Path) -> None:
+    ended = standoff("check", passing, "--plot", passing.with_name("b.png"))
+    assert ended.code == 0
+    assert f"wrote {passing.with_name('b-tool.png')}" in ended.out
+    for name in ("b-tool.png", "b-part.png"):
+        assert imread(passing.with_name(name)).std() > 0.05
+    target = passing.with_name("b.svg")
+    facts = json.loads(standoff("check", passing, "--body", "part", "--plot", target, "--json").out)
+    assert facts["files"] == [str(target)]
+    drawn = target.read_text()
+    for text in ("part: box, 6 faces, 12 edges, 8 vertices", "face 5", "e0", "v0", "0.2 cm"):
+        assert f"<!-- {text} -->" in drawn
+    # All six faces of a box are seen from two opposite sides, three from each.
+    assert sorted(set(re.findall("<!-- (face .) -->", drawn))) == [f"face {k}" for k in range(6)]
+
+
+@pytest.mark.parametrize(
+    ("shape", "texts"),
+    [
+        (
+            'shape = "planar_loop", curves = [{kind = "line", start = [0, 0], end = [1, 0]}, '
+            '{kind = "bezier", control_points = [[1, 0], [1, 1], [0, 0]]}]',
+            ["edge 0", "edge 1", "vertex 1", "x (m)", "outward normal"],
+        ),
+        ('shape = "sphere", radius = 2', ["v0", "skin at radius 2"]),
+        ('shape = "halfspace"', ["face 0", "halfspace, 1 face; it has no end, a part is shown"]),
+        ('shape = "cone", radius = 1, height = 2', ["face 0", "face 1", "e0", "v0"]),
+    ],
+)
+def test_pictures_of_all_kinds(
+    standoff: Standoff, tmp_path: Path, shape: str, texts: list[str]
+) -> None:
+    target = tmp_path / "b.svg"
+    assert standoff("check", shape, "--plot", target).code == 0
+    for text in texts:
+        assert f"<!-- {text} -->" in target.read_text()
+
+
+def test_pictures_that_are_refused(standoff: Standoff, passing: Path) -> None:
+    text = passing.read_text()
+    passing.write_text(text.replace("tool", '"a b"').replace("part", '"a.b"'))
+    for target, piece in (
+        ("b.bmp", "ends in .png or .svg or .pdf"),
+        ("no/b.png", "does not exist"),
+        ("b.png", "two bodies would be drawn to this file"),
+    ):
+        ended = standoff("check", passing, "--plot", passing.parent / target)
+        assert (ended.code, ended.out) == (2, "")
+        assert piece in ended.err
+    assert [path.name for path in passing.parent.iterdir()] == ["passing.toml"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
@@ -12,9 +13,12 @@ from rich.table import Table
 from standoff import __version__
 from standoff.bodies.body import Body
 from standoff.cli.arguments import CheckCommand
-from standoff.cli.errors import ExitCode
+from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
+from standoff.cli.output import Writer, check_target, write_whole
 from standoff.cli.subject import Subject, subjects
+
+PLOT_ENDINGS = (".png", ".svg", ".pdf")
 
 WIDTH = 100
 """Characters of a table where stdout is no terminal, such as a file."""
@@ -27,24 +31,62 @@ def run_check(command: CheckCommand) -> int:
     ------
     SceneError, CommandError
         If the scene, shape or file is not usable, which includes a body that is refused.
+    WriteError
+        If a picture could not be written.
     """
     found = subjects(command.what, command.body)
+    targets = [_target(command.plot, subject, found) for subject in found]
+    files = _files(found, targets)
+    write_whole(files)
     if command.json:
-        print(_json(found))
+        print(_json(found, list(files)))
     else:
         console = Console(highlight=False)
         if not console.is_terminal:
             console = Console(width=WIDTH, highlight=False)
         for subject in found:
             console.print(_table(subject))
+        for target in files:
+            print(f"wrote {target}")
     return ExitCode.DONE
 
 
-def _json(found: list[Subject]) -> str:
+def _target(plot: Path | None, subject: Subject, found: list[Subject]) -> Path | None:
+    """The picture of one body: as the option names it, or with the body's name at its end."""
+    if plot is None or len(found) == 1:
+        return plot
+    plain = "".join(
+        letter if letter.isalnum() or letter in "-_" else "_" for letter in subject.name
+    )
+    return plot.with_name(f"{plot.stem}-{plain}{plot.suffix}")
+
+
+def _files(found: list[Subject], targets: list[Path | None]) -> dict[Path, Writer]:
+    files: dict[Path, Writer] = {}
+    for subject, target in zip(found, targets, strict=True):
+        if target is None:
+            continue
+        check_target(target, "--plot", PLOT_ENDINGS)
+        if target in files:
+            raise CommandError(
+                f"--plot {target}: two bodies would be drawn to this file; pick one with --body"
+            )
+        files[target] = _writer(subject, target.suffix.lower().removeprefix("."))
+    return files
+
+
+def _writer(subject: Subject, ending: str) -> Writer:
+    from standoff.cli.body_picture import write_body
+
+    return lambda path: write_body(path, ending, subject.body, subject.name, subject.unit)
+
+
+def _json(found: list[Subject], files: list[Path]) -> str:
     facts = [_facts(subject) for subject in found]
+    written = {"files": [str(path) for path in files]}
     if len(facts) == 1:
-        return json_text({"standoff": __version__} | facts[0])
-    return json_text({"standoff": __version__, "bodies": facts})
+        return json_text({"standoff": __version__} | facts[0] | written)
+    return json_text({"standoff": __version__, "bodies": facts} | written)
 
 
 def _facts(subject: Subject) -> dict[str, Any]:

@@ -1,0 +1,200 @@
+"""Triangles of a body's faces, points along its edges: for pictures, never for distances."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import Delaunay
+
+from standoff.bodies.body import Body
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
+from standoff.kernels import layout as L
+from standoff.kernels.features import chart_normal, coedge_parameters, planar_edge_normal
+from standoff.kernels.trimming import on_face
+
+# Points along each coedge, and along each edge: a drawn line of a whole turn shows no corners.
+ALONG = 33
+ALONG_EDGE = 97
+# Grid points along each side of a chart: of a body of few charts, and of one of many.
+GRID, COARSE_GRID = 21, 7
+FEW_CHARTS = 20
+# An unbounded face is shown over this half width, in units of its own parameters.
+UNBOUNDED_HALF = 1.0
+# Charts of an atlas share a surface; within this square they tile it without overlap.
+TILE = 1.0
+# Grid points nearer to the boundary than this part of a grid step would make slivers.
+CLEARANCE = 0.35
+
+
+@dataclass(frozen=True)
+class FaceMesh:
+    """Triangles of one chart of a face.
+
+    Attributes
+    ----------
+    face : int
+    points : (n, 3) array, body frame.
+    normals : (n, 3) array, outward unit normals at the points; zero at a cone's apex.
+    triangles : (m, 3) array of numbers of points.
+    inner : numbers of the points that lie inside the face, not on its boundary.
+    """
+
+    face: int
+    points: Array
+    normals: Array
+    triangles: NDArray[np.int64]
+    inner: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class EdgeLine:
+    """Points along an edge and the outward normals of its faces there.
+
+    Attributes
+    ----------
+    edge : int
+    points : (n, 3) array, body frame.
+    normals : (k, n, 3) array: of its k faces; of a planar body its own, of a segment none (k = 0).
+    smooth : bool
+    """
+
+    edge: int
+    points: Array
+    normals: Array
+    smooth: bool
+
+
+def face_meshes(body: Body) -> list[FaceMesh]:
+    """Return the triangles of every chart of every face, as far as the face reaches."""
+    meshes = []
+    for face, part in enumerate(body.face_parts):
+        row = int(body.ints[L.FACES]) + L.FACE_STRIDE * face
+        first, count = (int(n) for n in body.ints[row : row + 2])
+        for chart in range(first, first + count):
+            mesh = _chart_mesh(body, face, chart, _surface_of(body, part.charts, chart))
+            if mesh is not None:
+                meshes.append(mesh)
+    return meshes
+
+
+def edge_lines(body: Body) -> list[EdgeLine]:
+    """Return points along every edge."""
+    coedges: list[dict[int, int]] = [{} for _ in range(body.n_edges)]
+    for k, chart, edge in _coedges(body):
+        if edge >= 0:
+            coedges[edge].setdefault(_chart_row(body, chart)[L.CHART_FACE], k)
+    return [_edge_line(body, edge, list(found.values())) for edge, found in enumerate(coedges)]
+
+
+def _chart_row(body: Body, chart: int) -> NDArray[np.int64]:
+    start = int(body.ints[L.CHARTS]) + L.CHART_STRIDE * chart
+    return body.ints[start : start + L.CHART_STRIDE]
+
+
+def _coedges(body: Body) -> list[tuple[int, int, int]]:
+    """(number, chart, edge) of every coedge; a collapsed side has -1 - vertex for its edge."""
+    found = []
+    for chart in range(int(body.ints[L.N_CHARTS])):
+        row = _chart_row(body, chart)
+        first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
+        for k in range(first, first + count):
+            start = int(body.ints[L.COEDGES]) + L.COEDGE_STRIDE * k
+            found.append((k, chart, int(body.ints[start + L.COEDGE_EDGE])))
+    return found
+
+
+def _surface_of(body: Body, charts: tuple[Surface, ...], chart: int) -> Surface:
+    """The surface of a packed chart: charts that see nothing of their face were left out."""
+    offset = int(_chart_row(body, chart)[L.CHART_REALS])
+    packed = body.reals[offset : offset + L.INVERSE]
+    misses = [float(np.abs(surface.reals[: L.INVERSE] - packed).max()) for surface in charts]
+    return charts[int(np.argmin(misses))]
+
+
+def _outline(body: Body, chart: int) -> Array:
+    """Points of a chart's trimming curves in (u, v), (n, 2), as far as the chart shows them."""
+    row = _chart_row(body, chart)
+    first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
+    spots = []
+    for k in range(first, first + count):
+        start = int(body.ints[L.COEDGES]) + L.COEDGE_STRIDE * k
+        offset = int(body.ints[start + L.COEDGE_REALS])
+        low, high = body.reals[offset + L.PCURVE_FIRST], body.reals[offset + L.PCURVE_LAST]
+        for t in np.linspace(low, high, ALONG):
+            u, v, _, _, depth = coedge_parameters(body.ints, body.reals, k, t)
+            if depth > 0.0:
+                spots.append((u, v))
+    return np.array(spots).reshape(-1, 2)
+
+
+def _chart_mesh(body: Body, face: int, chart: int, surface: Surface) -> FaceMesh | None:
+    outline = _outline(body, chart)
+    low, high = _reach(body, chart, outline)
+    tiled = _is_tile(body, chart)
+    if tiled:
+        outline = outline[np.abs(outline).max(axis=1, initial=0.0) <= TILE]
+    count = GRID if body.ints[L.N_CHARTS] <= FEW_CHARTS else COARSE_GRID
+    step = (high - low) / (count - 1)
+    u, v = np.meshgrid(*(np.linspace(low[k], high[k], count) for k in (0, 1)), indexing="ij")
+    grid = np.column_stack([u.ravel(), v.ravel()])
+    kept = np.array([on_face(body.ints, body.reals, chart, a, b) for a, b in grid], dtype=bool)
+    if len(outline):
+        gaps = np.abs((grid[:, None] - outline) / step).max(axis=2).min(axis=1)
+        kept &= gaps > CLEARANCE
+    spots = np.vstack([outline, grid[kept]])
+    if len(spots) < 3:
+        return None
+    triangles = Delaunay(spots / step).simplices
+    middles = spots[triangles].mean(axis=1)
+    inside = [on_face(body.ints, body.reals, chart, a, b) for a, b in middles]
+    triangles = triangles[np.array(inside, dtype=bool)]
+    points = np.array([surface.jet(float(a), float(b))[0] for a, b in spots])
+    normals = np.array([chart_normal(body.ints, body.reals, chart, a, b) for a, b in spots])
+    inner = np.arange(len(outline), len(spots))
+    return FaceMesh(face, points, normals, triangles.astype(np.int64), inner)
+
+
+def _is_tile(body: Body, chart: int) -> bool:
+    offset = int(_chart_row(body, chart)[L.CHART_REALS])
+    return bool(np.isfinite(body.reals[offset + L.LIMIT]))
+
+
+def _reach(body: Body, chart: int, outline: Array) -> tuple[Array, Array]:
+    """The rectangle of (u, v) that holds a chart's part of its face."""
+    if _is_tile(body, chart):
+        return np.full(2, -TILE), np.full(2, TILE)
+    if not len(outline):
+        return np.full(2, -UNBOUNDED_HALF), np.full(2, UNBOUNDED_HALF)
+    return outline.min(axis=0), outline.max(axis=0)
+
+
+def _edge_line(body: Body, edge: int, coedges: list[int]) -> EdgeLine:
+    curve = body.edge_parts[edge].curve
+    times = np.linspace(curve.first, curve.last, ALONG_EDGE)
+    points = np.array([curve.point(float(t)) for t in times])
+    feature = body.n_faces + edge
+    normals = []
+    if body.dimension == 2:
+        own = [planar_edge_normal(body.ints, body.reals, feature, float(t)) for t in times]
+        normals.append(np.array(own))
+    for k in coedges:
+        start = int(body.ints[L.COEDGES]) + L.COEDGE_STRIDE * k
+        chart = int(body.ints[start + L.COEDGE_CHART])
+        spots = [coedge_parameters(body.ints, body.reals, k, float(t)) for t in times]
+        # Where this chart of an atlas does not see the edge, another does; nan leaves it out.
+        normals.append(
+            np.array(
+                [
+                    chart_normal(body.ints, body.reals, chart, u, v)
+                    if depth > 0.0
+                    else [np.nan] * 3
+                    for u, v, _, _, depth in spots
+                ]
+            )
+        )
+    start = int(body.ints[L.EDGES]) + L.EDGE_STRIDE * edge
+    smooth = bool(body.ints[start + L.EDGE_FLAGS] & L.SMOOTH)
+    return EdgeLine(edge, points, np.array(normals).reshape(-1, ALONG_EDGE, 3), smooth)
