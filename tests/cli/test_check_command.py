@@ -117,8 +117,8 @@ def test_pictures_of_all_kinds(
 
 
 def test_pictures_that_are_refused(standoff: Standoff, passing: Path) -> None:
-    text = passing.read_text()
-    passing.write_text(text.replace("tool", '"a b"').replace("part", '"a.b"'))
+    text = passing.read_text().replace('"tool"', '"a b"').replace('"part"', '"a.b"')
+    passing.write_text(text.replace(".tool]", '."a b"]').replace(".part]", '."a.b"]'))
     for target, piece in (
         ("b.bmp", "ends in .png or .svg or .pdf"),
         ("no/b.png", "does not exist"),
