@@ -5,12 +5,15 @@ from scipy.interpolate import BSpline, NdBSpline
 
 from standoff.geometry import NurbsCurve, NurbsSurface
 
+# Lengths of spans against each other.
+UNEVEN = (0.05, 1.0, 3.0)
 
-def random_knots(rng, degree, clamped):
+
+def random_knots(rng, degree, clamped, lengths=UNEVEN):
     """Uneven knots with interior multiplicities of 1 to the degree; two to four spans."""
     inside, t = [], 0.0
     for _ in range(rng.integers(1, 4)):
-        t += rng.choice([0.05, 1.0, 3.0]) * rng.uniform(0.5, 1.0)
+        t += rng.choice(lengths) * rng.uniform(0.5, 1.0)
         inside += [t] * int(rng.integers(1, degree + 1))
     last = t + rng.uniform(0.5, 1.0)
     if clamped:
@@ -20,8 +23,8 @@ def random_knots(rng, degree, clamped):
     return np.concatenate([before, [0.0], inside, [last], after])
 
 
-def random_surface(rng, p, q, clamped=True):
-    knots_u, knots_v = random_knots(rng, p, clamped), random_knots(rng, q, clamped)
+def random_surface(rng, p, q, clamped=True, lengths=UNEVEN):
+    knots_u, knots_v = (random_knots(rng, degree, clamped, lengths) for degree in (p, q))
     shape = (len(knots_u) - p - 1, len(knots_v) - q - 1)
     points = rng.normal(size=(*shape, 3))
     return NurbsSurface(points, knots_u, knots_v, np.exp(rng.uniform(-0.7, 0.7, shape)))
