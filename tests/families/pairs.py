@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from families import shapes
+from families import curved_shapes, shapes
 from families.shapes import Maker, Twin
 from oracles.poses import DrawnPose, Kind, draw_poses, size_of, tilted_pair
 
@@ -47,6 +47,11 @@ FAMILIES: dict[str, Family] = {
     "half-space-solid": Family(shapes.half_space, shapes.solid),
     "cap-solid": Family(shapes.cap, shapes.solid, FEW_CLOSE),
     "solid-solid": Family(shapes.solid, shapes.extended_solid, FEW_CLOSE),
+    "rounded polytope-egg": Family(curved_shapes.rounded_polytope, curved_shapes.egg, FEW_CLOSE),
+    "spindle-solid": Family(curved_shapes.spindle, shapes.solid, FEW_CLOSE),
+    "gore-solid": Family(curved_shapes.gore, shapes.solid, FEW_CLOSE),
+    "gore-spindle": Family(curved_shapes.gore, curved_shapes.spindle, FEW_CLOSE),
+    "hull-solid": Family(curved_shapes.revolved_hull, shapes.solid, FEW_CLOSE),
     "planar-planar": Family(shapes.loop, shapes.loop, PLANAR_SHARES),
     "planar-point": Family(shapes.loop, shapes.planar_point, PLANAR_SHARES),
 }

@@ -36,17 +36,17 @@ class Twin:
 Maker = Callable[[Rng], Twin]
 
 
-def _lengths(rng: Rng, count: int, low: float = 0.2, high: float = 5.0) -> list[float]:
+def random_lengths(rng: Rng, count: int, low: float = 0.2, high: float = 5.0) -> list[float]:
     return [float(x) for x in np.exp(rng.uniform(np.log(low), np.log(high), count))]
 
 
 def ellipsoid(rng: Rng) -> Twin:
-    axes = _lengths(rng, 3, ELLIPSOID_RATIO**-0.5, ELLIPSOID_RATIO**0.5)
+    axes = random_lengths(rng, 3, ELLIPSOID_RATIO**-0.5, ELLIPSOID_RATIO**0.5)
     return Twin(oracle.Ellipsoid(*axes), so.shapes.ellipsoid(*axes))
 
 
 def _lens(rng: Rng, share: float) -> Twin:
-    (radius,) = _lengths(rng, 1, 0.4, 2.5)
+    (radius,) = random_lengths(rng, 1, 0.4, 2.5)
     return Twin(oracle.Lens(radius, share * radius), so.shapes.lens(radius, share * radius))
 
 
@@ -72,28 +72,28 @@ def planar_point(rng: Rng) -> Twin:
 
 def box(rng: Rng) -> Twin:
     """Sharp in half of the cases."""
-    lengths = _lengths(rng, 3)
+    lengths = random_lengths(rng, 3)
     rounding = 0.0 if rng.random() < 0.5 else float(rng.uniform(0, 0.45) * min(lengths))
     return Twin(oracle.Box(*lengths, rounding), so.shapes.box(*lengths, rounding))
 
 
 def cylinder(rng: Rng) -> Twin:
-    radius, length = _lengths(rng, 2)
+    radius, length = random_lengths(rng, 2)
     return Twin(oracle.Cylinder(radius, length), so.shapes.cylinder(radius, length))
 
 
 def cone(rng: Rng) -> Twin:
-    radius, height = _lengths(rng, 2)
+    radius, height = random_lengths(rng, 2)
     return Twin(oracle.Cone(radius, height), so.shapes.cone(radius, height))
 
 
 def capsule(rng: Rng) -> Twin:
-    radius, length = _lengths(rng, 2)
+    radius, length = random_lengths(rng, 2)
     return Twin(oracle.Capsule(radius, length), so.shapes.capsule(radius, length))
 
 
 def cap(rng: Rng) -> Twin:
-    (radius,) = _lengths(rng, 1)
+    (radius,) = random_lengths(rng, 1)
     height = float(radius * rng.uniform(-0.9, 0.95))
     return Twin(oracle.Cap(radius, height), so.shapes.cap(radius, height))
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .loops import Curve, curve_maximum
+from .loops import Curve
 from .shape import Shape, directions, unit
 
 Array = NDArray[Any]
@@ -19,6 +20,14 @@ ANGLES = 720
 """Directions of half a turn that are looked through for jumps of the support point."""
 JUMP = 1e-6
 """A support point that moves this far, over the size, in a bisected bracket has jumped."""
+STRETCHES = 24
+"""Parts of a curve that are searched one by one: it need not be convex."""
+SAMPLES = 32
+"""Samples of a part that tell whether it may hold the farthest point."""
+RIVAL = 1e-3
+"""Parts whose best sample is within this of the best, over the size, are searched."""
+SETTLED = 1e-12
+"""Change of a parameter that ends a search: the value is then good to its square."""
 ZOOM = 40
 """Directions of one round of the search for the direction along which a point is farthest."""
 
@@ -71,20 +80,69 @@ class Egg(Shape):
         return float(value / np.hypot(across, along))
 
 
+class Stretch:
+    """A part of a curve, short enough for ``n.c(t)`` to have two maxima on it at most."""
+
+    def __init__(self, curve: Curve, start: float, end: float) -> None:
+        self.curve, self.grid = curve, np.linspace(start, end, SAMPLES + 1)
+        self.samples: Array = curve.jet(self.grid)[0]
+
+    def farthest(self, flat: Array) -> Array:
+        """Return its points (k, 2) of greatest ``n.c``, from its two highest peaks of samples."""
+        values = self.samples @ flat.T
+        padded = np.pad(values, ((1, 1), (0, 0)), constant_values=-np.inf)
+        peaks = (values >= padded[:-2]) & (values >= padded[2:])
+        first, second = np.argsort(np.where(peaks, values, -np.inf), axis=0)[[-1, -2]]
+        options = np.stack([self._climb(flat, first), self._climb(flat, second)], axis=1)
+        chosen = (options * flat[:, None]).sum(axis=2).argmax(axis=1)
+        return np.asarray(options[np.arange(len(flat)), chosen])
+
+    def _climb(self, flat: Array, best: Array) -> Array:
+        """Newton steps, safeguarded by bisection, from samples; the samples' own points count."""
+        low, high = self.grid[np.maximum(best - 1, 0)], self.grid[np.minimum(best + 1, SAMPLES)]
+        t = self.grid[best].copy()
+        for _ in range(BISECTIONS):
+            point, velocity, bend = self.curve.jet(t)
+            slope, curvature = (velocity * flat).sum(axis=1), (bend * flat).sum(axis=1)
+            low, high = np.where(slope >= 0, t, low), np.where(slope <= 0, t, high)
+            newton = t - slope / np.where(curvature < 0, curvature, -np.inf)
+            inside = (newton >= low) & (newton <= high) & (curvature < 0)
+            following = np.where(inside, newton, (low + high) / 2)
+            if np.abs(following - t).max() <= SETTLED * np.abs(self.grid).max():
+                break
+            t = following
+        lower = (point * flat).sum(axis=1) < (self.samples[best] * flat).sum(axis=1)
+        return np.where(lower[:, None], self.samples[best], point)
+
+
 class RevolvedHull(Shape):
     """The convex hull of planar ``curves`` (r, z), r >= 0, revolved about the z axis."""
 
     def __init__(self, curves: Sequence[Curve]) -> None:
-        self.curves = list(curves)
-        rows = np.vstack([c.jet(np.linspace(*c.span, 513))[0] for c in self.curves])
-        self.bounding_radius = float(np.linalg.norm(rows, axis=1).max()) * 1.001
+        cuts = [np.linspace(*curve.span, STRETCHES + 1) for curve in curves]
+        self.stretches = [
+            Stretch(curve, start, end)
+            for curve, cut in zip(curves, cuts, strict=True)
+            for start, end in pairwise(cut)
+        ]
+        self.samples: Array = np.stack([stretch.samples for stretch in self.stretches])
+        self.bounding_radius = float(np.linalg.norm(self.samples, axis=2).max()) * 1.001
         self.pieces = self._straight()
 
     def profile(self, flat: Array) -> Array:
         """Return the (r, z) farthest along directions (k, 2) with r >= 0."""
-        found = np.stack([curve_maximum(curve, flat.astype(float))[1] for curve in self.curves])
-        chosen = (found * flat).sum(axis=2).argmax(axis=0)
-        return found[chosen, np.arange(len(flat))]
+        flat = flat.astype(float)
+        peaks = (self.samples @ flat.T).max(axis=1)
+        near = peaks >= peaks.max(axis=0) - RIVAL * self.bounding_radius
+        best, found = np.full(len(flat), -np.inf), np.zeros_like(flat)
+        for number, stretch in enumerate(self.stretches):
+            rows = np.flatnonzero(near[number])
+            if len(rows):
+                spots = stretch.farthest(flat[rows])
+                heights = (spots * flat[rows]).sum(axis=1)
+                better = heights > best[rows]
+                best[rows[better]], found[rows[better]] = heights[better], spots[better]
+        return found
 
     def points(self, normals: Array) -> Array:
         across = np.sqrt((normals[:, :2] ** 2).sum(axis=1))

@@ -10,6 +10,8 @@ from standoff.geometry.pcurves import Pcurve, pcurve_of
 from standoff.geometry.superellipsoids import SuperellipsoidPole, SuperellipsoidSide
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
+from standoff.geometry.swept import Extrusion, Revolution
+from standoff.geometry.torus import Torus
 
 __all__ = [
     "BezierPatch",
@@ -17,6 +19,7 @@ __all__ = [
     "ConicArc",
     "Curve",
     "Cylinder",
+    "Extrusion",
     "FormulaCurve",
     "FormulaError",
     "FormulaSurface",
@@ -27,11 +30,13 @@ __all__ = [
     "Pcurve",
     "Plane",
     "RationalBezier",
+    "Revolution",
     "Sphere",
     "SuperellipsoidPole",
     "SuperellipsoidSide",
     "Surface",
     "SurfaceCurve",
+    "Torus",
     "ellipsoid_octants",
     "ellipsoid_patches",
     "pcurve_of",

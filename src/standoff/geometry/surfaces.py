@@ -96,11 +96,15 @@ class Surface(ABC):
         ValueError
             The domain is empty or leaves the present one.
         """
+        return replace(self, domain=self.smaller_domain(u0, u1, v0, v1))
+
+    def smaller_domain(self, u0: float, u1: float, v0: float, v1: float) -> Domain:
+        """The four numbers as a domain; ValueError where it is empty or leaves the present one."""
         smaller = checked_domain((u0, u1, v0, v1), type(self).__name__)
         a, b, c, d = self.domain
         if not (a <= smaller[0] and smaller[1] <= b and c <= smaller[2] and smaller[3] <= d):
             raise ValueError(f"The domain {smaller} leaves the surface's own, {self.domain}.")
-        return replace(self, domain=smaller)
+        return smaller
 
     def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Parameters (us, vs) inside the domain where the surface is not C²."""

@@ -4,10 +4,12 @@ Semi-axes for ellipsoids; full lengths for box, cylinder, capsule (its cylindric
 cone; all centred, axis z. A cone's apex is at +height/2, its base at -height/2.
 """
 
+from standoff.bodies.shapes.between_poles import gore, spindle
+from standoff.bodies.shapes.eggs import egg
 from standoff.bodies.shapes.lenses import lens
 from standoff.bodies.shapes.planar import planar_loop
 from standoff.bodies.shapes.points_and_sweeps import capsule, point, segment, sphere
-from standoff.bodies.shapes.polyhedra import box, polytope
+from standoff.bodies.shapes.polyhedra import box, polytope, rounded_polytope
 from standoff.bodies.shapes.quadrics import (
     cap,
     cone,
@@ -16,6 +18,7 @@ from standoff.bodies.shapes.quadrics import (
     halfspace,
     sphere_atlas,
 )
+from standoff.bodies.shapes.revolved import hull_of_revolution
 from standoff.bodies.shapes.superellipsoids import superellipsoid
 
 __all__ = [
@@ -24,14 +27,19 @@ __all__ = [
     "capsule",
     "cone",
     "cylinder",
+    "egg",
     "ellipsoid",
+    "gore",
     "halfspace",
+    "hull_of_revolution",
     "lens",
     "planar_loop",
     "point",
     "polytope",
+    "rounded_polytope",
     "segment",
     "sphere",
     "sphere_atlas",
+    "spindle",
     "superellipsoid",
 ]

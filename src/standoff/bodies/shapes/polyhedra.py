@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
+from scipy.optimize import linprog
+from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from standoff.bodies.body import Body
 from standoff.bodies.topology import BodyError, Edge, Face
@@ -16,6 +17,11 @@ from standoff.geometry.validation import Array, finite, not_negative, positive
 # Facets of a polytope whose normals differ by less (sine) are one face; hull facets of one
 # plane differ by the roundoff of their vertices.
 COPLANAR = 1e-9
+# The core of a rounded polytope holds at least a ball of this fraction of the inscribed ball of
+# the sharp one: below it is not told from a point.
+LEAST_CORE = 1e-6
+# Vertices of the core nearer than this (fraction of its size) are one: more than three planes meet.
+SAME_VERTEX = 1e-10
 
 
 def box(x: float, y: float, z: float, rounding: float = 0.0) -> Body:
@@ -40,15 +46,61 @@ def polytope(vertices: Any) -> Body:
     return _polyhedron(finite(vertices, "vertices", (-1, 3)), name="polytope")
 
 
-def _polyhedron(points: Array, radius: float = 0.0, name: str = "polytope") -> Body:
-    try:
-        hull = ConvexHull(points)
-    except (QhullError, ValueError) as error:
+def rounded_polytope(vertices: Any, rounding: float) -> Body:
+    """The opening of a polytope by a ball: its edges and corners, and what is narrower, rounded.
+
+    Every point of it lies in a ball of radius `rounding` within the convex hull of the points.
+    The core, the polytope with all its planes moved inwards by `rounding`, is swept by the ball,
+    so that the blends are exact cylinders and spheres. The planes stay where they were.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array, length, n >= 4, not in one plane.
+    rounding : radius of the ball, length; 0 for a sharp polytope.
+
+    Raises
+    ------
+    BodyError
+        The points lie in a plane, or `rounding` leaves no core.
+    """
+    points = finite(vertices, "vertices", (-1, 3))
+    rounding = not_negative(rounding, "rounding")
+    if rounding == 0.0:
+        return _polyhedron(points, name="rounded polytope")
+    facets = _facets(points, _hull(points))
+    normals = np.array([normal for _, normal in facets])
+    offsets = np.array([max(points[loop] @ normal) for loop, normal in facets])
+    core = _inner_vertices(normals, offsets, rounding)
+    return _polyhedron(core, radius=rounding, name="rounded polytope")
+
+
+def _inner_vertices(normals: Array, offsets: Array, rounding: float) -> Array:
+    """The vertices of normals @ x <= offsets - rounding, (n, 3)."""
+    # the inscribed ball: greatest r with normals @ x + r <= offsets
+    columns = np.column_stack([normals, np.ones(len(normals))])
+    bounds = [(None, None)] * 3 + [(0.0, None)]
+    ball = linprog([0.0, 0.0, 0.0, -1.0], columns, offsets, bounds=bounds).x
+    inscribed = float(ball[3])
+    if rounding > inscribed * (1.0 - LEAST_CORE):
         raise BodyError(
-            f"The {len(points)} vertices span no volume (flat polytope): give at least four "
-            "points that are not in one plane."
-        ) from error
-    loops = _facets(points, hull)
+            f"rounding = {rounding} leaves no core: the polytope's inscribed ball has radius "
+            f"{inscribed:.6g}. Give less."
+        )
+    planes = np.column_stack([normals, rounding - offsets])
+    meeting = HalfspaceIntersection(planes, ball[:3])
+    size = float(np.ptp(meeting.intersections, axis=0).max())
+    vertices: list[Array] = []
+    for spot, meet in zip(meeting.intersections, meeting.dual_facets, strict=True):
+        # Qhull works in the dual; solving for the planes that meet gives the last digits
+        heights = normals[meet] @ spot - (offsets[meet] - rounding)
+        vertex = spot - np.linalg.lstsq(normals[meet], heights, rcond=None)[0]
+        if all(np.linalg.norm(vertex - known) > SAME_VERTEX * size for known in vertices):
+            vertices.append(vertex)
+    return np.array(vertices)
+
+
+def _polyhedron(points: Array, radius: float = 0.0, name: str = "polytope") -> Body:
+    loops = _facets(points, _hull(points))
     used = sorted({k for loop, _ in loops for k in loop})
     number = {k: i for i, k in enumerate(used)}
     edge_number: dict[tuple[int, int], int] = {}
@@ -68,6 +120,16 @@ def _polyhedron(points: Array, radius: float = 0.0, name: str = "polytope") -> B
         along = along / np.linalg.norm(along)
         faces.append(Face((Plane.through(centre, along, np.cross(normal, along)),), tuple(coedges)))
     return Body.from_brep(points[used], edges, faces, radius=radius, name=name)
+
+
+def _hull(points: Array) -> Any:
+    try:
+        return ConvexHull(points)
+    except (QhullError, ValueError) as error:
+        raise BodyError(
+            f"The {len(points)} vertices span no volume (flat polytope): give at least four "
+            "points that are not in one plane."
+        ) from error
 
 
 def _facets(points: Array, hull: Any) -> list[tuple[list[int], Array]]:

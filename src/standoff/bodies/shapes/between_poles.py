@@ -1,0 +1,121 @@
+"""Bodies of n patches between two poles on the axis z."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from standoff.bodies.body import Body
+from standoff.bodies.shapes.isolines import along_v
+from standoff.bodies.topology import Apex, BodyError, Edge, Face
+from standoff.geometry.curves import FULL_TURN, ConicArc, RationalBezier
+from standoff.geometry.nurbs import BezierPatch
+from standoff.geometry.swept import Revolution
+from standoff.geometry.validation import Array, positive
+
+# Fewer patches than this would not keep their normals within a hemisphere.
+LEAST_PATCHES = 3
+
+
+def spindle(radius: float, length: float, patches: int = 3) -> Body:
+    """A circular arc turned about its chord: smooth but for its two pointed poles.
+
+    Parameters
+    ----------
+    radius : of the equator, length, below length / 2 (there it would be a ball).
+    length : from pole to pole.
+    patches : how many equal patches run from pole to pole, at least 3; their seams are smooth.
+
+    Raises
+    ------
+    BodyError
+        The arc is a semicircle or more; fewer than 3 patches.
+    """
+    bulge, half = _bulge(radius, length, "spindle")
+    n = _patches(patches, "spindle")
+    arc_radius = 0.5 * (half * half + bulge * bulge) / bulge
+    centre = bulge - arc_radius
+    reach = float(np.arctan2(half, -centre))
+    profile = ConicArc(
+        [centre, 0.0, 0.0], [arc_radius, 0.0, 0.0], [0.0, 0.0, arc_radius], -reach, reach
+    )
+    angles = FULL_TURN / n * np.arange(n + 1)
+    edges = []
+    for angle in angles[:-1]:
+        out = np.array([np.cos(angle), np.sin(angle), 0.0])
+        meridian = ConicArc(centre * out, arc_radius * out, [0.0, 0.0, arc_radius], -reach, reach)
+        edges.append(Edge(meridian, 0, 1))
+    faces = [
+        _gore_face(Revolution(profile, low, high), j, n)
+        for j, (low, high) in enumerate(pairwise(angles))
+    ]
+    return Body.from_brep(_poles(half), edges, faces, name="spindle")
+
+
+def gore(radius: float, height: float, patches: int = 4) -> Body:
+    """A cloister vault and its mirror image: at every height a regular polygon.
+
+    Its sharp edges are circular arcs from pole to pole, and between them lie cylindrical patches
+    whose rulings are horizontal. The first edge is in the half-plane y = 0, x >= 0.
+
+    Parameters
+    ----------
+    radius : of the edges at the equator, length, below height / 2.
+    height : from pole to pole, length.
+    patches : sides of the polygon, at least 3.
+
+    Raises
+    ------
+    BodyError
+        The arcs are semicircles or more; fewer than 3 patches.
+    """
+    bulge, half = _bulge(radius, height, "gore")
+    n = _patches(patches, "gore")
+    # the arc from pole to pole turns by 2 alpha; its middle control point is where the tangents
+    # at the poles meet, its middle weight is cos alpha
+    slope = 2.0 * bulge * half / (half * half - bulge * bulge)  # tan alpha
+    weights = np.array([1.0, 1.0 / np.hypot(1.0, slope), 1.0])
+    arcs = []
+    for angle in FULL_TURN / n * np.arange(n):
+        out = np.array([np.cos(angle), np.sin(angle), 0.0])
+        arcs.append(np.array([[0.0, 0.0, -half], half * slope * out, [0.0, 0.0, half]]))
+    edges = [Edge(RationalBezier(arc, weights), 0, 1) for arc in arcs]
+    faces = []
+    for j in range(n):
+        control = np.array([arcs[j], arcs[(j + 1) % n]])
+        patch = BezierPatch(control, np.array([weights, weights]))
+        faces.append(_gore_face(patch, j, n))
+    return Body.from_brep(_poles(half), edges, faces, name="gore")
+
+
+def _gore_face(surface: Any, j: int, n: int) -> Face:
+    """Face j between the edges j (u least) and j + 1 (u greatest), poles at the ends of v."""
+    u0, u1, v0, v1 = surface.domain
+    return Face(
+        (surface,),
+        ((j, -1), ((j + 1) % n, 1)),
+        (Apex(0, v0, u0, u1, side="v0"), Apex(1, v1, u0, u1, side="v1")),
+        (along_v(u0), along_v(u1)),
+    )
+
+
+def _poles(half: float) -> Array:
+    return np.array([[0.0, 0.0, -half], [0.0, 0.0, half]])
+
+
+def _bulge(radius: float, length: float, name: str) -> tuple[float, float]:
+    bulge, half = positive(radius, "radius"), 0.5 * positive(length, "length")
+    if bulge >= half:
+        raise BodyError(
+            f"{name}: radius = {bulge} is not below half of the length {2.0 * half}: the arc would "
+            "be a semicircle or more. Make it longer, or map it: body.transformed."
+        )
+    return bulge, half
+
+
+def _patches(patches: int, name: str) -> int:
+    if isinstance(patches, bool) or int(patches) != patches or patches < LEAST_PATCHES:
+        raise BodyError(f"{name}: patches = {patches!r}: give a whole number, at least 3.")
+    return int(patches)

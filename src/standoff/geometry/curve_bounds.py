@@ -1,0 +1,67 @@
+"""How far curves reach: bounds for the boxes around curves and what they sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from standoff.geometry.bernstein import segment
+from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
+from standoff.geometry.nurbs_curves import NurbsCurve
+from standoff.geometry.validation import Array
+
+
+def curve_reach(curve: Curve, direction: Array, first: float, last: float) -> float:
+    """A bound of direction @ x on a curve from parameter first to last.
+
+    Exact for lines and conic arcs; from the control points of the piece for rational curves, from
+    the whole curve's box for formulas.
+
+    Raises
+    ------
+    ValueError
+        A kind of curve without bounds.
+    """
+    if isinstance(curve, Line | ConicArc):
+        ends = [float(direction @ curve.point(t)) for t in (first, last)]
+        if isinstance(curve, ConicArc):
+            a, b, _ = direction @ curve.basis()
+            top = first + (float(np.arctan2(b, a)) - first) % (2.0 * np.pi)
+            if top <= last:
+                ends.append(float(direction @ curve.point(top)))
+        return max(ends)
+    if isinstance(curve, RationalBezier | NurbsCurve):
+        return float((control_points(curve, first, last) @ direction).max())
+    box = curve.box()
+    if box is not None:
+        return float(np.where(direction > 0.0, box[1], box[0]) @ direction)
+    raise ValueError(f"{type(curve).__name__} has no bounds: it cannot be a profile.")
+
+
+def control_points(curve: RationalBezier | NurbsCurve, first: float, last: float) -> Array:
+    """Bezier points (n, 3) of the pieces of a rational curve between two parameters."""
+    if isinstance(curve, RationalBezier):
+        breaks, blocks = np.array([0.0, 1.0]), curve.data[1:].reshape(1, -1, 4)
+    else:
+        breaks, blocks = curve.vector.breaks, curve.blocks
+    found = []
+    for a, b, block in zip(breaks[:-1], breaks[1:], blocks, strict=True):
+        low, high = max(float(a), first), min(float(b), last)
+        if low <= high:
+            part = segment(len(block) - 1, (low - a) / (b - a), (high - a) / (b - a)) @ block
+            found.append(part[:, :3] / part[:, 3:])
+    return np.concatenate(found)
+
+
+def curve_breaks(curve: Curve, first: float, last: float) -> tuple[float, ...]:
+    """Parameters inside a range where a curve is not C²."""
+    if not isinstance(curve, NurbsCurve):
+        return ()
+    return tuple(t for t in curve.breaks() if first < t < last)
+
+
+def box_of(reach: Callable[[Array], float]) -> tuple[Array, Array]:
+    """(low, high), each (3,), from a bound of direction @ x for any direction."""
+    axes = np.eye(3)
+    return np.array([-reach(-axis) for axis in axes]), np.array([reach(axis) for axis in axes])

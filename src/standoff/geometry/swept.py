@@ -1,0 +1,206 @@
+"""Surfaces that a profile curve sweeps: about an axis, and along a direction."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from standoff.geometry.curve_bounds import box_of, curve_breaks, curve_reach
+from standoff.geometry.curves import FULL_TURN, Curve
+from standoff.geometry.surfaces import Domain, Surface
+from standoff.geometry.torus import checked_turn, full_turn
+from standoff.geometry.validation import Array, finite, vector3
+from standoff.kernels import layout as L
+
+# Points of a profile that are looked at.
+PROFILE_SAMPLES = 65
+# A profile may leave the x-z plane, or pass the axis, by this fraction of its size: roundoff.
+PROFILE_ROUNDOFF = 1e-12
+# Sine of the angle between a profile and the direction it is moved along, below which the
+# surface has no normal.
+ALONG_PROFILE = 1e-9
+
+
+class Revolution(Surface):
+    """(r(v) cos u, r(v) sin u, z(v)): a profile (r, 0, z) turned about the axis z.
+
+    Parameters
+    ----------
+    profile : Curve in the half-plane y = 0, x >= 0: x is the radius, z the height, lengths.
+        It may touch the axis at its ends only: poles, where a side has collapsed.
+    first, last : angles, radians; a full turn, the default, is periodic in u.
+
+    Raises
+    ------
+    ValueError
+        The profile leaves the plane y = 0, or meets the axis between its ends; more than a turn.
+
+    Notes
+    -----
+    u is the angle, v the profile's parameter. A full turn without a pole makes a face between two
+    closed rims.
+    """
+
+    kind = L.REVOLUTION
+
+    profile: Curve
+
+    def __init__(self, profile: Curve, first: Any = 0.0, last: Any = FULL_TURN) -> None:
+        first, last = checked_turn(first, last, "Revolution")
+        points = _profile_points(profile, "Revolution")
+        size = float(np.ptp(points, axis=0).max())
+        worst = int(np.abs(points[:, 1]).argmax())
+        if abs(points[worst, 1]) > PROFILE_ROUNDOFF * size:
+            raise ValueError(
+                f"Revolution: the profile leaves the plane y = 0 at {points[worst]}: give radii as "
+                "x and heights as z."
+            )
+        inner = 1 + int(points[1:-1, 0].argmin())
+        if min(points[0, 0], points[-1, 0]) < -PROFILE_ROUNDOFF * size or points[inner, 0] <= 0.0:
+            raise ValueError(
+                f"Revolution: the profile meets or passes the axis at {points[inner]}; only its "
+                "ends may touch the axis: keep x > 0 between them."
+            )
+        domain = (first, last, profile.first, profile.last)
+        self._set(profile, domain, np.eye(3), np.zeros(3))
+
+    def _set(self, profile: Curve, domain: Domain, linear: Array, shift: Array) -> None:
+        object.__setattr__(self, "profile", profile)
+        object.__setattr__(self, "periodic", full_turn(*domain[:2]))
+        super().__init__(linear, shift, domain)
+
+    def _data(self) -> Array:
+        return np.concatenate([[float(self.profile.kind)], self.profile.data])
+
+    def transformed(self, linear: Array, shift: Array) -> Revolution:
+        """The exact image under x -> linear x + shift; parameters stay the same."""
+        return self._with(self.domain, linear @ self.linear, linear @ self.shift + shift)
+
+    def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Revolution:
+        """The same surface on a smaller domain; parameters stay the same."""
+        return self._with(self.smaller_domain(u0, u1, v0, v1), self.linear, self.shift)
+
+    def _with(self, domain: Domain, linear: Array, shift: Array) -> Revolution:
+        surface = object.__new__(Revolution)
+        surface._set(self.profile, domain, linear, shift)
+        return surface
+
+    def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Knots of the profile where it is not C², as v."""
+        return (), curve_breaks(self.profile, *self.domain[2:])
+
+    def box(self) -> tuple[Array, Array]:
+        """(low, high), each (3,), body frame: surely around the surface over its domain."""
+        return box_of(self._reach)
+
+    def _reach(self, direction: Array) -> float:
+        """A bound of direction @ x over the domain."""
+        u0, u1, v0, v1 = self.domain
+        y = self.linear.T @ direction
+        ahead = float(np.arctan2(y[1], y[0]))
+        inside = u0 + (ahead - u0) % FULL_TURN <= u1
+        cosine = 1.0 if inside else max(np.cos(u0 - ahead), np.cos(u1 - ahead))
+        along = np.array([np.hypot(y[0], y[1]) * cosine, 0.0, y[2]])
+        return curve_reach(self.profile, along, v0, v1) + float(direction @ self.shift)
+
+    def highest(self, direction: Array) -> None:
+        """None: `box` serves."""
+        return
+
+
+class Extrusion(Surface):
+    """c(u) + v d: a profile moved along a direction.
+
+    Parameters
+    ----------
+    profile : Curve.
+    direction : (3,) array, not zero: v = 1 is the whole of it, length.
+    first, last : range of v (dimensionless).
+
+    Raises
+    ------
+    ValueError
+        A zero direction, one along the profile, or an empty range.
+
+    Notes
+    -----
+    A closed conic arc makes an elliptic cylinder, periodic in u.
+    """
+
+    kind = L.EXTRUSION
+
+    profile: Curve
+    direction: Array
+
+    def __init__(self, profile: Curve, direction: Any, first: Any = 0.0, last: Any = 1.0) -> None:
+        direction = vector3(direction, "direction")
+        first, last = float(finite(first, "first", ())), float(finite(last, "last", ()))
+        if not first < last:
+            raise ValueError(f"Extrusion from v = {first} to {last}: give first < last.")
+        length = float(np.linalg.norm(direction))
+        if length == 0.0:
+            raise ValueError("Extrusion along the direction (0, 0, 0): give a vector of length.")
+        _profile_points(profile, "Extrusion")
+        for t in np.linspace(profile.first, profile.last, PROFILE_SAMPLES):
+            tangent = profile.jet(float(t))[1]
+            across = float(np.linalg.norm(np.cross(tangent, direction)))
+            if across <= ALONG_PROFILE * length * float(np.linalg.norm(tangent)):
+                raise ValueError(
+                    f"Extrusion: the direction {direction} runs along the profile at its "
+                    f"parameter {t:.6g}; there is no surface."
+                )
+        domain = (profile.first, profile.last, first, last)
+        self._set(profile, direction, domain, np.eye(3), np.zeros(3))
+
+    def _set(
+        self, profile: Curve, direction: Array, domain: Domain, linear: Array, shift: Array
+    ) -> None:
+        object.__setattr__(self, "profile", profile)
+        object.__setattr__(self, "direction", direction)
+        angle = profile.kind == L.CONIC and full_turn(*domain[:2])
+        object.__setattr__(self, "periodic", angle)
+        super().__init__(linear, shift, domain)
+
+    def _data(self) -> Array:
+        return np.concatenate([[float(self.profile.kind)], self.direction, self.profile.data])
+
+    def transformed(self, linear: Array, shift: Array) -> Extrusion:
+        """The exact image under x -> linear x + shift; parameters stay the same."""
+        return self._with(self.domain, linear @ self.linear, linear @ self.shift + shift)
+
+    def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Extrusion:
+        """The same surface on a smaller domain; parameters stay the same."""
+        return self._with(self.smaller_domain(u0, u1, v0, v1), self.linear, self.shift)
+
+    def _with(self, domain: Domain, linear: Array, shift: Array) -> Extrusion:
+        surface = object.__new__(Extrusion)
+        surface._set(self.profile, self.direction, domain, linear, shift)
+        return surface
+
+    def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Knots of the profile where it is not C², as u."""
+        return curve_breaks(self.profile, *self.domain[:2]), ()
+
+    def box(self) -> tuple[Array, Array]:
+        """(low, high), each (3,), body frame: surely around the surface over its domain."""
+        return box_of(self._reach)
+
+    def _reach(self, direction: Array) -> float:
+        """A bound of direction @ x over the domain."""
+        u0, u1, v0, v1 = self.domain
+        y = self.linear.T @ direction
+        along = float(y @ self.direction)
+        moved = max(v0 * along, v1 * along)
+        return curve_reach(self.profile, y, u0, u1) + moved + float(direction @ self.shift)
+
+    def highest(self, direction: Array) -> None:
+        """None: `box` serves."""
+        return
+
+
+def _profile_points(profile: Any, name: str) -> Array:
+    if not isinstance(profile, Curve):
+        raise ValueError(f"{name} of {profile!r}: give a Curve as its profile.")
+    spots = np.linspace(profile.first, profile.last, PROFILE_SAMPLES)
+    return np.array([profile.point(float(t)) for t in spots])
