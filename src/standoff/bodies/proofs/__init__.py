@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from standoff.bodies.proofs import interval
 from standoff.bodies.proofs.bernstein import prove
 from standoff.bodies.proofs.proof import PatchProof
 from standoff.bodies.proofs.theorems import prove_quadric
+from standoff.geometry.formulas import FormulaSurface
 from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
 
@@ -33,6 +35,8 @@ def prove_patch(surface: Surface, outward: int | None = None) -> PatchProof:
     """
     if isinstance(surface, NurbsSurface):
         return prove(surface, outward)
+    if isinstance(surface, FormulaSurface):
+        return interval.prove(surface, outward)
     if isinstance(surface, Plane | Sphere | Cylinder | Cone):
         proof = prove_quadric(surface)
         if outward is not None and proof.sense == -outward:

@@ -72,6 +72,7 @@ class Enclosure:
         namespace: dict[str, Any] = dict(FUNCTIONS)
         exec("\n    ".join(text), namespace)
         self._bounds = namespace["bounds"]
+        self.length = sum(map(len, text))  # characters: what an evaluation costs
 
     def __call__(self, boxes: Boxes) -> Interval:
         """Bounds (k, n) of each expression over each box."""

@@ -1,0 +1,1 @@
+"""Exact algebra and interval bounds behind the proofs of formulas."""

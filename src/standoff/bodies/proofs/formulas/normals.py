@@ -1,0 +1,100 @@
+"""Normals of a patch given by a formula: within an open hemisphere, and how far from its axis."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from scipy.optimize import linprog
+
+from standoff.bodies.proofs.formulas.forms import curvature_forms
+from standoff.bodies.proofs.formulas.signs import (
+    FIRST_GRID,
+    SMALLEST,
+    Bounds,
+    sign_of_product,
+    widest,
+)
+from standoff.geometry.formulas.compiled import Formula
+from standoff.geometry.formulas.enclosures import Boxes, grid, mapped
+from standoff.geometry.intervals import Interval
+from standoff.geometry.validation import Array
+
+# Boxes evaluated for one axis.
+MOST_BOXES = 8_192
+COORDINATES = np.concatenate([np.eye(3), -np.eye(3)])
+
+
+@lru_cache(maxsize=256)
+def hemisphere_axis(formula: Formula, domain: tuple[float, ...]) -> tuple[float, ...] | None:
+    """A unit axis with which all normals x_u x x_v surely make less than 90 degrees, or None."""
+    forms = curvature_forms(formula)
+    if sign_of_product(forms.normal_signs, formula.variables, domain) == 0:
+        return None
+    bounds = _normal_bounds(formula)
+    seen = bounds(grid(domain, 2 * FIRST_GRID))[1]
+    normals = 0.5 * (seen.lo + seen.hi).T
+    lengths = np.linalg.norm(normals, axis=1)
+    normals = normals[lengths > 0.0] / lengths[lengths > 0.0, None]
+    # axes of coordinates first: seen along one of them a graph's normals have one exact sign
+    for axis in [*COORDINATES, centre_of_normals(normals)]:
+        seen_so = axis is not None and bool(((normals @ axis) > 0.0).all())
+        if axis is not None and seen_so and _all_on_one_side(bounds, domain, axis):
+            return tuple(float(a) for a in axis)
+    return None
+
+
+@lru_cache(maxsize=256)
+def _normal_bounds(formula: Formula) -> Bounds:
+    return Bounds(list(curvature_forms(formula).normal), formula.variables)
+
+
+def centre_of_normals(normals: Array) -> Array | None:
+    """The unit axis whose least product with (n, 3) unit normals is greatest, None if not > 0.
+
+    A linear program: the greatest t with normals @ a >= t and |a_i| <= 1.
+    """
+    if not len(normals) or not np.isfinite(normals).all():
+        return None
+    rows = np.column_stack([-normals, np.ones(len(normals))])
+    limits = [(-1.0, 1.0)] * 3 + [(None, None)]
+    found = linprog([0.0, 0.0, 0.0, -1.0], rows, np.zeros(len(rows)), bounds=limits)
+    if found.status != 0 or found.x[3] <= 0.0:
+        return None
+    axis = found.x[:3] / np.linalg.norm(found.x[:3])
+    return np.asarray(axis)
+
+
+def _all_on_one_side(bounds: Bounds, domain: tuple[float, ...], axis: Array) -> bool:
+    size = np.diff(np.reshape(domain, (-1, 2)), axis=1).ravel()
+    boxes = grid(domain, FIRST_GRID)
+    evaluated = 0
+    while len(boxes):
+        evaluated += len(boxes)
+        if (
+            evaluated * bounds.cost > MOST_BOXES
+            or ((boxes.high - boxes.low) / size).max() < SMALLEST
+        ):
+            return False
+        value, _, slopes = bounds(boxes)
+        is_open = ~(along(value, axis).lo > 0.0)
+        boxes = boxes[is_open]
+        slopes = [Interval(s.lo[:, is_open], s.hi[:, is_open]) for s in slopes]
+        if len(boxes):
+            boxes = boxes.halves(widest(boxes, slopes, size))
+    return True
+
+
+def along(vectors: Interval, axis: Array) -> Interval:
+    """(n,) bounds of axis . vectors, (3, n)."""
+    row = mapped(axis[None], vectors)
+    return Interval(row.lo[0], row.hi[0])
+
+
+def least_cosine(formula: Formula, boxes: Boxes, cofactors: Array, axis: Array) -> float:
+    """The least cosine between `axis` and cofactors @ normal over boxes; -1 where unknown."""
+    value = mapped(cofactors, _normal_bounds(formula)(boxes)[0])
+    high = np.sqrt((value.magnitude**2).sum(axis=0)) * (1.0 + 1e-14)
+    low = along(value, axis).lo
+    cosine = np.where(low > 0.0, low / high, -1.0)
+    return float(np.nan_to_num(cosine, nan=-1.0).min(initial=1.0))
