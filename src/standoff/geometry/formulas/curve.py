@@ -19,6 +19,7 @@ from standoff.geometry.formulas.compiled import Formula, compiled
 from standoff.geometry.formulas.enclosures import Enclosure, grid, hull
 from standoff.geometry.intervals import Interval
 from standoff.geometry.validation import Array
+from standoff.kernels import layout as L
 
 # Boxes whose hull is the box of a curve: its excess falls with the square.
 BOX_GRID = 256
@@ -49,7 +50,7 @@ class FormulaCurve(Curve):
     `data` is an affine map (3x3 row-major, shift) and the address of the compiled jet.
     """
 
-    kind = 4
+    kind = L.FORMULA_CURVE
     formula: Formula
 
     def __init__(
@@ -74,11 +75,6 @@ class FormulaCurve(Curve):
     @property
     def shift(self) -> Array:
         return self.data[9:12]
-
-    def jet(self, t: float) -> tuple[Array, Array, Array]:
-        """(x, x_t, x_tt), each (3,), body frame."""
-        rows = self.formula.values(t) @ self.linear.T
-        return rows[0] + self.shift, rows[1], rows[2]
 
     @property
     def closed(self) -> bool:

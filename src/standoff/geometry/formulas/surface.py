@@ -20,6 +20,7 @@ from standoff.geometry.formulas.expressions import FormulaError
 from standoff.geometry.intervals import Interval
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
+from standoff.kernels import layout as L
 
 # Boxes a side whose hull is the box of a patch: its excess falls with the square.
 BOX_GRID = 24
@@ -55,8 +56,7 @@ class FormulaSurface(Surface):
     as long as its second derivatives stay finite.
     """
 
-    kind = 10
-    domain: tuple[float, ...]
+    kind = L.FORMULA
     formula: Formula
 
     def __init__(
@@ -75,11 +75,6 @@ class FormulaSurface(Surface):
 
     def _data(self) -> Array:
         return np.array([self.formula.address])
-
-    def jet(self, u: float, v: float) -> tuple[Array, ...]:
-        rows = self.formula.values(u, v) @ self.linear.T
-        rows[0] += self.shift
-        return tuple(rows)
 
     def transformed(self, linear: Array, shift: Array) -> FormulaSurface:
         """The exact image under x -> linear x + shift, by the same compiled function."""
@@ -127,8 +122,8 @@ def _fill(
     surface: FormulaSurface, formula: Formula, domain: Sequence[float], linear: Array, shift: Array
 ) -> None:
     object.__setattr__(surface, "formula", formula)
-    object.__setattr__(surface, "domain", tuple(float(x) for x in domain))
-    Surface.__init__(surface, linear, shift)
+    u0, u1, v0, v1 = (float(x) for x in domain)
+    Surface.__init__(surface, linear, shift, (u0, u1, v0, v1))
 
 
 def _surface(
