@@ -1,4 +1,4 @@
-"""Charts of superellipsoids: ((|x|^(2/e2) + |y|^(2/e2))^(e2/e1) + |z|^(2/e1) = 1."""
+"""Charts of superellipsoids: (|x|^(2/e2) + |y|^(2/e2))^(e2/e1) + |z|^(2/e1) = 1."""
 
 from __future__ import annotations
 

@@ -24,9 +24,9 @@ Signs = tuple[int, int, int]
 def superellipsoid(a: float, b: float, c: float, e1: float, e2: float) -> Body:
     """Semi-axes a, b, c along x, y, z and exponents e1 (along z) and e2 (about z).
 
-    ((|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) = 1: an ellipsoid at e1 = e2 = 1, towards
-    0 a box (e1, e2) or a cylinder (e1 alone), towards 2 an octahedron. Up to 1 the surface is one
-    smooth face. Above 1 its curvature is infinite on coordinate planes: it is kept as eight
+    ``(|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) = 1``: an ellipsoid at e1 = e2 = 1,
+    towards 0 a box (e1, e2) or a cylinder (e1 alone), towards 2 an octahedron. Up to 1 the surface
+    is one smooth face. Above 1 its curvature is infinite on coordinate planes: it is kept as eight
     octants, whose seams are edges, each of two halves.
 
     Parameters
