@@ -98,7 +98,17 @@ def _one_name_an_attribute(
     lines[:] = written
 
 
+def _plain_bars(
+    _app: Sphinx, _kind: str, _name: str, _what: Any, _options: Any, lines: list[str]
+) -> None:
+    """A magnitude, |v|, is no substitution of reStructuredText; within ``code`` it is left."""
+    for number, line in enumerate(lines):
+        parts = re.split(r"(``.*?``)", line)
+        lines[number] = "".join(p if p[:2] == "``" else p.replace("|", "\\|") for p in parts)
+
+
 def setup(app: Sphinx) -> None:
     """Connect what the settings above cannot say."""
     app.connect("autodoc-process-docstring", _one_name_an_attribute, priority=400)
+    app.connect("autodoc-process-docstring", _plain_bars, priority=450)
     app.connect("autodoc-process-signature", _plain_aliases)
