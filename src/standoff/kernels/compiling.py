@@ -24,6 +24,7 @@ def _pointer(typingctx, array, offset):  # type: ignore[no-untyped-def]
     return types.CPointer(array.dtype)(array, types.intp), codegen
 
 
+# Three rows of ten Bernstein polynomials: NURBS have degrees up to 9.
 STACK_REALS = 32
 
 

@@ -12,8 +12,10 @@ from standoff.kernels.jets import pcurve_jet
 from standoff.kernels.tolerances import PCURVE_OVERLAP
 
 HALF_TURN = pi
-# Instead of a count: the line touches the curve but for noise. Then t1 is where, and t2 is the
-# side of the line on which the curve lies: negative on its left.
+# A conic is looked at more closely where a line cuts into it by less than this part of it.
+NEAR_TANGENT = 1e-8
+# Instead of a count: the line touches the curve but for noise, and its two roots are one. Then
+# t1 is where, and t2 is the side of the line on which the curve lies: negative on its left.
 TOUCHING_LINE = -1
 # Steps of a bracketed root: regula falsi (Illinois) needs some ten, bisection never more.
 ROOT_STEPS = 80
@@ -40,11 +42,13 @@ def line_roots(reals, kind, o, u, v, du, dv, noise):
     if amplitude == 0.0:
         return 0, 0.0, 0.0
     middle = atan2(m1, m0)
-    if abs(m2) > amplitude:
+    depth = amplitude - abs(m2)  # how far the line cuts in
+    if depth < NEAR_TANGENT * amplitude:
         t = middle if m2 < 0.0 else middle + HALF_TURN
         h = pcurve_jet(reals, kind, o, t)[0]
-        if h[2] > 0.0 and abs(m2) - amplitude <= noise * h[2] * hypot(a, b):
+        if h[2] > 0.0 and abs(depth) <= noise * h[2] * hypot(a, b):
             return TOUCHING_LINE, t, m2
+    if depth < 0.0:
         return 0, 0.0, 0.0
     half = atan2(sqrt((amplitude - m2) * (amplitude + m2)), -m2)
     return 2, middle + half, middle - half
@@ -94,10 +98,10 @@ def bezier_roots(reals, o, a, b, c, noise):
         return 0, 0.0, 0.0
     t = bracketed(reals, o, a, b, c, 1, t0, slope0, t1, slope1)
     f = level(reals, o, a, b, c, t)[0]
-    if (f > 0.0) != (f0 > 0.0):
-        before = bracketed(reals, o, a, b, c, 0, t0, f0, t, f)
-        return 2, before, bracketed(reals, o, a, b, c, 0, t, f, t1, f1)
     h = pcurve_jet(reals, L.BEZIER, o, t)[0]
     if abs(f) <= noise * h[2] * hypot(a, b):
         return TOUCHING_LINE, t, f0
+    if (f > 0.0) != (f0 > 0.0):
+        before = bracketed(reals, o, a, b, c, 0, t0, f0, t, f)
+        return 2, before, bracketed(reals, o, a, b, c, 0, t, f, t1, f1)
     return 0, 0.0, 0.0

@@ -87,9 +87,6 @@ CONTACT_STEPS = 12
 # Positions (length) must stay below this: squares of distances must not overflow.
 FARTHEST = 1e100
 
-# Greatest degree of a NURBS: the kernels' blocks of the stack hold this much.
-MAX_DEGREE = 9
-
 # Off a crease the curvature falls from infinity: the first parameter inside is sought between
 # CREASE_FIRST and CREASE_LAST (gnomonic, dimensionless) in CREASE_STEPS halvings of its logarithm.
 CREASE_FIRST = 1e-110
