@@ -17,17 +17,18 @@ from typing import Any
 
 import numpy as np
 
+from standoff.bodies.proofs.defects import Dent, dents_total
 from standoff.bodies.proofs.formulas.forms import (
     CurvatureForms,
     curvature_forms,
     forms_as_written,
 )
-from standoff.bodies.proofs.formulas.normals import hemisphere_axis, least_cosine
+from standoff.bodies.proofs.formulas.normals import hemisphere_axis, least_cosines
 from standoff.bodies.proofs.formulas.signs import FIRST_GRID, Bounds, sign_of_product, widest
 from standoff.bodies.proofs.proof import PatchProof
 from standoff.geometry.formulas import FormulaSurface
 from standoff.geometry.formulas.compiled import Formula
-from standoff.geometry.formulas.enclosures import Boxes, Enclosure, grid, hull
+from standoff.geometry.formulas.enclosures import Boxes, Enclosure, grid, hull, images
 from standoff.geometry.formulas.expressions import sympy_module
 from standoff.geometry.intervals import TINY, Interval
 from standoff.geometry.validation import Array
@@ -40,8 +41,6 @@ NEARNESS = 1.05
 # Boxes of one search, each 10 to 20 microseconds for 2000 characters of program: 1 to 2 seconds.
 MOST_BOXES = 100_000
 WORST = 512
-# Shares of the worst curvature at which the extent of a dent is measured.
-LEVELS = (0.0, 1e-3, 1e-2, 0.1, 0.3)
 # A dent whose normals lean more than this cosine from the axis has no bound as a graph.
 STEEPEST = 0.05
 
@@ -236,52 +235,35 @@ def _rise(
 ) -> tuple[float, float]:
     """(defect, tilt): how far the patch may rise above its own tangent planes, and turn wrongly.
 
-    Seen along `axis` the patch is a graph f. From x to y, a distance s <= D apart, f rises above
-    its tangent at x by the integral of (s - t) f''(t), and f'' <= |k| / c^3 with c the least
-    cosine of a normal to the axis; it is positive only over dents, which reach over W <= D. So f
-    rises by |k| W (D - W / 2) / c^3 at most and its slope grows by |k| W / c^3. Curvature above a
-    level k0 counts over the extent of its own boxes, the rest with k0 over all of D.
+    Seen along `axis` the patch is a graph f, and f'' <= |k| / c^3 along any straight path of the
+    graph's domain, with c the cosine of a normal to the axis: the dents' curvatures for
+    ``defects``.
     """
-    if axis is None or not np.isfinite(least):
-        return np.inf, np.pi
-    linear = surface.linear
-    cofactors = np.asarray(np.linalg.det(linear) * np.linalg.inv(linear).T)
-    upright = np.linalg.inv(cofactors).T @ np.array(axis)
-    cosine = least_cosine(
-        surface.formula, found.dents, cofactors, upright / np.linalg.norm(upright)
-    )
-    if cosine < STEEPEST:
+    if not np.isfinite(found.least) and not len(found.dents):
         return np.inf, np.pi
     low, high = surface.box()
-    size, stretch = float(np.linalg.norm(high - low)), float(np.linalg.norm(linear, 2))
-    defect, tilt = np.inf, np.inf
-    for level in LEVELS:
-        steep = found.bounds < level * found.least
-        width = min(size, stretch * _extent(surface.formula, found.dents[steep]))
-        rest = level * -least
-        turn = (-least - rest) * width + rest * size
-        rise = (-least - rest) * width * (size - 0.5 * width) + 0.5 * rest * size**2
-        defect, tilt = min(defect, rise / cosine**3), min(tilt, turn / cosine**3)
-    return float(defect), float(min(tilt, np.pi))
+    size = float(np.linalg.norm(high - low))
+    if axis is None:
+        return size, np.pi
+    linear = surface.linear
+    cofactors = np.asarray(np.linalg.det(linear) * np.linalg.inv(linear).T)
+    upright = linear @ np.array(axis) * np.sign(np.linalg.det(linear))
+    upright = upright / np.linalg.norm(upright)
+    cosines = least_cosines(surface.formula, found.dents, cofactors, upright)
+    held = images(_position(surface.formula), found.dents, linear / size, surface.shift / size)
+    bent = -found.bounds * (least / found.least if np.isfinite(found.least) else 1.0) * size
+    bent = np.where(cosines > STEEPEST, bent / np.maximum(cosines, STEEPEST) ** 3, np.inf)
+    dents = [
+        Dent(float(k), lo, hi, np.pi) for k, lo, hi in zip(bent, held.lo.T, held.hi.T, strict=True)
+    ]
+    rise, tilt = dents_total(dents)
+    return rise * size, tilt
 
 
 def _extent(formula: Formula, boxes: Boxes) -> float:
     """A bound on the greatest distance between points of boxes."""
-    if not len(boxes):
-        return 0.0
-    low, high = _box(formula, boxes)
+    low, high = hull(_position(formula), boxes, np.eye(3), np.zeros(3))
     return float(np.linalg.norm(high - low))
-
-
-def _box(formula: Formula, boxes: Boxes) -> tuple[Array, Array]:
-    bounds = _position(formula)
-    rows, middle = bounds(boxes), bounds.at_middle(boxes)
-
-    def part(of: Interval, k: int) -> Interval:
-        return Interval(of.lo[k : k + 3], of.hi[k : k + 3])
-
-    slopes = [part(rows, 3), part(rows, 6)]
-    return hull(part(rows, 0), part(middle, 0), slopes, boxes, np.eye(3), np.zeros(3))
 
 
 @lru_cache(maxsize=256)

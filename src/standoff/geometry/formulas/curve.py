@@ -17,7 +17,6 @@ from standoff.geometry.formulas.checks import (
 )
 from standoff.geometry.formulas.compiled import Formula, compiled
 from standoff.geometry.formulas.enclosures import Enclosure, grid, hull
-from standoff.geometry.intervals import Interval
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
 
@@ -92,14 +91,8 @@ class FormulaCurve(Curve):
 
     def box(self) -> tuple[Array, Array]:
         """(low, high), each (3,), body frame: surely around the curve, by interval bounds."""
-        boxes = grid((self.first, self.last), BOX_GRID)
         bounds = Enclosure(self.formula.jet[:6], CURVE_VARIABLES)
-        rows, middle = bounds(boxes), bounds.at_middle(boxes)
-
-        def part(of: Interval, k: int) -> Interval:
-            return Interval(of.lo[k : k + 3], of.hi[k : k + 3])
-
-        return hull(part(rows, 0), part(middle, 0), [part(rows, 3)], boxes, self.linear, self.shift)
+        return hull(bounds, grid((self.first, self.last), BOX_GRID), self.linear, self.shift)
 
     def __reduce__(self) -> tuple[Any, ...]:
         limits = (self.first, self.last)

@@ -130,22 +130,27 @@ def without_bounds(enclosure: Enclosure, domain: Sequence[float]) -> Array | Non
     return None
 
 
-def hull(
-    rows: Interval,
-    middle: Interval,
-    slopes: Sequence[Interval],
-    boxes: Boxes,
-    linear: Array,
-    shift: Array,
-) -> tuple[Array, Array]:
-    """(low, high), each (3,), of linear @ x + shift over all boxes.
+def images(bounds: Enclosure, boxes: Boxes, linear: Array, shift: Array) -> Interval:
+    """(3, n) bounds of linear @ x + shift over each box.
 
-    rows, middle, slopes : (3, n) bounds of x, of x at the middles, of its partial derivatives
+    bounds : of x and its first partial derivatives, three expressions each
     """
+    value, *slopes = _by_three(bounds(boxes))
+    middle = _by_three(bounds.at_middle(boxes))[0]
     by = interval(shift[:, None])
-    value, centre = mapped(linear, rows) + by, mapped(linear, middle) + by
-    bounds = mean_value(value, centre, [mapped(linear, s) for s in slopes], boxes)
-    return bounds.lo.min(axis=1), bounds.hi.max(axis=1)
+    natural, centre = mapped(linear, value) + by, mapped(linear, middle) + by
+    held: Interval = mean_value(natural, centre, [mapped(linear, s) for s in slopes], boxes)
+    return held
+
+
+def hull(bounds: Enclosure, boxes: Boxes, linear: Array, shift: Array) -> tuple[Array, Array]:
+    """(low, high), each (3,), of linear @ x + shift over all boxes."""
+    held = images(bounds, boxes, linear, shift)
+    return held.lo.min(axis=1), held.hi.max(axis=1)
+
+
+def _by_three(rows: Interval) -> list[Interval]:
+    return [Interval(rows.lo[k : k + 3], rows.hi[k : k + 3]) for k in range(0, len(rows.lo), 3)]
 
 
 def mapped(linear: Array, x: Interval) -> Interval:

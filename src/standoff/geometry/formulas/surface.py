@@ -17,7 +17,6 @@ from standoff.geometry.formulas.checks import (
 from standoff.geometry.formulas.compiled import Formula, compiled
 from standoff.geometry.formulas.enclosures import Enclosure, grid, hull
 from standoff.geometry.formulas.expressions import FormulaError
-from standoff.geometry.intervals import Interval
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
@@ -99,11 +98,8 @@ class FormulaSurface(Surface):
 
     def box(self) -> tuple[Array, Array]:
         """(low, high), each (3,), body frame: surely around the patch, by interval bounds."""
-        boxes = grid(self.domain, BOX_GRID)
         bounds = Enclosure(self.formula.jet[:9], SURFACE_VARIABLES)
-        rows, middle = bounds(boxes), bounds.at_middle(boxes)
-        slopes = [_rows(rows, 3, 6), _rows(rows, 6, 9)]
-        return hull(_rows(rows, 0, 3), _rows(middle, 0, 3), slopes, boxes, self.linear, self.shift)
+        return hull(bounds, grid(self.domain, BOX_GRID), self.linear, self.shift)
 
     def highest(self, direction: Array) -> None:
         """None: `box` serves."""
@@ -112,10 +108,6 @@ class FormulaSurface(Surface):
     def __reduce__(self) -> tuple[Any, ...]:
         parts = (self.formula.expressions, self.domain, self.linear, self.shift)
         return _rebuilt_surface, parts
-
-
-def _rows(bounds: Interval, first: int, last: int) -> Interval:
-    return Interval(bounds.lo[first:last], bounds.hi[first:last])
 
 
 def _fill(

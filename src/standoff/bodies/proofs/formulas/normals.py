@@ -91,10 +91,11 @@ def along(vectors: Interval, axis: Array) -> Interval:
     return Interval(row.lo[0], row.hi[0])
 
 
-def least_cosine(formula: Formula, boxes: Boxes, cofactors: Array, axis: Array) -> float:
-    """The least cosine between `axis` and cofactors @ normal over boxes; -1 where unknown."""
+def least_cosines(formula: Formula, boxes: Boxes, cofactors: Array, axis: Array) -> Array:
+    """(n,) the least cosine between `axis` and cofactors @ normal over each box; -1 if unknown."""
     value = mapped(cofactors, _normal_bounds(formula)(boxes)[0])
-    high = np.sqrt((value.magnitude**2).sum(axis=0)) * (1.0 + 1e-14)
-    low = along(value, axis).lo
-    cosine = np.where(low > 0.0, low / high, -1.0)
-    return float(np.nan_to_num(cosine, nan=-1.0).min(initial=1.0))
+    with np.errstate(invalid="ignore"):
+        high = np.sqrt((value.magnitude**2).sum(axis=0)) * (1.0 + 1e-14)
+        low = along(value, axis).lo
+        cosine = np.where(low > 0.0, low / high, -1.0)
+    return np.asarray(np.nan_to_num(cosine, nan=-1.0))
