@@ -48,6 +48,8 @@ def random_pairs(count: int) -> list[tuple[so.Body, so.Body, Tumbling, Tumbling]
         shapes.cone(0.5, 1.0),
         shapes.capsule(0.2, 0.8),
         shapes.box(0.5, 0.5, 0.5, rounding=0.1),
+        # Creased: eight faces, each an atlas of charts.
+        shapes.superellipsoid(0.4, 0.4, 0.4, 1.6, 1.2),
     ]
     pairs = []
     for k in range(count):

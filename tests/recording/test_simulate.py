@@ -19,9 +19,9 @@ THROUGH = straight((-1.0, 0.1, 0.2), (1.0, 0.0, 0.0))
 
 
 @pytest.mark.parametrize("law", ["predictor-corrector", "paper"])
-@pytest.mark.parametrize("number", [0, 3, 6])
+@pytest.mark.parametrize("number", [0, 3, 6, 7])
 def test_frames_are_the_tracker_s_own_steps(number: int, law: str) -> None:
-    a, b, path_a, path_b = random_pairs(7)[number]
+    a, b, path_a, path_b = random_pairs(8)[number]
     recording = so.simulate(a, b, path_a, path_b, 0.8, 2e-3, law=law, start=0.25)
     check_against_steps(recording, a, b, path_a, path_b, so.Tracker(a, b, 2e-3, law))
     assert recording.time[0] == 0.25
@@ -177,6 +177,7 @@ def test_info_tells_the_run() -> None:
 def test_a_digest_names_the_geometry() -> None:
     assert BOX.digest == so.shapes.box(1.0, 1.0, 1.0).digest
     assert BOX.digest != so.shapes.box(1.0, 1.0, 1.0 + 1e-15).digest
+    assert so.shapes.sphere(0.2).digest != so.shapes.sphere(0.3).digest
     assert BOX.digest != so.shapes.box(1.0, 1.0, 1.0, rounding=0.1).digest
     assert len(BOX.digest) == 64
 
