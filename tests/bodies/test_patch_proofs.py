@@ -40,12 +40,13 @@ def bump(rng, degrees, least=0.0):
     )
 
 
-def moved(patch, rng):
-    """Somewhere else, of another size, turned."""
-    linear = np.linalg.qr(rng.normal(size=(3, 3)))[0] * 10.0 ** rng.uniform(-3.0, 3.0)
+def moved(patch, rng, far=1.0):
+    """Of another size, turned, and some `far` sizes away: its control points are rounded there."""
+    linear = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     if np.linalg.det(linear) < 0.0:
         linear = -linear
-    return patch.transformed(linear, rng.normal(size=3))
+    scale = 10.0 ** rng.uniform(-3.0, 3.0)
+    return patch.transformed(scale * linear, scale * far * rng.normal(size=3))
 
 
 def rise(patch, sense, n=31):
@@ -71,10 +72,10 @@ def roundoff(patch):
     return 1e-14 * size(patch) + 4e-16 * float(np.abs(patch.control_points).max())
 
 
-def assert_proven(patch, sense=None, hemisphere=True):
+def assert_proven(patch, sense=None, hemisphere=True, far=1.0):
     proof = prove_patch(patch)
     assert proof.convex
-    assert 0.0 <= proof.defect <= 1e-12 * size(patch)
+    assert 0.0 <= proof.defect <= 1e-12 * size(patch) * far
     assert proof.hemisphere is hemisphere
     assert proof.method == "bernstein"
     if sense is not None:
@@ -95,13 +96,16 @@ def test_tiles_of_ellipsoids_are_convex(degree):
 
 @pytest.mark.parametrize("degree", [2, 3, 5, 9])
 def test_octants_with_a_pole_are_convex(degree):
-    axes = 10.0 ** np.random.default_rng().uniform(-1.5, 0.0, 3)
+    rng = np.random.default_rng()
+    axes = 10.0 ** rng.uniform(-1.5, 0.0, 3)
     for patch in ellipsoid_octants(*axes)[:2]:
         elevated = patch.elevated(degree, degree)
         assert_proven(elevated, 1)
         assert_proven(elevated.reversed_v(), -1)
         assert_proven(elevated.swapped(), -1)
         assert_proven(elevated.swapped().reversed_u(), 1)
+        far = 10.0 ** rng.uniform(0.0, 3.0)
+        assert_proven(moved(elevated, rng, far), 1, far=10.0 * far)
 
 
 def test_a_gore_between_two_poles_is_convex():

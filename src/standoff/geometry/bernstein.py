@@ -98,18 +98,6 @@ def product(a: Array, b: Array) -> Array:
     return unscaled(convolve(scaled(a), scaled(b)))
 
 
-def split_u(c: Array) -> tuple[Array, Array]:
-    """The polynomial on u in [0, 1/2] and on [1/2, 1]."""
-    left, right = halves(c.shape[-2] - 1)
-    return left @ c, right @ c
-
-
-def split_v(c: Array) -> tuple[Array, Array]:
-    """The polynomial on v in [0, 1/2] and on [1/2, 1]."""
-    left, right = halves(c.shape[-1] - 1)
-    return c @ left.T, c @ right.T
-
-
 def basis(degree: int, t: Array | float) -> Array:
     """(..., degree + 1) values of the Bernstein polynomials at t in [0, 1]."""
     t = np.asarray(t, dtype=np.float64)[..., None]

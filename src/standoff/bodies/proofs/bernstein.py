@@ -29,8 +29,8 @@ MOST_BOXES = 3000
 FINE_BOXES = 300
 # Curvature found below minus this, 1 / size, is no rounding: the patch is not convex.
 ROUNDING = 1e-14
-# A convex patch has no greater defect, as a fraction of its size: rounding of control points
-# bends a patch of degree 9 by some 1e-13.
+# A convex patch has no greater defect, as a fraction of its size or, if that is more, of its
+# distance from the origin: rounding of control points bends a patch of degree 9 by some 1e-13.
 PROVEN = 1e-12
 # Curvature below this, 1 / size, everywhere: the patch may be flat, which is then tried.
 NEARLY_FLAT = 1e-9
@@ -80,14 +80,14 @@ def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
         A knot where the surface may be creased: a proof needs each smooth part by itself.
     """
     _refuse_creases(surface)
-    pieces, size = _pieces(surface)
+    pieces, size, reach = _pieces(surface)
     bends = np.concatenate([_bends(piece.forms) for piece in pieces])
     sense = outward if outward is not None else (-1 if float(bends.sum()) > 0.0 else 1)
     results = [_search(piece, sense) for piece in pieces]
     dents = [dent for r in results for dent in r.dents]
     rise, tilt = dents_total(dents)
     worst = int(np.argmin([np.nan_to_num(r.found, nan=np.inf) for r in results]))
-    convex = rise <= PROVEN and all(r.convex for r in results)
+    convex = rise <= PROVEN * max(reach, 1.0) and all(r.convex for r in results)
     rise += max(piece.moved for piece in pieces)
     flat = convex and float(np.abs(bends).max(initial=0.0)) <= NEARLY_FLAT and _flat(pieces, sense)
     return PatchProof(
@@ -114,17 +114,21 @@ def _refuse_creases(surface: NurbsSurface) -> None:
                 )
 
 
-def _pieces(surface: NurbsSurface) -> tuple[list[Piece], float]:
-    """The spans of a surface about its centre, scaled to the size one; and the size, length."""
+def _pieces(surface: NurbsSurface) -> tuple[list[Piece], float, float]:
+    """The spans of a surface about its centre, scaled to the size one.
+
+    Also the size, length, and how many sizes away from the origin the control points lie.
+    """
     low, high = surface.box()
     centre, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
+    reach = float(np.maximum(np.abs(low), np.abs(high)).max()) / size
     pieces = []
     for span in surface.spans():
         h = span.points / span.points[3].max()
         points = np.concatenate([(h[:3] - centre[:, None, None] * h[3:]) / size, h[3:]])
         points, moved = with_poles(points)
-        pieces.append(Piece(span.domain, points, moved, forms_of(points)))
-    return pieces, size
+        pieces.append(Piece(span.domain, points, moved, forms_of(points, reach)))
+    return pieces, size, reach
 
 
 def _bends(forms: Forms) -> Array:

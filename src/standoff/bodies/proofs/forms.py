@@ -23,9 +23,9 @@ from standoff.geometry.validation import Array
 # Points of a side closer together than this fraction of the patch's size are one point (a pole):
 # as close as curves and vertices of a body must meet. What is moved counts as a dent.
 COLLAPSE = 1e-9
-# Coefficients below this many units of the greatest's roundoff vanish: decides only whether a
-# pole is smooth, that is, whether one more power is divided out.
-SMOOTH_POLE_UNITS = 2.0**12
+# A pole is smooth, not a sharp apex, where it is so but for this many times the rounding of the
+# control points: rounding alone leaves the ring round a pole out of plane.
+SMOOTH_POLE = 4.0
 
 # Products are taken in the widest floating point the platform has, so that cancellation costs
 # nothing but the rounding of the control points themselves.
@@ -57,19 +57,23 @@ class Forms:
     sharp: tuple[int, ...]
 
 
-def forms_of(points: Array) -> Forms:
+def forms_of(points: Array, reach: float) -> Forms:
     """The forms of a Bezier patch, (4, p + 1, q + 1) homogeneous points, size about one.
 
-    Poles are to be single points (`with_poles`).
+    Poles are to be single points (`with_poles`). The control points were rounded at the distance
+    `reach` from the origin, in units of the size.
     """
     h = points.astype(np.longdouble)
     jacobian, normal, second = _rational(h) if np.ptp(points[3]) > 0.0 else _polynomial(h)
-    noise = _noise(points)
+    noise = _noise(points, reach)
     poles, sharp = [], []
     for side in range(4):
         if _width(points, side) <= COLLAPSE:
             poles.append(side)
-            jacobian, normal, second, smooth = _freed(jacobian, normal, second, side)
+            # the division raises what rounding did by the degree across the side, twice
+            degree = points.shape[2 if side >= 2 else 1] - 1
+            noise = (noise[0] * degree**2, noise[1] * degree**2)
+            jacobian, normal, second, smooth = _freed(jacobian, normal, second, side, noise)
             if not smooth:
                 sharp.append(side)
     p, q = (max(c.shape[-2] for c in second), max(c.shape[-1] for c in second))
@@ -155,9 +159,9 @@ def _dot(a: Wide, b: Wide | None) -> Wide:
     return dotted
 
 
-def _noise(points: Array) -> tuple[float, float]:
+def _noise(points: Array, reach: float) -> tuple[float, float]:
     """What half a unit of roundoff in every control point does to P, as Forms.noise."""
-    eps = 0.5 * float(np.finfo(np.float64).eps)
+    eps = 0.5 * float(np.finfo(np.float64).eps) * max(reach, 1.0)
     p, q = points.shape[1] - 1, points.shape[2] - 1
     hu, hv = bernstein.along_u(points), bernstein.along_v(points)
     size = float(np.abs(points).max())
@@ -188,7 +192,11 @@ def _width(points: Array, side: int) -> float:
 
 
 def _freed(
-    jacobian: list[Wide], normal: Wide, second: list[Wide], side: int
+    jacobian: list[Wide],
+    normal: Wide,
+    second: list[Wide],
+    side: int,
+    noise: tuple[float, float],
 ) -> tuple[list[Wide], Wide, list[Wide], bool]:
     """J, T and P without the powers of the distance to a collapsed side; is it smooth."""
     across = 0 if side >= 2 else 1  # the column of J that vanishes there
@@ -198,14 +206,14 @@ def _freed(
     # P's vanishing direction twice, its mixed entry once, for the congruence
     first, mixed, other = (uu, uv, vv) if across == 0 else (vv, uv, uu)
     first, mixed = _divided(first, side, 2), _divided(mixed, side, 1)
-    edge = _edge(first, side)
-    limit = SMOOTH_POLE_UNITS * float(np.finfo(np.float64).eps)
-    smooth = float(np.abs(edge).max()) <= limit * float(np.abs(first).max())
+    normal = _divided(normal, side, 1)
+    limit = SMOOTH_POLE * (noise[0] * float(np.abs(_edge(normal, side)).max()) + noise[1])
+    smooth = float(np.abs(_edge(first, side)).max()) <= limit
     if smooth:
         # and one power more of all, for that of T
         first, mixed, other = (_divided(c, side, 1) for c in (first, mixed, other))
     order = (first, mixed, other) if across == 0 else (other, mixed, first)
-    return jacobian, _divided(normal, side, 1), list(order), smooth
+    return jacobian, normal, list(order), smooth
 
 
 def _edge(c: Wide, side: int) -> Wide:
