@@ -8,11 +8,13 @@ import numpy as np
 
 from standoff.bodies.proofs import interval
 from standoff.bodies.proofs.bernstein import prove
+from standoff.bodies.proofs.profiles import prove_swept
 from standoff.bodies.proofs.proof import PatchProof
 from standoff.bodies.proofs.theorems import prove_quadric
 from standoff.geometry.formulas import FormulaSurface
 from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
+from standoff.geometry.swept import Extrusion, Revolution
 
 __all__ = ["PatchProof", "prove_patch"]
 
@@ -31,12 +33,14 @@ def prove_patch(surface: Surface, outward: int | None = None) -> PatchProof:
     TypeError
         A kind of surface without a proof.
     ValueError
-        A NURBS that may be creased inside.
+        A NURBS, or a profile, that may be creased inside.
     """
     if isinstance(surface, NurbsSurface):
         return prove(surface, outward)
     if isinstance(surface, FormulaSurface):
         return interval.prove(surface, outward)
+    if isinstance(surface, Revolution | Extrusion):
+        return prove_swept(surface, outward)
     if isinstance(surface, Plane | Sphere | Cylinder | Cone):
         proof = prove_quadric(surface)
         if outward is not None and proof.sense == -outward:
