@@ -65,7 +65,7 @@ def prove_swept(surface: Revolution | Extrusion, outward: int | None = None) -> 
         convex=all(p.convex for p in proofs),
         defect=min(defect, size),
         method="bernstein",
-        hemisphere=_within_half(patches, 0.5 * (low + high), size),
+        hemisphere=_within_half(patches, low, high),
         place=_place(parts[worst][0], proofs[worst].place),
         sense=0 if all(p.sense == 0 for p in proofs) else outward,
         tilt=min(sum(p.tilt for p in proofs), float(np.pi)),
@@ -201,10 +201,12 @@ def _place(domain: Domain, at: tuple[float, float]) -> tuple[float, float]:
     return u0 + at[0] * (u1 - u0), v0 + at[1] * (v1 - v0)
 
 
-def _within_half(patches: Sequence[BezierPatch], centre: Array, size: float) -> bool:
+def _within_half(patches: Sequence[BezierPatch], low: Array, high: Array) -> bool:
+    centre, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
+    reach = float(np.maximum(np.abs(low), np.abs(high)).max()) / size
     forms = []
     for patch in patches:
         h = patch.spans()[0].points
         scaled = np.concatenate([(h[:3] - centre[:, None, None] * h[3:]) / size, h[3:]])
-        forms.append(forms_of(with_poles(scaled)[0]))
+        forms.append(forms_of(with_poles(scaled)[0], reach))
     return in_hemisphere(forms)
