@@ -171,6 +171,22 @@ def test_nurbs_of_many_spans_is_proven_span_by_span():
     assert 1.0 <= proof.place[1] <= 4.0
 
 
+def test_curvature_that_touches_zero_inside_is_proven_from_a_knot_there():
+    """z = -x^4 over -1 <= x <= 0.7: flat along the line x = 0, at u = 10/17."""
+    x = np.linspace(-1.0, 0.7, 5)
+    knots = np.array([-1.0] * 4 + [0.7] * 4)
+    # the control values of x^4 are its blossom: products of the knots round each point
+    z = [-np.prod(knots[i : i + 4]) for i in range(5)]
+    points = np.empty((5, 2, 3))
+    points[..., 0], points[..., 1], points[..., 2] = x[:, None], [-1.0, 0.7], np.array(z)[:, None]
+    patch = BezierPatch(points)
+    assert patch.jet(0.3, 0.5)[0][2] == pytest.approx(-(patch.jet(0.3, 0.5)[0][0] ** 4), abs=1e-15)
+    proof = prove_patch(patch)
+    assert not proof.convex
+    assert proof.defect <= 1e-3
+    assert_proven(patch.refined([10 / 17]), 1)
+
+
 def test_saddles_and_inflections_are_told_with_their_place():
     saddle = prove_patch(graph(lambda x, y: x * y, (4, 3)))
     assert not saddle.convex

@@ -57,7 +57,7 @@ class Cell:
 ROOT = Cell((0, 0), (0, 0))
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=1024)
 def _dyadic(degree: int, level: int, index: int) -> Array:
     """The matrix to the coefficients on [index, index + 1] / 2^level."""
     if level == 0:
