@@ -116,10 +116,10 @@ def _points(answer: so.Proximity) -> tuple[Array, Array]:
     return answer.point_a, answer.point_b
 
 
-def compiled_loop(frames: Frames) -> Contender:
-    tracker = so.Tracker(A, B, dt=STEP)
+def compiled_loop(frames: Frames, a: so.Body = A, b: so.Body = B) -> Contender:
+    tracker = so.Tracker(a, b, dt=STEP)
     begin = tracker.start(*frames.poses[0], *frames.twists[0]).data
-    pair = (A.ints, A.reals, B.ints, B.reals)
+    pair = (a.ints, a.reals, b.ints, b.reals)
     options = pack_options("predictor-corrector", "feedforward-2", "heun", None, STEP, 1e-10)
     poses = np.ascontiguousarray(frames.flat_a[1:]), np.ascontiguousarray(frames.flat_b[1:])
     twists = np.ascontiguousarray(frames.twist_a[1:]), np.ascontiguousarray(frames.twist_b[1:])
@@ -139,8 +139,15 @@ def compiled_loop(frames: Frames) -> Contender:
     return Contender("compiled loop, a step", LOOPS * FRAMES, run, witnesses)
 
 
-def python_steps(frames: Frames, name: str, poses: list[Any], twists: list[Any]) -> Contender:
-    tracker = so.Tracker(A, B, dt=STEP)
+def python_steps(
+    frames: Frames,
+    name: str,
+    poses: list[Any],
+    twists: list[Any],
+    a: so.Body = A,
+    b: so.Body = B,
+) -> Contender:
+    tracker = so.Tracker(a, b, dt=STEP)
     begin = tracker.start(*frames.poses[0], *frames.twists[0])
     answers: list[so.Proximity] = []
 
@@ -180,15 +187,15 @@ def steps_in_place(frames: Frames) -> Contender:
     return Contender("Tracker.step_into", FRAMES, run, witnesses)
 
 
-def cold_queries(frames: Frames) -> Contender:
+def cold_queries(frames: Frames, a: so.Body = A, b: so.Body = B) -> Contender:
     chosen = frames.matrices[1 :: FRAMES // COLD_FRAMES]
 
     def run() -> None:
         for pose_a, pose_b in chosen:
-            so.distance(A, B, pose_a, pose_b)
+            so.distance(a, b, pose_a, pose_b)
 
     def witnesses(k: int) -> tuple[Array, Array]:
-        return _points(so.distance(A, B, *frames.matrices[k]))
+        return _points(so.distance(a, b, *frames.matrices[k]))
 
     return Contender(COLD, len(chosen), run, witnesses)
 
