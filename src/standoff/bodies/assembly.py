@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,7 +23,23 @@ WIDE_ANGLE = 1e-6
 APEX_NORMALS = 9
 
 
-def _check_joins(vertices: Array, edges: Sequence[Edge], size: float) -> None:
+@dataclass(frozen=True, eq=False)
+class Joined:
+    """An oriented boundary.
+
+    notes : what was turned; residual : the greatest distance of parts that were joined, length;
+    tolerance : what it was allowed to be, length.
+    """
+
+    parts: Assembled
+    notes: list[str]
+    residual: float
+    tolerance: float
+
+
+def _check_joins(vertices: Array, edges: Sequence[Edge], size: float, tolerance: float) -> float:
+    """The greatest distance of an edge's end from its vertex."""
+    worst = 0.0
     for j, edge in enumerate(edges):
         curve = edge.curve
         if curve.closed != (edge.first is None and edge.last is None):
@@ -36,11 +53,13 @@ def _check_joins(vertices: Array, edges: Sequence[Edge], size: float) -> None:
             if not 0 <= vertex < len(vertices):
                 raise BodyError(f"Edge {j} names vertex {vertex}; there are {len(vertices)}.")
             miss = float(np.linalg.norm(curve.point(t) - vertices[vertex]))
-            if miss > JOIN_TOLERANCE * size:
+            worst = max(worst, miss)
+            if miss > tolerance:
                 raise BodyError(
                     f"Edge {j} misses its vertex {vertex} by {miss:.3g} (size {size:.3g}): move "
                     "the vertex or trim the curve."
                 )
+    return worst
 
 
 def _check_loops(faces: Sequence[Face], edges: Sequence[Edge]) -> None:
@@ -58,7 +77,11 @@ def _check_loops(faces: Sequence[Face], edges: Sequence[Edge]) -> None:
             raise BodyError(f"Face {i}: its loop is open at vertices {loose}.")
 
 
-def _check_on_surface(charts: list[Chart], edges: Sequence[Edge], size: float) -> None:
+def _check_on_surface(
+    charts: list[Chart], edges: Sequence[Edge], size: float, tolerance: float
+) -> float:
+    """The greatest distance of an edge from its trimming curves."""
+    worst = 0.0
     for chart in charts:
         for c in chart.coedges:
             if c.edge < 0:
@@ -69,11 +92,13 @@ def _check_on_surface(charts: list[Chart], edges: Sequence[Edge], size: float) -
                 if depth <= 0.0 or max(abs(u), abs(v)) > chart.limit:
                     continue
                 miss = float(np.linalg.norm(chart.surface.jet(u, v)[0] - curve.point(t)))
-                if miss > JOIN_TOLERANCE * size:
+                worst = max(worst, miss)
+                if miss > tolerance:
                     raise BodyError(
                         f"Edge {c.edge} leaves the surface of face {chart.face} by {miss:.3g} "
                         f"(size {size:.3g}) at its parameter {t:.6g}."
                     )
+    return worst
 
 
 def _vertex_geometry(
@@ -172,22 +197,30 @@ def assemble(
     dimension: int,
     size: float,
     bounded: bool,
-) -> tuple[Assembled, list[str]]:
-    """Orient and check a boundary. Returns it with notes of what was turned."""
-    _check_joins(vertices, edges, size)
+    tolerance: float | None = None,
+    senses: Sequence[int] | None = None,
+) -> Joined:
+    """Orient and check a boundary; its parts may miss each other by `tolerance`, length.
+
+    senses : for every face +1 where f_u x f_v points outward, else -1, where it is known and the
+        loops follow it.
+    """
+    tolerance = JOIN_TOLERANCE * size if tolerance is None else tolerance
+    miss = _check_joins(vertices, edges, size, tolerance)
     inside = interior_point(vertices, edges, faces)
     charts = make_charts(faces, edges, inside, bounded)
-    smooth, notes = orient(charts, faces, edges)
+    if senses is not None:
+        for chart in charts:
+            chart.outward = float(senses[chart.face])
+    smooth, notes = orient(charts, faces, edges, known=senses is not None)
     _check_loops(faces, edges)
-    _check_on_surface(charts, edges, size)
+    miss = max(miss, _check_on_surface(charts, edges, size, tolerance))
     sectors, cones = _vertex_geometry(vertices, edges, faces, charts)
     right = [False] * len(edges)
     if dimension == 2:
         right, cones = _planar_geometry(vertices, edges, inside, size)
-    return (
-        Assembled(dimension, vertices, edges, faces, charts, smooth, right, sectors, cones),
-        notes,
-    )
+    parts = Assembled(dimension, vertices, edges, faces, charts, smooth, right, sectors, cones)
+    return Joined(parts, notes, miss, tolerance)
 
 
 def _planar_geometry(

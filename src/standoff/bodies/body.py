@@ -11,33 +11,23 @@ import numpy as np
 
 from standoff.bodies.assembly import assemble
 from standoff.bodies.charts import edge_points
-from standoff.bodies.packing import Assembled, Ints, pack, without_charts
-from standoff.bodies.sampling import blind_charts, body_box, boundary_samples, check_convex
-from standoff.bodies.topology import BodyError, Edge, Face, check_parts
-from standoff.geometry.validation import Array, finite, matrix3, not_negative, vector3
+from standoff.bodies.convexity import Known
+from standoff.bodies.finishing import Packed, finish
+from standoff.bodies.packing import Ints
+from standoff.bodies.report import BodyReport
+from standoff.bodies.sewing import MAX_SPREAD, sew
+from standoff.bodies.topology import Edge, Face, check_parts
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array, finite, matrix3, not_negative, positive, vector3
 
 # A linear map is a similarity (keeps spheres) when its singular values agree to this ratio.
 SIMILARITY_TOLERANCE = 1e-12
 
 
-@dataclass(frozen=True)
-class BodyReport:
-    """What the checks at construction found; ``body.check()`` returns it."""
-
-    dimension: int
-    faces: int
-    edges: int
-    vertices: int
-    smooth_edges: int
-    charts: int
-    size: float
-    convexity_defect: float
-    notes: tuple[str, ...]
-
-
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A convex body in its own frame. Make one with ``so.shapes`` or ``Body.from_brep``.
+    """A convex body in its own frame. Make one with ``so.shapes``, ``Body.from_patches`` or
+    ``Body.from_brep``.
 
     Attributes
     ----------
@@ -77,6 +67,8 @@ class Body:
         radius: float = 0.0,
         dimension: int = 3,
         name: str = "body",
+        tolerance: float | None = None,
+        convexity_tolerance: float | None = None,
     ) -> Body:
         """A body from its boundary: vertices, edges and faces.
 
@@ -93,6 +85,11 @@ class Body:
             Swept-sphere radius, length.
         dimension : int
             2 for a closed planar loop of edges in z = 0.
+        tolerance : float, optional
+            How far curves may be from their vertices and surfaces, length; 1e-9 of the size by
+            default. What is found goes into the certificate's slack.
+        convexity_tolerance : float, optional
+            Greatest convexity defect, length; 1e-6 of the size by default (``BodyReport``).
 
         Raises
         ------
@@ -111,8 +108,65 @@ class Body:
         cloud = np.concatenate(spots)
         bounded = any(f.loop or len(f.charts) > 1 for f in faces) or not faces
         rough = float(np.linalg.norm(np.ptp(cloud, axis=0))) if len(cloud) else 1.0
-        parts, notes = assemble(points, edges, faces, dimension, rough, bounded)
-        return _finish(name, parts, radius, notes)
+        tolerance = None if tolerance is None else positive(tolerance, "tolerance")
+        if convexity_tolerance is not None:
+            convexity_tolerance = not_negative(convexity_tolerance, "convexity_tolerance")
+        joined = assemble(points, edges, faces, dimension, rough, bounded, tolerance)
+        return _body(name, radius, finish(joined, radius, convexity_tolerance))
+
+    @staticmethod
+    def from_patches(
+        patches: Sequence[Surface],
+        *,
+        tolerance: float | None = None,
+        convexity_tolerance: float | None = None,
+        radius: float = 0.0,
+        name: str = "body",
+    ) -> Body:
+        """A body from surface patches that close a convex shell: their sides are sewn together.
+
+        Sides are matched by geometry, whatever their parameters; a side may have collapsed to a
+        point, and may be shared by several smaller ones (T-junctions). Patches may face either
+        way. What is split, turned and found smooth is in ``body.check()``.
+
+        Parameters
+        ----------
+        patches : sequence of Surface
+            Each with a finite domain: NURBS, Bezier, revolved, extruded and formula surfaces
+            have one, ``surface.restricted(u0, u1, v0, v1)`` gives one to any.
+        tolerance : float, optional
+            How far joined sides may be apart, length; 1e-9 of the size by default. The greatest
+            distance found goes into the certificate's slack.
+        convexity_tolerance : float, optional
+            Greatest convexity defect, length; 1e-6 of the size by default. The bound proven for
+            the patches and sampled for the edges goes into the certificate's slack too.
+        radius : float
+            Swept-sphere radius, length.
+
+        Raises
+        ------
+        BodyError
+            Sides that match none or several, more than one shell, patches that meet in a point
+            only, no volume, a boundary that is not convex; the message names the place.
+        ValueError
+            NaN, infinite or negative numbers.
+        """
+        radius = not_negative(radius, "radius")
+        if convexity_tolerance is not None:
+            convexity_tolerance = not_negative(convexity_tolerance, "convexity_tolerance")
+        sewn = sew(patches, tolerance)
+        reach = MAX_SPREAD * sewn.tolerance
+        joined = assemble(
+            sewn.vertices, sewn.edges, sewn.faces, 3, sewn.size, True, reach, sewn.senses
+        )
+        joined = replace(
+            joined,
+            notes=[*sewn.notes, *joined.notes],
+            residual=max(joined.residual, sewn.residual),
+            tolerance=sewn.tolerance,
+        )
+        known = Known(sewn.labels, sewn.proofs)
+        return _body(name, radius, finish(joined, radius, convexity_tolerance, known))
 
     def transformed(self, affine: Any) -> Body:
         """The exact image under an affine map: a (3, 3), a (4, 4), or a ((3, 3), (3,)) pair.
@@ -154,7 +208,13 @@ class Body:
             radius=radius,
             dimension=self.dimension,
             name=self.name,
+            tolerance=self._stretched(MAX_SPREAD * self.report.sewing_tolerance, float(stretch[0])),
+            convexity_tolerance=self._stretched(self.report.convexity_tolerance, float(stretch[0])),
         )
+
+    def _stretched(self, tolerance: float, stretch: float) -> float | None:
+        """A tolerance for the image; None, the default, where this body has no finite size."""
+        return tolerance * stretch if np.isfinite(self.size) and tolerance else None
 
     def check(self) -> BodyReport:
         """What construction found and turned."""
@@ -199,31 +259,8 @@ class Body:
         return f"<Body {self.name}: {parts}{skin}, size {self.size:g}>"
 
 
-def _finish(name: str, parts: Assembled, radius: float, notes: list[str]) -> Body:
-    ints, reals = pack(parts, [], (np.zeros(3), np.zeros(3)), radius, 0.0)
-    blind = blind_charts(parts, ints, reals)
-    if blind:
-        parts = without_charts(parts, blind)
-        ints, reals = pack(parts, [], (np.zeros(3), np.zeros(3)), radius, 0.0)
-    box = body_box(parts, ints, reals)
-    samples = boundary_samples(parts, ints, reals)
-    size = np.inf if box is None else float(np.linalg.norm(box[1] - box[0]))
-    defect = check_convex(samples, size) if box is not None else 0.0
-    if box is not None and size + radius <= 0.0 and len(parts.vertices) != 1:
-        raise BodyError("The body has no extent.")
-    # rounding of construction: a defect at roundoff is part of the certificate's own allowance
-    ints, reals = pack(parts, samples, box, radius, max(defect, 0.0))
-    report = BodyReport(
-        parts.dimension,
-        len(parts.faces),
-        len(parts.edges),
-        len(parts.vertices),
-        sum(parts.smooth),
-        len(parts.charts),
-        size + 2.0 * radius,
-        max(defect, 0.0),
-        tuple(notes),
-    )
+def _body(name: str, radius: float, packed: Packed) -> Body:
+    parts, report = packed.parts, packed.report
     return Body(
         name,
         parts.vertices,
@@ -231,10 +268,10 @@ def _finish(name: str, parts: Assembled, radius: float, notes: list[str]) -> Bod
         tuple(parts.faces),
         radius,
         parts.dimension,
-        ints,
-        reals,
+        packed.ints,
+        packed.reals,
         report,
-        size + 2.0 * radius,
+        report.size,
     )
 
 

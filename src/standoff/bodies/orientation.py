@@ -81,13 +81,19 @@ def _compare_faces(
 
 
 def orient(
-    charts: list[Chart], faces: Sequence[Face], edges: Sequence[Edge]
+    charts: list[Chart], faces: Sequence[Face], edges: Sequence[Edge], known: bool = False
 ) -> tuple[list[bool], list[str]]:
-    """Set every coedge's side; find smooth edges. Returns (smooth, notes of what was turned)."""
+    """Set every coedge's side; find smooth edges. Returns (smooth, notes of what was turned).
+
+    known : the loops run counterclockwise seen from outside, for sure.
+    """
     smooth, wrong = _compare_faces(charts, faces, edges)
     notes = []
     signs = {}
     for i, face in enumerate(faces):
+        if known:
+            signs[i] = 1
+            continue
         first = bisect_left(charts, i, key=lambda chart: chart.face)
         if len(face.charts) == 1 and face.loop:
             inward = _encircled(charts[first]) * charts[first].outward < 0.0

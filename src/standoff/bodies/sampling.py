@@ -19,9 +19,9 @@ EDGE_BUDGET = 60
 VERTEX_BUDGET = 120
 # Samples that bound a curve whose kind has no box.
 CURVE_SAMPLES = 65
-# A sampled point may rise above a sampled tangent plane by this fraction of the body's size:
-# the roundoff of building it.
-CONVEXITY_TOLERANCE = 1e-9
+# A sampled point may rise above a sampled tangent plane by this fraction of the body's size more
+# than was proven: the roundoff of building it.
+SAMPLED_DEFECT = 1e-9
 
 
 def _parameter_box(chart: Chart) -> tuple[float, float, float, float]:
@@ -193,10 +193,10 @@ def body_box(body: Assembled, ints: Ints, reals: Array) -> tuple[Array, Array] |
     return np.min(lows, axis=0), np.max(highs, axis=0)
 
 
-def check_convex(samples: Sequence[Sample], size: float) -> float:
-    """Greatest height of a sample above another's tangent plane; raises where it is not roundoff.
+def check_convex(samples: Sequence[Sample], size: float, allowed: float) -> float:
+    """Greatest height of a sample above another's tangent plane; raises above `allowed`, length.
 
-    Sampled, not proven: interval proofs come with the surfaces that need them.
+    It sees what no patch, edge or vertex shows by itself.
     """
     points = np.array([s.point for s in samples])
     faces = [s for s in samples if s.normal.any()]
@@ -209,7 +209,7 @@ def check_convex(samples: Sequence[Sample], size: float) -> float:
     )
     i, j = (int(k) for k in np.unravel_index(int(heights.argmax()), heights.shape))
     worst = float(heights[i, j])
-    if worst > CONVEXITY_TOLERANCE * size:
+    if worst > allowed:
         raise BodyError(
             f"Not convex: the point {points[j]} (feature {samples[j].feature}) lies {worst:.3g} "
             f"above the tangent plane at {faces[i].point} (feature {faces[i].feature}); size "

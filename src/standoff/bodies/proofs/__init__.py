@@ -10,10 +10,10 @@ from standoff.bodies.proofs import interval
 from standoff.bodies.proofs.bernstein import prove
 from standoff.bodies.proofs.profiles import prove_swept
 from standoff.bodies.proofs.proof import PatchProof
-from standoff.bodies.proofs.theorems import prove_quadric
+from standoff.bodies.proofs.theorems import Theorem, prove_by_kind
 from standoff.geometry.formulas import FormulaSurface
 from standoff.geometry.nurbs import NurbsSurface
-from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Extrusion, Revolution
 
 __all__ = ["PatchProof", "prove_patch"]
@@ -41,8 +41,8 @@ def prove_patch(surface: Surface, outward: int | None = None) -> PatchProof:
         return interval.prove(surface, outward)
     if isinstance(surface, Revolution | Extrusion):
         return prove_swept(surface, outward)
-    if isinstance(surface, Plane | Sphere | Cylinder | Cone):
-        proof = prove_quadric(surface)
+    if isinstance(surface, Theorem):
+        proof = prove_by_kind(surface)
         if outward is not None and proof.sense == -outward:
             # hollow: no bound is sought, such a face is no part of a convex body
             return replace(

@@ -1,17 +1,23 @@
-"""Kinds of surfaces that are convex by theorem: planes and quadrics."""
+"""Kinds of surfaces that are convex by theorem: planes, quadrics, tori, superellipsoids."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from standoff.bodies.proofs.proof import PatchProof
+from standoff.geometry.superellipsoids import SuperellipsoidPole
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere
+from standoff.geometry.torus import Torus
 
-Quadric = Plane | Sphere | Cylinder | Cone
+Theorem = Plane | Sphere | Cylinder | Cone | Torus | SuperellipsoidPole
 
 
-def prove_quadric(surface: Quadric) -> PatchProof:
-    """An affine image of a plane, sphere, cylinder or cone never bends inward."""
+def prove_by_kind(surface: Theorem) -> PatchProof:
+    """An affine image of a plane, quadric, torus's outer half or superellipsoid.
+
+    They never bend inward: a superellipsoid with exponents up to 2 is the unit ball of a norm, and
+    its charts look at it from its centre.
+    """
     side = 1 if np.linalg.det(surface.linear) > 0.0 else -1
     return PatchProof(
         convex=True,
@@ -23,15 +29,19 @@ def prove_quadric(surface: Quadric) -> PatchProof:
     )
 
 
-def _within_half(surface: Quadric) -> bool:
-    """A gnomonic chart shows less than half a sphere, a cone's normals lean away from its axis."""
+def _within_half(surface: Theorem) -> bool:
+    """A gnomonic chart shows less than half a sphere, a cone's normals lean away from its axis;
+    superellipsoids are symmetric: their normals lean to the side of the middle plane they are on.
+    """
+    u0, u1, v0, v1 = surface.domain
     if isinstance(surface, Cylinder):
-        u0, u1, _, _ = surface.domain
         return bool(u1 - u0 < np.pi)
+    if isinstance(surface, Torus):
+        return bool(v0 > 0.0 or v1 < 0.0 or (u1 - u0 < np.pi and v1 - v0 < np.pi))
     return True
 
 
-def _middle(surface: Quadric) -> tuple[float, float]:
+def _middle(surface: Theorem) -> tuple[float, float]:
     """The middle of the domain, or a finite point of it."""
     middle = []
     for low, high in (surface.domain[:2], surface.domain[2:]):

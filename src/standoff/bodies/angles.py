@@ -1,0 +1,187 @@
+"""Angles of a boundary: dihedral angles along its edges, winding of faces round its vertices.
+
+Both are sampled; extremes along edges are refined by minimisation. The *turn* of an edge is the
+angle from one outward normal to the other, positive at a convex edge: the dihedral angle inside
+the body is pi less the turn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from standoff.bodies.charts import surface_normal
+from standoff.bodies.orientation import chart_at
+from standoff.bodies.packing import Assembled
+from standoff.bodies.report import DihedralAngle
+from standoff.bodies.topology import Apex, BodyError
+from standoff.geometry.surfaces import Plane, Surface
+from standoff.geometry.validation import Array
+
+# Shares of an edge where its turn is sampled.
+SHARES = np.linspace(0.0, 1.0, 17)
+# The true extreme of a smooth turn is within a few rises between samples of the sampled one.
+DOUBT = 4.0
+# A turn (radians) is refined where it may change what is found by more than its roundoff.
+TURN_NOISE = 1e-13
+# Faces wind round a vertex once, 2 pi, or at least twice: the threshold between (radians).
+MOST_WINDING = 3.0 * np.pi
+# Directions sampled along a collapsed side.
+APEX_DIRECTIONS = 33
+
+
+@dataclass(frozen=True)
+class EdgeTurns:
+    """The least and the greatest turn of an edge, radians, and the parameters there.
+
+    doubt : how far either may be from the true extreme between samples, radians.
+    """
+
+    edge: int
+    faces: tuple[int, int]
+    least: float
+    at_least: float
+    greatest: float
+    at_greatest: float
+    doubt: float
+
+
+def edge_turns(body: Assembled) -> list[EdgeTurns]:
+    """The turns of every edge between two faces, sampled."""
+    users: list[list[int]] = [[] for _ in body.edges]
+    for i, face in enumerate(body.faces):
+        for j, _ in face.loop:
+            users[j].append(i)
+    return [
+        _sampled(body, j, used[0], used[1])
+        for j, used in enumerate(users)
+        if len(used) == 2 and used[0] != used[1]
+    ]
+
+
+def _sampled(body: Assembled, j: int, one: int, other: int) -> EdgeTurns:
+    curve = body.edges[j].curve
+    flat = all(isinstance(body.faces[i].charts[0], Plane) for i in (one, other))
+    shares = SHARES[8:9] if flat else SHARES
+    times = curve.first + shares * (curve.last - curve.first)
+    turns = np.array([_turn(body, j, one, other, float(t)) for t in times])
+    k, m = int(turns.argmin()), int(turns.argmax())
+    doubt = DOUBT * max(_rise(turns, k), _rise(-turns, m))
+    least, greatest = float(turns[k]), float(turns[m])
+    return EdgeTurns(j, (one, other), least, float(times[k]), greatest, float(times[m]), doubt)
+
+
+def _rise(values: Array, k: int) -> float:
+    """How much a least value differs from its neighbours."""
+    return float(np.abs(values[max(k - 1, 0) : k + 2] - values[k]).max())
+
+
+def refined(body: Assembled, found: Sequence[EdgeTurns]) -> list[EdgeTurns]:
+    """Extremes minimised where they may be concave, or the least or the greatest of all."""
+    if not found:
+        return []
+    least = min(e.least for e in found)
+    greatest = max(e.greatest for e in found)
+    return [
+        _minimised(body, e)
+        if e.doubt > TURN_NOISE
+        and (e.least - e.doubt < max(least, 0.0) or e.greatest + e.doubt > greatest)
+        else e
+        for e in found
+    ]
+
+
+def _minimised(body: Assembled, e: EdgeTurns) -> EdgeTurns:
+    curve = body.edges[e.edge].curve
+    width = (curve.last - curve.first) / (len(SHARES) - 1)
+
+    def best(t: float, sign: float, value: float) -> tuple[float, float]:
+        result = minimize_scalar(
+            lambda s: sign * _turn(body, e.edge, *e.faces, float(s)),
+            bounds=(max(t - width, curve.first), min(t + width, curve.last)),
+            method="bounded",
+        )
+        if result.fun < sign * value:
+            return sign * float(result.fun), float(result.x)
+        return value, t
+
+    least, at_least = best(e.at_least, 1.0, e.least)
+    greatest, at_greatest = best(e.at_greatest, -1.0, e.greatest)
+    return EdgeTurns(e.edge, e.faces, least, at_least, greatest, at_greatest, doubt=0.0)
+
+
+def _turn(body: Assembled, j: int, one: int, other: int, t: float) -> float:
+    """Angle from face `one`'s outward normal to the other's, positive where the edge is convex."""
+    tangent = body.edges[j].curve.jet(t)[1]
+    length = float(np.linalg.norm(tangent))
+    if length == 0.0:
+        return 0.0
+    chart, u, v = chart_at(body.charts, one, j, t)
+    n0 = chart.outward * surface_normal(chart.surface, u, v)
+    side = next(c.side for c in chart.coedges if c.edge == j) * chart.outward
+    inward = side * np.cross(n0, tangent / length)
+    chart, u, v = chart_at(body.charts, other, j, t)
+    n1 = chart.outward * surface_normal(chart.surface, u, v)
+    return float(np.arctan2(-inward @ n1, n0 @ n1))
+
+
+def dihedral(body: Assembled, j: int, turn: float, t: float) -> DihedralAngle:
+    x, y, z = (float(c) for c in body.edges[j].curve.point(t))
+    return DihedralAngle(np.pi - turn, j, t, (x, y, z))
+
+
+def check_vertices(body: Assembled) -> None:
+    """Raise BodyError where the faces wind round a vertex more than once.
+
+    Such a boundary crosses itself somewhere, while all its patches and edges may be convex.
+    """
+    axes = [np.sum(cone, axis=0) if cone else np.zeros(3) for cone in body.cones]
+    total = np.zeros(len(body.vertices))
+    for i, face in enumerate(body.faces):
+        for vertex, directions in _face_directions(body, i):
+            total[vertex] += _swept(directions, axes[vertex])
+        for apex in face.apexes:
+            total[apex.vertex] += _swept(_generators(face.charts[0], apex), axes[apex.vertex])
+    for k in np.flatnonzero(total > MOST_WINDING):
+        raise BodyError(
+            f"The faces around vertex {k} {body.vertices[k]} wind round it "
+            f"{total[k] / (2.0 * np.pi):.2g} times: the boundary crosses itself."
+        )
+
+
+def _face_directions(body: Assembled, i: int) -> Iterator[tuple[int, list[Array]]]:
+    """(vertex, directions of its two edges) at the corners of a face."""
+    ends: dict[int, list[Array]] = {}
+    for j, _ in body.faces[i].loop:
+        edge = body.edges[j]
+        for vertex, t, sign in (
+            (edge.first, edge.curve.first, 1.0),
+            (edge.last, edge.curve.last, -1.0),
+        ):
+            if vertex is not None:
+                ends.setdefault(vertex, []).append(sign * edge.curve.jet(t)[1])
+    apexes = {apex.vertex for apex in body.faces[i].apexes}
+    for vertex, out in ends.items():
+        if vertex not in apexes and len(out) == 2:
+            yield vertex, out
+
+
+def _generators(surface: Surface, apex: Apex) -> list[Array]:
+    """Directions out of a collapsed side, in order."""
+    along_u = apex.side[0] == "v"
+    ts = [float(t) for t in np.linspace(apex.lo, apex.hi, APEX_DIRECTIONS)]
+    spots = [(t, apex.level) if along_u else (apex.level, t) for t in ts]
+    return [surface.jet(u, v)[2 if along_u else 1] for u, v in spots]
+
+
+def _swept(directions: list[Array], axis: Array) -> float:
+    """The angle about an axis from the first direction to the last, radians."""
+    length = float(axis @ axis)
+    if length == 0.0:
+        return 0.0
+    flat = [d - (d @ axis) / length * axis for d in directions]
+    return sum(float(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)) for a, b in pairwise(flat))

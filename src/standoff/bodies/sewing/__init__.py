@@ -1,0 +1,11 @@
+"""Sewing: patches joined along their sides into the boundary of a body.
+
+patches.py cuts them, sides.py has their isolines, corners.py the vertices and T-junctions,
+matching.py finds which sides lie along which, correspondence.py their trimming curves, shell.py
+that they are one closed shell and which way out is, sew.py makes the parts of the body.
+"""
+
+from standoff.bodies.sewing.corners import MAX_SPREAD
+from standoff.bodies.sewing.sew import SEWING_TOLERANCE, Sewn, sew
+
+__all__ = ["MAX_SPREAD", "SEWING_TOLERANCE", "Sewn", "sew"]

@@ -1,0 +1,144 @@
+"""Vertices of a sewn body, and the parts of sides between them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+
+from standoff.bodies.sewing.patches import Patch
+from standoff.bodies.sewing.sides import SIDE_NAMES, Side
+from standoff.bodies.topology import BodyError
+from standoff.geometry.validation import Array
+
+# Corners of a patch in the order of SIDE_NAMES: side k runs from corner k to corner k + 1.
+_CORNERS = ((0, 2), (1, 2), (1, 3), (0, 3))
+# Corners of one vertex may spread over this many tolerances; more is a chain of corners, which a
+# tolerance far above the sewing's quality makes.
+MAX_SPREAD = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """A side, or the part of it between two vertices: what is sewn to one other stretch.
+
+    patch, side : numbers; first, last : vertices at the ends of its free parameter.
+    """
+
+    patch: int
+    number: int
+    side: Side
+    first: int
+    last: int
+
+    @property
+    def label(self) -> str:
+        return self.side.label
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """All vertices, every patch's stretches side by side, and its collapsed sides (side, vertex).
+
+    spread : the greatest distance of a corner from its vertex, length.
+    """
+
+    vertices: Array
+    stretches: list[list[Stretch]]
+    collapsed: list[list[tuple[Side, int]]]
+    spread: float
+
+
+def outline(patches: Sequence[Patch], tolerance: float) -> Outline:
+    """Merge corners within the tolerance and cut sides where corners of others lie on them."""
+    sides = [[patch.side(name) for name in SIDE_NAMES] for patch in patches]
+    flat = [[side.collapsed(tolerance) for side in row] for row in sides]
+    corners = np.array([_corner(patch, k) for patch in patches for k in range(4)])
+    number, vertices, spread = _merge(patches, corners, flat, tolerance)
+    tree = KDTree(vertices)
+    stretches: list[list[Stretch]] = []
+    collapsed: list[list[tuple[Side, int]]] = []
+    for p, row in enumerate(sides):
+        stretches.append([])
+        collapsed.append([])
+        for k, side in enumerate(row):
+            start, stop = int(number[4 * p + k]), int(number[4 * p + (k + 1) % 4])
+            if side.name in ("v1", "u0"):  # they run clockwise
+                start, stop = stop, start
+            if flat[p][k]:
+                collapsed[p].append((side, start))
+                continue
+            stretches[p] += _cut(p, k, side, start, stop, vertices, tree, tolerance)
+    return Outline(vertices, stretches, collapsed, spread)
+
+
+def _corner(patch: Patch, k: int) -> Array:
+    domain = patch.surface.domain
+    i, j = _CORNERS[k]
+    return patch.surface.jet(domain[i], domain[j])[0]
+
+
+def _merge(
+    patches: Sequence[Patch], corners: Array, flat: list[list[bool]], tolerance: float
+) -> tuple[Array, Array, float]:
+    """(vertex of every corner, vertex points, spread)."""
+    pairs = [(int(a), int(b)) for a, b in KDTree(corners).query_pairs(tolerance)]
+    for p, row in enumerate(flat):
+        pairs += [(4 * p + k, 4 * p + (k + 1) % 4) for k in range(4) if row[k]]
+    n = len(corners)
+    rows = np.array(pairs, dtype=np.intp).reshape(-1, 2)
+    graph = coo_matrix((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(n, n))
+    count, number = connected_components(graph, directed=False)
+    sums = np.zeros((count, 3))
+    np.add.at(sums, number, corners)
+    means = sums / np.bincount(number, minlength=count)[:, None]
+    # a corner itself, the one nearest to the mean: exact patches keep their exact corners
+    away = np.linalg.norm(corners - means[number], axis=1)
+    order = np.lexsort((away, number))
+    chosen = order[np.searchsorted(number[order], np.arange(count))]
+    vertices = corners[chosen]
+    misses = np.linalg.norm(corners - vertices[number], axis=1)
+    worst = int(misses.argmax())
+    if misses[worst] > MAX_SPREAD * tolerance:
+        raise BodyError(
+            f"{patches[worst // 4].label}: its corner {corners[worst]} is chained to a vertex "
+            f"{misses[worst]:.3g} away by corners within the tolerance {tolerance:.3g} of each "
+            "other: give a smaller tolerance."
+        )
+    return number, vertices, float(misses[worst])
+
+
+def _cut(
+    patch: int,
+    number: int,
+    side: Side,
+    start: int,
+    stop: int,
+    vertices: Array,
+    tree: KDTree,
+    tolerance: float,
+) -> list[Stretch]:
+    """The stretches of a side between the vertices that lie on it (T-junctions)."""
+    if start == stop:
+        raise BodyError(
+            f"{side.label} begins and ends at the same vertex {vertices[start]} (tolerance "
+            f"{tolerance:.3g}): split the patch or give a smaller tolerance."
+        )
+    centre = side.polyline.mean(axis=0)
+    # a polyline's links bulge less than they are long
+    reach = float(np.linalg.norm(side.polyline - centre, axis=1).max()) + side.length / 16.0
+    inside: list[tuple[float, int]] = []
+    for k in tree.query_ball_point(centre, reach + tolerance):
+        if k in (start, stop):
+            continue
+        t, miss = side.nearest(vertices[k])
+        if miss <= tolerance and side.first < t < side.last:
+            inside.append((t, int(k)))
+    inside.sort()
+    ends = [(side.first, start), *inside, (side.last, stop)]
+    return [Stretch(patch, number, side.part(a[0], b[0]), a[1], b[1]) for a, b in pairwise(ends)]

@@ -1,0 +1,168 @@
+"""The parameter of one side as a function of the other's: pcurves of sewn edges.
+
+An edge runs along its first stretch and has its parameter. On the second patch the trimming curve
+is an isoline too; where the parameters correspond by s = (a t + b)/(c t + d), which every affine
+correspondence and every rational reparametrisation is, its pcurve is a straight line, else a
+spline through the nearest points.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import comb
+
+from standoff.bodies.sewing.corners import Stretch
+from standoff.bodies.sewing.sides import Side
+from standoff.bodies.topology import BodyError
+from standoff.geometry.nurbs_pcurves import NurbsPcurve
+from standoff.geometry.pcurves import Pcurve
+from standoff.geometry.validation import Array
+from standoff.kernels import layout as L
+
+# Shares of an edge where the correspondence is read, and (between them) where it is checked.
+NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 12) / 12)
+CHECKS = (np.arange(17) + 0.5) / 17
+# A straight pcurve serves where it is no farther from the first side than the nearest points
+# are, but for this part of the body's size and of that distance itself.
+STRAIGHT = 2e-14
+STRAIGHT_SHARE = 0.5
+# A span of a spline serves when it misses the nearest points by this part of the size or by
+# SPLINE_SHARE of their distance, or has been halved MAX_CUTS times.
+SPLINE = 1e-13
+SPLINE_SHARE = 0.1
+MAX_CUTS = 7
+# Highest degree that the kernels take; Chebyshev's points of [-1, 1] with its ends, descending.
+DEGREE = 9
+SPAN_NODES = np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
+SPAN_CHECKS = np.array([0.02, 0.27, 0.46, 0.73, 0.93])
+
+
+@dataclass(frozen=True, eq=False)
+class Correspondence:
+    """The pcurve of an edge on its second patch.
+
+    sense : +1 where both free parameters grow together; residual : the greatest distance of
+    points of the same parameter, length.
+    """
+
+    pcurve: Pcurve
+    sense: int
+    residual: float
+
+
+def isoline(side: Side) -> Pcurve:
+    """The pcurve of an edge on its own first side: exact."""
+    return _straight(side, np.array([1.0, 0.0]), np.array([0.0, 1.0]))
+
+
+def correspond(one: Stretch, other: Stretch, size: float) -> Correspondence:
+    """The second stretch's parameter along the first.
+
+    Raises
+    ------
+    BodyError
+        The second stretch runs back and forth along the first.
+    """
+    sense = 1 if one.first == other.first else -1
+    a, b = one.side.first, one.side.last
+    ends = (other.side.first, other.side.last)[::sense]
+    nodes = np.array([other.side.nearest(one.side.point(a + x * (b - a))) for x in NODES])
+    near = float(nodes[:, 1].max())
+    row, scale = _moebius(NODES, nodes[:, 0], *ends)
+    # from shares of [a, b] to the edge's own parameter
+    width = b - a
+    row = np.array([row[0] / width, row[1] - row[0] * a / width])
+    scale = np.array([scale[0] / width, scale[1] - scale[0] * a / width])
+    times = a + CHECKS * width
+    points = [one.side.point(float(t)) for t in times]
+    straight = (row[0] * times + row[1]) / (scale[0] * times + scale[1])
+    residual = _farthest(other.side, straight, points)
+    if residual <= near * (1.0 + STRAIGHT_SHARE) + STRAIGHT * size:
+        return Correspondence(_straight(other.side, row, scale), sense, residual)
+    return _spline(one, other, sense, max(SPLINE * size, SPLINE_SHARE * near))
+
+
+def _farthest(side: Side, parameters: Array, points: list[Array]) -> float:
+    return max(
+        float(np.linalg.norm(side.point(float(s)) - x))
+        for s, x in zip(parameters, points, strict=True)
+    )
+
+
+def _moebius(x: Array, s: Array, s0: float, s1: float) -> tuple[Array, Array]:
+    """(numerator, denominator) of s(x), with s(0) = s0 and s(1) = s1, nearest to the nodes.
+
+    s = (s0 (1 - x) + k s1 x)/(1 - x + k x) for one k > 0; k = 1 is affine.
+    """
+    left, right = (s - s0) * (1.0 - x), (s1 - s) * x
+    k = float(left @ right / (right @ right)) if right.any() else 1.0
+    if not k > 0.0 or abs(k - 1.0) < 1e-13:
+        k = 1.0
+    return np.array([k * s1 - s0, s0]), np.array([k - 1.0, 1.0])
+
+
+def _straight(side: Side, row: Array, scale: Array) -> Pcurve:
+    """The isoline at (row . (t, 1))/(scale . (t, 1)) of its free parameter."""
+    moving = np.array([row[0], 0.0, row[1]])
+    weight = np.array([scale[0], 0.0, scale[1]])
+    level = side.level * weight
+    rows = (moving, level) if side.name[0] == "v" else (level, moving)
+    return Pcurve(L.LINE, np.array([*rows, weight]))
+
+
+def _spline(one: Stretch, other: Stretch, sense: int, goal: float) -> Correspondence:
+    """A piecewise polynomial through the nearest points, cut until it is within the goal."""
+    a, b = one.side.first, one.side.last
+    ends = (other.side.first, other.side.last)[::sense]
+    waiting, done = [(a, b, 0)], []
+    while waiting:
+        low, high, depth = waiting.pop()
+        times = 0.5 * (low + high) - 0.5 * (high - low) * SPAN_NODES
+        values = np.array([other.side.nearest(one.side.point(float(t)))[0] for t in times])
+        if low == a:
+            values[0] = ends[0]
+        if high == b:
+            values[-1] = ends[1]
+        if (np.diff(values) * sense <= 0.0).any():
+            raise BodyError(
+                f"{other.label} runs back and forth along {one.label}: their nearest points do "
+                "not follow each other."
+            )
+        row = np.linalg.solve(_bernstein(0.5 - 0.5 * SPAN_NODES), values)
+        if depth == MAX_CUTS or _misfit(one, other, row, low, high) <= goal:
+            done.append((low, high, row))
+        else:
+            middle = 0.5 * (low + high)
+            waiting += [(middle, high, depth + 1), (low, middle, depth + 1)]
+    knots = np.repeat([d[0] for d in done] + [b], DEGREE)
+    knots = np.concatenate([[a], knots, [b]])
+    # neighbours share the point where they meet: the same nearest point, to roundoff
+    moving = np.concatenate([done[0][2][:1], *(d[2][1:] for d in done)])
+    moving[0], moving[-1] = ends
+    level = np.full(len(moving), other.side.level)
+    columns = (moving, level) if other.side.name[0] == "v" else (level, moving)
+    pcurve = NurbsPcurve(np.column_stack(columns), knots)
+    index = 0 if other.side.name[0] == "v" else 1
+    dense = np.linspace(a, b, 16 * len(done) + 1)
+    points = [one.side.point(float(t)) for t in dense]
+    along = np.array([pcurve.point(float(t))[index] for t in dense])
+    return Correspondence(pcurve, sense, _farthest(other.side, along, points))
+
+
+def _bernstein(x: Array) -> Array:
+    """Values of the Bernstein polynomials of DEGREE, (len(x), DEGREE + 1)."""
+    k = np.arange(DEGREE + 1)
+    values: Array = comb(DEGREE, k) * x[:, None] ** k * (1.0 - x[:, None]) ** (DEGREE - k)
+    return values
+
+
+def _misfit(one: Stretch, other: Stretch, row: Array, low: float, high: float) -> float:
+    """How far a span runs from the nearest points between its nodes, length in space."""
+    fitted = _bernstein(SPAN_CHECKS) @ row
+    worst = 0.0
+    for x, s in zip(SPAN_CHECKS, fitted, strict=True):
+        t, _ = other.side.nearest(one.side.point(float(low + x * (high - low))))
+        worst = max(worst, float(np.linalg.norm(other.side.point(float(s)) - other.side.point(t))))
+    return worst

@@ -1,0 +1,95 @@
+"""Which stretch of a side lies along which: every one along exactly one other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from standoff.bodies.sewing.corners import Stretch
+from standoff.bodies.sewing.sides import gap
+from standoff.bodies.topology import BodyError
+
+# Unmatched sides that one message names.
+MAX_NAMED = 6
+
+
+def match(stretches: Sequence[Stretch], tolerance: float) -> list[tuple[Stretch, Stretch]]:
+    """Pairs of stretches that lie along each other.
+
+    Raises
+    ------
+    BodyError
+        A stretch along none, naming the nearest and its distance; or along more than one.
+    """
+    groups: dict[tuple[int, int], list[int]] = {}
+    for k, s in enumerate(stretches):
+        groups.setdefault((min(s.first, s.last), max(s.first, s.last)), []).append(k)
+    partners: list[list[int]] = [[] for _ in stretches]
+    for group in groups.values():
+        for a, b in _candidates(stretches, group, tolerance):
+            if gap(stretches[a].side, stretches[b].side) <= tolerance:
+                partners[a].append(b)
+                partners[b].append(a)
+    for k, found in enumerate(partners):
+        if len(found) > 1:
+            names = ", ".join(stretches[m].label for m in (k, *found))
+            raise BodyError(
+                f"{names} lie along one curve: an edge joins two patches. Leave out patches "
+                f"given twice, or give a smaller tolerance than {tolerance:.3g}."
+            )
+    loose = [k for k, found in enumerate(partners) if not found]
+    if loose:
+        raise BodyError(_loose_message(stretches, loose, tolerance))
+    return [(stretches[k], stretches[found[0]]) for k, found in enumerate(partners) if k < found[0]]
+
+
+def _candidates(
+    stretches: Sequence[Stretch], group: list[int], tolerance: float
+) -> list[tuple[int, int]]:
+    """Pairs of a group whose middles are near each other's polylines."""
+    if len(group) == 2:
+        return [(group[0], group[1])]
+    found = []
+    middles = np.array([stretches[k].side.probes[3] for k in group])
+    for i, a in enumerate(group):
+        side = stretches[a].side
+        reach = side.length / 8.0 + tolerance
+        away = np.linalg.norm(side.polyline[:, None] - middles[None], axis=2).min(axis=0)
+        found += [(a, group[j]) for j in range(i + 1, len(group)) if away[j] <= reach]
+    return found
+
+
+def _loose_message(stretches: Sequence[Stretch], loose: list[int], tolerance: float) -> str:
+    """Every open side with the open side that is nearest to it, and by how much."""
+    open_sides = [stretches[k] for k in loose]
+    points = np.concatenate([s.side.polyline for s in open_sides])
+    owner = np.repeat(np.arange(len(open_sides)), [len(s.side.polyline) for s in open_sides])
+    tree = KDTree(points)
+    lines = []
+    for k, stretch in enumerate(open_sides[:MAX_NAMED]):
+        near = _neighbours(stretch, tree, owner) - {k}
+        near = near or set(range(len(open_sides))) - {k}
+        misses = {m: _apart(stretch, open_sides[m]) for m in near}
+        line = f"{stretch.label} matches nothing"
+        if misses:
+            m = min(misses, key=lambda m: misses[m])
+            line += f": nearest open side is {open_sides[m].label}, {misses[m]:.2g} away"
+        lines.append(line)
+    more = len(loose) - len(lines)
+    lines.append(f"tolerance {tolerance:.3g}" + (f" ({more} more sides are open)" if more else ""))
+    return "The shell is open: " + "; ".join(lines) + "."
+
+
+def _neighbours(stretch: Stretch, tree: KDTree, owner: NDArray[np.intp]) -> set[int]:
+    """Open sides with points among the nearest to a stretch's."""
+    count = min(len(owner), 5 * len(stretch.side.polyline))
+    return {int(owner[m]) for x in stretch.side.probes for m in tree.query(x, k=count)[1]}
+
+
+def _apart(one: Stretch, other: Stretch) -> float:
+    """How far the points of one stretch are from another at most, its ends too."""
+    points = [*one.side.probes, one.side.polyline[0], one.side.polyline[-1]]
+    return max(other.side.nearest(x)[1] for x in points)

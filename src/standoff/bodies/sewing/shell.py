@@ -1,0 +1,147 @@
+"""Is what was sewn one closed shell, and which way out is: senses of patches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from standoff.bodies.sewing.corners import Outline, Stretch
+from standoff.bodies.sewing.patches import Patch
+from standoff.bodies.sewing.sides import SENSES
+from standoff.bodies.topology import BodyError
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
+
+Pairs = Sequence[tuple[Stretch, Stretch]]
+# Gauss points along u and v for the volume, of which the sign and the order are wanted.
+VOLUME_POINTS = 6
+# A shell whose volume is below this many tolerances times its area is a sheet, no body.
+LEAST_THICKNESS = 2.0
+# Patches of a shell that one message names.
+MOST_NAMED = 6
+
+
+def check_shell(patches: Sequence[Patch], shape: Outline, pairs: Pairs) -> None:
+    """Raise BodyError for two shells, and for a vertex where patches touch only."""
+    rows = np.array([(a.patch, b.patch) for a, b in pairs], dtype=np.intp).reshape(-1, 2)
+    n = len(patches)
+    graph = coo_matrix((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(n, n))
+    count, shell = connected_components(graph, directed=False)
+    if count > 1:
+        names = [_names(patches, np.flatnonzero(shell == s).tolist()) for s in range(count)]
+        raise BodyError(
+            f"{count} shells that share no side: {' | '.join(names[:3])}. Make one body of each."
+        )
+    _check_fans(patches, shape, pairs)
+
+
+def _names(patches: Sequence[Patch], numbers: Sequence[int]) -> str:
+    given = sorted({patches[k].given for k in numbers})
+    dots = ", ..." if len(given) > MOST_NAMED else ""
+    return "patches " + ", ".join(str(k) for k in given[:MOST_NAMED]) + dots
+
+
+def _check_fans(patches: Sequence[Patch], shape: Outline, pairs: Pairs) -> None:
+    """The patches around a vertex follow each other in one ring."""
+    edge = {id(s): j for j, pair in enumerate(pairs) for s in pair}
+    links: list[tuple[int, int]] = []
+    place: dict[tuple[int, int], int] = {}  # (edge, vertex at its end) -> node
+    for p in range(len(patches)):
+        ring = _ring(shape, p)
+        for k, (item, stop) in enumerate(ring):
+            following = ring[(k + 1) % len(ring)][0]
+            nodes = [place.setdefault((edge[id(s)], stop), len(place)) for s in (item, following)]
+            links.append((nodes[0], nodes[1]))
+    rows = np.array(links, dtype=np.intp)
+    graph = coo_matrix((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(len(place),) * 2)
+    _, fan = connected_components(graph, directed=False)
+    fans: dict[int, set[int]] = {}
+    for (_, vertex), node in place.items():
+        fans.setdefault(vertex, set()).add(int(fan[node]))
+    for vertex, found in fans.items():
+        if len(found) > 1:
+            names = sorted(
+                {s.label for row in shape.stretches for s in row if vertex in (s.first, s.last)}
+            )
+            raise BodyError(
+                f"Patches touch only in the point {shape.vertices[vertex]}: {len(found)} fans "
+                f"meet there ({', '.join(names)})."
+            )
+
+
+def _ring(shape: Outline, patch: int) -> list[tuple[Stretch, int]]:
+    """A patch's stretches counterclockwise in (u, v), each with the vertex where it ends."""
+    ring: list[tuple[Stretch, int]] = []
+    for number in range(4):
+        row = [s for s in shape.stretches[patch] if s.number == number]
+        sense = SENSES[row[0].side.name] if row else 1
+        ring += [(s, s.last if sense > 0 else s.first) for s in row[::sense]]
+    return ring
+
+
+def outward_senses(
+    patches: Sequence[Patch], pairs: Pairs, senses: Sequence[int], tolerance: float
+) -> tuple[list[int], list[str]]:
+    """+1 where x_u cross x_v of a patch points outward, else -1; and notes of those turned.
+
+    senses : for every pair +1 where the free parameters grow together.
+    """
+    neighbours: list[list[tuple[int, int]]] = [[] for _ in patches]
+    for (a, b), along in zip(pairs, senses, strict=True):
+        # counterclockwise patches run against each other along their edge
+        relation = -SENSES[a.side.name] * SENSES[b.side.name] * along
+        neighbours[a.patch].append((b.patch, relation))
+        neighbours[b.patch].append((a.patch, relation))
+    sign = [0] * len(patches)
+    sign[0], waiting = 1, [0]
+    while waiting:
+        p = waiting.pop()
+        for q, relation in neighbours[p]:
+            if sign[q] == 0:
+                sign[q] = relation * sign[p]
+                waiting.append(q)
+            elif sign[q] != relation * sign[p]:
+                raise BodyError(
+                    f"The shell has one side only (as a Moebius strip has): {patches[p].label} "
+                    f"and {patches[q].label} cannot both face outward."
+                )
+    volume, area = _volume(patches, sign)
+    if abs(volume) <= LEAST_THICKNESS * tolerance * area:
+        raise BodyError(
+            f"The patches enclose no volume: {abs(volume):.3g} at an area of {area:.3g}, "
+            f"tolerance {tolerance:.3g}."
+        )
+    if volume < 0.0:
+        sign = [-s for s in sign]
+    turned = sorted({patches[p].given for p, s in enumerate(sign) if s < 0})
+    return sign, [f"patch {k}: its x_u cross x_v points inward, turned outward" for k in turned]
+
+
+def _volume(patches: Sequence[Patch], sign: Sequence[int]) -> tuple[float, float]:
+    """(signed volume, area), by Gauss quadrature."""
+    nodes, weights = np.polynomial.legendre.leggauss(VOLUME_POINTS)
+    origin = _middle(patches[0].surface)
+    spots = [(a, b) for a in nodes for b in nodes]
+    cells = np.array([a * b for a in weights for b in weights])
+    volume = area = 0.0
+    for patch, s in zip(patches, sign, strict=True):
+        u0, u1, v0, v1 = patch.surface.domain
+        jets = np.array(
+            [
+                patch.surface.jet(0.5 * (u0 + u1 + a * (u1 - u0)), 0.5 * (v0 + v1 + b * (v1 - v0)))
+                for a, b in spots
+            ]
+        )
+        cell = np.cross(jets[:, 1], jets[:, 2]) * cells[:, None]
+        scale = 0.25 * (u1 - u0) * (v1 - v0)
+        volume += s * scale * float(np.einsum("ij,ij", jets[:, 0] - origin, cell)) / 3.0
+        area += scale * float(np.linalg.norm(cell, axis=1).sum())
+    return volume, area
+
+
+def _middle(surface: Surface) -> Array:
+    u0, u1, v0, v1 = surface.domain
+    return surface.jet(0.5 * (u0 + u1), 0.5 * (v0 + v1))[0]

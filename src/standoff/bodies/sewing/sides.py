@@ -1,0 +1,116 @@
+"""The sides of patches: isolines in space, with projection on them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
+
+# Counterclockwise in (u, v), each with the sense in which its free parameter runs that way.
+SIDE_NAMES = ("v0", "u1", "v1", "u0")
+SENSES = {"v0": 1, "u1": 1, "v1": -1, "u0": -1}
+# Points of the polyline that starts a projection.
+POLYLINE = 17
+# Newton steps of one projection: it starts within a link of the polyline.
+PROJECTION_STEPS = 30
+# A projection has arrived when its step is below this part of the side's parameter range.
+PROJECTION_STEP = 4e-16
+# Shares of a side where it is compared with another: none symmetric, none at an end.
+PROBES = np.array([0.03, 0.17, 0.31, 0.48, 0.64, 0.81, 0.96])
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """The isoline of a patch at `level`, its free parameter from first to last, or a part of it."""
+
+    surface: Surface
+    patch: str
+    name: str
+    level: float
+    first: float
+    last: float
+
+    @staticmethod
+    def of(surface: Surface, patch: str, name: str) -> Side:
+        u0, u1, v0, v1 = surface.domain
+        level = {"u0": u0, "u1": u1, "v0": v0, "v1": v1}[name]
+        first, last = (u0, u1) if name[0] == "v" else (v0, v1)
+        return Side(surface, patch, name, level, first, last)
+
+    @property
+    def label(self) -> str:
+        return f"{self.patch} side {self.name}"
+
+    def part(self, first: float, last: float) -> Side:
+        return replace(self, first=first, last=last)
+
+    def parameters(self, t: float) -> tuple[float, float]:
+        return (t, self.level) if self.name[0] == "v" else (self.level, t)
+
+    def jet(self, t: float) -> tuple[Array, Array, Array]:
+        """(x, x_t, x_tt) along the side."""
+        jet = self.surface.jet(*self.parameters(t))
+        return (jet[0], jet[1], jet[3]) if self.name[0] == "v" else (jet[0], jet[2], jet[5])
+
+    def point(self, t: float) -> Array:
+        return self.jet(t)[0]
+
+    @cached_property
+    def knots(self) -> Array:
+        return np.linspace(self.first, self.last, POLYLINE)
+
+    @cached_property
+    def polyline(self) -> Array:
+        """(POLYLINE, 3) points from the first to the last."""
+        return np.array([self.point(float(t)) for t in self.knots])
+
+    @cached_property
+    def length(self) -> float:
+        return float(np.linalg.norm(np.diff(self.polyline, axis=0), axis=1).sum())
+
+    @cached_property
+    def probes(self) -> Array:
+        """Points inside the side, (7, 3)."""
+        return np.array([self.point(self.first + s * (self.last - self.first)) for s in PROBES])
+
+    def collapsed(self, tolerance: float) -> bool:
+        """Is the whole side within the tolerance of one point?"""
+        points = self.polyline
+        return float(np.linalg.norm(points - points.mean(axis=0), axis=1).max()) <= tolerance
+
+    def closed(self, tolerance: float) -> bool:
+        """Does a side that has not collapsed end where it begins?"""
+        ends = float(np.linalg.norm(self.polyline[-1] - self.polyline[0]))
+        return ends <= tolerance and not self.collapsed(tolerance)
+
+    def nearest(self, x: Array) -> tuple[float, float]:
+        """(parameter, distance) of the side's point that is nearest to x."""
+        k = int(((self.polyline - x) ** 2).sum(axis=1).argmin())
+        low = float(self.knots[max(k - 1, 0)])
+        high = float(self.knots[min(k + 1, POLYLINE - 1)])
+        t = float(self.knots[k])
+        for _ in range(PROJECTION_STEPS):
+            y, yt, ytt = self.jet(t)
+            away = y - x
+            slope = float(away @ yt)
+            speed = float(yt @ yt)
+            bend = speed + float(away @ ytt)
+            if speed == 0.0:
+                break
+            step = -slope / (bend if bend > 0.1 * speed else speed)
+            new = min(max(t + step, low), high)
+            if abs(new - t) <= PROJECTION_STEP * (self.last - self.first):
+                t = new
+                break
+            t = new
+        return t, float(np.linalg.norm(self.point(t) - x))
+
+
+def gap(one: Side, other: Side) -> float:
+    """The greatest distance of points inside one side from the other, both ways."""
+    forth = max(other.nearest(x)[1] for x in one.probes)
+    return max(forth, max(one.nearest(x)[1] for x in other.probes))

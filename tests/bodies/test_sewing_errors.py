@@ -1,0 +1,213 @@
+"""What cannot be sewn is refused, with the patches, their sides and by how much."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import standoff as so
+from families import patch_shells as shells
+from standoff.geometry import BezierPatch, Cylinder, Plane, ellipsoid_octants, ellipsoid_patches
+
+IDENTITY = np.eye(3)
+
+
+def moved(patch, shift):
+    return patch.transformed(IDENTITY, np.asarray(shift, dtype=float))
+
+
+def box_with(number, shift):
+    """The box's patches, one moved out of its place."""
+    patches = shells.box((1.0, 1.0, 1.0))
+    patches[number] = moved(patches[number], shift)
+    return patches
+
+
+def fails(patches, words, **options):
+    with pytest.raises(so.BodyError, match=words):
+        so.Body.from_patches(patches, **options)
+
+
+def test_a_side_that_matches_nothing_names_its_nearest_and_the_distance():
+    fails(
+        box_with(5, (0, 0, 3.2e-3)),
+        r"The shell is open: patch 0 side \w\w matches nothing: nearest open side is patch 5 side "
+        r"\w\w, 0\.0032 away; .*tolerance 1\.73e-09",
+    )
+    with pytest.raises(so.BodyError) as error:
+        so.Body.from_patches(box_with(5, (0, 0, 3.2e-3)))
+    text = str(error.value)
+    assert text.count("matches nothing") == 6
+    assert "(2 more sides are open)" in text  # four of patch 5 and its four neighbours'
+    assert "patch 4" not in text  # which lies on the other side
+
+
+def test_the_tolerance_decides():
+    patches = box_with(5, (0, 0, 1e-7))
+    fails(patches, r"1e-07 away.*tolerance 9e-08", tolerance=9e-8)
+    report = so.Body.from_patches(patches, tolerance=2e-7).check()
+    assert report.sewing_residual == pytest.approx(1e-7, rel=1e-6)
+    assert report.slack >= report.sewing_residual
+    assert report.sewing_tolerance == 2e-7
+
+
+@pytest.mark.parametrize("missing", [0, 3])
+def test_an_open_shell(missing):
+    patches = list(ellipsoid_patches(1.0, 0.8, 0.6))
+    del patches[missing]
+    fails(patches, r"The shell is open: patch \d side .* matches nothing: nearest open side is")
+
+
+def test_one_patch_alone_is_open():
+    fails(ellipsoid_patches(1, 1, 1)[:1], "The shell is open: patch 0 side v0 matches nothing")
+
+
+def test_a_patch_given_twice():
+    patches = shells.box((1, 2, 3))
+    fails(
+        [*patches, patches[4]],
+        r"patch \d side \w\w, patch \d side \w\w, patch 6 side \w\w lie along one curve.*twice",
+    )
+
+
+def test_two_shells():
+    near, far = shells.box((1, 1, 1)), [moved(p, (5, 0, 0)) for p in shells.box((1, 1, 1))]
+    fails(
+        near + far,
+        r"2 shells that share no side: patches 0, 1, 2, 3, 4, 5 \| patches 6, 7, 8, 9, 10, 11",
+    )
+
+
+def test_boxes_that_touch_in_a_corner():
+    near, far = shells.box((1, 1, 1)), [moved(p, (1, 1, 1)) for p in shells.box((1, 1, 1))]
+    fails(near + far, "2 shells")
+
+
+def sections_of_a_bent_bar():
+    """Triangles across an arc that nearly closes, and the point where its ends would meet."""
+    arc = [np.array([np.cos(t), np.sin(t), 0.0]) for t in np.linspace(0.5, 2 * np.pi - 0.5, 6)]
+    across = np.array([[0, 0, 1], [1, 0, -1], [-1, 0, -1]])
+    turns = [np.column_stack([x, np.cross([0, 0, 1], x), [0, 0, 1]]) for x in arc]
+    return [3.0 * x + 0.3 * across @ turn.T for x, turn in zip(arc, turns, strict=True)]
+
+
+def bar(sections):
+    """Ruled patches between neighbouring triangles."""
+    return [
+        BezierPatch([[one[k], other[k]], [one[k - 1], other[k - 1]]])
+        for one, other in pairwise(sections)
+        for k in range(3)
+    ]
+
+
+def test_a_bar_whose_ends_touch_in_a_point():
+    sections, tip = sections_of_a_bent_bar(), np.array([3.0, 0.0, 0.0])
+    ends = [
+        BezierPatch([[section[k], tip], [section[k - 1], tip]])
+        for section in (sections[0], sections[-1])
+        for k in range(3)
+    ]
+    fails(
+        [*bar(sections), *ends],
+        r"Patches touch only in the point \[3\. 0\. 0\.\]: 2 fans meet there \(patch 15 side",
+    )
+
+
+def test_a_closed_shell_of_one_side():
+    """The tetrahemihexahedron: three squares through the centre, four triangles."""
+    x, y, z = np.eye(3)
+    squares = [BezierPatch([[a, b], [-b, -a]]) for a, b in ((x, y), (y, z), (z, x))]
+    corners = [(x, y, z), (x, -y, -z), (-x, y, -z), (-x, -y, z)]
+    triangles = [BezierPatch([[a, c], [b, c]]) for a, b, c in corners]
+    fails([*squares, *triangles], r"one side only.*patch \d and patch \d cannot both face outward")
+
+
+def test_a_sheet_encloses_nothing():
+    plane = Plane(IDENTITY, np.zeros(3)).restricted(0, 1, 0, 1)
+    back = Plane(np.diag([1.0, 1.0, -1.0]), np.zeros(3)).restricted(0, 1, 0, 1)
+    fails([plane, back], "enclose no volume")
+
+
+def test_patches_without_extent():
+    dot = BezierPatch([[(0, 0, 0), (1e-12, 0, 0)], [(0, 1e-12, 0), (1e-12, 1e-12, 0)]])
+    fails([*shells.box((1, 1, 1)), dot], "patch 6 has no extent: .* tolerance 1.73e-09")
+    fails([dot], "size|open|extent")
+
+
+def test_two_neighbouring_sides_collapsed():
+    tip = (0.0, 0.0, 1.0)
+    bent = BezierPatch([[tip, tip, tip], [tip, (1, 0, 0), (1, 1, 0)], [tip, (0, 1, 0), (0, 0, 0)]])
+    fails([bent], r"patch 0: its sides v0, u0 have collapsed; only one side")
+
+
+@pytest.mark.parametrize(
+    ("patches", "words"),
+    [
+        ([], "No patches"),
+        ([Plane(IDENTITY, np.zeros(3))], r"patch 0 is a Plane without limits.*\.restricted\(u0"),
+        ([Cylinder(IDENTITY, np.zeros(3))], "patch 0 is a Cylinder without limits"),
+        (["patch"], "patch 0 is 'patch': give a Surface"),
+    ],
+)
+def test_what_is_no_patch(patches, words):
+    fails(patches, words)
+
+
+@pytest.mark.parametrize("name", ["tolerance", "convexity_tolerance", "radius"])
+@pytest.mark.parametrize("value", [-1.0, np.nan, np.inf, "wide"])
+def test_bad_numbers(name, value):
+    with pytest.raises(ValueError, match=f"^{name} "):
+        so.Body.from_patches(shells.box((1, 1, 1)), **{name: value})
+
+
+def test_a_tolerance_beyond_reason():
+    fails(shells.box((1, 1, 1)), "tolerance = 1 is no small part of the patches' size", tolerance=1)
+
+
+def test_corners_chained_by_a_wide_tolerance():
+    slim = shells.cube_sphere(8)
+    fails(slim, "chained|same vertex|extent|collapsed", tolerance=0.2)
+
+
+def test_hollow_and_dented_shells():
+    patches = shells.box((1.0, 1.0, 1.0))
+    a, b, c, d = (np.array(p) for p in ((-1, -1), (1, -1), (-1, 1), (1, 1)))
+    top = [np.append(0.5 * p, 0.5) for p in (a, b, c, d)]
+    sunk = np.array([0.0, 0.0, 0.2])
+    funnel = [
+        BezierPatch([[top[i], sunk], [top[j], sunk]]) for i, j in ((0, 1), (1, 3), (3, 2), (2, 0))
+    ]
+    words = r"edge \d+ between patch \d and patch \d is concave by [\d.]+ degrees at \["
+    fails([*patches[:5], *funnel], words)
+
+
+def test_a_bowl_is_hollow():
+    """A block whose top is a paraboloid pressed in: convex by itself, the wrong way round."""
+    t = np.array([-1.0, 0.0, 1.0])
+    square = np.array([[1.0, -1.0, 1.0]])
+    height = 2.0 + square + square.T  # control points of z = 2 + u² + v² on [-1, 1]²
+    top = np.stack([*np.meshgrid(t, t, indexing="ij"), height], axis=-1)
+    floor = top * [1, 1, 0]
+    walls = [(top[0], floor[0]), (top[-1], floor[-1]), (top[:, 0], floor[:, 0])]
+    walls.append((top[:, -1], floor[:, -1]))
+    patches = [top, floor, *(np.stack(wall, axis=1) for wall in walls)]
+    fails([BezierPatch(points) for points in patches], r"patch 0 \(BezierPatch\) is hollow near")
+
+
+def test_a_shell_that_winds_twice_round_its_tips():
+    """A bipyramid over a locally convex closed curve of two turns: it crosses itself."""
+    turns = 0.2 + np.linspace(0.0, 4.0 * np.pi, 12, endpoint=False)
+    ring = [(1.0 + 0.4 * np.cos(0.5 * t)) * np.array([np.cos(t), np.sin(t), 0.0]) for t in turns]
+    tips = np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]])
+    triangles = [
+        BezierPatch([[a, tip], [b, tip]])
+        for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)
+        for tip in tips
+    ]
+    fails(triangles, r"vertex \d+ .* wind round it 2 times")
+
+
+def test_octants_that_do_not_fit_name_the_octant():
+    patches = list(ellipsoid_octants(1, 1, 1))
+    patches[3] = ellipsoid_octants(1, 1, 0.9)[3]
+    fails(patches, "patch 3 side .* matches nothing")
