@@ -70,9 +70,6 @@ def forms_of(points: Array, reach: float) -> Forms:
     for side in range(4):
         if _width(points, side) <= COLLAPSE:
             poles.append(side)
-            # the division raises what rounding did by the degree across the side, twice
-            degree = points.shape[2 if side >= 2 else 1] - 1
-            noise = (noise[0] * degree**2, noise[1] * degree**2)
             jacobian, normal, second, smooth = _freed(jacobian, normal, second, side, noise)
             if not smooth:
                 sharp.append(side)
