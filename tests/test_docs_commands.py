@@ -113,3 +113,11 @@ def test_symbols_table_names_what_is_in_the_code() -> None:
         source = (folder / file).read_text("utf-8")
         for name in re.findall(r"`(\w+)`", cells[1] + cells[-1]):
             assert re.search(rf"\b{name}\b", source), f"{file} has no {name}: {row}"
+
+
+def test_rooms_of_the_architecture_exist() -> None:
+    page = (DOCS / "architecture.md").read_text("utf-8")
+    rooms = set(re.findall(r"`((?:kernels|geometry|motion|bodies|tracking|scene)/[\w/.]+)`", page))
+    assert len(rooms) > 20
+    missing = [room for room in sorted(rooms) if not (ROOT / "src/standoff" / room).exists()]
+    assert not missing
