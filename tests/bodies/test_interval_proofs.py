@@ -5,9 +5,11 @@ import pytest
 import sympy
 
 from standoff.bodies.proofs.formulas import forms, signs, symbolic
+from standoff.bodies.proofs.formulas.normals import least_cosines
 from standoff.bodies.proofs.formulas.signs import proven_sign
 from standoff.bodies.proofs.interval import prove
 from standoff.geometry.formulas import FormulaSurface
+from standoff.geometry.formulas.enclosures import grid
 
 PI = np.pi
 SQUARE = (-1, 1, -1, 1)
@@ -281,6 +283,32 @@ def test_signs(text, domain, sign):
     expression = sympy.sympify(text, rational=True)
     assert proven_sign(expression, ("u", "v"), domain) == sign
     assert proven_sign(-expression, ("u", "v"), domain) == -sign
+
+
+def test_normals_lean_no_more_than_bounded():
+    """On a unit sphere the cosine to the axis z is the height."""
+    cap = FormulaSurface("u", "v", "sqrt(1 - u**2 - v**2)", (-0.5, 0.5, -0.6, 0.6))
+    boxes = grid(cap.domain, 32)
+    cosines = least_cosines(cap.formula, boxes, np.eye(3), np.array([0.0, 0.0, 1.0]))
+    far = np.maximum(np.abs(boxes.low), np.abs(boxes.high))
+    heights = np.sqrt(1 - (far**2).sum(axis=1))
+    assert (cosines <= heights).all()
+    np.testing.assert_allclose(cosines, heights, rtol=0.1)
+    squeezed = np.linalg.inv(np.diag([1.0, 1.0, 0.1])).T
+    steep = least_cosines(cap.formula, boxes, squeezed, np.array([0.0, 0.0, 1.0]))
+    known = 10 * heights / np.hypot(10 * heights, np.sqrt(1 - heights**2))
+    assert (steep <= known + 1e-12).all()
+
+
+def test_steeper_dents_rise_further():
+    """A shear along z keeps the graph's own curvature but leans its normals."""
+    groove = FormulaSurface("u", "v", "-16*d*(u**4 - u**2/2) - v**2/2", SQUARE, {"d": 1e-6})
+    upright = prove(groove)
+    sheared = np.array([[1.0, 0, 0], [0, 1.0, 0], [0, 3.0, 1.0]])
+    leaning = prove(groove.transformed(sheared, np.zeros(3)))
+    assert upright.defect < leaning.defect < np.inf
+    assert upright.hemisphere
+    assert leaning.hemisphere
 
 
 def test_constants_have_their_sign():

@@ -17,7 +17,7 @@ from standoff.bodies.proofs.formulas.signs import (
 )
 from standoff.geometry.formulas.compiled import Formula
 from standoff.geometry.formulas.enclosures import Boxes, grid, mapped
-from standoff.geometry.intervals import Interval
+from standoff.geometry.intervals import TINY, Interval
 from standoff.geometry.validation import Array
 
 # Boxes evaluated for one axis.
@@ -36,10 +36,9 @@ def hemisphere_axis(formula: Formula, domain: tuple[float, ...]) -> tuple[float,
     normals = 0.5 * (seen.lo + seen.hi).T
     lengths = np.linalg.norm(normals, axis=1)
     normals = normals[lengths > 0.0] / lengths[lengths > 0.0, None]
-    # axes of coordinates first: seen along one of them a graph's normals have one exact sign
-    for axis in [*COORDINATES, centre_of_normals(normals)]:
-        seen_so = axis is not None and bool(((normals @ axis) > 0.0).all())
-        if axis is not None and seen_so and _all_on_one_side(bounds, domain, axis):
+    # the axes of coordinates too: seen along one of them a steep graph's normals have a sure sign
+    for axis in _promising(normals):
+        if _all_on_one_side(bounds, domain, axis):
             return tuple(float(a) for a in axis)
     return None
 
@@ -49,13 +48,22 @@ def _normal_bounds(formula: Formula) -> Bounds:
     return Bounds(list(curvature_forms(formula).normal), formula.variables)
 
 
+def _promising(normals: Array) -> list[Array]:
+    """Axes that all normals (n, 3) seen are near enough to, the best first."""
+    if not len(normals) or not np.isfinite(normals).all():
+        return []
+    mean = normals.mean(axis=0)
+    axes = [*COORDINATES, centre_of_normals(normals), mean / max(np.linalg.norm(mean), TINY)]
+    least = [(float((normals @ a).min()), k) for k, a in enumerate(axes) if a is not None]
+    ranked = [axes[k] for cosine, k in sorted(least, reverse=True) if cosine > 0.0]
+    return [a for a in ranked if a is not None]
+
+
 def centre_of_normals(normals: Array) -> Array | None:
-    """The unit axis whose least product with (n, 3) unit normals is greatest, None if not > 0.
+    """A unit axis with which all (n, 3) normals make less than 90 degrees, None if there is none.
 
     A linear program: the greatest t with normals @ a >= t and |a_i| <= 1.
     """
-    if not len(normals) or not np.isfinite(normals).all():
-        return None
     rows = np.column_stack([-normals, np.ones(len(normals))])
     limits = [(-1.0, 1.0)] * 3 + [(None, None)]
     found = linprog([0.0, 0.0, 0.0, -1.0], rows, np.zeros(len(rows)), bounds=limits)
