@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -77,14 +78,24 @@ SKIN_POINTS = 400
 """Directions of the ball that is swept over the core to draw its skin."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Parts:
     """What is drawn of a body."""
 
     body: Body
     meshes: list[FaceMesh]
     lines: list[EdgeLine]
-    size: float
+
+    @cached_property
+    def cloud(self) -> Array:
+        """All points of the core that are drawn, (n, 3)."""
+        spots = [self.body.vertex_points, *(line.points for line in self.lines)]
+        return np.concatenate([*spots, *(mesh.points for mesh in self.meshes)])
+
+    @cached_property
+    def size(self) -> float:
+        """Diagonal of the box around all that is drawn [length]."""
+        return float(np.linalg.norm(np.ptp(self.cloud, axis=0))) + 2.0 * self.body.radius or 2.0
 
 
 def write_body(path: Path, ending: str, body: Body, name: str, unit: str) -> None:
@@ -106,7 +117,7 @@ def write_body(path: Path, ending: str, body: Body, name: str, unit: str) -> Non
     OSError
         If the file cannot be written.
     """
-    parts = Parts(body, face_meshes(body), edge_lines(body), _drawn_size(body))
+    parts = Parts(body, face_meshes(body), edge_lines(body))
     planar = body.dimension == 2
     # Not through pyplot, which would ask for a display and keep the figure alive.
     views = [] if planar else [view for view in VIEWS if _shows(parts, _towards(view))]
@@ -127,11 +138,6 @@ def write_body(path: Path, ending: str, body: Body, name: str, unit: str) -> Non
         fontsize="small",
     )
     figure.savefig(path, format=ending)
-
-
-def _drawn_size(body: Body) -> float:
-    """The body's size; of one without bounds or extent, that of what is drawn."""
-    return body.size if body.bounded and body.size > 0.0 else 2.0
 
 
 def _title(body: Body, name: str) -> str:
@@ -301,9 +307,7 @@ def _apart(points: Array, spacing: float) -> list[int]:
 def _draw_skin(axes: Space, parts: Parts, towards: Array) -> None:
     """The core swept by its ball: the hull of balls at points of the core."""
     body = parts.body
-    core = [body.vertex_points, *(line.points for line in parts.lines)]
-    core += [mesh.points for mesh in parts.meshes]
-    spots = np.concatenate(core)
+    spots = parts.cloud
     if len(spots) > 4 and np.linalg.matrix_rank(spots - spots[0], tol=1e-9 * parts.size) == 3:
         spots = spots[ConvexHull(spots).vertices]
     points = (spots[:, None] + body.radius * _ball()).reshape(-1, 3)
@@ -384,15 +388,9 @@ def _name(axes: Space, spot: Array, text: str, *, framed: bool) -> None:
     )
 
 
-def _cloud(parts: Parts) -> Array:
-    """All points that are drawn, (n, 3)."""
-    spots = [parts.body.vertex_points, *(line.points for line in parts.lines)]
-    return np.concatenate([*spots, *(mesh.points for mesh in parts.meshes)])
-
-
 def _frame(axes: Space, parts: Parts, towards: Array, unit: str) -> None:
     """Equal scales around everything that is drawn; the body's axes and a scale in a corner."""
-    cloud = _cloud(parts)
+    cloud = parts.cloud
     middle = 0.5 * (cloud.min(axis=0) + cloud.max(axis=0))
     reach = float(np.linalg.norm(cloud - middle, axis=1).max()) + parts.body.radius
     half = (reach or 1.0) + 0.3 * NORMAL_LENGTH * parts.size

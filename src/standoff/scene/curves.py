@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
+from standoff.geometry import ConicArc, Curve, FormulaCurve, Line, NurbsCurve, RationalBezier
 from standoff.scene.reader import Table
 
 
@@ -40,9 +40,25 @@ def _ellipse(table: Table) -> Curve:
     return table.build(lambda: ConicArc(centre, a * along, b * across, first, last))
 
 
+def _nurbs(table: Table) -> Curve:
+    points = table.points("control_points", 2, at_least=2)
+    knots = table.numbers("knots")
+    weights = table.numbers("weights") if "weights" in table else None
+    return table.build_named(lambda: NurbsCurve(points, knots, weights))
+
+
+def _formula(table: Table) -> Curve:
+    x, y = table.formula("x"), table.formula("y")
+    first, last = table.number("start"), table.number("end")
+    parameters = table.named_numbers("parameters")
+    return table.build_named(lambda: FormulaCurve(x, y, "0", first, last, parameters))
+
+
 CURVES: Mapping[str, CurveKind] = {
     "line": CurveKind(("start", "end"), _line),
     "bezier": CurveKind(("control_points", "weights"), _bezier),
+    "nurbs": CurveKind(("control_points", "knots", "weights"), _nurbs),
+    "formula": CurveKind(("x", "y", "start", "end", "parameters"), _formula),
     "ellipse": CurveKind(("centre", "semi_axes", "tilt", "start_angle", "end_angle"), _ellipse),
 }
 """Every curve that a planar loop may be made of."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
@@ -72,13 +73,21 @@ class Table:
         The scene file, for messages and for file names relative to it.
     path : str
         Dotted key path of this table; empty for the top of the file.
+    json : bool
+        Whether the file is JSON: its messages then say what to write in JSON.
     """
 
     def __init__(
-        self, content: Mapping[str, object], *, file: Path | None = None, path: str = ""
+        self,
+        content: Mapping[str, object],
+        *,
+        file: Path | None = None,
+        path: str = "",
+        json: bool = False,
     ) -> None:
         self._content = content
         self._expected: tuple[str, ...] = ()
+        self._json = json
         self.file = file
         self.path = path
 
@@ -113,8 +122,33 @@ class Table:
             return construct()
         except SceneError:
             raise
-        except (ValueError, TypeError, OSError, ModuleNotFoundError) as error:
+        except (ValueError, TypeError, OSError, ImportError) as error:
             raise self.error(str(error), key) from error
+
+    def build_named(self, construct: Callable[[], Value]) -> Value:
+        """Return ``construct()``; an error that begins with a key of this table names that key."""
+        try:
+            return construct()
+        except (ValueError, TypeError, ImportError) as error:
+            message = str(error)
+            named = re.match(r"(?:Unknown symbol .* in )?(\w+)", message)
+            key = named[1] if named and named[1] in self else None
+            # A message that begins with several, as of all coordinates, is about the whole table.
+            if sum(f"{name} = " in message for name in self._content) > 1:
+                key = None
+            raise self.error(message, key) from error
+
+    def formula(self, key: str) -> str | float:
+        """Return a formula in quotes, or a number."""
+        value = self.required(key, f'{key} = "cos(u)"')
+        return self.text(key) if isinstance(value, str) else self._finite(value, key)
+
+    def named_numbers(self, key: str) -> dict[str, float]:
+        """Return the finite numbers of a table whose keys are the user's own names."""
+        if key not in self:
+            return {}
+        table = self.table(key)
+        return {name: table.number(name) for name in table.names()}
 
     def required(self, key: str, example: str) -> object:
         """Return the raw value of `key`; `example` is the line to add when it is missing."""
@@ -123,7 +157,8 @@ class Table:
         # Once the other keys are known to be right, none of them can be this one misspelt.
         likely = None if self._expected else nearest(key, self._content)
         hint = f", or rename '{likely}'" if likely is not None else ""
-        raise self.error(f"'{key}' is missing; add a line such as: {example}{hint}")
+        fix = f'add "{key}" to this object' if self._json else f"add a line such as: {example}"
+        raise self.error(f"'{key}' is missing; {fix}{hint}")
 
     def number(self, key: str, default: float | None = None, *, example: str = "") -> float:
         """Return a finite number."""
@@ -221,6 +256,30 @@ class Table:
                 )
         return np.array(points)
 
+    def net(self, key: str, length: int | None) -> Array:
+        """Return a grid of finite numbers, or of points of `length` of them, row by row.
+
+        Shape (n, m), or (n, m, length); every row as long as the first, none empty.
+        """
+        rows = self._list(self.required(key, f"{key} = [[...], ...]"), key)
+        found: list[list[Array]] = []
+        for i, row in enumerate(rows):
+            items = self._list(row, f"{key}[{i}]")
+            if not items or (found and len(items) != len(found[0])):
+                wanted = f"where {key}[0] has {len(found[0])}" if found else "; give at least one"
+                raise self.error(f"has {len(items)} entries {wanted}", f"{key}[{i}]")
+            found.append(
+                [self._entry(item, f"{key}[{i}][{j}]", length) for j, item in enumerate(items)]
+            )
+        if not found:
+            raise self.error("is an empty list; give at least one row", key)
+        return np.array(found)
+
+    def _entry(self, value: object, key: str, length: int | None) -> Array:
+        if length is None:
+            return np.array(self._finite(value, key))
+        return self._vector(value, key, (length,), "a point of")
+
     def numbers(self, key: str) -> Array:
         """Return a list of finite numbers of any length above zero."""
         values = self._list(self.required(key, f"{key} = [1.0, 1.0]"), key)
@@ -249,7 +308,8 @@ class Table:
         """Return the array of tables under `key`, at least one."""
         values = self._list(self.required(key, f"[[{self._below(key)}]]"), key)
         if not values:
-            raise self.error(f"is an empty list; add a [[{self._below(key)}]]", key)
+            fix = "add an object" if self._json else f"add a [[{self._below(key)}]]"
+            raise self.error(f"is an empty list; {fix}", key)
         return [self._table(value, f"{key}[{index}]") for index, value in enumerate(values)]
 
     def existing_file(self, key: str, example: str) -> Path:
@@ -271,10 +331,11 @@ class Table:
 
     def _table(self, value: object, key: str) -> Table:
         if not isinstance(value, dict):
-            raise self.error(
-                f"must be a table, written [{self._below(key)}], got {shown(value)}", key
-            )
-        return Table(value, file=self.file, path=self._below(key))
+            wanted = f"a table, written [{self._below(key)}]"
+            if self._json:
+                wanted = "an object in braces"
+            raise self.error(f"must be {wanted}, got {shown(value)}", key)
+        return Table(value, file=self.file, path=self._below(key), json=self._json)
 
     def _vector(
         self, value: object, key: str, lengths: tuple[int, ...], noun: str = "a list of"

@@ -10,6 +10,7 @@ import numpy as np
 from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.scene.curves import read_curve
+from standoff.scene.patches import read_patches
 from standoff.scene.reader import Array, Table
 
 
@@ -75,6 +76,19 @@ def _planar_loop(table: Table) -> Body:
     return shapes.planar_loop([read_curve(entry) for entry in table.tables("curves")], radius)
 
 
+def _superellipsoid(table: Table) -> Body:
+    a, b, c = table.positive_vector("semi_axes", 3)
+    e1, e2 = table.positive_vector("exponents", 2)
+    return shapes.superellipsoid(a, b, c, e1, e2)
+
+
+def _patches(table: Table) -> Body:
+    patches = read_patches(table)
+    tolerance = table.positive("tolerance") if "tolerance" in table else None
+    radius = table.not_negative("radius", 0.0)
+    return Body.from_patches(patches, tolerance=tolerance, radius=radius, name="patches")
+
+
 SHAPES: Mapping[str, ShapeKind] = {
     "point": ShapeKind((), _point),
     "segment": ShapeKind(("length",), _segment),
@@ -89,6 +103,8 @@ SHAPES: Mapping[str, ShapeKind] = {
     "cap": ShapeKind(("radius", "offset"), _cap),
     "halfspace": ShapeKind((), _halfspace),
     "planar_loop": ShapeKind(("curves", "radius"), _planar_loop),
+    "superellipsoid": ShapeKind(("semi_axes", "exponents"), _superellipsoid),
+    "patches": ShapeKind(("patches", "file", "tolerance", "radius"), _patches),
 }
 """Every shape that a scene may name."""
 

@@ -1,0 +1,121 @@
+"""From ``[[bodies.NAME.patches]]``, or a JSON file of the same, to surface patches."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from standoff.geometry import BezierPatch, FormulaSurface, NurbsSurface, Surface
+from standoff.geometry.validation import Array
+from standoff.scene.errors import SceneError
+from standoff.scene.reader import Table, shown
+
+FORMAT = "standoff-patches"
+FORMAT_VERSION = 1
+"""What a JSON file of patches says of itself; docs/scene-format.md describes it."""
+
+
+class PatchKind(NamedTuple):
+    """One kind of patch: its keys, and what reads them."""
+
+    keys: tuple[str, ...]
+    read: Callable[[Table], Surface]
+
+
+def _nurbs(table: Table) -> Surface:
+    points, weights = _points(table), _weights(table)
+    knots_u, knots_v = table.numbers("knots_u"), table.numbers("knots_v")
+    return table.build_named(lambda: NurbsSurface(points, knots_u, knots_v, weights))
+
+
+def _bezier(table: Table) -> Surface:
+    points, weights = _points(table), _weights(table)
+    return table.build_named(lambda: BezierPatch(points, weights))
+
+
+def _points(table: Table) -> Array:
+    return table.net("control_points", 3)
+
+
+def _weights(table: Table) -> Array | None:
+    return table.net("weights", None) if "weights" in table else None
+
+
+def _formula(table: Table) -> Surface:
+    x, y, z = (table.formula(key) for key in ("x", "y", "z"))
+    domain = table.vector("domain", 4, example="domain = [0.0, 1.0, 0.0, 1.0]")
+    parameters = table.named_numbers("parameters")
+    return table.build_named(lambda: FormulaSurface(x, y, z, domain.tolist(), parameters))
+
+
+PATCHES: Mapping[str, PatchKind] = {
+    "nurbs": PatchKind(("control_points", "weights", "knots_u", "knots_v"), _nurbs),
+    "bezier": PatchKind(("control_points", "weights"), _bezier),
+    "formula": PatchKind(("x", "y", "z", "domain", "parameters"), _formula),
+}
+"""Every kind of patch that a body may be sewn of."""
+
+
+def read_patches(table: Table) -> list[Surface]:
+    """Return the patches of a body, from its own tables or from the file that it names.
+
+    Raises
+    ------
+    SceneError
+        At an unknown kind or key, a value that the patch refuses, or a file that is missing, cut
+        off, or of another format or version.
+    """
+    given = table.only_one(("patches", "file"))
+    if given == "file":
+        file = table.existing_file("file", 'file = "pebble.json"')
+        return [_patch(entry) for entry in _of_file(file).tables("patches")]
+    return [_patch(entry) for entry in table.tables("patches")]
+
+
+def _patch(table: Table) -> Surface:
+    kind = PATCHES[table.choice("kind", list(PATCHES), "nurbs")]
+    table.expect("kind", *kind.keys)
+    return kind.read(table)
+
+
+def _of_file(file: Path) -> Table:
+    """The checked top of a JSON file of patches."""
+    try:
+        content = json.loads(file.read_bytes(), object_pairs_hook=_each_key_once)
+    except json.JSONDecodeError as error:
+        cut = "; it seems to be cut off" if error.pos >= len(error.doc.rstrip()) else ""
+        raise SceneError(
+            f"is no JSON: {error.msg} at line {error.lineno}, column {error.colno}{cut}", file=file
+        ) from error
+    except UnicodeDecodeError as error:
+        raise SceneError(
+            f"is no text in UTF-8 (byte {error.start}); save it as UTF-8", file=file
+        ) from error
+    except (OSError, ValueError) as error:
+        raise SceneError(str(error), file=file) from error
+    if not isinstance(content, dict):
+        raise SceneError(f"must be an object in braces, got {shown(content)}", file=file)
+    top = Table(content, file=file, json=True)
+    if top.text("format") != FORMAT:
+        raise top.error(
+            f"is {shown(top.text('format'))}; a file of patches says '{FORMAT}'", "format"
+        )
+    version = top.required("version", "")
+    if type(version) is not int or version != FORMAT_VERSION:
+        raise top.error(
+            f"is {shown(version)}, but this Standoff reads version {FORMAT_VERSION} of patches",
+            "version",
+        )
+    top.expect("format", "version", "title", "patches")
+    return top
+
+
+def _each_key_once(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    content = dict(pairs)
+    if len(content) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"the key '{twice}' stands twice in one object; keep one of them")
+    return content
