@@ -6,17 +6,20 @@ of any frame without the library. The follower's clearance is the number that it
 
 from __future__ import annotations
 
+import json
 import runpy
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 
 import standoff as so
 from oracles.bounds import maximise_separation
 from oracles.loops import ConicArc, PlanarLoop, line
-from oracles.support import Affine, Box, Lens, Placed, Point, Polytope, Shape
+from oracles.patches import BezierBody
+from oracles.support import Affine, Box, Ellipsoid, Lens, Placed, Point, Polytope, Shape
 from standoff.scene import Scene, load_scene, record
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -69,6 +72,17 @@ class Pinned(NamedTuple):
     features_b: set[str]
 
 
+def pebble() -> Shape:
+    """The pebble's patches, read from the file without the library."""
+    content = json.loads((EXAMPLES / "pebble.json").read_text())
+    patches = []
+    for patch in content["patches"]:
+        weights = np.array(patch["weights"])[..., None]
+        points = np.array(patch["control_points"])
+        patches.append(np.concatenate([points * weights, weights], axis=2))
+    return BezierBody(patches)
+
+
 def numbered(kind: str, *indices: int) -> set[str]:
     return {f"{kind} {index}" for index in indices}
 
@@ -102,6 +116,15 @@ PINNED = {
         switches=8,
         features_a=numbered("edge", 0, 1, 2, 3),
         features_b={"edge 0"},
+    ),
+    "pebble": Pinned(
+        (pebble(), Ellipsoid(0.008, 0.007, 0.011)),
+        frames=801,
+        least=0.00131905160972,
+        at=1.895,
+        switches=28,
+        features_a=numbered("face", 0, 1, 4, 5) | numbered("edge", 0, 2, 4, 6),
+        features_b={"face 0"},
     ),
     "tumbling": Pinned(
         (Box(0.10, 0.06, 0.04, 0.005), Polytope(ROCK)),
@@ -178,3 +201,25 @@ def test_the_follower_s_motion_is_what_its_script_writes(tmp_path: Path) -> None
     # To the last decimal that is written: libm differs between machines by a rounding unit.
     np.testing.assert_allclose(kept, again, rtol=0, atol=2e-12)
     assert script["height"](0.0) - script["height"](np.pi) == pytest.approx(0.012, abs=1e-15)
+
+
+def test_the_pebble_is_what_its_script_writes(tmp_path: Path) -> None:
+    script = runpy.run_path(str(EXAMPLES / "make_pebble.py"))
+    script["main"](tmp_path)
+    again, kept = (json.loads((f / "pebble.json").read_text()) for f in (tmp_path, EXAMPLES))
+    assert again == kept
+    again, kept = (pq.read_table(f / "pebble_motion.parquet") for f in (tmp_path, EXAMPLES))
+    assert again.column_names == kept.column_names
+    for name in kept.column_names:
+        # libm differs between machines by a rounding unit.
+        np.testing.assert_allclose(again[name], kept[name], rtol=0, atol=1e-13)
+
+
+def test_the_pebble_is_proven_convex() -> None:
+    body = load_scene(EXAMPLES / "pebble.toml").bodies["pebble"]
+    report = body.check()
+    assert (report.faces, report.edges, report.vertices, report.smooth_edges) == (6, 12, 8, 0)
+    assert report.convexity_defect < 1e-15
+    assert [patch.method for patch in report.patches] == ["bernstein"] * 6
+    assert report.flattest is not None
+    assert report.flattest.angle < np.pi

@@ -151,6 +151,51 @@ SHAPES = [
     ),
 ]
 
+
+def curved(curve: str) -> str:
+    return body(f'shape = "planar_loop"\ncurves = [{{{curve}}}]')
+
+
+POINTS = "control_points = [[0, 0], [1, 0], [1, 1]]"
+CURVES = [
+    (
+        curved(f'kind = "nurbs", {POINTS}, knots = [0, 0, 1, 0.5, 1, 1]'),
+        "bodies.a.curves[0].knots",
+        ["not sorted", "knot 2"],
+    ),
+    (
+        curved(f'kind = "nurbs", {POINTS}, knots = [0, 0, 1]'),
+        "bodies.a.curves[0].knots",
+        ["3 knots for 3 control points", "give 5 to 13"],
+    ),
+    (
+        curved(f'kind = "nurbs", {POINTS}, knots = [0, 0, 0, 1, 1, 1], weights = [1, -1, 1]'),
+        "bodies.a.curves[0].weights",
+        ["-1.0", "positive"],
+    ),
+    (curved(f'kind = "nurbs", {POINTS}'), "bodies.a.curves[0]", ["'knots' is missing"]),
+    (
+        curved('kind = "formula", x = "t", y = "sin(w)", start = 0, end = 1'),
+        "bodies.a.curves[0].y",
+        ["Unknown symbol 'w'", "Known: t"],
+    ),
+    (
+        curved('kind = "formula", x = "t", y = "1/(t - 0.25)", start = 0, end = 1'),
+        "bodies.a.curves[0]",
+        ["pole", "t = 0.25"],
+    ),
+    (
+        curved('kind = "formula", x = "t", y = "t**2", start = 0'),
+        "bodies.a.curves[0]",
+        ["'end' is missing"],
+    ),
+    (
+        body('shape = "superellipsoid"\nsemi_axes = [1, 1, 1]\nexponents = [0.5, 2.5]'),
+        "bodies.a",
+        ["e2", "2.5"],
+    ),
+]
+
 PLACEMENTS = [
     (placed("positon = [1, 2, 3]"), "placements.a.positon", ["did you mean 'position'?"]),
     (placed("quaternion = [1, 0, 0, 0]"), "placements.a.quaternion", ["'quaternion_"]),
@@ -250,7 +295,9 @@ TRACK = [
 ]
 
 
-@pytest.mark.parametrize(("text", "key", "pieces"), [*TOP, *SHAPES, *PLACEMENTS, *MOTIONS, *TRACK])
+@pytest.mark.parametrize(
+    ("text", "key", "pieces"), [*TOP, *SHAPES, *CURVES, *PLACEMENTS, *MOTIONS, *TRACK]
+)
 def test_refusal(
     load_text: LoadText, tmp_path: Path, text: str, key: str, pieces: list[str]
 ) -> None:

@@ -85,9 +85,11 @@ def _of_file(file: Path) -> Table:
     try:
         content = json.loads(file.read_bytes(), object_pairs_hook=_each_key_once)
     except json.JSONDecodeError as error:
-        cut = "; it seems to be cut off" if error.pos >= len(error.doc.rstrip()) else ""
+        text = error.doc.rstrip()
+        ended = text.endswith("}") and error.pos < len(text)
+        cut = "" if ended else "; it seems to be cut off: write it again"
         raise SceneError(
-            f"is no JSON: {error.msg} at line {error.lineno}, column {error.colno}{cut}", file=file
+            f"is no JSON: {error.msg}: line {error.lineno}, column {error.colno}{cut}", file=file
         ) from error
     except UnicodeDecodeError as error:
         raise SceneError(
