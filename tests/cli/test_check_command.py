@@ -13,6 +13,7 @@ import pytest
 from matplotlib.image import imread
 
 import standoff as so
+from standoff.geometry import ellipsoid_patches
 from standoff.scene import load_scene
 
 Standoff = Callable[..., Any]
@@ -25,9 +26,38 @@ def test_a_shape_in_a_line(standoff: Standoff) -> None:
     assert (ended.code, ended.err) == (0, "")
     rows = [line.split(maxsplit=1) for line in ended.out.splitlines() if line.strip()]
     found = {what: rest[0].strip() for what, *rest in rows if rest}
-    assert found["faces"] == "6, in 6 charts"
+    assert found["faces"] == "6"
     assert (found["edges"], found["vertices"]) == ("12", "8")
     assert found["size"] == f"{14**0.5:.9g} m"
+
+
+def test_what_was_proven(standoff: Standoff, tmp_path: Path) -> None:
+    told = " ".join(standoff("check", BOX).out.split())
+    assert "convex patches 6 Plane by theorem" in told
+    assert "normals in a hemisphere: 6 of 6 patches" in told
+    assert "sharpest edge 90° inside, edge 0" in told
+    assert "closed yes" in told
+    patches = list(ellipsoid_patches(0.3, 0.2, 0.1))
+    content = [
+        {
+            "kind": "bezier",
+            "control_points": patch.control_points.tolist(),
+            "weights": patch.weights.tolist(),
+        }
+        for patch in patches
+    ]
+    file = tmp_path / "egg.json"
+    file.write_text(json.dumps({"format": "standoff-patches", "version": 1, "patches": content}))
+    told = " ".join(standoff("check", file).out.split())
+    assert "egg: patches" in told
+    assert "edges 12, 12 of them smooth" in told
+    assert "convex patches 6 BezierPatch by Bernstein bounds over the whole patch" in told
+    body = so.Body.from_patches(patches)
+    assert f"slack {body.check().slack:.3g} m, taken off" in told
+    told = " ".join(standoff("check", 'shape = "halfspace"').out.split())
+    assert "size unbounded" in told
+    assert "closed no: it has no end" in told
+    assert "nan" not in told
 
 
 def test_json_is_the_report(standoff: Standoff) -> None:

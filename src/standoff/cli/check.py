@@ -11,8 +11,8 @@ from rich.console import Console
 from rich.table import Table
 
 from standoff import __version__
-from standoff.bodies.body import Body
 from standoff.cli.arguments import CheckCommand
+from standoff.cli.body_report import report_rows
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
 from standoff.cli.output import Writer, check_target, write_whole
@@ -111,26 +111,6 @@ def _table(subject: Subject) -> Table:
         box=SIMPLE_HEAD,
         pad_edge=False,
     )
-    for what, found in _rows(body, subject.unit):
+    for what, found in report_rows(body, subject.unit):
         table.add_row(what, found)
     return table
-
-
-def _rows(body: Body, unit: str) -> list[tuple[str, str]]:
-    report = body.check()
-    smooth = f" ({report.smooth_edges} smooth)" if report.smooth_edges else ""
-    skin = f"{body.radius:.9g} {unit}, swept over the core" if body.radius else "none"
-    return [
-        ("dimension", "2, planar" if report.dimension == 2 else "3, spatial"),
-        ("faces", f"{report.faces}, in {_many(report.charts, 'chart')}"),
-        ("edges", f"{report.edges}{smooth}"),
-        ("vertices", str(report.vertices)),
-        ("size", f"{report.size:.9g} {unit}" if body.bounded else "unbounded"),
-        ("radius", skin),
-        ("convexity defect", f"{report.convexity_defect:.3g} {unit}"),
-        *(("note", note) for note in report.notes),
-    ]
-
-
-def _many(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

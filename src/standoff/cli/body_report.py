@@ -1,0 +1,89 @@
+"""What the checks of a body found, as rows of a table."""
+
+from __future__ import annotations
+
+from collections import Counter
+from math import degrees
+
+from standoff.bodies.body import Body
+from standoff.bodies.report import BodyReport, DihedralAngle
+
+METHODS = {
+    "theorem": "by theorem",
+    "bernstein": "by Bernstein bounds over the whole patch",
+    "interval": "by interval bounds over the whole patch",
+}
+"""How the convexity of a patch was proven, in words."""
+
+Rows = list[tuple[str, str]]
+
+
+def report_rows(body: Body, unit: str) -> Rows:
+    """Return (what, found) pairs; `unit` labels lengths."""
+    report = body.check()
+    smooth = f", {report.smooth_edges} of them smooth" if report.smooth_edges else ""
+    skin = f"{body.radius:.9g} {unit}, swept over the core" if body.radius else "none"
+    charts = "" if report.charts == report.faces else f", in {report.charts} charts"
+    return [
+        ("dimension", "2, planar" if report.dimension == 2 else "3, spatial"),
+        ("faces", f"{report.faces}{charts}"),
+        ("edges", f"{report.edges}{smooth}"),
+        ("vertices", str(report.vertices)),
+        ("size", f"{report.size:.9g} {unit}" if body.bounded else "unbounded"),
+        ("radius", skin),
+        ("closed", "yes" if report.closed else "no: it has no end"),
+        ("normals", "outward" if report.outward else "not all outward"),
+        *_patch_rows(report, unit),
+        *_angle_rows(report),
+        *_slack_rows(body, report, unit),
+        *(("note", note) for note in report.notes),
+    ]
+
+
+def _patch_rows(report: BodyReport, unit: str) -> Rows:
+    """Which patches are proven convex, how, and where the worst of them may dent."""
+    rows: Rows = []
+    groups = Counter((patch.surface, patch.method) for patch in report.patches)
+    for k, ((surface, method), count) in enumerate(groups.items()):
+        rows.append(("convex patches" if k == 0 else "", f"{count} {surface} {METHODS[method]}"))
+    inside = sum(patch.hemisphere for patch in report.patches)
+    if report.patches:
+        rows.append(("normals in a", f"hemisphere: {inside} of {len(report.patches)} patches"))
+    dented = [patch for patch in report.patches if patch.defect > 0.0]
+    if dented:
+        worst = max(dented, key=lambda patch: patch.defect)
+        u, v = worst.place
+        place = f"face {worst.face} at u = {u:.4g}, v = {v:.4g}"
+        rows.append(("worst patch", f"{place}: may dent by {worst.defect:.3g} {unit}"))
+    return rows
+
+
+def _angle_rows(report: BodyReport) -> Rows:
+    if report.sharpest is None or report.flattest is None:
+        return []
+    sharpest, flattest = _angle(report.sharpest), _angle(report.flattest)
+    return [("sharpest edge", f"{sharpest} (sampled)"), ("flattest edge", f"{flattest} (sampled)")]
+
+
+def _angle(angle: DihedralAngle) -> str:
+    where = f"edge {angle.edge} at t = {angle.parameter:.4g}"
+    return f"{degrees(angle.angle):.6g}° inside, {where}"
+
+
+def _slack_rows(body: Body, report: BodyReport, unit: str) -> Rows:
+    """What was found against what is accepted, and what the certificate subtracts for it."""
+    if not body.bounded:
+        return []
+    return [
+        (
+            "convexity defect",
+            f"{report.convexity_defect:.3g} {unit}, accepted up to "
+            f"{report.convexity_tolerance:.3g} {unit}",
+        ),
+        (
+            "sewing residual",
+            f"{report.sewing_residual:.3g} {unit}, accepted up to "
+            f"{report.sewing_tolerance:.3g} {unit}",
+        ),
+        ("slack", f"{report.slack:.3g} {unit}, taken off the certified lower bound"),
+    ]
