@@ -34,7 +34,7 @@ def test_a_shape_in_a_line(standoff: Standoff) -> None:
 def test_what_was_proven(standoff: Standoff, tmp_path: Path) -> None:
     told = " ".join(standoff("check", BOX).out.split())
     assert "convex patches 6 Plane by theorem" in told
-    assert "normals in a hemisphere: 6 of 6 patches" in told
+    assert "hemispheres normals of 6 of 6 patches fit an open one" in told
     assert "sharpest edge 90° inside, edge 0" in told
     assert "closed yes" in told
     patches = list(ellipsoid_patches(0.3, 0.2, 0.1))

@@ -48,7 +48,8 @@ def _patch_rows(report: BodyReport, unit: str) -> Rows:
         rows.append(("convex patches" if k == 0 else "", f"{count} {surface} {METHODS[method]}"))
     inside = sum(patch.hemisphere for patch in report.patches)
     if report.patches:
-        rows.append(("normals in a", f"hemisphere: {inside} of {len(report.patches)} patches"))
+        count = len(report.patches)
+        rows.append(("hemispheres", f"normals of {inside} of {count} patches fit an open one"))
     dented = [patch for patch in report.patches if patch.defect > 0.0]
     if dented:
         worst = max(dented, key=lambda patch: patch.defect)
