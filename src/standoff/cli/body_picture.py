@@ -353,7 +353,7 @@ def _name_features(axes: Space, parts: Parts, towards: Array) -> None:
         for number, normals in enumerate(_vertex_normals(parts)):
             if not len(normals) or _seen(normals[:, None], towards)[0]:
                 outward = normals.mean(axis=0) if len(normals) else np.array([0.0, 0.0, 1.0])
-                spot = body.vertex_points[number] + 1.5 * lift * outward
+                spot = body.vertex_points[number] + 1.2 * lift * outward
                 _name(axes, spot + lift * towards, f"v{number}", framed=False)
 
 

@@ -160,7 +160,7 @@ def _draw_body(
     for pair, kinds in _both_ways(automaton.of(letter)).items():
         _arrow(axes, places, boxes, pair, kinds, taken)
     arcs = any(t.kind == "smooth" for t in automaton.of(letter))
-    axes.set_ylim(-0.5, 3.0 if arcs else 2.5)
+    axes.set_ylim(-0.5, 3.3 if arcs else 2.5)
     axes.set_title(f"{letter} = {name} ({body.name})", fontsize="medium")
     axes.set_xlim(0.0, 1.0)
     axes.set_axis_off()
@@ -218,7 +218,9 @@ def _arrow(
 ) -> None:
     """One line between two features, with a head at each end that can be reached."""
     upper, lower = pair
-    arc = upper.kind == lower.kind
+    # The bend of an arc falls with its reach, so that long ones stay within the panel.
+    reach = abs(places[upper][0] - places[lower][0])
+    bend = -0.35 / (1.0 + 3.0 * reach) if upper.kind == lower.kind else 0.0
     heads = {t.target for t in transitions}
     style = f"{'<|' if upper in heads else ''}-{'|>' if lower in heads else ''}"
     visited = any(t in taken for t in transitions)
@@ -227,7 +229,7 @@ def _arrow(
             places[upper],
             places[lower],
             arrowstyle=style,
-            connectionstyle="arc3,rad=-0.35" if arc else "arc3",
+            connectionstyle=f"arc3,rad={bend:.4f}",
             patchA=boxes[upper],
             patchB=boxes[lower],
             shrinkA=1.0,
