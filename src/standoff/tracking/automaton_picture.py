@@ -220,7 +220,7 @@ def _arrow(
     upper, lower = pair
     # The bend of an arc falls with its reach, so that long ones stay within the panel.
     reach = abs(places[upper][0] - places[lower][0])
-    bend = -0.35 / (1.0 + 3.0 * reach) if upper.kind == lower.kind else 0.0
+    bend = -0.45 / (1.0 + 1.3 * reach) if upper.kind == lower.kind else 0.0
     heads = {t.target for t in transitions}
     style = f"{'<|' if upper in heads else ''}-{'|>' if lower in heads else ''}"
     visited = any(t in taken for t in transitions)
