@@ -196,7 +196,7 @@ def _dent(piece: Piece, cell: Cell, bound: CurvatureBound) -> Dent:
     h = cell.part(piece.points)
     x = (h[:3] / h[3]).reshape(3, -1)
     low, high = x.min(axis=1), x.max(axis=1)
-    if bound.least > -np.inf:
+    if -bound.least * float(np.linalg.norm(high - low)) <= bound.turn:
         return Dent(-bound.least, low, high)
     turn = bound.turn
     if bound.convex and bound.tight:
