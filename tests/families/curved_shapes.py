@@ -11,6 +11,7 @@ from oracles.loops import BezierCurve, Curve
 from oracles.loops import ConicArc as PlanarArc
 from oracles.revolved import Egg, RevolvedHull
 from oracles.rounded_polytopes import RoundedPolytope
+from oracles.superellipsoids import Superellipsoid
 from standoff.geometry import ConicArc, RationalBezier
 from standoff.geometry import Curve as SpaceCurve
 
@@ -34,6 +35,13 @@ def egg(rng: Rng) -> Twin:
     radius, length = random_lengths(rng, 2, 0.4, 2.5)
     taper = float(rng.uniform(-0.7, 0.7))
     return Twin(Egg(radius, length, taper), so.shapes.egg(radius, length, taper))
+
+
+def superellipsoid(rng: Rng) -> Twin:
+    """Exponents 0.2 (nearly a box) to 1.8 (nearly an octahedron), now and then 1 exactly."""
+    a, b, c = random_lengths(rng, 3, 0.3, 2.0)
+    e1, e2 = (1.0 if rng.random() < 0.1 else float(rng.uniform(0.2, 1.8)) for _ in range(2))
+    return Twin(Superellipsoid(a, b, c, e1, e2), so.shapes.superellipsoid(a, b, c, e1, e2))
 
 
 def spindle(rng: Rng) -> Twin:

@@ -26,6 +26,16 @@ STEPS = 60
 """Projected Newton steps; a handful is enough where the patch is curved."""
 RIVAL = 0.02
 """Patches whose best sample is within this of the best, over the size, are all refined."""
+FLAT = 1e-13
+"""Thickness of a plane patch, over its size."""
+CLOSE = 1e-13
+"""Distance to the boundary, over the size, at which a point is taken to lie on it."""
+NEIGHBOURS = 3
+"""Patches that a point near an edge or a corner may lie on."""
+NEAR_STEPS = 7
+"""Steps to the nearest point of a patch: quadratic where the point lies on it."""
+SETTLED = 1e-10
+"""Change of a parameter that ends a search: the value is then good to its square."""
 HALVINGS = 40
 """Halvings of a step that does not climb."""
 
@@ -67,6 +77,16 @@ class BezierPatch:
         """Return points (k, 3)."""
         h = self._homogeneous(0, u, v)
         return h[:, :3] / h[:, 3:]
+
+    def tangents(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
+        """Return the point and its two partial derivatives, each (3,), at one parameter pair."""
+        h, *slopes = (self._homogeneous(which, u, v)[0] for which in range(3))
+        x = h[:3] / h[3]
+        return (
+            x,
+            (slopes[0][:3] - slopes[0][3] * x) / h[3],
+            (slopes[1][:3] - slopes[1][3] * x) / h[3],
+        )
 
     def jet(self, u: Array, v: Array) -> Jet:
         """Return points and partial derivatives x, x_u, x_v, x_uu, x_uv, x_vv, each (k, 3)."""
@@ -110,18 +130,22 @@ def refine(patch: BezierPatch, normals: Array, start: Array) -> tuple[Array, Arr
         gradient = np.stack(slopes[:2], axis=1)
         hessian = np.stack([slopes[2], slopes[3], slopes[3], slopes[4]], axis=1).reshape(-1, 2, 2)
         step = _uphill(gradient, hessian, at)
-        share = np.ones(len(at), dtype=at.dtype)
         trial = np.clip(at + step, 0, 1)
+        if np.abs(trial - at).max() <= SETTLED:
+            at = trial
+            break
+        roundoff = 8 * np.finfo(at.dtype).eps * np.abs(value)
+        share = np.ones(len(at), dtype=at.dtype)
         for _ in range(HALVINGS):
             points = patch.point(trial[:, 0], trial[:, 1])
-            lower = (normals * points).sum(axis=1) < value
+            lower = (normals * points).sum(axis=1) < value - roundoff
             if not lower.any():
                 break
             share = np.where(lower, share / 2, share)
             trial = np.where(lower[:, None], np.clip(at + share[:, None] * step, 0, 1), trial)
         else:
             trial = np.where(lower[:, None], at, trial)
-        if np.abs(trial - at).max() <= 2 * np.finfo(at.dtype).eps:
+        if (trial == at).all():
             break
         at = trial
     return at, patch.point(at[:, 0], at[:, 1])
@@ -135,8 +159,19 @@ class BezierBody(Shape):
         grid = (1 - np.cos(np.linspace(0, np.pi, SAMPLES))) / 2
         self.grid: Array = np.stack(np.meshgrid(grid, grid, indexing="ij"), axis=-1).reshape(-1, 2)
         self.samples: Array = np.stack([p.point(*self.grid.T) for p in self.patches])
+        self.flat_normals = self._flat_normals()
         control = np.vstack([np.asarray(c, dtype=float).reshape(-1, 4) for c in patches])
         self.bounding_radius = float(np.linalg.norm(control[:, :3] / control[:, 3:], axis=1).max())
+
+    def _flat_normals(self) -> Array:
+        rows = []
+        for samples in self.samples:
+            middle = samples.mean(axis=0)
+            sizes, axes = np.linalg.svd(samples - middle, full_matrices=False)[1:]
+            if sizes[2] <= FLAT * sizes[0]:
+                inward = self.samples.reshape(-1, 3).mean(axis=0) - middle
+                rows.append(axes[2] * -np.sign(axes[2] @ inward))
+        return np.array(rows).reshape(-1, 3)
 
     def points(self, normals: Array) -> Array:
         values = self.samples @ normals.T.astype(float)
@@ -159,15 +194,7 @@ class BezierBody(Shape):
     def special_normals(self, rng: np.random.Generator) -> Array:
         """Normals of patches that lie in a plane; none where all are curved."""
         del rng
-        rows = []
-        for samples in self.samples:
-            middle = samples.mean(axis=0)
-            axes = np.linalg.svd(samples - middle)
-            if axes[1][2] <= 1e-13 * axes[1][0]:
-                normal = axes[2][2]
-                inward = self.samples.reshape(-1, 3).mean(axis=0) - middle
-                rows.append(normal * -np.sign(normal @ inward))
-        return np.array(rows).reshape(-1, 3)
+        return self.flat_normals
 
     def maximisers(self, normal: ArrayLike, tolerance: float) -> Array:
         """Points of a flat patch that the normal belongs to, else the support point."""
@@ -181,8 +208,29 @@ class BezierBody(Shape):
         rows = self.samples[flat][0].reshape(SAMPLES, SAMPLES, 3)
         return rows[[0, 0, -1, -1], [0, -1, 0, -1]]
 
+    def nearest(self, point: Array) -> float:
+        """Distance to a point of the boundary near by: Gauss and Newton's steps on each patch."""
+        gaps = np.linalg.norm(self.samples - point, axis=2)
+        best = float(gaps.min())
+        for number in np.argsort(gaps.min(axis=1))[:NEIGHBOURS]:
+            at = self.grid[gaps[number].argmin()].copy()
+            for _ in range(NEAR_STEPS):
+                x, by_u, by_v = self.patches[number].tangents(at[:1], at[1:])
+                best = min(best, float(np.linalg.norm(x - point)))
+                tangents = np.stack([by_u, by_v], axis=1)
+                step = np.linalg.lstsq(tangents, point - x, rcond=1e-8)[0]
+                at = np.clip(at + step, 0, 1)
+            if best <= CLOSE * self.bounding_radius:
+                break
+        return best
+
     def outside(self, point: ArrayLike) -> float:
-        """How far a point lies outside; 0 inside, and within the bracket of cutting planes."""
+        """How far a point lies outside, or off the boundary where that is hardly anything.
+
+        0 inside, and within the bracket of cutting planes.
+        """
         p = np.asarray(point, dtype=float)
+        if (off := self.nearest(p)) <= CLOSE * self.bounding_radius:
+            return off
         found = cut(Placed(self, np.eye(3), np.zeros(3)), Placed(Point(), np.eye(3), p), p)
         return 0.0 if found is None else max(found.value, 0.0)

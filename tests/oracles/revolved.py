@@ -16,7 +16,7 @@ Array = NDArray[Any]
 
 BISECTIONS = 70
 """Halvings of a bracket of angles: enough for extended precision."""
-ANGLES = 720
+ANGLES = 240
 """Directions of half a turn that are looked through for jumps of the support point."""
 JUMP = 1e-6
 """A support point that moves this far, over the size, in a bisected bracket has jumped."""

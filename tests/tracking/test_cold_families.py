@@ -1,6 +1,6 @@
 """Cold queries over random families: every one certified, and proven by support functions.
 
-``STANDOFF_POSES`` sets the poses of each family; seeds are fresh in every run and part of what a
+``STANDOFF_POSES`` caps the poses of each family; seeds are fresh in every run and part of what a
 failure prints.
 """
 
@@ -20,7 +20,8 @@ SHOWN = 5
 @pytest.mark.parametrize("name", FAMILIES)
 def test_no_answer_is_wrong(name):
     seed = int(np.random.default_rng().integers(1 << 31))
-    for report in run_family(name, POSES, seed):
+    poses = min(POSES, FAMILIES[name].poses)
+    for report in run_family(name, poses, seed):
         first = "\n".join(report.failures[:SHOWN])
-        assert not report.failures, f"{len(report.failures)} of {POSES} wrong:\n{first}"
-        assert len(report.independent) >= POSES
+        assert not report.failures, f"{len(report.failures)} of {poses} wrong:\n{first}"
+        assert len(report.independent) >= poses
