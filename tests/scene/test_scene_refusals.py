@@ -190,6 +190,29 @@ CURVES = [
         ["'end' is missing"],
     ),
     (
+        body('shape = "spindle"\nradius = 1\nlength = 3\npatches = 2'),
+        "bodies.a",
+        ["patches", "3"],
+    ),
+    (
+        body('shape = "gore"\nradius = 1\nheight = 3\npatches = 3.5'),
+        "bodies.a.patches",
+        ["whole number above zero", "3.5"],
+    ),
+    (body('shape = "egg"\nradius = 1\nlength = 3\ntaper = 0.9'), "bodies.a", ["taper", "0.9"]),
+    (
+        body('shape = "hull_of_revolution"\ncurve = {kind = "lin"}'),
+        "bodies.a.curve.kind",
+        ["did you mean 'line'?"],
+    ),
+    (
+        body(
+            'shape = "hull_of_revolution"\ncurve = {kind = "line", start = [-1, 0], end = [1, 1]}'
+        ),
+        "bodies.a",
+        ["axis"],
+    ),
+    (
         body('shape = "superellipsoid"\nsemi_axes = [1, 1, 1]\nexponents = [0.5, 2.5]'),
         "bodies.a",
         ["e2", "2.5"],

@@ -99,6 +99,32 @@ CASES: list[tuple[str, Callable[[], Body]]] = [
     (LOOP, loop),
     (CURVED, curved),
     (
+        f'shape = "rounded_polytope"\nvertices = {TETRAHEDRON}\nrounding = 0.1',
+        lambda: shapes.rounded_polytope(TETRAHEDRON, 0.1),
+    ),
+    ('shape = "spindle"\nradius = 0.1\nlength = 0.6', lambda: shapes.spindle(0.1, 0.6)),
+    (
+        'shape = "spindle"\nradius = 0.1\nlength = 0.6\npatches = 5',
+        lambda: shapes.spindle(0.1, 0.6, 5),
+    ),
+    ('shape = "gore"\nradius = 0.1\nheight = 0.6', lambda: shapes.gore(0.1, 0.6)),
+    (
+        'shape = "gore"\nradius = 0.1\nheight = 0.6\npatches = 6',
+        lambda: shapes.gore(0.1, 0.6, 6),
+    ),
+    ('shape = "egg"\nradius = 0.02\nlength = 0.06', lambda: shapes.egg(0.02, 0.06)),
+    (
+        'shape = "egg"\nradius = 0.02\nlength = 0.06\ntaper = -0.2',
+        lambda: shapes.egg(0.02, 0.06, -0.2),
+    ),
+    (
+        'shape = "hull_of_revolution"\ncurve = {kind = "bezier", '
+        "control_points = [[0.1, -0.2], [0.3, 0.0], [0.05, 0.2]]}",
+        lambda: shapes.hull_of_revolution(
+            RationalBezier([[0.1, 0.0, -0.2], [0.3, 0.0, 0.0], [0.05, 0.0, 0.2]])
+        ),
+    ),
+    (
         'shape = "superellipsoid"\nsemi_axes = [0.3, 0.2, 0.1]\nexponents = [0.6, 1.4]',
         lambda: shapes.superellipsoid(0.3, 0.2, 0.1, 0.6, 1.4),
     ),

@@ -173,6 +173,13 @@ class Table:
             raise self.error(f"must be above zero, got {value:g}", key)
         return value
 
+    def count(self, key: str, default: int) -> int:
+        """Return a whole number above zero."""
+        value = self._content.get(key, default)
+        if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+            raise self.error(f"must be a whole number above zero, got {shown(value)}", key)
+        return value
+
     def not_negative(self, key: str, default: float | None = None) -> float:
         """Return a finite number, zero or above."""
         value = self.number(key, default)

@@ -13,6 +13,9 @@ from standoff.scene.curves import read_curve
 from standoff.scene.patches import read_patches
 from standoff.scene.reader import Array, Table
 
+UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""Turns the plane of scene curves, x and y, to that of profiles, x and z."""
+
 
 class ShapeKind(NamedTuple):
     """One shape: its keys, and what reads them."""
@@ -76,6 +79,31 @@ def _planar_loop(table: Table) -> Body:
     return shapes.planar_loop([read_curve(entry) for entry in table.tables("curves")], radius)
 
 
+def _rounded_polytope(table: Table) -> Body:
+    vertices = table.points("vertices", 3, at_least=4)
+    return shapes.rounded_polytope(vertices, table.not_negative("rounding"))
+
+
+def _spindle(table: Table) -> Body:
+    radius, length = table.positive("radius"), table.positive("length")
+    return shapes.spindle(radius, length, table.count("patches", 3))
+
+
+def _gore(table: Table) -> Body:
+    radius, height = table.positive("radius"), table.positive("height")
+    return shapes.gore(radius, height, table.count("patches", 4))
+
+
+def _egg(table: Table) -> Body:
+    radius, length = table.positive("radius"), table.positive("length")
+    return shapes.egg(radius, length, table.number("taper", 0.4))
+
+
+def _hull_of_revolution(table: Table) -> Body:
+    profile = read_curve(table.table("curve"))
+    return shapes.hull_of_revolution(profile.transformed(UPRIGHT, np.zeros(3)))
+
+
 def _superellipsoid(table: Table) -> Body:
     a, b, c = table.positive_vector("semi_axes", 3)
     e1, e2 = table.positive_vector("exponents", 2)
@@ -103,6 +131,11 @@ SHAPES: Mapping[str, ShapeKind] = {
     "cap": ShapeKind(("radius", "offset"), _cap),
     "halfspace": ShapeKind((), _halfspace),
     "planar_loop": ShapeKind(("curves", "radius"), _planar_loop),
+    "rounded_polytope": ShapeKind(("vertices", "rounding"), _rounded_polytope),
+    "spindle": ShapeKind(("radius", "length", "patches"), _spindle),
+    "gore": ShapeKind(("radius", "height", "patches"), _gore),
+    "egg": ShapeKind(("radius", "length", "taper"), _egg),
+    "hull_of_revolution": ShapeKind(("curve",), _hull_of_revolution),
     "superellipsoid": ShapeKind(("semi_axes", "exponents"), _superellipsoid),
     "patches": ShapeKind(("patches", "file", "tolerance", "radius"), _patches),
 }

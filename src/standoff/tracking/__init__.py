@@ -1,5 +1,6 @@
 """Tracking: the tracker and its answers."""
 
+from standoff.tracking.automaton import Automaton, Transition
 from standoff.tracking.options import max_gain
 from standoff.tracking.proximity import Counts, Event, Feature, Proximity
 from standoff.tracking.recording import (
@@ -14,6 +15,7 @@ from standoff.tracking.status import Status
 from standoff.tracking.tracker import FrameBuffer, Tracker, TrackerState, distance
 
 __all__ = [
+    "Automaton",
     "Counts",
     "Event",
     "Feature",
@@ -25,6 +27,7 @@ __all__ = [
     "Status",
     "Tracker",
     "TrackerState",
+    "Transition",
     "Visit",
     "distance",
     "max_gain",
