@@ -1,7 +1,8 @@
-"""Table of cold queries over random families, each proven by independent support functions.
+"""Table of cold and tracked queries over random families, each proven by support functions.
 
 Run from the repository's root: ``python -m benchmarks.cold_families --poses 3000 [FAMILY ...]``.
-The families, the poses and the proof are those of ``tests/tracking/test_cold_families.py``.
+The families, the poses and the proof are those of ``tests/tracking/test_cold_families.py`` and
+``test_tracked_families.py``.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 
 TESTS = Path(__file__).resolve().parents[1] / "tests"
 HEADER = (
-    f"{'family':20s} {'start':10s} {'poses':>6s} {'wrong':>5s} {'certificate gap':>17s} "
+    f"{'family':29s} {'start':10s} {'poses':>6s} {'wrong':>5s} {'certificate gap':>17s} "
     f"{'independent gap':>17s} {'restarts':>12s} {'evaluations':>11s}"
 )
 
@@ -24,7 +25,7 @@ def row(report: Any) -> str:
     """Return one line: median/max of the gaps over the pair's size, of restarts and evaluations."""
     wrong = len(report.failures)
     if not report.independent:
-        return f"{report.name:20s} {report.how:10s} {wrong:6d} {wrong:5d}"
+        return f"{report.name:29s} {report.how:10s} {wrong:6d} {wrong:5d}"
     gaps = [
         f"{np.median(values):.1e}/{np.max(values):.1e}"
         for values in (report.certificate, report.independent)
@@ -33,7 +34,7 @@ def row(report: Any) -> str:
     restarts = f"{restarted} ({max(report.restarts)})"
     evaluations = f"{np.median(report.evaluations):.0f}/{max(report.evaluations)}"
     return (
-        f"{report.name:20s} {report.how:10s} {wrong + len(report.independent):6d} {wrong:5d} "
+        f"{report.name:29s} {report.how:10s} {wrong + len(report.independent):6d} {wrong:5d} "
         f"{gaps[0]:>17s} {gaps[1]:>17s} {restarts:>12s} {evaluations:>11s}"
     )
 
@@ -44,6 +45,7 @@ def main() -> int:
     sys.path.insert(0, str(TESTS))
     from families.cold_queries import run_family
     from families.pairs import FAMILIES
+    from families.tracked_motions import run_tracked, tracked_families
 
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("families", nargs="*", help=f"default: all of {', '.join(FAMILIES)}")
@@ -61,7 +63,10 @@ def main() -> int:
     print(HEADER)
     failures: list[str] = []
     for name in arguments.families or FAMILIES:
-        for report in run_family(name, arguments.poses, seed):
+        reports = [*run_family(name, arguments.poses, seed)]
+        if name in tracked_families():
+            reports.append(run_tracked(name, arguments.poses, seed))
+        for report in reports:
             print(row(report), flush=True)
             failures += report.failures
     for failure in failures[:20]:
