@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ import pytest
 from matplotlib.image import imread
 
 import standoff as so
+from standoff.cli.body_report import report_rows
 from standoff.geometry import ellipsoid_patches
 from standoff.scene import load_scene
 
@@ -58,6 +59,19 @@ def test_what_was_proven(standoff: Standoff, tmp_path: Path) -> None:
     assert "size unbounded" in told
     assert "closed no: it has no end" in told
     assert "nan" not in told
+
+
+def test_the_worst_patch_is_named() -> None:
+    body = so.shapes.cylinder(1.0, 2.0)
+    checks = [
+        replace(check, defect=1e-7 * check.face, place=(0.25, 0.5))
+        for check in body.check().patches
+    ]
+    dented = replace(body, report=replace(body.check(), patches=tuple(checks)))
+    rows = dict(report_rows(dented, "cm"))
+    assert rows["worst patch"] == "face 2 at u = 0.25, v = 0.5: may dent by 2e-07 cm"
+    assert rows["hemispheres"] == "normals of 2 of 3 patches fit an open one"
+    assert "worst patch" not in dict(report_rows(body, "cm"))
 
 
 def test_json_is_the_report(standoff: Standoff) -> None:

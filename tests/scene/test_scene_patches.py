@@ -111,6 +111,27 @@ def test_a_body_from_a_file(load_text: LoadText, tmp_path: Path) -> None:
     assert rounded.radius == 0.1
 
 
+def test_what_may_be_joined_and_dented(load_text: LoadText, tmp_path: Path) -> None:
+    file = tmp_path / "e.json"
+    ellipsoid_file(file)
+    content = json.loads(file.read_text())
+    # One patch lifted off the others by 1e-5, outwards.
+    for row in content["patches"][0]["control_points"]:
+        for point in row:
+            point[0] += 1e-5
+    file.write_text(json.dumps(content))
+    table = 'version = 1\n[bodies.a]\nshape = "patches"\nfile = "e.json"\n'
+    with pytest.raises(SceneError, match=r"bodies\.a: .*1e-05"):
+        load_text(f"{table}{OTHER}")
+    with pytest.raises(SceneError, match="convexity_tolerance"):
+        load_text(f"{table}tolerance = 1e-4\nconvexity_tolerance = 1e-10\n{OTHER}")
+    allowed = "tolerance = 1e-4\nconvexity_tolerance = 1e-3\n"
+    report = load_text(f"{table}{allowed}{OTHER}").bodies["a"].check()
+    assert (report.sewing_tolerance, report.convexity_tolerance) == (1e-4, 1e-3)
+    assert report.sewing_residual > 9e-6
+    assert report.slack > 1e-5
+
+
 def test_a_body_of_formulas(load_text: LoadText) -> None:
     # A ball, cut from pole to pole into four.
     patches = "".join(

@@ -113,8 +113,14 @@ def _superellipsoid(table: Table) -> Body:
 def _patches(table: Table) -> Body:
     patches = read_patches(table)
     tolerance = table.positive("tolerance") if "tolerance" in table else None
-    radius = table.not_negative("radius", 0.0)
-    return Body.from_patches(patches, tolerance=tolerance, radius=radius, name="patches")
+    dent = "convexity_tolerance"
+    return Body.from_patches(
+        patches,
+        tolerance=tolerance,
+        convexity_tolerance=table.not_negative(dent) if dent in table else None,
+        radius=table.not_negative("radius", 0.0),
+        name="patches",
+    )
 
 
 SHAPES: Mapping[str, ShapeKind] = {
@@ -137,7 +143,9 @@ SHAPES: Mapping[str, ShapeKind] = {
     "egg": ShapeKind(("radius", "length", "taper"), _egg),
     "hull_of_revolution": ShapeKind(("curve",), _hull_of_revolution),
     "superellipsoid": ShapeKind(("semi_axes", "exponents"), _superellipsoid),
-    "patches": ShapeKind(("patches", "file", "tolerance", "radius"), _patches),
+    "patches": ShapeKind(
+        ("patches", "file", "tolerance", "convexity_tolerance", "radius"), _patches
+    ),
 }
 """Every shape that a scene may name."""
 
