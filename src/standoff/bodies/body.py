@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from standoff.bodies.addresses import formulas_of, readdressed
 from standoff.bodies.assembly import assemble
 from standoff.bodies.charts import edge_points
 from standoff.bodies.convexity import Known
@@ -223,11 +224,27 @@ class Body:
     @property
     def digest(self) -> str:
         """SHA-256 of the packed body, hexadecimal: the same on every machine."""
+        formulas = formulas_of(self.edge_parts, self.face_parts)
+        addresses = [f.address for f in formulas]
+        reals = readdressed(self.reals, addresses, [0.0] * len(addresses))
         packed = hashlib.sha256()
-        for array, kind in ((self.ints, "<i8"), (self.reals, "<f8")):
+        for array, kind in ((self.ints, "<i8"), (reals, "<f8")):
             packed.update(array.size.to_bytes(8, "little"))
             packed.update(array.astype(kind).tobytes())
+        for formula in formulas:
+            packed.update(repr(formula.expressions).encode())
         return packed.hexdigest()
+
+    def __getstate__(self) -> dict[str, Any]:
+        formulas = formulas_of(self.edge_parts, self.face_parts)
+        return {**self.__dict__, "addresses": [f.address for f in formulas]}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        # formulas are compiled anew in another process, at other addresses
+        old = state.pop("addresses")
+        new = [f.address for f in formulas_of(state["edge_parts"], state["face_parts"])]
+        state["reals"] = readdressed(state["reals"], old, new)
+        self.__dict__.update(state)
 
     @property
     def bounded(self) -> bool:

@@ -75,6 +75,14 @@ class Surface(ABC):
         """What the kind's kernel reads behind the affine map."""
         return np.zeros(0)
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        # a profile's formula is compiled anew in another process, at another address
+        self.__dict__.update(state)
+        reals = self.reals.copy()
+        reals[L.SURFACE_DATA :] = self._data()
+        reals.flags.writeable = False
+        object.__setattr__(self, "reals", reals)
+
     @property
     def data(self) -> Array:
         """What the kind's kernel reads behind the affine map (see ``standoff.kernels.layout``)."""
