@@ -1,5 +1,6 @@
 """Bodies sewn from patches answer like the quadrics that they are."""
 
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -8,7 +9,15 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from families import patch_shells as shells
-from standoff.geometry import ellipsoid_octants, ellipsoid_patches
+from standoff.geometry import (
+    ConicArc,
+    Cylinder,
+    FormulaSurface,
+    ellipsoid_octants,
+    ellipsoid_patches,
+)
+from standoff.geometry.swept import Extrusion, Revolution
+from standoff.geometry.torus import Torus
 from standoff.kernels import layout as L
 
 AXES = (0.7, 1.1, 0.5)
@@ -173,6 +182,95 @@ def distance_from_chain(corners, x):
         share = np.clip((x - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
         distances.append(np.linalg.norm(a + share * (b - a) - x))
     return min(distances)
+
+
+def half_turn(centre, first, second):
+    """A quarter of an ellipse about y, turned once round z."""
+    return Revolution(ConicArc(centre, first, second, 0.0, 0.5 * np.pi))
+
+
+def formula_tile(number, axes):
+    """A gnomonic tile by formulas, its first parameter stretched."""
+    names = "xyz"[number % 3 :] + "xyz"[: number % 3]
+    root = "sqrt(1 + sinh(u)**2 + v**2)"
+    texts = {names[0]: "sinh(u)", names[1]: "v", names[2]: "1" if number < 3 else "-1"}
+    a, b, c = (f"{r!r}*({texts[k]})/{root}" for r, k in zip(axes, "xyz", strict=True))
+    reach = float(np.arcsinh(1.0))
+    return FormulaSurface(a, b, c, (-reach, reach, -1.0, 1.0))
+
+
+QUARTERS = [0.5 * np.pi * k for k in range(4)]
+KINDS = {
+    "a sphere of revolution, pole to pole": (
+        lambda: [Revolution(ConicArc((0, 0, 0), (0, 0, -1), (1, 0, 0), 0.0, np.pi))],
+        lambda: so.shapes.ellipsoid(1, 1, 1),
+        "do not fit an open hemisphere",
+    ),
+    "two caps and a tube": (
+        lambda: [
+            half_turn((0, 0, -0.5), (0, 0, -0.4), (0.4, 0, 0)),
+            half_turn((0, 0, 0.5), (0.4, 0, 0), (0, 0, 0.4)),
+            Cylinder(np.diag([0.4, 0.4, 1.0]), np.zeros(3)).restricted(0, 2 * np.pi, -0.5, 0.5),
+        ],
+        lambda: so.shapes.capsule(0.4, 1.0),
+        "closes on itself along u",
+    ),
+    "an extruded circle between discs": (
+        lambda: [
+            Extrusion(ConicArc((0, 0, -0.5), (0.6, 0, 0), (0, 0.6, 0)), (0, 0, 1)),
+            shells.turned(((0.6, 0.5), (0.0, 0.5))),
+            shells.turned(((0.0, -0.5), (0.6, -0.5))),
+        ],
+        lambda: so.shapes.cylinder(0.6, 1.0),
+        "where it is not C2",
+    ),
+    "a dome on a square's map of the disc": (
+        lambda: [shells.square_disc(), half_turn((0, 0, 0), (1, 0, 0), (0, 0, 1))],
+        lambda: so.shapes.cap(1.0, 0.0),
+        "closes on itself",
+    ),
+    "a formula among charts": (
+        lambda: [formula_tile(0, AXES), formula_tile(3, AXES), *side_charts()],
+        lambda: ELLIPSOID,
+        "turned outward",
+    ),
+}
+
+
+def side_charts():
+    return [p for p in shells.cube_sphere(1, AXES) if abs(p.jet(0.0, 0.0)[0][2]) < 1e-12]
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_all_kinds_of_surfaces_are_sewn(name):
+    make, known, note = KINDS[name]
+    body = so.Body.from_patches(make())
+    report = body.check()
+    assert report.vertices - report.edges + report.faces == 2
+    assert report.sewing_residual <= 1e-12
+    assert report.slack <= 2e-12
+    assert re.search(note, "; ".join(report.notes))
+    assert_same_answers(body, known())
+
+
+def test_a_rounded_puck_is_smooth_all_over():
+    """A torus between two discs: points about it are as far as from its disc swept by a ball."""
+    tori = [
+        Torus(1.0, 0.3, a, a + 0.5 * np.pi, *half)
+        for a in QUARTERS
+        for half in ((-0.5 * np.pi, 0.0), (0.0, 0.5 * np.pi))
+    ]
+    lids = [shells.turned(((1.0, 0.3), (0.0, 0.3))), shells.turned(((0.0, -0.3), (1.0, -0.3)))]
+    body = so.Body.from_patches([*tori, *lids])
+    assert body.check().smooth_edges == body.n_edges
+    rng, home = np.random.default_rng(), so.Pose.identity()
+    for _ in range(100):
+        x = 1.5 * rng.normal(size=3)
+        known = np.hypot(max(np.hypot(x[0], x[1]) - 1.0, 0.0), x[2]) - 0.3
+        if known > 0.0:
+            found = so.distance(body, so.shapes.point(), home, so.Pose(np.eye(3), x))
+            assert found.certified
+            assert found.distance == pytest.approx(known, abs=1e-12)
 
 
 @pytest.mark.parametrize("wrong", [(1,), (0, 2, 5), tuple(range(6))])

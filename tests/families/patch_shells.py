@@ -71,6 +71,17 @@ def cylinder(radius: float, length: float) -> list[Surface]:
     ]
 
 
+def square_disc() -> BezierPatch:
+    """The unit disc z = 0 as one patch of four quarter circles: singular at its corners."""
+    points = [
+        [(-1, 0, 0), (-1, -1, 0), (0, -1, 0)],
+        [(-1, 1, 0), (0, 0, 0), (1, -1, 0)],
+        [(0, 1, 0), (1, 1, 0), (1, 0, 0)],
+    ]
+    r = np.sqrt(0.5)
+    return BezierPatch(points, [[1, r, 1], [r, 1, r], [1, r, 1]])
+
+
 def bernstein(degree: int, t: Array) -> Array:
     """Values of the Bernstein polynomials, (len(t), degree + 1)."""
     k = np.arange(degree + 1)

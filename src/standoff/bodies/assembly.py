@@ -19,6 +19,8 @@ from standoff.kernels import layout as L
 JOIN_TOLERANCE = 1e-9
 # A face's angle at a vertex of 180 degrees less this (radians) counts as wide.
 WIDE_ANGLE = 1e-6
+# Tangents at a corner whose sine is below this are one direction: the chart is singular there.
+SINGULAR = 1e-12
 # Generators that a collapsed side gives to its vertex's normal cone.
 APEX_NORMALS = 9
 
@@ -164,6 +166,10 @@ def _wide_sector(
     """The sector of a face at a vertex where its angle is 180 degrees or more."""
     jet = chart.surface.jet(u, v)
     tangents = np.column_stack([jet[1], jet[2]])
+    normal = np.cross(jet[1], jet[2])
+    area = float(np.linalg.norm(normal))
+    if area <= SINGULAR * float(np.prod(np.linalg.norm(tangents, axis=0))):
+        return None  # no direction of (u, v) leads into the face from such a corner
     start = stop = None
     for j, end in ends:
         curve = edges[j].curve
@@ -181,8 +187,7 @@ def _wide_sector(
     width = (stop - start) % (2.0 * np.pi)
     middle = tangents @ [np.cos(start), np.sin(start)]
     other = tangents @ [np.cos(stop), np.sin(stop)]
-    normal = np.cross(jet[1], jet[2])
-    turn = np.cross(middle, other) @ normal / np.linalg.norm(normal)
+    turn = np.cross(middle, other) @ normal / area
     flat = abs(turn) <= WIDE_ANGLE * np.linalg.norm(middle) * np.linalg.norm(other)
     if width < np.pi and not (flat and middle @ other < 0.0):
         return None
