@@ -183,6 +183,32 @@ def test_a_gap_is_slack_at_the_edges():
             assert found.lower_bound <= bound.distance + 1e-12
 
 
+def graph(f, x0, x1):
+    """The patch z = f(x, y) of degree 2 over x0 .. x1, -1 .. 1."""
+    t = np.array([0.0, 0.5, 1.0])
+    x, y = np.meshgrid(x0 + t * (x1 - x0), 2.0 * t - 1.0, indexing="ij")
+    solve = np.linalg.inv(shells.bernstein(2, t))
+    return np.stack([x, y, solve @ f(x, y) @ solve.T], axis=-1)
+
+
+def test_a_seam_that_is_smooth_at_one_point_only_is_an_edge():
+    """Its angle vanishes where one sample might be taken, and nowhere else."""
+    y0 = -1.0 + 2.0 * 0.43
+    left = graph(lambda x, y: 1.0 - 0.2 * (y - y0) ** 2 - 0.2 * x**2, -1.0, 0.0)
+    right = graph(
+        lambda x, y: 1.0 - 0.2 * (y - y0) ** 2 - 0.2 * x**2 - 0.1 * x * (y - y0) ** 2, 0.0, 1.0
+    )
+    walls = [left[0], right[-1], left[:, 0], left[:, -1], right[:, 0], right[:, -1]]
+    sides = [np.stack([wall, wall * [1, 1, 0]], axis=1) for wall in walls]
+    floor = [[(-1, -1, 0), (-1, 1, 0)], [(1, -1, 0), (1, 1, 0)]]
+    body = so.Body.from_patches([BezierPatch(p) for p in (left, right, *sides, floor)])
+    report = body.check()
+    assert report.smooth_edges == 2  # the halves of two walls lie in one plane
+    assert report.slack == 0.0
+    assert report.flattest.angle == pytest.approx(np.pi, abs=1e-12)
+    assert any(np.allclose(e.curve.point(0.43), (0.0, y0, 1.0)) for e in body.edge_parts)
+
+
 def test_convex_bodies_have_no_slack():
     for body in (so.shapes.lens(1, 0.45), so.shapes.cone(1, 2), so.shapes.box(1, 2, 3)):
         report = body.check()
