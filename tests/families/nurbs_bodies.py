@@ -31,10 +31,15 @@ HIGHEST = 9
 """Greatest degree."""
 
 
+def net(points: Array, weights: Array) -> Net:
+    """Return homogeneous control points from points (p + 1, q + 1, 3) and weights."""
+    w = np.asarray(weights, dtype=float)[..., None]
+    return np.concatenate([points * w, w], axis=2)
+
+
 def net_of(patch: NurbsSurface) -> Net:
     """Return the homogeneous control points of a patch without inner knots."""
-    w = patch.weights[..., None]
-    return np.concatenate([patch.control_points * w, w], axis=2)
+    return net(patch.control_points, patch.weights)
 
 
 def _components(net: Net) -> tuple[Array, ...]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from families import curved_shapes, formula_bodies, nurbs_bodies, shapes
+from families import curved_shapes, formula_bodies, nurbs_bodies, shapes, swept_bodies
 from families.shapes import Maker, Twin
 from oracles.poses import DrawnPose, Kind, draw_poses, size_of, tilted_pair
 
@@ -70,6 +70,8 @@ FAMILIES: dict[str, Family] = {
     "NURBS-NURBS": Family(nurbs_bodies.any_nurbs, nurbs_bodies.any_nurbs, FEW_CLOSE, poses=FEW),
     "NURBS-box": Family(nurbs_bodies.any_nurbs, shapes.box, FEW_CLOSE, poses=FEW),
     "formula-lens": Family(formula_bodies.any_formula, shapes.lens, FEW_CLOSE, poses=FEW),
+    "swept-solid": Family(swept_bodies.any_swept, shapes.solid, FEW_CLOSE, poses=FEW),
+    "affine image-egg": Family(swept_bodies.affine_image, curved_shapes.egg, FEW_CLOSE, poses=FEW),
     "planar-planar": Family(shapes.loop, shapes.loop, PLANAR_SHARES),
     "planar-point": Family(shapes.loop, shapes.planar_point, PLANAR_SHARES),
 }
