@@ -10,8 +10,7 @@ from standoff.bodies.packing import Assembled, Chart, Ints, Sample
 from standoff.bodies.topology import BodyError, Edge
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
 from standoff.geometry.validation import Array
-from standoff.kernels.features import chart_normal, planar_edge_normal
-from standoff.kernels.trimming import on_face
+from standoff.kernels.entries import chart_normal, on_face, planar_edge_normal
 
 # How many samples a body gets: all pairs of two bodies are compared at a cold start.
 FACE_BUDGET = 120

@@ -12,8 +12,12 @@ from standoff.bodies.body import Body
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
-from standoff.kernels.features import chart_normal, coedge_parameters, planar_edge_normal
-from standoff.kernels.trimming import on_face
+from standoff.kernels.entries import (
+    chart_normal,
+    coedge_parameters,
+    on_face,
+    planar_edge_normal,
+)
 
 # Points along each coedge, and along each edge: a drawn line of a whole turn shows no corners.
 ALONG = 33

@@ -9,7 +9,7 @@ import numpy as np
 
 from standoff.geometry.validation import Array, finite, vector3
 from standoff.kernels import layout as L
-from standoff.kernels.jets import curve_jet
+from standoff.kernels.entries import curve_jet
 
 if TYPE_CHECKING:
     from standoff.geometry.pcurves import Pcurve

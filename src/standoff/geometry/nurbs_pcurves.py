@@ -13,7 +13,7 @@ from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.validation import Array, finite
 from standoff.kernels import layout as L
-from standoff.kernels.jets import pcurve_jet
+from standoff.kernels.entries import pcurve_jet
 
 # A piece of a NURBS pcurve turns by less than this (radians): 180 degrees with a margin.
 MOST_TURN = 0.9 * np.pi

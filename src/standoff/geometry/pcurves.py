@@ -15,7 +15,7 @@ from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
-from standoff.kernels.jets import pcurve_jet
+from standoff.kernels.entries import pcurve_jet
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ import numpy as np
 
 from standoff.geometry.validation import Array, finite, matrix3, vector3
 from standoff.kernels import layout as L
-from standoff.kernels.jets import surface_jet
+from standoff.kernels.entries import surface_jet
 
 Domain = tuple[float, float, float, float]
 UNBOUNDED: Domain = (-np.inf, np.inf, -np.inf, np.inf)

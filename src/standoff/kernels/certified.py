@@ -4,7 +4,7 @@ from standoff.kernels.certificate import certify
 from standoff.kernels.compiling import kernel
 from standoff.kernels.contact import polish
 from standoff.kernels.descent import ORIGIN, pair_jets, release_along, settle
-from standoff.kernels.features import dimension, pair_span
+from standoff.kernels.features import dimension, pair_slack, pair_span
 from standoff.kernels.tolerances import MAX_STALLS, SLOPE, TOUCHING
 from standoff.kernels.trimming import on_face
 
@@ -16,12 +16,15 @@ TOUCHING_OR_OVERLAPPING = 2
 
 @kernel
 def weigh(pair, R, p, mode, q, jet_a, jet_b, hint, tolerance):
-    """(outcome, d, bound, normal) of witness points; d and bound are those of the cores."""
+    """(outcome, d, bound, normal) of witness points; d and bound are those of the cores.
+
+    The bodies' own slack lowers the bound but is no fault of the answer: the gap beyond it counts.
+    """
     d, bound, normal = certify(pair, R, p, mode, q, jet_a[0], jet_b[0], hint)
     span = pair_span(pair, p, d)
     if not on_feature(pair, mode, q):
         return UNCERTIFIED, d, bound, normal
-    if bound > 0.0 and d - bound <= tolerance * span:
+    if bound > 0.0 and d - bound <= tolerance * span + pair_slack(pair):
         return CERTIFIED, d, bound, normal
     if bound <= 0.0 and d <= TOUCHING * span:
         return TOUCHING_OR_OVERLAPPING, d, bound, normal
@@ -59,6 +62,6 @@ def settle_and_weigh(pair, R, p, v, w, mode, q, w_ff, least, goal, tolerance, co
             pair, R, mode, q, n, d, SLOPE, counts, events
         ):
             break
-        _, fresh, jet_a, jet_b = settle(pair, R, p, v, w, mode, q, w_ff, 0, 0.0, counts, events)
+        _, fresh, jet_a, jet_b = settle(pair, R, p, v, w, mode, q, w_ff, 0.0, 0.0, counts, events)
         outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, n, tolerance)
     return fresh, outcome, d, bound, normal

@@ -111,7 +111,7 @@ def global_query(pair, R, p, mode, q, w_ff, tolerance, counts, events):
         begin_at(ia, ra, 0, i, mode, q)
         begin_at(ib, rb, 1, j, mode, q)
         _, outcome, d, bound, normal = settle_and_weigh(
-            pair, R, p, ORIGIN, ORIGIN, mode, q, w_ff, 0, 0.0, tolerance, counts, events
+            pair, R, p, ORIGIN, ORIGIN, mode, q, w_ff, 0.0, 0.0, tolerance, counts, events
         )
         if d - bound < best_gap or outcome != UNCERTIFIED:
             best_gap, best_d, best_bound, best_normal = d - bound, d, bound, normal

@@ -6,6 +6,8 @@ are the switching functions tested, and at most one feature, the steepest, is re
 falls between two releases, no stationary point is met twice.
 """
 
+import numpy as np
+
 from standoff.kernels import layout as L
 from standoff.kernels.compiling import kernel
 from standoff.kernels.events import (
@@ -46,6 +48,7 @@ from standoff.kernels.trimming import HIT_COEDGE, HIT_LIMIT, NO_HIT, walk
 from standoff.kernels.vectors import norm, rotate_back, scale, sub
 
 ORIGIN = (0.0, 0.0, 0.0)
+NO_EDGE = np.int64(-1)  # of the type of a feature's number: a literal would compile twice
 
 STATIONARY = 0
 EXHAUSTED = 1  # the iterations ran out
@@ -233,7 +236,7 @@ def advance(pair, R, p, mode, q, step, flat, E, descent, noise, last_smooth, cou
         last_smooth = take_hit(pair, mode, q, body, hit, index, t, last_smooth, s, counts, events)
         changed = True
     else:
-        last_smooth = -1
+        last_smooth = NO_EDGE
         changed = recentre(pair, mode, q, counts)
     if changed:
         jet_a, jet_b = pair_jets(pair, R, p, mode, q)
@@ -244,14 +247,15 @@ def advance(pair, R, p, mode, q, step, flat, E, descent, noise, last_smooth, cou
 def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
     """Descend to a stationary point of the automaton from (mode, q), changed in place.
 
-    At least `least` corrections are made; after that a slope of E below tolerance |dR| (or
-    roundoff) is stationary. (v, w) is B's twist in A's frame; w_ff gets the feedforward of the
-    last evaluation. Returns (STATIONARY | EXHAUSTED | CONTACT, fresh, jet_a, jet_b): fresh tells
-    whether w_ff belongs to the final mode, the jets are those of the final witness points.
+    At least `least` corrections are made (a float: every literal int would compile once more);
+    after that a slope of E below tolerance |dR| (or roundoff) is stationary. (v, w) is B's twist
+    in A's frame; w_ff gets the feedforward of the last evaluation. Returns (STATIONARY | EXHAUSTED
+    | CONTACT, fresh, jet_a, jet_b): fresh tells whether w_ff belongs to the final mode, the jets
+    are those of the final witness points.
     """
     corrections, stalls, polish = 0, 0, 0
     last_slope, last_release = 1e300, 1e300
-    last_smooth = -1
+    last_smooth = NO_EDGE
     fresh = False
     jet_a, jet_b = pair_jets(pair, R, p, mode, q)
     for _ in range(MAX_ITERATIONS):

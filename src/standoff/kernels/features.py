@@ -28,6 +28,12 @@ def pair_span(pair, p, d):
 
 
 @kernel
+def pair_slack(pair):
+    """What the certificate subtracts for both bodies, wherever the witness points are: length."""
+    return pair[1][L.SLACK] + pair[3][L.SLACK]
+
+
+@kernel
 def offset(reals):
     """Distance of a body's box centre from its origin."""
     return norm((reals[L.BOX_CENTRE], reals[L.BOX_CENTRE + 1], reals[L.BOX_CENTRE + 2]))

@@ -11,6 +11,7 @@ from standoff.kernels.certified import UNCERTIFIED, settle_and_weigh, weigh
 from standoff.kernels.cold_start import global_query
 from standoff.kernels.compiling import kernel, pointer
 from standoff.kernels.descent import (
+    NO_EDGE,
     ORIGIN,
     pair_jets,
     recentre,
@@ -74,7 +75,7 @@ def apply_step(pair, mode, q, dq, counts, events):
     for k in range(4):
         q[k] += s * dq[k]
     if hit != NO_HIT:
-        take_hit(pair, mode, q, body, hit, index, t, -1, s, counts, events)
+        take_hit(pair, mode, q, body, hit, index, t, NO_EDGE, s, counts, events)
     else:
         recentre(pair, mode, q, counts)
 
@@ -128,7 +129,7 @@ def track(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
         for k in range(2):
             goal = tolerance if k == 0 else 0.0
             fresh, outcome, d, bound, normal = settle_and_weigh(
-                pair, R, p, v, w, mode, q, w_ff, 1, goal, tolerance, counts, events
+                pair, R, p, v, w, mode, q, w_ff, 1.0, goal, tolerance, counts, events
             )
             if outcome != UNCERTIFIED:
                 return fresh, outcome, d, bound, normal
@@ -164,7 +165,7 @@ def start_frame(
             outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, ORIGIN, goal)
         else:
             _, outcome, d, bound, normal = settle_and_weigh(
-                pair, R, p, v, w, mode, q, w_ff, 0, 0.0, goal, counts, events
+                pair, R, p, v, w, mode, q, w_ff, 0.0, 0.0, goal, counts, events
             )
     if outcome == UNCERTIFIED and given != START_HERE:
         counts[RESTARTS] += 0 if given == START_ANYWHERE else 1

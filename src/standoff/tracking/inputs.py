@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.kernels import frame as K
-from standoff.kernels.trimming import on_face
+from standoff.kernels.entries import on_face
 from standoff.motion import Pose, PoseLike, Twist, TwistLike
 from standoff.tracking.proximity import charts_of
 

@@ -18,17 +18,14 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.kernels import frame as K
 from standoff.kernels import layout as L
+from standoff.kernels.entries import coedge_conormal, edge_jet, end_direction, feature_jet
 from standoff.kernels.features import (
     chart_record,
-    coedge_conormal,
     coedge_record,
     dimension,
-    edge_jet,
     edge_record,
-    feature_jet,
     vertex_record,
 )
-from standoff.kernels.switching import end_direction
 
 Array = NDArray[np.float64]
 
