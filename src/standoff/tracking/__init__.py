@@ -11,8 +11,9 @@ from standoff.tracking.recording import (
     open_recording,
 )
 from standoff.tracking.simulate import simulate
+from standoff.tracking.state import FrameBuffer, TrackerState
 from standoff.tracking.status import Status
-from standoff.tracking.tracker import FrameBuffer, Tracker, TrackerState, distance
+from standoff.tracking.tracker import Tracker, distance
 
 __all__ = [
     "Automaton",

@@ -23,8 +23,9 @@ from standoff.kernels import tracker as kernels
 from standoff.kernels.tolerances import SLOPE
 from standoff.tracking.proximity import Event, Feature, feature_of
 from standoff.tracking.recording import RecordedEvent
+from standoff.tracking.state import TrackerState
 from standoff.tracking.switching_function import NoMinimum, switching_function
-from standoff.tracking.tracker import Tracker, TrackerState
+from standoff.tracking.tracker import Tracker
 
 Array = NDArray[np.float64]
 Motion = tuple[Array, Array, Array, Array]

@@ -19,8 +19,9 @@ from standoff.tracking.instants import Motion, Step, located_events
 from standoff.tracking.options import positive_number
 from standoff.tracking.proximity import Event, Proximity
 from standoff.tracking.recording import RecordedEvent, Recording, RunInfo
+from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
-from standoff.tracking.tracker import Tracker, TrackerState
+from standoff.tracking.tracker import Tracker
 
 Array = NDArray[np.float64]
 

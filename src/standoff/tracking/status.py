@@ -20,7 +20,10 @@ class Status(Enum):
 
 
 _ADVICE = {
-    Status.CONVERGED: "The gap between distance and lower bound is within the tolerance.",
+    Status.CONVERGED: (
+        "The gap between distance and lower bound, less the bodies' own slack, is within the "
+        "tolerance."
+    ),
     Status.TRACKING: (
         "The law is still converging, or lags behind the motion: the lower bound holds; raise the "
         "paper's gain towards so.max_gain, shorten the step, or give a finite tolerance."

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,37 +24,12 @@ from standoff.tracking.inputs import (
 from standoff.tracking.options import check_stable, pack_options, positive_number
 from standoff.tracking.overlap import hulls_meet, sample_points
 from standoff.tracking.proximity import Event, Feature, Proximity, feature_of
+from standoff.tracking.state import FrameBuffer, TrackerState
 from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
 # Turns a segment of the z axis into one of the y axis.
 UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-
-
-@dataclass(frozen=True, eq=False)
-class TrackerState:
-    """The warm start, as a value: goes into a step and comes out of it, never changed.
-
-    Attributes
-    ----------
-    data : (39,) array
-        Read-only, laid out in ``standoff.kernels.frame``.
-    proximity : Proximity
-        The answer at the frame of this state.
-    """
-
-    data: Array
-    proximity: Proximity
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        for name, value in state.items():
-            object.__setattr__(self, name, value)
-        self.data.flags.writeable = False  # NumPy forgets it when stored
-
-    @property
-    def time(self) -> float:
-        """Time since ``start``, s."""
-        return float(self.data[K.TIME])
 
 
 class Tracker:
@@ -80,8 +54,9 @@ class Tracker:
     gain : float
         K of the paper's law, 1/s; default 1/dt. Must be below ``so.max_gain(integrator, dt)``.
     tolerance : float
-        Gap between distance and lower bound, relative to the pair's size, above which the
-        predictor-corrector corrects again, then restarts. inf: one correction, whatever the gap.
+        Gap between distance and lower bound, less the bodies' own slack (``Body.check``),
+        relative to the pair's size, above which the predictor-corrector corrects again, then
+        restarts. inf: one correction, whatever the gap.
 
     Raises
     ------
@@ -373,38 +348,6 @@ class Tracker:
             out[K.OUT_RATE : K.STATUS] = np.nan
             out[K.STATUS] = float(Status.OVERLAPPING.value)
             data[K.LOST] = 1.0
-
-
-class FrameBuffer:
-    """Arrays of one frame, reused: write into the poses (12 numbers: R row-major, p) and twists.
-
-    The arrays are written into, not replaced: the kernels read them by address.
-    """
-
-    def __init__(self, tracker: Tracker, state: TrackerState) -> None:
-        self.tracker = tracker
-        self.has_twist = True
-        identity = np.zeros(12)
-        identity[[0, 4, 8]] = 1.0
-        self._pose_a, self._pose_b = identity, identity.copy()
-        self._twist_a, self._twist_b = np.zeros(6), np.zeros(6)
-        self._state = state.data.copy()
-        self._out = np.full(K.N_OUT, np.nan)
-        self._events = np.zeros(N.MAX_EVENTS * N.EVENT_COLUMNS)
-
-    pose_a = property(lambda self: self._pose_a, doc="(12,) pose of A.")
-    pose_b = property(lambda self: self._pose_b, doc="(12,) pose of B.")
-    twist_a = property(lambda self: self._twist_a, doc="(6,) twist of A, (v, omega) in world.")
-    twist_b = property(lambda self: self._twist_b, doc="(6,) twist of B, (v, omega) in world.")
-    state = property(lambda self: self._state, doc="The warm start, changed in place.")
-    out = property(lambda self: self._out, doc="The answer, as standoff.kernels.frame lays it out.")
-    events = property(lambda self: self._events, doc="The log of switches, flat.")
-
-    def proximity(self) -> Proximity:
-        """The last answer as a value."""
-        return self.tracker._answer(
-            self.state.copy(), self.out.copy(), self.events, self.pose_a, self.pose_b
-        )[1]
 
 
 def _matrix(flat: Array) -> Array:
