@@ -110,8 +110,10 @@ def _reduced(ring: Ring, parts: tuple[Fraction, Fraction, Any]) -> CurvatureForm
     for p in raised:
         common = p if common == 0 else common.gcd(p)
     c = ring.fraction(common, below)
-    direction = [Fraction(ring, p / common, ring.one) for p in raised]
-    normal = tuple(ring.written(f.above) for f in direction)
+    free, hidden = ring.without_replaced([p / common for p in raised])
+    c = c * Fraction(ring, hidden, ring.one)
+    direction = [Fraction(ring, p, ring.one) for p in free]
+    normal = tuple(ring.written(p) for p in free)
     # a sum of squares has good bounds; its terms multiplied out only where few are left
     square = dot(direction, direction).above
     few = len(square) <= SHORT

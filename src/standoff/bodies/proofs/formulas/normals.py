@@ -22,6 +22,9 @@ from standoff.geometry.validation import Array
 
 # Boxes evaluated for one axis.
 MOST_BOXES = 8_192
+# Cosine to the axis: normals nearer to 90 degrees from it do not count as inside the hemisphere.
+# Two poles at float64's pi / 2 and -pi / 2 fit one by 6e-17, which serves nothing.
+LEAST_COSINE = 1e-9
 COORDINATES = np.concatenate([np.eye(3), -np.eye(3)])
 
 
@@ -85,7 +88,8 @@ def _all_on_one_side(bounds: Bounds, domain: tuple[float, ...], axis: Array) -> 
         ):
             return False
         value, _, slopes = bounds(boxes)
-        is_open = ~(along(value, axis).lo > 0.0)
+        length = np.sqrt((value.magnitude**2).sum(axis=0))
+        is_open = ~(along(value, axis).lo > LEAST_COSINE * length)
         boxes = boxes[is_open]
         slopes = [Interval(s.lo[:, is_open], s.hi[:, is_open]) for s in slopes]
         if len(boxes):

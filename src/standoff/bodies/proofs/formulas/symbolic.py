@@ -134,6 +134,23 @@ class Ring:
             above, below = above / below, self.one
         return Fraction(self, above, below)
 
+    def without_replaced(self, polynomials: Sequence[Any]) -> tuple[list[Any], Any]:
+        """Polynomials without their common factors among the replaced, and the product of these.
+
+        A greatest common divisor does not see sin v in (1 - cos² v) cos u. But p = sin v q where
+        sin v p = (1 - cos² v) q, and this the division finds.
+        """
+        found, product = list(polynomials), self.one
+        for gone, _, _ in self.replaced:
+            factor = self.of[gone]
+            square = self.reduced(factor**2)
+            while any(found):
+                parts = [divmod(self.reduced(factor * p), square) for p in found]
+                if any(rest for _, rest in parts):
+                    break
+                found, product = [q for q, _ in parts], product * factor
+        return found, product
+
     def read(self, e: Any) -> Fraction:
         """A SymPy expression as a fraction of polynomials."""
         flint = flint_module()
