@@ -5,8 +5,9 @@ import pytest
 
 import standoff as so
 from families import curved_shapes
+from families.nurbs_bodies import lens_nets
 from oracles.membership import outside
-from standoff.geometry import ConicArc, Line, NurbsCurve, RationalBezier
+from standoff.geometry import BezierPatch, ConicArc, Line, NurbsCurve, RationalBezier
 
 MAKERS = ("rounded_polytope", "egg", "spindle", "gore", "revolved_hull")
 CUBE = [[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]
@@ -81,10 +82,26 @@ def test_hull_bridges_a_hollow():
     body = so.shapes.hull_of_revolution(waist)
     assert (body.n_faces, body.n_edges, body.n_vertices) == (3, 2, 2)
     assert body.check().smooth_edges == 2
+    assert body.check().notes == ()  # the pole at the end of the profile is no reason to turn
     kinds = {type(face.charts[0]).__name__ for face in body.face_parts}
     assert kinds == {"Revolution", "Cylinder"}
     slanted = RationalBezier([(0, 0, -1), (2.5, 0, -1), (-0.9, 0, 0), (1.5, 0, 1), (0, 0, 1)])
     assert so.shapes.hull_of_revolution(slanted).check().smooth_edges == 2
+
+
+def test_loops_at_collapsed_sides_are_not_turned():
+    """Faces whose loop leaves out a collapsed side, at either end of v, rebuilt as they are."""
+    for body in (so.shapes.spindle(0.4, 2.0), so.shapes.gore(0.4, 2.0), _knotted_lens()):
+        for matrix in (np.eye(3), -np.eye(3), np.diag([1, 2, 0.5])):
+            image = body.transformed((matrix, np.ones(3)))
+            assert image.check().notes == ()
+            assert image.check().smooth_edges == body.check().smooth_edges
+
+
+def _knotted_lens():
+    """A lens of three patches, one of them cut in two across its collapsed ends."""
+    patches = [BezierPatch(n[..., :3] / n[..., 3:], n[..., 3]) for n in lens_nets(1, 0.45)]
+    return so.Body.from_patches([patches[0].refined(knots_v=[0.5]), *patches[1:]])
 
 
 def test_hull_of_a_line_is_a_frustum_or_a_cone():

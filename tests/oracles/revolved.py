@@ -26,6 +26,8 @@ SAMPLES = 32
 """Samples of a part that tell whether it may hold the farthest point."""
 RIVAL = 1e-3
 """Parts whose best sample is within this of the best, over the size, are searched."""
+CLIMBS = 30
+"""Steps on a part: halvings alone leave 1e-12 of it, and the value is good to its square."""
 SETTLED = 1e-12
 """Change of a parameter that ends a search: the value is then good to its square."""
 ZOOM = 40
@@ -101,7 +103,7 @@ class Stretch:
         """Newton steps, safeguarded by bisection, from samples; the samples' own points count."""
         low, high = self.grid[np.maximum(best - 1, 0)], self.grid[np.minimum(best + 1, SAMPLES)]
         t = self.grid[best].copy()
-        for _ in range(BISECTIONS):
+        for _ in range(CLIMBS):
             point, velocity, bend = self.curve.jet(t)
             slope, curvature = (velocity * flat).sum(axis=1), (bend * flat).sum(axis=1)
             low, high = np.where(slope >= 0, t, low), np.where(slope <= 0, t, high)

@@ -20,14 +20,24 @@ SMOOTH_ANGLE = 1e-7
 def _encircled(chart: Chart) -> float:
     """Area in (u, v) that a chart's loop runs round counterclockwise, as it was given.
 
-    The integral of -v du, which also serves a band whose two rims go once round.
+    The integral of -v du, which also serves a band whose two rims go once round. Collapsed sides
+    have no edge, so it is taken where they add nothing: of u dv where v is constant along them,
+    and in a band with v counted from theirs.
     """
+    level = None
+    for c in chart.coedges:
+        if c.edge < 0:
+            (u0, v0, _), (u1, v1, _) = c.pcurve.point(c.first), c.pcurve.point(c.last)
+            level = v0 if abs(v1 - v0) < abs(u1 - u0) else level
     area = 0.0
     for c in chart.coedges:
         if c.edge >= 0:
             points = np.array([c.pcurve.point(t)[:2] for t in np.linspace(c.first, c.last, 33)])
-            heights = 0.5 * (points[1:, 1] + points[:-1, 1])
-            area -= c.side * float(heights @ np.diff(points[:, 0]))
+            middle, step = 0.5 * (points[1:] + points[:-1]), np.diff(points, axis=0)
+            if level is None or chart.surface.periodic:
+                area -= c.side * float((middle[:, 1] - (level or 0.0)) @ step[:, 0])
+            else:
+                area += c.side * float(middle[:, 0] @ step[:, 1])
     return area
 
 
