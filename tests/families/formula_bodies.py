@@ -105,7 +105,7 @@ def paraboloid(rng: Rng) -> Twin:
     return Twin(shape, so.Body.from_patches(patches))
 
 
-MAKERS = (power_ball, paraboloid)
+MAKERS = (power_ball, egg, paraboloid)
 
 
 def any_formula(rng: Rng) -> Twin:
