@@ -2,13 +2,23 @@
 
 import numpy as np
 import pytest
+from numba import njit
 
 import standoff as so
 from standoff.kernels import layout as L
-from standoff.kernels.trimming import HIT_COEDGE, on_face, walk_face
+from standoff.kernels import trimming
+from standoff.kernels.compiling import pointer
+from standoff.kernels.entries import on_face
+from standoff.kernels.trimming import HIT_COEDGE
 
 NEAR = 3e-14
 """How far outside (parameter units) a walk may end: the noise of its start."""
+
+
+@njit
+def walk_face(ints, reals, chart, u, v, du, dv):
+    # kernels are compiled for pointers
+    return trimming.walk_face(pointer(ints, 0), pointer(reals, 0), chart, u, v, du, dv)
 
 
 def wedge() -> so.Body:
@@ -55,7 +65,8 @@ def test_no_grazing_step_leaves_the_face(name):
     rng = np.random.default_rng()
     stopped = 0
     for _ in range(4000):
-        chart, coedges = list(single_charts(body))[rng.integers(len(list(single_charts(body))))]
+        charts = list(single_charts(body))
+        chart, coedges = charts[rng.integers(len(charts))]
         p, tangent, side = boundary_point(body, rng.choice(list(coedges)), rng)
         inward = side * np.array([-tangent[1], tangent[0]])
         p = p + rng.integers(-2, 3) * np.spacing(p)

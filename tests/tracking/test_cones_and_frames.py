@@ -2,12 +2,20 @@
 
 import numpy as np
 import pytest
+from numba import njit
 from scipy.optimize import nnls
 
 import standoff as so
 from standoff.kernels.certificate import vertex_cone
+from standoff.kernels.compiling import pointer
 
 AT_REST = so.Pose(np.eye(3))
+
+
+@njit
+def nearest_normal(ints, reals, feature, n):
+    # kernels are compiled for pointers
+    return vertex_cone(pointer(ints, 0), pointer(reals, 0), feature, n)
 
 
 def pyramid(sides, rng):
@@ -50,7 +58,7 @@ def test_outside_a_cone_the_nearest_normal_is_found(sides):
         n /= np.linalg.norm(n)
         weights, _ = nnls(normals.T, n)
         nearest = weights @ normals / np.linalg.norm(weights @ normals)
-        found = np.array(vertex_cone(body.ints, body.reals, feature, tuple(n)))
+        found = np.array(nearest_normal(body.ints, body.reals, feature, tuple(n)))
         assert abs(np.linalg.norm(found) - 1) <= 1e-14
         assert found @ n >= nearest @ n - 1e-12
 
