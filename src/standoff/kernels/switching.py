@@ -25,7 +25,7 @@ from standoff.kernels.features import (
     is_creased,
     vertex_record,
 )
-from standoff.kernels.tolerances import CREASE_FIRST, CREASE_LAST, CREASE_STEPS
+from standoff.kernels.tolerances import CREASE_FIRST, CREASE_LAST, CREASE_STEPS, SLOPE
 from standoff.kernels.trimming import HIT_COEDGE, HIT_END, TURN, wrapped
 from standoff.kernels.vectors import add, axpy, cross, dot, scale, sub, unit
 
@@ -205,7 +205,8 @@ def steepest_release(ints, reals, feature, p, n):
         for k in range(ints[r + L.VERTEX_N_SECTORS]):
             sector = sectors + 2 * k
             slope, angle = steepest_in_sector(ints, reals, sector, n)
-            if slope < best:
+            # along the sector's bound runs an edge: a face released there is left at once
+            if slope < best - SLOPE:
                 c = ints[sector]
                 face = ints[chart_record(ints, c) + L.CHART_FACE]
                 u, v = sector_parameters(reals, ints[sector + 1], angle)
