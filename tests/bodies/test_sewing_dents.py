@@ -104,7 +104,7 @@ def test_what_is_refused_and_what_passes_with_which_slack(depth):
 def test_both_sides_of_the_threshold_were_met():
     assert so.Body.from_patches(dented_block(1e-7)).check().slack > 0.0
     with pytest.raises(so.BodyError, match="Not convex"):
-        so.Body.from_patches(dented_block(1e-6))
+        so.Body.from_patches(dented_block(3e-6))
     with pytest.raises(so.BodyError, match="Not convex"):
         so.Body.from_patches(dented_block(1e-9), convexity_tolerance=1e-10)
 

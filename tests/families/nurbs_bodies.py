@@ -62,8 +62,7 @@ def varied(net: Net, rng: Rng) -> NurbsSurface:
     ]
     if degrees != list(patch.degrees):
         patch = patch.elevated(*degrees)
-    curved = min(net.shape[:2]) > 2  # a knot across straight lines costs a plane wall its slack
-    if curved and rng.random() < 0.3:
+    if rng.random() < 0.3:
         knots = np.sort(rng.uniform(0.1, 0.9, int(rng.integers(1, 3))))
         patch = patch.refined(knots_u=list(knots)) if rng.random() < 0.5 else patch
         patch = patch.refined(knots_v=[float(rng.uniform(0.2, 0.8))])

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
+from itertools import pairwise
 
 import numpy as np
 
@@ -23,8 +24,17 @@ from standoff.bodies.proofs.defects import Dent, dents_total
 from standoff.bodies.proofs.forms import Forms, forms_of, with_poles
 from standoff.bodies.proofs.normals import in_hemisphere
 from standoff.bodies.proofs.proof import PatchProof
+from standoff.bodies.proofs.straight import (
+    ROUNDED,
+    Grid,
+    Nearness,
+    plane_nearness,
+    ruled_along,
+    turn_to,
+)
 from standoff.geometry import bernstein
 from standoff.geometry.nurbs import NurbsSurface
+from standoff.geometry.surfaces import Domain
 from standoff.geometry.validation import Array
 
 # Boxes looked at in one span before what is left counts as a dent of its bound.
@@ -38,6 +48,9 @@ ROUNDING = 1e-14
 PROVEN = 1e-12
 # Curvature below this, 1 / size, everywhere: the patch may be flat, which is then tried.
 NEARLY_FLAT = 1e-9
+# Radians between normals of a patch and of the plane or straight lines it is but for rounding, if
+# it lies more than its size from the origin times that: a few roundings over a narrow span.
+STRAIGHT = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +97,22 @@ def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
         A knot where the surface may be creased: a proof needs each smooth part by itself.
     """
     _refuse_creases(surface)
-    pieces, size, reach = _pieces(surface)
+    grid, size, reach = _grid(surface)
+    pieces = _pieces(grid, reach)
+    every = [piece.forms for piece in pieces]
+    plane = plane_nearness([piece.points for piece in pieces], every)
+    moved = max(piece.moved for piece in pieces)
+    if plane.distance <= ROUNDED * max(reach, 1.0) and plane.turn <= STRAIGHT * max(reach, 1.0):
+        return PatchProof(
+            convex=True,
+            defect=(plane.rise + moved) * size,
+            method="bernstein",
+            hemisphere=in_hemisphere(every),
+            place=pieces[0].parameters(ROOT),
+            sense=0,
+            tilt=plane.turn,
+        )
+    pieces, near = _straightened(grid, pieces, reach) or (pieces, Nearness(0.0, 0.0))
     bends = np.concatenate([_bends(piece.forms) for piece in pieces])
     sense = outward if outward is not None else (-1 if float(bends.sum()) > 0.0 else 1)
     results = [_search(piece, sense) for piece in pieces]
@@ -92,13 +120,13 @@ def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
     rise, tilt = dents_total(dents)
     worst = int(np.argmin([np.nan_to_num(r.found, nan=np.inf) for r in results]))
     convex = rise <= PROVEN * max(reach, 1.0) and all(r.convex for r in results)
-    rise += max(piece.moved for piece in pieces)
+    rise, tilt = min(rise + near.rise, plane.rise), min(tilt + near.turn, plane.turn)
     flat = convex and float(np.abs(bends).max(initial=0.0)) <= NEARLY_FLAT and _flat(pieces, sense)
     return PatchProof(
         convex=convex,
-        defect=rise * size,
+        defect=(rise + moved) * size,
         method="bernstein",
-        hemisphere=in_hemisphere([piece.forms for piece in pieces]),
+        hemisphere=in_hemisphere(every),
         place=pieces[worst].parameters(results[worst].cell),
         sense=0 if flat else sense,
         tilt=tilt,
@@ -118,7 +146,7 @@ def _refuse_creases(surface: NurbsSurface) -> None:
                 )
 
 
-def _pieces(surface: NurbsSurface) -> tuple[list[Piece], float, float]:
+def _grid(surface: NurbsSurface) -> tuple[Grid, float, float]:
     """The spans of a surface about its centre, scaled to the size one.
 
     Also the size, length, and how many sizes away from the origin the control points lie.
@@ -126,13 +154,40 @@ def _pieces(surface: NurbsSurface) -> tuple[list[Piece], float, float]:
     low, high = surface.box()
     centre, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
     reach = float(np.maximum(np.abs(low), np.abs(high)).max()) / size
-    pieces = []
-    for span in surface.spans():
-        h = span.points / span.points[3].max()
-        points = np.concatenate([(h[:3] - centre[:, None, None] * h[3:]) / size, h[3:]])
-        points, moved = with_poles(points)
-        pieces.append(Piece(span.domain, points, moved, forms_of(points, reach)))
-    return pieces, size, reach
+    spans = surface.spans()
+    us = np.unique([span.domain[:2] for span in spans])
+    vs = np.unique([span.domain[2:] for span in spans])
+    h = np.array([span.points for span in spans])
+    h = h / h[:, 3].max()
+    h[:, :3] = (h[:, :3] - centre[:, None, None] * h[:, 3:]) / size
+    return Grid(us, vs, h.reshape(len(us) - 1, len(vs) - 1, *h.shape[1:])), size, reach
+
+
+def _pieces(grid: Grid, reach: float) -> list[Piece]:
+    return [
+        _piece((u0, u1, v0, v1), grid.points[i, j], reach)
+        for i, (u0, u1) in enumerate(pairwise(grid.us))
+        for j, (v0, v1) in enumerate(pairwise(grid.vs))
+    ]
+
+
+def _piece(domain: Domain, points: Array, reach: float) -> Piece:
+    points, moved = with_poles(points / points[3].max())
+    return Piece(domain, points, moved, forms_of(points, reach))
+
+
+def _straightened(
+    grid: Grid, pieces: Sequence[Piece], reach: float
+) -> tuple[list[Piece], Nearness] | None:
+    """The patch as one ruled by straight lines, if it is so but for rounding; how near it is."""
+    for along_u in (False, True):
+        ruled = ruled_along(grid, along_u, ROUNDED * max(reach, 1.0))
+        if ruled is None:
+            continue
+        turn = turn_to(ruled.spans, [piece.forms for piece in pieces], reach)
+        if turn <= STRAIGHT * max(reach, 1.0):
+            return _pieces(ruled.whole, reach), Nearness(ruled.distance, turn)
+    return None
 
 
 def _bends(forms: Forms) -> Array:
