@@ -39,6 +39,7 @@ from standoff.kernels.tolerances import (
     MAX_STALLS,
     POLISH_RATIO,
     RECHART,
+    SHARP_POLISH,
     SLOPE,
     SLOPE_NOISE,
     TOUCHING,
@@ -203,17 +204,19 @@ def line_search(pair, R, p, mode, q, step, flat, s, E, descent, noise):
 
 @kernel
 def correction(jet_a, jet_b, p, v, w, g, span, w_ff, counts):
-    """(step, g.step, flat): the Newton step; w_ff gets the feedforward of the same factorisation.
+    """(step, g.step, flat, sharp): the Newton step; w_ff gets the feedforward of the same
+    factorisation.
 
-    flat is 1 where H has a flat direction.
+    flat is 1 where H has a flat direction, sharp tells one that is curved as beside a crease.
     """
     H = hessian(jet_a, jet_b)
     g_t = gradient(feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, v, w))
-    step, forward, _, regularised, flat = law(jet_a, jet_b, g, H, g_t, span)
+    step, forward, _, regularised, flat, sharp = law(jet_a, jet_b, g, H, g_t, span)
     w_ff[0], w_ff[1], w_ff[2], w_ff[3] = forward
     counts[EVALUATIONS] += 1
     counts[REGULARISED] += regularised
-    return step, g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3], flat
+    descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
+    return step, descent, flat, sharp
 
 
 @kernel
@@ -270,11 +273,13 @@ def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
         slope = gradient_norm(jet_a, jet_b, g)
         floor = max(AT_REST * EPS * span, tolerance * d)
         if slope > 0.0 and (slope > floor or corrections < least):
-            step, descent, flat = correction(jet_a, jet_b, p, v, w, g, span, w_ff, counts)
+            step, descent, flat, sharp = correction(jet_a, jet_b, p, v, w, g, span, w_ff, counts)
             fresh = True
             in_noise = -0.5 * descent <= noise
             polish += in_noise
-            if not (in_noise and polish > MAX_POLISH and slope > POLISH_RATIO * last_slope):
+            # beside a crease E is noise for orders of magnitude, and the slope is not
+            most = SHARP_POLISH if sharp and slope > SLOPE * d else MAX_POLISH
+            if not (in_noise and polish > most and slope > POLISH_RATIO * last_slope):
                 ok, held, changed, last_smooth, jet_a_new, jet_b_new = advance(
                     pair, R, p, mode, q, step, flat, E, descent, noise, last_smooth, counts, events
                 )

@@ -191,10 +191,10 @@ def levelled(inverse, first, second):
 
 @kernel
 def law(jet_a, jet_b, g, H, g_t, scale):
-    """(p, w_ff, slope, regularised, flat): p = -H⁻¹ g, w_ff = -H⁻¹ g_t, |g| in the metric D.
+    """(p, w_ff, slope, regularised, flat, sharp): p = -H⁻¹ g, w_ff = -H⁻¹ g_t, |g| in the metric D.
 
     Eq. (12) is w = K p + w_ff. `regularised` is 1 where H had to be decomposed, `flat` 1 where
-    it has a direction that is not stiff.
+    it has a direction that is not stiff, `sharp` where one is curved as beside a crease.
     """
     ia = metric_inverse(jet_a[1], jet_a[2])
     ib = metric_inverse(jet_b[1], jet_b[2])
@@ -215,10 +215,10 @@ def law(jet_a, jet_b, g, H, g_t, scale):
     if least > PIVOT * top:
         p, w = negate(ldl_solve(f, gw)), negate(ldl_solve(f, tw))
         flat = 0 if least > STIFF * top else 1
-        return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), slope, 0, flat
+        return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), slope, 0, flat, sharp
     noise = GRADIENT_NOISE * EPS * scale
     p, w = decomposed_solve(Hw, gw, tw, noise, scale)
-    return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), slope, 1, 1
+    return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), slope, 1, 1, sharp
 
 
 @kernel

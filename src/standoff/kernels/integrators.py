@@ -47,7 +47,7 @@ def law_at(pair, R, p, v, w, mode, q, forward, counts):
     H = hessian(jet_a, jet_b)
     b = feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, v, w)
     g_t = gradient((forward * b[0], forward * b[1], forward * b[2], forward * b[3]))
-    step, w_ff, slope, regularised, _ = law(jet_a, jet_b, g, H, g_t, span)
+    step, w_ff, slope, regularised, _, _ = law(jet_a, jet_b, g, H, g_t, span)
     counts[EVALUATIONS] += 1
     counts[REGULARISED] += regularised
     return step, w_ff, slope, d

@@ -59,6 +59,9 @@ TOUCHING = 1e-13
 # bring |g| below POLISH_RATIO of the last to be worth another.
 MAX_POLISH = 2
 POLISH_RATIO = 0.5
+# Beside a crease so many are free while the slope is above SLOPE: each brings the parameter a few
+# orders of magnitude nearer.
+SHARP_POLISH = 60
 
 # Releases in a row that may fail to lower E before a descent ends where it is.
 MAX_STALLS = 3

@@ -62,7 +62,8 @@ def crossings(ints, reals, coedge, u, v, du, dv, noise):
     """
     c = coedge_record(ints, coedge)
     o = ints[c + L.COEDGE_REALS] + L.PCURVE_DATA
-    n, ta, tb = line_roots(reals, ints[c + L.COEDGE_KIND], o, u, v, du, dv, noise)
+    kind = ints[c + L.COEDGE_KIND]
+    n, ta, tb = line_roots(reals, kind, o, u, v, du, dv, noise)
     count = 0
     s1 = s2 = t1 = t2 = 0.0
     out1 = out2 = 0
@@ -73,8 +74,13 @@ def crossings(ints, reals, coedge, u, v, du, dv, noise):
         inside, t = in_range(ints, reals, coedge, t)
         if depth <= 0.0 or not inside:
             continue
-        s = ((x - u) * du + (y - v) * dv) / length2
-        inward = ints[c + L.COEDGE_SIDE] * (tx * dv - ty * du)
+        across = tx * dv - ty * du
+        inward = ints[c + L.COEDGE_SIDE] * across
+        if kind == L.LINE and across != 0.0:
+            # free of t's roundoff along the line, which swamps a small step
+            s = ((y - v) * tx - (x - u) * ty) / across
+        else:
+            s = ((x - u) * du + (y - v) * dv) / length2
         if n == TOUCHING_LINE:
             # the line only touches the curve: outside all along, if the face is on its side
             along = ints[c + L.COEDGE_SIDE] * (tx * du + ty * dv)

@@ -32,7 +32,7 @@ def superellipsoid(a: float, b: float, c: float, e1: float, e2: float) -> Body:
     Parameters
     ----------
     a, b, c : float, length, positive
-    e1, e2 : float, 0.05 to 1.95
+    e1, e2 : float, 0.1 to 1.8
 
     Raises
     ------
