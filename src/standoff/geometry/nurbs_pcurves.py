@@ -18,6 +18,8 @@ from standoff.kernels.entries import pcurve_jet
 # A piece of a NURBS pcurve turns by less than this (radians): 180 degrees with a margin.
 MOST_TURN = 0.9 * np.pi
 TURN_POINTS = 65
+# A piece is halved until it turns little; one that turns back at a point never would.
+MAX_HALVINGS = 20
 # Curvature below this part of the greatest (dimensionless) is roundoff of a straight piece.
 STRAIGHT = 1e-11
 
@@ -128,7 +130,7 @@ def _turning_pieces(piece: BezierPcurve) -> list[BezierPcurve]:
     return [q for p in parts for q in _halved(p)]
 
 
-def _halved(piece: BezierPcurve) -> list[BezierPcurve]:
+def _halved(piece: BezierPcurve, halvings: int = 0) -> list[BezierPcurve]:
     first, last = piece.first, piece.last
     total, before = 0.0, None
     for t in np.linspace(first, last, TURN_POINTS):
@@ -141,4 +143,10 @@ def _halved(piece: BezierPcurve) -> list[BezierPcurve]:
     if total < MOST_TURN:
         return [piece]
     middle = 0.5 * (first + last)
-    return [*_halved(_part(piece, first, middle)), *_halved(_part(piece, middle, last))]
+    if halvings == MAX_HALVINGS:
+        raise ValueError(
+            f"The trimming curve turns back on itself at its parameter {middle:.9g}: give one "
+            "that runs on."
+        )
+    halves = (_part(piece, first, middle), _part(piece, middle, last))
+    return [q for half in halves for q in _halved(half, halvings + 1)]

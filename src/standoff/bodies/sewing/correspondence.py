@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import comb
 
 from standoff.bodies.sewing.corners import Stretch
-from standoff.bodies.sewing.sides import Side
+from standoff.bodies.sewing.sides import Side, in_spans
 from standoff.bodies.topology import BodyError
 from standoff.geometry.nurbs_pcurves import NurbsPcurve
 from standoff.geometry.pcurves import Pcurve
@@ -75,13 +75,22 @@ def correspond(one: Stretch, other: Stretch, size: float) -> Correspondence:
     width = b - a
     row = np.array([row[0] / width, row[1] - row[0] * a / width])
     scale = np.array([scale[0] / width, scale[1] - scale[0] * a / width])
-    times = a + CHECKS * width
+    times = _times(one.side, other.side)
     points = [one.side.point(float(t)) for t in times]
     straight = (row[0] * times + row[1]) / (scale[0] * times + scale[1])
     residual = _farthest(other.side, straight, points)
     if residual <= near * (1.0 + STRAIGHT_SHARE) + STRAIGHT * size:
         return Correspondence(_straight(other.side, row, scale), sense, residual)
     return _spline(one, other, sense, max(SPLINE * size, SPLINE_SHARE * near))
+
+
+def _times(side: Side, other: Side) -> Array:
+    """Parameters of a side where it is compared: at CHECKS and in every span of both sides."""
+    times = side.first + CHECKS * (side.last - side.first)
+    if len(side.breaks) > 2 or len(other.breaks) > 2:
+        seen = [side.nearest(other.point(float(t)))[0] for t in other.breaks[1:-1]]
+        times = np.concatenate([times, in_spans(np.union1d(side.breaks, seen))])
+    return times
 
 
 def _farthest(side: Side, parameters: Array, points: list[Array]) -> float:
@@ -145,7 +154,7 @@ def _spline(one: Stretch, other: Stretch, sense: int, goal: float) -> Correspond
     columns = (moving, level) if other.side.name[0] == "v" else (level, moving)
     pcurve = NurbsPcurve(np.column_stack(columns), knots)
     index = 0 if other.side.name[0] == "v" else 1
-    dense = np.linspace(a, b, 16 * len(done) + 1)
+    dense = np.union1d(np.linspace(a, b, 16 * len(done) + 1), _times(one.side, other.side))
     points = [one.side.point(float(t)) for t in dense]
     along = np.array([pcurve.point(float(t))[index] for t in dense])
     return Correspondence(pcurve, sense, _farthest(other.side, along, points))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.proofs import PatchProof
-from standoff.bodies.sewing.corners import Outline, Stretch, outline
+from standoff.bodies.sewing.corners import MAX_SPREAD, Outline, Stretch, outline
 from standoff.bodies.sewing.correspondence import Correspondence, correspond, isoline
 from standoff.bodies.sewing.matching import match
 from standoff.bodies.sewing.patches import Patch, check_patches, cut_patches, grid_points
@@ -73,7 +73,7 @@ def sew(patches: Sequence[Any], tolerance: float | None = None) -> Sewn:
     shape = outline(cut, tolerance)
     pairs = match([s for row in shape.stretches for s in row], tolerance)
     check_shell(cut, shape, pairs)
-    found = [correspond(a, b, size) for a, b in pairs]
+    found = [_joined(a, b, size, tolerance) for a, b in pairs]
     sign, turned = outward_senses(cut, pairs, [c.sense for c in found], tolerance)
     edges = [
         Edge(
@@ -97,6 +97,16 @@ def sew(patches: Sequence[Any], tolerance: float | None = None) -> Sewn:
         [patch.label for patch in cut],
         [patch.proof for patch in cut],
     )
+
+
+def _joined(one: Stretch, other: Stretch, size: float, tolerance: float) -> Correspondence:
+    found = correspond(one, other, size)
+    if found.residual > MAX_SPREAD * tolerance:
+        raise BodyError(
+            f"{one.label} and {other.label} part by {found.residual:.3g} between their ends, "
+            f"tolerance {tolerance:.3g}: make them the same curve, or give a greater tolerance."
+        )
+    return found
 
 
 def _size(patches: Sequence[Surface]) -> float:

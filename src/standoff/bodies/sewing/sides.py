@@ -7,7 +7,10 @@ from functools import cached_property
 
 import numpy as np
 
+from standoff.geometry.nurbs import NurbsSurface
+from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.surfaces import Surface
+from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.validation import Array
 
 # Counterclockwise in (u, v), each with the sense in which its free parameter runs that way.
@@ -21,6 +24,8 @@ PROJECTION_STEPS = 30
 PROJECTION_STEP = 4e-16
 # Shares of a side where it is compared with another: none symmetric, none at an end.
 PROBES = np.array([0.03, 0.17, 0.31, 0.48, 0.64, 0.81, 0.96])
+# The same for every span between knots: a bulge of a spline fills at least one.
+SPAN_PROBES = np.array([0.12, 0.38, 0.61, 0.9])
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,12 +65,21 @@ class Side:
         return self.jet(t)[0]
 
     @cached_property
+    def breaks(self) -> Array:
+        """Knots of the side's curve between its ends, and the ends; one span without knots."""
+        found = _knots(self.surface, 0 if self.name[0] == "v" else 1)
+        inside = found[(found > self.first) & (found < self.last)]
+        return np.concatenate([[self.first], inside, [self.last]])
+
+    @cached_property
     def knots(self) -> Array:
-        return np.linspace(self.first, self.last, POLYLINE)
+        """Parameters of the polyline, ascending: POLYLINE even ones and the curve's knots."""
+        even = np.linspace(self.first, self.last, POLYLINE)
+        return np.union1d(even, self.breaks)
 
     @cached_property
     def polyline(self) -> Array:
-        """(POLYLINE, 3) points from the first to the last."""
+        """(len(knots), 3) points from the first to the last."""
         return np.array([self.point(float(t)) for t in self.knots])
 
     @cached_property
@@ -74,8 +88,11 @@ class Side:
 
     @cached_property
     def probes(self) -> Array:
-        """Points inside the side, (7, 3)."""
-        return np.array([self.point(self.first + s * (self.last - self.first)) for s in PROBES])
+        """Points inside the side, (n, 3): at PROBES, then in every span between knots."""
+        ts = self.first + PROBES * (self.last - self.first)
+        if len(self.breaks) > 2:
+            ts = np.concatenate([ts, in_spans(self.breaks)])
+        return np.array([self.point(float(t)) for t in ts])
 
     def collapsed(self, tolerance: float) -> bool:
         """Is the whole side within the tolerance of one point?"""
@@ -91,7 +108,7 @@ class Side:
         """(parameter, distance) of the side's point that is nearest to x."""
         k = int(((self.polyline - x) ** 2).sum(axis=1).argmin())
         low = float(self.knots[max(k - 1, 0)])
-        high = float(self.knots[min(k + 1, POLYLINE - 1)])
+        high = float(self.knots[min(k + 1, len(self.knots) - 1)])
         t = float(self.knots[k])
         for _ in range(PROJECTION_STEPS):
             y, yt, ytt = self.jet(t)
@@ -108,6 +125,23 @@ class Side:
                 break
             t = new
         return t, float(np.linalg.norm(self.point(t) - x))
+
+
+def in_spans(breaks: Array) -> Array:
+    """Parameters inside every span between two breaks."""
+    spans: Array = breaks[:-1, None] + SPAN_PROBES * np.diff(breaks)[:, None]
+    return spans.ravel()
+
+
+def _knots(surface: Surface, axis: int) -> Array:
+    """Where the polynomial pieces of a surface meet along u (axis 0) or v (axis 1)."""
+    if isinstance(surface, NurbsSurface):
+        return (surface.vector_u, surface.vector_v)[axis].breaks
+    if isinstance(surface, Extrusion | Revolution):
+        along_profile = axis == (1 if isinstance(surface, Revolution) else 0)
+        if along_profile and isinstance(surface.profile, NurbsCurve):
+            return surface.profile.vector.breaks
+    return np.zeros(0)
 
 
 def gap(one: Side, other: Side) -> float:

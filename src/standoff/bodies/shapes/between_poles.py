@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -116,6 +117,8 @@ def _bulge(radius: float, length: float, name: str) -> tuple[float, float]:
 
 
 def _patches(patches: int, name: str) -> int:
-    if isinstance(patches, bool) or int(patches) != patches or patches < LEAST_PATCHES:
+    given: Any = patches
+    whole = isinstance(given, Integral) and not isinstance(given, bool)
+    if not whole or given < LEAST_PATCHES:
         raise BodyError(f"{name}: patches = {patches!r}: give a whole number, at least 3.")
     return int(patches)
