@@ -9,6 +9,7 @@ import numpy as np
 from standoff.bodies.packing import Assembled, Chart, Ints, Sample
 from standoff.bodies.topology import BodyError, Edge
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
+from standoff.geometry.hulls import tight_box
 from standoff.geometry.validation import Array
 from standoff.kernels.entries import chart_normal, on_face, planar_edge_normal
 
@@ -123,12 +124,10 @@ def boundary_samples(body: Assembled, ints: Ints, reals: Array) -> list[Sample]:
 
 
 def curve_box(edge: Edge) -> tuple[Array, Array]:
-    """(low, high) of a box around an edge: exact for lines and conic arcs, else control points."""
+    """(low, high) of a box around an edge: exact for lines and conic arcs, else a bound."""
     c = edge.curve
     if isinstance(c, RationalBezier):
-        h = c.data[1:].reshape(-1, 4)
-        points = h[:, :3] / h[:, 3:]
-        return points.min(axis=0), points.max(axis=0)
+        return tight_box(c.data[1:].reshape(-1, 4).T[None, ..., None])
     box = c.box()
     if box is not None:
         return box

@@ -8,6 +8,7 @@ import numpy as np
 
 from standoff.geometry.bernstein import segment
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
+from standoff.geometry.hulls import tight_box
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.validation import Array
 
@@ -15,7 +16,7 @@ from standoff.geometry.validation import Array
 def curve_reach(curve: Curve, direction: Array, first: float, last: float) -> float:
     """A bound of direction @ x on a curve from parameter first to last.
 
-    Exact for lines and conic arcs; from the control points of the piece for rational curves, from
+    Exact for lines and conic arcs; from the piece's halved control points for rational curves, from
     the whole curve's box for formulas.
 
     Raises
@@ -32,15 +33,25 @@ def curve_reach(curve: Curve, direction: Array, first: float, last: float) -> fl
                 ends.append(float(direction @ curve.point(top)))
         return max(ends)
     if isinstance(curve, RationalBezier | NurbsCurve):
-        return float((control_points(curve, first, last) @ direction).max())
+        return max(
+            float(tight_box((part @ _reading(direction)).T[None, ..., None])[1][0])
+            for part in rational_parts(curve, first, last)
+        )
     box = curve.box()
     if box is not None:
         return float(np.where(direction > 0.0, box[1], box[0]) @ direction)
     raise ValueError(f"{type(curve).__name__} has no bounds: it cannot be a profile.")
 
 
-def control_points(curve: RationalBezier | NurbsCurve, first: float, last: float) -> Array:
-    """Bezier points (n, 3) of the pieces of a rational curve between two parameters."""
+def _reading(direction: Array) -> Array:
+    """(4, 2) from homogeneous points to the height along a direction, homogeneous."""
+    matrix = np.zeros((4, 2))
+    matrix[:3, 0], matrix[3, 1] = direction, 1.0
+    return matrix
+
+
+def rational_parts(curve: RationalBezier | NurbsCurve, first: float, last: float) -> list[Array]:
+    """Homogeneous Bezier points (p + 1, 4) of the pieces of a rational curve between two places."""
     if isinstance(curve, RationalBezier):
         breaks, blocks = np.array([0.0, 1.0]), curve.data[1:].reshape(1, -1, 4)
     else:
@@ -49,9 +60,9 @@ def control_points(curve: RationalBezier | NurbsCurve, first: float, last: float
     for a, b, block in zip(breaks[:-1], breaks[1:], blocks, strict=True):
         low, high = max(float(a), first), min(float(b), last)
         if low <= high:
-            part = segment(len(block) - 1, (low - a) / (b - a), (high - a) / (b - a)) @ block
-            found.append(part[:, :3] / part[:, 3:])
-    return np.concatenate(found)
+            part: Array = segment(len(block) - 1, (low - a) / (b - a), (high - a) / (b - a)) @ block
+            found.append(part)
+    return found
 
 
 def curve_breaks(curve: Curve, first: float, last: float) -> tuple[float, ...]:

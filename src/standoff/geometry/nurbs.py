@@ -14,6 +14,7 @@ from typing import Any, Self
 import numpy as np
 
 from standoff.geometry.bernstein import segment
+from standoff.geometry.hulls import tight_box
 from standoff.geometry.knots import (
     GREATEST_DEGREE,
     KnotVector,
@@ -158,13 +159,11 @@ class NurbsSurface(Surface):
         ]
 
     def box(self) -> tuple[Array, Array]:
-        """(low, high) corners of the box round the Bezier points of the domain: it holds it."""
-        clouds = [(s.points[:3] / s.points[3]).reshape(3, -1) for s in self.spans()]
-        cloud = np.concatenate(clouds, axis=1)
-        return cloud.min(axis=1), cloud.max(axis=1)
+        """(low, high) corners of a box that surely holds the surface over its domain, tightly."""
+        return tight_box(np.array([span.points for span in self.spans()]))
 
     def highest(self, direction: Array) -> None:
-        """None: the box of the control points serves instead."""
+        """None: the box serves instead."""
         return
 
     def refined(self, knots_u: Sequence[float] = (), knots_v: Sequence[float] = ()) -> NurbsSurface:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from standoff.geometry.curves import Curve
+from standoff.geometry.hulls import tight_box
 from standoff.geometry.knots import KnotVector, bezier_spans, elevate_knots, knot_vector, refine
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.validation import Array, finite
@@ -89,9 +90,8 @@ class NurbsCurve(Curve):
         return bool(out @ back > 0.0) and turn <= JOINT_TOLERANCE * size
 
     def box(self) -> tuple[Array, Array]:
-        """(low, high) corners of the box round the Bezier points: it holds the curve."""
-        cloud = self.blocks[..., :3] / self.blocks[..., 3:]
-        return cloud.min(axis=(0, 1)), cloud.max(axis=(0, 1))
+        """(low, high) corners of a box that surely holds the curve, tightly."""
+        return tight_box(self.blocks.swapaxes(1, 2)[..., None])
 
     def breaks(self) -> tuple[float, ...]:
         """Knots inside the domain where the curve may be less than C2."""

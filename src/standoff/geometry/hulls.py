@@ -1,0 +1,87 @@
+"""Boxes round rational Bezier points, made tight by halving.
+
+A rational Bezier curve or patch with positive weights lies in the hull of its control points, and
+halving (de Casteljau) brings the points nearer, by a factor 4 a time. Only the pieces that may
+still hold an outermost point are halved.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from standoff.geometry.bernstein import halves
+from standoff.geometry.validation import Array
+
+# A box is known well when no side may be moved inward by more than this fraction of its diagonal.
+TIGHT = 1e-4
+# Halvings at most, and pieces at once.
+MOST_HALVINGS = 24
+MOST_PIECES = 512
+# Points of a box computed so are rounded by this many units of roundoff of the greatest number.
+MARGIN = 8.0 * float(np.finfo(np.float64).eps)
+
+
+def tight_box(h: Array) -> tuple[Array, Array]:
+    """(low, high), each (d,), of a box that surely holds rational Bezier patches or curves.
+
+    Parameters
+    ----------
+    h : (n, d + 1, p + 1, q + 1) homogeneous points (w x, ..., w) of n patches; curves have q = 0.
+
+    Notes
+    -----
+    The box is the hull of control points after halving, outward by some units of roundoff where
+    there was any halving. No side is farther from the surface than ``TIGHT`` of the diagonal,
+    unless there are too many pieces.
+    """
+    d = h.shape[1] - 1
+    points = (h[:, :d] / h[:, d:]).reshape(len(h), d, -1)
+    margin = MARGIN * float(np.abs(points).max())
+    # points of the surface: corners of every patch
+    inner_low, inner_high = _corners(h)
+    low, high = points.min(axis=2), points.max(axis=2)
+    outer_low, outer_high = low.min(axis=0), high.max(axis=0)
+    limit = TIGHT * float(np.linalg.norm(outer_high - outer_low))
+    settled_low, settled_high = inner_low.copy(), inner_high.copy()
+    halved = False
+    for _ in range(MOST_HALVINGS):
+        # pieces that reach past what is known by more than the limit, on any side
+        open_ = (low < inner_low - limit).any(axis=1) | (high > inner_high + limit).any(axis=1)
+        settled_low = np.minimum(settled_low, low[~open_].min(axis=0, initial=np.inf))
+        settled_high = np.maximum(settled_high, high[~open_].max(axis=0, initial=-np.inf))
+        h, low, high = h[open_], low[open_], high[open_]
+        if not len(h) or len(h) > MOST_PIECES:
+            break
+        h = _halved(h)
+        halved = True
+        found_low, found_high = _corners(h)
+        inner_low, inner_high = np.minimum(inner_low, found_low), np.maximum(inner_high, found_high)
+        points = (h[:, :d] / h[:, d:]).reshape(len(h), d, -1)
+        low, high = points.min(axis=2), points.max(axis=2)
+    low = np.minimum(settled_low, low.min(axis=0, initial=np.inf))
+    high = np.maximum(settled_high, high.max(axis=0, initial=-np.inf))
+    if not halved:
+        return low, high
+    # halving may gain nothing on a side, and its rounding is not to lose anything
+    return np.maximum(low - margin, outer_low), np.minimum(high + margin, outer_high)
+
+
+def _corners(h: Array) -> tuple[Array, Array]:
+    """The box of the patches' corners: points of the surface."""
+    c = h[:, :, [0, 0, -1, -1], [0, -1, 0, -1]]
+    x = c[:, :-1] / c[:, -1:]
+    return x.min(axis=(0, 2)), x.max(axis=(0, 2))
+
+
+def _halved(h: Array) -> Array:
+    """Every patch in two, along the parameter in which its points bend more."""
+    p, q = h.shape[-2] - 1, h.shape[-1] - 1
+    if q == 0:
+        return np.concatenate([m @ h for m in halves(p)])
+    bends = [
+        degree**2 * np.abs(np.diff(h, 2, axis=axis)).max(axis=(1, 2, 3), initial=0.0)
+        for degree, axis in ((p, -2), (q, -1))
+    ]
+    along_u = bends[0] >= bends[1]
+    parts = [m @ h[along_u] for m in halves(p)] + [h[~along_u] @ m.T for m in halves(q)]
+    return np.concatenate(parts)
