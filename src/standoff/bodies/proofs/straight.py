@@ -89,7 +89,7 @@ class Ruled:
 
 
 def ruled_along(grid: Grid, along_u: bool, limit: float) -> Ruled | None:
-    """The patch as straight along u, or v, if it is so to within `limit`, part of the size.
+    """The patch as straight along u, or v, if its points (w x, w) are so to within `limit`.
 
     None too where it is one span of degree 1: as straight as it can be.
     """
@@ -101,10 +101,10 @@ def ruled_along(grid: Grid, along_u: bool, limit: float) -> Ruled | None:
     ends = np.stack([grid.points[:, 0, ..., 0], grid.points[:, -1, ..., -1]], axis=-1)
     spans = _elevated(grid, ends)
     off = float(np.abs(grid.points - spans).max())
+    if off > limit:
+        return None
     # to a change of w x belongs one of x by as much over w, and w brings x times its own
     distance = 4.0 * off / float(grid.points[:, :, 3].min())
-    if distance > limit:
-        return None
     whole = Grid(grid.us, grid.vs[[0, -1]], ends[:, None])
     return Ruled(whole, Grid(grid.us, grid.vs, spans), distance)
 
