@@ -117,7 +117,7 @@ def test_a_ruled_patch_with_a_real_dent_is_none():
     """Its lines bend more than by rounding, or it is twisted."""
     t = np.linspace(0.0, 2.5, 6)
     rim = np.stack([np.cos(t), np.sin(t), 0.0 * t], axis=-1)
-    patch = BezierPatch(np.stack([rim, rim + [0.1, 0.2, 1.0]], axis=1)).elevated(5, 4)
+    patch = BezierPatch(np.stack([rim, rim + np.array([0.1, 0.2, 1.0])], axis=1)).elevated(5, 4)
     for depth in (1e-11, 1e-9, 1e-6):
         points = patch.control_points.copy()
         points[2, 2] -= depth * rim[2]
