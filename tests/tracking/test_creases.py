@@ -73,5 +73,5 @@ def test_exponents_up_to_the_greatest(aligned):
 
 @pytest.mark.parametrize("exponents", [(0.09, 1), (1, 1.81), (0, 1), (1, np.nan), (-1, 1)])
 def test_other_exponents_are_refused(exponents):
-    with pytest.raises(ValueError, match=r"e[12] = "):
+    with pytest.raises(ValueError, match=r"e[12]\b"):
         so.shapes.superellipsoid(1, 1, 1, *exponents)

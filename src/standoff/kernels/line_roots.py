@@ -9,7 +9,7 @@ from math import atan2, hypot, pi, sqrt
 from standoff.kernels import layout as L
 from standoff.kernels.compiling import kernel
 from standoff.kernels.jets import pcurve_jet
-from standoff.kernels.tolerances import PCURVE_OVERLAP
+from standoff.kernels.tolerances import EPS, PCURVE_OVERLAP
 
 HALF_TURN = pi
 # A conic is looked at more closely where a line cuts into it by less than this part of it.
@@ -66,11 +66,14 @@ def level(reals, o, a, b, c, t):
 @kernel
 def bracketed(reals, o, a, b, c, which, t0, f0, t1, f1):
     """Root of `level`'s value (which 0) or slope (1) between t0 and t1, where its signs differ."""
+    least = 4.0 * EPS * (abs(t0) + abs(t1))  # a bracket this wide is a point
     for k in range(ROOT_STEPS):
+        if abs(t1 - t0) <= least:
+            break
         # every third step halves, so that no bracket stays wide
         t = 0.5 * (t0 + t1) if k % 3 == 2 else (t0 * f1 - t1 * f0) / (f1 - f0)
-        if not (min(t0, t1) < t < max(t0, t1)):
-            break
+        # never an end: a root at one is closed in on from the other
+        t = min(max(t, min(t0, t1) + 0.5 * least), max(t0, t1) - 0.5 * least)
         f, slope = level(reals, o, a, b, c, t)
         if which == 1:
             f = slope
