@@ -289,13 +289,13 @@ def test_normals_lean_no_more_than_bounded():
     """On a unit sphere the cosine to the axis z is the height."""
     cap = FormulaSurface("u", "v", "sqrt(1 - u**2 - v**2)", (-0.5, 0.5, -0.6, 0.6))
     boxes = grid(cap.domain, 32)
-    cosines = least_cosines(cap.formula, boxes, np.eye(3), np.array([0.0, 0.0, 1.0]))
+    cosines = least_cosines(cap.formula, cap.domain, boxes, np.eye(3), np.array([0.0, 0.0, 1.0]))
     far = np.maximum(np.abs(boxes.low), np.abs(boxes.high))
     heights = np.sqrt(1 - (far**2).sum(axis=1))
     assert (cosines <= heights).all()
     np.testing.assert_allclose(cosines, heights, rtol=0.1)
     squeezed = np.linalg.inv(np.diag([1.0, 1.0, 0.1])).T
-    steep = least_cosines(cap.formula, boxes, squeezed, np.array([0.0, 0.0, 1.0]))
+    steep = least_cosines(cap.formula, cap.domain, boxes, squeezed, np.array([0.0, 0.0, 1.0]))
     known = 10 * heights / np.hypot(10 * heights, np.sqrt(1 - heights**2))
     assert (steep <= known + 1e-12).all()
 

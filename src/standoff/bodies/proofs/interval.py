@@ -25,6 +25,7 @@ from standoff.bodies.proofs.formulas.forms import (
 )
 from standoff.bodies.proofs.formulas.normals import hemisphere_axis, least_cosines
 from standoff.bodies.proofs.formulas.signs import FIRST_GRID, Bounds, sign_of_product, widest
+from standoff.bodies.proofs.formulas.taylor import TaylorBounds, curvature
 from standoff.bodies.proofs.proof import PatchProof
 from standoff.geometry.formulas import FormulaSurface
 from standoff.geometry.formulas.compiled import Formula
@@ -41,6 +42,10 @@ NEARNESS = 1.05
 # Boxes of one search, each 10 to 20 microseconds for 2000 characters of program: 1 to 2 seconds.
 MOST_BOXES = 100_000
 WORST = 512
+# A box costs more by Taylor series: their logarithm of the width must be less by this.
+SERIES_GAIN = 3.0
+# Logarithm of a width that stands for bounds that are not known in all boxes.
+UNKNOWN = 1e6
 # A dent whose normals lean more than this cosine from the axis has no bound as a graph.
 STEEPEST = 0.05
 
@@ -110,12 +115,11 @@ def _bent(formula: Formula, domain: tuple[float, ...], sense: int) -> Bent:
     """With `sense` 0 the side to which the patch bulges counts as outward."""
     forms = curvature_forms(formula)
     middle = (0.5 * (domain[0] + domain[1]), 0.5 * (domain[2] + domain[3]))
-    gauss = 0 if forms.gauss == 0 else sign_of_product(forms.gauss_signs, formula.variables, domain)
-    mean = (
-        0
-        if forms.mean_square == 0
-        else sign_of_product(forms.mean_signs, formula.variables, domain)
-    )
+    gauss = mean = 0
+    if forms.exact and forms.gauss != 0:
+        gauss = sign_of_product(forms.gauss_signs, formula.variables, domain)
+    if forms.exact and forms.mean_square != 0:
+        mean = sign_of_product(forms.mean_signs, formula.variables, domain)
     if (gauss > 0 or forms.gauss == 0) and (mean != 0 or forms.mean_square == 0):
         hollow = mean != 0 and sense == mean
         least = -np.inf if hollow else 0.0  # no bound is sought: no part of a convex body
@@ -173,7 +177,8 @@ class _Search:
             high = np.sqrt(np.maximum(value.hi[1], 0.0))
             low = np.sqrt(np.maximum(value.lo[1], 0.0))
             outward = np.where(dip == 0.0, 0.0, -dip / (low + np.sqrt(low * low + dip)))
-            inward = -(high + np.sqrt(high * high + dip))
+            least = np.maximum(value.lo[0], 0.0) if self.not_saddled else value.lo[0]
+            inward = -(high + np.sqrt(np.maximum(high * high - least, 0.0)))
             bound = np.where(self.one_sided | (side >= 0.0), outward, inward)
         # roundoff of these few operations
         return np.asarray(bound * (1.0 + 1e-14))
@@ -209,25 +214,43 @@ class _Search:
         return Bent(least >= enough, least, self.place, self.sense, boxes[dents], bound[dents])
 
 
-def _sharper(formula: Formula, forms: CurvatureForms, domain: tuple[float, ...]) -> Bounds:
-    """Bounds of K, H^2 and the sign of H by the exact forms, or by the formula as it was written.
+def _sharper(
+    formula: Formula, forms: CurvatureForms, domain: tuple[float, ...]
+) -> Bounds | TaylorBounds:
+    """Bounds of K, H^2 and the sign of H: by the exact forms, as written, or by Taylor series.
 
-    Multiplied out, a formula about a distant centre loses digits to cancellation.
+    Multiplied out, a formula about a distant centre loses digits to cancellation; a long one has
+    wide bounds, but where its derivatives grow with their order no Taylor series has good ones.
     """
+    boxes = grid(domain, 2 * FIRST_GRID)
 
-    def bounds_by(f: CurvatureForms) -> tuple[Bounds, float]:
-        side = sympy_module().Mul(*f.mean_signs)
-        bounds = Bounds([f.gauss, f.mean_square, side], formula.variables)
-        value = bounds(grid(domain, 2 * FIRST_GRID))[0]
+    def width(bounds: Bounds | TaylorBounds) -> float:
+        value = bounds(boxes)[0]
         with np.errstate(invalid="ignore"):
-            width = (value.hi - value.lo)[:2].max(axis=0)
-        return bounds, float(np.log(width + TINY).mean()) if np.isfinite(width).all() else np.inf
+            by_box = (value.hi - value.lo)[:2].max(axis=0)
+        # at a pointed apex curvature is infinite: its least value is a bound all the same
+        unknown = ~np.isfinite(value.lo[:2]).all(axis=0)
+        if unknown.any():
+            return UNKNOWN * float(unknown.mean())
+        finite = np.isfinite(by_box)
+        return float(np.log(by_box[finite] + TINY).mean()) if finite.any() else UNKNOWN
 
-    exact, width = bounds_by(forms)
+    def by_expressions(f: CurvatureForms) -> Bounds:
+        side = sympy_module().Mul(*f.mean_signs)
+        return Bounds([f.gauss, f.mean_square, side], formula.variables)
+
+    taylor = TaylorBounds(formula, domain, curvature)
+    least = width(taylor)
     if not forms.exact:
-        return exact
-    written, other = bounds_by(forms_as_written(formula))
-    return written if other < width else exact
+        # differentiating a long formula is slow too: only where there are no series
+        if least < UNKNOWN / len(boxes):
+            return taylor
+        written = by_expressions(forms)
+        return written if width(written) < least else taylor
+    exact, written = by_expressions(forms), by_expressions(forms_as_written(formula))
+    # all else being equal the exact forms: their factors have sure signs
+    widths = [width(exact), width(written), least + SERIES_GAIN]
+    return (exact, written, taylor)[int(np.argmin(widths))]
 
 
 def _rise(
@@ -243,13 +266,13 @@ def _rise(
         return np.inf, np.pi
     low, high = surface.box()
     size = float(np.linalg.norm(high - low))
-    if axis is None:
+    if axis is None or not np.isfinite(found.bounds).all():
         return size, np.pi
     linear = surface.linear
     cofactors = np.asarray(np.linalg.det(linear) * np.linalg.inv(linear).T)
     upright = linear @ np.array(axis) * np.sign(np.linalg.det(linear))
     upright = upright / np.linalg.norm(upright)
-    cosines = least_cosines(surface.formula, found.dents, cofactors, upright)
+    cosines = least_cosines(surface.formula, surface.domain, found.dents, cofactors, upright)
     held = images(_position(surface.formula), found.dents, linear / size, surface.shift / size)
     bent = -found.bounds * (least / found.least if np.isfinite(found.least) else 1.0) * size
     bent = np.where(cosines > STEEPEST, bent / np.maximum(cosines, STEEPEST) ** 3, np.inf)

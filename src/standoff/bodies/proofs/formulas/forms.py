@@ -37,7 +37,7 @@ class CurvatureForms:
     normal : three expressions along x_u x x_v, without the common factor that vanishes at a
         collapsed side
     normal_signs : expressions whose product has the sign of that factor
-    exact : common factors were taken out; else a collapsed side has no bounds
+    exact : common factors were taken out; else bounds of these have none at collapsed sides
     """
 
     gauss: Any

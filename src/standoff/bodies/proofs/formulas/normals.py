@@ -15,6 +15,7 @@ from standoff.bodies.proofs.formulas.signs import (
     sign_of_product,
     widest,
 )
+from standoff.bodies.proofs.formulas.taylor import TaylorBounds, normal
 from standoff.geometry.formulas.compiled import Formula
 from standoff.geometry.formulas.enclosures import Boxes, grid, mapped
 from standoff.geometry.intervals import TINY, Interval
@@ -34,9 +35,9 @@ def hemisphere_axis(formula: Formula, domain: tuple[float, ...]) -> tuple[float,
     forms = curvature_forms(formula)
     if sign_of_product(forms.normal_signs, formula.variables, domain) == 0:
         return None
-    bounds = _normal_bounds(formula)
-    seen = bounds(grid(domain, 2 * FIRST_GRID))[1]
-    normals = 0.5 * (seen.lo + seen.hi).T
+    bounds = _normal_bounds(formula, domain)
+    seen = [bounds(boxes)[1] for boxes in (grid(domain, 2 * FIRST_GRID), _along_sides(domain))]
+    normals = np.concatenate([0.5 * (s.lo + s.hi).T for s in seen])
     lengths = np.linalg.norm(normals, axis=1)
     normals = normals[lengths > 0.0] / lengths[lengths > 0.0, None]
     # the axes of coordinates too: seen along one of them a steep graph's normals have a sure sign
@@ -46,19 +47,33 @@ def hemisphere_axis(formula: Formula, domain: tuple[float, ...]) -> tuple[float,
     return None
 
 
+def _along_sides(domain: tuple[float, ...]) -> Boxes:
+    """Points on the sides, where normals lean most: boxes of no extent."""
+    u0, u1, v0, v1 = domain
+    u, v = np.linspace(u0, u1, FIRST_GRID + 1), np.linspace(v0, v1, FIRST_GRID + 1)
+    sides = [(u, 0 * v + v0), (u, 0 * v + v1), (0 * u + u0, v), (0 * u + u1, v)]
+    points = np.concatenate([np.stack(s, axis=1) for s in sides])
+    return Boxes(points, points)
+
+
 @lru_cache(maxsize=256)
-def _normal_bounds(formula: Formula) -> Bounds:
-    return Bounds(list(curvature_forms(formula).normal), formula.variables)
+def _normal_bounds(formula: Formula, domain: tuple[float, ...]) -> Bounds | TaylorBounds:
+    """By the exact forms, free of factors that vanish at a collapsed side, or by Taylor series."""
+    forms = curvature_forms(formula)
+    if forms.exact:
+        return Bounds(list(forms.normal), formula.variables)
+    return TaylorBounds(formula, domain, normal)
 
 
 def _promising(normals: Array) -> list[Array]:
     """Axes that all normals (n, 3) seen are near enough to, the best first."""
-    if not len(normals) or not np.isfinite(normals).all():
+    normals = normals[np.isfinite(normals).all(axis=1)]
+    if not len(normals):
         return []
     mean = normals.mean(axis=0)
     axes = [*COORDINATES, centre_of_normals(normals), mean / max(np.linalg.norm(mean), TINY)]
     least = [(float((normals @ a).min()), k) for k, a in enumerate(axes) if a is not None]
-    ranked = [axes[k] for cosine, k in sorted(least, reverse=True) if cosine > 0.0]
+    ranked = [axes[k] for cosine, k in sorted(least, reverse=True) if cosine > LEAST_COSINE]
     return [a for a in ranked if a is not None]
 
 
@@ -76,7 +91,7 @@ def centre_of_normals(normals: Array) -> Array | None:
     return np.asarray(axis)
 
 
-def _all_on_one_side(bounds: Bounds, domain: tuple[float, ...], axis: Array) -> bool:
+def _all_on_one_side(bounds: Bounds | TaylorBounds, domain: tuple[float, ...], axis: Array) -> bool:
     size = np.diff(np.reshape(domain, (-1, 2)), axis=1).ravel()
     boxes = grid(domain, FIRST_GRID)
     evaluated = 0
@@ -103,9 +118,11 @@ def along(vectors: Interval, axis: Array) -> Interval:
     return Interval(row.lo[0], row.hi[0])
 
 
-def least_cosines(formula: Formula, boxes: Boxes, cofactors: Array, axis: Array) -> Array:
+def least_cosines(
+    formula: Formula, domain: tuple[float, ...], boxes: Boxes, cofactors: Array, axis: Array
+) -> Array:
     """(n,) the least cosine between `axis` and cofactors @ normal over each box; -1 if unknown."""
-    value = mapped(cofactors, _normal_bounds(formula)(boxes)[0])
+    value = mapped(cofactors, _normal_bounds(formula, domain)(boxes)[0])
     with np.errstate(invalid="ignore"):
         high = np.sqrt((value.magnitude**2).sum(axis=0)) * (1.0 + 1e-14)
         low = along(value, axis).lo
