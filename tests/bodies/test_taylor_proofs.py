@@ -7,9 +7,9 @@ import sympy
 from standoff.bodies.proofs import interval
 from standoff.bodies.proofs.formulas import forms, normals
 from standoff.bodies.proofs.formulas.poles import poles_of
-from standoff.bodies.proofs.formulas.taylor import TaylorBounds, curvature, normal
+from standoff.bodies.proofs.formulas.taylor import Expansion, TaylorBounds, curvature, normal
 from standoff.geometry.formulas import FormulaSurface
-from standoff.geometry.formulas.enclosures import grid
+from standoff.geometry.formulas.enclosures import Boxes, grid
 from standoff.geometry.formulas.expressions import read_expression
 from standoff.geometry.formulas.series import SeriesProgram, powers
 from standoff.geometry.intervals import Interval
@@ -87,6 +87,18 @@ def test_bounds_hold_up_to_the_poles(name):
             with np.errstate(divide="ignore", invalid="ignore"):
                 ends = np.sort([direction.lo[:, i] / n, direction.hi[:, i] / n], axis=0)
             assert max(0.0, np.nanmax(ends[0])) <= np.nanmin(ends[1]) * (1 + 1e-9)
+
+
+def test_the_remainder_is_counted():
+    """A polynomial of degree 5 by series of order 4 about the middle."""
+    u, v = sympy.symbols("u v")
+    boxes = Boxes(np.zeros((1, 2)), np.ones((1, 2)))
+    expansion = Expansion(SeriesProgram([u**5 + v], ("u", "v")), boxes, None)
+    value, middle = expansion.bounds(expansion.x[0])
+    assert value.lo[0] <= 0.0
+    assert value.hi[0] >= 2.0
+    assert middle.lo[0] <= 0.5**5 + 0.5 <= middle.hi[0]
+    assert middle.hi[0] - middle.lo[0] <= 1e-14
 
 
 def test_bounds_narrow_with_the_boxes():
