@@ -95,7 +95,7 @@ def convexity(
             f"Not convex: dents and concave edges add up to a defect of {defect:.3g}, more than "
             f"the convexity_tolerance {tolerance:.3g} (size {size:.3g})."
         )
-    return Convexity(tuple(checks), defect, _widening(body, turns))
+    return Convexity(tuple(checks), defect, widening(body, turns))
 
 
 def _check_patch(
@@ -130,7 +130,7 @@ def _check_patch(
     return check, turn
 
 
-def _widening(body: Assembled, turns: Sequence[EdgeTurns]) -> float:
+def widening(body: Assembled, turns: Sequence[EdgeTurns]) -> float:
     """1/h, h the least cosine between normals that meet and the axis of their cone."""
     least = min([1.0, *(float(np.cos(0.5 * max(e.greatest, 0.0))) for e in turns)])
     for cone in body.cones:

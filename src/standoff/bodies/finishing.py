@@ -11,6 +11,7 @@ from standoff.bodies.assembly import Joined
 from standoff.bodies.convexity import CONVEXITY_TOLERANCE, Convexity, Known, convexity
 from standoff.bodies.orientation import SMOOTH_ANGLE
 from standoff.bodies.packing import Assembled, Ints, pack, without_charts
+from standoff.bodies.planar_convexity import planar_convexity
 from standoff.bodies.report import BodyReport
 from standoff.bodies.sampling import (
     SAMPLED_DEFECT,
@@ -69,6 +70,8 @@ def finish(
         turns = refined(parts, turns)
         check_vertices(parts)
         found = convexity(parts, turns, size, share, known)
+    else:
+        found = planar_convexity(parts, size, share)
     if box is not None:
         allowed = found.defect + 2.0 * joined.residual + SAMPLED_DEFECT * size
         seen = check_convex(samples, size, allowed)

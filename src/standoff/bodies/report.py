@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class PatchCheck:
-    """Convexity of one chart of a face.
+    """Convexity of one chart of a face; of a planar body, of one curve (face: the edge's number).
 
     surface : name of its class; method : "theorem" (planes and quadrics), "bernstein" or
     "interval"; defect : how far the patch may dent inward, length, proven over the whole patch;

@@ -45,9 +45,10 @@ def _patch_rows(report: BodyReport, unit: str) -> Rows:
     rows: Rows = []
     groups = Counter((patch.surface, patch.method) for patch in report.patches)
     for k, ((surface, method), count) in enumerate(groups.items()):
-        rows.append(("convex patches" if k == 0 else "", f"{count} {surface} {METHODS[method]}"))
+        kind = "convex patches" if report.dimension == 3 else "convex curves"
+        rows.append((kind if k == 0 else "", f"{count} {surface} {METHODS[method]}"))
     inside = sum(patch.hemisphere for patch in report.patches)
-    if report.patches:
+    if report.patches and report.dimension == 3:
         count = len(report.patches)
         rows.append(("hemispheres", f"normals of {inside} of {count} patches fit an open one"))
     dented = [patch for patch in report.patches if patch.defect > 0.0]
