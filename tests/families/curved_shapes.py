@@ -15,9 +15,25 @@ from oracles.superellipsoids import Superellipsoid
 from standoff.geometry import ConicArc, RationalBezier
 from standoff.geometry import Curve as SpaceCurve
 
+SAME_CORNER = 4e-15
+"""How far apart (over the size) corners of body and oracle may be: a few roundings."""
+
 
 def rounded_polytope(rng: Rng) -> Twin:
-    """Rounded by a tenth to nine tenths of its inscribed ball's radius, about."""
+    """Rounded by a tenth to nine tenths of its inscribed ball's radius, about.
+
+    Where planes meet so flatly that their corner is known to fewer digits than the judges ask
+    for, body and oracle are two bodies: another is drawn.
+    """
+    while True:
+        twin = _rounded_polytope(rng)
+        known, found = twin.shape.core.vertices, twin.body.vertex_points
+        apart = np.linalg.norm(found[:, None] - known, axis=2).min(axis=1).max()
+        if apart <= SAME_CORNER * twin.body.size:
+            return twin
+
+
+def _rounded_polytope(rng: Rng) -> Twin:
     vertices = rng.normal(size=(int(rng.integers(4, 25)), 3)) * np.exp(rng.uniform(-1, 1, 3))
     rounding = float(
         np.ptp(vertices, axis=0).min() * np.exp(rng.uniform(np.log(0.01), np.log(0.4)))

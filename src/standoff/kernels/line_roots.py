@@ -98,12 +98,19 @@ def bezier_roots(reals, o, a, b, c, noise):
     if (f0 > 0.0) != (f1 > 0.0):
         return 1, bracketed(reals, o, a, b, c, 0, t0, f0, t1, f1), 0.0
     if (slope0 > 0.0) == (slope1 > 0.0):
+        # tangent at an end, where roundoff has the farthest point beyond it
+        h = pcurve_jet(reals, L.BEZIER, o, t0)[0]
+        if abs(f0) <= noise * h[2] * hypot(a, b):
+            return TOUCHING_LINE, first, f1
+        h = pcurve_jet(reals, L.BEZIER, o, t1)[0]
+        if abs(f1) <= noise * h[2] * hypot(a, b):
+            return TOUCHING_LINE, last, f0
         return 0, 0.0, 0.0
     t = bracketed(reals, o, a, b, c, 1, t0, slope0, t1, slope1)
     f = level(reals, o, a, b, c, t)[0]
     h = pcurve_jet(reals, L.BEZIER, o, t)[0]
     if abs(f) <= noise * h[2] * hypot(a, b):
-        return TOUCHING_LINE, t, f0
+        return TOUCHING_LINE, t, f0 if abs(f0) > abs(f1) else f1
     if (f > 0.0) != (f0 > 0.0):
         before = bracketed(reals, o, a, b, c, 0, t0, f0, t, f)
         return 2, before, bracketed(reals, o, a, b, c, 0, t, f, t1, f1)

@@ -92,6 +92,8 @@ def crossings(ints, reals, coedge, u, v, du, dv, noise):
             continue
         out = 1 if inward < 0.0 else -1
         if n != TOUCHING_LINE and abs(s) * abs(inward) <= noise * hypot(tx, ty):
+            if abs(s) * sqrt(length2) > TOUCH_WIDTH:
+                continue  # along the coedge, but for noise: it is crossed nowhere
             s = 0.0
         if count == 0:
             s1, out1, t1 = s, out, t
@@ -134,7 +136,7 @@ def walk_face(ints, reals, chart, u, v, du, dv):
                 left, left_at, left_t = s, k, t
             elif out < 0 and entered < s <= 0.0:
                 entered = s
-    if left > entered:
+    if left > entered and -left * hypot(du, dv) <= TOUCH_WIDTH:
         # roundoff has carried the start outside: back to where it left
         return 0.0, HIT_COEDGE, left_at, left_t
     return best, hit, index, where
