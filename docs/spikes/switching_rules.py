@@ -111,7 +111,7 @@ def flat_solve(rule, jet_a, jet_b, g, H, span):
 def newton_step(rule, jet_a, jet_b, g, p, span, tally):
     H = hessian(jet_a, jet_b)
     still = gradient(feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, ORIGIN, ORIGIN))
-    step, _, _, flat, valley = law(jet_a, jet_b, g, H, still, span)
+    step, _, _, flat, valley, _ = law(jet_a, jet_b, g, H, still, span)
     tally[SOLVES] += 1
     tally[FLAT] += flat
     if flat and rule in (FLOOR, DROP):

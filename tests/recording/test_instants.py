@@ -182,7 +182,8 @@ def test_not_located_where_not_asked() -> None:
     recording = so.simulate(
         POINT, so.shapes.box(1.0, 1.0, 1.0), path, REST, 2.0, 1e-2, locate=False
     )
-    assert [event.frame for event in recording.events] == [51, 52, 151, 182]
+    # at frame 150 the point is in the Voronoi plane itself
+    assert [event.frame for event in recording.events] in ([51, 52, k, 182] for k in (150, 151))
     for event in recording.events:
         assert not event.located
         assert event.time == recording.time[event.frame]
