@@ -93,7 +93,11 @@ def crossings(ints, reals, coedge, u, v, du, dv, noise):
         out = 1 if inward < 0.0 else -1
         if n != TOUCHING_LINE and abs(s) * abs(inward) <= noise * hypot(tx, ty):
             if abs(s) * sqrt(length2) > TOUCH_WIDTH:
-                continue  # along the coedge, but for noise: it is crossed nowhere
+                # along the coedge: crossed here, if it is left at all
+                t += ((u - x) * tx + (v - y) * ty) / (tx * tx + ty * ty)
+                inside, t = in_range(ints, reals, coedge, t)
+                if not inside or abs(inward) <= noise * hypot(tx, ty):
+                    continue
             s = 0.0
         if count == 0:
             s1, out1, t1 = s, out, t
