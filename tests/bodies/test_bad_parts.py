@@ -5,7 +5,17 @@ import pytest
 
 import standoff as so
 from standoff import Edge, Face
-from standoff.geometry import Cone, ConicArc, Cylinder, Line, Plane, RationalBezier, Sphere
+from standoff.bodies.assembly import _stations
+from standoff.geometry import (
+    Cone,
+    ConicArc,
+    Cylinder,
+    Line,
+    NurbsCurve,
+    Plane,
+    RationalBezier,
+    Sphere,
+)
 
 NAN, INF = np.nan, np.inf
 SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))
@@ -330,3 +340,20 @@ def test_inward_loops_are_turned_and_reported():
             found = so.distance(turned, so.shapes.point(), home, place)
             assert found.status is known.status
             np.testing.assert_equal(found.distance, known.distance)
+
+
+def test_an_edge_is_compared_with_its_surfaces_in_every_span():
+    # a bump of 1e-2 over a thousandth of an edge, between any nine points of the whole
+    knots = [0, 0, 0.4871, 0.4875, 0.4879, 1, 1]
+    points = np.array([[x, 0.0, 0.0] for x in (0, 0.4871, 0.4875, 0.4879, 1)])
+    points[2, 2] = 1e-2
+    curve = NurbsCurve(points, knots)
+    heights = [curve.point(t)[2] for t in _stations(curve, 0.0, 1.0)]
+    assert max(heights) == pytest.approx(1e-2)
+    assert len(_stations(Line([0, 0, 0], [1, 0, 0]), 0.0, 1.0)) == 9
+
+
+@pytest.mark.parametrize("patches", [None, 3, Sphere(np.eye(3), np.zeros(3))])
+def test_patches_must_be_a_sequence(patches):
+    with pytest.raises(so.BodyError, match="sequence of surfaces"):
+        so.Body.from_patches(patches)

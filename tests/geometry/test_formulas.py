@@ -360,3 +360,9 @@ def test_sympy_is_not_imported_before_it_is_needed():
     code = "import sys, standoff.geometry.formulas; print('sympy' in sys.modules)"
     answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert answer.stdout.strip() == "False"
+
+
+@pytest.mark.parametrize("parameters", [[1], "a", 3])
+def test_parameters_must_be_a_mapping(parameters):
+    with pytest.raises(FormulaError, match="mapping"):
+        FormulaSurface("u", "v", "u*v", (0, 1, 0, 1), parameters)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from standoff.bodies.charts import interior_point, make_charts, surface_normal
 from standoff.bodies.orientation import chart_at, orient
 from standoff.bodies.packing import Assembled, Chart, Sector
 from standoff.bodies.topology import SIDES, Apex, BodyError, Edge, Face
+from standoff.geometry.curves import Curve
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
 
@@ -21,6 +23,8 @@ JOIN_TOLERANCE = 1e-9
 WIDE_ANGLE = 1e-6
 # Tangents at a corner whose sine is below this are one direction: the chart is singular there.
 SINGULAR = 1e-12
+# Points of an edge's span that are compared with the surface beside it.
+SPAN_POINTS = 9
 # Generators that a collapsed side gives to its vertex's normal cone.
 APEX_NORMALS = 9
 
@@ -89,7 +93,7 @@ def _check_on_surface(
             if c.edge < 0:
                 continue
             curve = edges[c.edge].curve
-            for t in np.linspace(c.first, c.last, 9):
+            for t in _stations(curve, c.first, c.last):
                 u, v, depth = c.pcurve.point(t)
                 if depth <= 0.0 or max(abs(u), abs(v)) > chart.limit:
                     continue
@@ -101,6 +105,13 @@ def _check_on_surface(
                         f"(size {size:.3g}) at its parameter {t:.6g}."
                     )
     return worst
+
+
+def _stations(curve: Curve, first: float, last: float) -> Array:
+    """Parameters in every span of a curve: what hides between two samples is of another piece."""
+    inside = curve.spans()
+    ends = np.concatenate([[first], inside[(inside > first) & (inside < last)], [last]])
+    return np.unique([np.linspace(a, b, SPAN_POINTS) for a, b in pairwise(ends)])
 
 
 def _vertex_geometry(

@@ -43,6 +43,10 @@ class Curve:
         """The trimming curve on a surface that the curve was made on, else None."""
         return None
 
+    def spans(self) -> Array:
+        """Ends of the stretches, ascending, on which the curve is of one piece."""
+        return np.array([self.first, self.last])
+
     def box(self) -> tuple[Array, Array] | None:
         """(low, high), each (3,): surely around the curve; None where its kind gives none."""
         return None

@@ -97,6 +97,10 @@ class NurbsCurve(Curve):
         """Knots inside the domain where the curve may be less than C2."""
         return self.vector.rough()
 
+    def spans(self) -> Array:
+        """Its different knots: one polynomial piece between two of them."""
+        return self.vector.breaks
+
     def transformed(self, linear: Array, shift: Array) -> NurbsCurve:
         """The exact image under x -> linear x + shift; the parameter stays the same."""
         return self._new(

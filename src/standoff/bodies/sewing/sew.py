@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -61,6 +61,8 @@ def sew(patches: Sequence[Any], tolerance: float | None = None) -> Sewn:
     BodyError
         Sides that match none or several, two shells, no volume; the message names the patches.
     """
+    if isinstance(patches, Surface) or not isinstance(patches, Iterable):
+        raise BodyError(f"patches = {patches!r}: give a sequence of surfaces that close a shell.")
     patches = list(patches)
     check_patches(patches)
     size = _size(patches)

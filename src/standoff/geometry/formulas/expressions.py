@@ -81,6 +81,8 @@ def parameter_values(
     """
     taken = {*variables, *FUNCTIONS, *CONSTANTS}
     values = {}
+    if not isinstance(parameters, Mapping | None):
+        raise FormulaError(f"parameters = {parameters!r}: give a mapping of names to numbers.")
     for name, value in dict(parameters or {}).items():
         if not str(name).isidentifier() or name in taken:
             raise FormulaError(
