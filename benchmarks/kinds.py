@@ -28,22 +28,13 @@ from benchmarks.speed import (
     starts,
     timed,
 )
-from standoff.geometry import FormulaSurface, Sphere
+from standoff.geometry import FormulaSurface
 from standoff.geometry.ellipsoid_patches import ellipsoid_octants, ellipsoid_patches
 
 Axes = tuple[float, float, float]
 QUADRIC = "quadric, gnomonic charts"
-CUBE = np.array(
-    [
-        [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
-        [[1, 0, 0], [0, -1, 0], [0, 0, -1]],
-        [[0, 0, 1], [1, 0, 0], [0, 1, 0]],
-        [[0, 0, -1], [-1, 0, 0], [0, 1, 0]],
-        [[0, 1, 0], [0, 0, 1], [1, 0, 0]],
-        [[0, -1, 0], [0, 0, -1], [1, 0, 0]],
-    ],
-    dtype=float,
-)
+WHOLE_SIDE = (-1.0, 1.0, -1.0, 1.0)
+"""The part of a gnomonic chart that is a side of the cube around the ball."""
 
 
 def octants(axes: Axes) -> so.Body:
@@ -62,22 +53,22 @@ def elevated(degree: int) -> Callable[[Axes], so.Body]:
 
 
 def formula(axes: Axes) -> so.Body:
-    """The same ellipsoid from formulas: six gnomonic patches, each a row of a rotation."""
+    """The same ellipsoid from formulas: six gnomonic patches."""
     unit = ("u/sqrt(1 + u**2 + v**2)", "v/sqrt(1 + u**2 + v**2)", "1/sqrt(1 + u**2 + v**2)")
     patches = []
-    for turn in CUBE:
+    for chart in so.shapes.sphere_atlas(np.diag(axes), np.zeros(3)):
         rows = [
-            " + ".join(f"{axes[i] * turn[i, j]}*{unit[j]}" for j in range(3) if turn[i, j])
-            for i in range(3)
+            " + ".join(f"{c}*{x}" for c, x in zip(row, unit, strict=True) if c)
+            for row in chart.linear
         ]
-        patches.append(FormulaSurface(*rows, (-1.0, 1.0, -1.0, 1.0)))
+        patches.append(FormulaSurface(*rows, WHOLE_SIDE))
     return so.Body.from_patches(patches)
 
 
 def restricted_charts(axes: Axes) -> so.Body:
     """The quadric cut into six patches with smooth seams: what trimming and seams alone cost."""
-    charts = [Sphere(np.diag(axes) @ turn, np.zeros(3)) for turn in CUBE]
-    return so.Body.from_patches([c.restricted(-1.0, 1.0, -1.0, 1.0) for c in charts])
+    charts = so.shapes.sphere_atlas(np.diag(axes), np.zeros(3))
+    return so.Body.from_patches([chart.restricted(*WHOLE_SIDE) for chart in charts])
 
 
 KINDS: dict[str, Callable[[Axes], so.Body]] = {
