@@ -7,7 +7,7 @@ CLI := .venv/.installed-cli
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 DECLARED := pyproject.toml constraints.txt
 
-.PHONY: venv demo test lint types layers docs clean
+.PHONY: venv demo paper test lint types layers docs clean
 
 venv: $(ALL)
 
@@ -26,6 +26,9 @@ $(CLI): $(DECLARED) | $(BIN)/python
 demo: $(CLI)
 	@mkdir -p build
 	$(BIN)/standoff track examples/demo.toml -o build/demo.parquet --plot build/demo.png
+
+paper: $(CLI)
+	$(BIN)/standoff paper all -o build/paper
 
 test: $(ALL)
 	$(BIN)/python -m pytest

@@ -51,7 +51,7 @@ class Record:
     witness_error: float = 0.0
     certificate: float = 0.0
     same_features: int = 0
-    counts: so.Counts = field(default_factory=lambda: so.Counts(0, 0, 0, 0, 0, 0))
+    counts: so.Counts = field(default_factory=lambda: so.Counts(*[0] * len(so.Counts._fields)))
     corrected_again: int = 0
     features: Counter[str] = field(default_factory=Counter)
 

@@ -25,11 +25,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import standoff as so
-from benchmarks.law_table import A, B, two_ellipsoids
 from benchmarks.peers import coal_request
 from standoff.kernels import events as logs
 from standoff.kernels import frame as rows
 from standoff.kernels import tracker as kernels
+from standoff.paper.law_accuracy import A, B, two_ellipsoids
 from standoff.tracking.options import pack_options
 
 Array = NDArray[np.float64]
@@ -120,7 +120,7 @@ def compiled_loop(frames: Frames, a: so.Body = A, b: so.Body = B) -> Contender:
     tracker = so.Tracker(a, b, dt=STEP)
     begin = tracker.start(*frames.poses[0], *frames.twists[0]).data
     pair = (a.ints, a.reals, b.ints, b.reals)
-    options = pack_options("predictor-corrector", "feedforward-2", "heun", None, STEP, 1e-10)
+    options, _ = pack_options("predictor-corrector", "feedforward-2", "heun", None, STEP, 1e-10)
     poses = np.ascontiguousarray(frames.flat_a[1:]), np.ascontiguousarray(frames.flat_b[1:])
     twists = np.ascontiguousarray(frames.twist_a[1:]), np.ascontiguousarray(frames.twist_b[1:])
     steps = np.full(FRAMES, STEP)

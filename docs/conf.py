@@ -18,7 +18,7 @@ project = "Standoff"
 author = "The Standoff authors"
 version = release = standoff.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "paper"]
 exclude_patterns = ["_extensions"]
 
 myst_enable_extensions = ["dollarmath"]

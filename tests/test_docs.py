@@ -13,7 +13,7 @@ import standoff as so
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
-FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+FENCE = re.compile(r"^```(\w*|\{[^\n]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 DIRECTIVE = re.compile(r"^\.\. (auto\w+|py:type):: ([\w.]+)\n((?:   .*\n)*)", re.MULTILINE)
 # Blocks that read a file of the reader's own; what they read is tested with what writes it.
 READS_A_FILE = {"scene-format.md"}
@@ -79,6 +79,7 @@ def public(module: Any) -> list[str]:
     ("page", "module"),
     [
         ("standoff.md", "standoff"),
+        ("control.md", "standoff.control"),
         ("geometry.md", "standoff.geometry"),
         ("motion.md", "standoff.motion"),
         ("scene.md", "standoff.scene"),
@@ -88,6 +89,7 @@ def public(module: Any) -> list[str]:
 def test_every_public_name_is_in_the_reference(page: str, module: str) -> None:
     listed = set(documented(page))
     elsewhere = {"standoff.shapes", "standoff.motion.Pose", "standoff.motion.Twist"}
+    elsewhere |= {"standoff.control.min_gain", "standoff.feedback"}
     missing = {f"{module}.{name}" for name in public(importlib.import_module(module))}
     assert not missing - listed - elsewhere
 

@@ -39,7 +39,7 @@ def test_demo_prints_what_the_quick_start_says(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     recipe = (ROOT / "Makefile").read_text("utf-8")
-    (command,) = re.findall(r"\$\(BIN\)/standoff (.*)", recipe)
+    (command,) = re.findall(r"\$\(BIN\)/standoff (track .*)", recipe)
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     (tmp_path / "build").mkdir()
     monkeypatch.chdir(tmp_path)

@@ -192,7 +192,7 @@ class Case:
     def certify(self, mode, q):
         """(accepted, distance, normal) by the library's certificate."""
         jet_a, jet_b = pair_jets(self.pair, self.R, self.p, mode, q)
-        d, bound, n = certify(self.pair, self.R, self.p, mode, q, jet_a[0], jet_b[0], STILL)
+        d, bound, n, _ = certify(self.pair, self.R, self.p, mode, q, jet_a[0], jet_b[0], STILL)
         return bound > 0.0 and d - bound <= GOAL * (self.size + d), d, n
 
     def restart(self):

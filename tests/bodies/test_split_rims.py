@@ -48,7 +48,9 @@ def test_vertices_on_the_rims_have_wide_sectors(arcs: int) -> None:
     ids=lambda body: body.name,
 )
 def test_split_rims_change_no_answer(arcs: int, partner: so.Body) -> None:
-    rng = np.random.default_rng()
+    # Seeded: of 700,000 upright poses beside the ellipsoid 29 ended uncertified, none wrong, where
+    # the witness point is near a vertex of the split rim.
+    rng = np.random.default_rng(arcs)
     split, whole = split_cylinder(arcs), so.shapes.cylinder(RADIUS, LENGTH)
     certified = 0
     for k in range(400):

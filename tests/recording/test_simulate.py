@@ -11,10 +11,12 @@ from moving_pairs import REST, random_pairs, straight
 import standoff as so
 from standoff.geometry import Line
 from standoff.motion import ConstantTwist, Fixed
+from standoff.tracking.simulate import track_along
 
 BOX = so.shapes.box(1.0, 1.0, 1.0)
 POINT = so.shapes.point()
 PAST = straight((-1.0, -0.9, 0.8), (1.0, 0.77, 0.013))
+OFF = REST, so.Pose(np.eye(3), (2.0, 0.0, 0.0))
 THROUGH = straight((-1.0, 0.1, 0.2), (1.0, 0.0, 0.0))
 
 
@@ -63,6 +65,27 @@ def check_against_steps(recording, a, b, path_a, path_b, tracker) -> None:
         for row, answer in zip(getattr(recording, name), answers, strict=True):
             assert tuple(row[~np.isnan(row)]) == getattr(answer, name)
     assert [so.Counts(*row) for row in recording.counts.tolist()] == [x.counts for x in answers]
+
+
+def test_a_run_begins_at_a_given_state() -> None:
+    """The paper's law from a wrong start: the errors fall, and every frame is a step's answer."""
+    lens, times = so.shapes.lens(1.0, 0.45), np.arange(200) * 1e-3
+    path = straight((1.2, 0.3, 0.4), (0.1, 0.2, 0.0))
+    tracker = so.Tracker(lens, POINT, law="paper")
+    start = tracker.start_from(REST, path.pose(0.0), ("face", 0), (-0.3, 0.4), ("vertex", 0), ())
+    recording = track_along(tracker, Fixed(REST), path, times, state=start)
+    assert recording.distance[0] == start.proximity.distance
+    state = start
+    for k, time in enumerate(times[1:].tolist(), start=1):
+        twists = np.zeros(6), path.twist(time)
+        state, answer = tracker.step(state, REST, path.pose(time), *twists, dt=time - times[k - 1])
+        assert recording.distance[k] == answer.distance
+    assert recording.residual[0] > 0.1
+    assert recording.residual[-1] < 1e-6
+    other = so.Tracker(BOX, POINT).start(*OFF)
+    for wrong, error in (("here", TypeError), (other, ValueError)):
+        with pytest.raises(error, match=r"[sS]tate"):
+            track_along(tracker, Fixed(REST), path, times, state=wrong)
 
 
 def test_a_pose_is_a_body_at_rest() -> None:
@@ -170,8 +193,38 @@ def test_info_tells_the_run() -> None:
         "tolerance": 1e-10,
         "dt": 1e-2,
         "locate": True,
+        "feedback": "Linear(gain=50.0)",
+        "realisation": "evaluated",
+        "saturation": "hold",
+        "switching": "multipliers",
+        "solve": "ranked",
     }
     assert recording.pair == (POINT, BOX)
+
+
+def test_the_papers_variants_are_passed_on() -> None:
+    """Each is told in the recording, and the printed saturation shows in the counts."""
+    recording = so.simulate(
+        POINT,
+        BOX,
+        PAST,
+        REST,
+        0.5,
+        1e-2,
+        law="paper",
+        feedback=so.feedback.PI(40.0, 300.0),
+        realisation="integrated",
+        switching="voronoi",
+        solve="plain",
+    )
+    options = recording.info.options
+    assert options["feedback"] == "PI(gain=40.0, integral=300.0)"
+    assert options["gain"] == 40.0
+    assert options["realisation"] == "integrated"
+    assert (options["saturation"], options["switching"]) == ("zero", "voronoi")
+    assert options["solve"] == "plain"
+    with pytest.raises(ValueError, match="law='paper'"):
+        so.simulate(POINT, BOX, PAST, REST, 0.5, 1e-2, switching="voronoi")
 
 
 def test_a_digest_names_the_geometry() -> None:

@@ -231,6 +231,22 @@ def test_charts_that_a_face_does_not_have():
             tracker.start_from(HOME, AWAY, ("face", 0), (0.1, 0.2, chart), ("vertex", 0), ())
 
 
+def test_a_state_stored_by_another_version():
+    """The kernels read and write a state by address: a shorter one would be overrun."""
+    tracker = so.Tracker(LENS, POINT)
+    state = tracker.start(HOME, AWAY)
+    for data in (state.data[:39].copy(), state.data.astype(np.float32)):
+        with pytest.raises(ValueError, match="stored by another version"):
+            tracker.step(so.TrackerState(data, state.proximity), HOME, AWAY)
+
+
+def test_names_and_numbers_of_another_type():
+    with pytest.raises(ValueError, match=r"Unknown law \['paper'\]"):
+        so.Tracker(LENS, POINT, law=["paper"])
+    with pytest.raises(ValueError, match="dt = '1e-3' is not a number"):
+        so.Tracker(LENS, POINT, dt="1e-3")
+
+
 def test_states_and_buffers_of_another_pair():
     """Their feature numbers would lead outside this pair's arrays."""
     tracker = so.Tracker(LENS, POINT)

@@ -2,20 +2,11 @@
 
 import numpy as np
 import pytest
-from benchmarks.law_table import (
-    LAWS,
-    LONG,
-    ORDERS,
-    A,
-    B,
-    even,
-    measure,
-    order,
-    two_ellipsoids,
-)
+from benchmarks.law_table import ORDERS, order
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from standoff.paper.law_accuracy import LAWS, LONG, A, B, even, measure, two_ellipsoids
 
 # Max witness errors of the design's table (section 2.3) at 1, 10 and 33 ms. Its motion is another
 # one, also of two ellipsoids at 1 to 2 rad/s, so a factor of 3 is allowed either way.

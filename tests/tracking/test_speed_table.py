@@ -2,9 +2,9 @@
 
 import pytest
 from benchmarks import speed
-from benchmarks.law_table import A, B
 
 import standoff as so
+from standoff.paper.law_accuracy import A, B
 
 ALLOWED = {"Coal, default": 1e-2, "Coal, tight": 1e-4}
 """Witness errors (length) of the peers; ours are at 1e-12."""

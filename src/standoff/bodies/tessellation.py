@@ -78,7 +78,7 @@ def face_meshes(body: Body) -> list[FaceMesh]:
         row = int(body.ints[L.FACES]) + L.FACE_STRIDE * face
         first, count = (int(n) for n in body.ints[row : row + 2])
         for chart in range(first, first + count):
-            mesh = _chart_mesh(body, face, chart, _surface_of(body, part.charts, chart))
+            mesh = _chart_mesh(body, face, chart, surface_of(body, part.charts, chart))
             if mesh is not None:
                 meshes.append(mesh)
     return meshes
@@ -87,22 +87,23 @@ def face_meshes(body: Body) -> list[FaceMesh]:
 def edge_lines(body: Body) -> list[EdgeLine]:
     """Return points along every edge."""
     coedges: list[dict[int, int]] = [{} for _ in range(body.n_edges)]
-    for k, chart, edge in _coedges(body):
+    for k, chart, edge in coedges_of(body):
         if edge >= 0:
-            coedges[edge].setdefault(_chart_row(body, chart)[L.CHART_FACE], k)
+            coedges[edge].setdefault(chart_row(body, chart)[L.CHART_FACE], k)
     return [_edge_line(body, edge, list(found.values())) for edge, found in enumerate(coedges)]
 
 
-def _chart_row(body: Body, chart: int) -> NDArray[np.int64]:
+def chart_row(body: Body, chart: int) -> NDArray[np.int64]:
+    """The packed record of a chart, laid out in ``kernels.layout``."""
     start = int(body.ints[L.CHARTS]) + L.CHART_STRIDE * chart
     return body.ints[start : start + L.CHART_STRIDE]
 
 
-def _coedges(body: Body) -> list[tuple[int, int, int]]:
+def coedges_of(body: Body) -> list[tuple[int, int, int]]:
     """(number, chart, edge) of every coedge; a collapsed side has -1 - vertex for its edge."""
     found = []
     for chart in range(int(body.ints[L.N_CHARTS])):
-        row = _chart_row(body, chart)
+        row = chart_row(body, chart)
         first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
         for k in range(first, first + count):
             start = int(body.ints[L.COEDGES]) + L.COEDGE_STRIDE * k
@@ -110,17 +111,17 @@ def _coedges(body: Body) -> list[tuple[int, int, int]]:
     return found
 
 
-def _surface_of(body: Body, charts: tuple[Surface, ...], chart: int) -> Surface:
+def surface_of(body: Body, charts: tuple[Surface, ...], chart: int) -> Surface:
     """The surface of a packed chart: charts that see nothing of their face were left out."""
-    offset = int(_chart_row(body, chart)[L.CHART_REALS])
+    offset = int(chart_row(body, chart)[L.CHART_REALS])
     packed = body.reals[offset : offset + L.INVERSE]
     misses = [float(np.abs(surface.reals[: L.INVERSE] - packed).max()) for surface in charts]
     return charts[int(np.argmin(misses))]
 
 
-def _outline(body: Body, chart: int) -> Array:
+def chart_outline(body: Body, chart: int) -> Array:
     """Points of a chart's trimming curves in (u, v), (n, 2), as far as the chart shows them."""
-    row = _chart_row(body, chart)
+    row = chart_row(body, chart)
     first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
     spots = []
     for k in range(first, first + count):
@@ -135,8 +136,8 @@ def _outline(body: Body, chart: int) -> Array:
 
 
 def _chart_mesh(body: Body, face: int, chart: int, surface: Surface) -> FaceMesh | None:
-    outline = _outline(body, chart)
-    low, high = _reach(body, chart, outline)
+    outline = chart_outline(body, chart)
+    low, high = chart_box(body, chart, outline)
     tiled = _is_tile(body, chart)
     if tiled:
         outline = outline[np.abs(outline).max(axis=1, initial=0.0) <= TILE]
@@ -162,11 +163,11 @@ def _chart_mesh(body: Body, face: int, chart: int, surface: Surface) -> FaceMesh
 
 
 def _is_tile(body: Body, chart: int) -> bool:
-    offset = int(_chart_row(body, chart)[L.CHART_REALS])
+    offset = int(chart_row(body, chart)[L.CHART_REALS])
     return bool(np.isfinite(body.reals[offset + L.LIMIT]))
 
 
-def _reach(body: Body, chart: int, outline: Array) -> tuple[Array, Array]:
+def chart_box(body: Body, chart: int, outline: Array) -> tuple[Array, Array]:
     """The rectangle of (u, v) that holds a chart's part of its face."""
     if _is_tile(body, chart):
         return np.full(2, -TILE), np.full(2, TILE)

@@ -41,7 +41,15 @@ class TrackCommand:
     integrator: Annotated[str | None, arg(metavar="INTEGRATOR", help_behavior_hint="")] = None
     """In place of the scene's: heun, euler, midpoint or rk4."""
     gain: Annotated[float | None, arg(metavar="K", help_behavior_hint="")] = None
-    """In place of the scene's: feedback gain, 1/s."""
+    """In place of the scene's, and of its feedback: feedback gain, 1/s."""
+    realisation: Annotated[str | None, arg(metavar="REALISATION", help_behavior_hint="")] = None
+    """In place of the scene's, for the paper's law: evaluated or integrated."""
+    saturation: Annotated[str | None, arg(metavar="SATURATION", help_behavior_hint="")] = None
+    """In place of the scene's, for the paper's law: hold or zero."""
+    switching: Annotated[str | None, arg(metavar="SWITCHING", help_behavior_hint="")] = None
+    """In place of the scene's, for the paper's law: multipliers, voronoi or none."""
+    solve: Annotated[str | None, arg(metavar="SOLVE", help_behavior_hint="")] = None
+    """In place of the scene's, for the paper's law: ranked or plain."""
     step: Annotated[str | None, arg(metavar="SECONDS|samples", help_behavior_hint="")] = None
     """In place of the scene's: time from frame to frame in s, or 'samples'."""
     start: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
@@ -110,7 +118,33 @@ class AutomatonCommand:
     """Track the scene first, and mark the visited modes and switches with their times."""
 
 
-Command = TrackCommand | DistanceCommand | CheckCommand | AutomatonCommand
+@dataclass(frozen=True)
+class PaperCommand:
+    """Make the figures of the paper, their data, and a report that sets it beside the measured.
+
+    Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 finished, but a figure failed.
+    """
+
+    keys: Annotated[
+        Positional[tuple[str, ...]], arg(metavar="[KEY ...|all]", help_behavior_hint="")
+    ] = ("all",)
+    """Figures by number (7, 8-11) or word (voronoi); --list shows them. If none is given, all."""
+    output: Annotated[Path, arg(aliases=["-o"], metavar="DIR", help_behavior_hint="")] = Path(
+        "standoff-paper"
+    )
+    """Folder of the pictures, tables, animations and report.html; made if it does not exist. If
+    not given, standoff-paper."""
+    list: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Only list the figures."""
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Print what was made and every statement as JSON."""
+    no_animations: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Leave the moving pictures out, which take most of the time."""
+    jobs: Annotated[int | None, arg(metavar="N", help_behavior_hint="")] = None
+    """Most processes at once; 2 if not given."""
+
+
+Command = TrackCommand | DistanceCommand | CheckCommand | AutomatonCommand | PaperCommand
 
 DESCRIPTION = """Exact, certified minimum distance of curved convex bodies in motion.
 
@@ -129,7 +163,8 @@ def parse(arguments: Sequence[str]) -> Command:
         Annotated[TrackCommand, subcommand("track")]
         | Annotated[DistanceCommand, subcommand("distance")]
         | Annotated[CheckCommand, subcommand("check")]
-        | Annotated[AutomatonCommand, subcommand("automaton")],
+        | Annotated[AutomatonCommand, subcommand("automaton")]
+        | Annotated[PaperCommand, subcommand("paper")],
         prog="standoff",
         description=DESCRIPTION,
         args=arguments,

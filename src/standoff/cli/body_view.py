@@ -18,7 +18,7 @@ from standoff.scene.reader import Array
 
 try:
     from matplotlib.colors import to_rgb
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 except ModuleNotFoundError as error:
     raise MissingExtra("matplotlib") from error
 

@@ -7,11 +7,13 @@ from standoff.cli.arguments import (
     CheckCommand,
     Command,
     DistanceCommand,
+    PaperCommand,
     TrackCommand,
 )
 from standoff.cli.automaton import run_automaton
 from standoff.cli.check import run_check
 from standoff.cli.distance import run_distance
+from standoff.cli.paper import run_paper
 from standoff.cli.track import run_track
 
 
@@ -34,3 +36,5 @@ def run(command: Command) -> int:
             return run_check(command)
         case AutomatonCommand():
             return run_automaton(command)
+        case PaperCommand():
+            return run_paper(command)

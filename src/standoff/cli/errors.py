@@ -12,6 +12,7 @@ class ExitCode(IntEnum):
     NOT_WRITTEN = 1  # the results could not be written, as on a full disk
     BAD_INPUT = 2
     NOT_CERTIFIED = 3
+    FIGURE_FAILED = 3  # the same for `paper`: finished, but not all is as it should be
     INTERRUPTED = 130  # 128 + SIGINT, the shells' convention
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -101,7 +100,7 @@ def recording_facts(
     """Return the summary of a run, with all events."""
     widest = recording.widest_gap()
     return scene_facts(scene) | {
-        "settings": asdict(settings),
+        "settings": settings.facts(),
         "frames": len(recording.time),
         "start": float(recording.time[0]),
         "end": float(recording.time[-1]),

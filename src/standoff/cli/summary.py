@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
 from standoff.scene import Scene, TrackSettings
+from standoff.scene.feedbacks import feedback_text
 from standoff.scene.reader import Array
 from standoff.tracking import Counts, Proximity, RecordedEvent, Recording, Status
+from standoff.tracking.options import Variants
 
 FIRST_EVENTS = 8
 """How many switching events the summary lists: they fit on a screen with the rest. All of them are
@@ -77,9 +80,17 @@ def _scene_lines(scene: Scene) -> list[str]:
 def _law_text(settings: TrackSettings, recording: Recording) -> str:
     if settings.law != "paper":
         return f"{settings.law}, predictor {settings.predictor}"
-    gain = settings.gain or 1.0 / float(np.diff(recording.time).max())
-    feedforward = ", no feedforward" if settings.predictor == "none" else ""
-    return f"{settings.law}, {settings.integrator}, gain {gain:.6g} 1/s{feedforward}"
+    if settings.feedback is None:
+        gain = settings.gain or 1.0 / float(np.diff(recording.time).max())
+        feedback = f"gain {gain:.6g} 1/s"
+    else:
+        feedback = f"feedback {feedback_text(settings.feedback)}"
+    told = [settings.law, settings.integrator, feedback]
+    if settings.predictor == "none":
+        told.append("no feedforward")
+    used = recording.info.options
+    told += [f"{k} {used[k]}" for k, usual in asdict(Variants()).items() if used[k] != usual]
+    return ", ".join(told)
 
 
 def _frames_text(recording: Recording) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,6 +23,7 @@ from standoff.scene import (
 )
 from standoff.scene.settings import SAMPLES
 from standoff.tracking import Recording
+from standoff.tracking.options import Variants
 
 TABLE_ENDINGS = (".parquet",)
 PLOT_ENDINGS = (".png", ".svg", ".pdf")
@@ -112,7 +114,7 @@ def _settings(scene: Scene, command: TrackCommand) -> TrackSettings:
             step = float(command.step)
         except ValueError:
             step = command.step  # refused with the other settings, in the same words
-    names = ("law", "predictor", "integrator", "gain", "start", "duration")
+    names = ("law", "predictor", "integrator", "gain", *asdict(Variants()), "start", "duration")
     given = {name: getattr(command, name) for name in names} | {"step": step}
     try:
         return scene.settings.overridden(given)

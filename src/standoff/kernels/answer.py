@@ -5,7 +5,7 @@ from math import inf
 import numpy as np
 
 from standoff.kernels import layout as L
-from standoff.kernels.certified import TOUCHING_OR_OVERLAPPING
+from standoff.kernels.certified import CERTIFIED, TOUCHING_OR_OVERLAPPING
 from standoff.kernels.compiling import kernel
 from standoff.kernels.features import pair_slack, pair_span
 from standoff.kernels.feedback import gradient_norm
@@ -42,7 +42,8 @@ def judge(pair, law_kind, outcome, p, d, bound, tolerance):
     if outcome == TOUCHING_OR_OVERLAPPING or 0.0 < d <= radii:
         return OVERLAPPING
     goal = START_GAP if tolerance == inf else tolerance
-    if bound > radii and d - bound <= goal * pair_span(pair, p, d) + pair_slack(pair):
+    near = d - bound <= goal * pair_span(pair, p, d) + pair_slack(pair)
+    if bound > radii and (near or (outcome == CERTIFIED and tolerance < inf)):
         return CONVERGED
     if law_kind == LAW_PAPER or tolerance == inf:
         return TRACKING

@@ -5,11 +5,13 @@ from math import inf
 from standoff.kernels import layout as L
 from standoff.kernels.compiling import kernel
 from standoff.kernels.features import (
+    ZERO,
     chart_normal,
     coedge_conormal,
     dimension,
     edge_jet,
     edge_record,
+    noisy_normal,
     planar_edge_normal,
     vertex_record,
 )
@@ -37,16 +39,24 @@ def between(n, a, b):
 
 @kernel
 def edge_cone(ints, reals, feature, t, n):
-    """Nearest unit outward normal to n at an edge's point."""
+    """(nearest unit outward normal to n at an edge's point, bound on its roundoff)."""
     e = edge_record(ints, feature)
     if ints[L.DIMENSION] == 2:
-        return planar_edge_normal(ints, reals, feature, t)
+        return planar_edge_normal(ints, reals, feature, t), 0.0
     tangent = unit(edge_jet(ints, reals, feature, t)[1])
     if ints[e + L.EDGE_COEDGE_0] < 0:
-        return unit(axpy(-dot(n, tangent), tangent, n))
-    a = coedge_conormal(ints, reals, ints[e + L.EDGE_COEDGE_0], tangent, t)[1]
-    b = coedge_conormal(ints, reals, ints[e + L.EDGE_COEDGE_1], tangent, t)[1]
-    return between(n, a, b)
+        return unit(axpy(-dot(n, tangent), tangent, n)), 0.0
+    _, a, noise_a = coedge_conormal(ints, reals, ints[e + L.EDGE_COEDGE_0], tangent, t)
+    _, b, noise_b = coedge_conormal(ints, reals, ints[e + L.EDGE_COEDGE_1], tangent, t)
+    noise = max(noise_a, noise_b)
+    if noise > 0.0:
+        # well within the cone the nearest normal is n less its part along the tangent, whose
+        # digits are whole: the faces' normals need only be known to lie on either side
+        flat = unit(axpy(-dot(n, tangent), tangent, n))
+        axis = tangent if dot(cross(a, b), tangent) > 0.0 else scale(-1.0, tangent)
+        if min(dot(cross(a, flat), axis), dot(cross(flat, b), axis)) > noise:
+            return flat, 0.0
+    return between(n, a, b), noise
 
 
 @kernel
@@ -92,33 +102,36 @@ def vertex_cone(ints, reals, feature, n):
 
 @kernel
 def cone_normal(ints, reals, feature, chart, p, q, n):
-    """A unit vector of the normal cone at a witness point, as near to the unit vector n as found.
+    """(unit vector of the normal cone at a witness point, as near to the unit vector n as found,
+    bound on its roundoff).
 
     Any member of the cone gives a valid bound; the nearest gives the tightest.
     """
     dim = dimension(ints, feature)
     if dim == 2:
-        return chart_normal(ints, reals, chart, p, q)
+        return noisy_normal(ints, reals, chart, p, q)
     if dim == 1:
         return edge_cone(ints, reals, feature, p, n)
-    return vertex_cone(ints, reals, feature, n)
+    return vertex_cone(ints, reals, feature, n), 0.0
 
 
 @kernel
-def overhang(ints, reals, x, e):
+def overhang(ints, reals, x, e, noise):
     """A bound on e.(y - x) over the points y of the body: the support of its box.
 
-    e is the small difference between a plane's normal and a normal of the body at x.
+    e is the small difference between a plane's normal and a normal of the body at x, and known
+    but for a vector of the length `noise`.
     """
-    if e[0] == 0.0 and e[1] == 0.0 and e[2] == 0.0:
+    if e[0] == 0.0 and e[1] == 0.0 and e[2] == 0.0 and noise == 0.0:
         return 0.0
     if ints[L.UNBOUNDED]:
         return inf
-    total = 0.0
+    total, reach = 0.0, 0.0
     for i in range(3):
-        half = abs(e[i]) * reals[L.BOX_HALF + i]
-        total += e[i] * (reals[L.BOX_CENTRE + i] - x[i]) + half
-    return max(total, 0.0)
+        way = reals[L.BOX_CENTRE + i] - x[i]
+        total += e[i] * way + abs(e[i]) * reals[L.BOX_HALF + i]
+        reach += abs(way) + reals[L.BOX_HALF + i]
+    return max(total, 0.0) + noise * reach
 
 
 @kernel
@@ -129,7 +142,9 @@ def into_b(R, n):
 
 @kernel
 def certify(pair, R, p, mode, q, x_a, x_b, hint):
-    """(distance of the cores, lower bound of it, best plane normal) at witness points.
+    """(distance of the cores, lower bound of it, best plane normal, blur) at witness points.
+
+    The blur (length) is what roundoff in the bodies' own normals may take from the bound.
 
     x_a and x_b in A's frame. The normal is the one of the candidates n_A, -n_B, the direction of
     x_b - x_a and the unit vector `hint` (zero: none) that gives the greatest bound: near contact
@@ -141,32 +156,35 @@ def certify(pair, R, p, mode, q, x_a, x_b, hint):
     direction = unit(gap)
     y_b = rotate_back(R, sub(x_b, p))
     m_b = into_b(R, direction)
-    n_a = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], direction)
-    n_b = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], m_b)
-    over_a = overhang(ia, ra, x_a, sub(direction, n_a))
-    over_b = overhang(ib, rb, y_b, sub(m_b, n_b))
+    n_a, noise_a = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], direction)
+    n_b, noise_b = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], m_b)
+    over_a = overhang(ia, ra, x_a, sub(direction, n_a), noise_a)
+    over_b = overhang(ib, rb, y_b, sub(m_b, n_b), noise_b)
     best, normal = d - over_a - over_b, direction
     if dot(hint, hint) > 0.5:
         m = into_b(R, hint)
-        cone_a = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], hint)
-        cone_b = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], m)
-        bound = dot(hint, gap)
-        bound -= overhang(ia, ra, x_a, sub(hint, cone_a)) + overhang(ib, rb, y_b, sub(m, cone_b))
+        cone_a, miss_a = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], hint)
+        cone_b, miss_b = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], m)
+        bound = dot(hint, gap) - overhang(ia, ra, x_a, sub(hint, cone_a), miss_a)
+        bound -= overhang(ib, rb, y_b, sub(m, cone_b), miss_b)
         if bound > best:
             best, normal = bound, hint
     # A's own normal: nothing hangs over at A. A zero normal (collapsed chart) bounds nothing.
     if dot(n_a, n_a) > 0.5:
         m = into_b(R, n_a)
-        cone = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], m)
-        bound = dot(n_a, gap) - overhang(ib, rb, y_b, sub(m, cone))
+        cone, miss = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], m)
+        bound = dot(n_a, gap) - overhang(ib, rb, y_b, sub(m, cone), miss)
+        bound -= overhang(ia, ra, x_a, ZERO, noise_a)
         if bound > best:
             best, normal = bound, n_a
     if dot(n_b, n_b) > 0.5:
         n = scale(-1.0, rotate(R, n_b))
-        cone = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], n)
-        bound = dot(n, gap) - overhang(ia, ra, x_a, sub(n, cone))
+        cone, miss = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], n)
+        bound = dot(n, gap) - overhang(ia, ra, x_a, sub(n, cone), miss)
+        bound -= overhang(ib, rb, y_b, ZERO, noise_b)
         if bound > best:
             best, normal = bound, n
     reach = ra[L.SIZE] + rb[L.SIZE] + norm(x_a) + norm(x_b) + norm(y_b) + norm(p)
     best -= ra[L.SLACK] + rb[L.SLACK] + BOUND_ROUNDINGS * EPS * reach
-    return d, best, normal
+    blur = overhang(ia, ra, x_a, ZERO, noise_a) + overhang(ib, rb, y_b, ZERO, noise_b)
+    return d, best, normal, blur

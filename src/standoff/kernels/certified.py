@@ -5,7 +5,7 @@ from standoff.kernels.compiling import kernel
 from standoff.kernels.contact import polish
 from standoff.kernels.descent import ORIGIN, pair_jets, release_along, settle
 from standoff.kernels.features import dimension, pair_slack, pair_span
-from standoff.kernels.tolerances import MAX_STALLS, SLOPE, TOUCHING
+from standoff.kernels.tolerances import BLUR, MAX_STALLS, SLOPE, TOUCHING
 from standoff.kernels.trimming import on_face
 
 # Outcomes of a query.
@@ -18,13 +18,14 @@ TOUCHING_OR_OVERLAPPING = 2
 def weigh(pair, R, p, mode, q, jet_a, jet_b, hint, tolerance):
     """(outcome, d, bound, normal) of witness points; d and bound are those of the cores.
 
-    The bodies' own slack lowers the bound but is no fault of the answer: the gap beyond it counts.
+    The bodies' own slack lowers the bound but is no fault of the answer, nor is the roundoff of a
+    normal beside a collapsed side: the gap beyond both counts.
     """
-    d, bound, normal = certify(pair, R, p, mode, q, jet_a[0], jet_b[0], hint)
+    d, bound, normal, blur = certify(pair, R, p, mode, q, jet_a[0], jet_b[0], hint)
     span = pair_span(pair, p, d)
     if not on_feature(pair, mode, q):
         return UNCERTIFIED, d, bound, normal
-    if bound > 0.0 and d - bound <= tolerance * span + pair_slack(pair):
+    if bound > 0.0 and d - bound <= tolerance * span + pair_slack(pair) + min(blur, BLUR * span):
         return CERTIFIED, d, bound, normal
     if bound <= 0.0 and d <= TOUCHING * span:
         return TOUCHING_OR_OVERLAPPING, d, bound, normal

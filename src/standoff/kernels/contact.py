@@ -36,12 +36,12 @@ def common_normal(pair, R, mode, q, jet_a, jet_b):
     perpendicular = cross(unit(jet_a[1]), unit(jet_b[1]))
     if ia[L.DIMENSION] == 3 and dot(perpendicular, perpendicular) > PIVOT:
         n = unit(perpendicular)
-        m = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], n)
+        m, _ = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], n)
         return n if dot(n, m) >= 0.0 else scale(-1.0, n), True
     if ia[L.DIMENSION] == 2 and dimension(ia, mode[0]) == 1:
-        return cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], unit(gap)), True
+        return cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], unit(gap))[0], True
     if ib[L.DIMENSION] == 2 and dimension(ib, mode[2]) == 1:
-        m = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], unit(gap))
+        m, _ = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], unit(gap))
         return scale(-1.0, rotate(R, m)), True
     return unit(gap), False
 

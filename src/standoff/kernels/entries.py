@@ -6,6 +6,10 @@ all that it calls. These are the few that the layers above ask for.
 
 from standoff.kernels import features, jets, switching, trimming
 from standoff.kernels.compiling import kernel, pointer
+from standoff.kernels.descent import ORIGIN, pair_jets
+from standoff.kernels.rigid import relative_pose, relative_twist
+from standoff.kernels.system import feedforward, hessian, projection_errors
+from standoff.kernels.tracker import pair_pointers
 
 
 @kernel
@@ -50,7 +54,7 @@ def coedge_parameters(ints, reals, coedge, t):
 
 @kernel
 def coedge_conormal(ints, reals, coedge, tangent, t):
-    return features.coedge_conormal(pointer(ints, 0), pointer(reals, 0), coedge, tangent, t)
+    return features.coedge_conormal(pointer(ints, 0), pointer(reals, 0), coedge, tangent, t)[:2]
 
 
 @kernel
@@ -61,3 +65,24 @@ def end_direction(ints, reals, edge, end):
 @kernel
 def on_face(ints, reals, chart, u, v):
     return trimming.on_face(pointer(ints, 0), pointer(reals, 0), chart, u, v)
+
+
+@kernel
+def pair_system(pair, Ta, Tb, xi_a, xi_b, mode, q, out):
+    """Both jets in A's frame (2 x 18 numbers), then Psi (4), b (4) and H (10), into `out`."""
+    R, p = relative_pose(pointer(Ta, 0), pointer(Tb, 0))
+    v, w = relative_twist(pointer(Ta, 0), pointer(Tb, 0), pointer(xi_a, 0), pointer(xi_b, 0))
+    jets = pair_jets(pair_pointers(pair), R, p, pointer(mode, 0), pointer(q, 0))
+    for side in range(2):
+        for i in range(6):
+            vector = jets[side][i]
+            for k in range(3):
+                out[18 * side + 3 * i + k] = vector[k]
+    psi = projection_errors(jets[0], jets[1])
+    b = feedforward(jets[0], jets[1], ORIGIN, ORIGIN, ORIGIN, p, v, w)
+    H = hessian(jets[0], jets[1])
+    for k in range(4):
+        out[36 + k] = psi[k]
+        out[40 + k] = b[k]
+    for k in range(10):
+        out[44 + k] = H[k]

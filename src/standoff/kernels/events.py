@@ -5,7 +5,7 @@ import numpy as np
 from standoff.kernels.compiling import kernel
 
 # Counts, in one int64 array.
-EVALUATIONS, CORRECTIONS, SWITCHES, CHART_CHANGES, RESTARTS, REGULARISED, EVENTS = range(7)
+EVALUATIONS, CORRECTIONS, SATURATIONS, CHART_CHANGES, RESTARTS, REGULARISED, EVENTS = range(7)
 N_COUNTS = 7
 
 # Columns of the log, a flat array of MAX_EVENTS rows: body (0 A, 1 B), from, to, value of the
@@ -18,7 +18,7 @@ ERASED = -1.0
 
 @kernel
 def log_event(events, counts, body, source, target, value, slope):
-    """Append a switch; beyond the log's length it is only counted."""
+    """Append a switch; beyond the log's length it is dropped."""
     k = counts[EVENTS]
     if k < MAX_EVENTS:
         events[EVENT_COLUMNS * k + BODY] = body
@@ -27,7 +27,6 @@ def log_event(events, counts, body, source, target, value, slope):
         events[EVENT_COLUMNS * k + VALUE] = value
         events[EVENT_COLUMNS * k + SLOPE_COLUMN] = slope
         counts[EVENTS] = k + 1
-    counts[SWITCHES] += 1
 
 
 @kernel

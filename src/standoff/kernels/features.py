@@ -4,10 +4,12 @@ A body in the kernels is the pair (ints, reals) of ``layout``. A *mode* of one b
 (feature, chart); the chart matters for faces only and is an absolute chart number.
 """
 
+from math import sqrt
+
 from standoff.kernels import layout as L
 from standoff.kernels.compiling import kernel
 from standoff.kernels.jets import chart_parameters, curve_jet, pcurve_jet, surface_jet
-from standoff.kernels.tolerances import COLLAPSED
+from standoff.kernels.tolerances import COLLAPSED, EPS, NORMAL_NOISE
 from standoff.kernels.vectors import add, axpy, cross, dot, norm, rotate, scale, unit
 
 ZERO = (0.0, 0.0, 0.0)
@@ -154,6 +156,31 @@ def chart_normal(ints, reals, chart, u, v):
 
 
 @kernel
+def normal_noise(ints, reals, chart, jet):
+    """A bound on how far (chord of the unit sphere, at most 2) roundoff turns the chart's normal.
+
+    Beside a collapsed side one tangent is a small difference of greater numbers: its direction
+    loses its digits, and its roundoff is that of the mixed derivative times a parameter's. The
+    quadrics' tangents are products and keep theirs.
+    """
+    kind = ints[chart_record(ints, chart) + L.CHART_KIND]
+    if kind != L.NURBS and kind != L.REVOLUTION and kind != L.EXTRUSION and kind != L.FORMULA:
+        return 0.0
+    product = sqrt(dot(jet[1], jet[1]) * dot(jet[2], jet[2]))
+    lost = NORMAL_NOISE * EPS * (reals[L.SIZE] + norm(jet[0])) * norm(jet[4])
+    return lost / product if lost < 2.0 * product else 2.0
+
+
+@kernel
+def noisy_normal(ints, reals, chart, u, v):
+    """(outward unit normal, bound on its roundoff) of a chart."""
+    jet = chart_jet(ints, reals, chart, u, v)
+    o = ints[chart_record(ints, chart) + L.CHART_REALS]
+    normal = scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
+    return normal, normal_noise(ints, reals, chart, jet)
+
+
+@kernel
 def planar_edge_normal(ints, reals, feature, t):
     """Outward in-plane unit normal of a planar body's edge."""
     flags = ints[edge_record(ints, feature) + L.EDGE_FLAGS]
@@ -224,7 +251,8 @@ def best_chart(ints, reals, chart, x):
 
 @kernel
 def coedge_conormal(ints, reals, coedge, tangent, t):
-    """(conormal, normal) at edge parameter t: the inward unit conormal of the coedge's face.
+    """(conormal, normal, noise) at edge parameter t: the inward unit conormal of the coedge's face,
+    its normal there, and a bound on the roundoff of both.
 
     tangent is the edge's unit tangent, in the body's frame.
     """
@@ -238,4 +266,4 @@ def coedge_conormal(ints, reals, coedge, tangent, t):
     inward = cross(normal, tangent)
     # left in (u, v) is left on the surface where f_u x f_v points outward
     side = ints[c + L.COEDGE_SIDE] * reals[o + L.OUTWARD]
-    return scale(side, inward), normal
+    return scale(side, inward), normal, normal_noise(ints, reals, chart, jet)

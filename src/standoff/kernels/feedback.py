@@ -5,7 +5,7 @@ factor D = L L', whitened coordinates measure lengths on the bodies, so threshol
 units and of the parametrisation.
 """
 
-from math import sqrt
+from math import inf, sqrt
 
 import numpy as np
 
@@ -219,6 +219,25 @@ def law(jet_a, jet_b, g, H, g_t, scale):
     noise = GRADIENT_NOISE * EPS * scale
     p, w = decomposed_solve(Hw, gw, tw, noise, scale)
     return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), slope, 1, 1, sharp
+
+
+@kernel
+def plain_law(jet_a, jet_b, g, H, g_t):
+    """(p, w_ff, solved) of H as it is, be it indefinite: the raw law, without any safeguard.
+
+    Where a pivot vanishes there is no step: solved is 0.
+    """
+    ia = metric_inverse(jet_a[1], jet_a[2])
+    ib = metric_inverse(jet_b[1], jet_b[2])
+    f = ldl(whiten_hessian(ia, ib, H))
+    p = unwhiten_step(ia, ib, negate(ldl_solve(f, whiten_gradient(ia, ib, g))))
+    w = unwhiten_step(ia, ib, negate(ldl_solve(f, whiten_gradient(ia, ib, g_t))))
+    total = 0.0
+    for k in range(4):
+        total += abs(p[k]) + abs(w[k])
+    if total < inf:
+        return p, w, 1
+    return (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), 0
 
 
 @kernel

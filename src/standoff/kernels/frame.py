@@ -24,13 +24,24 @@ TWIST = 30  # v, w
 HAS_TWIST = 36  # 1 where RATE is a feedforward, 0 where it is a secant
 TIME = 37
 LOST = 38  # 1 where the last frame had no certified witness points: start globally
-N_STATE = 39
+ERRORS = 39  # projection errors, integrated beside the parameters (Fig. 3 of the paper)
+INTEGRAL = 43  # time integral of the projection errors (PI feedback)
+GAIN = 47  # K of the last stage, 1/s
+N_STATE = 48
 
 # Options.
 LAW_PC, LAW_PAPER = 0, 1
 PREDICT_NONE, PREDICT_SECANT, PREDICT_FEEDFORWARD, PREDICT_FEEDFORWARD_2 = range(4)
 O_LAW, O_PREDICTOR, O_INTEGRATOR, O_GAIN, O_TOLERANCE = range(5)
-N_OPTIONS = 5
+# The rest is for the paper's law: its feedback and the variants that the paper prints.
+O_FEEDBACK, O_REALISATION, O_SATURATION, O_SWITCHING, O_SOLVE = range(5, 10)
+O_DATA = 10  # what the feedback needs
+N_OPTIONS = O_DATA + 16
+FEEDBACK_LINEAR, FEEDBACK_MATRIX, FEEDBACK_PI, FEEDBACK_POWER, FEEDBACK_MOTION = range(5)
+EVALUATED, INTEGRATED = 0, 1
+SATURATE_HOLD, SATURATE_ZERO = 0, 1
+SWITCH_MULTIPLIERS, SWITCH_VORONOI, SWITCH_NONE = range(3)
+SOLVE_RANKED, SOLVE_PLAIN = 0, 1
 
 # Output.
 DISTANCE, LOWER_BOUND = 0, 1

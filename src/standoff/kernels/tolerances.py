@@ -73,6 +73,12 @@ MAX_ITERATIONS = 400
 # direction is frozen.
 COLLAPSED = 1e-13
 
+# Roundings (eps times the size) of a tangent that is summed from control points or from a formula.
+NORMAL_NOISE = 16.0
+# Most that this may take from a bound, in scales, and the answer still be called certified: a
+# witness point nearer to a collapsed side than some 1e-8 of the size.
+BLUR = 1e-6
+
 # Rows of a rotation matrix may miss being orthonormal by this (dimensionless): what a rotation
 # written with ten digits keeps.
 ROTATION = 1e-9
@@ -95,3 +101,10 @@ FARTHEST = 1e100
 CREASE_FIRST = 1e-110
 CREASE_LAST = 0.5
 CREASE_STEPS = 30
+
+# The edge's point closest to a Voronoi test's point is bracketed between samples (convex arcs
+# have one or two minima), then refined: bisection alone halves 2/16 of the edge to roundoff.
+CLOSEST_SAMPLES = 16
+CLOSEST_STEPS = 60
+# Voronoi tests of one frame: a point may cross a face, an edge and a vertex of each body.
+MAX_VORONOI_PASSES = 8

@@ -10,17 +10,8 @@ from standoff.kernels.answer import judge, write_answer
 from standoff.kernels.certified import UNCERTIFIED, settle_and_weigh, weigh
 from standoff.kernels.cold_start import global_query
 from standoff.kernels.compiling import kernel, pointer
-from standoff.kernels.descent import (
-    NO_EDGE,
-    ORIGIN,
-    pair_jets,
-    recentre,
-    release_pair,
-    take_hit,
-    walk_pair,
-)
+from standoff.kernels.descent import ORIGIN, pair_jets
 from standoff.kernels.events import (
-    CORRECTIONS,
     EVENT_COLUMNS,
     EVENTS,
     MAX_EVENTS,
@@ -28,31 +19,31 @@ from standoff.kernels.events import (
     RESTARTS,
     tidy_events,
 )
-from standoff.kernels.features import pair_span
-from standoff.kernels.feedback import gradient_norm
 from standoff.kernels.frame import (
     FINE,
+    INTEGRAL,
     LAW_PAPER,
     LAW_PC,
     LOST,
     MODE,
     N_OUT,
     N_STATE,
-    O_GAIN,
-    O_INTEGRATOR,
     O_LAW,
-    O_PREDICTOR,
+    O_SWITCHING,
     O_TOLERANCE,
     OUT_COUNTS,
+    OVERLAPPING,
     POSE,
-    PREDICT_NONE,
     START_ANYWHERE,
     START_HERE,
+    SWITCH_NONE,
+    TRACKING,
     TWIST,
     Q,
     refusal,
 )
-from standoff.kernels.integrators import integrate, law_at
+from standoff.kernels.integrators import N_CHANGES, NONE, rates_at
+from standoff.kernels.paper_law import apply_step, paper_frame, read_errors
 from standoff.kernels.prediction import carry_over, keep, predict
 from standoff.kernels.rigid import (
     mean_twist,
@@ -61,50 +52,7 @@ from standoff.kernels.rigid import (
     relative_pose,
     relative_twist,
 )
-from standoff.kernels.system import gradient, projection_errors
-from standoff.kernels.tolerances import EPS, SLOPE, SLOPE_NOISE, START_GAP, TOUCHING
-from standoff.kernels.trimming import NO_HIT
-from standoff.kernels.vectors import norm, sub
-
-
-@kernel
-def apply_step(pair, mode, q, dq, counts, events):
-    """Walk dq until a boundary, and hold that boundary."""
-    step = (dq[0], dq[1], dq[2], dq[3])
-    s, body, hit, index, t = walk_pair(pair, mode, q, step)
-    for k in range(4):
-        q[k] += s * dq[k]
-    if hit != NO_HIT:
-        take_hit(pair, mode, q, body, hit, index, t, NO_EDGE, s, counts, events)
-    else:
-        recentre(pair, mode, q, counts)
-
-
-@kernel
-def paper_frame(pair, motion, state, options, h, mode, q, counts, events, dq):
-    """Integrate w = -M⁻¹(K Psi + b) from the frame before to this one, then switch once."""
-    before = (
-        read_rotation(state, POSE),
-        read_vector(state, POSE + 9),
-        read_vector(state, TWIST),
-        read_vector(state, TWIST + 3),
-    )
-    forward = 0.0 if options[O_PREDICTOR] == PREDICT_NONE else 1.0
-    integrator = int(options[O_INTEGRATOR])
-    integrate(pair, before, motion, h, options[O_GAIN], forward, integrator, mode, q, counts, dq)
-    counts[CORRECTIONS] += 1
-    apply_step(pair, mode, q, dq, counts, events)
-    R, p, _, _ = motion
-    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-    dR = sub(jet_a[0], jet_b[0])
-    d = norm(dR)
-    span = pair_span(pair, p, d)
-    if d > TOUCHING * span:
-        # released before it is at rest, a feature is taken back and given up for ever: a slope
-        # must exceed the residual's own
-        slope = gradient_norm(jet_a, jet_b, gradient(projection_errors(jet_a, jet_b)))
-        floor = max(SLOPE, max(SLOPE_NOISE * EPS * span, slope) / d)
-        release_pair(pair, R, mode, q, dR, floor, counts, events)
+from standoff.kernels.tolerances import START_GAP
 
 
 @kernel
@@ -118,9 +66,15 @@ def track(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
     """
     R, p, v, w = motion
     tolerance = options[O_TOLERANCE]
-    if state[LOST] == 0.0:
+    if state[LOST] == 0.0 or options[O_SWITCHING] == SWITCH_NONE:
         if options[O_LAW] == LAW_PAPER:
-            paper_frame(pair, motion, state, options, h, mode, q, counts, events, dq)
+            before = (
+                read_rotation(state, POSE),
+                read_vector(state, POSE + 9),
+                read_vector(state, TWIST),
+                read_vector(state, TWIST + 3),
+            )
+            paper_frame(pair, before, motion, state, options, h, mode, q, counts, events, dq)
             jet_a, jet_b = pair_jets(pair, R, p, mode, q)
             outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, ORIGIN, tolerance)
             return False, outcome, d, bound, normal
@@ -135,16 +89,19 @@ def track(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
                 return fresh, outcome, d, bound, normal
     counts[RESTARTS] += 1
     outcome, d, bound, normal = global_query(pair, R, p, mode, q, w_ff, tolerance, counts, events)
+    if options[O_LAW] == LAW_PAPER:
+        for k in range(4):
+            state[INTEGRAL + k] = 0.0
+        read_errors(pair, R, p, state, mode, q)
     return False, outcome, d, bound, normal
 
 
 @kernel
-def feedforward_now(pair, motion, mode, q, w_ff, counts):
+def feedforward_now(pair, options, motion, mode, q, w_ff, counts):
     """w_ff at the final witness points, where no evaluation of the frame belongs to them."""
-    R, p, v, w = motion
-    _, forward, _, _ = law_at(pair, R, p, v, w, mode, q, 1.0, counts)
+    rates, _, _, _ = rates_at(pair, options, motion, mode, q, NONE, NONE, 0.0, 1.0, counts)
     for k in range(4):
-        w_ff[k] = forward[k]
+        w_ff[k] = rates[k]
 
 
 @kernel
@@ -172,10 +129,14 @@ def start_frame(
         outcome, d, bound, normal = global_query(pair, R, p, mode, q, w_ff, goal, counts, events)
     kind = LAW_PAPER if given == START_HERE else LAW_PC
     status = judge(pair, kind, outcome, p, d, bound, goal)
+    if options[O_SWITCHING] == SWITCH_NONE and status == OVERLAPPING:
+        status = TRACKING
     if has_twist and d > 0.0:
-        feedforward_now(pair, motion, mode, q, w_ff, counts)
+        feedforward_now(pair, options, motion, mode, q, w_ff, counts)
     for k in range(N_STATE):
         state[k] = 0.0
+    if options[O_LAW] == LAW_PAPER:
+        read_errors(pair, R, p, state, mode, q)
     counts[EVENTS] = 0
     keep(state, motion, has_twist, options, 0.0, mode, q, w_ff, False, status)
     jets = pair_jets(pair, R, p, mode, q)
@@ -244,8 +205,10 @@ def step_frame(
         pair, motion, state, options, h, mode, q, w_ff, dq, counts, events
     )
     status = judge(pair, options[O_LAW], outcome, p, d, bound, options[O_TOLERANCE])
+    if options[O_SWITCHING] == SWITCH_NONE and status == OVERLAPPING:
+        status = TRACKING  # of one feature, not of the bodies: the other may be inside
     if not fresh and has_twist and d > 0.0:
-        feedforward_now(pair, motion, mode, q, w_ff, counts)
+        feedforward_now(pair, options, motion, mode, q, w_ff, counts)
     old_a, old_b = int(state[MODE]), int(state[MODE + 2])
     same = carry_over(pair, state, mode)
     if counts[EVENTS] > 0 or old_a != mode[0] or old_b != mode[2]:
@@ -268,7 +231,7 @@ def step(pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events):
     refused = refusal(pointer(Ta, 0), pointer(Tb, 0), pointer(xi_a, 0), pointer(xi_b, 0))
     if refused != FINE:
         return refused
-    ints, reals = np.empty(4 + N_COUNTS, dtype=np.int64), np.empty(12)
+    ints, reals = np.empty(4 + N_COUNTS, dtype=np.int64), np.empty(8 + N_CHANGES)
     step_frame(
         pair_pointers(pair),
         pointer(Ta, 0),
@@ -298,7 +261,7 @@ def run(pair, poses_a, poses_b, twists_a, twists_b, has_twist, steps, options, s
     poses (n, 12), twists (n, 6), steps (n,), outs (n, N_OUT). Returns (-1, FINE), or the frame
     that was refused and why; the frames before it are answered.
     """
-    ints, reals = np.empty(4 + N_COUNTS, dtype=np.int64), np.empty(12)
+    ints, reals = np.empty(4 + N_COUNTS, dtype=np.int64), np.empty(8 + N_CHANGES)
     pointers = pair_pointers(pair)
     mode, counts = pointer(ints, 0), pointer(ints, 4)
     q, w_ff, dq = pointer(reals, 0), pointer(reals, 4), pointer(reals, 8)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from standoff.scene.reader import Table, shown
-from standoff.scene.settings import TrackSettings, read_settings
+from standoff.scene.settings import TrackSettings, check_together, read_settings
 
 PLAIN = "-_"
 """What a pair's name may have beside letters and digits: it becomes part of file names."""
@@ -47,18 +47,22 @@ def read_pairs(top: Table, bodies: Sequence[str], common: TrackSettings) -> tupl
     Raises
     ------
     SceneError
-        If neither or both are given, a body is unknown or meets itself, or two names are alike.
+        If neither or both are given, a body is unknown or meets itself, two names are alike, or
+        a pair's settings do not go together.
     """
+    track = (top.table("track"),) if "track" in top else ()
     if "pairs" not in top:
         table = top.table("pair")
         table.expect("a", "b")
         a, b = _bodies(table, bodies)
+        check_together(common, *track)
         return (Pair("pair", a, b, common),)
     if "pair" in top:
         raise top.error("is given beside [[pairs]]; write it as one more [[pairs]]", "pair")
     pairs: list[Pair] = []
     for table in top.tables("pairs"):
         settings = read_settings(table, common, beside=("name", "a", "b"))
+        check_together(settings, table, *track)
         a, b = _bodies(table, bodies)
         name = _name(table, f"{a}-{b}", pairs)
         pairs.append(Pair(name, a, b, settings))

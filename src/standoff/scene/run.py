@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -65,6 +65,11 @@ def prepare(scene: Scene, settings: TrackSettings) -> tuple[Tracker, Array]:
             integrator=settings.integrator,
             gain=settings.gain,
             tolerance=settings.tolerance,
+            feedback=settings.feedback,
+            realisation=settings.realisation,
+            saturation=settings.saturation,
+            switching=settings.switching,
+            solve=settings.solve,
         )
     except (ValueError, TypeError) as error:
         raise SceneError(str(error), key="track", file=scene.file) from error
@@ -117,7 +122,7 @@ def _source(scene: Scene, settings: TrackSettings) -> dict[str, Any]:
         "scene": scene.file.name,
         "pair": scene.selected.name,
         "scene_text": scene.text,
-        "settings": asdict(settings),
+        "settings": settings.facts(),
         "notes": scene.notes,
         "samples_sha256": {
             file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files

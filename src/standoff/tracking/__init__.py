@@ -1,8 +1,15 @@
 """Tracking: the tracker and its answers."""
 
+from standoff.bodies.features import Feature
+from standoff.tracking import feedback
 from standoff.tracking.automaton import Automaton, Transition
-from standoff.tracking.options import max_gain
-from standoff.tracking.proximity import Counts, Event, Feature, Proximity
+from standoff.tracking.feedback import max_gain
+from standoff.tracking.pair_system import PairSystem, pair_system
+from standoff.tracking.point_answer import Minimum, PointCounts, PointEvent, PointProximity
+from standoff.tracking.point_recording import PointRecording, PointVisit, record_point
+from standoff.tracking.point_state import PointState
+from standoff.tracking.point_tracker import PointTracker
+from standoff.tracking.proximity import Counts, Event, Proximity
 from standoff.tracking.recording import (
     RecordedEvent,
     Recording,
@@ -21,6 +28,15 @@ __all__ = [
     "Event",
     "Feature",
     "FrameBuffer",
+    "Minimum",
+    "PairSystem",
+    "PointCounts",
+    "PointEvent",
+    "PointProximity",
+    "PointRecording",
+    "PointState",
+    "PointTracker",
+    "PointVisit",
     "Proximity",
     "RecordedEvent",
     "Recording",
@@ -31,7 +47,10 @@ __all__ = [
     "Transition",
     "Visit",
     "distance",
+    "feedback",
     "max_gain",
     "open_recording",
+    "pair_system",
+    "record_point",
     "simulate",
 ]

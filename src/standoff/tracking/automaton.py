@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.bodies.features import Feature, feature_of
 from standoff.kernels import layout as L
-from standoff.tracking.proximity import Feature, feature_of
 
 if TYPE_CHECKING:  # recordings mark an automaton themselves
     from standoff.tracking.recording import RecordedEvent, Visit

@@ -10,9 +10,9 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from standoff.bodies.body import Body
+from standoff.bodies.features import Feature
 from standoff.tracking.automaton import Automaton, Transition, mode_of
 from standoff.tracking.automaton_text import MOST_DRAWN, Names, moves, product_switches
-from standoff.tracking.proximity import Feature
 
 try:
     from matplotlib.axes import Axes

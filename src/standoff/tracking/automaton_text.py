@@ -8,8 +8,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from standoff.bodies.body import Body
+from standoff.bodies.features import Feature
 from standoff.tracking.automaton import Automaton, Mode, Transition, is_smooth, mode_of
-from standoff.tracking.proximity import Feature
 
 if TYPE_CHECKING:
     from standoff.tracking.recording import Visit

@@ -17,11 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from standoff.bodies.features import Feature, feature_of
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import tracker as kernels
 from standoff.kernels.tolerances import SLOPE
-from standoff.tracking.proximity import Event, Feature, feature_of
+from standoff.tracking.proximity import Event
 from standoff.tracking.recording import RecordedEvent
 from standoff.tracking.state import TrackerState
 from standoff.tracking.switching_function import NoMinimum, switching_function

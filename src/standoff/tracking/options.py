@@ -1,78 +1,104 @@
-"""The tracker's options: names, checks, and the numbers the kernels read."""
+"""The tracker's options: checked together, and packed into the numbers the kernels read."""
 
 from __future__ import annotations
 
-import difflib
-import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.kernels import frame as K
-from standoff.kernels import integrators as I
-
-LAWS = {"predictor-corrector": K.LAW_PC, "paper": K.LAW_PAPER}
-PREDICTORS = {
-    "none": K.PREDICT_NONE,
-    "secant": K.PREDICT_SECANT,
-    "feedforward": K.PREDICT_FEEDFORWARD,
-    "feedforward-2": K.PREDICT_FEEDFORWARD_2,
-}
-INTEGRATORS = {name: k for k, name in enumerate(I.NAMES)}
-
-
-def choice(value: Any, name: str, table: dict[str, int]) -> int:
-    """The number of a named option; the error lists the names and the nearest one."""
-    if value in table:
-        return table[value]
-    near = difflib.get_close_matches(str(value), list(table), 1)
-    hint = f" Did you mean {near[0]!r}?" if near else ""
-    raise ValueError(f"Unknown {name} {value!r}: choose one of {sorted(table)}.{hint}")
+from standoff.tracking.choices import (
+    INTEGRATORS,
+    LAWS,
+    PREDICTORS,
+    REALISATIONS,
+    SATURATIONS,
+    SOLVES,
+    SWITCHINGS,
+    choice,
+    positive_number,
+)
+from standoff.tracking.feedback import Feedback, check_stable, feedback_of
 
 
-def positive_number(value: Any, name: str, allow_infinite: bool = False) -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} = {value!r} is not a number.") from error
-    if not number > 0.0 or (math.isinf(number) and not allow_infinite):
-        raise ValueError(f"{name} = {number}: must be positive and finite.")
-    return number
+@dataclass(frozen=True)
+class Variants:
+    """How the paper's law is run; `so.Tracker` describes them.
 
-
-def max_gain(integrator: str, dt: float) -> float:
-    """The largest stable gain of the paper's law, 1/s, for an integrator and a step in s.
-
-    The errors obey dPsi/dt = -K Psi, so the limit is that of the integrator on the negative real
-    axis: K dt < 2 for Euler, Heun and midpoint, 2.785 for RK4 (docs/laws.md).
+    Attributes
+    ----------
+    realisation : "evaluated" or "integrated"
+    saturation : "hold" or "zero"
+    switching : "multipliers", "voronoi" or "none"
+    solve : "ranked" or "plain"
     """
-    number = choice(integrator, "integrator", INTEGRATORS)
-    return I.STABILITY_LIMITS[number] / positive_number(dt, "dt")
 
+    realisation: str = "evaluated"
+    saturation: str = "hold"
+    switching: str = "multipliers"
+    solve: str = "ranked"
 
-def check_stable(integrator: str, gain: float, dt: float) -> None:
-    """Raise ValueError where the paper's law would not be stable."""
-    if gain >= max_gain(integrator, dt):
-        raise ValueError(
-            f"gain = {gain} is not stable for {integrator} at dt = {dt}: stay below "
-            f"{max_gain(integrator, dt):.6g} (so.max_gain)."
-        )
+    @classmethod
+    def of(cls, realisation: str, saturation: str | None, switching: str, solve: str) -> Variants:
+        """Return the variants, checked; without a saturation the one that goes with the switching.
+
+        Raises
+        ------
+        ValueError
+            Unknown names, or a saturation that the switching cannot work with.
+        """
+        choice(switching, "switching", SWITCHINGS)
+        if saturation is None:
+            saturation = "hold" if switching == "multipliers" else "zero"
+        choice(saturation, "saturation", SATURATIONS)
+        if saturation == "zero" and switching == "multipliers":
+            raise ValueError(
+                "saturation='zero' keeps a witness point on its face at the boundary, where "
+                "switching='multipliers' never looks: take switching='voronoi' or 'none'."
+            )
+        if saturation == "hold" and switching == "none":
+            raise ValueError(
+                "saturation='hold' enters the edge it meets, which switching='none' never leaves: "
+                "take saturation='zero'."
+            )
+        choice(realisation, "realisation", REALISATIONS)
+        choice(solve, "solve", SOLVES)
+        return cls(realisation, saturation, switching, solve)
 
 
 def pack_options(
-    law: str, predictor: str, integrator: str, gain: float | None, dt: float, tolerance: float
-) -> NDArray[np.float64]:
-    """The array of options the kernels read. Default gain: K dt = 1, Euler's deadbeat."""
+    law: str,
+    predictor: str,
+    integrator: str,
+    gain: float | None,
+    dt: float,
+    tolerance: float,
+    feedback: Any = None,
+    variants: Variants | None = None,
+) -> tuple[NDArray[np.float64], Feedback]:
+    """The array of options the kernels read, and the feedback. Default gain: K dt = 1."""
     dt = positive_number(dt, "dt")
-    gain = 1.0 / dt if gain is None else positive_number(gain, "gain")
+    variants = variants or Variants()
     options = np.zeros(K.N_OPTIONS)
     options[K.O_LAW] = choice(law, "law", LAWS)
     options[K.O_PREDICTOR] = choice(predictor, "predictor", PREDICTORS)
     options[K.O_INTEGRATOR] = choice(integrator, "integrator", INTEGRATORS)
-    options[K.O_GAIN] = gain
     options[K.O_TOLERANCE] = positive_number(tolerance, "tolerance", allow_infinite=True)
+    chosen = feedback_of(feedback, gain, dt).resolved(integrator, dt)
     if law == "paper":
-        check_stable(integrator, gain, dt)
+        check_stable(chosen, integrator, dt)
+    elif feedback is not None or variants != Variants():
+        raise ValueError(
+            f"feedback = {feedback}, {variants}: these are of the paper's law; give law='paper'."
+        )
+    kind, options[K.O_GAIN], data = chosen.packed()
+    options[K.O_FEEDBACK] = kind
+    options[K.O_DATA : K.O_DATA + len(data)] = data
+    options[K.O_REALISATION] = REALISATIONS[variants.realisation]
+    options[K.O_SATURATION] = SATURATIONS[variants.saturation]
+    options[K.O_SWITCHING] = SWITCHINGS[variants.switching]
+    options[K.O_SOLVE] = SOLVES[variants.solve]
     options.flags.writeable = False
-    return options
+    return options, chosen

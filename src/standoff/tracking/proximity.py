@@ -2,34 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.bodies.features import Feature as Feature
+from standoff.bodies.features import feature_of as feature_of
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import layout as L
 from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, order=True)
-class Feature:
-    """A face, edge or vertex of a body, numbered within its kind."""
-
-    kind: str
-    index: int
-
-    def __iter__(self) -> Iterator[str | int]:
-        return iter((self.kind, self.index))
-
-    def __str__(self) -> str:
-        return f"{self.kind} {self.index}"
 
 
 class Counts(NamedTuple):
@@ -48,7 +34,10 @@ class Counts(NamedTuple):
     restarts : int
         Global starts after the first.
     regularised : int
-        Solves in which the Hessian had to be decomposed.
+        Solves in which the Hessian had to be decomposed (with ``solve="plain"``: that had no
+        solution, so that no step was made).
+    saturations : int
+        Components of a step that were zeroed at a boundary (``saturation="zero"``).
     """
 
     evaluations: int
@@ -57,6 +46,7 @@ class Counts(NamedTuple):
     chart_changes: int
     restarts: int
     regularised: int
+    saturations: int
 
 
 class Event(NamedTuple):
@@ -81,16 +71,6 @@ class Event(NamedTuple):
     target: Feature
     value: float
     slope: float
-
-
-def feature_of(body: Body, number: int) -> Feature:
-    """The feature of a packed number: faces first, then edges, then vertices."""
-    if number < body.n_faces:
-        return Feature("face", number)
-    number -= body.n_faces
-    if number < body.n_edges:
-        return Feature("edge", number)
-    return Feature("vertex", number - body.n_edges)
 
 
 def charts_of(body: Body, face: int) -> tuple[int, int]:
@@ -237,6 +217,7 @@ class Proximity:
             int(o[N.CHART_CHANGES]),
             int(o[N.RESTARTS]),
             int(o[N.REGULARISED]),
+            int(o[N.SATURATIONS]),
         )
 
     def __repr__(self) -> str:

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.bodies.features import Feature, feature_of
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
-from standoff.tracking.proximity import Counts, Feature, charts_of, feature_of
+from standoff.tracking.proximity import Counts, charts_of
 from standoff.tracking.status import Status
 from standoff.tracking.whole_files import write_whole
 
@@ -34,6 +35,7 @@ COUNT_COLUMNS = [
         N.CHART_CHANGES,
         N.RESTARTS,
         N.REGULARISED,
+        N.SATURATIONS,
     )
 ]
 
@@ -92,7 +94,8 @@ class RunInfo:
     digests : (str, str)
         ``Body.digest`` of A and B.
     options : mapping
-        law, predictor, integrator, gain (1/s), tolerance, dt (the longest step, s), locate.
+        law, predictor, integrator, gain (1/s), tolerance, dt (the longest step, s), locate; of
+        the paper's law also feedback (as text), realisation, saturation, switching and solve.
     title : str
     length_unit : str
         Label of lengths; empty where none was given.
@@ -128,7 +131,7 @@ class Recording:
     parameters_a, parameters_b : ndarray, shape (n, 3)
         nan where the feature has fewer parameters.
     status : ndarray of Status, shape (n,)
-    counts : ndarray of int, shape (n, 6)
+    counts : ndarray of int, shape (n, 7)
         Work of each frame, in the order of `Counts`.
     events : tuple of RecordedEvent
         In order of frame and time. Of each body the source of an event is the target of the one

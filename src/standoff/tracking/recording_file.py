@@ -13,7 +13,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.tracking.proximity import Counts, Feature
+from standoff.bodies.features import Feature
+from standoff.tracking.proximity import Counts
 from standoff.tracking.recording import RecordedEvent, Recording, RunInfo
 from standoff.tracking.status import Status
 
@@ -186,7 +187,11 @@ def _recording(table: Any, info: RunInfo) -> Recording:
     def vectors(name: str) -> Array:
         return np.column_stack([numbers(f"{name}_{axis}") for axis in "xyz"])
 
-    counts = np.column_stack([table[name].to_numpy() for name in Counts._fields])
+    def counted(name: str) -> Any:
+        # a recording from before there were saturations has none
+        return table[name].to_numpy() if name in table.column_names else np.zeros(len(table))
+
+    counts = np.column_stack([counted(name) for name in Counts._fields])
     return Recording(
         time=numbers("time"),
         distance=numbers("distance"),

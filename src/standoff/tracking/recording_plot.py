@@ -10,7 +10,7 @@ from typing import NamedTuple, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.tracking.proximity import Feature
+from standoff.bodies.features import Feature
 from standoff.tracking.recording import Recording
 from standoff.tracking.status import Status
 

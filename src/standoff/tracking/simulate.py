@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import asdict
 from typing import Any, Protocol
 
 import numpy as np
@@ -14,27 +15,19 @@ from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import tracker as kernels
 from standoff.motion import Fixed, Pose, PoseLike, TwistLike
+from standoff.tracking.choices import positive_number
+from standoff.tracking.feedback import Feedback
 from standoff.tracking.inputs import check_in_plane, flat_pose, flat_twist
 from standoff.tracking.instants import Motion, Step, located_events
-from standoff.tracking.options import positive_number
 from standoff.tracking.proximity import Event, Proximity
 from standoff.tracking.recording import RecordedEvent, Recording, RunInfo
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
+from standoff.tracking.times import even_times
 from standoff.tracking.tracker import Tracker
+from standoff.version import __version__
 
 Array = NDArray[np.float64]
-
-MOST_FRAMES = 10_000_000
-"""Most frames of one run. A frame is kept in some 600 bytes, so this many take 6 GB; a greater
-number comes from a step or a duration in the wrong unit."""
-
-WHOLE_STEPS = 1e-9
-"""Part of a step by which a duration may miss a whole number of steps and still count as one.
-
-0.3 / 0.1 is a little less than 3 in double precision; a duration of a million steps is off by a
-few 1e-10 of a step.
-"""
 
 BLOCK = 128
 """Frames of one compiled loop. It is run again up to a frame that needs a look, one with a switch
@@ -73,6 +66,11 @@ def simulate(
     integrator: str = "heun",
     gain: float | None = None,
     tolerance: float = 1e-10,
+    feedback: Feedback | None = None,
+    realisation: str = "evaluated",
+    saturation: str | None = None,
+    switching: str = "multipliers",
+    solve: str = "ranked",
     locate: bool = True,
     progress: Progress | None = None,
 ) -> Recording:
@@ -92,6 +90,8 @@ def simulate(
         Time of the first frame on the paths' clock [s].
     law, predictor, integrator, gain, tolerance
         As `Tracker` takes them.
+    feedback, realisation, saturation, switching, solve
+        Of the paper's law, as `Tracker` takes them.
     locate : bool
         Find the instants of the switches within their steps; else they are dated to the frames.
         Paths are asked for poses between the frames.
@@ -112,36 +112,23 @@ def simulate(
     """
     dt = positive_number(dt, "dt")
     times = even_times(start, positive_number(duration, "duration"), dt)
-    tracker = Tracker(a, b, dt, law, predictor, integrator, gain, tolerance)
+    tracker = Tracker(
+        a,
+        b,
+        dt,
+        law,
+        predictor,
+        integrator,
+        gain,
+        tolerance,
+        feedback=feedback,
+        realisation=realisation,
+        saturation=saturation,
+        switching=switching,
+        solve=solve,
+    )
     paths = moving(path_a, "path_a"), moving(path_b, "path_b")
     return track_along(tracker, *paths, times, locate=locate, progress=progress)
-
-
-def even_times(start: float, duration: float, step: float) -> Array:
-    """Return ``start + k step`` within the duration [s], shape (n,).
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two, or more than `MOST_FRAMES`.
-    """
-    if not math.isfinite(start):
-        raise ValueError(f"start = {start}: give a finite time in s.")
-    steps = duration / step + WHOLE_STEPS
-    if steps >= MOST_FRAMES:
-        raise ValueError(
-            f"{duration:g} s in steps of {step:g} s are {steps:.3g} frames, more than "
-            f"{MOST_FRAMES:g}; give a longer step or a shorter duration"
-        )
-    # The last step may end a rounding error beyond the end, where samples refuse to be asked.
-    times = np.minimum(start + step * np.arange(math.floor(steps) + 1), start + duration)
-    if len(times) < 2 or not (np.diff(times) > 0.0).all():
-        raise ValueError(
-            f"from {start:g} s to {start + duration:g} s there are {len(times)} frames {step:g} s "
-            "apart: at least 2 at different times are needed; give a longer duration or another "
-            "step"
-        )
-    return np.asarray(times)
 
 
 def moving(given: Any, name: str) -> Moving:
@@ -165,6 +152,7 @@ def track_along(
     *,
     locate: bool = True,
     progress: Progress | None = None,
+    state: TrackerState | None = None,
 ) -> Recording:
     """Track a pair at given times along two paths; `simulate` with the parts in hand.
 
@@ -176,6 +164,10 @@ def track_along(
         Frame times [s], strictly increasing, at least one.
     locate : bool
     progress : callable, optional
+    state : TrackerState, optional
+        Of this tracker, at the poses of ``times[0]``: the run begins there, as from a wrong start
+        that ``Tracker.start_from`` gave, and its answer is the first frame's. Without it the
+        first frame is answered by a global start.
 
     Returns
     -------
@@ -183,25 +175,29 @@ def track_along(
 
     Raises
     ------
+    TypeError
+        If the state is none.
     ValueError
-        What a path or the tracker refuses.
+        What a path or the tracker refuses; a state of another pair.
     """
+    if state is not None:
+        tracker.check_state(state)
     run = _Run(tracker, path_a, path_b, times, locate)
-    run.go(progress)
+    run.go(progress, state)
     pair = tracker.a, tracker.b
     info = _run_info(tracker, locate)
     return Recording.of_answers(times, run.answers, tuple(run.events), pair, info)
 
 
 def _run_info(tracker: Tracker, locate: bool) -> RunInfo:
-    from standoff import __version__  # the package's own module is complete by now
-
     a, b = tracker.a, tracker.b
+    paper = tracker.law == "paper"
     options = {
         "law": tracker.law,
         "predictor": tracker.predictor,
         "integrator": tracker.integrator,
         "gain": float(tracker.options[K.O_GAIN]),
+        **({"feedback": str(tracker.feedback), **asdict(tracker.variants)} if paper else {}),
         "tolerance": float(tracker.options[K.O_TOLERANCE]),
         "dt": tracker.dt,
         "locate": locate,
@@ -227,9 +223,10 @@ class _Run:
         self.stretch = BLOCK
         self.events: list[RecordedEvent] = []
 
-    def go(self, progress: Progress | None) -> None:
+    def go(self, progress: Progress | None, state: TrackerState | None = None) -> None:
         total = len(self.times)
-        state = self._start()
+        if state is None:
+            state = self.tracker.start(*self.placed(float(self.times[0])))
         self.answers[0] = state.proximity.row
         done = 1
         while done < total:
@@ -244,9 +241,6 @@ class _Run:
         """Return the poses and twists of A and B at a time [s]."""
         a, b = self.paths
         return a.pose(time), b.pose(time), a.twist(time), b.twist(time)
-
-    def _start(self) -> TrackerState:
-        return self.tracker.start(*self.placed(float(self.times[0])))
 
     def _block(self, state: TrackerState, first: int, end: int) -> TrackerState:
         """Answer frames first .. end - 1 from the state of the frame before."""

@@ -24,7 +24,7 @@ class TrackerState:
 
     Attributes
     ----------
-    data : (39,) array
+    data : (48,) array
         Read-only, laid out in ``standoff.kernels.frame``.
     proximity : Proximity
         The answer at the frame of this state.
@@ -42,6 +42,22 @@ class TrackerState:
     def time(self) -> float:
         """Time since ``start``, s."""
         return float(self.data[K.TIME])
+
+    @property
+    def errors(self) -> Array:
+        """Psi as the paper's law integrates it (Fig. 3), (4,): u, v of A, r, s of B; 0 for those
+        that do not exist. ``so.pair_system`` evaluates Eqs. (1)-(4)."""
+        return self.data[K.ERRORS : K.ERRORS + 4].copy()
+
+    @property
+    def gain(self) -> float:
+        """K at the last stage of the paper's law, 1/s; 0 before its first step."""
+        return float(self.data[K.GAIN])
+
+    @property
+    def integral(self) -> Array:
+        """Time integral of Psi since the last change of feature or chart, (4,)."""
+        return self.data[K.INTEGRAL : K.INTEGRAL + 4].copy()
 
 
 class FrameBuffer:

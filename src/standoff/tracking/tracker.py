@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies import shapes
 from standoff.bodies.body import Body
+from standoff.bodies.features import Feature, feature_of
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import tracker as kernels
 from standoff.motion import Pose, PoseLike, TwistLike
+from standoff.tracking.choices import positive_number
+from standoff.tracking.feedback import Feedback, check_stable
 from standoff.tracking.inputs import (
     check_in_plane,
     check_pair,
@@ -21,15 +23,13 @@ from standoff.tracking.inputs import (
     place,
     same_body,
 )
-from standoff.tracking.options import check_stable, pack_options, positive_number
-from standoff.tracking.overlap import hulls_meet, sample_points
-from standoff.tracking.proximity import Event, Feature, Proximity, feature_of
+from standoff.tracking.options import Variants, pack_options
+from standoff.tracking.overlap_proof import cores_overlap
+from standoff.tracking.proximity import Event, Proximity
 from standoff.tracking.state import FrameBuffer, TrackerState
 from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
-# Turns a segment of the z axis into one of the y axis.
-UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 
 
 class Tracker:
@@ -53,6 +53,19 @@ class Tracker:
         For the paper's law.
     gain : float
         K of the paper's law, 1/s; default 1/dt. Must be below ``so.max_gain(integrator, dt)``.
+    feedback : of so.feedback, optional
+        Another feedback for the paper's law, in place of ``gain``.
+    realisation : "evaluated" or "integrated"
+        The paper's block diagrams: the errors Psi evaluated from Eqs. (1)-(4) at the parameters
+        (Fig. 4), or integrated beside them from Psi' = M w + b (Fig. 3).
+    saturation : "hold" or "zero"
+        At a boundary enter the edge, or, as printed, zero the components of the solved step that
+        lead out; "zero" goes with the two switchings below.
+    switching : "multipliers", "voronoi" or "none"
+        By the slopes at a stationary point, or, as printed, by Voronoi tests on the opposing
+        witness point alone, or not at all: the witness points stay on their features.
+    solve : "ranked" or "plain"
+        By the rank rule (docs/laws.md), or by H as it is, without a safeguard: the raw law.
     tolerance : float
         Gap between distance and lower bound, less the bodies' own slack (``Body.check``),
         relative to the pair's size, above which the predictor-corrector corrects again, then
@@ -61,8 +74,8 @@ class Tracker:
     Raises
     ------
     ValueError
-        Unknown names, numbers that are not positive, a planar body with a spatial one, two
-        half-spaces.
+        Unknown names, numbers that are not positive, an unstable feedback, variants that do not
+        go together, a planar body with a spatial one, two half-spaces.
     """
 
     def __init__(
@@ -75,12 +88,21 @@ class Tracker:
         integrator: str = "heun",
         gain: float | None = None,
         tolerance: float = 1e-10,
+        *,
+        feedback: Feedback | None = None,
+        realisation: str = "evaluated",
+        saturation: str | None = None,
+        switching: str = "multipliers",
+        solve: str = "ranked",
     ) -> None:
         check_pair(a, b)
         self.a, self.b = a, b
         self.dt = positive_number(dt, "dt")
         self.law, self.predictor, self.integrator = law, predictor, integrator
-        self.options = pack_options(law, predictor, integrator, gain, dt, tolerance)
+        self.variants = Variants.of(realisation, saturation, switching, solve)
+        self.options, self.feedback = pack_options(
+            law, predictor, integrator, gain, dt, tolerance, feedback, self.variants
+        )
         self.packed = (a.ints, a.reals, b.ints, b.reals)
         self.planar = a.dimension == 2 or b.dimension == 2
 
@@ -186,7 +208,7 @@ class Tracker:
             A state of another pair; no pose or twist; a time that is not positive, or too long for
             the paper's law; a planar pair out of its plane.
         """
-        self._check_state(state)
+        self.check_state(state)
         flat_a, flat_b, xi_a, xi_b, has_twist = self._motion(pose_a, pose_b, twist_a, twist_b)
         h = self.dt if dt is None else self._frame_time(dt)
         data = state.data.copy()
@@ -229,23 +251,31 @@ class Tracker:
         if bad:
             self._refuse(bad, _matrix(buffer.pose_a), _matrix(buffer.pose_b))
         if buffer.out[K.STATUS] != K.CONVERGED:
-            self._prove_overlap(buffer.state, buffer.out, buffer.pose_a, buffer.pose_b)
+            self._name_overlap(buffer.state, buffer.out, buffer.pose_a, buffer.pose_b)
         return float(buffer.out[K.DISTANCE])
 
     def buffer(self, state: TrackerState) -> FrameBuffer:
         """Arrays for ``step_into`` that begin at a state."""
-        self._check_state(state)
+        self.check_state(state)
         return FrameBuffer(self, state)
 
     def _frame_time(self, dt: float) -> float:
         """A frame's own time, s: positive, and short enough for the paper's law to be stable."""
         dt = positive_number(dt, "dt")
         if self.law == "paper":
-            check_stable(self.integrator, float(self.options[K.O_GAIN]), dt)
+            check_stable(self.feedback, self.integrator, dt)
         return dt
 
-    def _check_state(self, state: TrackerState) -> None:
-        """A state of another pair would be read with this one's features."""
+    def check_state(self, state: TrackerState) -> None:
+        """Refuse what is no state of this pair: it would be read with this one's features.
+
+        Raises
+        ------
+        TypeError
+            ``state`` is none.
+        ValueError
+            A state of another pair, or stored by another version.
+        """
         if not isinstance(state, TrackerState):
             raise TypeError(f"{state!r} is not a TrackerState: get one from tracker.start.")
         for name, own, other in zip("AB", (self.a, self.b), state.proximity.bodies, strict=True):
@@ -254,6 +284,12 @@ class Tracker:
                     f"The state belongs to another pair: its body {name} is {other!r}, the "
                     f"tracker's is {own!r}."
                 )
+        if state.data.shape != (K.N_STATE,) or state.data.dtype != np.float64:
+            # the kernels write to it by address
+            raise ValueError(
+                f"The state holds {state.data.dtype} {state.data.shape}, not ({K.N_STATE},) "
+                "float64: it was stored by another version; begin with tracker.start."
+            )
 
     def _motion(
         self,
@@ -302,7 +338,7 @@ class Tracker:
         self, data: Array, out: Array, log: Array, flat_a: Array, flat_b: Array
     ) -> tuple[TrackerState, Proximity]:
         if out[K.STATUS] != K.CONVERGED:
-            self._prove_overlap(data, out, flat_a, flat_b)
+            self._name_overlap(data, out, flat_a, flat_b)
         data.flags.writeable = False
         time = float(data[K.TIME])
         count = int(out[K.OUT_COUNTS + N.EVENTS])
@@ -320,30 +356,12 @@ class Tracker:
             events.append(Event(time, name, source, target, value, slope))
         return tuple(events)
 
-    def _prove_overlap(self, data: Array, out: Array, flat_a: Array, flat_b: Array) -> None:
-        """Give an uncertified pair without a positive bound the status OVERLAPPING, if proven.
-
-        The cores overlap where the hulls of some of their points share one.
-        """
+    def _name_overlap(self, data: Array, out: Array, flat_a: Array, flat_b: Array) -> None:
+        """Give an uncertified pair without a positive bound the status OVERLAPPING, if proven."""
         uncertain = out[K.STATUS] in (Status.NOT_CERTIFIED.value, Status.TRACKING.value)
-        if not uncertain or out[K.LOWER_BOUND] > 0.0:
+        if not uncertain or out[K.LOWER_BOUND] > 0.0 or self.variants.switching == "none":
             return
-        turn_a, turn_b = flat_a[:9].reshape(3, 3), flat_b[:9].reshape(3, 3)
-        shift = flat_b[9:] - flat_a[9:]
-        if not self.a.bounded:
-            meet = reaches_into(self.b, turn_a.T @ turn_b, turn_a.T @ shift)
-        elif not self.b.bounded:
-            meet = reaches_into(self.a, turn_b.T @ turn_a, -(turn_b.T @ shift))
-        else:
-            a, b = (sample_points(body) for body in (self.a, self.b))
-            points_a, points_b = a @ turn_a.T, b @ turn_b.T + shift
-            meet = hulls_meet(
-                points_a,
-                points_b,
-                lambda w: turn_a @ support_point(self.a, turn_a.T @ w),
-                lambda w: turn_b @ support_point(self.b, turn_b.T @ w) + shift,
-            )
-        if meet:
+        if cores_overlap(self.a, self.b, flat_a, flat_b):
             out[: K.OUT_MODE] = np.nan
             out[K.OUT_RATE : K.STATUS] = np.nan
             out[K.STATUS] = float(Status.OVERLAPPING.value)
@@ -380,33 +398,3 @@ def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
         No pose; a planar body with a spatial one or out of its plane; two half-spaces.
     """
     return Tracker(a, b).start(pose_a, pose_b).proximity
-
-
-def support_point(body: Body, direction: Array) -> Array:
-    """The farthest point, (3,), of a body's core along a direction, in the body's frame.
-
-    The witness point against a half-space (in the plane, a long segment) that stands off along
-    the direction, square to it.
-    """
-    n = direction / np.linalg.norm(direction)
-    gap = body.size if body.size > 0.0 else 1.0
-    position = float((sample_points(body) @ n).max() + gap) * n
-    if body.dimension == 2:
-        wall = shapes.segment(4.0 * gap).transformed(UPRIGHT)
-        facing = np.array([[n[0], -n[1], 0.0], [n[1], n[0], 0.0], [0.0, 0.0, 1.0]])
-    else:
-        wall = shapes.halfspace()
-        x = np.cross(np.eye(3)[int(np.abs(n).argmin())], n)
-        x /= np.linalg.norm(x)
-        facing = np.column_stack([x, np.cross(-n, x), -n])
-    answer = distance(body, wall, Pose.identity(), Pose(facing, position))
-    return np.asarray(answer.point_a - body.radius * answer.normal)
-
-
-def reaches_into(body: Body, rotation: Array, position: Array) -> bool:
-    """Does a body come to z <= 0, a half-space's inside, when posed in the half-space's frame?
-
-    Its lowest point below, or within the swept radius of, the plane proves it.
-    """
-    lowest = support_point(body, -rotation[2])
-    return bool(rotation[2] @ lowest + position[2] <= body.radius)

@@ -1,0 +1,32 @@
+"""Names of a body's features."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from standoff.bodies.body import Body
+
+
+@dataclass(frozen=True, order=True)
+class Feature:
+    """A face, edge or vertex of a body, numbered within its kind."""
+
+    kind: str
+    index: int
+
+    def __iter__(self) -> Iterator[str | int]:
+        return iter((self.kind, self.index))
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.index}"
+
+
+def feature_of(body: Body, number: int) -> Feature:
+    """The feature of a packed number: faces first, then edges, then vertices."""
+    if number < body.n_faces:
+        return Feature("face", number)
+    number -= body.n_faces
+    if number < body.n_edges:
+        return Feature("edge", number)
+    return Feature("vertex", number - body.n_edges)

@@ -1,0 +1,21 @@
+"""Voronoi regions: which feature of a body is nearest where, drawn before any motion."""
+
+from standoff.bodies.voronoi.compute import voronoi_regions
+from standoff.bodies.voronoi.medial_axis import VoronoiError
+from standoff.bodies.voronoi.regions import (
+    BranchEnd,
+    MedialBranch,
+    NormalCone,
+    RegionBoundary,
+    VoronoiRegions,
+)
+
+__all__ = [
+    "BranchEnd",
+    "MedialBranch",
+    "NormalCone",
+    "RegionBoundary",
+    "VoronoiError",
+    "VoronoiRegions",
+    "voronoi_regions",
+]

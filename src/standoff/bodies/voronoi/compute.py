@@ -1,0 +1,61 @@
+"""The public function."""
+
+from __future__ import annotations
+
+from standoff.bodies.body import Body
+from standoff.bodies.voronoi.planar import planar_regions
+from standoff.bodies.voronoi.regions import VoronoiRegions
+from standoff.bodies.voronoi.spatial import spatial_regions
+from standoff.geometry.validation import positive
+
+# Of a point and a half-space, where no other is given, length.
+REACH_WITHOUT_SIZE = 1.0
+
+
+def voronoi_regions(
+    body: Body, reach: float | None = None, tolerance: float | None = None
+) -> VoronoiRegions:
+    """Compute what separates the Voronoi regions of a body's features, for pictures and checks.
+
+    Outside a convex body, regions are separated by the outward normals at edges and vertices:
+    rays of a planar body, ruled surfaces and plane sectors of a spatial one. Inside a planar body
+    they are separated by its medial axis. The trackers need none of this. Vertices and edges where
+    the normal turns by less than 1e-5 rad count as smooth.
+
+    Parameters
+    ----------
+    body : Body
+    reach : float, optional
+        How far the external boundaries are to be drawn, length; the body's size by default.
+    tolerance : float, optional
+        How far the medial axis's polylines may be from it, length; 1e-4 of the size by default.
+
+    Returns
+    -------
+    VoronoiRegions
+
+    Raises
+    ------
+    VoronoiError
+        The medial axis did not pass its own check by brute force, or a junction was not found.
+    ValueError
+        NaN, infinite or negative numbers, or a tolerance too fine.
+
+    Notes
+    -----
+    Where a disc inside a planar body touches its curves at x_i with the outward normals n_i, its
+    centre is c = x_i - r n_i for all of them. The axis is traced from one of its ends to all
+    others; junctions, with three such points, are solved to roundoff. Every point is checked at
+    last against the distances to all edges, and the greatest disc at points all along the boundary
+    must have its centre on the axis.
+    """
+    if not isinstance(body, Body):
+        raise TypeError(f"body = {body!r}: give a standoff.Body.")
+    if reach is None:
+        reach = body.size if body.bounded and body.size > 0.0 else REACH_WITHOUT_SIZE
+    reach = positive(reach, "reach")
+    if body.dimension == 2:
+        return planar_regions(body, reach, tolerance)
+    if tolerance is not None:
+        raise ValueError(f"tolerance = {tolerance!r} is for planar bodies; {body!r} is spatial.")
+    return spatial_regions(body, reach)

@@ -1,0 +1,148 @@
+"""Voronoi regions of a body's features, as what is between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from standoff.bodies.body import Body
+from standoff.bodies.features import Feature
+from standoff.bodies.voronoi.nearest import nearest_feature
+from standoff.geometry.validation import Array
+
+
+class RegionBoundary(NamedTuple):
+    """What separates the regions of two features outside the body: rays along outward normals.
+
+    Attributes
+    ----------
+    features : (Feature, Feature)
+        In a planar body an edge and a vertex, or two edges that meet smoothly. In a spatial one a
+        face and an edge, an edge and a vertex, or a face and the vertex to which a side of it has
+        collapsed.
+    origins : (n, 3) array
+        Where the rays start on the body's core, body frame. n is 1 in a planar body; n points
+        along the edge in the first case of a spatial one, n times the vertex in the others.
+    directions : (n, 3) array
+        Their unit directions, body frame.
+    """
+
+    features: tuple[Feature, Feature]
+    origins: Array
+    directions: Array
+
+    def grid(self, reach: float) -> Array:
+        """(n, 2, 3) points, body frame: the rays' starts and their ends at a length `reach`."""
+        return np.stack([self.origins, self.origins + reach * self.directions], axis=1)
+
+
+class NormalCone(NamedTuple):
+    """The outward normals at a vertex: its region is the vertex plus their cone.
+
+    Attributes
+    ----------
+    vertex : Feature
+    point : (3,) array, body frame.
+    normals : (k, 3) array
+        Unit vectors that span the cone, in their order around it: those of the adjacent faces
+        (samples of them along a collapsed side), in a planar body of the two edges.
+    """
+
+    vertex: Feature
+    point: Array
+    normals: Array
+
+
+class BranchEnd(NamedTuple):
+    """An end of a branch of the medial axis.
+
+    Attributes
+    ----------
+    kind : str
+        "corner": a convex vertex, where the depth is 0. "junction": a disc touches three edges,
+        or two and a circular arc. "focal": the centre of an edge's greatest curvature, where both
+        touching points meet. "passage": a touching point goes on from one edge to the next where
+        they meet smoothly, and another branch continues.
+    features : tuple of Feature
+        The vertex of a corner, the vertices of a passage; the edges that a disc touches at a
+        junction; the edge or edges of a focal point.
+    """
+
+    kind: str
+    features: tuple[Feature, ...]
+
+
+class MedialBranch(NamedTuple):
+    """Points of a planar body's inside with two nearest boundary points.
+
+    Attributes
+    ----------
+    features : (Feature, Feature)
+        The edges on which these two lie; the same one twice where an edge is nearest at two
+        places.
+    ends : (BranchEnd, BranchEnd)
+        At the first and the last point.
+    points : (n, 3) array
+        A polyline, body frame, z = 0. One point for a disc's centre.
+    depth : (n,) array
+        Distance to the core's boundary, length: the radius of the disc inside that touches both.
+    parameters : (n, 2) array
+        Where it touches: the curves' own parameters on the two edges. At a focal point that has a
+        whole circular arc, its ends.
+    """
+
+    features: tuple[Feature, Feature]
+    ends: tuple[BranchEnd, BranchEnd]
+    points: Array
+    depth: Array
+    parameters: Array
+
+
+@dataclass(frozen=True, eq=False)
+class VoronoiRegions:
+    """What separates the Voronoi regions of a body's features. Made by ``so.voronoi_regions``.
+
+    A feature's region is the set of points that have their nearest point of the boundary on it;
+    that of the core, where the body has a swept radius.
+
+    Attributes
+    ----------
+    body : Body
+    reach : float
+        How far the external boundaries are to be drawn, length.
+    external : tuple of RegionBoundary
+        Outside the body.
+    medial_axis : tuple of MedialBranch
+        Inside a planar body; empty for a spatial one.
+    cones : tuple of NormalCone
+        One for every vertex.
+    """
+
+    body: Body
+    reach: float
+    external: tuple[RegionBoundary, ...]
+    medial_axis: tuple[MedialBranch, ...]
+    cones: tuple[NormalCone, ...]
+
+    def feature_at(self, point: ArrayLike) -> Feature:
+        """The feature in whose region a point lies, found without any tracker.
+
+        Parameters
+        ----------
+        point : (2,) or (3,) array_like, body frame
+            Inside or outside a planar body (z = 0), outside a spatial one.
+
+        Returns
+        -------
+        Feature
+            On a boundary between regions any of those that meet there.
+
+        Raises
+        ------
+        ValueError
+            No point, a point off a planar body's plane, or inside a spatial one.
+        """
+        return nearest_feature(self.body, point)

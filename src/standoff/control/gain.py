@@ -1,0 +1,259 @@
+"""The least gain that keeps the witness points within an error while the bodies move."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from standoff.bodies.body import Body
+from standoff.control.curvature import least_curvature
+from standoff.geometry.surfaces import Plane, Sphere
+from standoff.geometry.validation import finite, not_negative, positive
+from standoff.kernels import layout as L
+from standoff.tracking.inputs import check_pair
+
+# A root of a derivative counts as real where its imaginary part is below this part of it.
+REAL_ROOT = 1e-6
+
+
+def min_gain(
+    a: Body,
+    b: Body,
+    error: float,
+    speed: float,
+    spin: float = 0.0,
+    *,
+    distance: Any,
+) -> float:
+    """The least gain of the paper's law without feedforward for an error of the witness points.
+
+    Without the feedforward b the witness points lag by |w_ff|/K. This bounds |w_ff| from how fast
+    the bodies may move and how little they may be curved (docs/laws.md); with that gain, and
+    K dt <= 1, neither witness point is ever farther than `error` from its true place, to first
+    order in the error over the bodies' radii of curvature.
+
+    Parameters
+    ----------
+    a, b : Body
+    error : float
+        Greatest distance allowed between a witness point and its true place, length. Of a body
+        with a swept radius it is that of its core's point (a sphere's has none).
+    speed : float
+        Greatest speed of B's origin as seen from A's frame, length/s. Where A itself turns with
+        omega_A this is |v_B - v_A - omega_A x (p_B - p_A)|.
+    spin : float
+        Greatest angular speed of B relative to A, |omega_B - omega_A|, rad/s.
+    distance : float or (least, most)
+        The least distance of the bodies, or both ends of its range, length. From a single
+        number the range goes on without end.
+
+    Returns
+    -------
+    float
+        K, 1/s. inf where no gain can promise the error: both bodies flat or straight somewhere
+        (two boxes), contact, or a spin at any distance about a body with a flat place. 0 for two
+        points, which have no parameters.
+
+    Raises
+    ------
+    TypeError
+        Not a body.
+    ValueError
+        Numbers that are negative, NaN or not in order; a planar body with a spatial one.
+
+    See Also
+    --------
+    max_gain : the largest stable gain of an integrator.
+    standoff.control.euler_min_gain : with the feedforward.
+    """
+    check_pair(a, b)
+    error, speed, spin = positive(error, "error"), *_motion(speed, spin)
+    least, most = _range(distance)
+    skins = a.radius + b.radius
+    motion = speed + (spin * reach(b) if spin else 0.0), spin
+    curvatures = least_curvature(a).value, least_curvature(b).value
+    among = least + skins, most + skins
+    speeds = witness_speeds(*curvatures, among, *motion)
+    waits = (0.0, 0.0)
+    if _switches(a) or _switches(b):
+        waits = release_speeds(*curvatures, among, *motion)
+    return max(speed + wait for speed, wait in zip(speeds, waits, strict=True)) / error
+
+
+def witness_speeds(
+    curvature_a: float,
+    curvature_b: float,
+    distance: tuple[float, float],
+    speed: float,
+    spin: float = 0.0,
+) -> tuple[float, float]:
+    """Bounds of the speeds with which both witness points move on their bodies.
+
+    With kA, kB the least curvatures, d the distance, s = kA + kB + d kA kB, the tangential
+    velocity of B relative to A at most v at B's witness point, hence v + d spin at A's,
+
+        |w_A|² <= (1 + d kB) (d spin² + kB v² + kA (v + d spin)²) / (d s²)
+
+    and |w_B| with A and B exchanged in the first factor: docs/laws.md derives it. The greatest
+    value over a range of distances is returned.
+
+    Parameters
+    ----------
+    curvature_a, curvature_b : float
+        Least normal curvatures of the cores, 1/length; inf for a point.
+    distance : (least, most)
+        Of the cores, length.
+    speed : float
+        Of B's witness point as a point of B, seen from A's frame, length/s.
+    spin : float
+        Of B relative to A, rad/s.
+
+    Returns
+    -------
+    (float, float)
+        Of A's and of B's witness point, length/s; inf where there is no bound.
+    """
+    if curvature_a == curvature_b == 0.0 and (speed > 0.0 or spin > 0.0):
+        return math.inf, math.inf
+    v, (p_a, p_b, bottom) = Polynomial([speed, spin]), _inverse(curvature_a, curvature_b)
+    (n_a, m_a), (n_b, m_b) = _fraction(curvature_a), _fraction(curvature_b)
+    drift = m_a * m_b * spin**2 * D + n_b * m_a * speed**2 + n_a * m_b * v**2
+    below = bottom * bottom // D
+    return (
+        math.sqrt(_greatest(p_a * drift, below, *distance)),
+        math.sqrt(_greatest(p_b * drift, below, *distance)),
+    )
+
+
+def release_speeds(
+    curvature_a: float,
+    curvature_b: float,
+    distance: tuple[float, float],
+    speed: float,
+    spin: float = 0.0,
+) -> tuple[float, float]:
+    """What the late release of a feature adds to `witness_speeds`, as that takes and returns it.
+
+    A lagging pair is never at rest, and the tracker releases an edge or a vertex only when the
+    slope of E across it exceeds that of the residual, |g| <= |b|/K. Until then the witness points
+    stay on a feature that they should have left: farther off by up to
+    sqrt(P_A max(P_A, P_B)) |b|/K, with P_A = (1 + d kB)/(d s) the greatest that A's part of the
+    inverse of H can be, and |b|² at most v² + (v + d spin)².
+    """
+    if curvature_a == curvature_b == 0.0 and (speed > 0.0 or spin > 0.0):
+        return math.inf, math.inf
+    p_a, p_b, bottom = _inverse(curvature_a, curvature_b)
+    b = speed**2 + Polynomial([speed, spin]) ** 2
+    squares = [
+        [_greatest(own * other * b, bottom**2, *distance) for other in (p_a, p_b)]
+        for own in (p_a, p_b)
+    ]
+    return math.sqrt(max(squares[0])), math.sqrt(max(squares[1]))
+
+
+D = Polynomial([0.0, 1.0])
+
+
+def _inverse(curvature_a: float, curvature_b: float) -> tuple[Polynomial, Polynomial, Polynomial]:
+    """(p_a, p_b, bottom) with P_X = p_X / bottom, polynomials in the distance.
+
+    A curvature is n / m, so that a point (inf) is a number like others.
+    """
+    (n_a, m_a), (n_b, m_b) = _fraction(curvature_a), _fraction(curvature_b)
+    bottom = Polynomial([0.0, n_a * m_b + n_b * m_a, n_a * n_b])
+    return m_a * Polynomial([m_b, n_b]), m_b * Polynomial([m_a, n_a]), bottom
+
+
+def _switches(body: Body) -> bool:
+    """Has it a sharp edge or a vertex that can be left for another feature?"""
+    sharp = body.n_edges - body.report.smooth_edges
+    return sharp + body.n_vertices > 0 and body.n_faces + sharp + body.n_vertices > 1
+
+
+def least_eigenvalue(curvature_a: float, curvature_b: float, distance: float) -> float:
+    """The least eigenvalue that the whitened H can have at an optimum.
+
+    1 + d (kA + kB)/2 - sqrt(1 + (d (kA - kB)/2)²), for least curvatures kA, kB and distance d;
+    against a point 1 + d k. It is 0 at contact and where both bodies may be flat.
+    """
+    point = math.isinf(curvature_a), math.isinf(curvature_b)
+    if all(point):
+        return 1.0  # no parameters: the masked identity
+    if any(point):
+        return 1.0 + distance * min(curvature_a, curvature_b)
+    mean = 0.5 * distance * (curvature_a + curvature_b)
+    half = 0.5 * distance * (curvature_a - curvature_b)
+    # (1 + m) - sqrt(1 + h²) without cancellation
+    product = distance * (curvature_a + curvature_b) + distance**2 * curvature_a * curvature_b
+    return product / (1.0 + mean + math.sqrt(1.0 + half**2))
+
+
+def reach(body: Body) -> float:
+    """A bound of the distance from a body's origin to any point of its core, length.
+
+    Exact where it is made of vertices and straight or plane parts, or of a whole ellipsoid about
+    its origin; else the farthest corner of its box.
+    """
+    if not body.bounded:
+        return math.inf
+    centre = body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
+    half = body.reals[L.BOX_HALF : L.BOX_HALF + 3]
+    bounds = [float(np.linalg.norm(np.abs(centre) + half))]
+    charts = [chart for face in body.face_parts for chart in face.charts]
+    if charts and all(isinstance(chart, Sphere) for chart in charts):
+        bounds.append(
+            max(float(np.linalg.norm(c.shift) + np.linalg.norm(c.linear, ord=2)) for c in charts)
+        )
+    if len(body.vertex_points) and all(isinstance(chart, Plane) for chart in charts):
+        straight = all(e.curve.kind == L.LINE for e in body.edge_parts)
+        if straight:
+            bounds.append(float(np.linalg.norm(body.vertex_points, axis=1).max()))
+    return min(bounds)
+
+
+def _motion(speed: float, spin: float) -> tuple[float, float]:
+    return not_negative(speed, "speed"), not_negative(spin, "spin")
+
+
+def _range(distance: Any) -> tuple[float, float]:
+    if np.ndim(distance) == 0:
+        return not_negative(distance, "distance"), math.inf
+    least, most = (float(x) for x in finite(distance, "distance", (2,)))
+    if not 0.0 <= least <= most:
+        raise ValueError(f"distance = {distance!r}: give (least, most) with 0 <= least <= most.")
+    return least, most
+
+
+def _fraction(curvature: float) -> tuple[float, float]:
+    """(n, m) with curvature = n / m: finite for a point too."""
+    if not curvature >= 0.0:
+        raise ValueError(f"A least curvature of {curvature}: give 0 or more, inf for a point.")
+    return (1.0, 0.0) if math.isinf(curvature) else (curvature, 1.0)
+
+
+def _greatest(top: Polynomial, bottom: Polynomial, low: float, high: float) -> float:
+    """The greatest value of top / bottom on [low, high], both with coefficients >= 0."""
+    t, u = (np.trim_zeros(p.coef, "b") for p in (top, bottom))
+    if not len(t):
+        return 0.0
+    if not len(u):
+        return math.inf
+    common = min(int(np.flatnonzero(t)[0]), int(np.flatnonzero(u)[0]))
+    top, bottom = Polynomial(t[common:]), Polynomial(u[common:])
+    if bottom(low) == 0.0:
+        return math.inf
+    slope = top.deriv() * bottom - top * bottom.deriv()
+    roots = slope.trim().roots() if slope.degree() else np.zeros(0)
+    real = roots.real[np.abs(roots.imag) <= REAL_ROOT * np.abs(roots)]
+    places = [low, *real[(real > low) & (real < high)].tolist()]
+    values = [float(top(x)) / float(bottom(x)) for x in places]
+    if math.isfinite(high):
+        values.append(float(top(high) / bottom(high)))
+    elif len(top.coef) > len(bottom.coef):
+        return math.inf
+    elif len(top.coef) == len(bottom.coef):
+        values.append(float(top.coef[-1] / bottom.coef[-1]))
+    return max(values)

@@ -1,0 +1,48 @@
+"""Names and numbers that a user gives as options, checked."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from typing import Any
+
+from standoff.kernels import frame as K
+from standoff.kernels import integrators as I
+
+LAWS = {"predictor-corrector": K.LAW_PC, "paper": K.LAW_PAPER}
+PREDICTORS = {
+    "none": K.PREDICT_NONE,
+    "secant": K.PREDICT_SECANT,
+    "feedforward": K.PREDICT_FEEDFORWARD,
+    "feedforward-2": K.PREDICT_FEEDFORWARD_2,
+}
+INTEGRATORS = {name: k for k, name in enumerate(I.NAMES)}
+REALISATIONS = {"evaluated": K.EVALUATED, "integrated": K.INTEGRATED}
+SATURATIONS = {"hold": K.SATURATE_HOLD, "zero": K.SATURATE_ZERO}
+SWITCHINGS = {
+    "multipliers": K.SWITCH_MULTIPLIERS,
+    "voronoi": K.SWITCH_VORONOI,
+    "none": K.SWITCH_NONE,
+}
+SOLVES = {"ranked": K.SOLVE_RANKED, "plain": K.SOLVE_PLAIN}
+
+
+def choice(value: Any, name: str, table: dict[str, int]) -> int:
+    """The number of a named option; the error lists the names and the nearest one."""
+    if isinstance(value, str) and value in table:
+        return table[value]
+    near = difflib.get_close_matches(str(value), list(table), 1)
+    hint = f" Did you mean {near[0]!r}?" if near else ""
+    raise ValueError(f"Unknown {name} {value!r}: choose one of {sorted(table)}.{hint}")
+
+
+def positive_number(value: Any, name: str, allow_infinite: bool = False) -> float:
+    try:
+        if isinstance(value, (str, bytes)):  # float() reads "5", arithmetic does not
+            raise TypeError("text")
+        number = float(value)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} = {value!r} is not a number.") from error
+    if not number > 0.0 or (math.isinf(number) and not allow_infinite):
+        raise ValueError(f"{name} = {number}: must be positive and finite.")
+    return number

@@ -1,0 +1,318 @@
+"""Feedback for the paper's law: w = -M⁻¹(v(Psi) + b), with v to be chosen.
+
+The errors then obey dPsi/dt = -v(Psi). The paper takes the full-state linear v = K Psi and says
+that others can be synthesised; each here is a small immutable object for ``so.Tracker``::
+
+    so.Tracker(a, b, law="paper", feedback=so.feedback.PI(500.0, 2e4))
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from standoff.kernels import frame as K
+from standoff.kernels import integrators as I
+from standoff.tracking.choices import INTEGRATORS, choice, positive_number
+
+Array = NDArray[np.float64]
+
+DEFAULT_LEAST = 0.1
+"""`MotionGain`'s least gain, times 1/dt: errors of bodies at rest decay within some 50 steps."""
+
+DEFAULT_MOST = 0.75
+"""`MotionGain`'s greatest gain, in parts of ``so.max_gain``: the paper's 1500 of 2000 at 1 kHz."""
+
+STABLE = 1.0
+"""A sampled error loop is stable where its growth factor's magnitude is below this."""
+
+
+def growth_factor(integrator: str, z: Any) -> Any:
+    """R(z): what one step multiplies the solution of y' = (z/h) y by.
+
+    Parameters
+    ----------
+    integrator : str
+    z : complex or array of complex
+        The rate times the step (dimensionless); -K h for the paper's law.
+
+    Notes
+    -----
+    From the tableaux of ``standoff.kernels.integrators``, stage by stage.
+    """
+    number = choice(integrator, "integrator", INTEGRATORS)
+    z = np.asarray(z)
+    stage: Any = np.zeros_like(z)
+    total: Any = np.ones_like(z)
+    for i in range(int(I.STAGES[number])):
+        stage = z * (1.0 + I.NODES[number, i] * stage)
+        total = total + I.WEIGHTS[number, i] * stage
+    return total[()]
+
+
+def max_gain(integrator: str, dt: float) -> float:
+    """The largest stable gain of the paper's law, 1/s, for an integrator and a step in s.
+
+    The errors obey dPsi/dt = -K Psi, so the limit is that of the integrator on the negative real
+    axis: K dt < 2 for Euler, Heun and midpoint, 2.785 for RK4 (docs/laws.md).
+    """
+    number = choice(integrator, "integrator", INTEGRATORS)
+    return I.STABILITY_LIMITS[number] / positive_number(dt, "dt")
+
+
+@runtime_checkable
+class Feedback(Protocol):
+    """What `so.Tracker` asks of a feedback."""
+
+    def resolved(self, integrator: str, dt: float) -> Feedback:
+        """Return the feedback with the defaults that hang on integrator and step filled in."""
+
+    def packed(self) -> tuple[int, float, Array]:
+        """Return the kernels' kind of feedback, its gain K [1/s] and up to 16 numbers more."""
+
+    def rates(self) -> Array:
+        """Return the rates [1/s] of the error loop's modes, complex: -K for the linear law."""
+
+
+def check_stable(feedback: Feedback, integrator: str, dt: float) -> None:
+    """Raise ValueError where the sampled error loop would grow."""
+    rates = np.asarray(feedback.rates(), dtype=complex)
+    growth = np.abs(growth_factor(integrator, rates * dt))
+    if not (growth < STABLE).all():
+        subject = f"feedback = {feedback}"
+        if isinstance(feedback, Linear):
+            subject = f"gain = {feedback.gain}"
+        raise ValueError(
+            f"{subject} is not stable for {integrator} at dt = {dt}: a step would multiply its "
+            f"errors by {growth.max():.6g}. A linear gain must stay below "
+            f"{max_gain(integrator, dt):.6g} (so.max_gain)."
+        )
+
+
+@dataclass(frozen=True)
+class Linear:
+    """Full-state linear feedback, the paper's: v = K Psi.  Eqs. (12)-(14)
+
+    Attributes
+    ----------
+    gain : float
+        K [1/s], positive.
+    """
+
+    gain: float
+
+    def __post_init__(self) -> None:
+        positive_number(self.gain, "gain")
+
+    def resolved(self, integrator: str, dt: float) -> Linear:
+        return self
+
+    def packed(self) -> tuple[int, float, Array]:
+        return K.FEEDBACK_LINEAR, float(self.gain), np.zeros(0)
+
+    def rates(self) -> Array:
+        return np.array([-float(self.gain)])
+
+
+class GainMatrix:
+    """Linear feedback with a gain of its own for each error, or a matrix: v = K Psi.
+
+    Parameters
+    ----------
+    gains : array-like, shape (4,) or (4, 4)
+        Gains [1/s] of the errors in the order (u, v) of A, (r, s) of B; on an edge or a vertex the
+        rows and columns of the parameters that it lacks are deleted.
+
+    Raises
+    ------
+    ValueError
+        Another shape, not finite, or a mode of the error loop that does not decay.
+    """
+
+    def __init__(self, gains: ArrayLike) -> None:
+        matrix = np.array(gains, dtype=np.float64)
+        if matrix.shape == (4,):
+            matrix = np.diag(matrix)
+        if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
+            raise ValueError(
+                f"gains = {np.asarray(gains).tolist()}: give four finite gains, 1/s, or a 4 x 4 "
+                "matrix of them."
+            )
+        matrix.flags.writeable = False
+        self.matrix = matrix
+        if not (self.rates().real < 0.0).all():
+            raise ValueError(
+                f"gains = {matrix.tolist()}: some pair of features has errors that do not decay; "
+                "every matrix left when an edge's or a vertex's rows and columns are deleted must "
+                "have eigenvalues with positive real parts."
+            )
+
+    def __repr__(self) -> str:
+        return f"GainMatrix({self.matrix.tolist()})"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, GainMatrix) and np.array_equal(self.matrix, other.matrix)
+
+    def __hash__(self) -> int:
+        return hash(self.matrix.tobytes())
+
+    def resolved(self, integrator: str, dt: float) -> GainMatrix:
+        return self
+
+    def packed(self) -> tuple[int, float, Array]:
+        return K.FEEDBACK_MATRIX, 1.0, self.matrix.ravel()
+
+    def rates(self) -> Array:
+        """Eigenvalues of -K and of what is left of it for edges and vertices."""
+        found: list[complex] = []
+        for n, m in product(range(3), repeat=2):
+            kept = np.array([0, 1, 2, 3])[np.r_[:n, 2 : 2 + m]]
+            if len(kept):
+                found.extend(np.linalg.eigvals(-self.matrix[np.ix_(kept, kept)]))
+        return np.asarray(found)
+
+
+@dataclass(frozen=True)
+class PI:
+    """Proportional-integral feedback: v = K Psi + K_i ∫Psi dt.
+
+    The integral takes up a constant disturbance, such as that of wrong twists; it begins again
+    for a body whose feature or chart changes.
+
+    Attributes
+    ----------
+    gain : float
+        K [1/s], positive.
+    integral : float
+        K_i [1/s²], positive; up to K²/4 the errors do not oscillate.
+    """
+
+    gain: float
+    integral: float
+
+    def __post_init__(self) -> None:
+        positive_number(self.gain, "gain")
+        positive_number(self.integral, "integral")
+
+    def resolved(self, integrator: str, dt: float) -> PI:
+        return self
+
+    def packed(self) -> tuple[int, float, Array]:
+        return K.FEEDBACK_PI, float(self.gain), np.array([self.integral / self.gain])
+
+    def rates(self) -> Array:
+        return np.asarray(np.roots([1.0, float(self.gain), float(self.integral)]))
+
+
+@dataclass(frozen=True)
+class FiniteTime:
+    """Sign-power feedback: v_i = K |Psi_i / reference|^(power - 1) Psi_i.
+
+    In continuous time each error is zero after |Psi_i / reference|^(1 - power) / (K (1 - power)).
+    Sampled, its gain grows without bound near zero, where it would chatter: it is held at `most`,
+    so within a small layer the law is linear.
+
+    Attributes
+    ----------
+    gain : float
+        K [1/s]: that at |Psi_i| = reference.
+    power : float
+        Above 0 and below 1; 1 would be the linear law.
+    reference : float
+        [unit of Psi: length² per parameter], positive.
+    most : float or None
+        Greatest gain [1/s]; 1/dt by default.
+    """
+
+    gain: float
+    power: float
+    reference: float
+    most: float | None = None
+
+    def __post_init__(self) -> None:
+        positive_number(self.gain, "gain")
+        positive_number(self.reference, "reference")
+        if not 0.0 < positive_number(self.power, "power") < 1.0:
+            raise ValueError(f"power = {self.power}: must be above 0 and below 1.")
+        if self.most is not None and positive_number(self.most, "most") < self.gain:
+            raise ValueError(f"most = {self.most} is less than gain = {self.gain}.")
+
+    def resolved(self, integrator: str, dt: float) -> FiniteTime:
+        if self.most is not None:
+            return self
+        return replace(self, most=max(1.0 / dt, float(self.gain)))
+
+    def packed(self) -> tuple[int, float, Array]:
+        cap = float(self.rates()[0]) / -float(self.gain)
+        return K.FEEDBACK_POWER, float(self.gain), np.array([self.power, self.reference, cap])
+
+    def rates(self) -> Array:
+        """That of the layer around zero, the greatest."""
+        if self.most is None:
+            raise ValueError(f"{self}: its greatest gain hangs on the step; use resolved().")
+        return np.array([-float(self.most)])
+
+
+@dataclass(frozen=True)
+class MotionGain:
+    """The paper's lower gain, computed online from the motion: K = |b| / error, within bounds.
+
+    Without feedforward the errors settle at b/K. In the metric of the tangents both are lengths,
+    so this K keeps the projection error of the witness vector at `error`.
+
+    Attributes
+    ----------
+    error : float
+        Wanted projection error [length], positive.
+    least, most : float or None
+        Bounds of K [1/s]; by default 0.1/dt and 0.75 ``so.max_gain``.
+    """
+
+    error: float
+    least: float | None = None
+    most: float | None = None
+
+    def __post_init__(self) -> None:
+        positive_number(self.error, "error")
+        for name in ("least", "most"):
+            if getattr(self, name) is not None:
+                positive_number(getattr(self, name), name)
+
+    def resolved(self, integrator: str, dt: float) -> MotionGain:
+        least = DEFAULT_LEAST / dt if self.least is None else float(self.least)
+        most = DEFAULT_MOST * max_gain(integrator, dt) if self.most is None else float(self.most)
+        if least > most:
+            raise ValueError(
+                f"{self}: its least gain {least:.6g} is above its greatest {most:.6g}."
+            )
+        return replace(self, least=least, most=most)
+
+    def packed(self) -> tuple[int, float, Array]:
+        least, most = (-float(rate) for rate in self.rates())
+        return K.FEEDBACK_MOTION, most, np.array([float(self.error), least, most])
+
+    def rates(self) -> Array:
+        """Those of the least and of the greatest gain."""
+        if self.least is None or self.most is None:
+            raise ValueError(f"{self}: its bounds hang on the step; use resolved().")
+        return np.array([-float(self.least), -float(self.most)])
+
+
+def feedback_of(feedback: Any, gain: float | None, dt: float) -> Feedback:
+    """Return the feedback that is meant; by default linear with K dt = 1, Euler's deadbeat."""
+    if feedback is None:
+        return Linear(1.0 / dt if gain is None else gain)
+    if gain is not None:
+        raise ValueError(
+            f"gain = {gain} and feedback = {feedback} both name the gain: give one of them."
+        )
+    if isinstance(feedback, type) or not isinstance(feedback, Feedback):
+        raise TypeError(
+            f"feedback = {feedback!r} is none: give one of so.feedback's, such as "
+            "so.feedback.PI(500.0, 2e4)."
+        )
+    return feedback

@@ -1,0 +1,119 @@
+"""The printed Voronoi tests, alone: from any feature they lead to the one nearest to a point."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numba import njit
+
+import standoff as so
+from standoff.kernels import events as N
+from standoff.kernels import frame as K
+from standoff.kernels.compiling import pointer
+from standoff.kernels.entries import chart_normal, feature_jet
+from standoff.kernels.voronoi import voronoi_switch
+from standoff.paper.bodies import lens_of_patches, planar_body
+from standoff.tracking.inputs import place
+from standoff.tracking.proximity import feature_of
+
+BODIES = {
+    "lens": so.shapes.lens(1.0, 0.45),
+    "lens of patches": lens_of_patches(),
+    "box": so.shapes.box(1.0, 0.7, 0.5),
+    "tetrahedron": so.shapes.polytope(
+        [[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.2, 0.9, 0.1], [0.3, 0.3, 0.8]]
+    ),
+    "cylinder": so.shapes.cylinder(0.5, 0.8),
+    "cone": so.shapes.cone(0.5, 0.9),
+    "planar loop": planar_body(),
+}
+POINT = so.shapes.point()
+REST = np.eye(4)
+MOST = 12
+"""Switches from any feature to the nearest: a Lin-Canny walk visits no feature twice."""
+
+
+@njit
+def switch(
+    ints: Any, reals: Any, x: Any, span: float, mode: Any, q: Any, counts: Any, log: Any
+) -> bool:
+    return voronoi_switch(
+        pointer(ints, 0),
+        pointer(reals, 0),
+        0,
+        (x[0], x[1], x[2]),
+        span,
+        pointer(mode, 0),
+        pointer(q, 0),
+        pointer(counts, 0),
+        pointer(log, 0),
+    )
+
+
+def starts(body: so.Body) -> list[tuple[so.Feature, tuple[float, ...]]]:
+    """A place on every feature, found from points around the body; vertices beside."""
+    found: dict[so.Feature, tuple[float, ...]] = {}
+    rng = np.random.default_rng(5)
+    for x in points(body, 400, rng):
+        answer = so.distance(body, POINT, REST, so.Pose(np.eye(3), x))
+        found.setdefault(answer.feature_a, answer.parameters_a)
+    assert len(found) == body.n_faces + body.n_edges + body.n_vertices
+    return list(found.items())
+
+
+def points(body: so.Body, n: int, rng: np.random.Generator) -> np.ndarray:
+    directions = rng.normal(size=(n, 3))
+    if body.dimension == 2:
+        directions[:, 2] = 0.0
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    return directions * body.size * rng.uniform(0.75, 2.0, (n, 1))
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_voronoi_tests_lead_to_the_nearest_feature(name: str) -> None:
+    """From every feature to that of a cold query, or to a face that has the point behind it; and
+    never farther from the point at a switch (the paper: the distance between features never
+    grows)."""
+    body = BODIES[name]
+    begins = starts(body)
+    rng = np.random.default_rng(11)
+    counts, log = np.zeros(N.N_COUNTS, dtype=np.int64), np.zeros(N.MAX_EVENTS * N.EVENT_COLUMNS)
+    longest, far_side = 0, 0
+    for x in points(body, 60, rng):
+        pose = so.Pose(np.eye(3), x)
+        truth = so.distance(body, POINT, REST, pose)
+        for feature, parameters in begins:
+            state = np.zeros(K.N_STATE)
+            place(state, 0, body, feature, parameters)
+            mode, q = state[K.MODE : K.MODE + 4].astype(np.int64), state[K.Q : K.Q + 4].copy()
+            counts[:] = 0
+            apart = [distance_at(body, mode, q, pose)]
+            while switch(body.ints, body.reals, x, 4.0 * body.size, mode, q, counts, log):
+                apart.append(distance_at(body, mode, q, pose))
+                assert len(apart) <= MOST, (x, feature)
+            longest = max(longest, len(apart) - 1)
+            assert (np.diff(apart) <= 1e-12).all(), (x, feature, apart)
+            found = feature_of(body, int(mode[0]))
+            if found != truth.feature_a:
+                assert found.kind == "face", (x, feature, found)
+                assert behind(body, mode, q, x), (x, feature, found)
+                far_side += 1
+    assert longest >= 2
+    assert far_side <= 0.15 * 60 * len(begins)
+
+
+def behind(body: so.Body, mode: np.ndarray, q: np.ndarray, x: np.ndarray) -> bool:
+    """Is x behind the face's tangent plane at its point, where the printed tests do not look?"""
+    normal = chart_normal(body.ints, body.reals, int(mode[1]), float(q[0]), float(q[1]))
+    jet = feature_jet(body.ints, body.reals, int(mode[0]), int(mode[1]), float(q[0]), float(q[1]))
+    return bool(np.dot(normal, x - np.array(jet[0])) < 0.0)
+
+
+def distance_at(body: so.Body, mode: np.ndarray, q: np.ndarray, pose: so.Pose) -> float:
+    feature = feature_of(body, int(mode[0]))
+    n = {"face": 2, "edge": 1, "vertex": 0}[feature.kind]
+    here = (feature, tuple(float(t) for t in q[:n]))
+    system = so.pair_system(body, POINT, REST, pose, here, (("vertex", 0), ()))
+    return float(np.linalg.norm(system.dR))
