@@ -1,7 +1,6 @@
 """Cold queries over random families: every one certified, and proven by support functions.
 
-``STANDOFF_POSES`` caps the poses of each family; seeds are fresh in every run and part of what a
-failure prints.
+``STANDOFF_POSES`` caps the poses of each family; a failure prints the family's seed.
 """
 
 import os
