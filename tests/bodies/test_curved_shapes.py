@@ -142,3 +142,28 @@ def test_hull_of_a_line_is_a_frustum_or_a_cone():
 def test_refusals(make, words):
     with pytest.raises(ValueError, match=words):
         make()
+
+
+@pytest.mark.parametrize("slenderness", [1e-2, 1e-4, 1e-6])
+def test_slender_spindles_keep_their_girth(slenderness):
+    """Circular arcs of radius 1/slenderness would lose the bulge to the rounding of their centre."""
+    body = so.shapes.spindle(slenderness, 2.0)
+    for edge in body.edge_parts:
+        curve = edge.curve
+        for t in np.linspace(curve.first, curve.last, 9)[1:-1]:
+            x, y, z = curve.point(t)
+            # intersecting chords: (bulge - r)(R + c + r) = z², R + c = 2 R - bulge
+            bulge = slenderness
+            drop = z * z / (1.0 / bulge + np.hypot(x, y))
+            assert np.hypot(x, y) == pytest.approx(bulge - drop, rel=1e-12)
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+def test_hulls_of_revolution_of_any_size(size):
+    """A disc's plane has parameters in length units, and no rim as a gnomonic chart has."""
+    arc = RationalBezier([(size, 0, 0), (0.5 * size, 0, 0.7 * size), (0, 0, 0.7 * size)])
+    body = so.shapes.hull_of_revolution(arc)
+    pose = (np.eye(3), (0, 0, 2.7 * size))
+    answer = so.distance(body, so.shapes.point(), np.eye(4), pose)
+    assert answer.certified
+    assert answer.distance == pytest.approx(2.0 * size, rel=1e-12)

@@ -18,7 +18,7 @@ class Bow:
     def __init__(self, bulge: float, half: float) -> None:
         if not 0 < bulge < half:
             raise ValueError(f"bulge {bulge} must lie between 0 and half the length, {half}")
-        self.half = float(half)
+        self.half, self.bulge = float(half), float(bulge)
         self.radius = (half * half + bulge * bulge) / (2 * bulge)
         self.centre = bulge - self.radius
 
@@ -27,14 +27,17 @@ class Bow:
         length = np.sqrt(r * r + z * z)
         safe = np.where(length > 0, length, 1)
         height = self.radius * z / safe
-        reach = self.centre + self.radius * r / safe
+        # centre + radius r / length, without the cancellation that slender arcs suffer
+        reach = self.bulge - self.radius * (z / safe) * (z / (safe + r))
         beyond = (np.abs(height) >= self.half) | (reach <= 0)
         end = np.where(z >= 0, self.half, -self.half)
         return np.where(beyond, 0, reach), np.where(beyond, end, height)
 
     def outside(self, r: float, z: float) -> float:
         """Signed distance to the circle: positive exactly outside, for r >= 0."""
-        return float(np.hypot(r - self.centre, z)) - self.radius
+        beyond = r - self.bulge
+        far = float(np.hypot(r - self.centre, z)) + self.radius
+        return (beyond * (beyond + 2 * self.radius) + z * z) / far
 
 
 class Spindle(Shape):

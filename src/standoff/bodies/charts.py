@@ -167,6 +167,8 @@ def visible_spans(pcurve: Pcurve, first: float, last: float) -> list[tuple[float
         return _visible_line(pcurve, first, last)
     a, b, c = pcurve.matrix[2]
     reach = float(np.hypot(a, b))
+    if reach == 0.0 and c == 1.0:  # a plane's parameters, no gnomonic chart's: there is no rim
+        return [(first, last)]
     rim = CHART_RIM * float(np.abs(pcurve.matrix).max()) - c
     if reach == 0.0 or abs(rim) >= reach:
         return [(first, last)] if -rim > reach or (reach == 0.0 and rim < 0.0) else []

@@ -11,13 +11,16 @@ import numpy as np
 from standoff.bodies.body import Body
 from standoff.bodies.shapes.isolines import along_v
 from standoff.bodies.topology import Apex, BodyError, Edge, Face
-from standoff.geometry.curves import FULL_TURN, ConicArc, RationalBezier
+from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, RationalBezier
 from standoff.geometry.nurbs import BezierPatch
 from standoff.geometry.swept import Revolution
 from standoff.geometry.validation import Array, positive
 
 # Fewer patches than this would not keep their normals within a hemisphere.
 LEAST_PATCHES = 3
+# Below this share of half the length the bulge is lost to the rounding of the arc's far centre: a
+# rational arc has none.
+SLENDER = 0.1
 
 
 def spindle(radius: float, length: float, patches: int = 3) -> Body:
@@ -36,18 +39,12 @@ def spindle(radius: float, length: float, patches: int = 3) -> Body:
     """
     bulge, half = _bulge(radius, length, "spindle")
     n = _patches(patches, "spindle")
-    arc_radius = 0.5 * (half * half + bulge * bulge) / bulge
-    centre = bulge - arc_radius
-    reach = float(np.arctan2(half, -centre))
-    profile = ConicArc(
-        [centre, 0.0, 0.0], [arc_radius, 0.0, 0.0], [0.0, 0.0, arc_radius], -reach, reach
-    )
     angles = FULL_TURN / n * np.arange(n + 1)
     edges = []
     for angle in angles[:-1]:
         out = np.array([np.cos(angle), np.sin(angle), 0.0])
-        meridian = ConicArc(centre * out, arc_radius * out, [0.0, 0.0, arc_radius], -reach, reach)
-        edges.append(Edge(meridian, 0, 1))
+        edges.append(Edge(_meridian(bulge, half, out), 0, 1))
+    profile = _meridian(bulge, half, np.array([1.0, 0.0, 0.0]))
     faces = [
         _gore_face(Revolution(profile, low, high), j, n)
         for j, (low, high) in enumerate(pairwise(angles))
@@ -74,14 +71,10 @@ def gore(radius: float, height: float, patches: int = 4) -> Body:
     """
     bulge, half = _bulge(radius, height, "gore")
     n = _patches(patches, "gore")
-    # the arc from pole to pole turns by 2 alpha; its middle control point is where the tangents
-    # at the poles meet, its middle weight is cos alpha
-    slope = 2.0 * bulge * half / (half * half - bulge * bulge)  # tan alpha
-    weights = np.array([1.0, 1.0 / np.hypot(1.0, slope), 1.0])
     arcs = []
     for angle in FULL_TURN / n * np.arange(n):
-        out = np.array([np.cos(angle), np.sin(angle), 0.0])
-        arcs.append(np.array([[0.0, 0.0, -half], half * slope * out, [0.0, 0.0, half]]))
+        points, weights = _rational_arc(bulge, half, np.array([np.cos(angle), np.sin(angle), 0.0]))
+        arcs.append(points)
     edges = [Edge(RationalBezier(arc, weights), 0, 1) for arc in arcs]
     faces = []
     for j in range(n):
@@ -100,6 +93,27 @@ def _gore_face(surface: Any, j: int, n: int) -> Face:
         (Apex(0, v0, u0, u1, side="v0"), Apex(1, v1, u0, u1, side="v1")),
         (along_v(u0), along_v(u1)),
     )
+
+
+def _meridian(bulge: float, half: float, out: Array) -> Curve:
+    """The circular arc from pole to pole through bulge out, `out` a unit vector."""
+    if bulge < SLENDER * half:
+        return RationalBezier(*_rational_arc(bulge, half, out))
+    radius = 0.5 * (half * half + bulge * bulge) / bulge
+    centre = bulge - radius
+    reach = float(np.arctan2(half, -centre))
+    return ConicArc(centre * out, radius * out, [0.0, 0.0, radius], -reach, reach)
+
+
+def _rational_arc(bulge: float, half: float, out: Array) -> tuple[Array, Array]:
+    """Control points and weights of the arc from pole to pole through bulge out.
+
+    It turns by 2 alpha: its middle control point is where the tangents at the poles meet, its
+    middle weight is cos alpha.
+    """
+    slope = 2.0 * bulge * half / (half * half - bulge * bulge)  # tan alpha
+    points = np.array([[0.0, 0.0, -half], half * slope * out, [0.0, 0.0, half]])
+    return points, np.array([1.0, 1.0 / np.hypot(1.0, slope), 1.0])
 
 
 def _poles(half: float) -> Array:
