@@ -146,7 +146,7 @@ def test_refusals(make, words):
 
 @pytest.mark.parametrize("slenderness", [1e-2, 1e-4, 1e-6])
 def test_slender_spindles_keep_their_girth(slenderness):
-    """Circular arcs of radius 1/slenderness would lose the bulge to the rounding of their centre."""
+    """The rounding of so large an arc's centre would be lost from the bulge."""
     body = so.shapes.spindle(slenderness, 2.0)
     for edge in body.edge_parts:
         curve = edge.curve

@@ -1,0 +1,187 @@
+"""Queries of degenerate pairs and their judge: certificate, truth, witnesses, nothing silent."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+import standoff as so
+from families.degenerate import KINDS, Kind, aimed, partner, scaled
+from families.shapes import Rng, Twin
+from oracles.bounds import separation
+from oracles.exact_pairs import exact_pair, random_rotation
+from oracles.poses import size_of
+from oracles.support import HalfSpace, Placed
+
+Array = NDArray[np.float64]
+
+EPS = float(np.finfo(float).eps)
+ROUNDINGS = 64.0
+"""Roundings, in eps of the span (sizes, coordinates and distance), that a bound may be off by."""
+GAPS = (1e-9, 1.0)
+"""Range of the gaps, over the pair's size."""
+DEPTHS = (1e-9, 1e-1)
+"""Range of the depths, over the thickness the constructed normal meets."""
+KISSING = 10.0
+"""Gaps are greater than this many times the noise of their poses."""
+PER_BODY = 20
+"""Poses of one body of a kind: making it is slower than a query."""
+REACH = 1e3
+"""Positions of A, in sizes from the origin."""
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Two placed bodies, and what is known: low <= true signed distance <= high."""
+
+    a: Twin
+    b: Twin
+    placed_a: Placed
+    placed_b: Placed
+    low: float
+    high: float
+
+    @property
+    def poses(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        first, second = self.placed_a, self.placed_b
+        return (first.rotation, first.position), (second.rotation, second.position)
+
+    @property
+    def size(self) -> float:
+        return size_of(self.a.shape, self.b.shape)
+
+    @property
+    def noise(self) -> float:
+        """Roundings of the poses and of what is computed from them, length."""
+        places = np.abs([self.placed_a.position, self.placed_b.position]).max()
+        known = abs(self.low) if np.isfinite(self.low) else 0.0
+        return ROUNDINGS * EPS * (self.size + float(places) + known)
+
+
+@dataclass
+class Tally:
+    """What was found of one kind at one level; errors and gaps are over the pair's size."""
+
+    name: str
+    level: float
+    queries: int = 0
+    uncertified: int = 0
+    restarted: int = 0
+    errors: list[float] = field(default_factory=list)
+    gaps: list[float] = field(default_factory=list)
+    evaluations: list[int] = field(default_factory=list)
+    failures: list[str] = field(default_factory=list)
+
+
+def thickness(first: Placed, second: Placed, normal: Array) -> float:
+    """The lesser extent of the two bodies along a normal (a half-space has none)."""
+    bounded = [body for body in (first, second) if not isinstance(body.shape, HalfSpace)]
+    both = np.array([normal, -normal])
+    return min(float(body.relative(both)[0].sum()) for body in bounded)
+
+
+def draw(kind: Kind, body: Twin, other: Twin, rng: Rng, *, overlap: bool = False) -> Pose:
+    """Draw a pose of a pair: a known gap apart, or overlapping along a normal."""
+    rotation = random_rotation(rng)
+    normal = aimed(rng, kind, rotation)
+    size = size_of(body.shape, other.shape)
+    place = size * 10.0 ** float(rng.uniform(-1, np.log10(REACH))) * rng.normal(size=3)
+    gap = size * float(np.exp(rng.uniform(*np.log(GAPS))))
+    while True:
+        pair = exact_pair(
+            body.shape, other.shape, gap, rng, normal=normal, rotation_a=rotation, position_a=place
+        )
+        pose = Pose(body, other, pair.a, pair.b, pair.distance, pair.distance)
+        # Kissing pairs have tests of their own: there the rounding of the poses decides.
+        if pair.distance > KISSING * pose.noise:
+            break
+        gap *= 10.0
+    if not overlap:
+        return pose
+    depth = thickness(pair.a, pair.b, pair.normal) * float(np.exp(rng.uniform(*np.log(DEPTHS))))
+    moved = Placed(
+        pair.b.shape, pair.b.rotation, pair.b.position - (pair.distance + depth) * pair.normal
+    )
+    low = separation(pair.a, moved, pair.normal)
+    # A half-space lets nothing out but along its normal, and a point's depth is its own.
+    planes = isinstance(pair.a.shape, HalfSpace) or isinstance(moved.shape, HalfSpace)
+    return Pose(body, other, pair.a, moved, low, low if planes else min(0.0, low + depth))
+
+
+def _finite(answer: so.Proximity) -> bool:
+    numbers = [answer.distance, answer.lower_bound, *answer.point_a, *answer.point_b]
+    return bool(np.isfinite([*numbers, *answer.normal]).all())
+
+
+def faults(pose: Pose, answer: so.Proximity) -> list[str]:
+    """Return what is wrong with an answer."""
+    if not _finite(answer):
+        return [f"not finite: {answer!r}"]
+    d, low, noise = answer.distance, answer.lower_bound, pose.noise
+    found = []
+    if not abs(np.linalg.norm(answer.normal) - 1.0) <= 1e-12:
+        found.append(f"normal of length {np.linalg.norm(answer.normal)}")
+    if not low - noise <= pose.high:
+        found.append(f"lower bound {low!r} above the truth {pose.high!r}")
+    upper = getattr(answer, "upper_bound", max(d, 0.0))
+    if not upper + noise >= pose.low:
+        found.append(f"upper bound {upper!r} below the truth {pose.low!r}")
+    if d == 0.0 and not pose.low - noise <= 0.0 <= pose.high + noise:
+        found.append(f"silent 0, truth {pose.low!r}")
+    if not low <= d + noise:
+        found.append(f"lower bound {low!r} above the distance {d!r}")
+    parted = separation(pose.placed_a, pose.placed_b, answer.normal)
+    if not parted >= low - noise:
+        found.append(f"the normal separates by {parted!r} only, less than {low!r}")
+    # The points of swept bodies follow the normal, which may turn within the certificate's gap.
+    radii, gap = pose.a.body.radius + pose.b.body.radius, max(d - low, 0.0)
+    between = answer.point_b - answer.point_a - d * answer.normal
+    if not np.linalg.norm(between) <= noise + 2.0 * np.sqrt(gap * (abs(d) + radii)) + gap:
+        found.append(f"witness points miss distance times normal by {between}")
+    return found
+
+
+def judge(tally: Tally, pose: Pose, tolerance: float = 1e-9) -> so.Proximity | None:
+    """Ask for the distance cold and add what was found; never an exception, NaN or warning."""
+    tally.queries += 1
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            answer = so.distance(pose.a.body, pose.b.body, *pose.poses)
+    except Exception as problem:  # whatever it is, it is a failure to be reported
+        tally.failures.append(f"{type(problem).__name__}: {problem}")
+        return None
+    found = faults(pose, answer)
+    tally.uncertified += not answer.certified
+    tally.restarted += answer.counts.restarts > 0
+    tally.evaluations.append(answer.counts.evaluations)
+    if answer.certified and not found:
+        size = pose.size
+        off = max(pose.low - answer.distance, answer.distance - pose.high, 0.0)
+        tally.errors.append(off / size)
+        tally.gaps.append(max(answer.distance - answer.lower_bound, 0.0) / size)
+        if not off <= tolerance * size + pose.noise:
+            found.append(f"certified, but off by {off!r} of size {size!r}")
+    tally.failures += [f"{tally.name} at {tally.level:g}: {text}; {answer!r}" for text in found]
+    return answer
+
+
+def run(
+    name: str, level: float, count: int, rng: Rng, *, scale: float = 1.0, overlap: bool = False
+) -> Tally:
+    """Judge ``count`` poses of a kind at a level, bodies of size ``scale`` or so."""
+    tally = Tally(name, level)
+    kind = KINDS[name]
+    body = kind.make(rng, level)
+    for number in range(count):
+        if number % PER_BODY == 0 and number:
+            body = kind.make(rng, level)
+        other = partner(rng, body)
+        first, second = (
+            (body, other) if scale == 1.0 else (scaled(body, scale), scaled(other, scale))
+        )
+        judge(tally, draw(kind, first, second, rng, overlap=overlap))
+    return tally

@@ -1,0 +1,188 @@
+"""Degenerate geometry: extreme shapes, sizes and poses, teleports, wrong and missing twists.
+
+Every answer must be certified where a level says so, and true in any case: bounds on either side
+of the truth, no exception, no NaN, no silent 0. ``python -m benchmarks.degenerate`` runs more and
+harder levels; docs/robustness.md has its table.
+"""
+
+import numpy as np
+import pytest
+
+import standoff as so
+from families.degenerate import KINDS, scaled
+from families.degenerate_queries import Pose, Tally, judge, run
+from families.shapes import Twin
+from oracles import support as oracle
+from oracles.exact_pairs import exact_pair
+
+HOME = np.eye(4)
+LEVELS = [(name, level) for name, kind in KINDS.items() for level in kind.levels]
+OPEN = {
+    ("thin superellipsoid", 1e4): 0.15,
+    ("thin NURBS ellipsoid", 1e2): 0.1,
+    ("thin NURBS ellipsoid", 1e4): 0.2,
+}
+"""Share of answers that may be uncertified (a status says so): the limits measured."""
+POSES = 12
+MOST_EVALUATIONS = 500
+"""Second-order evaluations of a teleported frame; about 60 were seen."""
+
+
+def at(x, y=0.0, z=0.0):
+    return np.eye(3), np.array([x, y, z], dtype=float)
+
+
+@pytest.mark.parametrize(("name", "level"), LEVELS)
+def test_apart(name, level):
+    tally = run(name, level, POSES, np.random.default_rng())
+    assert not tally.failures
+    assert tally.uncertified <= OPEN.get((name, level), 0.05) * POSES + 1
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e6])
+@pytest.mark.parametrize("name", sorted(KINDS))
+def test_sizes(name, scale):
+    """No length is compared with 1: bodies of a micrometre and of 1,000 km."""
+    kind = KINDS[name]
+    tally = run(name, kind.levels[0], 6, np.random.default_rng(), scale=scale)
+    assert not tally.failures
+    assert tally.uncertified <= 1
+
+
+def test_sizes_do_not_change_the_answer():
+    """By a power of two the very same digits; the certificate too."""
+    rng = np.random.default_rng()
+    a, b = so.shapes.cylinder(1.0, 0.3), so.shapes.ellipsoid(0.5, 1.0, 0.2)
+    pair = exact_pair(oracle.Cylinder(1.0, 0.3), oracle.Ellipsoid(0.5, 1.0, 0.2), 0.1, rng)
+    plain = so.distance(a, b, pair.pose_a, pair.pose_b)
+    for power in (-20, 20):
+        k = 2.0**power
+        grown = [body.transformed(k * np.eye(3)) for body in (a, b)]
+        poses = [(r, k * p) for r, p in (pair.pose_a, pair.pose_b)]
+        answer = so.distance(*grown, *poses)
+        assert answer.distance == pytest.approx(k * plain.distance, rel=1e-13)
+        assert answer.certified
+
+
+@pytest.mark.parametrize("ratio", [1e-6, 1e-3, 1e3, 1e6])
+def test_bodies_of_unlike_size(ratio):
+    """A grain beside a planet, both ways round."""
+    rng = np.random.default_rng()
+    tally = Tally("unlike sizes", ratio)
+    small = Twin(oracle.Box(1.0, 0.7, 0.4), so.shapes.box(1.0, 0.7, 0.4))
+    large = Twin(oracle.Ellipsoid(1.0, 0.8, 0.5), so.shapes.ellipsoid(1.0, 0.8, 0.5))
+    small, large = (small, scaled(large, ratio)) if ratio > 1 else (scaled(small, ratio), large)
+    for _ in range(10):
+        for a, b in ((small, large), (large, small)):
+            gap = float(np.exp(rng.uniform(np.log(1e-3), 0.0))) * small.body.size
+            pair = exact_pair(a.shape, b.shape, gap, rng)
+            judge(tally, Pose(a, b, pair.a, pair.b, pair.distance, pair.distance))
+    assert not tally.failures
+    assert not tally.uncertified
+
+
+@pytest.mark.parametrize("far", [1e3, 1e6, 1e9])
+def test_far_from_the_origin(far):
+    """Only the poses' own rounding is lost: eps times the coordinates."""
+    rng = np.random.default_rng()
+    tally = Tally("far away", far)
+    shape = oracle.Ellipsoid(1.0, 0.6, 0.8)
+    twin = Twin(shape, so.shapes.ellipsoid(1.0, 0.6, 0.8))
+    for _ in range(10):
+        pair = exact_pair(shape, shape, 0.1, rng, position_a=far * rng.normal(size=3))
+        judge(tally, Pose(twin, twin, pair.a, pair.b, pair.distance, pair.distance))
+    assert not tally.failures
+    assert not tally.uncertified
+
+
+def crossing(rng, count):
+    """Poses of a lens and a box, each anywhere: frame to frame they jump by many sizes."""
+    a, b = oracle.Lens(1.0, 0.45), oracle.Box(1.0, 0.6, 0.3)
+    twins = Twin(a, so.shapes.lens(1.0, 0.45)), Twin(b, so.shapes.box(1.0, 0.6, 0.3))
+    poses = []
+    for _ in range(count):
+        gap = float(np.exp(rng.uniform(np.log(1e-6), np.log(10.0))))
+        pair = exact_pair(
+            a, b, gap, rng, position_a=rng.normal(size=3) * 10.0 ** rng.uniform(-1, 3)
+        )
+        poses.append(Pose(*twins, pair.a, pair.b, pair.distance, pair.distance))
+    return twins, poses
+
+
+def assert_true(answer, pose):
+    assert answer.certified
+    assert answer.distance == pytest.approx(pose.low, abs=1e-9 * pose.size + pose.noise)
+    assert answer.lower_bound <= pose.high + pose.noise
+
+
+@pytest.mark.parametrize("predictor", ["feedforward-2", "feedforward", "secant", "none"])
+def test_teleports(predictor):
+    (a, b), poses = crossing(np.random.default_rng(), 25)
+    tracker = so.Tracker(a.body, b.body, predictor=predictor)
+    state = tracker.start(*poses[0].poses)
+    for pose in poses[1:]:
+        state, answer = tracker.step(state, *pose.poses)
+        assert_true(answer, pose)
+        assert answer.counts.restarts <= 2
+        assert answer.counts.evaluations <= MOST_EVALUATIONS
+
+
+FACTORS = (-1.0, 0.0, 1e-6, 1.2, 1e3, 1e6, 1e12, 1e100)
+
+
+def moving_pair(t):
+    """An ellipsoid passes a lens closely; poses and true twists."""
+    angle = 1.3 * t
+    c, s = np.cos(angle), np.sin(angle)
+    rotation = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    place = np.array([1.9, 0.4 * np.sin(t), 0.3 * t])
+    twist = (np.array([0.0, 0.4 * np.cos(t), 0.3]), np.array([0.0, 0.0, 1.3]))
+    return (rotation, place), twist
+
+
+@pytest.mark.parametrize("factor", FACTORS)
+@pytest.mark.parametrize("predictor", ["feedforward-2", "feedforward"])
+def test_wrong_twists(factor, predictor):
+    """Twists are only a prediction: whatever they say, the answer is corrected and certified."""
+    a, b = so.shapes.lens(1.0, 0.45), so.shapes.ellipsoid(0.6, 0.4, 0.5)
+    tracker = so.Tracker(a, b, dt=1e-2, predictor=predictor)
+    pose, twist = moving_pair(0.0)
+    state = tracker.start(HOME, pose, (np.zeros(3), np.zeros(3)), twist)
+    for frame in range(1, 40):
+        pose, (v, omega) = moving_pair(frame * 1e-2)
+        wrong = (factor * v, factor * omega)
+        state, answer = tracker.step(state, HOME, pose, (np.zeros(3), np.zeros(3)), wrong)
+        cold = so.distance(a, b, HOME, pose)
+        assert answer.certified
+        assert answer.distance == pytest.approx(cold.distance, abs=1e-10)
+        np.testing.assert_allclose(answer.point_a, cold.point_a, atol=1e-6)
+        assert np.isfinite([answer.rate, *answer.velocity_a]).all()
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_twists_that_are_no_numbers_are_refused(bad):
+    a, b = so.shapes.lens(1.0, 0.45), so.shapes.ellipsoid(0.6, 0.4, 0.5)
+    tracker = so.Tracker(a, b, dt=1e-2)
+    state = tracker.start(HOME, at(3.0))
+    with pytest.raises(ValueError, match=r"(?i)(nan|inf)"):
+        tracker.step(state, HOME, at(3.0), None, (np.full(3, bad), np.zeros(3)))
+    assert tracker.step(state, HOME, at(3.0))[1].certified
+
+
+def test_missing_twists():
+    """Given now and then, for one body only, or never."""
+    rng = np.random.default_rng()
+    a, b = so.shapes.lens(1.0, 0.45), so.shapes.ellipsoid(0.6, 0.4, 0.5)
+    tracker = so.Tracker(a, b, dt=1e-2)
+    state = tracker.start(HOME, moving_pair(0.0)[0])
+    rest = (np.zeros(3), np.zeros(3))
+    for frame in range(1, 80):
+        pose, twist = moving_pair(frame * 1e-2)
+        given = (rest if rng.random() < 0.5 else None, twist if rng.random() < 0.5 else None)
+        state, answer = tracker.step(state, HOME, pose, *given)
+        cold = so.distance(a, b, HOME, pose)
+        assert answer.certified
+        assert answer.distance == pytest.approx(cold.distance, abs=1e-10)
+        known = given[0] is not None or given[1] is not None
+        assert np.isfinite(answer.distance)
+        assert known or np.isnan(answer.rate)
