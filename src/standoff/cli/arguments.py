@@ -144,7 +144,37 @@ class PaperCommand:
     """Most processes at once; 2 if not given."""
 
 
-Command = TrackCommand | DistanceCommand | CheckCommand | AutomatonCommand | PaperCommand
+@dataclass(frozen=True)
+class SoakCommand:
+    """Track random pairs, check every answer by support functions, and stop at the first failure.
+
+    Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 a check failed.
+    """
+
+    pairs: Annotated[int, arg(metavar="N", help_behavior_hint="")] = 1000
+    """Pairs in all; 1000 if not given."""
+    seed: Annotated[int, arg(metavar="S", help_behavior_hint="")] = 0
+    """Seed of the pairs, 0 or more; 0 if not given."""
+    frames: Annotated[int, arg(metavar="M", help_behavior_hint="")] = 2000
+    """Frames of each pair; 2000 if not given."""
+    jobs: Annotated[int | None, arg(metavar="J", help_behavior_hint="")] = None
+    """Processes; 2 if not given. With 1 in this process, where a pair that hangs is not noticed."""
+    output: Annotated[Path, arg(aliases=["-o"], metavar="DIR", help_behavior_hint="")] = Path(
+        "standoff-soak"
+    )
+    """Folder of the ledger soak.json and of a failure's file; made if it does not exist. If not
+    given, standoff-soak."""
+    resume: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Go on with the soak in DIR, of the same seed and frames."""
+    replay: Annotated[Path | None, arg(metavar="FILE", help_behavior_hint="")] = None
+    """Only run the pair of a failure's file again."""
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Print the ledger as JSON."""
+
+
+Command = (
+    TrackCommand | DistanceCommand | CheckCommand | AutomatonCommand | PaperCommand | SoakCommand
+)
 
 DESCRIPTION = """Exact, certified minimum distance of curved convex bodies in motion.
 
@@ -164,7 +194,8 @@ def parse(arguments: Sequence[str]) -> Command:
         | Annotated[DistanceCommand, subcommand("distance")]
         | Annotated[CheckCommand, subcommand("check")]
         | Annotated[AutomatonCommand, subcommand("automaton")]
-        | Annotated[PaperCommand, subcommand("paper")],
+        | Annotated[PaperCommand, subcommand("paper")]
+        | Annotated[SoakCommand, subcommand("soak")],
         prog="standoff",
         description=DESCRIPTION,
         args=arguments,

@@ -8,12 +8,14 @@ from standoff.cli.arguments import (
     Command,
     DistanceCommand,
     PaperCommand,
+    SoakCommand,
     TrackCommand,
 )
 from standoff.cli.automaton import run_automaton
 from standoff.cli.check import run_check
 from standoff.cli.distance import run_distance
 from standoff.cli.paper import run_paper
+from standoff.cli.soak import run_soak
 from standoff.cli.track import run_track
 
 
@@ -38,3 +40,5 @@ def run(command: Command) -> int:
             return run_automaton(command)
         case PaperCommand():
             return run_paper(command)
+        case SoakCommand():
+            return run_soak(command)

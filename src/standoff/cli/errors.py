@@ -13,6 +13,7 @@ class ExitCode(IntEnum):
     BAD_INPUT = 2
     NOT_CERTIFIED = 3
     FIGURE_FAILED = 3  # the same for `paper`: finished, but not all is as it should be
+    CHECK_FAILED = 3  # the same for `soak`: an answer failed a check
     INTERRUPTED = 130  # 128 + SIGINT, the shells' convention
 
 

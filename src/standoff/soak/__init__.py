@@ -1,0 +1,1 @@
+"""Long random runs that check every answer by support functions: ``standoff soak``."""

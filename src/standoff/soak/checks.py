@@ -1,0 +1,244 @@
+"""What is checked of every answer, by support functions alone; no per-frame Python.
+
+With n the reported normal, s(n) = h_A(n) + h_B(-n) in world axes (h_B from B's place), -s(n) is
+how far a plane square to n keeps the bodies apart: never more than the true signed distance. Two
+points of the bodies at that distance prove it; in penetration a push of s(n) along n parts them.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels import frame as K
+from standoff.kernels import layout as L
+from standoff.kernels.tolerances import BLUR
+from standoff.soak.directions import least_depths
+from standoff.soak.motions import Frames
+from standoff.soak.placing import heights, outside
+from standoff.soak.shapes import Made
+from standoff.soak.supports import TINY, HalfSpace, dots, lengths
+from standoff.tracking.status import Status
+
+Array = NDArray[np.float64]
+
+ROUNDOFF = 1e-13
+"""Part of the pair's size and place by which roundoff may shift a length: some hundred of its
+roundings, as poses, chains of charts and the judge's own formulas each take a few."""
+
+UNIT = 1e-12
+"""By which a normal's length may miss 1 (dimensionless)."""
+
+ON_BODY = 1e-11
+"""Part of the size by which a witness point may lie outside its body: the overlap of trimming
+curves (1e-12 of their parameters) and the roundoff of charts."""
+
+SAME_LINE = 1e-7
+"""Part of the size by which the witness points of a penetration may lie off the normal: depth is
+flat in n, so that it is good to the square of this."""
+
+PROVEN = 1e-3
+"""GLOBAL says that no depth is less than (1 - PROVEN) of the one that is reported."""
+
+APART = frozenset({Status.CONVERGED.value})
+LOCAL, GLOBAL = getattr(K, "LOCAL", 4), getattr(K, "GLOBAL", 5)
+DEEP = frozenset({LOCAL, GLOBAL})
+
+BLURRED = frozenset(
+    {"superellipsoid", "creased superellipsoid", "egg", "spindle", "gore"}
+    | {"sewn ellipsoid", "formula power ball", "formula dome"}
+)
+"""Kinds whose normals have roundoff beside collapsed sides: it may take BLUR of the size."""
+
+
+class Fault(NamedTuple):
+    """A check that failed: at which frame, by how much, and what is allowed."""
+
+    frame: int
+    what: str
+    value: float
+    allowed: float
+
+
+class Judged(NamedTuple):
+    """The answers of a pair's frames beside what the judge found.
+
+    Attributes
+    ----------
+    separation : (n,) array
+        -s(n), length.
+    size : (n,) array
+        Lengths that roundoff is a part of.
+    faults : list of Fault
+        In order of frames.
+    """
+
+    separation: Array
+    size: Array
+    faults: list[Fault]
+
+
+def judge(a: Made, b: Made, frames: Frames, rows: Array, tolerance: float) -> Judged:
+    """Check every answer.
+
+    Parameters
+    ----------
+    a, b : Made
+    frames : Frames
+    rows : ndarray, shape (n, N_OUT)
+        As ``standoff.kernels.frame`` lays them out.
+    tolerance : float
+        The tracker's.
+
+    Returns
+    -------
+    Judged
+    """
+    told = rows[:, K.NORMAL : K.NORMAL + 3]
+    n = _own_normals(a, b, frames, told)
+    height_a, _ = heights(a, frames.poses_a, n)
+    height_b, _ = heights(b, frames.poses_b, -n)
+    separation = -(height_a + height_b)
+    size = _sizes(a, b, frames, rows)
+    checks = _Checks(a, b, frames, rows, separation, size)
+    checks.numbers(told)
+    checks.expect("the normal is not the half-space's", lengths(told - n), UNIT)
+    checks.bounds()
+    checks.points(n, height_a, height_b)
+    checks.certified(tolerance)
+    return Judged(separation, size, sorted(checks.faults, key=lambda fault: fault.frame))
+
+
+def _own_normals(a: Made, b: Made, frames: Frames, n: Array) -> Array:
+    """A half-space's own normal, where there is one: its support is finite along that alone."""
+    for made, poses, sign in ((a, frames.poses_a, 1.0), (b, frames.poses_b, -1.0)):
+        if isinstance(made.support, HalfSpace):
+            return sign * poses[:, [2, 5, 8]]
+    return n
+
+
+def _sizes(a: Made, b: Made, frames: Frames, rows: Array) -> Array:
+    sizes = sum(made.body.size for made in (a, b) if made.body.bounded)
+    away = lengths(frames.poses_a[:, 9:]) + lengths(frames.poses_b[:, 9:])
+    return np.asarray(sizes + away + np.abs(np.nan_to_num(rows[:, K.DISTANCE])))
+
+
+class _Checks:
+    """The checks of one run under way."""
+
+    def __init__(
+        self, a: Made, b: Made, frames: Frames, rows: Array, separation: Array, size: Array
+    ) -> None:
+        self.a, self.b, self.frames, self.rows = a, b, frames, rows
+        self.separation, self.size = separation, size
+        self.distance, self.bound = rows[:, K.DISTANCE], rows[:, K.LOWER_BOUND]
+        self.status = rows[:, K.STATUS].astype(int)
+        self.noise = ROUNDOFF * size
+        self.slack = a.body.reals[L.SLACK] + b.body.reals[L.SLACK]
+        self.faults: list[Fault] = []
+
+    def among(self, statuses: frozenset[int]) -> NDArray[np.bool_]:
+        return np.isin(self.status, list(statuses))
+
+    def expect(
+        self,
+        what: str,
+        value: Array,
+        allowed: Array | float,
+        where: NDArray[np.bool_] | bool = True,
+    ) -> None:
+        """Note the first frame where a value is above what is allowed, or no number."""
+        wrong = ~(value <= allowed) & where & (self.status != Status.OVERLAPPING.value)
+        if wrong.any():
+            k = int(wrong.argmax())
+            limit = float(np.broadcast_to(allowed, value.shape)[k])
+            self.faults.append(Fault(k, what, float(value[k]), limit))
+
+    def numbers(self, n: Array) -> None:
+        """No nan, no infinite number; a unit normal."""
+        told = self.rows[:, : K.NORMAL + 3]
+        self.expect("a number that is not finite", (~np.isfinite(told)).sum(axis=1), 0.0)
+        self.expect("the normal is no unit vector", np.abs(lengths(n) - 1.0), UNIT)
+        known = np.isin(self.status, [s.value for s in Status])
+        self.expect("an unknown status", np.where(known, 0.0, self.status), 0.0)
+        silent = (self.distance == 0.0) & (np.abs(self.separation) > self.noise)
+        self.expect("a silent zero", np.where(silent, np.abs(self.separation), 0.0), self.noise)
+
+    def bounds(self) -> None:
+        """lower_bound <= -s(n) <= true distance <= distance while apart; upper_bound above all."""
+        self.expect(
+            "the lower bound is above what the normal separates",
+            self.bound - self.separation,
+            self.noise,
+        )
+        apart = self.distance >= 0.0
+        self.expect(
+            "the normal separates by more than the distance",
+            self.separation - self.distance,
+            self.noise,
+            apart,
+        )
+        if hasattr(K, "UPPER_BOUND"):
+            upper = self.rows[:, K.UPPER_BOUND]
+            self.expect("the upper bound is too low", self.separation - upper, self.noise)
+
+    def points(self, n: Array, height_a: Array, height_b: Array) -> None:
+        """Witness points lie on their bodies, as far apart as the distance says."""
+        x_a = self.rows[:, K.POINT_A : K.POINT_A + 3]
+        x_b = self.rows[:, K.POINT_B : K.POINT_B + 3]
+        allowed = ON_BODY * self.size + self.slack
+        self.expect("point_a is off A", outside(self.a, self.frames.poses_a, x_a, n), allowed)
+        self.expect("point_b is off B", outside(self.b, self.frames.poses_b, x_b, -n), allowed)
+        between = x_b - x_a
+        apart, deep = self.among(APART), self.among(DEEP)
+        # the swept balls' points lie along n, which is not quite the cores' direction
+        radii = self.a.body.radius + self.b.body.radius
+        turned = radii * np.abs(self.distance - self.separation) / np.maximum(self.distance, TINY)
+        off = np.abs(lengths(between) - np.abs(self.distance))
+        self.expect("the points are not at the distance", off, allowed + turned, apart)
+        self.expect("the points are not at the depth", off, allowed, deep)
+        aside = lengths(between - self.distance[:, None] * n)
+        self.expect("the points are not on the normal", aside, SAME_LINE * self.size, deep)
+        reach_a = np.abs(dots(n, x_a) - height_a)
+        self.expect("point_a is not the farthest along the normal", reach_a, allowed, deep)
+        reach_b = np.abs(dots(n, x_b) + height_b)
+        self.expect("point_b is not the farthest along the normal", reach_b, allowed, deep)
+
+    def certified(self, tolerance: float) -> None:
+        """Apart: the normal separates by the distance. In penetration: the depth parts them."""
+        apart, deep = self.among(APART), self.among(DEEP)
+        blur = BLUR if {self.a.shape.kind, self.b.shape.kind} & BLURRED else 0.0
+        allowed = (tolerance + blur) * self.size + self.slack + self.noise
+        short = self.distance - self.separation
+        self.expect("certified, but the normal separates by less", short, allowed, apart)
+        self.expect("certified apart at no distance", -self.distance, 0.0, apart)
+        self.expect("the depth does not part the bodies", short, allowed, deep)
+        self.expect("the depth is not that along the normal", -short, allowed, deep)
+        self.expect("a depth where there is none", self.distance, self.noise, deep)
+
+
+def search(
+    a: Made, b: Made, frames: Frames, rows: Array, judged: Judged, numbers: NDArray[np.int64]
+) -> list[Fault]:
+    """Look for lesser depths than GLOBAL ones, at some frames, along many directions.
+
+    Also for planes that part bodies that are said to overlap, and for an upper bound that is
+    below what a direction separates.
+    """
+    if not len(numbers):
+        return []
+    found = least_depths(a, b, frames, numbers)
+    faults = []
+    for k, least in zip(numbers.tolist(), found.tolist(), strict=True):
+        depth, noise = -rows[k, K.DISTANCE], ROUNDOFF * judged.size[k]
+        if least < -noise:
+            faults.append(Fault(k, "said to overlap, but a plane parts them", -least, noise))
+        limit = PROVEN * depth + noise
+        if rows[k, K.STATUS] == GLOBAL and depth - least > limit:
+            faults.append(Fault(k, "GLOBAL, but a lesser depth exists", depth - least, limit))
+        if hasattr(K, "UPPER_BOUND") and -least > rows[k, K.UPPER_BOUND] + noise:
+            over = -least - rows[k, K.UPPER_BOUND]
+            faults.append(Fault(k, "a direction separates beyond the upper bound", over, noise))
+    return faults

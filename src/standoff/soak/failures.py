@@ -1,0 +1,183 @@
+"""Files that reproduce a failure, and what becomes of it now."""
+
+from __future__ import annotations
+
+import json
+import math
+import traceback
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels import events as N
+from standoff.kernels import frame as K
+from standoff.kernels import tracker as kernels
+from standoff.soak.cases import Case
+from standoff.soak.checks import Fault, judge
+from standoff.soak.motions import Frames
+from standoff.soak.running import Failure, run_case, start
+from standoff.soak.shapes import Made, made
+from standoff.tracking.tracker import Tracker
+from standoff.version import __version__
+
+Array = NDArray[np.float64]
+Facts = dict[str, Any]
+
+KIND = "standoff soak failure"
+
+
+class Replayed(NamedTuple):
+    """What a failure's file shows now.
+
+    Attributes
+    ----------
+    failure : Failure or None
+        Of the whole pair, run again from its first frame.
+    step : Fault or None
+        Of the one step, from the state that the file holds.
+    """
+
+    failure: Failure | None
+    step: Fault | None
+
+
+def failure_facts(failure: Failure) -> Facts:
+    """Return a failure as plain data: the case, and the step with the state before it."""
+    case, fault = failure.case, failure.fault
+    facts = {
+        "kind": KIND,
+        "standoff": __version__,
+        "what": fault.what,
+        "value": _number(fault.value),
+        "allowed": _number(fault.allowed),
+        "frame": fault.frame,
+        "cold": failure.cold,
+        "case": case.facts(),
+    }
+    try:
+        facts["step"] = _step_facts(case, fault.frame)
+    except Exception:
+        facts["step_unknown"] = traceback.format_exc()
+    return facts
+
+
+def exception_facts(seed: int, number: int, frames: int, text: str) -> Facts:
+    """Return an exception, a death or a hang of a pair as plain data: it has no answers."""
+    return {
+        "kind": KIND,
+        "standoff": __version__,
+        "what": text,
+        "seed": seed,
+        "number": number,
+        "frames": frames,
+    }
+
+
+def _number(value: float) -> float | str:
+    return float(value) if math.isfinite(value) else str(float(value))
+
+
+def _numbers(array: Array) -> list[float | str]:
+    return [_number(x) for x in array.tolist()]
+
+
+def _step_facts(case: Case, k: int) -> Facts:
+    """The poses, twists and step of frame k, the tracker's state before it, and its answer."""
+    _, _, frames, tracker = _ready(case)
+    state, row = np.zeros(K.N_STATE), np.empty(K.N_OUT)
+    start(tracker, frames, 0, case.motion.twists, state, row)
+    before = state.copy()
+    for number in range(1, k + 1):
+        before = state.copy()
+        _step(tracker, frames.part(np.array([number])), case.motion.twists, state, row)
+    return {
+        name: _numbers(array[k]) for name, array in zip(frames._fields[:4], frames[:4], strict=True)
+    } | {
+        "step": float(frames.steps[k]),
+        "state": _numbers(before) if k else None,
+        "answer": _numbers(row),
+    }
+
+
+def _ready(case: Case) -> tuple[Made, Made, Frames, Tracker]:
+    a, b = made(case.a), made(case.b)
+    tracker = Tracker(a.body, b.body, case.motion.step, **case.options)
+    return a, b, case.motion.frames(case.frames), tracker
+
+
+def _step(tracker: Tracker, one: Frames, has_twist: bool, state: Array, row: Array) -> None:
+    kernels.step(
+        tracker.packed,
+        one.poses_a[0],
+        one.poses_b[0],
+        one.twists_a[0],
+        one.twists_b[0],
+        has_twist,
+        float(one.steps[0]),
+        tracker.options,
+        state,
+        row,
+        np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS),
+    )
+
+
+def read_failure(file: Path) -> Facts:
+    """Return what a failure's file holds.
+
+    Raises
+    ------
+    OSError
+        It cannot be read.
+    ValueError
+        It is no such file.
+    """
+    facts = json.loads(file.read_text(encoding="utf-8"))
+    if not isinstance(facts, dict) or facts.get("kind") != KIND:
+        raise ValueError(f"{file} is no failure of a soak: its 'kind' is not '{KIND}'.")
+    return facts
+
+
+def replay(facts: Facts) -> Replayed:
+    """Run a failure's case again, and its step by itself.
+
+    Raises
+    ------
+    ValueError
+        The file's parts do not fit this version.
+    """
+    if "case" not in facts:
+        from standoff.soak.cases import draw_case
+
+        return Replayed(
+            run_case(*draw_case(facts["seed"], facts["number"], facts["frames"]))[1], None
+        )
+    try:
+        case = Case.of(facts["case"])
+    except (KeyError, TypeError) as error:
+        raise ValueError(f"The file's case is not one of this version: {error!r}") from error
+    a, b, frames, tracker = _ready(case)
+    _, failure = run_case(case, a, b, frames)
+    return Replayed(failure, _stepped(facts, case, a, b, tracker))
+
+
+def _stepped(facts: Facts, case: Case, a: Made, b: Made, tracker: Tracker) -> Fault | None:
+    step = facts.get("step")
+    if step is None or step["state"] is None or len(step["state"]) != K.N_STATE:
+        return None
+    one = Frames(
+        _array(step["poses_a"])[None],
+        _array(step["poses_b"])[None],
+        _array(step["twists_a"])[None],
+        _array(step["twists_b"])[None],
+        np.array([step["step"]]),
+    )
+    row = np.empty((1, K.N_OUT))
+    _step(tracker, one, case.motion.twists, _array(step["state"]), row[0])
+    faults = judge(a, b, one, row, float(tracker.options[K.O_TOLERANCE])).faults
+    return faults[0]._replace(frame=facts["frame"]) if faults else None
+
+
+def _array(numbers: list[float | str]) -> Array:
+    return np.array([float(x) for x in numbers])

@@ -1,0 +1,191 @@
+"""A soak's parts side by side, a process each; the result depends on the seed alone."""
+
+from __future__ import annotations
+
+import multiprocessing
+import signal
+import sys
+import time
+import traceback
+from collections.abc import Callable, Iterator
+from multiprocessing.connection import Connection, wait
+from typing import Any, NamedTuple
+
+from standoff.soak.cases import draw_case
+from standoff.soak.failures import Facts, exception_facts, failure_facts
+from standoff.soak.ledger import Ledger, Part
+from standoff.soak.running import run_case
+from standoff.soak.tally import Tally
+
+PATIENCE = 300.0
+"""Seconds that one pair may take and still not hang: thousands of times the usual."""
+
+LOOK = 1.0
+"""Seconds between looks for a pair that hangs."""
+
+
+class Done(NamedTuple):
+    """A part, its counts, and the failure of its first pair that failed, as plain data."""
+
+    part: Part
+    tally: Tally
+    failed: int | None = None
+    facts: Facts | None = None
+
+
+Tell = Callable[[Done], None]
+"""Is told of every part that is done."""
+
+
+def run_part(
+    seed: int, frames: int, part: Part, at: Callable[[int], None] = lambda number: None
+) -> Done:
+    """Run pairs first .. end - 1 up to the first that fails.
+
+    Parameters
+    ----------
+    seed, frames : int
+    part : (first, end)
+    at : callable
+        Told the number of every pair that is begun.
+    """
+    tally = Tally()
+    for number in range(*part):
+        at(number)
+        try:
+            case, a, b, moves = draw_case(seed, number, frames)
+            counted, failure = run_case(case, a, b, moves)
+        except Exception:
+            facts = exception_facts(seed, number, frames, traceback.format_exc())
+            return Done(part, tally, number, facts)
+        if failure is not None:
+            return Done(part, tally, number, failure_facts(failure))
+        tally.add(counted)
+    return Done(part, tally)
+
+
+def soak(ledger: Ledger, pairs: int, jobs: int, tell: Tell) -> Done | None:
+    """Run what is left of so many pairs; the ledger takes what is done.
+
+    With one job in this process, else in `jobs` others, which are watched: one that dies or hangs
+    fails its pair.
+
+    Returns
+    -------
+    Done or None
+        The part with the failure of the lowest pair.
+    """
+    parts = ledger.left(pairs)
+
+    def hear(done: Done) -> None:
+        if done.facts is None:
+            ledger.add(done.part, done.tally)
+        tell(done)
+
+    if jobs > 1:
+        return _side_by_side(ledger, parts, jobs, hear)
+    for part in parts:
+        done = run_part(ledger.seed, ledger.frames, part)
+        hear(done)
+        if done.facts is not None:
+            return done
+    return None
+
+
+class _Worker:
+    """A process that runs one part after another, the pipe to it, and the pair it is at."""
+
+    def __init__(self, seed: int, frames: int) -> None:
+        # spawn: a fork would copy the threads' locks of Numba and of the progress bar.
+        context = multiprocessing.get_context("spawn")
+        self.seed, self.frames = seed, frames
+        self.pipe, other = context.Pipe()
+        self.place: Any = context.Array("d", 2, lock=False)
+        arguments = (other, seed, frames, self.place)
+        self.process = context.Process(target=_work, args=arguments, daemon=True)
+        self.process.start()
+        other.close()
+        self.part: Part = (0, 0)
+
+    def give(self, part: Part) -> None:
+        """Send a part; the clock of its first pair begins."""
+        self.part = part
+        self.place[:] = [float(part[0]), time.monotonic()]
+        self.pipe.send(part)
+
+    def lost(self, why: str) -> Done:
+        """Return the failure of the pair at which the process died or hangs."""
+        number = int(self.place[0])
+        facts = exception_facts(self.seed, number, self.frames, why)
+        return Done(self.part, Tally(), number, facts)
+
+    def hangs(self) -> bool:
+        return time.monotonic() - float(self.place[1]) > PATIENCE
+
+    def end(self) -> None:
+        self.process.kill()
+        self.process.join()
+        self.pipe.close()
+
+
+def _side_by_side(ledger: Ledger, parts: list[Part], jobs: int, hear: Tell) -> Done | None:
+    """Hand out the parts in order; after a failure only what lies before it is waited for."""
+    waiting = list(parts)
+    workers: list[_Worker] = []
+    first: Done | None = None
+    try:
+        while waiting or workers:
+            while waiting and len(workers) < jobs:
+                workers.append(_Worker(ledger.seed, ledger.frames))
+                workers[-1].give(waiting.pop(0))
+            for worker, done in _heard(workers):
+                hear(done)
+                if done.facts is not None and (first is None or done.part < first.part):
+                    first, waiting = done, []
+                if waiting and worker.process.is_alive():
+                    worker.give(waiting.pop(0))
+                else:
+                    workers.remove(worker)
+                    worker.end()
+            if first is not None:
+                for worker in [w for w in workers if w.part > first.part]:
+                    workers.remove(worker)
+                    worker.end()
+    finally:
+        for worker in workers:
+            worker.end()
+    return first
+
+
+def _heard(workers: list[_Worker]) -> Iterator[tuple[_Worker, Done]]:
+    """Wait a moment for words of the workers, and look for those that hang."""
+    ready = wait([worker.pipe for worker in workers], timeout=LOOK)
+    for worker in list(workers):
+        if worker.pipe in ready:
+            try:
+                yield worker, worker.pipe.recv()
+            except (EOFError, OSError):
+                worker.process.join()
+                code = worker.process.exitcode
+                yield worker, worker.lost(f"the process died (exit code {code})")
+        elif worker.hangs():
+            worker.process.kill()
+            worker.process.join()
+            yield worker, worker.lost(f"no answer in {PATIENCE:g} s: the pair hangs")
+
+
+def _work(pipe: Connection, seed: int, frames: int, place: Any) -> None:
+    """Run parts until the pipe closes."""
+    # The parent ends its workers on Ctrl-C; a traceback of each would only hide its message.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+
+    def at(number: int) -> None:
+        place[:] = [float(number), time.monotonic()]
+
+    while True:
+        try:
+            part = pipe.recv()
+        except (EOFError, OSError):
+            return
+        pipe.send(run_part(seed, frames, part, at))

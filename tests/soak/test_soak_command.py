@@ -1,0 +1,165 @@
+"""``standoff soak``: a planted fault is found and replayed, a stopped run goes on, and the counts
+depend on the seed alone."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from standoff.cli import main
+from standoff.soak import processes, supports
+from standoff.soak.cases import Case
+from standoff.soak.checks import Fault
+from standoff.soak.failures import failure_facts, replay
+from standoff.soak.running import Failure
+
+SEED = 5
+COMMON = ["--seed", SEED, "--frames", 30]
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]):
+    def soak(*arguments: object) -> tuple[int, str, str]:
+        capsys.readouterr()
+        code = main(["soak", *(str(argument) for argument in arguments)])
+        return (code, *capsys.readouterr())
+
+    return soak
+
+
+def ledger(folder: Path) -> dict:
+    return json.loads((folder / "soak.json").read_text())
+
+
+@pytest.fixture
+def planted(monkeypatch):
+    """The judge takes ellipsoids for a little larger than they are."""
+    true = supports.Ellipsoid.points
+    monkeypatch.setattr(supports.Ellipsoid, "points", lambda self, n: 1.000001 * true(self, n))
+
+
+def test_a_planted_fault_is_found_and_replayed(run, tmp_path, planted, monkeypatch):
+    code, _, err = run("--pairs", 64, *COMMON, "--jobs", 1, "-o", tmp_path)
+    assert code == 3
+    (file,) = tmp_path.glob("failure-*.json")
+    assert str(file) in err
+    facts = json.loads(file.read_text())
+    kinds = facts["case"]["a"]["kind"], facts["case"]["b"]["kind"]
+    assert any("ellipsoid" in kind for kind in kinds)
+    assert len(facts["step"]["poses_a"]) == 12
+    code, out, _ = run("--replay", file)
+    assert code == 3
+    assert f"frame {facts['frame']}: {facts['what']}" in out.splitlines()[1]
+    # a step that has a state before it is replayed by itself, too
+    later = failure_facts(Failure(Case.of(facts["case"]), Fault(7, "", 1.0, 0.0), cold=False))
+    step = replay(json.loads(json.dumps(later))).step
+    assert step is not None
+    assert step.frame == 7
+    # without the fault the pair passes, and the soak goes on from where it was
+    monkeypatch.undo()
+    code, out, _ = run("--replay", file)
+    assert code == 0
+    assert "no check of the pair fails" in out
+    code, _, _ = run("--pairs", 64, *COMMON, "--jobs", 1, "-o", tmp_path, "--resume")
+    assert code == 0
+    assert ledger(tmp_path)["sums"]["pairs"] == 64
+
+
+def test_counts_depend_on_the_seed_alone(run, tmp_path):
+    for jobs in (1, 2):
+        arguments = ["--pairs", 70, *COMMON, "--jobs", jobs, "-o", tmp_path / str(jobs)]
+        assert run(*arguments)[0] == 0
+    assert ledger(tmp_path / "1") == ledger(tmp_path / "2")
+    other = ["--pairs", 5, "--seed", SEED + 1, "--frames", 30, "--jobs", 1, "-o", tmp_path / "3"]
+    assert run(*other)[0] == 0
+    assert ledger(tmp_path / "1")["worst"] != ledger(tmp_path / "3")["worst"]
+
+
+def test_a_stopped_run_goes_on_to_the_same_counts(run, tmp_path, monkeypatch):
+    whole, stopped = tmp_path / "whole", tmp_path / "stopped"
+    assert run("--pairs", 70, *COMMON, "--jobs", 1, "-o", whole)[0] == 0
+    true = processes.run_part
+
+    def interrupted(seed, frames, part, *rest):
+        if part[0] >= 64:
+            raise KeyboardInterrupt
+        return true(seed, frames, part, *rest)
+
+    arguments = ["--pairs", 70, *COMMON, "--jobs", 1, "-o", stopped]
+    monkeypatch.setattr(processes, "run_part", interrupted)
+    code, _, err = run(*arguments)
+    assert code == 130
+    assert "interrupted at 64 pairs" in err
+    monkeypatch.undo()
+    code, _, err = run(*arguments)
+    assert code == 2
+    assert "--resume" in err
+    assert run(*arguments, "--resume")[0] == 0
+    assert ledger(stopped) == ledger(whole)
+    # done already: nothing more to do
+    assert run(*arguments, "--resume")[0] == 0
+    assert ledger(stopped) == ledger(whole)
+
+
+def test_a_pair_that_hangs_or_kills_its_process_fails(run, tmp_path, monkeypatch):
+    arguments = ["--pairs", 2, *COMMON, "--jobs", 2]
+    monkeypatch.setattr(processes, "PATIENCE", 0.0)
+    monkeypatch.setattr(processes, "LOOK", 0.01)
+    code, _, err = run(*arguments, "-o", tmp_path / "hang")
+    assert code == 3
+    assert "the pair hangs" in err
+    monkeypatch.undo()
+    true = processes._Worker.give
+
+    def killed(self, part):
+        true(self, part)
+        self.process.kill()
+
+    monkeypatch.setattr(processes._Worker, "give", killed)
+    code, _, err = run(*arguments, "-o", tmp_path / "death")
+    assert code == 3
+    assert "the process died" in err
+    monkeypatch.undo()
+    # such a failure has no answers: replaying it runs the pair
+    assert run("--replay", tmp_path / "death" / "failure-0.json")[0] == 0
+
+
+def test_an_exception_is_a_failure(run, tmp_path, monkeypatch):
+    def broken(self, x):
+        raise ZeroDivisionError("planted")
+
+    monkeypatch.setattr(supports.Box, "outside", broken)
+    code, _, err = run("--pairs", 64, *COMMON, "--jobs", 1, "-o", tmp_path)
+    assert code == 3
+    assert "ZeroDivisionError: planted" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--pairs", 0], "--pairs 0"),
+        (["--frames", 0], "--frames 0"),
+        (["--jobs", 0], "--jobs 0"),
+        (["--seed", -1], "--seed -1"),
+        (["--replay", "nowhere.json"], "nowhere.json"),
+    ],
+)
+def test_bad_numbers_are_refused(run, tmp_path, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    code, _, err = run(*arguments)
+    assert code == 2
+    assert said in err
+
+
+def test_foreign_files_are_refused(run, tmp_path):
+    file = tmp_path / "other.json"
+    file.write_text("{}")
+    assert "no failure of a soak" in run("--replay", file)[2]
+    (tmp_path / "soak.json").write_text("{}")
+    arguments = ["--pairs", 1, *COMMON, "-o", tmp_path, "--resume"]
+    code, _, err = run(*arguments)
+    assert code == 2
+    assert "no ledger of a soak" in err
+    facts = {"standoff": "0.0", "seed": SEED, "frames": 30, "done": [], "sums": {}, "worst": {}}
+    (tmp_path / "soak.json").write_text(json.dumps(facts | {"examples": []}))
+    assert "standoff 0.0" in run(*arguments)[2]
