@@ -37,6 +37,7 @@ from standoff.tracking import (
     Tracker,
     TrackerState,
     Visit,
+    WitnessSet,
     distance,
     feedback,
     max_gain,
@@ -44,6 +45,7 @@ from standoff.tracking import (
     pair_system,
     record_point,
     simulate,
+    witness_set,
 )
 from standoff.version import __version__ as __version__
 
@@ -82,6 +84,7 @@ __all__ = [
     "Visit",
     "VoronoiError",
     "VoronoiRegions",
+    "WitnessSet",
     "distance",
     "feedback",
     "max_gain",
@@ -92,4 +95,5 @@ __all__ = [
     "shapes",
     "simulate",
     "voronoi_regions",
+    "witness_set",
 ]

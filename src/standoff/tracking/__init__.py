@@ -21,6 +21,7 @@ from standoff.tracking.simulate import simulate
 from standoff.tracking.state import FrameBuffer, TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker, distance
+from standoff.tracking.witness_set import WitnessSet, witness_set
 
 __all__ = [
     "Automaton",
@@ -46,6 +47,7 @@ __all__ = [
     "TrackerState",
     "Transition",
     "Visit",
+    "WitnessSet",
     "distance",
     "feedback",
     "max_gain",
@@ -53,4 +55,5 @@ __all__ = [
     "pair_system",
     "record_point",
     "simulate",
+    "witness_set",
 ]

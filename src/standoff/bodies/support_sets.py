@@ -1,0 +1,229 @@
+"""Where a convex body touches its supporting plane: a point, a straight segment, a flat area.
+
+The extreme points of such a set that do not lie inside a curved face lie on edges and vertices,
+or, where a patch of several spans is straight or flat in some of them, on the lines between the
+spans. So vertices, edges and those lines are all that is asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from standoff.bodies.body import Body
+from standoff.geometry.curves import ConicArc, Curve, Line
+from standoff.geometry.nurbs import NurbsSurface
+from standoff.geometry.surface_curves import SurfaceCurve
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.swept import Extrusion, Revolution
+from standoff.geometry.validation import Array
+from standoff.kernels import layout as L
+from standoff.kernels.entries import on_face
+
+# Radians: a point is level with another if the line between them is tilted by no more. The normal
+# of an answer is good to it, and two faces whose normals agree to it count as parallel.
+LEVEL = 1e-9
+# A height carries this many roundings (eps) of the core's size and its offset from its origin.
+ROUNDINGS = 16.0
+# Samples of a piece of a curve: between two of them an arc of a convex body's boundary rises and
+# falls once.
+SAMPLES = 17
+# A level arc is given by so many points, evenly spread.
+ARC_POINTS = 129
+# And by more about the point nearest to the witness, at these parts of the arc, so that an overlap
+# as thin as 1e-7 there is not lost between two points.
+NEAR_WITNESS = np.logspace(-8.5, -2.0, 27)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A curve of one analytic piece: t from first to last; `jet` gives (x, x_t).
+
+    Attributes
+    ----------
+    basis : (3, 3) array, of a conic arc: x = basis @ (cos t, sin t, 1).
+    """
+
+    jet: Callable[[float], tuple[Array, Array]]
+    first: float
+    last: float
+    basis: Array | None = None
+
+    def points(self, parameters: Array) -> Array:
+        if self.basis is not None:
+            one = np.ones_like(parameters)
+            circle = np.column_stack([np.cos(parameters), np.sin(parameters), one])
+            return np.asarray(circle @ self.basis.T)
+        return np.array([self.jet(float(t))[0] for t in parameters])
+
+
+def support_set(body: Body, direction: Array, witness: Array) -> Array:
+    """Points, (n, 3), whose convex hull is where a core touches its plane along a direction.
+
+    Parameters
+    ----------
+    body : Body
+        Bounded; its swept radius plays no part.
+    direction : (3,) array
+        Unit vector, body frame, good to LEVEL.
+    witness : (3,) array
+        A point of the set, body frame: the only one that lies inside a curved face.
+
+    Notes
+    -----
+    Not found: a face trimmed through a span that is flat while its neighbours are not; a formula
+    that is flat or straight in a part of its domain only.
+    """
+    size = float(body.reals[L.SIZE])
+    offset = float(np.linalg.norm(body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]))
+    rounding = ROUNDINGS * np.finfo(float).eps * (size + offset)
+    pieces = list(_pieces(body, direction, witness, rounding + LEVEL * size))
+    peaks = [p for piece in pieces for p in _peaks(piece, direction)]
+    spots = np.vstack([witness[None], body.vertex_points, *(p[None] for p in peaks)])
+    heights = (spots - witness) @ direction
+    top = spots[int(heights.argmax())]
+    level = _level(spots, top, direction, rounding)
+    arcs = []
+    for piece in pieces:
+        if _level(piece.points(_spread(piece, SAMPLES)), top, direction, rounding).all():
+            points = piece.points(_arc_parameters(piece, witness))
+            arcs.append(points[_level(points, top, direction, rounding)])
+    return np.vstack([spots[level], *arcs])
+
+
+def _level(points: Array, top: Array, direction: Array, rounding: float) -> Array:
+    """Which points are level with the highest."""
+    away = points - top
+    return np.asarray(-(away @ direction) <= LEVEL * np.linalg.norm(away, axis=1) + rounding)
+
+
+def _spread(piece: Piece, count: int) -> Array:
+    return np.linspace(piece.first, piece.last, count)
+
+
+def _pieces(body: Body, direction: Array, witness: Array, margin: float) -> Iterator[Piece]:
+    """Curved edges, and lines between the spans of faces, that may be level with the witness."""
+    for edge in body.edge_parts:
+        if isinstance(edge.curve, Line):
+            continue  # its ends are vertices
+        for first, last in pairwise(_curve_breaks(edge.curve)):
+            basis = edge.curve.basis() if isinstance(edge.curve, ConicArc) else None
+            yield Piece(_curve_jet(edge.curve), float(first), float(last), basis)
+    for face, part in enumerate(body.face_parts):
+        for surface in part.charts:
+            if len(part.charts) > 1 or not any(map(len, _surface_breaks(surface))):
+                continue
+            if isinstance(surface, NurbsSurface):
+                rises = (surface.control_points.reshape(-1, 3) - witness) @ direction
+                if rises.max() < -margin:
+                    continue
+            chart = int(body.ints[int(body.ints[L.FACES]) + L.FACE_STRIDE * face])
+            for line in _inner_lines(surface):
+                yield from _on_face(body, chart, line)
+
+
+def _curve_jet(curve: Curve) -> Callable[[float], tuple[Array, Array]]:
+    def jet(t: float) -> tuple[Array, Array]:
+        x, tangent, _ = curve.jet(t)
+        return x, tangent
+
+    return jet
+
+
+def _curve_breaks(curve: Curve) -> Array:
+    """Ends of the pieces on which a curve is analytic."""
+    if not isinstance(curve, SurfaceCurve):
+        return curve.spans()
+    spots = [curve.first, curve.last]
+    for axis, knots in enumerate(_surface_breaks(curve.surface)):
+        ends = [curve.pcurve.point(t)[axis] for t in (curve.first, curve.last)]
+        rate = (ends[1] - ends[0]) / (curve.last - curve.first)
+        if curve.pcurve.kind == L.LINE and rate != 0.0:
+            crossings = curve.first + (np.asarray(knots) - ends[0]) / rate
+            spots += [float(t) for t in crossings if curve.first < t < curve.last]
+    return np.unique(spots)
+
+
+def _surface_breaks(surface: Surface) -> tuple[Array, Array]:
+    """(us, vs) inside the domain between which a surface is analytic."""
+    u0, u1, v0, v1 = surface.domain
+    us, vs = np.zeros(0), np.zeros(0)
+    if isinstance(surface, NurbsSurface):
+        us, vs = surface.vector_u.breaks, surface.vector_v.breaks
+    elif isinstance(surface, Revolution):
+        vs = surface.profile.spans()
+    elif isinstance(surface, Extrusion):
+        us = surface.profile.spans()
+    return us[(u0 < us) & (us < u1)], vs[(v0 < vs) & (vs < v1)]
+
+
+@dataclass(frozen=True)
+class _Isoline:
+    """u = level (v its parameter) or v = level, from first to last."""
+
+    surface: Surface
+    axis: int
+    level: float
+    first: float
+    last: float
+
+    def parameters(self, t: float) -> tuple[float, float]:
+        return (self.level, t) if self.axis == 0 else (t, self.level)
+
+    def jet(self, t: float) -> tuple[Array, Array]:
+        x, xu, xv, *_ = self.surface.jet(*self.parameters(t))
+        return x, xv if self.axis == 0 else xu
+
+
+def _inner_lines(surface: Surface) -> Iterator[_Isoline]:
+    breaks, domain = _surface_breaks(surface), surface.domain
+    for axis in (0, 1):
+        along = 1 - axis
+        ends = np.array([domain[2 * along], *breaks[along], domain[2 * along + 1]])
+        for level in breaks[axis]:
+            for first, last in pairwise(ends):
+                yield _Isoline(surface, axis, float(level), float(first), float(last))
+
+
+def _on_face(body: Body, chart: int, line: _Isoline) -> Iterator[Piece]:
+    """A line between spans, if the trimmed face has it from end to end."""
+    inner = np.linspace(line.first, line.last, SAMPLES)[1:-1]
+    if all(on_face(body.ints, body.reals, chart, *line.parameters(float(t))) for t in inner):
+        yield Piece(line.jet, line.first, line.last)
+
+
+def _peaks(piece: Piece, direction: Array) -> Iterator[Array]:
+    """The highest points of a piece, ends included."""
+
+    def slope(t: float) -> float:
+        return float(piece.jet(t)[1] @ direction)
+
+    spots = _spread(piece, SAMPLES)
+    slopes = [slope(float(t)) for t in spots]
+    yield from piece.points(spots[[0, -1]])
+    for k, (a, b) in enumerate(pairwise(slopes)):
+        if a > 0.0 >= b:
+            t = brentq(slope, spots[k], spots[k + 1], xtol=1e-15, rtol=1e-15)
+            yield piece.jet(float(t))[0]
+
+
+def _arc_parameters(piece: Piece, witness: Array) -> Array:
+    """Evenly spread, and closely about the point nearest to the witness."""
+
+    def away(t: float) -> float:
+        return float(np.sum((piece.jet(t)[0] - witness) ** 2))
+
+    even = _spread(piece, ARC_POINTS)
+    k = int(((piece.points(even) - witness) ** 2).sum(axis=1).argmin())
+    low, high = even[max(k - 1, 0)], even[min(k + 1, ARC_POINTS - 1)]
+    found = minimize_scalar(away, bounds=(low, high), method="bounded", options={"xatol": 1e-12})
+    near = float(found.x) if found.fun < away(float(even[k])) else float(even[k])
+    steps = (piece.last - piece.first) * np.concatenate([-NEAR_WITNESS, [0.0], NEAR_WITNESS])
+    return np.unique(np.clip(np.concatenate([even, near + steps]), piece.first, piece.last))
+
+
+__all__ = ["LEVEL", "ROUNDINGS", "support_set"]
