@@ -9,14 +9,31 @@ from standoff.geometry.hulls import TIGHT, tight_box
 
 # Of the diagonal: a box may be too large by TIGHT of that of the control points; samples miss some.
 SEEN = 2e-3
+# Samples that may be nearest to an outermost point, in each span and to each side, and how many
+# times finer the grid round them is.
+NEAREST = 4
+FINER = 10
 
 
 def cloud(surface, count=41):
-    """Points of every span on a grid with its boundary."""
+    """Points of every span on a grid with its boundary, and on finer grids round the outermost."""
     t = np.linspace(0.0, 1.0, count)
-    values = [bernstein.grid_values(span.points, t, t).reshape(4, -1) for span in surface.spans()]
-    h = np.concatenate(values, axis=1)
-    return (h[:3] / h[3]).T
+    step, fine = t[1], np.linspace(-1.0, 1.0, 2 * FINER + 1)
+    found = []
+    for span in surface.spans():
+        x = grid_points(span.points, t, t)
+        found.append(x.reshape(3, -1))
+        order = np.argsort(x.reshape(3, -1), axis=1)
+        nearest = np.unique(np.concatenate([order[:, :NEAREST], order[:, -NEAREST:]]))
+        for i, j in zip(*np.unravel_index(nearest, x.shape[1:]), strict=True):
+            u, v = (np.clip(t[k] + step * fine, 0.0, 1.0) for k in (i, j))
+            found.append(grid_points(span.points, u, v).reshape(3, -1))
+    return np.concatenate(found, axis=1).T
+
+
+def grid_points(points, u, v):
+    h = bernstein.grid_values(points, u, v)
+    return h[:3] / h[3]
 
 
 def assert_tight(box, points):

@@ -19,14 +19,15 @@ from standoff.kernels.events import (
 )
 from standoff.kernels.features import dimension, feature_jet, moved_jet, pair_span
 from standoff.kernels.feedback import gradient_norm, law, stiff_step
-from standoff.kernels.switching import across as across_edge
 from standoff.kernels.switching import (
+    NONE_TRIED,
     is_smooth,
     normalised_parameter,
     off_crease,
     onto_boundary,
-    steepest_release,
+    steepest_untried,
 )
+from standoff.kernels.switching import across as across_edge
 from standoff.kernels.system import energy, feedforward, gradient, hessian, projection_errors
 from standoff.kernels.tolerances import (
     ARMIJO,
@@ -134,20 +135,47 @@ def release_along(pair, R, mode, q, n, d, slope_floor, counts, events):
 
     False where none falls faster than `slope_floor`.
     """
+    none = NONE_TRIED
+    return release_untried(pair, R, mode, q, n, d, slope_floor, none, none, counts, events) >= 0
+
+
+@kernel
+def release_untried(pair, R, mode, q, n, d, slope_floor, tried_a, tried_b, counts, events):
+    """`release_along` without the features tried: the body (0 or 1) of the one released, or -1."""
     ia, ra, ib, rb = pair
-    sa, fa, ca, ua, va = steepest_release(ia, ra, mode[0], q[0], n)
-    sb, fb, cb, ub, vb = steepest_release(ib, rb, mode[2], q[2], scale(-1.0, rotate_back(R, n)))
+    back = scale(-1.0, rotate_back(R, n))
+    sa, fa, ca, ua, va = steepest_untried(ia, ra, mode[0], q[0], n, tried_a)
+    sb, fb, cb, ub, vb = steepest_untried(ib, rb, mode[2], q[2], back, tried_b)
     if min(sa, sb) >= -slope_floor:
-        return False
+        return -1
     if sa <= sb:
         log_event(events, counts, 0, mode[0], fa, sa * d, sa)
         ua, va = off_crease(ia, ra, mode[0], fa, ca, ua, va, scale(d, n))
         set_mode(mode, q, 0, fa, ca, ua, va)
-    else:
-        log_event(events, counts, 1, mode[2], fb, sb * d, sb)
-        ub, vb = off_crease(ib, rb, mode[2], fb, cb, ub, vb, scale(-d, rotate_back(R, n)))
-        set_mode(mode, q, 1, fb, cb, ub, vb)
-    return True
+        return 0
+    log_event(events, counts, 1, mode[2], fb, sb * d, sb)
+    ub, vb = off_crease(ib, rb, mode[2], fb, cb, ub, vb, scale(d, back))
+    set_mode(mode, q, 1, fb, cb, ub, vb)
+    return 1
+
+
+@kernel
+def release_next(pair, R, mode, q, n, d, slope_floor, tried_a, tried_b, counts, events):
+    """(released, tried_a, tried_b): of the features not yet tried in vain the steepest, or, where
+    none of them falls, the steepest of all.
+
+    A step into a wide sector may leave the face at its vertex, over the wrong one of its edges,
+    and come back for ever, while another edge of the vertex falls.
+    """
+    body = release_untried(pair, R, mode, q, n, d, slope_floor, tried_a, tried_b, counts, events)
+    if body < 0 and max(tried_a[0], tried_b[0]) >= 0:
+        none = NONE_TRIED
+        body = release_untried(pair, R, mode, q, n, d, slope_floor, none, none, counts, events)
+    if body == 0:
+        tried_a = (mode[0], tried_a[0], tried_a[1])
+    elif body == 1:
+        tried_b = (mode[2], tried_b[0], tried_b[1])
+    return body >= 0, tried_a, tried_b
 
 
 @kernel
@@ -259,6 +287,7 @@ def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
     corrections, stalls, polish = 0, 0, 0
     last_slope, last_release = 1e300, 1e300
     last_smooth = NO_EDGE
+    tried_a, tried_b = NONE_TRIED, NONE_TRIED
     fresh = False
     jet_a, jet_b = pair_jets(pair, R, p, mode, q)
     for _ in range(MAX_ITERATIONS):
@@ -296,10 +325,16 @@ def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
             stalls += 1
             if stalls > MAX_STALLS:
                 return STATIONARY, fresh, jet_a, jet_b
+        else:
+            tried_a, tried_b = NONE_TRIED, NONE_TRIED
         last_release = E
         # a slope below the residual's own is not known to be one
         slope_floor = max(SLOPE, max(SLOPE_NOISE * EPS * span, slope) / d)
-        if not release_pair(pair, R, mode, q, dR, slope_floor, counts, events):
+        n = scale(-1.0 / d, dR)
+        released, tried_a, tried_b = release_next(
+            pair, R, mode, q, n, d, slope_floor, tried_a, tried_b, counts, events
+        )
+        if not released:
             return STATIONARY, fresh, jet_a, jet_b
         polish, last_slope, fresh = 0, 1e300, False
         jet_a, jet_b = pair_jets(pair, R, p, mode, q)

@@ -8,6 +8,8 @@ conormal the edge-face Voronoi surface. No Voronoi boundary is ever built.
 
 from math import cos, exp, log, sin, sqrt
 
+import numpy as np
+
 from standoff.kernels import layout as L
 from standoff.kernels.compiling import kernel
 from standoff.kernels.features import (
@@ -32,6 +34,9 @@ from standoff.kernels.vectors import add, axpy, cross, dot, scale, sub, unit
 FAN_SCAN = 24  # directions tried around an apex or in a wide sector, before refinement
 FAN_REFINE = 60  # golden-section steps: shrinks the bracket by 1e-12, the fan's own roundoff
 
+NOT_TRIED = np.int64(-1)  # of the type of a feature's number: a literal would compile twice
+NONE_TRIED = (NOT_TRIED, NOT_TRIED, NOT_TRIED)
+
 
 @kernel
 def is_smooth(ints, feature):
@@ -39,6 +44,13 @@ def is_smooth(ints, feature):
         dimension(ints, feature) == 1
         and ints[edge_record(ints, feature) + L.EDGE_FLAGS] & L.SMOOTH != 0
     )
+
+
+@kernel
+def coedge_face(ints, coedge):
+    return ints[
+        chart_record(ints, ints[coedge_record(ints, coedge) + L.COEDGE_CHART]) + L.CHART_FACE
+    ]
 
 
 @kernel
@@ -53,15 +65,9 @@ def onto_face(ints, reals, coedge, t):
 @kernel
 def across(ints, reals, feature, coedge, t):
     """Reset face -> face over a smooth edge."""
-    face = ints[
-        chart_record(ints, ints[coedge_record(ints, coedge) + L.COEDGE_CHART]) + L.CHART_FACE
-    ]
     e = edge_record(ints, feature)
     other = ints[e + L.EDGE_COEDGE_0]
-    if (
-        ints[chart_record(ints, ints[coedge_record(ints, other) + L.COEDGE_CHART]) + L.CHART_FACE]
-        == face
-    ):
+    if coedge_face(ints, other) == coedge_face(ints, coedge):
         other = ints[e + L.EDGE_COEDGE_1]
     return onto_face(ints, reals, other, t)
 
@@ -173,10 +179,17 @@ def end_direction(ints, reals, edge, end):
 
 @kernel
 def steepest_release(ints, reals, feature, p, n):
+    """`steepest_untried` with nothing tried yet."""
+    return steepest_untried(ints, reals, feature, p, n, NONE_TRIED)
+
+
+@kernel
+def steepest_untried(ints, reals, feature, p, n, tried):
     """The steepest way off an edge or vertex: (slope, feature, chart, p, q).
 
     n is the unit direction towards the other body, in this body's frame, so the slope of the
-    distance along a unit direction c is -n.c. A face has no release: slope 0.
+    distance along a unit direction c is -n.c. A face has no release: slope 0. The features in
+    `tried` are left out.
     """
     best, to, chart, a, b = 0.0, -1, -1, 0.0, 0.0
     dim = dimension(ints, feature)
@@ -188,7 +201,7 @@ def steepest_release(ints, reals, feature, p, n):
             if k < 0:
                 continue
             slope = -dot(n, coedge_conormal(ints, reals, k, tangent, p)[0])
-            if slope < best:
+            if slope < best and coedge_face(ints, k) not in tried:
                 best = slope
                 to, chart, a, b = onto_face(ints, reals, k, p)
     elif dim == 0:
@@ -198,12 +211,14 @@ def steepest_release(ints, reals, feature, p, n):
             edge = ints[L.N_FACES] + ints[fan + 2 * k]
             end = ints[fan + 2 * k + 1]
             slope = -dot(n, end_direction(ints, reals, edge, end))
-            if slope < best:
+            if slope < best and edge not in tried:
                 t = reals[ints[edge_record(ints, edge) + L.EDGE_REALS] + L.EDGE_T0 + end]
                 best, to, chart, a, b = slope, edge, -1, t, 0.0
         sectors = ints[r + L.VERTEX_SECTORS]
         for k in range(ints[r + L.VERTEX_N_SECTORS]):
             sector = sectors + 2 * k
+            if ints[chart_record(ints, ints[sector]) + L.CHART_FACE] in tried:
+                continue
             slope, angle = steepest_in_sector(ints, reals, sector, n)
             # along the sector's bound runs an edge: a face released there is left at once
             if slope < best - SLOPE:
