@@ -81,7 +81,8 @@ def support_set(body: Body, direction: Array, witness: Array) -> Array:
     size = float(body.reals[L.SIZE])
     offset = float(np.linalg.norm(body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]))
     rounding = ROUNDINGS * np.finfo(float).eps * (size + offset)
-    pieces = list(_pieces(body, direction, witness, rounding + LEVEL * size))
+    lowest = float(witness @ direction) - rounding - LEVEL * size
+    pieces = list(_pieces(body, direction, lowest))
     peaks = [p for piece in pieces for p in _peaks(piece, direction)]
     spots = np.vstack([witness[None], body.vertex_points, *(p[None] for p in peaks)])
     heights = (spots - witness) @ direction
@@ -105,25 +106,46 @@ def _spread(piece: Piece, count: int) -> Array:
     return np.linspace(piece.first, piece.last, count)
 
 
-def _pieces(body: Body, direction: Array, witness: Array, margin: float) -> Iterator[Piece]:
-    """Curved edges, and lines between the spans of faces, that may be level with the witness."""
+def _pieces(body: Body, direction: Array, lowest: float) -> Iterator[Piece]:
+    """Curved edges, and lines between the spans of faces, that may rise to a height."""
     for edge in body.edge_parts:
-        if isinstance(edge.curve, Line):
-            continue  # its ends are vertices
-        for first, last in pairwise(_curve_breaks(edge.curve)):
-            basis = edge.curve.basis() if isinstance(edge.curve, ConicArc) else None
-            yield Piece(_curve_jet(edge.curve), float(first), float(last), basis)
+        if not isinstance(edge.curve, Line):  # whose ends are vertices
+            yield from _edge_pieces(edge.curve, direction, lowest)
     for face, part in enumerate(body.face_parts):
-        for surface in part.charts:
-            if len(part.charts) > 1 or not any(map(len, _surface_breaks(surface))):
-                continue
-            if isinstance(surface, NurbsSurface):
-                rises = (surface.control_points.reshape(-1, 3) - witness) @ direction
-                if rises.max() < -margin:
-                    continue
-            chart = int(body.ints[int(body.ints[L.FACES]) + L.FACE_STRIDE * face])
-            for line in _inner_lines(surface):
+        surface = part.charts[0]
+        if not isinstance(surface, NurbsSurface | Revolution | Extrusion):
+            continue
+        chart = int(body.ints[int(body.ints[L.FACES]) + L.FACE_STRIDE * face])
+        for line in _inner_lines(surface):
+            if _reaches(line, direction, lowest):
                 yield from _on_face(body, chart, line)
+
+
+def _edge_pieces(curve: Curve, direction: Array, lowest: float) -> Iterator[Piece]:
+    if isinstance(curve, ConicArc):
+        basis = curve.basis()
+        a, b, c = basis.T @ direction
+        if c + np.hypot(a, b) >= lowest:
+            yield Piece(_curve_jet(curve), curve.first, curve.last, basis)
+        return
+    for first, last in pairwise(_curve_breaks(curve)):
+        line = _isoline_of(curve, float(first), float(last))
+        if line is None:
+            yield Piece(_curve_jet(curve), float(first), float(last))
+        elif _reaches(line, direction, lowest):
+            yield Piece(line.jet, line.first, line.last)
+
+
+def _isoline_of(curve: Curve, first: float, last: float) -> _Isoline | None:
+    """A part of an edge that is an isoline of a surface, as one."""
+    if not isinstance(curve, SurfaceCurve) or curve.pcurve.kind != L.LINE or curve.others:
+        return None
+    matrix = curve.pcurve.matrix / curve.pcurve.matrix[2, 2]
+    for axis in (0, 1):
+        if matrix[axis, 0] == 0.0 and matrix[2, 0] == 0.0:
+            ends = sorted(matrix[1 - axis, 0] * t + matrix[1 - axis, 2] for t in (first, last))
+            return _Isoline(curve.surface, axis, float(matrix[axis, 2]), *map(float, ends))
+    return None
 
 
 def _curve_jet(curve: Curve) -> Callable[[float], tuple[Array, Array]]:
@@ -187,6 +209,20 @@ def _inner_lines(surface: Surface) -> Iterator[_Isoline]:
         for level in breaks[axis]:
             for first, last in pairwise(ends):
                 yield _Isoline(surface, axis, float(level), float(first), float(last))
+
+
+def _reaches(line: _Isoline, direction: Array, height: float) -> bool:
+    """May a line between two spans of a NURBS rise to a height: do the control points beside it?"""
+    if not isinstance(line.surface, NurbsSurface):
+        return True
+    across, along = line.surface.vector_u.breaks, line.surface.vector_v.breaks
+    blocks = line.surface.blocks
+    if line.axis == 1:
+        across, along, blocks = along, across, blocks.swapaxes(0, 1)
+    k = int(np.searchsorted(across, line.level))
+    m = int(np.searchsorted(along, 0.5 * (line.first + line.last))) - 1
+    points = blocks[max(k - 1, 0) : k + 1, m].reshape(-1, 4)
+    return bool((points[:, :3] @ direction >= height * points[:, 3]).any())
 
 
 def _on_face(body: Body, chart: int, line: _Isoline) -> Iterator[Piece]:
