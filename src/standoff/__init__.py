@@ -20,6 +20,8 @@ from standoff.tracking import (
     Event,
     Feature,
     FrameBuffer,
+    Impact,
+    ImpactStatus,
     Minimum,
     PairSystem,
     PointCounts,
@@ -46,6 +48,7 @@ from standoff.tracking import (
     record_point,
     simulate,
     witness_set,
+    time_of_impact,
 )
 from standoff.version import __version__ as __version__
 
@@ -60,6 +63,8 @@ __all__ = [
     "Face",
     "Feature",
     "FrameBuffer",
+    "Impact",
+    "ImpactStatus",
     "MedialBranch",
     "Minimum",
     "NormalCone",
@@ -94,6 +99,7 @@ __all__ = [
     "record_point",
     "shapes",
     "simulate",
+    "time_of_impact",
     "voronoi_regions",
     "witness_set",
 ]

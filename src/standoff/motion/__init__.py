@@ -1,5 +1,6 @@
 """Poses, twists, and paths in time."""
 
+from standoff.motion.bounds import Bounded, BoundedPath, MotionBounds
 from standoff.motion.paths import Carried, ConstantTwist, Fixed, Offset, Path, Screw
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.samples import PoseSamples
@@ -8,11 +9,14 @@ from standoff.motion.twist import Frame, Twist, TwistLike
 from standoff.motion.winding import Helix, Orientation, Spiral
 
 __all__ = [
+    "Bounded",
+    "BoundedPath",
     "Carried",
     "ConstantTwist",
     "Fixed",
     "Frame",
     "Helix",
+    "MotionBounds",
     "Offset",
     "Orientation",
     "Path",

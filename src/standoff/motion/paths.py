@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -10,6 +11,8 @@ from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 from standoff.motion import inputs
+from standoff.motion.bounds import MotionBounds, bounds_of, breaks_of, cross, length, turning
+from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import Twist, TwistLike
 
@@ -72,6 +75,16 @@ class Fixed:
         inputs.number(t, "t")
         return Twist.zero()
 
+    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+        """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
+        del first, last, point
+        return MotionBounds(0.0, 0.0, 0.0, 0.0)
+
+    def breaks(self, first: float, last: float) -> Sequence[float]:
+        """Return no times: the twist never jumps."""
+        del first, last
+        return ()
+
 
 class ConstantTwist:
     """A body whose twist is constant in the axes that the twist names.
@@ -105,6 +118,21 @@ class ConstantTwist:
     def twist(self, t: float) -> Twist:
         """Return how the body moves at time `t` [s], in world axes."""
         return self._twist.in_world(self.pose(t))
+
+    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+        """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
+        del first, last
+        v, omega = self._twist.v, self._twist.omega
+        if self._twist.frame == "body":
+            return turning(omega, v + cross(omega, point))
+        # The origin goes straight, and the point turns about it.
+        about = turning(omega, cross(omega, self._initial.rotation @ point))
+        return MotionBounds(about.speed + length(v), about.acceleration, about.angular_speed, 0.0)
+
+    def breaks(self, first: float, last: float) -> Sequence[float]:
+        """Return no times: the twist never jumps."""
+        del first, last
+        return ()
 
 
 class Screw:
@@ -160,6 +188,17 @@ class Screw:
         arm = self.pose(t).translation - self._point
         return Twist(np.cross(self._omega, arm) + self._advance, self._omega)
 
+    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+        """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
+        del first, last
+        arm = self._initial.apply(point) - self._point
+        return turning(self._omega, cross(self._omega, arm) + self._advance)
+
+    def breaks(self, first: float, last: float) -> Sequence[float]:
+        """Return no times: the twist never jumps."""
+        del first, last
+        return ()
+
 
 class Offset:
     """A body fixed to another that follows a path.
@@ -203,6 +242,14 @@ class Offset:
         arm = carrier.rotation @ self._offset.translation
         return Twist(twist.v + np.cross(twist.omega, arm), twist.omega)
 
+    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+        """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
+        return bounds_of(self._path, first, last, self._offset.apply(point))
+
+    def breaks(self, first: float, last: float) -> Sequence[float]:
+        """Return the times strictly between two [s] at which the carrying path's twist jumps."""
+        return breaks_of(self._path, first, last)
+
 
 class Carried:
     """A body that follows a path of its own in the axes of a body that follows another.
@@ -241,3 +288,30 @@ class Carried:
         turn = carrier.rotation
         v = outer.v + np.cross(outer.omega, turn @ within.translation) + turn @ inner.v
         return Twist(v, outer.omega + turn @ inner.omega)
+
+    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+        """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
+        inner = bounds_of(self._within, first, last, point)
+        place = self._within.pose(first).apply(point)
+        outer = bounds_of(self._carrier, first, last, place)
+        # With u the way of the point in the carrier's axes since `first`, the place's own motion
+        # and that of R u add: d²(R u)/dt² has the terms (α × u + ω × (ω × u)), 2 ω × u', u''.
+        away = inner.speed * (last - first)
+        turn = outer.angular_acceleration + outer.angular_speed**2
+        return MotionBounds(
+            outer.speed + outer.angular_speed * away + inner.speed,
+            outer.acceleration
+            + turn * away
+            + 2.0 * outer.angular_speed * inner.speed
+            + inner.acceleration,
+            outer.angular_speed + inner.angular_speed,
+            outer.angular_acceleration
+            + inner.angular_acceleration
+            + outer.angular_speed * inner.angular_speed,
+        )
+
+    def breaks(self, first: float, last: float) -> Sequence[float]:
+        """Return the times strictly between two [s] at which either path's twist jumps."""
+        return sorted(
+            {*breaks_of(self._carrier, first, last), *breaks_of(self._within, first, last)}
+        )

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from standoff.motion import inputs
+from standoff.motion.bounds import MotionBounds, cross, turning
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.tolerances import HALF_TURN
@@ -116,6 +117,29 @@ class PoseSamples:
         """
         index, seconds = self._interval(t)
         return self._twists[index].in_world(self.pose(seconds))
+
+    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+        """Return bounds from time `first` to `last` [s], within one interval of the samples.
+
+        Raises
+        ------
+        ValueError
+            If a sample lies between the two, or they are outside the samples.
+        """
+        index, _ = self._interval(first)
+        if not first <= last <= float(self.times[index + 1]):
+            raise ValueError(
+                f"{first!r} to {last!r} is no time within one interval of the samples: "
+                f"the next one is at {float(self.times[index + 1])!r}"
+            )
+        twist = self._twists[index]
+        return turning(twist.omega, twist.v + cross(twist.omega, point))
+
+    def breaks(self, first: float, last: float) -> Sequence[float]:
+        """Return the times of the samples strictly between `first` and `last` [s]."""
+        begin = int(np.searchsorted(self.times, first, side="right"))
+        stop = int(np.searchsorted(self.times, last, side="left"))
+        return [float(t) for t in self.times[begin:stop]]
 
 
 def _read(index: int, pose: PoseLike) -> Pose:

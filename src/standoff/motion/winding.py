@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from standoff.motion import inputs
+from standoff.motion.bounds import MotionBounds
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose
 from standoff.motion.twist import Twist
@@ -93,6 +95,21 @@ class Helix:
         v = self._radius * self._rate * tangential + self._climb * self._axis
         return Twist(v, self._rate * self._axis if self._turning else np.zeros(3))
 
+    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+        """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
+        del first, last
+        away, turn = self._radius, 0.0
+        if self._turning:
+            x, y, _ = point.tolist()
+            away, turn = math.hypot(self._radius + x, y), abs(self._rate)
+        speed = math.hypot(self._rate * away, self._climb)
+        return MotionBounds(speed, self._rate**2 * away, turn, 0.0)
+
+    def breaks(self, first: float, last: float) -> Sequence[float]:
+        """Return no times: the twist never jumps."""
+        del first, last
+        return ()
+
 
 class Spiral:
     """A body whose origin follows an Archimedean spiral in the plane z = 0.
@@ -163,6 +180,25 @@ class Spiral:
         distance, radial, tangential = self._polar(inputs.number(t, "t"))
         v = self._rate * (self._growth * radial + distance * tangential)
         return Twist(v, (0.0, 0.0, self._rate if self._turning else 0.0))
+
+    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+        """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
+        # In polar axes the point stays at (distance + x, y); its velocity is rate times
+        # (growth - y, distance + x), its acceleration rate² times (-distance - x, 2 growth - y).
+        x, y, _ = point.tolist() if self._turning else (0.0, 0.0, 0.0)
+        ends = (self._radius + self._growth * self._rate * t + x for t in (first, last))
+        away, rate = max(map(abs, ends)), abs(self._rate)
+        return MotionBounds(
+            rate * math.hypot(self._growth - y, away),
+            rate**2 * math.hypot(away, 2.0 * self._growth - y),
+            rate if self._turning else 0.0,
+            0.0,
+        )
+
+    def breaks(self, first: float, last: float) -> Sequence[float]:
+        """Return no times: the twist never jumps."""
+        del first, last
+        return ()
 
 
 def _turns(orientation: Orientation) -> bool:

@@ -4,6 +4,7 @@ from standoff.bodies.features import Feature
 from standoff.tracking import feedback
 from standoff.tracking.automaton import Automaton, Transition
 from standoff.tracking.feedback import max_gain
+from standoff.tracking.impact import Impact, ImpactStatus, time_of_impact
 from standoff.tracking.pair_system import PairSystem, pair_system
 from standoff.tracking.point_answer import Minimum, PointCounts, PointEvent, PointProximity
 from standoff.tracking.point_recording import PointRecording, PointVisit, record_point
@@ -29,6 +30,8 @@ __all__ = [
     "Event",
     "Feature",
     "FrameBuffer",
+    "Impact",
+    "ImpactStatus",
     "Minimum",
     "PairSystem",
     "PointCounts",
@@ -56,4 +59,5 @@ __all__ = [
     "record_point",
     "simulate",
     "witness_set",
+    "time_of_impact",
 ]

@@ -1,0 +1,206 @@
+"""How fast a moving body can be, and how fast its velocity can change, within a time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol, cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from standoff.motion import inputs
+from standoff.motion.inputs import FloatArray
+from standoff.motion.pose import PoseLike
+from standoff.motion.twist import TwistLike
+
+
+@dataclass(frozen=True)
+class MotionBounds:
+    """Bounds on a motion that hold at every instant of an interval.
+
+    Attributes
+    ----------
+    speed : float
+        Of one point fixed in the body, relative to the world [length/s].
+    acceleration : float
+        Of the same point [length/s²].
+    angular_speed : float
+        Of the body [rad/s].
+    angular_acceleration : float
+        Of the body [rad/s²].
+    """
+
+    speed: float
+    acceleration: float
+    angular_speed: float
+    angular_acceleration: float
+
+
+class BoundedPath(Protocol):
+    """A path that knows how fast it can be: every path of ``standoff.motion``."""
+
+    def pose(self, t: float) -> PoseLike:
+        """Return where the body is at time `t` [s]."""
+        ...
+
+    def twist(self, t: float) -> TwistLike:
+        """Return how the body moves at time `t` [s]."""
+        ...
+
+    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+        """Return bounds that hold from time `first` to `last` [s], between two breaks.
+
+        `point` (3,) is fixed in the body, in its coordinates.
+        """
+        ...
+
+    def breaks(self, first: float, last: float) -> Sequence[float]:
+        """Return the times strictly between `first` and `last` [s] at which the twist jumps."""
+        ...
+
+
+class Bounded:
+    """A path of your own, with what you know of its accelerations.
+
+    Parameters
+    ----------
+    path
+        Anything with ``pose(t)`` and ``twist(t)``, t in s.
+    speed : float
+        No less than the speed of the body's origin at any time [length/s].
+    acceleration : float
+        No less than the acceleration of the body's origin [length/s²].
+    angular_speed : float
+        No less than the body's angular speed [rad/s].
+    angular_acceleration : float
+        No less than the body's angular acceleration [rad/s²].
+    breaks : array_like, shape (n,)
+        Times at which the velocities jump, if there are any [s].
+
+    Raises
+    ------
+    TypeError
+        If the path has no ``pose`` and ``twist``.
+    ValueError
+        If a bound is negative or not finite.
+    """
+
+    def __init__(
+        self,
+        path: object,
+        *,
+        speed: float,
+        acceleration: float,
+        angular_speed: float,
+        angular_acceleration: float,
+        breaks: ArrayLike = (),
+    ) -> None:
+        pose, twist = getattr(path, "pose", None), getattr(path, "twist", None)
+        if not callable(pose) or not callable(twist):
+            raise TypeError(f"{path!r} is no path: it needs pose(t) and twist(t)")
+        self._pose, self._twist = pose, twist
+        self.start = float(getattr(path, "start", -math.inf))
+        self.end = float(getattr(path, "end", math.inf))
+        given = {
+            "speed": speed,
+            "acceleration": acceleration,
+            "angular_speed": angular_speed,
+            "angular_acceleration": angular_acceleration,
+        }
+        for name, value in given.items():
+            if inputs.number(value, name) < 0.0:
+                raise ValueError(f"{name} is {value}: a bound is zero or above")
+        self._origin = MotionBounds(**{name: float(value) for name, value in given.items()})
+        times = np.asarray(breaks, dtype=np.float64)
+        self._breaks = np.sort(inputs.array(times, "breaks", (times.size,)))
+
+    def pose(self, t: float) -> PoseLike:
+        """Return where the body is at time `t` [s]."""
+        where: PoseLike = self._pose(t)
+        return where
+
+    def twist(self, t: float) -> TwistLike:
+        """Return how the body moves at time `t` [s]."""
+        how: TwistLike = self._twist(t)
+        return how
+
+    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+        """Return bounds that hold from time `first` to `last` [s] for a point of the body."""
+        del first, last
+        return of_point(self._origin, point)
+
+    def breaks(self, first: float, last: float) -> Sequence[float]:
+        """Return the times strictly between `first` and `last` [s] at which the twist jumps."""
+        within = self._breaks[(self._breaks > first) & (self._breaks < last)]
+        return [float(t) for t in within]
+
+
+def of_point(origin: MotionBounds, point: FloatArray) -> MotionBounds:
+    """Return the bounds for a point of a body whose origin's are known."""
+    reach = length(point)
+    turn = origin.angular_acceleration + origin.angular_speed**2
+    return MotionBounds(
+        origin.speed + origin.angular_speed * reach,
+        origin.acceleration + turn * reach,
+        origin.angular_speed,
+        origin.angular_acceleration,
+    )
+
+
+def turning(omega: FloatArray, velocity: FloatArray) -> MotionBounds:
+    """Return the bounds for a point whose velocity turns with the body at a constant rate."""
+    bend = cross(omega, velocity)
+    return MotionBounds(length(velocity), length(bend), length(omega), 0.0)
+
+
+def bounds_of(path: object, first: float, last: float, point: FloatArray) -> MotionBounds:
+    """Return a path's bounds between two times [s] for a point fixed in its body.
+
+    Raises
+    ------
+    TypeError
+        If the path knows no bounds.
+    """
+    return known(path).bounds(first, last, point)
+
+
+def breaks_of(path: object, first: float, last: float) -> Sequence[float]:
+    """Return the times strictly between two [s] at which a path's twist jumps.
+
+    Raises
+    ------
+    TypeError
+        If the path knows no bounds.
+    """
+    return known(path).breaks(first, last)
+
+
+def known(path: object) -> BoundedPath:
+    """Return the path, if it knows its bounds.
+
+    Raises
+    ------
+    TypeError
+        If it does not.
+    """
+    if not callable(getattr(path, "bounds", None)) or not callable(getattr(path, "breaks", None)):
+        raise TypeError(
+            f"nothing is known of how fast {path!r} moves between two times: wrap it in "
+            "standoff.motion.Bounded(path, speed=..., acceleration=..., angular_speed=..., "
+            "angular_acceleration=...)"
+        )
+    return cast(BoundedPath, path)
+
+
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return a × b; for single vectors several times as fast as NumPy's."""
+    a0, a1, a2 = a.tolist()
+    b0, b1, b2 = b.tolist()
+    return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])
+
+
+def length(vector: FloatArray) -> float:
+    """Return |vector|."""
+    return math.hypot(*vector.tolist())

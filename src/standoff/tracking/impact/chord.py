@@ -1,0 +1,129 @@
+"""How far below their chord the separations of two instants can sag between them.
+
+Let x be any point fixed in A, y one of B, z = y - x, n0 and n1 the unit normals at the times t0 and
+t1 with n0·z(t0) >= L0 and n1·z(t1) >= L1 for all x, y. At t = t0 + λ (t1 - t0) take
+n = (1-λ) n0 + λ n1. Each point's way differs from its chord by at most ½ λ(1-λ) (t1-t0)² times its
+greatest acceleration, and |n| <= 1, so that
+
+    n·z(t) >= (1-λ) L0 + λ L1 - λ(1-λ) S,
+    S = max (n1 - n0)·(z(t1) - z(t0)) + ½ (t1 - t0)² max (|x''| + |y''|).
+
+The maximum over x and y in the bodies' boxes is a sum of three absolute values a body. As the
+distance is at least n·z/|n|, the bodies are apart in between if the right-hand side is positive:
+for L0, L1 > 0 if and only if S < (√L0 + √L1)². Both terms of S are of second order in t1 - t0.
+
+Where one body is a half-space, n is its own normal and everything is seen from it: then
+n1 - n0 = 0, and the accelerations are those relative to its turning frame.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.motion.bounds import MotionBounds, bounds_of
+from standoff.tracking.impact.moment import Box, Moment
+
+Array = NDArray[np.float64]
+
+EPS = float(np.finfo(np.float64).eps)
+
+POSE_ROUNDINGS = 16.0
+"""Roundings of the greatest length that a pose and a world point carry: the products of a rotation
+with a point, and those that made the rotation."""
+
+TIME_ROUNDINGS = 4.0
+"""Roundings of the time, each worth the way of the bodies in it: paths multiply rates by it."""
+
+STALE = 4.0
+"""Bounds on the motion are taken anew where they hold for an interval this many times as long."""
+
+
+class Chords:
+    """Bounds the sag of one pair on two paths, within a piece of time without a break."""
+
+    def __init__(self, boxes: tuple[Box, Box], paths: tuple[Any, Any]) -> None:
+        self.boxes, self.paths = boxes, paths
+        self.first, self.last = 0.0, -1.0
+
+    def prepare(self, start: Moment, last: float) -> None:
+        """Make the bounds those of the time from a moment to `last`, or of little more."""
+        within = self.first <= start.time and last <= self.last
+        if within and self.last - self.first <= STALE * (last - start.time):
+            return
+        self.first, self.last = start.time, last
+        points = [box.middle for box in self.boxes]
+        placed = start.a, start.b
+        for k, box in enumerate(self.boxes):
+            if box.plane:  # the point of its frame that is beside the other body
+                points[k] = placed[k].rotation.T @ (placed[1 - k].centre - placed[k].p)
+        self.bounds = tuple(
+            bounds_of(path, start.time, last, point)
+            for path, point in zip(self.paths, points, strict=True)
+        )
+        self.speed = sum(
+            bound.speed + bound.angular_speed * box.reach
+            for bound, box in zip(self.bounds, self.boxes, strict=True)
+        )
+
+    def sag(self, start: Moment, end: Moment, balls: bool) -> float:
+        """S between two moments in `prepare`'s time: of the bodies, or of their bounding balls."""
+        span = end.time - start.time
+        bend = 0.5 * span**2
+        if self.boxes[0].plane or self.boxes[1].plane:
+            return bend * self._seen_from_plane(balls)
+        bounds = zip(self.bounds, self.boxes, strict=True)
+        if balls:
+            turn = end.ball.normal - start.ball.normal
+            acceleration = sum(bound.acceleration for bound, _ in bounds)
+        else:
+            turn = end.normal - start.normal
+            acceleration = sum(b.acceleration + _turning(b) * box.reach for b, box in bounds)
+        way = (end.b.centre - start.b.centre) - (end.a.centre - start.a.centre)
+        total = float(turn @ way) + bend * acceleration
+        if not balls:
+            # R changes by R1 - R0; the greatest turn·(R1 - R0)(x - middle) over a box
+            for box, before, after in (
+                (self.boxes[0], start.a.rotation, end.a.rotation),
+                (self.boxes[1], start.b.rotation, end.b.rotation),
+            ):
+                total += float(np.abs(turn @ (after - before)) @ box.half)
+        return total
+
+    def first_sag(self, start: Moment, balls: bool) -> float:
+        """A guess of S over the square of the span [length/s²], before any was seen."""
+        spread = abs(start.ball.lower) + sum(box.reach for box in self.boxes)
+        total = sum(bound.acceleration for bound in self.bounds)
+        if not balls:
+            bounds = zip(self.bounds, self.boxes, strict=True)
+            total += sum(_turning(bound) * box.reach for bound, box in bounds)
+        return 0.5 * total + (self.speed**2 / spread if spread > 0.0 else 0.0)
+
+    def _seen_from_plane(self, balls: bool) -> float:
+        """Acceleration of the other body's points in the half-space's frame.
+
+        With z from the half-space's own point that was beside the body at the start of the bounds,
+        it is z'' - α × z - 2 ω × z' + ω × (ω × z).
+        """
+        k = 0 if self.boxes[0].plane else 1
+        wall, other = self.bounds[k], self.bounds[1 - k]
+        reach = 0.0 if balls else self.boxes[1 - k].reach
+        speed = wall.speed + other.speed + other.angular_speed * reach
+        away = reach + (self.last - self.first) * speed
+        return (
+            other.acceleration
+            + _turning(other) * reach
+            + wall.acceleration
+            + _turning(wall) * away
+            + 2.0 * wall.angular_speed * speed
+        )
+
+    def rounding(self, moment: Moment) -> float:
+        """What rounding of the poses and of time may do to a separation (length)."""
+        return EPS * (POSE_ROUNDINGS * moment.far + TIME_ROUNDINGS * abs(moment.time) * self.speed)
+
+
+def _turning(bound: MotionBounds) -> float:
+    return bound.angular_acceleration + bound.angular_speed**2

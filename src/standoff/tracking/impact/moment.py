@@ -1,0 +1,130 @@
+"""The pair at one instant: its poses, its bounding balls and, where asked, its certified bound."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.kernels import layout as L
+from standoff.motion.bounds import cross, length
+from standoff.tracking.inputs import flat_pose, flat_twist
+from standoff.tracking.proximity import Proximity
+from standoff.tracking.state import TrackerState
+from standoff.tracking.status import Status
+from standoff.tracking.tracker import Tracker
+
+Array = NDArray[np.float64]
+
+
+class Placed:
+    """A body at an instant: pose (R, p), the world position and velocity of its box's centre."""
+
+    __slots__ = ("centre", "p", "pose", "rotation", "twist", "velocity")
+
+    def __init__(self, middle: Array, path: Any, time: float) -> None:
+        self.pose, self.twist = path.pose(time), path.twist(time)
+        flat = flat_pose(self.pose)
+        self.rotation, self.p = flat[:9].reshape(3, 3), flat[9:]
+        arm = self.rotation @ middle
+        self.centre = arm + self.p
+        twist = flat_twist(self.twist, self.pose)
+        self.velocity = twist[:3] + cross(twist[3:], arm)
+
+
+class Box:
+    """The box around a body's core, in body axes.
+
+    Attributes
+    ----------
+    middle : (3,) array
+        Its centre; a half-space's is the origin of its frame.
+    half : (3,) array
+        Half its sides; 0 for a half-space, which has no box.
+    radius : float
+        Swept radius of the body.
+    reach : float
+        Radius of the ball about ``middle`` that holds the core.
+    plane : bool
+        Is it a half-space?
+    """
+
+    def __init__(self, body: Body) -> None:
+        self.plane = not body.bounded
+        self.middle, self.half = np.zeros(3), np.zeros(3)
+        if not self.plane:
+            self.middle = body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
+            self.half = body.reals[L.BOX_HALF : L.BOX_HALF + 3]
+        self.radius = float(body.reals[L.RADIUS])
+        self.reach = length(self.half)
+
+
+class Ball:
+    """The distance of two bounding balls: a bound that needs no query."""
+
+    __slots__ = ("lower", "normal", "rate")
+
+    def __init__(self, boxes: tuple[Box, Box], a: Placed, b: Placed) -> None:
+        between = b.centre - a.centre
+        if boxes[0].plane:
+            self.normal = a.rotation[:, 2]
+        elif boxes[1].plane:
+            self.normal = -b.rotation[:, 2]
+        else:
+            apart = length(between)
+            self.normal = between / apart if apart > 0.0 else np.array([1.0, 0.0, 0.0])
+        self.lower = float(self.normal @ between) - sum(box.reach + box.radius for box in boxes)
+        self.rate = float(self.normal @ (b.velocity - a.velocity))
+
+
+class Moment:
+    """The pair at one instant; the tracker is asked by `ask`, from the state of an earlier one."""
+
+    def __init__(self, boxes: tuple[Box, Box], paths: tuple[Any, Any], time: float) -> None:
+        self.time = time
+        self.a = Placed(boxes[0].middle, paths[0], time)
+        self.b = Placed(boxes[1].middle, paths[1], time)
+        self.ball = Ball(boxes, self.a, self.b)
+        # the lengths that went in, whose roundings a separation carries
+        far = [box.reach for box in boxes]
+        far += [length(x) for x in (self.a.p, self.b.p, self.a.centre, self.b.centre)]
+        self.far = sum(far)
+        self.state: TrackerState | None = None
+        self.lower, self.upper = -math.inf, math.inf
+        self.rate = math.nan
+
+    @property
+    def asked(self) -> bool:
+        """Has the tracker been asked here?"""
+        return self.state is not None
+
+    @property
+    def proximity(self) -> Proximity:
+        """The tracker's answer, after `ask`."""
+        assert self.state is not None
+        return self.state.proximity
+
+    @property
+    def normal(self) -> Array:
+        """The direction along which the bodies are ``lower`` apart, after `ask`."""
+        return self.proximity.normal
+
+    def ask(self, tracker: Tracker, before: Moment | None) -> None:
+        """Ask the tracker: from the earlier moment, or anywhere without one."""
+        poses = self.a.pose, self.b.pose
+        twists = self.a.twist, self.b.twist
+        if before is None or before.state is None:
+            self.state = tracker.start(*poses, *twists)
+        else:
+            since = self.time - before.time
+            self.state = tracker.step(before.state, *poses, *twists, dt=since)[0]
+        answer = self.state.proximity
+        if answer.status is Status.OVERLAPPING:
+            # proven, with no number: they touch at least
+            self.upper = 0.0
+            return
+        self.lower, self.upper = answer.lower_bound, answer.distance
+        self.rate = answer.rate
