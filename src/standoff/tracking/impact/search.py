@@ -108,12 +108,22 @@ def time_of_impact(
 
 
 def _end(paths: tuple[Any, Any], start: float, duration: float) -> float:
-    """The time at which the search ends; a rounding beyond a path's end is no time beyond it."""
+    """The time at which the search ends; a rounding beyond a path's end is no time beyond it.
+
+    Raises
+    ------
+    ValueError
+        If a path ends before.
+    """
     end = start + duration
     for path in paths:
         last = float(getattr(path, "end", math.inf))
         if last < end <= last + NEIGHBOURS * EPS * max(abs(last), abs(start)):
             end = last
+        if last < end:
+            raise ValueError(
+                f"start + duration = {end!r}, and a path ends at {last!r}: give a shorter duration."
+            )
     return end
 
 
