@@ -47,8 +47,8 @@ from standoff.tracking import (
     pair_system,
     record_point,
     simulate,
-    witness_set,
     time_of_impact,
+    witness_set,
 )
 from standoff.version import __version__ as __version__
 

@@ -158,7 +158,9 @@ def _passing(pair: ExactPair, size: float, time: float, flat: bool, rng: Rng) ->
     across = _vector(size, flat, rng) * 10.0 ** rng.uniform(-1, 1)
     across -= pair.normal * (pair.normal @ across)
     v_a = _vector(size, flat, rng)
-    rates = [0.0, 0.0] if flat else (10.0 ** rng.uniform(-1, 1, 2) * (rng.random(2) < 0.8)).tolist()
+    rates = 10.0 ** rng.uniform(-1, 1, 2) * (rng.random(2) < 0.8) * (not flat)
+    walls = [isinstance(body.shape, HalfSpace) for body in (pair.a, pair.b)]
+    rates[walls] = 0.0  # its points would have any speed
     twists = [
         so.Twist(v, rate * pair.normal) for v, rate in zip((v_a, v_a + across), rates, strict=True)
     ]

@@ -39,6 +39,9 @@ def test_no_instant_is_faster_than_the_bounds(path: Path) -> None:
                 (turns[0] + turns[1]) / 2,
                 (turns[1] - turns[0]) / STEP,
             ]
+            if bounds.axis is not None:
+                assert np.linalg.norm(bounds.axis) == pytest.approx(1.0)
+                assert abs(found[1] @ bounds.axis) < NOISE
             greatest = np.fmax(greatest, [float(np.linalg.norm(f)) for f in found])
         limits = [
             bounds.speed,
@@ -58,6 +61,11 @@ def test_bounds_are_reached(name: str) -> None:
     assert np.linalg.norm(z - x) / (2 * STEP) == pytest.approx(bounds.speed, rel=1e-2)
     bend = np.linalg.norm(z - 2 * y + x) / STEP**2
     assert bend == pytest.approx(bounds.acceleration, rel=1e-2)
+
+
+def test_a_screw_knows_its_axis() -> None:
+    axes = [bounds_of(path, 0.0, 0.1, np.ones(3)).axis for path in PATHS.values()]
+    assert sum(axis is not None for axis in axes) == len(axes) - 3  # fixed, and two carried
 
 
 def test_samples_bound_one_interval_only() -> None:

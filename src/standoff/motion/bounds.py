@@ -30,12 +30,16 @@ class MotionBounds:
         Of the body [rad/s].
     angular_acceleration : float
         Of the body [rad/s²].
+    axis : (3,) array or None
+        A unit vector of the world to which the accelerations of all points of the body are
+        perpendicular all the time, if there is one: that of a screw.
     """
 
     speed: float
     acceleration: float
     angular_speed: float
     angular_acceleration: float
+    axis: FloatArray | None = None
 
 
 class BoundedPath(Protocol):
@@ -103,16 +107,12 @@ class Bounded:
         self._pose, self._twist = pose, twist
         self.start = float(getattr(path, "start", -math.inf))
         self.end = float(getattr(path, "end", math.inf))
-        given = {
-            "speed": speed,
-            "acceleration": acceleration,
-            "angular_speed": angular_speed,
-            "angular_acceleration": angular_acceleration,
-        }
-        for name, value in given.items():
-            if inputs.number(value, name) < 0.0:
-                raise ValueError(f"{name} is {value}: a bound is zero or above")
-        self._origin = MotionBounds(**{name: float(value) for name, value in given.items()})
+        self._origin = MotionBounds(
+            _bound(speed, "speed"),
+            _bound(acceleration, "acceleration"),
+            _bound(angular_speed, "angular_speed"),
+            _bound(angular_acceleration, "angular_acceleration"),
+        )
         times = np.asarray(breaks, dtype=np.float64)
         self._breaks = np.sort(inputs.array(times, "breaks", (times.size,)))
 
@@ -137,6 +137,13 @@ class Bounded:
         return [float(t) for t in within]
 
 
+def _bound(value: float, name: str) -> float:
+    read = inputs.number(value, name)
+    if read < 0.0:
+        raise ValueError(f"{name} is {read}: a bound is zero or above")
+    return read
+
+
 def of_point(origin: MotionBounds, point: FloatArray) -> MotionBounds:
     """Return the bounds for a point of a body whose origin's are known."""
     reach = length(point)
@@ -146,13 +153,22 @@ def of_point(origin: MotionBounds, point: FloatArray) -> MotionBounds:
         origin.acceleration + turn * reach,
         origin.angular_speed,
         origin.angular_acceleration,
+        origin.axis,
     )
 
 
-def turning(omega: FloatArray, velocity: FloatArray) -> MotionBounds:
-    """Return the bounds for a point whose velocity turns with the body at a constant rate."""
-    bend = cross(omega, velocity)
-    return MotionBounds(length(velocity), length(bend), length(omega), 0.0)
+def turning(
+    omega: FloatArray, velocity: FloatArray, rotation: FloatArray | None = None
+) -> MotionBounds:
+    """Return the bounds for a point whose velocity turns with the body at a constant rate.
+
+    Both vectors in world axes, or in those of a body with that rotation at some instant.
+    """
+    rate = length(omega)
+    axis = None
+    if rate > 0.0:
+        axis = omega / rate if rotation is None else rotation @ (omega / rate)
+    return MotionBounds(length(velocity), length(cross(omega, velocity)), rate, 0.0, axis)
 
 
 def bounds_of(path: object, first: float, last: float, point: FloatArray) -> MotionBounds:

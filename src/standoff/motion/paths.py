@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -124,10 +125,10 @@ class ConstantTwist:
         del first, last
         v, omega = self._twist.v, self._twist.omega
         if self._twist.frame == "body":
-            return turning(omega, v + cross(omega, point))
+            return turning(omega, v + cross(omega, point), self._initial.rotation)
         # The origin goes straight, and the point turns about it.
         about = turning(omega, cross(omega, self._initial.rotation @ point))
-        return MotionBounds(about.speed + length(v), about.acceleration, about.angular_speed, 0.0)
+        return replace(about, speed=about.speed + length(v))
 
     def breaks(self, first: float, last: float) -> Sequence[float]:
         """Return no times: the twist never jumps."""

@@ -133,7 +133,8 @@ class PoseSamples:
                 f"the next one is at {float(self.times[index + 1])!r}"
             )
         twist = self._twists[index]
-        return turning(twist.omega, twist.v + cross(twist.omega, point))
+        rotation = self.poses[index].rotation
+        return turning(twist.omega, twist.v + cross(twist.omega, point), rotation)
 
     def breaks(self, first: float, last: float) -> Sequence[float]:
         """Return the times of the samples strictly between `first` and `last` [s]."""

@@ -103,7 +103,7 @@ class Helix:
             x, y, _ = point.tolist()
             away, turn = math.hypot(self._radius + x, y), abs(self._rate)
         speed = math.hypot(self._rate * away, self._climb)
-        return MotionBounds(speed, self._rate**2 * away, turn, 0.0)
+        return MotionBounds(speed, self._rate**2 * away, turn, 0.0, self._axis)
 
     def breaks(self, first: float, last: float) -> Sequence[float]:
         """Return no times: the twist never jumps."""
@@ -193,6 +193,7 @@ class Spiral:
             rate**2 * math.hypot(away, 2.0 * self._growth - y),
             rate if self._turning else 0.0,
             0.0,
+            np.array([0.0, 0.0, 1.0]),
         )
 
     def breaks(self, first: float, last: float) -> Sequence[float]:

@@ -58,6 +58,6 @@ __all__ = [
     "pair_system",
     "record_point",
     "simulate",
-    "witness_set",
     "time_of_impact",
+    "witness_set",
 ]
