@@ -22,7 +22,7 @@ from oracles.loops import BezierCurve
 from oracles.revolved import Egg, RevolvedHull
 from oracles.shape import Affine
 from oracles.superellipsoids import Superellipsoid
-from standoff.geometry import RationalBezier, ellipsoid_octants, ellipsoid_patches
+from standoff.geometry import BezierPatch, RationalBezier, ellipsoid_octants, ellipsoid_patches
 
 Array = NDArray[np.float64]
 Maker = Callable[[Rng, float], Twin]
@@ -139,6 +139,11 @@ def _hull(points: list[list[float]]) -> Twin:
     return Twin(oracle.Polytope(vertices), so.shapes.polytope(vertices))
 
 
+def short_capsule(rng: Rng, length: float) -> Twin:
+    radius = float(rng.uniform(0.3, 1.0))
+    return Twin(oracle.Capsule(radius, length), so.shapes.capsule(radius, length))
+
+
 def cut_corner(rng: Rng, edge: float) -> Twin:
     """A cube with a corner cut off: three edges of about ``edge``, a face of its square."""
     del rng
@@ -165,6 +170,36 @@ def roof(rng: Rng, angle: float) -> Twin:
     walls = [[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (0.0, 1.0)]
     ridge = [[0.0, y, 1.0 + 0.5 * angle] for y in (-1.0, 1.0)]
     return _hull(walls + ridge)
+
+
+def sewn_roof(rng: Rng, angle: float) -> Twin:
+    """The same of ten plane patches: seams between patches in one plane, and a ridge of `angle`."""
+    del rng
+    heights = [1.0, 1.0 + 0.5 * angle, 1.0]
+
+    def corner(i: int, y: float, top: bool) -> list[float]:
+        return [i - 1.0, y, heights[i] if top else 0.0]
+
+    def quad(corners: list[tuple[int, float, bool]]) -> list[list[list[float]]]:
+        first, second, third, fourth = (corner(*place) for place in corners)
+        return [[first, second], [third, fourth]]
+
+    quads = [
+        quad([(j, y, top) for j in (i, i + 1) for y in (-1.0, 1.0)])
+        for i in range(2)
+        for top in (False, True)
+    ]
+    quads += [
+        quad([(j, y, top) for j in (i, i + 1) for top in (False, True)])
+        for i in range(2)
+        for y in (-1.0, 1.0)
+    ]
+    quads += [quad([(end, y, top) for y in (-1.0, 1.0) for top in (False, True)]) for end in (0, 2)]
+    vertices = np.array(quads).reshape(-1, 3)
+    return Twin(
+        oracle.Polytope(np.unique(vertices, axis=0)),
+        so.Body.from_patches([BezierPatch(np.array(quad)) for quad in quads]),
+    )
 
 
 def nearly_ball(rng: Rng, angle: float) -> Twin:
@@ -218,9 +253,11 @@ KINDS: dict[str, Kind] = {
     "shallow cap": Kind(cap, RATIOS, HARDER),
     "slender spindle, gore, egg": Kind(needle, RATIOS, HARDER),
     "short edges: cut corner": Kind(cut_corner, SMALL, SMALLER, SEAMS),
+    "short edges: capsule": Kind(short_capsule, SMALL, SMALLER, np.vstack([AXES, HALVES])),
     "short edges: chisel": Kind(chiselled, SMALL, SMALLER),
     "small rounding": Kind(small_rounding, SMALL, SMALLER, SEAMS),
     "dihedral angle: roof": Kind(roof, SMALL, SMALLER),
+    "dihedral angle: sewn roof": Kind(sewn_roof, SMALL, SMALLER),
     "dihedral angle: lens": Kind(nearly_ball, SMALL, SMALLER, np.vstack([AXES, HALVES])),
     "flat patch, G1": Kind(flat_top, (0.5, 1e-3), (1e-1, 1e-2, 1e-4)),
     "flat points": Kind(box_like, (0.5, 0.1), (0.3, 0.2, 1.8)),

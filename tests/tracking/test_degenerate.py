@@ -10,12 +10,15 @@ import pytest
 
 import standoff as so
 from families.degenerate import KINDS, scaled
-from families.degenerate_queries import Pose, Tally, judge, run
+from families.degenerate_queries import GLOBAL, Pose, Tally, deep, faults, judge, run, sunk
 from families.shapes import Twin
 from oracles import support as oracle
 from oracles.exact_pairs import exact_pair
 
 HOME = np.eye(4)
+contact = pytest.mark.skipif(
+    not hasattr(so.Proximity, "upper_bound"), reason="signed distance is not there yet"
+)
 LEVELS = [(name, level) for name, kind in KINDS.items() for level in kind.levels]
 OPEN = {
     ("thin superellipsoid", 1e4): 0.15,
@@ -186,3 +189,56 @@ def test_missing_twists():
         known = given[0] is not None or given[1] is not None
         assert np.isfinite(answer.distance)
         assert known or np.isnan(answer.rate)
+
+
+@contact
+@pytest.mark.parametrize(("name", "level"), LEVELS)
+def test_overlapping(name, level):
+    """Sunk along a normal by 1e-9 to 1e-1 of the thickness there: never deeper than that."""
+    tally = run(name, level, POSES, np.random.default_rng(), how="sunk")
+    assert not tally.failures
+
+
+@contact
+@pytest.mark.parametrize("predictor", ["feedforward-2", "secant"])
+def test_teleports_into_each_other(predictor):
+    """Apart, sunk and deep by turns, jumping by many sizes between frames."""
+    rng = np.random.default_rng()
+    (a, b), apart = crossing(rng, 10)
+    poses = [pose for far in apart for pose in (far, _sunk(far, rng), deep(a, b, rng))]
+    tracker = so.Tracker(a.body, b.body, predictor=predictor)
+    state = tracker.start(*poses[0].poses)
+    for pose in poses[1:]:
+        state, answer = tracker.step(state, *pose.poses)
+        assert not faults(pose, answer)
+        if answer.certified:
+            assert answer.distance >= pose.low * (1 + GLOBAL) - 1e-9 * pose.size - pose.noise
+        counts = answer.counts
+        assert counts.evaluations <= MOST_EVALUATIONS
+        assert min(counts.restarts, counts.searches, counts.corrections) >= 0
+
+
+def _sunk(pose, rng):
+    answer = so.distance(pose.a.body, pose.b.body, *pose.poses)
+    return sunk(pose, answer.normal, float(np.exp(rng.uniform(np.log(1e-6), np.log(0.1)))))
+
+
+@contact
+@pytest.mark.parametrize("factor", FACTORS)
+def test_wrong_twists_in_penetration(factor):
+    """The pair of `moving_pair` pressed together: a local minimum is kept, whatever the twists."""
+    a, b = so.shapes.lens(1.0, 0.45), so.shapes.ellipsoid(0.6, 0.4, 0.5)
+    tracker = so.Tracker(a, b, dt=1e-2)
+    state = None
+    for frame in range(40):
+        (rotation, place), (v, omega) = moving_pair(frame * 1e-2)
+        pose = (rotation, place * np.array([0.5, 1.0, 1.0]))
+        twists = (np.zeros(3), np.zeros(3)), (factor * v, factor * omega)
+        if state is None:
+            state = tracker.start(HOME, pose, *twists)
+            continue
+        state, answer = tracker.step(state, HOME, pose, *twists)
+        cold = so.distance(a, b, HOME, pose)
+        assert answer.distance < 0
+        assert answer.distance == pytest.approx(cold.distance, rel=GLOBAL)
+        assert np.isfinite([*answer.point_a, *answer.normal]).all()
