@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from standoff.cli.accuracy import run_accuracy
 from standoff.cli.arguments import (
+    AccuracyCommand,
     AutomatonCommand,
     CheckCommand,
     Command,
@@ -42,3 +44,5 @@ def run(command: Command) -> int:
             return run_paper(command)
         case SoakCommand():
             return run_soak(command)
+        case AccuracyCommand():
+            return run_accuracy(command)

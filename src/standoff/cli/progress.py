@@ -51,3 +51,19 @@ def figures_bar(total: int) -> Iterator[Tell]:
             bar.update(task, description=f"making {' and '.join(begun)}" if begun else "writing")
 
         yield show
+
+
+@contextmanager
+def pairs_bar(total: int) -> Iterator[Callable[[str], None]]:
+    """Show which pair of shapes is being measured, where stderr is a terminal."""
+    if not sys.stderr.isatty():
+        yield lambda pair: None
+        return
+    with Bar(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("starting (the very first run compiles)", total=total)
+
+        def show(pair: str) -> None:
+            bar.update(task, description=pair)
+            bar.advance(task)
+
+        yield show

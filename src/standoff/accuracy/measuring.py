@@ -1,0 +1,227 @@
+"""One answer against the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from math import isfinite, nan
+from typing import Any
+
+import numpy as np
+
+from standoff.accuracy.cases import Case, catalogue, draw_cases, pairs
+from standoff.accuracy.least_depth import least_depth
+from standoff.accuracy.peers.answer import Peer, PeerAnswer, Pose
+from standoff.accuracy.solids import Kind, Solid
+from standoff.accuracy.truth import support_sum
+from standoff.tracking import Status, distance
+
+WRONG = 1e-6
+"""An answer whose distance is off by more, over the size, counts as wrong."""
+ELSEWHERE = 0.05
+"""Angle (rad) from the true normal beyond which a depth is another minimum's."""
+PROVEN = 1e-3
+"""What GLOBAL promises: no depth is less than (1 - this) of the reported one."""
+OURS = "Standoff"
+
+
+class Verdict(StrEnum):
+    """What an answer is worth."""
+
+    RIGHT = "right"
+    OTHER = "other minimum"  # right, at another minimum, no deeper than the constructed one
+    DEEPER = "not least"  # a true depth along its normal, where a lesser one exists
+    WRONG = "wrong"
+    NOTHING = "no answer"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One answer: a row of the Parquet file. Errors are over the size, normals in rad.
+
+    ``pose_a`` and ``pose_b`` are 12 numbers each, R row-major and p; ``solid_a`` and ``solid_b``
+    the arguments of the shapes. ``constructed`` tells whether the constructed answer is the least
+    depth. Errors are NaN where the answer is another minimum's.
+    """
+
+    engine: str
+    shape_1: str
+    shape_2: str
+    level: float
+    case: int
+    size: float
+    contact: str
+    stiffness: float
+    constructed: bool
+    truth: float
+    distance: float
+    distance_error: float
+    witness_error: float
+    normal_error: float
+    verdict: str
+    status: str
+    certified: bool | None
+    shape_a: str
+    shape_b: str
+    solid_a: str
+    solid_b: str
+    pose_a: list[float]
+    pose_b: list[float]
+
+
+def own_answer(case: Case) -> tuple[PeerAnswer, Status, bool]:
+    """Return Standoff's cold answer, its status and whether it is certified."""
+    truth = case.truth
+    found = distance(case.a.body, case.b.body, truth.pose_a, truth.pose_b)
+    answer = PeerAnswer(found.distance, found.point_a, found.point_b, found.normal)
+    return answer, found.status, found.certified
+
+
+def errors(case: Case, answer: PeerAnswer) -> tuple[float, float, float]:
+    """Return the errors of distance and witness points, over the size, and of the normal, rad."""
+    truth = case.truth
+    witness = max(
+        float(np.linalg.norm(answer.point_a - truth.point_a)),
+        float(np.linalg.norm(answer.point_b - truth.point_b)),
+    )
+    # by the chord: the arc cosine of a product knows no angle below 1e-8
+    chord = float(np.linalg.norm(answer.normal - truth.normal))
+    turn = 2 * float(np.arcsin(min(1.0, chord / 2))) if isfinite(chord) else nan
+    return abs(answer.distance - truth.distance) / case.size, witness / case.size, turn
+
+
+def judge(case: Case, answer: PeerAnswer, claims_least: bool = False) -> Verdict:
+    """Judge one answer by its distance, and by its normal where that is another minimum's.
+
+    Parameters
+    ----------
+    claims_least : does it promise that no depth is less, but for `PROVEN`?
+    """
+    slack = WRONG * case.size
+    if not isfinite(answer.distance):
+        return Verdict.NOTHING
+    close = abs(answer.distance - case.truth.distance) <= slack
+    if case.level > 0 or (case.constructed and close):
+        return Verdict.RIGHT if close and answer.distance * case.level > 0 else Verdict.WRONG
+    # a reported normal tells which minimum is meant; without one any true depth will do
+    if not close and np.isfinite(answer.normal).all() and not is_elsewhere(case, answer):
+        return Verdict.WRONG
+    depth, least = -answer.distance, case.least
+    if depth < least - slack:
+        least = least_depth(case.a, case.b, case.truth, case.size)[1]
+    if depth < least - slack:
+        return Verdict.WRONG
+    if depth <= least + slack:
+        return Verdict.OTHER
+    allowed = least * (1 + 2 * PROVEN) + slack
+    return Verdict.WRONG if claims_least and depth > allowed else Verdict.DEEPER
+
+
+def is_elsewhere(case: Case, answer: PeerAnswer) -> bool:
+    """Is a depth that of another stationary point: its normal another, and its depth true?"""
+    if case.level > 0 or not (case.a.bounded and case.b.bounded):
+        return False
+    if not errors(case, answer)[2] > ELSEWHERE:
+        return False
+    along = float(support_sum(case.a, case.b, case.truth, answer.normal[None])[0])
+    return abs(along + answer.distance) <= WRONG * case.size
+
+
+def _numbers(pose: Pose) -> list[float]:
+    return [float(x) for x in (*np.ravel(pose[0]), *np.ravel(pose[1]))]
+
+
+def _described(solid: Solid) -> str:
+    values = {name: np.asarray(value).tolist() for name, value in solid.values.items()}
+    return repr(values)
+
+
+def _row(
+    case: Case,
+    engine: str,
+    answer: PeerAnswer,
+    status: str = "",
+    certified: bool | None = None,
+    claims_least: bool = False,
+) -> Row:
+    verdict = judge(case, answer, claims_least)
+    compared = verdict is not Verdict.NOTHING and not is_elsewhere(case, answer)
+    found = errors(case, answer) if compared else (nan, nan, nan)
+    truth = case.truth
+    return Row(
+        engine,
+        *case.kinds,
+        case.level,
+        case.number,
+        case.size,
+        truth.contact,
+        truth.stiffness,
+        case.constructed,
+        truth.distance,
+        answer.distance,
+        *found,
+        str(verdict),
+        status,
+        certified,
+        case.a.kind.name,
+        case.b.kind.name,
+        _described(case.a),
+        _described(case.b),
+        _numbers(truth.pose_a),
+        _numbers(truth.pose_b),
+    )
+
+
+def measure_case(case: Case) -> Row:
+    """Ask Standoff."""
+    answer, status, certified = own_answer(case)
+    return _row(case, OURS, answer, status.name, certified, claims_least=certified)
+
+
+def measure_peer(case: Case, peer: Peer) -> Row | None:
+    """Ask a peer; None where it has no such pair."""
+    if case.level < 0 and not peer.overlaps:
+        return None
+    query = peer.query(case.a, case.b)
+    if query is None:
+        return None
+    try:
+        answer = query(case.truth.pose_a, case.truth.pose_b)
+    except (RuntimeError, ValueError, ArithmeticError):
+        nothing = np.full(3, nan)
+        answer = PeerAnswer(nan, nothing, nothing, nothing)
+    return _row(case, peer.name, answer)
+
+
+Tell = Callable[[str], None]
+
+
+def measure(
+    kinds: Sequence[Kind],
+    count: int,
+    seed: int,
+    peers: Sequence[Peer] = (),
+    tell: Tell = lambda pair: None,
+) -> Iterator[Row]:
+    """Measure all pairs of some kinds, ``count`` cases at each gap and depth.
+
+    Parameters
+    ----------
+    tell : is told each pair before it is measured.
+    """
+    solids = catalogue(kinds, seed)
+    for pair in pairs(kinds):
+        tell(f"{pair[0].name} – {pair[1].name}")
+        for case in draw_cases(pair, solids, count, seed):
+            yield measure_case(case)
+            for peer in peers:
+                row = measure_peer(case, peer)
+                if row is not None:
+                    yield row
+
+
+def columns(rows: Sequence[Row]) -> dict[str, list[Any]]:
+    """Return the rows by columns."""
+    records = [asdict(row) for row in rows]
+    return {name: [record[name] for record in records] for name in Row.__annotations__}

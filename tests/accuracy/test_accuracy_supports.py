@@ -1,0 +1,99 @@
+"""The report's supports agree with the oracles', and its flats lie on the boundary."""
+
+import numpy as np
+import pytest
+
+from oracles import support as oracle
+from oracles.between_poles import Gore, Spindle
+from oracles.revolved import Egg
+from oracles.rounded_polytopes import RoundedPolytope
+from oracles.superellipsoids import Superellipsoid
+from standoff.accuracy.solids import DIRECTIONS, KINDS, Solid
+from standoff.accuracy.supports import extended
+
+TWINS = {
+    "point": oracle.Point,
+    "segment": oracle.Segment,
+    "sphere": oracle.Sphere,
+    "capsule": oracle.Capsule,
+    "ellipsoid": oracle.Ellipsoid,
+    "NURBS ellipsoid": oracle.Ellipsoid,
+    "superellipsoid": Superellipsoid,
+    "creased superellipsoid": Superellipsoid,
+    "egg": Egg,
+    "cylinder": oracle.Cylinder,
+    "cone": oracle.Cone,
+    "cap": oracle.Cap,
+    "lens": oracle.Lens,
+    "spindle": Spindle,
+    "gore": Gore,
+    "box": oracle.Box,
+    "rounded box": oracle.Box,
+    "polytope": oracle.Polytope,
+    "rounded polytope": RoundedPolytope,
+}
+"""The torus hull and the half-space have no twin; they are tested by themselves."""
+
+WITHOUT_TWIN = {"torus hull", "half-space"}
+EVEN = DIRECTIONS[::7]
+
+
+def test_every_kind_has_a_twin() -> None:
+    assert {kind.name for kind in KINDS} == set(TWINS) | WITHOUT_TWIN
+
+
+@pytest.mark.parametrize("name", TWINS)
+def test_supports_agree_with_the_oracles(name, solids) -> None:
+    for solid in solids[name]:
+        twin = TWINS[name](*solid.values.values())
+        expected = twin.support_many(EVEN)[0]
+        np.testing.assert_allclose(solid.support.heights(EVEN), expected, atol=4e-15)
+        longer = solid.support.heights(extended(EVEN[:20]))
+        np.testing.assert_allclose(longer.astype(float), expected[:20], atol=4e-15)
+
+
+def test_torus_hull_is_that_of_sampled_points(solids) -> None:
+    t = np.linspace(0, 2 * np.pi, 721)
+    for solid in solids["torus hull"]:
+        ring, width, height = solid.values.values()
+        across = np.hypot(EVEN[:, 0], EVEN[:, 1])
+        profile = across[:, None] * (ring + width * np.cos(t)) + EVEN[:, 2:] * height * np.sin(t)
+        np.testing.assert_allclose(solid.support.heights(EVEN), profile.max(axis=1), rtol=2e-5)
+
+
+def test_half_space_is_supported_along_z_only(solids) -> None:
+    (solid,) = solids["half-space"]
+    heights = solid.support.points(np.array([[0, 0, 2.0], [0.1, 0, 1.0]]))
+    assert heights[0].tolist() == [0, 0, 0]
+    assert np.isinf(heights[1]).all()
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+def test_flats_touch_their_supporting_planes(kind, solids) -> None:
+    rng = np.random.default_rng()
+    for solid in solids[kind.name]:
+        for flat in solid.support.flats(rng):
+            for t in (flat.start, flat.start + 1e-3):
+                normal, ends = flat.at(extended(t))
+                assert abs(float(normal @ normal) - 1) < 1e-18
+                assert len(ends) == 2 if flat.turns else len(ends) > 2
+                np.testing.assert_allclose(((ends - ends[0]) @ normal).astype(float), 0, atol=1e-15)
+                if solid.bounded:
+                    height = solid.support.heights(normal[None].astype(float))[0]
+                    assert float(ends[0] @ normal) == pytest.approx(height, abs=4e-15)
+
+
+@pytest.mark.parametrize(
+    ("name", "count"), [("box", 6), ("polytope", None), ("point", 0), ("rounded polytope", None)]
+)
+def test_faces_of_hulls(name, count, solids) -> None:
+    solid: Solid = solids[name][0]
+    hull = getattr(solid.support, "core", solid.support)
+    if name == "point":
+        assert not hull.flats(np.random.default_rng())
+        return
+    corners = sum(len(each) for _, each in hull.faces)
+    vertices, faces = len(hull.vertices), len(hull.faces)
+    # Euler: every edge has two faces, and a face as many edges as corners
+    assert vertices - corners / 2 + faces == 2
+    assert count is None or faces == count
