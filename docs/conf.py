@@ -19,7 +19,8 @@ author = "The Standoff authors"
 version = release = standoff.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "paper"]
-exclude_patterns = ["_extensions"]
+# the tables of a report are included by its page
+exclude_patterns = ["_extensions", "accuracy-report"]
 
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3

@@ -101,8 +101,11 @@ def _versions(peers: tuple[Peer, ...]) -> dict[str, str]:
 def _measure(
     kinds: tuple[Kind, ...], command: AccuracyCommand, peers: tuple[Peer, ...]
 ) -> list[Row]:
-    with pairs_bar(len(kinds) * (len(kinds) + 1) // 2) as tell:
-        return list(measure(kinds, command.cases, command.seed, peers, tell))
+    try:
+        with pairs_bar(len(kinds) * (len(kinds) + 1) // 2) as tell:
+            return list(measure(kinds, command.cases, command.seed, peers, tell))
+    except ImportError as error:
+        raise CommandError(str(error)) from error
 
 
 def _write(folder: Path, run: report.Run) -> list[Path]:

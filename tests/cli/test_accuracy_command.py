@@ -1,0 +1,100 @@
+"""``standoff accuracy``: what it prints, writes and refuses, and its exit codes."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pyarrow import parquet
+
+from standoff.accuracy import measuring
+from standoff.accuracy.measuring import Row
+
+Standoff = Callable[..., Any]
+PAIRS = 3
+LEVELS = 6
+
+
+def test_files_and_tables(standoff: Standoff, tmp_path: Path) -> None:
+    folder = tmp_path / "new" / "folder"
+    ended = standoff("accuracy", "sphere", "box", "--cases", 2, "--peers", "-o", folder)
+    assert ended.err == ""
+    names = [path.name for path in sorted(folder.iterdir())]
+    assert names == ["accuracy.md", "accuracy.parquet", "accuracy.png"]
+    assert all(f"wrote {folder / name}" in ended.out for name in names)
+    assert "sphere – box" in ended.out
+    table = parquet.read_table(folder / "accuracy.parquet")
+    assert table.column_names == list(Row.__annotations__)
+    engines = ["Standoff", "Coal, default", "Coal, tight", "MuJoCo, default", "MuJoCo, tight"]
+    assert set(table["engine"].to_pylist()) == {*engines, "python-fcl"}
+    assert table.num_rows == PAIRS * LEVELS * 2 * 6
+    assert table.schema.metadata[b"seed"] == b"0"
+    assert json.loads(table.schema.metadata[b"versions"])["coal"].startswith("3.")
+    page = (folder / "accuracy.md").read_text("utf-8")
+    assert page.startswith("Made by `standoff accuracy 'sphere' 'box' --cases 2 --seed 0 --peers`")
+    assert (folder / "accuracy.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_json_and_the_same_cases_again(standoff: Standoff) -> None:
+    runs = [
+        json.loads(standoff("accuracy", *shapes, "--cases", 1, "--seed", 7, "--json").out)
+        for shapes in (["cone", "lens"], ["lens", "cone"], ["sphere", "lens", "cone"])
+    ]
+
+    def found(run: dict[str, Any]) -> list[dict[str, Any]]:
+        return [entry for entry in run["pairs"] if entry["pair"] == "cone – lens"]
+
+    assert found(runs[0])
+    assert found(runs[0]) == found(runs[1]) == found(runs[2])
+    assert runs[0]["seed"] == 7
+    levels = {entry["level"] for entry in runs[0]["engines"]}
+    assert levels == {1e-6, 1e-3, 1.0, -1e-6, -1e-3, -1e-1}
+    other = json.loads(standoff("accuracy", "cone", "lens", "--cases", 1, "--json").out)
+    assert found(other) != found(runs[0])
+
+
+def test_a_wrong_answer_is_told_by_the_exit_code(
+    standoff: Standoff, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = measuring.own_answer
+
+    def off(case: measuring.Case) -> Any:
+        answer, status, certified = own(case)
+        return replace(answer, distance=case.truth.distance + 2e-6 * case.size), status, certified
+
+    monkeypatch.setattr(measuring, "own_answer", off)
+    assert standoff("accuracy", "sphere", "--cases", 1).code == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["ball"], "no shape 'ball'; there are: point, segment, sphere, "),
+        (["--cases", "0"], "--cases 0: give 1 or more"),
+        (["--seed", "-1"], "--seed -1: give 0 or more"),
+        (["sphere", "-o", "{tmp}/file/below"], "the folder cannot be made"),
+    ],
+)
+def test_bad_input_is_named(
+    standoff: Standoff, tmp_path: Path, arguments: list[str], complaint: str
+) -> None:
+    (tmp_path / "file").touch()
+    ended = standoff("accuracy", *(word.replace("{tmp}", str(tmp_path)) for word in arguments))
+    assert ended.code == 2
+    assert complaint in ended.err
+    assert ended.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("package", ["coal", "OCP.BRepExtrema"])
+def test_a_missing_peer_is_named_with_its_extra(
+    standoff: Standoff, monkeypatch: pytest.MonkeyPatch, package: str
+) -> None:
+    monkeypatch.setitem(sys.modules, package, None)
+    ended = standoff("accuracy", "sphere", "NURBS ellipsoid", "--cases", 1, "--peers")
+    assert ended.code == 2
+    assert "standoff[peers]" in ended.err
