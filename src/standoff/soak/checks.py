@@ -42,9 +42,7 @@ flat in n, so that it is good to the square of this."""
 PROVEN = 1e-3
 """GLOBAL says that no depth is less than (1 - PROVEN) of the one that is reported."""
 
-APART = frozenset({Status.CONVERGED.value})
 LOCAL, GLOBAL = getattr(K, "LOCAL", 4), getattr(K, "GLOBAL", 5)
-DEEP = frozenset({LOCAL, GLOBAL})
 
 BLURRED = frozenset(
     {"superellipsoid", "creased superellipsoid", "egg", "spindle", "gore"}
@@ -60,6 +58,16 @@ class Fault(NamedTuple):
     what: str
     value: float
     allowed: float
+
+
+def apart_of(status: Array) -> NDArray[np.bool_]:
+    """Return which statuses, (n,), say that the bodies are certified apart."""
+    return np.asarray(status == Status.CONVERGED.value)
+
+
+def deep_of(status: Array) -> NDArray[np.bool_]:
+    """Return which statuses, (n,), tell a depth."""
+    return np.asarray((status == LOCAL) | (status == GLOBAL))
 
 
 class Judged(NamedTuple):
@@ -139,9 +147,6 @@ class _Checks:
         self.slack = a.body.reals[L.SLACK] + b.body.reals[L.SLACK]
         self.faults: list[Fault] = []
 
-    def among(self, statuses: frozenset[int]) -> NDArray[np.bool_]:
-        return np.isin(self.status, list(statuses))
-
     def expect(
         self,
         what: str,
@@ -192,7 +197,7 @@ class _Checks:
         self.expect("point_a is off A", outside(self.a, self.frames.poses_a, x_a, n), allowed)
         self.expect("point_b is off B", outside(self.b, self.frames.poses_b, x_b, -n), allowed)
         between = x_b - x_a
-        apart, deep = self.among(APART), self.among(DEEP)
+        apart, deep = apart_of(self.status), deep_of(self.status)
         # the swept balls' points lie along n, which is not quite the cores' direction
         radii = self.a.body.radius + self.b.body.radius
         turned = radii * np.abs(self.distance - self.separation) / np.maximum(self.distance, TINY)
@@ -208,7 +213,7 @@ class _Checks:
 
     def certified(self, tolerance: float) -> None:
         """Apart: the normal separates by the distance. In penetration: the depth parts them."""
-        apart, deep = self.among(APART), self.among(DEEP)
+        apart, deep = apart_of(self.status), deep_of(self.status)
         blur = BLUR if {self.a.shape.kind, self.b.shape.kind} & BLURRED else 0.0
         allowed = (tolerance + blur) * self.size + self.slack + self.noise
         short = self.distance - self.separation

@@ -11,7 +11,18 @@ from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import tracker as kernels
 from standoff.soak.cases import Case
-from standoff.soak.checks import APART, DEEP, GLOBAL, Fault, Judged, judge, search
+from standoff.soak.checks import (
+    GLOBAL,
+    LOCAL,
+    PROVEN,
+    ROUNDOFF,
+    Fault,
+    Judged,
+    apart_of,
+    deep_of,
+    judge,
+    search,
+)
 from standoff.soak.motions import Frames
 from standoff.soak.shapes import Made
 from standoff.soak.tally import Tally
@@ -128,7 +139,7 @@ def start(
 
 
 def _to_search(rows: Array) -> Numbers:
-    deep = np.flatnonzero(np.isin(rows[:, K.STATUS], list(DEEP)))
+    deep = np.flatnonzero(deep_of(rows[:, K.STATUS]))
     return np.asarray(deep[::SEARCH_EVERY])
 
 
@@ -139,7 +150,7 @@ def count(tally: Tally, case: Case, rows: Array, judged: Judged) -> None:
     tally.count("frames", len(rows))
     for one in Status:
         tally.count(one.name, (status == one.value).sum())
-    apart, deep = np.isin(status, list(APART)), np.isin(status, list(DEEP))
+    apart, deep = apart_of(status), deep_of(status)
     tally.count("certified", (apart | (status == GLOBAL)).sum())
     counts = rows[:, K.OUT_COUNTS :]
     tally.count("restarted", (counts[1:, N.RESTARTS] > 0.0).sum())
@@ -185,17 +196,36 @@ def compare(
     tolerance = float(cold_tracker.options[K.O_TOLERANCE])
     alone = judge(a, b, some, cold, tolerance)
     status = cold[:, K.STATUS].astype(int)
-    apart, deep = np.isin(status, list(APART)), np.isin(status, list(DEEP))
     tally.count("cold queries", len(numbers))
-    tally.count("cold certified", (apart | (status == GLOBAL)).sum())
+    tally.count("cold certified", (apart_of(status) | (status == GLOBAL)).sum())
     tally.note("evaluations in a cold query", cold[:, K.OUT_COUNTS + N.EVALUATIONS].max(initial=0))
-    warm = rows[numbers]
-    faults = list(alone.faults)
-    opposed = deep & np.isin(warm[:, K.STATUS], list(APART))
-    opposed |= apart & np.isin(warm[:, K.STATUS], list(DEEP))
-    gap = np.where(opposed, np.abs(cold[:, K.DISTANCE] - warm[:, K.DISTANCE]), 0.0)
-    limit = (tolerance + 1e-12) * alone.size
-    if (gap > limit).any():
-        k = int((gap > limit).argmax())
-        faults.append(Fault(k, "apart or not: cold and tracked differ", gap[k], limit[k]))
+    faults = alone.faults + _differing(tally, rows[numbers], cold, alone, tolerance)
     return [fault._replace(frame=int(numbers[fault.frame])) for fault in faults]
+
+
+def _differing(
+    tally: Tally, warm: Array, cold: Array, judged: Judged, tolerance: float
+) -> list[Fault]:
+    """Return where tracked and cold answers contradict each other."""
+    opposed = deep_of(cold[:, K.STATUS]) & apart_of(warm[:, K.STATUS])
+    opposed |= apart_of(cold[:, K.STATUS]) & deep_of(warm[:, K.STATUS])
+    gap = np.where(opposed, np.abs(cold[:, K.DISTANCE] - warm[:, K.DISTANCE]), 0.0)
+    limit = (tolerance + ROUNDOFF) * judged.size
+    faults = _first("apart or not: cold and tracked differ", gap, limit)
+    both = deep_of(cold[:, K.STATUS]) & deep_of(warm[:, K.STATUS])
+    deeper = np.where(both, cold[:, K.DISTANCE] - warm[:, K.DISTANCE], 0.0)
+    limit = PROVEN * np.abs(np.minimum(cold[:, K.DISTANCE], warm[:, K.DISTANCE])) + limit
+    proven = np.where(warm[:, K.STATUS] == GLOBAL, deeper, 0.0)
+    faults += _first("GLOBAL, but a cold query has a lesser depth", proven, limit)
+    proven = np.where(cold[:, K.STATUS] == GLOBAL, -deeper, 0.0)
+    faults += _first("a cold GLOBAL, but the tracked depth is less", proven, limit)
+    local = warm[:, K.STATUS] == LOCAL
+    tally.count("LOCAL compared with cold", (both & local).sum())
+    tally.count("LOCAL deeper than cold", (local & (deeper > limit)).sum())
+    return faults
+
+
+def _first(what: str, value: Array, limit: Array) -> list[Fault]:
+    wrong = value > limit
+    k = int(wrong.argmax()) if len(wrong) else 0
+    return [Fault(k, what, float(value[k]), float(limit[k]))] if wrong.any() else []
