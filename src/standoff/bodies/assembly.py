@@ -253,6 +253,11 @@ def _planar_geometry(
         for vertex, t in ((edge.first, c.first), (edge.last, c.last)):
             if vertex is not None:
                 tangent = c.jet(t)[1]
+                if not tangent.any():
+                    raise BodyError(
+                        f"Planar loop: edge {len(right) - 1} has no tangent at its vertex {vertex} "
+                        f"{vertices[vertex][:2]}; leave out the doubled control point."
+                    )
                 sign = 1.0 if right[-1] else -1.0
                 normal = sign * np.array([tangent[1], -tangent[0], 0.0])
                 cones[vertex].append(normal / np.linalg.norm(normal))

@@ -17,9 +17,18 @@ from standoff.bodies.finishing import Packed, finish
 from standoff.bodies.packing import Ints
 from standoff.bodies.report import BodyReport
 from standoff.bodies.sewing import MAX_SPREAD, sew
-from standoff.bodies.topology import Edge, Face, check_parts
+from standoff.bodies.topology import BodyError, Edge, Face, check_parts, parts_of
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, finite, matrix3, not_negative, positive, vector3
+from standoff.geometry.validation import (
+    LEAST,
+    Array,
+    finite,
+    matrix3,
+    not_negative,
+    positive,
+    vector3,
+)
+from standoff.real_numbers import shape_of
 
 # A linear map is a similarity (keeps spheres) when its singular values agree to this ratio.
 SIMILARITY_TOLERANCE = 1e-12
@@ -100,15 +109,19 @@ class Body:
             NaN, infinite, negative or wrongly shaped numbers.
         """
         points = np.zeros((0, 3))
-        if np.size(vertices):
+        if shape_of(vertices) not in ((0,), (0, 3)):
             points = finite(vertices, "vertices", (-1, 3))
         radius = not_negative(radius, "radius")
-        edges, faces = tuple(edges), tuple(faces)
+        edges, faces = parts_of(edges, "edges"), parts_of(faces, "faces")
         check_parts(points, edges, faces, dimension)
         spots = [points] + [edge_points(e) for e in edges]
         cloud = np.concatenate(spots)
         bounded = any(f.loop or len(f.charts) > 1 for f in faces) or not faces
         rough = float(np.linalg.norm(np.ptp(cloud, axis=0))) if len(cloud) else 1.0
+        if len(cloud) > 1 and rough < LEAST:
+            raise BodyError(
+                f"The body's extent is {rough:.3g}: below {LEAST:g}; choose a smaller unit."
+            )
         tolerance = None if tolerance is None else positive(tolerance, "tolerance")
         if convexity_tolerance is not None:
             convexity_tolerance = not_negative(convexity_tolerance, "convexity_tolerance")
@@ -295,7 +308,7 @@ def _body(name: str, radius: float, packed: Packed) -> Body:
 def _affine(value: Any) -> tuple[Array, Array]:
     if isinstance(value, tuple) and len(value) == 2:
         return matrix3(value[0], "affine map"), vector3(value[1], "affine shift")
-    if np.shape(value) == (4, 4):
+    if shape_of(value) == (4, 4):
         array = finite(value, "affine map", (4, 4))
         if not np.array_equal(array[3], [0.0, 0.0, 0.0, 1.0]):
             raise ValueError(f"The affine map's last row is {array[3]}; it must be 0 0 0 1.")

@@ -89,7 +89,7 @@ def convexity(
             )
         total += concave if concave > TURN_ROUNDOFF else 0.0
     # a path that turns by T in all is longer than its chord by less than a factor 1 + T
-    defect = total * (1.0 + total) * size
+    defect = total * (1.0 + total) * size if total > 0.0 else 0.0  # a half-space has no size
     if defect > tolerance:
         raise BodyError(
             f"Not convex: dents and concave edges add up to a defect of {defect:.3g}, more than "

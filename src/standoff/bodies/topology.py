@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,8 +10,9 @@ import numpy as np
 
 from standoff.geometry.curves import Curve, Line
 from standoff.geometry.pcurves import Pcurve
-from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
+from standoff.geometry.surfaces import Plane, Surface
+from standoff.geometry.validation import Array, finite
+from standoff.real_numbers import shown
 
 SIDES = ("v0", "v1", "u0", "u1")
 """Sides of a patch, in the order of the kernels' SIDE_ numbers."""
@@ -97,17 +98,11 @@ def check_parts(
     for name, parts, kind in (("Edge", edges, Edge), ("Face", faces, Face)):
         for k, part in enumerate(parts):
             if not isinstance(part, kind):
-                raise BodyError(f"{name} {k} is {part!r}: make one with so.{name}.")
+                raise BodyError(f"{name} {k} is {shown(part)}: make one with so.{name}.")
+    for k, edge in enumerate(edges):
+        _check_edge(k, edge, len(vertices))
     for k, face in enumerate(faces):
-        if not face.charts or not all(isinstance(s, Surface) for s in face.charts):
-            raise BodyError(f"Face {k} has the charts {face.charts!r}: give at least one Surface.")
-        if face.pcurves and (len(face.pcurves) != len(face.loop) or len(face.charts) != 1):
-            raise BodyError(
-                f"Face {k} has {len(face.pcurves)} pcurves, {len(face.loop)} edges and "
-                f"{len(face.charts)} charts: give a pcurve (or None) an edge, and one chart."
-            )
-        if bad := [a.side for a in face.apexes if a.side not in SIDES]:
-            raise BodyError(f"Face {k} has an apex on side {bad[0]!r}: give one of {SIDES}.")
+        _check_face(k, face, len(vertices))
     if not (len(vertices) or edges or faces):
         raise BodyError("A body needs at least one vertex, edge or face.")
     used = {v for e in edges for v in (e.first, e.last) if v is not None}
@@ -115,6 +110,8 @@ def check_parts(
     loose = sorted(set(range(len(vertices))) - used)
     if loose and not (len(vertices) == 1 and not edges and not faces):
         raise BodyError(f"Vertices {loose} belong to no edge: leave them out or join them.")
+    for k, face in enumerate(faces):
+        _check_bounded(k, face, alone=len(faces) == 1)
     if dimension == 2:
         _check_planar(vertices, edges, faces)
     elif edges and not faces and not (len(edges) == 1 and isinstance(edges[0].curve, Line)):
@@ -122,6 +119,85 @@ def check_parts(
             f"{len(edges)} edges and no face: in space only one straight edge is a body (a "
             "segment); for a planar loop give dimension=2."
         )
+
+
+def parts_of(parts: Any, name: str) -> tuple[Any, ...]:
+    """`parts` as a tuple; TypeError where they are no sequence."""
+    if isinstance(parts, str | bytes | dict) or not isinstance(parts, Iterable):
+        raise TypeError(f"{name} = {shown(parts)}: give a list.")
+    return tuple(parts)
+
+
+def _is_number_of(value: Any, count: int) -> bool:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        return False
+    return 0 <= int(value) < count
+
+
+def _is_pair_of_integers(value: Any) -> bool:
+    if not isinstance(value, tuple | list) or len(value) != 2:
+        return False
+    return all(isinstance(x, int | np.integer) for x in value)
+
+
+def _check_edge(k: int, edge: Edge, vertices: int) -> None:
+    if not isinstance(edge.curve, Curve):
+        raise BodyError(f"Edge {k} has the curve {shown(edge.curve)}: give a Curve.")
+    for vertex in (edge.first, edge.last):
+        if vertex is not None and not _is_number_of(vertex, vertices):
+            raise BodyError(
+                f"Edge {k} names vertex {shown(vertex)}; there are {vertices}, numbered from 0: "
+                "give one of them, or None at both ends of a closed curve."
+            )
+
+
+def _check_face(k: int, face: Face, vertices: int) -> None:
+    charts: Any = face.charts  # whatever a caller gave
+    listed = isinstance(charts, tuple | list) and len(charts) > 0
+    if not listed or not all(isinstance(s, Surface) for s in charts):
+        raise BodyError(f"Face {k} has the charts {shown(charts)}: give at least one Surface.")
+    for name, parts in (("loop", face.loop), ("apexes", face.apexes), ("pcurves", face.pcurves)):
+        if not isinstance(parts, tuple | list):
+            raise BodyError(f"Face {k} has {name} = {shown(parts)}: give a tuple.")
+    for entry in face.loop:
+        if not _is_pair_of_integers(entry):
+            raise BodyError(
+                f"Face {k} has {shown(entry)} in its loop: give pairs of the number of an edge and "
+                "+1 or -1."
+            )
+    if face.pcurves and (len(face.pcurves) != len(face.loop) or len(face.charts) != 1):
+        raise BodyError(
+            f"Face {k} has {len(face.pcurves)} pcurves, {len(face.loop)} edges and "
+            f"{len(face.charts)} charts: give a pcurve (or None) an edge, and one chart."
+        )
+    for apex in face.apexes:
+        _check_apex(k, apex, vertices)
+
+
+def _check_bounded(k: int, face: Face, alone: bool) -> None:
+    """Only a half-space has a face without end."""
+    if face.loop or face.apexes or len(face.charts) > 1:
+        return
+    if not (alone and isinstance(face.charts[0], Plane)):
+        raise BodyError(
+            f"Face {k}, a {type(face.charts[0]).__name__}, has no loop of edges: give its edges, "
+            "or all charts of a closed surface; only one plane alone is a body, a half-space."
+        )
+
+
+def _check_apex(k: int, apex: Any, vertices: int) -> None:
+    if not isinstance(apex, Apex):
+        raise BodyError(f"Face {k} has the apex {shown(apex)}: make one with so.Apex.")
+    if apex.side not in SIDES:
+        raise BodyError(f"Face {k} has an apex on side {shown(apex.side)}: give one of {SIDES}.")
+    if not _is_number_of(apex.vertex, vertices):
+        raise BodyError(
+            f"Face {k} has an apex at vertex {shown(apex.vertex)}: give a whole number below "
+            f"{vertices}, the number of vertices."
+        )
+    _, lo, hi = finite((apex.level, apex.lo, apex.hi), f"Face {k}: apex level, lo, hi", (3,))
+    if not lo < hi:
+        raise BodyError(f"Face {k} has an apex from {lo} to {hi}: give lo < hi.")
 
 
 def _check_planar(vertices: Array, edges: Sequence[Edge], faces: Sequence[Face]) -> None:

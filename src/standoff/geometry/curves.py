@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from standoff.geometry.validation import Array, finite, vector3
+from standoff.geometry.validation import Array, check_alike, finite, vector3
 from standoff.kernels import layout as L
 from standoff.kernels.entries import curve_jet
+from standoff.real_numbers import shape_of
 
 if TYPE_CHECKING:
     from standoff.geometry.pcurves import Pcurve
@@ -126,7 +127,7 @@ class RationalBezier(Curve):
     kind = L.BEZIER
 
     def __init__(self, control_points: Any, weights: Any = None) -> None:
-        if np.ndim(control_points) == 2 and np.shape(control_points)[1] == 2:
+        if (shape_of(control_points) or ())[1:] == (2,):
             flat = finite(control_points, "control_points", (-1, 2))
             control_points = np.column_stack([flat, np.zeros(len(flat))])
         points = finite(control_points, "control_points", (-1, 3))
@@ -135,6 +136,7 @@ class RationalBezier(Curve):
         w = finite(np.ones(len(points)) if weights is None else weights, "weights", (len(points),))
         if (w <= 0.0).any():
             raise ValueError(f"Bezier weights must be positive: {w}")
+        check_alike(w)
         if np.ptp(points, axis=0).max() == 0.0:
             raise ValueError(f"Bezier curve of a single point {points[0]}: spread its points.")
         for a, b, end in ((points[0], points[1], "first"), (points[-1], points[-2], "last")):
@@ -159,8 +161,7 @@ class RationalBezier(Curve):
 
 def _planar(point: Any) -> Any:
     """A 2-D point gets z = 0."""
-    array = np.asarray(point)
-    return np.append(array, 0.0) if array.shape == (2,) else point
+    return [*point, 0.0] if shape_of(point) == (2,) else point
 
 
 def fill_curve(curve: Curve, data: Array, first: float, last: float) -> None:

@@ -24,7 +24,7 @@ from standoff.geometry.knots import (
     refine,
 )
 from standoff.geometry.surfaces import Domain, Surface, checked_domain
-from standoff.geometry.validation import Array, finite
+from standoff.geometry.validation import Array, check_alike, finite
 from standoff.kernels import layout as L
 
 
@@ -255,6 +255,7 @@ def checked_weights(weights: Any, points: Array) -> Array:
         at = tuple(int(i) for i in np.argwhere(w <= 0.0)[0])
         place = at[0] if len(at) == 1 else at
         raise ValueError(f"weights[{place}] = {w[at]}: every weight must be positive.")
+    check_alike(w)
     if np.ptp(points.reshape(-1, points.shape[-1]), axis=0).max() == 0.0:
         raise ValueError(
             f"All control points are {points.reshape(-1, points.shape[-1])[0]}: spread them; a "

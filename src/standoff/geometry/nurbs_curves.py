@@ -13,6 +13,7 @@ from standoff.geometry.knots import KnotVector, bezier_spans, elevate_knots, kno
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.validation import Array, finite
 from standoff.kernels import layout as L
+from standoff.real_numbers import shape_of
 
 # Ends closer than this fraction of the curve's extent, with tangents parallel to this sine, are
 # one smooth joint: roundoff of control points computed by trigonometry.
@@ -43,7 +44,7 @@ class NurbsCurve(Curve):
     blocks: Array
 
     def __init__(self, control_points: Any, knots: Any, weights: Any = None) -> None:
-        if np.ndim(control_points) == 2 and np.shape(control_points)[1] == 2:
+        if (shape_of(control_points) or ())[1:] == (2,):
             flat = finite(control_points, "control_points", (-1, 2))
             control_points = np.column_stack([flat, np.zeros(len(flat))])
         points = finite(control_points, "control_points", (-1, 3))

@@ -15,16 +15,22 @@ import numpy as np
 from standoff.geometry.validation import Array, finite, matrix3, vector3
 from standoff.kernels import layout as L
 from standoff.kernels.entries import surface_jet
+from standoff.real_numbers import real_array, shape_of, shown
 
 Domain = tuple[float, float, float, float]
+# Columns of a unit length whose volume is below this are taken as dependent.
+SINGULAR = 1e-30
 UNBOUNDED: Domain = (-np.inf, np.inf, -np.inf, np.inf)
 
 
 def checked_domain(domain: Any, name: str) -> Domain:
     """(u0, u1, v0, v1) as floats; raises ValueError where it is empty or not a number."""
-    if np.shape(domain) != (4,):
-        raise ValueError(f"{name}.domain = {domain!r}: give (u0, u1, v0, v1).")
-    u0, u1, v0, v1 = (float(x) for x in domain)
+    if shape_of(domain) != (4,):
+        raise ValueError(f"{name}.domain = {shown(domain)}: give (u0, u1, v0, v1).")
+    try:
+        u0, u1, v0, v1 = (float(x) for x in real_array(domain))
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}.domain = {shown(domain)} is not numeric: {error}.") from error
     if not (u0 < u1 and v0 < v1):
         raise ValueError(f"{name}.domain = {(u0, u1, v0, v1)} is empty: give u0 < u1, v0 < v1.")
     return u0, u1, v0, v1
@@ -52,8 +58,9 @@ class Surface(ABC):
         object.__setattr__(self, "domain", checked_domain(self.domain, type(self).__name__))
         linear = matrix3(self.linear, f"{type(self).__name__}.linear")
         shift = vector3(self.shift, f"{type(self).__name__}.shift")
-        scale = np.abs(linear).max()
-        if scale == 0.0 or abs(np.linalg.det(linear / scale)) < 1e-30:
+        # by columns, which may have different units: a cylinder's are its radius and a length
+        lengths = np.abs(linear).max(axis=0)
+        if lengths.min() == 0.0 or abs(np.linalg.det(linear / lengths)) < SINGULAR:
             raise ValueError(
                 f"{type(self).__name__}.linear is singular:\n{linear}\n"
                 "Give three independent columns."

@@ -10,7 +10,7 @@ from standoff.geometry.curve_bounds import box_of, curve_breaks, curve_reach
 from standoff.geometry.curves import FULL_TURN, Curve
 from standoff.geometry.surfaces import Domain, Surface
 from standoff.geometry.torus import checked_turn, full_turn
-from standoff.geometry.validation import Array, finite, vector3
+from standoff.geometry.validation import LEAST, Array, finite, vector3
 from standoff.kernels import layout as L
 
 # Points of a profile that are looked at.
@@ -203,4 +203,10 @@ def _profile_points(profile: Any, name: str) -> Array:
     if not isinstance(profile, Curve):
         raise ValueError(f"{name} of {profile!r}: give a Curve as its profile.")
     spots = np.linspace(profile.first, profile.last, PROFILE_SAMPLES)
-    return np.array([profile.point(float(t)) for t in spots])
+    points = np.array([profile.point(float(t)) for t in spots])
+    extent = float(np.ptp(points, axis=0).max())
+    if extent < LEAST:
+        raise ValueError(
+            f"{name}: the profile's extent is {extent:.3g}, below {LEAST:g}; choose a smaller unit."
+        )
+    return points

@@ -1,4 +1,4 @@
-"""Checks of numbers that come from outside: shape, finiteness, sign."""
+"""Checks of numbers that come from outside: kind, shape, finiteness, range, sign."""
 
 from __future__ import annotations
 
@@ -7,7 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.real_numbers import real_array, shown
+
 Array = NDArray[np.float64]
+
+GREATEST = 1e50
+LEAST = 1e-50
+"""Range of lengths, in whatever unit. Sixth powers of both, a squared volume, stay in float64."""
+WEIGHT_RATIO = 1e12
+"""Greatest ratio of weights. A tangent at the lightest end is so many times the curve's size, and
+products of two such still have digits."""
 
 
 def finite(value: Any, name: str, shape: tuple[int, ...]) -> Array:
@@ -16,14 +25,13 @@ def finite(value: Any, name: str, shape: tuple[int, ...]) -> Array:
     Raises
     ------
     ValueError
-        Not numeric, of another shape, or with a NaN or an infinite number.
+        Not numeric (text and truth values are not), of another shape, with a NaN, an infinite
+        number, or one beyond `GREATEST`.
     """
     try:
-        if value is None:
-            raise TypeError
-        array = np.array(value, dtype=np.float64)
+        array = real_array(value)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} is not numeric: {value!r}") from error
+        raise ValueError(f"{name} is not numeric: {shown(value)}") from error
     fits = array.ndim == len(shape) and all(
         want in (-1, have) for want, have in zip(shape, array.shape, strict=True)
     )
@@ -31,7 +39,11 @@ def finite(value: Any, name: str, shape: tuple[int, ...]) -> Array:
         wanted = tuple("n" if want == -1 else want for want in shape)
         raise ValueError(f"{name} has shape {array.shape}; give shape {wanted}.")
     if not np.isfinite(array).all():
-        raise ValueError(f"{name} has a NaN or infinite number: {value!r}")
+        raise ValueError(f"{name} has a NaN or infinite number: {shown(value)}")
+    if array.size and np.abs(array).max() > GREATEST:
+        raise ValueError(
+            f"{name} has a number beyond {GREATEST:g}: {shown(value)}; choose a larger unit."
+        )
     array.flags.writeable = False
     return array
 
@@ -45,16 +57,30 @@ def matrix3(value: Any, name: str) -> Array:
 
 
 def positive(value: Any, name: str) -> float:
-    """A finite number above zero."""
+    """A finite number above zero, not below `LEAST`."""
     number = float(finite(value, name, ()))
     if number <= 0.0:
         raise ValueError(f"{name} = {number}: must be positive.")
+    if number < LEAST:
+        raise ValueError(f"{name} = {number}: below {LEAST:g}; choose a smaller unit.")
     return number
 
 
 def not_negative(value: Any, name: str) -> float:
-    """A finite number, zero or above."""
+    """A finite number, zero or above, not between zero and `LEAST`."""
     number = float(finite(value, name, ()))
     if number < 0.0:
         raise ValueError(f"{name} = {number}: must be zero or positive.")
+    if 0.0 < number < LEAST:
+        raise ValueError(f"{name} = {number}: below {LEAST:g}; choose a smaller unit, or give 0.")
     return number
+
+
+def check_alike(weights: Array) -> None:
+    """Raise ValueError where positive weights differ by more than `WEIGHT_RATIO`."""
+    least, most = float(weights.min()), float(weights.max())
+    if most > WEIGHT_RATIO * least:
+        raise ValueError(
+            f"weights from {least:g} to {most:g}: the lighter points are lost in roundoff; give "
+            f"weights within a factor of {WEIGHT_RATIO:g}."
+        )

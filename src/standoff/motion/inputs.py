@@ -8,7 +8,12 @@ from typing import SupportsFloat
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from standoff.real_numbers import real_array, shown
+
 FloatArray = NDArray[np.float64]
+
+GREATEST = 1e100
+"""Greatest component of a vector or matrix, in any unit: its square stays in float64."""
 
 
 def text(value: ArrayLike) -> str:
@@ -17,17 +22,15 @@ def text(value: ArrayLike) -> str:
     return " ".join(shown.split())
 
 
-def array(value: ArrayLike, name: str, shape: tuple[int, ...]) -> FloatArray:
-    """Copy `value` to a read-only float64 array of the given shape with finite components."""
+def array(
+    value: ArrayLike, name: str, shape: tuple[int, ...], most: float = GREATEST
+) -> FloatArray:
+    """Copy `value` to a read-only float64 array of the given shape, no component beyond `most`."""
     try:
-        given = np.asarray(value)
-        # NumPy would drop an imaginary part with no more than a warning.
-        if np.iscomplexobj(given):
-            raise TypeError("complex numbers")
-        copied = given.astype(np.float64)
+        copied = real_array(value)
     except (TypeError, ValueError) as error:
         raise ValueError(
-            f"{name} is {value!r}: give {_numbers(shape)}, all of them real"
+            f"{name} is {shown(value)}: give {_numbers(shape)}, all of them real"
         ) from error
     if copied.shape != shape:
         raise ValueError(
@@ -35,6 +38,8 @@ def array(value: ArrayLike, name: str, shape: tuple[int, ...]) -> FloatArray:
         )
     if not np.isfinite(copied).all():
         raise ValueError(f"{name} is {text(copied)}: every component must be finite")
+    if copied.size and np.abs(copied).max() > most:
+        raise ValueError(f"{name} is {text(copied)}: no component may be beyond {most:g}")
     copied.setflags(write=False)
     return copied
 
@@ -42,9 +47,11 @@ def array(value: ArrayLike, name: str, shape: tuple[int, ...]) -> FloatArray:
 def number(value: SupportsFloat, name: str) -> float:
     """Read one finite number."""
     try:
+        if isinstance(value, bool | np.bool_ | str | bytes):
+            raise TypeError("no number")
         read = float(value)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} is {value!r}: give one real number") from error
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"{name} is {shown(value)}: give one real number") from error
     if not math.isfinite(read):
         raise ValueError(f"{name} is {read}: give a finite number")
     return read
@@ -52,7 +59,7 @@ def number(value: SupportsFloat, name: str) -> float:
 
 def direction(value: ArrayLike, name: str) -> FloatArray:
     """Read a vector of any length but zero; the unit vector along it is returned, read-only."""
-    vector = array(value, name, (3,))
+    vector = array(value, name, (3,), most=math.inf)
     # Scaled first: the square of a very short or long vector would underflow or overflow.
     largest = np.abs(vector).max()
     if largest == 0.0:

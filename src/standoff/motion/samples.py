@@ -13,6 +13,7 @@ from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.tolerances import HALF_TURN
 from standoff.motion.twist import Twist
+from standoff.real_numbers import shown
 
 
 class PoseSamples:
@@ -46,6 +47,8 @@ class PoseSamples:
     """
 
     def __init__(self, times: ArrayLike, poses: Sequence[PoseLike]) -> None:
+        if not isinstance(poses, Sequence):
+            raise TypeError(f"poses is {shown(poses)}: give a list of poses")
         self.poses = tuple(_read(index, pose) for index, pose in enumerate(poses))
         self.times = inputs.array(times, "times", (len(self.poses),))
         self.normalised = sum(pose.normalised for pose in self.poses)

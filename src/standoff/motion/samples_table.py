@@ -47,7 +47,8 @@ def parquet_rows(path: Path) -> Iterator[tuple[int, list[float]]]:
         names = pq.read_schema(path).names
         chosen = [_column_of(path, column, names) for column in COLUMNS]
         table = pq.read_table(path, columns=chosen)
-    except pa.ArrowInvalid as error:
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
+        # Damaged pages are an OSError too; nothing tells them from a disk's failure.
         raise ValueError(f"{path}: is no readable Parquet file ({error})") from error
     seconds = _seconds(path, chosen[0], table.column(chosen[0]))
     numbers = [_numbers(path, name, table.column(name)) for name in chosen[1:]]

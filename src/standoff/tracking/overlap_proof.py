@@ -7,7 +7,10 @@ from numpy.typing import NDArray
 
 from standoff.bodies import shapes
 from standoff.bodies.body import Body
+from standoff.kernels import frame as K
+from standoff.kernels import tracker as kernels
 from standoff.motion import Pose
+from standoff.tracking.inputs import NO_TWIST, flat_pose
 from standoff.tracking.overlap import hulls_meet, sample_points
 
 Array = NDArray[np.float64]
@@ -42,7 +45,7 @@ def support_point(body: Body, direction: Array) -> Array:
     The witness point against a half-space (in the plane, a long segment) that stands off along
     the direction, square to it.
     """
-    from standoff.tracking.tracker import distance  # it asks for this proof itself
+    from standoff.tracking.tracker import Tracker  # it asks for this proof itself
 
     n = direction / np.linalg.norm(direction)
     gap = body.size if body.size > 0.0 else 1.0
@@ -55,8 +58,15 @@ def support_point(body: Body, direction: Array) -> Array:
         x = np.cross(np.eye(3)[int(np.abs(n).argmin())], n)
         x /= np.linalg.norm(x)
         facing = np.column_stack([x, np.cross(-n, x), -n])
-    answer = distance(body, wall, Pose.identity(), Pose(facing, position))
-    return np.asarray(answer.point_a - body.radius * answer.normal)
+    tracker = Tracker(body, wall)
+    home, there = flat_pose(Pose.identity()), flat_pose(Pose(facing, position))
+    data, out = np.zeros(K.N_STATE), np.empty(K.N_OUT)
+    # The kernel itself: a tracker would ask for this proof again where it cannot certify the wall.
+    kernels.start(
+        tracker.packed, home, there, NO_TWIST, NO_TWIST, False, tracker.options, data, 0, out
+    )
+    point, normal = out[K.POINT_A : K.POINT_A + 3], out[K.NORMAL : K.NORMAL + 3]
+    return np.asarray(point - body.radius * normal)
 
 
 def reaches_into(body: Body, rotation: Array, position: Array) -> bool:

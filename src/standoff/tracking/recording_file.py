@@ -131,7 +131,7 @@ def read_table(path: Path) -> Recording:
     try:
         metadata = _checked(path, pq.read_schema(path).metadata or {})
         table = pq.read_table(path)
-    except pa.ArrowException as error:
+    except (pa.ArrowException, UnicodeDecodeError) as error:
         raise ValueError(f"{path} is no Parquet file, or is cut off or damaged: {error}") from error
     except OSError as error:  # damaged pages; nothing else tells them from a disk's failure
         raise ValueError(f"{path} cannot be read, perhaps it is damaged: {error}") from error

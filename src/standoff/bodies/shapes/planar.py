@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from standoff.bodies.body import Body
-from standoff.bodies.topology import BodyError, Edge
+from standoff.bodies.topology import BodyError, Edge, parts_of
 from standoff.geometry.curves import Curve
+from standoff.real_numbers import shown
 
 
 def planar_loop(curves: Sequence[Curve], radius: float = 0.0) -> Body:
@@ -16,7 +17,10 @@ def planar_loop(curves: Sequence[Curve], radius: float = 0.0) -> Body:
 
     One closed conic (an ellipse) is a loop by itself.
     """
-    curves = list(curves)
+    curves = parts_of(curves, "curves")
+    for k, curve in enumerate(curves):
+        if not isinstance(curve, Curve):
+            raise TypeError(f"Curve {k} of a planar loop is {shown(curve)}: give a Curve.")
     if len(curves) == 1 and curves[0].closed:
         edges = [Edge(curves[0])]
         return Body.from_brep(edges=edges, dimension=2, radius=radius, name="planar loop")

@@ -12,7 +12,7 @@ from standoff.bodies.body import Body
 from standoff.bodies.topology import BodyError, Edge, Face
 from standoff.geometry.curves import Line
 from standoff.geometry.surfaces import Plane
-from standoff.geometry.validation import Array, finite, not_negative, positive
+from standoff.geometry.validation import LEAST, Array, finite, not_negative, positive
 
 # Facets of a polytope whose normals differ by less (sine) are one face; hull facets of one
 # plane differ by the roundoff of their vertices.
@@ -67,15 +67,16 @@ def rounded_polytope(vertices: Any, rounding: float) -> Body:
     rounding = not_negative(rounding, "rounding")
     if rounding == 0.0:
         return _polyhedron(points, name="rounded polytope")
+    unit = _unit(points)
     facets = _facets(points, _hull(points))
     normals = np.array([normal for _, normal in facets])
     offsets = np.array([max(points[loop] @ normal) for loop, normal in facets])
-    core = _inner_vertices(normals, offsets, rounding)
+    core = unit * _inner_vertices(normals, offsets / unit, rounding / unit, unit)
     return _polyhedron(core, radius=rounding, name="rounded polytope")
 
 
-def _inner_vertices(normals: Array, offsets: Array, rounding: float) -> Array:
-    """The vertices of normals @ x <= offsets - rounding, (n, 3)."""
+def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float) -> Array:
+    """The vertices of normals @ x <= offsets - rounding, (n, 3); all in parts of `unit`."""
     # the inscribed ball: greatest r with normals @ x + r <= offsets
     columns = np.column_stack([normals, np.ones(len(normals))])
     bounds = [(None, None)] * 3 + [(0.0, None)]
@@ -83,8 +84,8 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float) -> Array:
     inscribed = float(ball[3])
     if rounding > inscribed * (1.0 - LEAST_CORE):
         raise BodyError(
-            f"rounding = {rounding} leaves no core: the polytope's inscribed ball has radius "
-            f"{inscribed:.6g}. Give less."
+            f"rounding = {rounding * unit} leaves no core: the polytope's inscribed ball has "
+            f"radius {inscribed * unit:.6g}. Give less."
         )
     planes = np.column_stack([normals, rounding - offsets])
     meeting = HalfspaceIntersection(planes, ball[:3])
@@ -122,9 +123,23 @@ def _polyhedron(points: Array, radius: float = 0.0, name: str = "polytope") -> B
     return Body.from_brep(points[used], edges, faces, radius=radius, name=name)
 
 
+def _unit(points: Array) -> float:
+    """The power of two next to the points' extent: Qhull's and linprog's tolerances are absolute.
+
+    Division by it changes no digit.
+    """
+    extent = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
+    if 0.0 < extent < LEAST:
+        raise BodyError(
+            f"The {len(points)} vertices extend over {extent:.3g}, below {LEAST:g}; choose a "
+            "smaller unit."
+        )
+    return 2.0 ** round(np.log2(extent)) if extent > 0.0 else 1.0
+
+
 def _hull(points: Array) -> Any:
     try:
-        return ConvexHull(points)
+        return ConvexHull(points / _unit(points))
     except (QhullError, ValueError) as error:
         raise BodyError(
             f"The {len(points)} vertices span no volume (flat polytope): give at least four "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,8 @@ from standoff.geometry.formulas.expressions import (
     read_expression,
 )
 from standoff.geometry.intervals import Interval
-from standoff.geometry.validation import Array
+from standoff.geometry.validation import GREATEST, Array
+from standoff.real_numbers import real_array, shape_of, shown
 
 SURFACE_VARIABLES = ("u", "v")
 CURVE_VARIABLES = ("t",)
@@ -47,12 +49,12 @@ def limits(domain: Any, names: tuple[str, ...], what: str) -> tuple[float, ...]:
         Not finite, or empty.
     """
     wanted = "(" + ", ".join(names) + ")"
-    if np.shape(domain) != (len(names),):
-        raise FormulaError(f"{what} = {domain!r}: give {wanted}.")
+    if shape_of(domain) != (len(names),):
+        raise FormulaError(f"{what} = {shown(domain)}: give {wanted}.")
     try:
-        values = tuple(float(x) for x in domain)
+        values = tuple(float(x) for x in real_array(domain))
     except (TypeError, ValueError) as error:
-        raise FormulaError(f"{what} = {domain!r} is not numeric: give {wanted}.") from error
+        raise FormulaError(f"{what} = {shown(domain)} is not numeric: give {wanted}.") from error
     if not np.isfinite(values).all():
         raise FormulaError(f"{what} = {values} is not finite: give finite {wanted}.")
     for k in range(0, len(values), 2):
@@ -95,6 +97,7 @@ def check_finite(formula: Formula, domain: Sequence[float]) -> None:
     """Raise FormulaError unless the jet is proven finite all over the domain."""
     place = without_bounds(Enclosure(formula.jet, formula.variables), domain)
     if place is None:
+        _check_range(formula, domain)
         return
     with np.errstate(all="ignore"):
         rows = formula.values(*place)
@@ -108,6 +111,20 @@ def check_finite(formula: Formula, domain: Sequence[float]) -> None:
         f"x = {x}, y = {y}, z = {z} {what} at about {named(formula.variables, place)}, inside "
         f"{tuple(domain)}: cut the domain before that place, or write the formula without it."
     )
+
+
+def _check_range(formula: Formula, domain: Sequence[float]) -> None:
+    """Raise FormulaError where lengths or their derivatives leave the range of the library."""
+    ends = np.array(domain).reshape(-1, 2)
+    for shares in product(np.linspace(0.0, 1.0, 5), repeat=len(ends)):
+        place = ends[:, 0] + np.array(shares) * (ends[:, 1] - ends[:, 0])
+        greatest = float(np.abs(formula.values(*place)).max())
+        if not greatest <= GREATEST:
+            x, y, z = formula.expressions
+            raise FormulaError(
+                f"x = {x}, y = {y}, z = {z} or a derivative reaches {greatest:.3g} at "
+                f"{named(formula.variables, place)}, beyond {GREATEST:g}: choose a larger unit."
+            )
 
 
 def check_normal(formula: Formula, domain: Sequence[float]) -> None:

@@ -1,0 +1,51 @@
+"""Which Python values are real numbers: for `standoff.geometry` and `standoff.motion` alike."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+SHOWN_CHARACTERS = 200
+"""Longest piece of an offending value that a message repeats, in characters."""
+
+
+def shown(value: Any) -> str:
+    """Return `value` as a message repeats it: its repr, cut short."""
+    text = repr(value)
+    return text if len(text) <= SHOWN_CHARACTERS else text[: SHOWN_CHARACTERS - 1] + "…"
+
+
+def shape_of(value: Any) -> tuple[int, ...] | None:
+    """Return the shape of what may be an array; None where its rows differ in length."""
+    try:
+        return tuple(np.shape(value))
+    except (ValueError, RecursionError):
+        return None
+
+
+def real_array(value: Any) -> NDArray[np.float64]:
+    """Return a new float64 array of real numbers.
+
+    NumPy itself would read text and truth values as numbers, None as NaN, and drop an imaginary
+    part with no more than a warning.
+
+    Raises
+    ------
+    TypeError
+        Something in it is no real number.
+    ValueError
+        Its rows differ in length, or it is nested too deeply.
+    """
+    given = value if isinstance(value, np.ndarray) else np.array(value, dtype=object)
+    if given.dtype.kind not in "iufO":
+        raise TypeError(f"numbers of the kind {given.dtype}")
+    if given.dtype.kind == "O":
+        for item in given.flat:
+            if isinstance(item, bool | np.bool_ | str | bytes) or item is None:
+                raise TypeError(f"{item!r} is no number")
+    try:
+        return np.array(given, dtype=np.float64)
+    except OverflowError as error:
+        raise ValueError(f"a number beyond float64: {error}") from error
