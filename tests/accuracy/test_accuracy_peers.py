@@ -4,11 +4,12 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 from standoff.accuracy.measuring import errors
 from standoff.accuracy.peers.all_peers import all_peers
 from standoff.accuracy.peers.coal_peer import Coal
-from standoff.accuracy.peers.fcl_peer import Fcl
+from standoff.accuracy.peers.fcl_peer import Fcl, _outward_triangles
 from standoff.accuracy.peers.mujoco_peer import MuJoCo
 from standoff.accuracy.peers.opencascade_peer import OpenCascade
 from standoff.accuracy.solids import KINDS
@@ -60,6 +61,14 @@ def test_a_missing_peer_names_the_extra(monkeypatch, peer, package, solids) -> N
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(ImportError, match=rf"{package} .*standoff\[peers\]"):
         peer.query(solids["sphere"][0], solids["NURBS ellipsoid"][0])
+
+
+def test_triangles_of_a_hull_are_seen_from_outside(solids) -> None:
+    for solid in solids["polytope"]:
+        vertices = solid.values["vertices"]
+        triangles = vertices[_outward_triangles(vertices)]
+        volume = np.linalg.det(triangles - vertices.mean(axis=0)).sum() / 6
+        assert volume == pytest.approx(ConvexHull(vertices).volume)
 
 
 def test_versions_are_known() -> None:
