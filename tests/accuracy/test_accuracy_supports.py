@@ -3,38 +3,12 @@
 import numpy as np
 import pytest
 
-from oracles import support as oracle
-from oracles.between_poles import Gore, Spindle
-from oracles.revolved import Egg
-from oracles.rounded_polytopes import RoundedPolytope
-from oracles.superellipsoids import Superellipsoid
+from families.accuracy_twins import TWINS
 from standoff.accuracy.solids import DIRECTIONS, KINDS, Solid
 from standoff.accuracy.supports import extended
 
-TWINS = {
-    "point": oracle.Point,
-    "segment": oracle.Segment,
-    "sphere": oracle.Sphere,
-    "capsule": oracle.Capsule,
-    "ellipsoid": oracle.Ellipsoid,
-    "NURBS ellipsoid": oracle.Ellipsoid,
-    "superellipsoid": Superellipsoid,
-    "creased superellipsoid": Superellipsoid,
-    "egg": Egg,
-    "cylinder": oracle.Cylinder,
-    "cone": oracle.Cone,
-    "cap": oracle.Cap,
-    "lens": oracle.Lens,
-    "spindle": Spindle,
-    "gore": Gore,
-    "box": oracle.Box,
-    "rounded box": oracle.Box,
-    "polytope": oracle.Polytope,
-    "rounded polytope": RoundedPolytope,
-}
-"""The torus hull and the half-space have no twin; they are tested by themselves."""
-
 WITHOUT_TWIN = {"torus hull", "half-space"}
+"""They are tested by themselves."""
 EVEN = DIRECTIONS[::7]
 
 

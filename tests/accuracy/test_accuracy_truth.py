@@ -1,10 +1,15 @@
 """The constructed truth is proven by supports: attained by the witnesses, and separating."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from families.accuracy_twins import TWINS
+from oracles import depth as depth_oracle
+from oracles.shape import Placed
 from standoff.accuracy.cases import DEPTHS, GAPS, LEVELS, pairs
-from standoff.accuracy.least_depth import is_least, least_depth, sampled_least
+from standoff.accuracy.least_depth import least_bounds, least_depth, sampled
 from standoff.accuracy.solids import KINDS, Solid, named
 from standoff.accuracy.supports import Hull, unit
 from standoff.accuracy.truth import Truth, random_rotation, support_sum
@@ -93,23 +98,38 @@ def test_least_depth_is_that_of_closed_forms(a, b, shift, expected) -> None:
     assert lower <= expected + 1e-12
     assert upper == pytest.approx(expected, abs=1e-7)
     assert lower == pytest.approx(expected, abs=2e-5)
-    assert expected - 1e-12 <= sampled_least(a, b, truth) <= expected + 0.1
+    assert expected - 1e-12 <= sampled(a, b, truth)[1].min() <= expected + 0.1
 
 
-def test_a_deeper_minimum_is_not_taken_for_the_least(cases_of) -> None:
-    """Built 0.4 below the face of a box that is 0.5 away from its other face: not the least."""
-    from dataclasses import replace
-
+def test_a_deeper_minimum_is_not_taken_for_the_least() -> None:
+    """A ball through a slab: its other side is nearer from the middle on."""
     a, b = solid("box", x=2.0, y=2.0, z=1.0), solid("sphere", r=0.1)
     for depth, expected in ((0.3, True), (0.7, False)):
         truth = placed(a, b, [0.0, 0.0, 0.5 + 0.1 - depth])
         truth = replace(truth, distance=-depth, normal=np.array([0.0, 0.0, 1.0]))
         assert float(support_sum(a, b, truth, truth.normal[None])[0]) == pytest.approx(depth)
-        assert is_least(a, b, truth, 1e-9) is expected
+        lower, upper = least_bounds(a, b, truth, 2.0, 1e-9)
+        assert (upper == depth) is expected
+        assert lower <= upper == pytest.approx(min(depth, 1.2 - depth), abs=1e-7)
+
+
+@pytest.mark.parametrize("number", range(8))
+def test_least_depth_is_that_of_the_oracle(number, cases_of) -> None:
+    """Whether it is the constructed one or another: a bracket on the sphere proves it."""
+    rng = np.random.default_rng()
+    first, second = rng.choice([name for name in TWINS if name not in ("point", "segment")], 2)
+    (case,) = (case for case in cases_of(first, second) if case.level == -DEPTHS[-1])
+    bodies = [
+        Placed(TWINS[solid.kind.name](*solid.values.values()), *pose)
+        for solid, pose in ((case.a, case.truth.pose_a), (case.b, case.truth.pose_b))
+    ]
+    _, value, lower = depth_oracle.least_depth(*bodies)
+    assert case.least == pytest.approx(value, abs=2e-8 * case.size)
+    assert case.least >= lower - 1e-12 * case.size
 
 
 def test_every_depth_is_an_overlap(cases_of) -> None:
     for case in cases_of("point", "polytope", 8):
         if case.level == -DEPTHS[-1]:
-            assert sampled_least(case.a, case.b, case.truth) > 0
+            assert sampled(case.a, case.b, case.truth)[1].min() > 0
             assert 0 < case.least <= -case.truth.distance

@@ -10,7 +10,7 @@ from zlib import crc32
 
 import numpy as np
 
-from standoff.accuracy.least_depth import is_least, least_depth
+from standoff.accuracy.least_depth import least_bounds
 from standoff.accuracy.solids import Kind, Solid, draw_solids
 from standoff.accuracy.truth import Truth, draw_truth
 
@@ -116,17 +116,8 @@ def _draw(
             continue
         least = nan
         if level < 0:
-            lower, least = _bounds(a, b, truth, size)
+            lower, least = least_bounds(a, b, truth, size, SLACK * size)
             if lower <= 0:  # pushed through: B has left A on the other side
                 continue
         return Case(names, number, level, size, a, b, truth, least)
     return None
-
-
-def _bounds(a: Solid, b: Solid, truth: Truth, size: float) -> tuple[float, float]:
-    """Bounds of the least depth: the constructed depth twice if nothing less is found."""
-    depth = -truth.distance
-    if is_least(a, b, truth, SLACK * size):
-        return depth, depth
-    lower, upper = least_depth(a, b, truth, size)
-    return lower, min(upper, depth)

@@ -13,11 +13,15 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from standoff.accuracy.solids import DIRECTIONS, Solid
+from standoff.accuracy.supports import Array
 from standoff.accuracy.truth import Truth, difference_points, support_sum
 
 RINGS = (1e-4, 1e-3, 1e-2, 0.05, 0.1, 0.2)
 """Angles (rad) from a normal at which s is looked at: the sampled directions are 0.08 apart."""
 SPOKES = 24
+RIVAL = 0.05
+"""Margin, over the size, within which a sampled direction may be beside another minimum that is
+less than the constructed one: the slope of s (at most the size) over half the spacing."""
 ROUNDS = 40
 """Rounds of growing the polytope, each by the points of the nearest faces."""
 GROWN = 24
@@ -26,12 +30,12 @@ SETTLED = 1e-8
 """Gap of the bounds, over the size, that ends the growth."""
 
 
-def sampled_least(a: Solid, b: Solid, truth: Truth) -> float:
-    """Return the least s(n) over the sampled directions of A's frame."""
+def sampled(a: Solid, b: Solid, truth: Truth) -> tuple[Array, Array]:
+    """Return world directions (k, 3), fixed in A's frame, and s(n) (k,) along them."""
     turn, p_a = truth.pose_a
     normals = DIRECTIONS @ turn.T
     height_b = b.support.heights(-normals @ truth.pose_b[0])
-    return float((a.sampled + height_b - normals @ (truth.pose_b[1] - p_a)).min())
+    return normals, a.sampled + height_b - normals @ (truth.pose_b[1] - p_a)
 
 
 def ring_least(a: Solid, b: Solid, truth: Truth) -> float:
@@ -46,15 +50,25 @@ def ring_least(a: Solid, b: Solid, truth: Truth) -> float:
     return float(support_sum(a, b, truth, np.concatenate(rings)).min())
 
 
-def is_least(a: Solid, b: Solid, truth: Truth, slack: float) -> bool:
-    """Is no sampled direction shallower than the constructed one, by more than ``slack``?
+def least_bounds(
+    a: Solid, b: Solid, truth: Truth, size: float, slack: float
+) -> tuple[float, float]:
+    """Return bounds (length) of the least depth: the constructed one twice if none is less.
 
-    A half-space has one direction only.
+    A half-space has one direction only. Elsewhere the polytope is grown if a direction is
+    shallower by more than ``slack``, or if one far from the normal is nearly as shallow.
     """
+    depth = -truth.distance
     if not (a.bounded and b.bounded):
-        return True
-    depth = -truth.distance - slack
-    return sampled_least(a, b, truth) >= depth and ring_least(a, b, truth) >= depth
+        return depth, depth
+    normals, heights = sampled(a, b, truth)
+    far = normals @ truth.normal < np.cos(RINGS[-1])
+    least = min(float(heights.min()), ring_least(a, b, truth))
+    rival = float(heights[far].min())
+    if least >= depth - slack and rival >= depth + RIVAL * size:
+        return depth, depth
+    lower, upper = least_depth(a, b, truth, size)
+    return (lower, upper) if upper < depth - slack else (depth, depth)
 
 
 def least_depth(a: Solid, b: Solid, truth: Truth, size: float) -> tuple[float, float]:
