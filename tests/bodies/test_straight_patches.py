@@ -91,8 +91,7 @@ def size_of(patch):
 @pytest.mark.parametrize("make", [trapezoid, wall, curved_net, cylinder, frustum, cone])
 @pytest.mark.parametrize("far", [0.0, 1.0, 1e3])
 def test_planes_and_ruled_patches_have_defects_of_rounding(make, far):
-    # Seeded: now and then a fresh draw of a cylinder is refused, with a defect of 1e-13.
-    rng = np.random.default_rng([int(far), len(make.__name__)])
+    rng = np.random.default_rng()
     for k in range(4):
         patch = varied(make(rng), rng, far)
         proof = prove_patch(patch)
@@ -112,6 +111,17 @@ def test_planes_and_ruled_patches_have_defects_of_rounding(make, far):
             hollow = prove_patch(patch, -proof.sense)
             assert not hollow.convex
             assert hollow.defect > 1e-3 * size
+
+
+@pytest.mark.parametrize(("draw", "far"), [(99, 0.0), (113, 1e3), (258, 1.0)])
+def test_normals_are_compared_along_the_curve_whichever_parameter_it_has(draw, far):
+    """Cylinders refused once: straight along u, and their normals turn far in one span of v."""
+    rng = np.random.default_rng([draw, int(far), 8])
+    patch = varied(cylinder(rng), rng, far)
+    one, other = prove_patch(patch), prove_patch(patch.swapped())
+    assert one.convex
+    assert other.convex
+    assert one.tilt == pytest.approx(other.tilt, rel=0.5)
 
 
 def test_a_ruled_patch_with_a_real_dent_is_none():

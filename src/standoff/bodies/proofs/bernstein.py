@@ -184,7 +184,7 @@ def _straightened(
         ruled = ruled_along(grid, along_u, ROUNDED * max(reach, 1.0))
         if ruled is None:
             continue
-        turn = turn_to(ruled.spans, [piece.forms for piece in pieces], reach)
+        turn = turn_to(ruled.spans, [piece.forms for piece in pieces], reach, along_u)
         if turn <= STRAIGHT * max(reach, 1.0):
             return _pieces(ruled.whole, reach), Nearness(ruled.distance, turn)
     return None

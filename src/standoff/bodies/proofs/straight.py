@@ -121,10 +121,11 @@ def _elevated(grid: Grid, ends: Array) -> Array:
     return lines
 
 
-def turn_to(spans: Grid, forms: Sequence[Forms], reach: float) -> float:
+def turn_to(spans: Grid, forms: Sequence[Forms], reach: float, along_u: bool) -> float:
     """The greatest turn between normals of a patch and of another so near; pi if unknown.
 
-    forms : of the patch's spans, u major; spans : of the other, of the same degrees.
+    forms : of the patch's spans, u major; spans : of the other, of the same degrees, straight
+    along u or v.
     """
     greatest = 0.0
     points = spans.points.reshape(-1, *spans.points.shape[2:])
@@ -134,16 +135,20 @@ def turn_to(spans: Grid, forms: Sequence[Forms], reach: float) -> float:
             return float(np.pi)
         # where weights are equal but for rounding, only one may have been found polynomial
         rows, columns = np.maximum(own.normal.shape, other.normal.shape)[1:] - 1
-        raised = [bernstein.elevate(f.normal, rows, columns) for f in (own, other)]
-        greatest = max(greatest, _turn_between(*raised))
+        mine, theirs = (bernstein.elevate(f.normal, rows, columns) for f in (own, other))
+        greatest = max(greatest, _turn_between(mine, theirs, along_u))
     return greatest
 
 
-def _turn_between(one: Array, other: Array) -> float:
-    """The greatest angle between two polynomial vectors, radians; pi if unknown."""
+def _turn_between(one: Array, other: Array, along_u: bool) -> float:
+    """The greatest angle between two polynomial vectors, radians; pi if unknown.
+
+    They turn little along u, or v.
+    """
     greatest = 0.0
     for k in range(2**HALVINGS):
-        cell = Cell((HALVINGS, k), (0, 0))
+        across = (HALVINGS, k)
+        cell = Cell((0, 0), across) if along_u else Cell(across, (0, 0))
         normal = cell.part(other)
         apart = float(np.linalg.norm(cell.part(one - other), axis=0).max())
         axis = bernstein.value(normal, 0.5, 0.5)
