@@ -10,6 +10,7 @@ import pytest
 
 import standoff as so
 from families.degenerate import KINDS, scaled
+from families.degenerate_motion import track
 from families.degenerate_queries import GLOBAL, Pose, Tally, deep, faults, judge, run, sunk
 from families.shapes import Twin
 from oracles import support as oracle
@@ -242,3 +243,14 @@ def test_wrong_twists_in_penetration(factor):
         assert answer.distance < 0
         assert answer.distance == pytest.approx(cold.distance, rel=GLOBAL)
         assert np.isfinite([*answer.point_a, *answer.normal]).all()
+
+
+@contact
+@pytest.mark.parametrize("twists", [True, False])
+@pytest.mark.parametrize("name", sorted(KINDS))
+def test_motion(name, twists):
+    """Past edges, seams, poles and through contact, with twists and without."""
+    level = KINDS[name].levels[-1]
+    tally = track(name, level, 50, np.random.default_rng(), twists=twists)
+    assert not tally.failures
+    assert max(tally.evaluations) <= MOST_EVALUATIONS
