@@ -167,3 +167,21 @@ def test_hulls_of_revolution_of_any_size(size):
     answer = so.distance(body, so.shapes.point(), np.eye(4), pose)
     assert answer.certified
     assert answer.distance == pytest.approx(2.0 * size, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        so.shapes.cylinder(0.5, 2.0),
+        so.shapes.cone(0.5, 2.0),
+        so.shapes.box(1.0, 2.0, 0.5),
+        so.shapes.lens(1.0, 0.45),
+    ],
+)
+def test_flattened_along_any_direction(body):
+    """The trimming curves are the body's own: none is found by a nearly singular inverse."""
+    direction = np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0)
+    for thin in (1e-2, 1e-4, 1e-6):
+        image = body.transformed(np.eye(3) - (1.0 - thin) * np.outer(direction, direction))
+        assert image.check().sewing_residual <= 1e-15 * body.size
+        assert image.check().slack == 0.0

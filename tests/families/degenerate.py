@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import standoff as so
-from families import nurbs_bodies
+from families import curved_shapes, nurbs_bodies, shapes
 from families.shapes import Rng, Twin
 from oracles import support as oracle
 from oracles.between_poles import Gore, Spindle
+from oracles.exact_pairs import random_rotation
 from oracles.loops import BezierCurve
 from oracles.revolved import Egg, RevolvedHull
 from oracles.shape import Affine
@@ -225,6 +226,28 @@ def box_like(rng: Rng, exponent: float) -> Twin:
     )
 
 
+FLATTENED: tuple[Callable[[Rng], Twin], ...] = (
+    shapes.ellipsoid,
+    shapes.lens,
+    shapes.cylinder,
+    shapes.cone,
+    shapes.cap,
+    shapes.polytope,
+    curved_shapes.egg,
+    curved_shapes.superellipsoid,
+    curved_shapes.gore,
+    nurbs_bodies.any_nurbs,
+)
+
+
+def flattened(rng: Rng, ratio: float) -> Twin:
+    """A plain body flattened along a random direction: sheared axes, oblique sections."""
+    twin = FLATTENED[rng.integers(len(FLATTENED))](rng)
+    turn = random_rotation(rng)
+    matrix = turn @ np.diag([1.0, 1.0, 1.0 / ratio]) @ turn.T
+    return Twin(Affine(twin.shape, matrix), twin.body.transformed(matrix))
+
+
 def user_patches(rng: Rng, degree: float) -> Twin:
     """NURBS patches collapsed at poles (lens, octants), or with G1 seams at cube diagonals."""
     del degree
@@ -252,6 +275,7 @@ KINDS: dict[str, Kind] = {
     "thin lens": Kind(thin_lens, RATIOS, HARDER),
     "shallow cap": Kind(cap, RATIOS, HARDER),
     "slender spindle, gore, egg": Kind(needle, RATIOS, HARDER),
+    "flattened body": Kind(flattened, RATIOS, (1e3, 1e5), SEAMS),
     "short edges: cut corner": Kind(cut_corner, SMALL, SMALLER, SEAMS),
     "short edges: capsule": Kind(short_capsule, SMALL, SMALLER, np.vstack([AXES, HALVES])),
     "short edges: chisel": Kind(chiselled, SMALL, SMALLER),

@@ -11,13 +11,14 @@ import numpy as np
 
 from standoff.bodies.addresses import formulas_of, readdressed
 from standoff.bodies.assembly import assemble
-from standoff.bodies.charts import edge_points
+from standoff.bodies.charts import edge_points, loop_pcurve
 from standoff.bodies.convexity import Known
 from standoff.bodies.finishing import Packed, finish
 from standoff.bodies.packing import Ints
 from standoff.bodies.report import BodyReport
 from standoff.bodies.sewing import MAX_SPREAD, sew
 from standoff.bodies.topology import BodyError, Edge, Face, check_parts, parts_of
+from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import (
     LEAST,
@@ -211,7 +212,7 @@ class Body:
                 tuple(s.transformed(linear, shift) for s in f.charts),
                 tuple((j, flip * s) for j, s in f.loop),
                 f.apexes,
-                f.pcurves,
+                _kept_pcurves(f, self.edge_parts),
             )
             for f in self.face_parts
         ]
@@ -303,6 +304,17 @@ def _body(name: str, radius: float, packed: Packed) -> Body:
         report,
         report.size,
     )
+
+
+def _kept_pcurves(face: Face, edges: Sequence[Edge]) -> tuple[Pcurve | None, ...]:
+    """A face's trimming curves, for its image: maps in space leave (u, v) as they are.
+
+    Found anew from the image's inverse they would lose what a flattening map's condition costs.
+    """
+    if len(face.charts) > 1:
+        return face.pcurves
+    surface = face.charts[0]
+    return tuple(loop_pcurve(face, k, edges, surface) for k in range(len(face.loop)))
 
 
 def _affine(value: Any) -> tuple[Array, Array]:
