@@ -223,9 +223,16 @@ class _Search:
             if longest <= NEIGHBOURS * EPS * max(abs(self.now.time), abs(stop)):
                 return self._stuck(before)
             span = pace.ahead(gap, rate, target, longest)
+            if not balls and self.gap(self.now, balls=True) > 0.0:
+                span = max(span, self._ahead_by_balls(longest))
             time = stop if span >= stop - self.now.time else self.now.time + span
             ahead.append(self.look(time))
         return None
+
+    def _ahead_by_balls(self, longest: float) -> float:
+        """How far the bounding balls prove, where they are apart though near: beside a corner."""
+        gap = self.gap(self.now, balls=True)
+        return self.paces[True].ahead(gap, self.now.ball.rate, 0.5 * gap, longest)
 
     def _move_to(self, moment: Moment) -> None:
         self.now = moment
