@@ -13,7 +13,7 @@ import pytest
 
 from standoff import __version__
 from standoff.cli import entry
-from standoff.scene import load_scene, query, record
+from standoff.scene import first_impact, load_scene, query, record
 
 Standoff = Callable[..., Any]
 
@@ -108,6 +108,24 @@ def test_distance(standoff: Standoff, passing: Path) -> None:
     _, first = query(load_scene(passing))
     assert f"distance      {first.distance:.15g} cm" in ended.out
     assert "certified     yes" in ended.out
+
+
+def test_impact(standoff: Standoff, passing: Path) -> None:
+    found = first_impact(load_scene(passing), clearance=0.3)
+    assert found.status.name == "IMPACT"
+    facts = json.loads(standoff("impact", passing, "--clearance", "0.3", "--json").out)
+    assert (facts["time"], facts["latest"]) == (found.time, found.latest)
+    assert (facts["impact"], facts["clearance"]) == ("IMPACT", 0.3)
+    assert facts["lower_bound"] > 0.3
+    ended = standoff("impact", passing, "--clearance", 0.3)
+    assert ended.code == 0
+    assert f"time          {found.time:.12g} s" in ended.out
+    assert f"latest        {found.latest:.12g} s" in ended.out
+    ended = standoff("impact", passing, "--duration", 0.1)
+    assert ended.code == 0
+    assert "NO_IMPACT at 0 cm" in ended.out
+    assert "latest        none" in ended.out
+    assert standoff("impact", passing, "--clearance", -1.0).code == 2
 
 
 def test_options_take_the_place_of_the_scene_s(standoff: Standoff, passing: Path) -> None:

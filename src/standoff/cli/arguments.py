@@ -76,6 +76,27 @@ class DistanceCommand:
 
 
 @dataclass(frozen=True)
+class ImpactCommand:
+    """Find the first time at which a scene's pairs touch or come to a clearance.
+
+    Exit codes: 0 done, 2 bad input, 3 finished but undecided.
+    """
+
+    scene: SceneFile
+    """Scene file; docs/scene-format.md describes the format."""
+    clearance: Annotated[float, arg(metavar="LENGTH", help_behavior_hint="")] = 0.0
+    """Distance that counts as impact, in the scene's unit; 0, contact, if not given."""
+    start: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
+    """In place of the scene's: time at which the search begins, s."""
+    duration: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
+    """In place of the scene's: time to search, s."""
+    pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
+    """Only this one of the scene's [[pairs]]."""
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Print the answer as JSON."""
+
+
+@dataclass(frozen=True)
 class CheckCommand:
     """Tell what a body's checks at construction found and proved.
 
@@ -203,6 +224,7 @@ class AccuracyCommand:
 Command = (
     TrackCommand
     | DistanceCommand
+    | ImpactCommand
     | CheckCommand
     | AutomatonCommand
     | PaperCommand
@@ -226,6 +248,7 @@ def parse(arguments: Sequence[str]) -> Command:
     return tyro.cli(
         Annotated[TrackCommand, subcommand("track")]
         | Annotated[DistanceCommand, subcommand("distance")]
+        | Annotated[ImpactCommand, subcommand("impact")]
         | Annotated[CheckCommand, subcommand("check")]
         | Annotated[AutomatonCommand, subcommand("automaton")]
         | Annotated[PaperCommand, subcommand("paper")]

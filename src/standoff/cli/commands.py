@@ -9,6 +9,7 @@ from standoff.cli.arguments import (
     CheckCommand,
     Command,
     DistanceCommand,
+    ImpactCommand,
     PaperCommand,
     SoakCommand,
     TrackCommand,
@@ -16,6 +17,7 @@ from standoff.cli.arguments import (
 from standoff.cli.automaton import run_automaton
 from standoff.cli.check import run_check
 from standoff.cli.distance import run_distance
+from standoff.cli.impact import run_impact
 from standoff.cli.paper import run_paper
 from standoff.cli.soak import run_soak
 from standoff.cli.track import run_track
@@ -36,6 +38,8 @@ def run(command: Command) -> int:
             return run_track(command)
         case DistanceCommand():
             return run_distance(command)
+        case ImpactCommand():
+            return run_impact(command)
         case CheckCommand():
             return run_check(command)
         case AutomatonCommand():

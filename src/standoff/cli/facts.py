@@ -13,7 +13,7 @@ import numpy as np
 from standoff import __version__
 from standoff.scene import Scene, TrackSettings
 from standoff.scene.reader import Array
-from standoff.tracking import Proximity, RecordedEvent, Recording
+from standoff.tracking import Impact, Proximity, RecordedEvent, Recording
 
 
 def json_text(facts: Mapping[str, Any]) -> str:
@@ -65,6 +65,19 @@ def answer_facts(scene: Scene, time: float, answer: Proximity) -> dict[str, Any]
         "status": answer.status.name,
         "certified": answer.certified,
         "counts": answer.counts._asdict(),
+    }
+
+
+def impact_facts(scene: Scene, found: Impact) -> dict[str, Any]:
+    """Return a time of impact, with the answer at that time."""
+    return answer_facts(scene, found.time, found.proximity) | {
+        "impact": found.status.name,
+        "latest": found.latest,
+        "clearance": found.clearance,
+        "tolerance": found.tolerance,
+        "steps": found.steps,
+        "evaluations": found.evaluations,
+        "queries": found.queries,
     }
 
 

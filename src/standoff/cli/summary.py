@@ -11,7 +11,7 @@ import numpy as np
 from standoff.scene import Scene, TrackSettings
 from standoff.scene.feedbacks import feedback_text
 from standoff.scene.reader import Array
-from standoff.tracking import Counts, Proximity, RecordedEvent, Recording, Status
+from standoff.tracking import Counts, Impact, Proximity, RecordedEvent, Recording, Status
 from standoff.tracking.options import Variants
 
 FIRST_EVENTS = 8
@@ -47,6 +47,21 @@ def answer_lines(scene: Scene, time: float, answer: Proximity) -> list[str]:
         *_advice({answer.status: 1}, 1),
         line("work", _work(answer.counts)),
     ]
+
+
+def impact_lines(scene: Scene, found: Impact) -> list[str]:
+    """Return the lines that tell a time of impact and the answer at that time."""
+    lines = answer_lines(scene, found.time, found.proximity)
+    latest = "none" if np.isnan(found.latest) else f"{found.latest:.12g} s"
+    at = next(k for k, text in enumerate(lines) if text.startswith("time"))
+    lines[at : at + 1] = [
+        line("impact", f"{found.status.name} at {found.clearance:g} {scene.length_unit}"),
+        line("", found.status.advice),
+        line("time", f"{found.time:.12g} s"),
+        line("latest", latest),
+        line("looked at", f"{found.evaluations} instants, {found.queries} queries"),
+    ]
+    return lines
 
 
 def recording_lines(

@@ -5,7 +5,7 @@ The format is described in ``docs/scene-format.md``.
 
 from standoff.scene.errors import SceneError
 from standoff.scene.motions import Motion
-from standoff.scene.run import prepare, query, record
+from standoff.scene.run import first_impact, prepare, query, record
 from standoff.scene.scene import Scene, load_scene
 from standoff.scene.settings import TrackSettings
 
@@ -14,6 +14,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "TrackSettings",
+    "first_impact",
     "load_scene",
     "prepare",
     "query",

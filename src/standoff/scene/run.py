@@ -12,7 +12,7 @@ from standoff.scene.errors import SceneError
 from standoff.scene.reader import Array
 from standoff.scene.scene import Scene
 from standoff.scene.settings import TrackSettings
-from standoff.tracking import Proximity, Recording, Tracker, distance
+from standoff.tracking import Impact, Proximity, Recording, Tracker, distance, time_of_impact
 from standoff.tracking.simulate import Progress, track_along
 
 
@@ -40,6 +40,38 @@ def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity]:
     pose_a, pose_b = (motion.path.pose(instant) for motion in scene.pair_motions)
     try:
         return instant, distance(a, b, pose_a, pose_b)
+    except (ValueError, TypeError) as error:
+        raise SceneError(str(error), key="pair", file=scene.file) from error
+
+
+def first_impact(
+    scene: Scene, settings: TrackSettings | None = None, clearance: float = 0.0
+) -> Impact:
+    """Return the first time at which the pair comes to a clearance, between its frames' ends.
+
+    Parameters
+    ----------
+    scene : Scene
+    settings : TrackSettings, optional
+        In place of the scene's own.
+    clearance : float
+        Distance that counts as impact [length].
+
+    Returns
+    -------
+    Impact
+
+    Raises
+    ------
+    SceneError
+        If the times are not possible, or the pair cannot be asked for a distance.
+    """
+    times = scene.times(settings or scene.settings)
+    start, duration = float(times[0]), float(times[-1] - times[0])
+    a, b = scene.pair_bodies
+    path_a, path_b = (motion.path for motion in scene.pair_motions)
+    try:
+        return time_of_impact(a, b, path_a, path_b, duration, clearance=clearance, start=start)
     except (ValueError, TypeError) as error:
         raise SceneError(str(error), key="pair", file=scene.file) from error
 

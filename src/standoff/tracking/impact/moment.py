@@ -123,8 +123,9 @@ class Moment:
             self.state = tracker.step(before.state, *poses, *twists, dt=since)[0]
         answer = self.state.proximity
         if answer.status is Status.OVERLAPPING:
-            # proven, with no number: they touch at least
+            # proven, without a depth: they touch at least
             self.upper = 0.0
             return
-        self.lower, self.upper = answer.lower_bound, answer.distance
+        self.lower = answer.lower_bound
+        self.upper = getattr(answer, "upper_bound", answer.distance)
         self.rate = answer.rate

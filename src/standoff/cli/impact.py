@@ -1,0 +1,42 @@
+"""``standoff impact``: the first time at which a pair comes to a clearance."""
+
+from __future__ import annotations
+
+from standoff.cli.arguments import ImpactCommand
+from standoff.cli.errors import CommandError, ExitCode
+from standoff.cli.facts import impact_facts, pairs_text
+from standoff.cli.selection import chosen
+from standoff.cli.summary import impact_lines
+from standoff.scene import Scene, SceneError, first_impact, load_scene
+from standoff.tracking import Impact, ImpactStatus
+
+
+def run_impact(command: ImpactCommand) -> int:
+    """Print the pairs' times of impact; the exit code tells if all are decided.
+
+    Raises
+    ------
+    SceneError, CommandError
+        If the scene or an option is not usable.
+    """
+    whole = load_scene(command.scene)
+    scenes = chosen(whole, command.pair)
+    # All are asked before any is told: a pair that is refused ends the command.
+    told = [(scene, _found(scene, command)) for scene in scenes]
+    if command.json:
+        print(pairs_text(whole, [impact_facts(*found) for found in told]))
+    else:
+        print("\n\n".join("\n".join(impact_lines(*found)) for found in told))
+    decided = all(found.status is not ImpactStatus.UNDECIDED for _, found in told)
+    return ExitCode.DONE if decided else ExitCode.NOT_CERTIFIED
+
+
+def _found(scene: Scene, command: ImpactCommand) -> Impact:
+    given = {"start": command.start, "duration": command.duration}
+    try:
+        settings = scene.settings.overridden(given)
+    except SceneError as error:
+        raise CommandError(f"--{error.key}: {error.problem}") from error
+    if not command.clearance >= 0.0:
+        raise CommandError(f"--clearance: must be zero or more, got {command.clearance}")
+    return first_impact(scene, settings, command.clearance)
