@@ -10,7 +10,8 @@ import numpy as np
 
 from standoff.geometry.curves import Curve, Line
 from standoff.geometry.pcurves import Pcurve
-from standoff.geometry.surfaces import Plane, Surface
+from standoff.geometry.superellipsoids import SuperellipsoidPole
+from standoff.geometry.surfaces import Plane, Sphere, Surface
 from standoff.geometry.validation import Array, finite
 from standoff.real_numbers import shown
 
@@ -176,9 +177,12 @@ def _check_face(k: int, face: Face, vertices: int) -> None:
 
 def _check_bounded(k: int, face: Face, alone: bool) -> None:
     """Only a half-space has a face without end."""
-    if face.loop or face.apexes or len(face.charts) > 1:
+    closed = len(face.charts) > 1 and all(
+        isinstance(chart, Sphere | SuperellipsoidPole) for chart in face.charts
+    )
+    if face.loop or face.apexes or closed:
         return
-    if not (alone and isinstance(face.charts[0], Plane)):
+    if not (alone and len(face.charts) == 1 and isinstance(face.charts[0], Plane)):
         raise BodyError(
             f"Face {k}, a {type(face.charts[0]).__name__}, has no loop of edges: give its edges, "
             "or all charts of a closed surface; only one plane alone is a body, a half-space."

@@ -18,6 +18,8 @@ from standoff.geometry.validation import Array, positive
 
 # Fewer patches than this would not keep their normals within a hemisphere.
 LEAST_PATCHES = 3
+# Each is proven by itself, in some 10 ms.
+MOST_PATCHES = 1000
 # Below this share of half the length the bulge is lost to the rounding of the arc's far centre: a
 # rational arc has none.
 SLENDER = 0.1
@@ -133,6 +135,9 @@ def _bulge(radius: float, length: float, name: str) -> tuple[float, float]:
 def _patches(patches: int, name: str) -> int:
     given: Any = patches
     whole = isinstance(given, Integral) and not isinstance(given, bool)
-    if not whole or given < LEAST_PATCHES:
-        raise BodyError(f"{name}: patches = {patches!r}: give a whole number, at least 3.")
+    if not whole or not LEAST_PATCHES <= given <= MOST_PATCHES:
+        raise BodyError(
+            f"{name}: patches = {patches!r}: give a whole number, at least 3 and at most "
+            f"{MOST_PATCHES}."
+        )
     return int(patches)
