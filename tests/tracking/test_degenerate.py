@@ -5,13 +5,15 @@ of the truth, no exception, no NaN, no silent 0. ``python -m benchmarks.degenera
 harder levels; docs/robustness.md has its table.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import standoff as so
 from families.degenerate import KINDS, scaled
 from families.degenerate_motion import track
-from families.degenerate_queries import GLOBAL, Pose, Tally, deep, faults, judge, run, sunk
+from families.degenerate_queries import GLOBAL, Pose, Tally, deep, draw, faults, judge, run, sunk
 from families.shapes import Twin
 from oracles import support as oracle
 from oracles.exact_pairs import exact_pair
@@ -34,6 +36,31 @@ MOST_EVALUATIONS = 500
 
 def at(x, y=0.0, z=0.0):
     return np.eye(3), np.array([x, y, z], dtype=float)
+
+
+def spoilt(answer, **changes):
+    """An answer with some of its numbers changed."""
+    names = ("distance", "lower_bound", "upper_bound", "normal", "point_a", "point_b")
+    numbers = {name: getattr(answer, name) for name in names if hasattr(answer, name)}
+    return SimpleNamespace(**{**numbers, "upper_bound": answer.distance, **changes})
+
+
+def test_the_judge_sees_what_is_wrong():
+    rng = np.random.default_rng()
+    kind = KINDS["thin ellipsoid"]
+    body = kind.make(rng, 1e2)
+    pose = draw(kind, body, body, rng)
+    answer = so.distance(body.body, body.body, *pose.poses)
+    d, off = answer.distance, 1e-6 * pose.size
+    assert not faults(pose, spoilt(answer))
+    assert "not finite" in faults(pose, spoilt(answer, distance=np.nan))[0]
+    assert "above the truth" in faults(pose, spoilt(answer, lower_bound=d + off))[0]
+    assert "below the truth" in faults(pose, spoilt(answer, upper_bound=d - off))[0]
+    assert "silent 0" in faults(pose, spoilt(answer, distance=0.0, lower_bound=0.0))[0]
+    assert "of length" in faults(pose, spoilt(answer, normal=0.9 * answer.normal))[0]
+    assert "separates by" in faults(pose, spoilt(answer, normal=-answer.normal))[0]
+    moved = spoilt(answer, point_b=answer.point_b + off)
+    assert "witness points miss" in faults(pose, moved)[0]
 
 
 @pytest.mark.parametrize(("name", "level"), LEVELS)
