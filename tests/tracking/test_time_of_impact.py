@@ -179,18 +179,23 @@ def test_never_late_where_the_contact_is_known(kind: str) -> None:
 
 
 def test_the_separation_along_the_normal_is_no_less_than_the_lower_bound() -> None:
-    """What the proof of an interval rests on, at its ends."""
+    """What the proof of an interval rests on, at its ends; also where the answer is off."""
     rng = np.random.default_rng()
     for _ in range(40):
         a, b = impacts.draw_twins(rng)
         if any(isinstance(twin.shape, oracle.HalfSpace) for twin in (a, b)):
             continue
         pair = impacts.exact_pair(a.shape, b.shape, float(10.0 ** rng.uniform(-6, 0)), rng)
-        found = so.distance(a.body, b.body, pair.pose_a, pair.pose_b)
-        n = found.normal
-        separation = -pair.a.support(n)[0] - pair.b.support(-n)[0]
         size = a.shape.bounding_radius + b.shape.bounding_radius
-        assert separation >= found.lower_bound - 1e-14 * (size + 1.0)
+        rough = so.Tracker(a.body, b.body, tolerance=math.inf)
+        state = rough.start(pair.pose_a, pair.pose_b)
+        turn = so.Pose.exp([0.0, 0.0, 0.2]).rotation @ pair.b.rotation
+        moved = oracle.Placed(b.shape, turn, pair.b.position + 0.3 * size * pair.normal)
+        _, wrong = rough.step(state, pair.pose_a, (moved.rotation, moved.position))
+        for placed, found in ((pair.b, state.proximity), (moved, wrong)):
+            n = found.normal
+            separation = -pair.a.support(n)[0] - placed.support(-n)[0]
+            assert separation >= found.lower_bound - 1e-14 * (size + 1.0)
 
 
 @pytest.mark.parametrize("wall", [False, True])
