@@ -80,7 +80,8 @@ def _twist(table: Table, placement: Pose) -> Motion:
     linear = in_space(table, "linear") if "linear" in table else np.zeros(3)
     angular = table.vector("angular", 3) if "angular" in table else np.zeros(3)
     frame = cast(Frame, table.choice("frame", get_args(Frame), "world"))
-    return _formula("twist", ConstantTwist(placement, Twist(linear, angular, frame)))
+    twist = table.build(lambda: Twist(linear, angular, frame))
+    return _formula("twist", ConstantTwist(placement, twist))
 
 
 def _screw(table: Table, placement: Pose) -> Motion:
@@ -166,7 +167,8 @@ def read_motion(table: Table, placement: Pose | None) -> Motion:
         rounded = motion.rounded + offset.normalised
         motion = replace(motion, path=Offset(motion.path, offset), rounded=rounded)
     if "spin" in table:
-        turning = Twist(np.zeros(3), table.vector("spin", 3), "body")
+        spin = table.vector("spin", 3)
+        turning = table.build(lambda: Twist(np.zeros(3), spin, "body"), "spin")
         spinning = ConstantTwist(Pose.identity(), turning)
         motion = replace(motion, path=Carried(motion.path, spinning))
     return motion

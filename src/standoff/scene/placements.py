@@ -28,7 +28,7 @@ def read_pose(table: Table) -> Pose:
     position = in_space(table, "position") if "position" in table else np.zeros(3)
     given = table.only_one(ORIENTATIONS)
     if given is None:
-        return Pose(np.eye(3), position)
+        return table.build(lambda: Pose(np.eye(3), position), "position")
     return table.build(lambda: _oriented(table, given, position), given)
 
 

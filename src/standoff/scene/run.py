@@ -37,8 +37,8 @@ def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity]:
     """
     instant = scene.instant(time)
     a, b = scene.pair_bodies
-    pose_a, pose_b = (motion.path.pose(instant) for motion in scene.pair_motions)
     try:
+        pose_a, pose_b = (motion.path.pose(instant) for motion in scene.pair_motions)
         return instant, distance(a, b, pose_a, pose_b)
     except (ValueError, TypeError) as error:
         raise SceneError(str(error), key="pair", file=scene.file) from error

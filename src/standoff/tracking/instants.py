@@ -52,6 +52,11 @@ STENCIL = 1e-5
 """Half width, in steps, of the difference that gives a switching function's rate."""
 
 
+MOST_ANSWERS = 1000
+"""Answers within one step. A switch by halving takes some 40; a body that turns many times within
+the step switches without end, and its switches are then not located."""
+
+
 class Known(NamedTuple):
     """The answer at one time: its mode is the pair of packed features."""
 
@@ -109,6 +114,7 @@ class Step:
         spacing = ROUNDINGS * float(np.spacing(max(abs(before), abs(after))))
         self.resolution = max(RESOLUTION * self.length, spacing)
         self.paper = tracker.law == "paper"
+        self.answers = 0
 
     def switches(self) -> list[Switch] | None:
         """Return the switches in order of time; None where one of them cannot be located."""
@@ -135,6 +141,9 @@ class Step:
         return [*self._between(low, middle, tries), *self._between(middle, high, tries)]
 
     def _known(self, time: float, low: Known, high: Known) -> Known:
+        self.answers += 1
+        if self.answers > MOST_ANSWERS:
+            raise NotKnown(f"more than {MOST_ANSWERS} answers in one step")
         if self.paper:
             return self._stepped(time)
         # From the higher features: a slope too small to release a feature does not hold it there.
