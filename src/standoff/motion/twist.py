@@ -109,7 +109,9 @@ class Twist:
             raise ValueError(f"duration is {seconds}: give a time above zero")
         relative = Pose.of(first).inverse() @ Pose.of(second)
         turn: FloatArray = Rotation.from_matrix(relative.rotation).as_rotvec()
-        return cls(_unshear(turn, relative.translation) / seconds, turn / seconds, "body")
+        with np.errstate(over="ignore"):  # a velocity beyond float64 is refused as infinite
+            v, omega = _unshear(turn, relative.translation) / seconds, turn / seconds
+        return cls(v, omega, "body")
 
     def in_world(self, pose: PoseLike) -> Twist:
         """Return the same twist in world axes, for a body at `pose`."""
