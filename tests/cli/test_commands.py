@@ -70,29 +70,22 @@ def test_track_json_is_all_of_stdout(standoff: Standoff, passing: Path) -> None:
     assert facts["events"][0]["target"] == str(recording.events[0].target)
 
 
-def test_overlap_is_not_certified(standoff: Standoff, crossing: Path) -> None:
+def test_penetration_is_certified(standoff: Standoff, crossing: Path) -> None:
     ended = standoff("track", crossing)
-    assert ended.code == 3
-    assert "OVERLAPPING in " in ended.out
-    assert "The bodies touch or overlap" in ended.out
-    assert "100 %" not in ended.out
+    assert ended.code == 0
     facts = json.loads(standoff("track", crossing, "--json").out)
-    assert facts["statuses"]["OVERLAPPING"] == 101 - facts["certified_frames"]
-    assert 0.0 < facts["certified_share"] < 1.0
+    assert set(facts["statuses"]) == {"CONVERGED", "GLOBAL"}
+    assert facts["certified_share"] == 1.0
+    assert facts["closest"]["distance"] < 0.0
 
 
-def test_no_number_is_null_in_json(standoff: Standoff, crossing: Path) -> None:
+def test_depth_is_told(standoff: Standoff, crossing: Path) -> None:
     ended = standoff("distance", crossing, "--time", 1.0, "--json")
-    assert ended.code == 3
+    assert ended.code == 0
     facts = json.loads(ended.out)
-    assert facts["distance"] is None
-    assert facts["status"] == "OVERLAPPING"
-    ended = standoff("distance", crossing, "--time", "1.0")
-    assert ended.code == 3
-    assert "OVERLAPPING" in ended.out
-    whole = standoff("track", crossing, "--start", 0.9, "--duration", 0.1)
-    assert whole.code == 3
-    assert "no frame has a distance" in whole.out
+    assert facts["distance"] < 0.0
+    assert facts["status"] == "GLOBAL"
+    assert "GLOBAL" in standoff("distance", crossing, "--time", "1.0").out
 
 
 def test_distance(standoff: Standoff, passing: Path) -> None:

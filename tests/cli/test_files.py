@@ -85,13 +85,13 @@ def test_same_run_same_bytes(standoff: Standoff, passing: Path) -> None:
     assert first.read_bytes() == second.read_bytes()
 
 
-def test_uncertified_runs_are_written_too(standoff: Standoff, crossing: Path) -> None:
+def test_runs_in_penetration_are_written_too(standoff: Standoff, crossing: Path) -> None:
     target, plot = crossing.with_name("run.parquet"), crossing.with_name("run.png")
-    assert standoff("track", crossing, "-o", target, "--plot", plot).code == 3
+    assert standoff("track", crossing, "-o", target, "--plot", plot).code == 0
     table = pq.read_table(target)
-    overlapping = np.array(table["status"].to_pylist()) == "OVERLAPPING"
-    assert overlapping.any()
-    np.testing.assert_array_equal(np.isnan(table["distance"]), overlapping)
+    penetrating = np.array(table["status"].to_pylist()) == "GLOBAL"
+    assert penetrating.any()
+    np.testing.assert_array_equal(np.array(table["distance"]) < 0.0, penetrating)
     assert imread(plot).ndim == 3
 
 

@@ -223,7 +223,7 @@ def test_not_located_out_of_an_overlap(law: str) -> None:
     turned = so.Pose.from_wxyz(np.array([0.9, 0.3, 0.2, 0.1]) / math.sqrt(0.95), (-1.0, 0.1, 0.7))
     path = ConstantTwist(turned, so.Twist((1.0, 0.0, -0.5), (0.0, 0.0, 0.0)))
     recording = so.simulate(small, large, path, REST, 3.0, 1e-2, law=law)
-    overlapping = recording.status == so.Status.OVERLAPPING
+    overlapping = recording.penetrating
     assert overlapping.any()
     assert not overlapping[-1]
     check_chain(recording)

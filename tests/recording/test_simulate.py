@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from itertools import pairwise
 
 import numpy as np
@@ -30,15 +31,14 @@ def test_frames_are_the_tracker_s_own_steps(number: int, law: str) -> None:
     assert len(recording) == 401
 
 
-def test_overlaps_are_the_tracker_s_own() -> None:
+def test_penetration_is_the_tracker_s_own() -> None:
     small = so.shapes.box(0.3, 0.2, 0.25)
     recording = so.simulate(small, BOX, THROUGH, REST, 2.0, 5e-3)
     statuses = set(recording.status)
-    assert {so.Status.CONVERGED, so.Status.OVERLAPPING} <= statuses
+    assert statuses == {so.Status.CONVERGED, so.Status.GLOBAL}
     check_against_steps(recording, small, BOX, THROUGH, Fixed(REST), so.Tracker(small, BOX, 5e-3))
-    np.testing.assert_array_equal(
-        np.isnan(recording.distance), recording.status == so.Status.OVERLAPPING
-    )
+    np.testing.assert_array_equal(recording.distance < 0.0, recording.penetrating)
+    assert recording.certified.all()
 
 
 def check_against_steps(recording, a, b, path_a, path_b, tracker) -> None:
@@ -167,16 +167,16 @@ def test_modes_are_the_visits_between_the_switches() -> None:
         assert (recording.feature_b[inside] == visit.feature_b).all()
 
 
-def test_there_is_no_mode_in_an_overlap() -> None:
+def test_modes_go_on_in_penetration() -> None:
     recording = so.simulate(so.shapes.sphere(0.2), BOX, THROUGH, REST, 2.5, 1e-2)
-    overlapping = recording.status == so.Status.OVERLAPPING
-    first, last = np.flatnonzero(overlapping)[[0, -1]]
+    inside = np.flatnonzero(recording.penetrating)
+    assert inside.size
     visits = recording.modes()
-    ends = [visit.end for visit in visits if visit.end <= recording.time[first]]
-    starts = [visit.start for visit in visits if visit.start >= recording.time[last]]
-    assert max(ends) == recording.time[first - 1]
-    assert min(starts) == recording.time[last + 1]
-    assert len(ends) + len(starts) == len(visits)
+    assert visits[0].start == 0.0
+    assert visits[-1].end == 2.5
+    assert all(first.end == second.start for first, second in itertools.pairwise(visits))
+    events = [event for event in recording.events if event.frame in inside]
+    assert not any(event.located for event in events)
 
 
 def test_info_tells_the_run() -> None:

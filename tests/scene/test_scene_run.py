@@ -159,13 +159,11 @@ def test_progress_is_told_to_the_end(load_text: LoadText) -> None:
     assert told[-1][0] == 401
 
 
-def test_overlap_has_no_distance(load_text: LoadText) -> None:
+def test_penetration_has_a_distance(load_text: LoadText) -> None:
     recording = record(load_text(f"{HEAD}[track]\nstep = 0.1\nduration = 0.2\n"))
-    assert np.isnan(recording.distance).all()
-    assert recording.status_frames() == {so.Status.OVERLAPPING: 3}
-    assert not recording.certified.any()
-    assert recording.closest() is None
-    assert recording.widest_gap() is None
+    assert (recording.distance < 0.0).all()
+    assert recording.status_frames() == {so.Status.GLOBAL: 3}
+    assert recording.certified.all()
 
 
 def test_query_is_the_cold_distance(load_text: LoadText) -> None:

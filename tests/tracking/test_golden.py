@@ -45,10 +45,11 @@ def test_planar_point():
     np.testing.assert_allclose(found.point_a, (1, 0, 0), atol=1e-15)
 
 
-def test_planar_point_inside_has_no_distance_yet():
+def test_planar_point_inside():
     found = so.distance(LOOP, POINT, HOME, at((0.1, 0.05, 0)))
-    assert found.status is so.Status.OVERLAPPING
-    assert np.isnan(found.distance)
+    assert found.status is so.Status.GLOBAL
+    assert found.distance == pytest.approx(-0.742667779143, abs=1e-10)
+    assert found.parameters_a == pytest.approx((0.40068024,), abs=1e-8)
 
 
 @pytest.mark.parametrize(

@@ -141,6 +141,37 @@ def into_b(R, n):
 
 
 @kernel
+def plane_bound(pair, R, mode, q, x_a, y_b, gap, n):
+    """(lower bound that the unit vector n gives, what roundoff in normals takes from it).
+
+    gap is x_b - x_a, y_b the point in B's frame. It bounds the signed distance, so it holds in
+    penetration too, where it is negative.
+    """
+    ia, ra, ib, rb = pair
+    m = into_b(R, n)
+    cone_a, miss_a = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], n)
+    cone_b, miss_b = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], m)
+    bound = dot(n, gap) - overhang(ia, ra, x_a, sub(n, cone_a), miss_a)
+    blur = overhang(ia, ra, x_a, ZERO, miss_a) + overhang(ib, rb, y_b, ZERO, miss_b)
+    return bound - overhang(ib, rb, y_b, sub(m, cone_b), miss_b), blur
+
+
+@kernel
+def bound_roundoff(pair, p, x_a, x_b, y_b):
+    reach = pair[1][L.SIZE] + pair[3][L.SIZE] + norm(x_a) + norm(x_b) + norm(y_b) + norm(p)
+    return BOUND_ROUNDINGS * EPS * reach
+
+
+@kernel
+def certify_along(pair, R, p, mode, q, x_a, x_b, n):
+    """(lower bound of the cores' signed distance from the plane square to n alone, blur)."""
+    y_b = rotate_back(R, sub(x_b, p))
+    bound, blur = plane_bound(pair, R, mode, q, x_a, y_b, sub(x_b, x_a), n)
+    slack = pair[1][L.SLACK] + pair[3][L.SLACK]
+    return bound - slack - bound_roundoff(pair, p, x_a, x_b, y_b), blur
+
+
+@kernel
 def certify(pair, R, p, mode, q, x_a, x_b, hint):
     """(distance of the cores, lower bound of it, best plane normal, blur) at witness points.
 
@@ -162,11 +193,7 @@ def certify(pair, R, p, mode, q, x_a, x_b, hint):
     over_b = overhang(ib, rb, y_b, sub(m_b, n_b), noise_b)
     best, normal = d - over_a - over_b, direction
     if dot(hint, hint) > 0.5:
-        m = into_b(R, hint)
-        cone_a, miss_a = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], hint)
-        cone_b, miss_b = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], m)
-        bound = dot(hint, gap) - overhang(ia, ra, x_a, sub(hint, cone_a), miss_a)
-        bound -= overhang(ib, rb, y_b, sub(m, cone_b), miss_b)
+        bound, _ = plane_bound(pair, R, mode, q, x_a, y_b, gap, hint)
         if bound > best:
             best, normal = bound, hint
     # A's own normal: nothing hangs over at A. A zero normal (collapsed chart) bounds nothing.
@@ -184,7 +211,6 @@ def certify(pair, R, p, mode, q, x_a, x_b, hint):
         bound -= overhang(ib, rb, y_b, ZERO, noise_b)
         if bound > best:
             best, normal = bound, n
-    reach = ra[L.SIZE] + rb[L.SIZE] + norm(x_a) + norm(x_b) + norm(y_b) + norm(p)
-    best -= ra[L.SLACK] + rb[L.SLACK] + BOUND_ROUNDINGS * EPS * reach
+    best -= ra[L.SLACK] + rb[L.SLACK] + bound_roundoff(pair, p, x_a, x_b, y_b)
     blur = overhang(ia, ra, x_a, ZERO, noise_a) + overhang(ib, rb, y_b, ZERO, noise_b)
     return d, best, normal, blur

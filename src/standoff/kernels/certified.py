@@ -12,6 +12,7 @@ from standoff.kernels.trimming import on_face
 CERTIFIED = 0
 UNCERTIFIED = 1
 TOUCHING_OR_OVERLAPPING = 2
+PENETRATING = 3  # solved in contact: a signed distance that is not certainly positive
 
 
 @kernel

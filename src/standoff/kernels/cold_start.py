@@ -12,7 +12,7 @@ from standoff.kernels import layout as L
 from standoff.kernels.certified import UNCERTIFIED, settle_and_weigh
 from standoff.kernels.compiling import kernel
 from standoff.kernels.descent import ORIGIN, pair_jets, set_mode
-from standoff.kernels.events import RESTARTS
+from standoff.kernels.events import EVALUATIONS, LIMIT, RESTARTS
 from standoff.kernels.vectors import add, dot, norm, rotate, rotate_back, scale, sub
 
 MAX_STARTS = 12
@@ -117,7 +117,7 @@ def global_query(pair, R, p, mode, q, w_ff, tolerance, counts, events):
             best_gap, best_d, best_bound, best_normal = d - bound, d, bound, normal
             best_mode = (mode[0], mode[1], mode[2], mode[3])
             best_q = (q[0], q[1], q[2], q[3])
-        if outcome != UNCERTIFIED:
+        if outcome != UNCERTIFIED or counts[EVALUATIONS] >= counts[LIMIT]:
             break
         # aim the next start along this failure's gap, turned a little more each time
         jet_a, jet_b = pair_jets(pair, R, p, mode, q)

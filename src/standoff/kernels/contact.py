@@ -1,7 +1,8 @@
 """Newton's method on the contact-regular form, y = (q, n, d).
 
-Near contact H loses rank and the direction of dR its digits; this form keeps both. It is used
-where an answer very near contact is not certified otherwise; the feature pair is held.
+Near contact H loses rank and the direction of dR its digits; this form keeps both, through d = 0
+and in penetration. It is used there, and where an answer very near contact is not certified
+otherwise; the feature pair is held.
 """
 
 from math import sqrt
@@ -11,13 +12,13 @@ import numpy as np
 from standoff.kernels import layout as L
 from standoff.kernels.certificate import cone_normal
 from standoff.kernels.compiling import kernel
-from standoff.kernels.descent import pair_jets, recentre, walk_pair
+from standoff.kernels.descent import ORIGIN, pair_jets, recentre, walk_pair
 from standoff.kernels.events import CORRECTIONS, EVALUATIONS
 from standoff.kernels.features import chart_normal, dimension, pair_span
-from standoff.kernels.system import contact_jacobian, contact_residual
+from standoff.kernels.system import contact_feedforward, contact_jacobian, contact_residual
 from standoff.kernels.tolerances import CONTACT_STEPS, NEAR_CONTACT, PIVOT
 from standoff.kernels.trimming import NO_HIT
-from standoff.kernels.vectors import add, cross, dot, norm, rotate, scale, sub, unit
+from standoff.kernels.vectors import cross, dot, norm, rotate, scale, sub, unit
 
 
 @kernel
@@ -52,7 +53,7 @@ def contact_scales(jet_a, jet_b, span, scales):
     for k in range(4):
         tangent = jet_a[1 + k] if k < 2 else jet_b[k - 1]
         length = norm(tangent)
-        scales[k] = span / length if length > 0.0 else 1.0
+        scales[k] = span / length if length > 0.0 else sqrt(span)
     for k in range(4, 7):
         scales[k] = 1.0
     scales[7] = span
@@ -69,39 +70,77 @@ def scaled_residual(jet_a, jet_b, n, d, span, scales, r):
 
 
 @kernel
-def polish(pair, R, p, mode, q, counts):
-    """(sharp, n): Newton steps on r(y) = 0 in the present mode, q changed in place.
+def factor_and_solve(J, r, n):
+    """Solve J x = r in place (Gauss, partial pivoting): r becomes x. False where J is singular
+    to PIVOT; J is lost."""
+    for k in range(n):
+        pivot = k
+        for i in range(k + 1, n):
+            if abs(J[i, k]) > abs(J[pivot, k]):
+                pivot = i
+        if abs(J[pivot, k]) <= PIVOT:
+            return False
+        if pivot != k:
+            for j in range(k, n):
+                J[k, j], J[pivot, j] = J[pivot, j], J[k, j]
+            r[k], r[pivot] = r[pivot], r[k]
+        for i in range(k + 1, n):
+            factor = J[i, k] / J[k, k]
+            if factor != 0.0:
+                for j in range(k + 1, n):
+                    J[i, j] -= factor * J[k, j]
+                r[i] -= factor * r[k]
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, n):
+            r[k] -= J[k, j] * r[j]
+        r[k] /= J[k, k]
+    return True
 
-    n is the common normal found, where the feature pair gives one (`sharp`).
 
-    Least squares of least norm serve parallel features, where J is singular and consistent.
-    A step that would leave a feature ends it: the caller's switching functions decide then.
+@kernel
+def scaled_jacobian(jet_a, jet_b, n, d, span, scales, J):
+    contact_jacobian(jet_a, jet_b, n, d, J)
+    for i in range(8):
+        for j in range(8):
+            J[i, j] *= scales[i] * scales[j] / span
+
+
+@kernel
+def solve_contact(jet_a, jet_b, n, d, span, scales, J, r):
+    """J^-1 r in scaled columns. Least squares of least norm serve parallel features, where J is
+    singular and consistent."""
+    scaled_jacobian(jet_a, jet_b, n, d, span, scales, J)
+    x = r.copy()
+    if factor_and_solve(J, x, 8):
+        return x
+    scaled_jacobian(jet_a, jet_b, n, d, span, scales, J)
+    return np.linalg.lstsq(J, r, PIVOT)[0]
+
+
+@kernel
+def newton(pair, R, p, mode, q, n, d, span, counts):
+    """(fits, error, n, d): Newton's method on r(y) = 0 with the features held; q in place.
+
+    It ends where the residual (relative to the span) falls no more. A step that would leave a
+    feature ends it (`fits` False): the caller's descent decides then.
     """
     jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-    gap = sub(jet_b[0], jet_a[0])
-    span = pair_span(pair, p, norm(gap))
-    n, sharp = common_normal(pair, R, mode, q, jet_a, jet_b)
-    if not sharp or norm(gap) > NEAR_CONTACT * span:
-        return False, n
     J, r, scales = np.empty((8, 8)), np.empty(8), np.empty(8)
     contact_scales(jet_a, jet_b, span, scales)
-    d = dot(n, gap)
     error = scaled_residual(jet_a, jet_b, n, d, span, scales, r)
+    fits = True
     for _ in range(CONTACT_STEPS):
-        contact_jacobian(jet_a, jet_b, n, d, J)
-        for i in range(8):
-            for j in range(8):
-                J[i, j] *= scales[i] * scales[j] / span
-        y = np.linalg.lstsq(J, -r, PIVOT)[0]
+        y = solve_contact(jet_a, jet_b, n, d, span, scales, J, r)
         counts[EVALUATIONS] += 1
-        step = (y[0] * scales[0], y[1] * scales[1], y[2] * scales[2], y[3] * scales[3])
+        step = (-y[0] * scales[0], -y[1] * scales[1], -y[2] * scales[2], -y[3] * scales[3])
         if walk_pair(pair, mode, q, step)[2] != NO_HIT:
+            fits = False
             break
         old = (q[0], q[1], q[2], q[3])
         for k in range(4):
             q[k] += step[k]
         jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-        new_n = unit(add(n, (y[4], y[5], y[6])))
+        new_n = unit(sub(n, (y[4], y[5], y[6])))
         new_d = dot(new_n, sub(jet_b[0], jet_a[0]))
         contact_scales(jet_a, jet_b, span, scales)
         new_error = scaled_residual(jet_a, jet_b, new_n, new_d, span, scales, r)
@@ -111,4 +150,41 @@ def polish(pair, R, p, mode, q, counts):
         n, d, error = new_n, new_d, new_error
         counts[CORRECTIONS] += 1
     recentre(pair, mode, q, counts)
+    return fits, error, n, d
+
+
+@kernel
+def polish(pair, R, p, mode, q, counts):
+    """(sharp, n): Newton steps on r(y) = 0 in the present mode, q changed in place.
+
+    n is the common normal found, where the feature pair gives one (`sharp`).
+    """
+    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+    gap = sub(jet_b[0], jet_a[0])
+    span = pair_span(pair, p, norm(gap))
+    n, sharp = common_normal(pair, R, mode, q, jet_a, jet_b)
+    if not sharp or norm(gap) > NEAR_CONTACT * span:
+        return False, n
+    _, _, n, _ = newton(pair, R, p, mode, q, n, dot(n, gap), span, counts)
     return True, n
+
+
+@kernel
+def contact_rates(pair, motion, jets, n, d, w_ff, counts):
+    """The rate of n, and into w_ff those of the parameters: y' = -J^-1 r_t, at the witness points.
+
+    motion is (R, p, v, w) of B in A's frame, where A is at rest.
+    """
+    jet_a, jet_b = jets
+    _, p, v, w = motion
+    span = pair_span(pair, p, abs(d))
+    J, r, scales = np.empty((8, 8)), np.empty(8), np.empty(8)
+    contact_scales(jet_a, jet_b, span, scales)
+    r_t = contact_feedforward(jet_a, jet_b, n, ORIGIN, ORIGIN, ORIGIN, p, v, w)
+    for k in range(8):
+        r[k] = -r_t[k] * scales[k] / span
+    y = solve_contact(jet_a, jet_b, n, d, span, scales, J, r)
+    counts[EVALUATIONS] += 1
+    for k in range(4):
+        w_ff[k] = y[k] * scales[k]
+    return (y[4], y[5], y[6])

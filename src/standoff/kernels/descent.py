@@ -14,6 +14,7 @@ from standoff.kernels.events import (
     CHART_CHANGES,
     CORRECTIONS,
     EVALUATIONS,
+    LIMIT,
     REGULARISED,
     log_event,
 )
@@ -53,7 +54,7 @@ ORIGIN = (0.0, 0.0, 0.0)
 NO_EDGE = np.int64(-1)  # of the type of a feature's number: a literal would compile twice
 
 STATIONARY = 0
-EXHAUSTED = 1  # the iterations ran out
+EXHAUSTED = 1  # the iterations, or the frame's evaluations, ran out
 CONTACT = 2  # the surfaces met: no direction is left
 
 
@@ -296,6 +297,8 @@ def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
         span = pair_span(pair, p, d)
         if d <= TOUCHING * span:
             return CONTACT, fresh, jet_a, jet_b
+        if counts[EVALUATIONS] >= counts[LIMIT]:
+            return EXHAUSTED, fresh, jet_a, jet_b
         E = 0.5 * d * d
         noise = ENERGY_NOISE * EPS * span * d
         g = gradient(projection_errors(jet_a, jet_b))

@@ -6,7 +6,11 @@ from standoff.kernels.compiling import kernel
 
 # Counts, in one int64 array.
 EVALUATIONS, CORRECTIONS, SATURATIONS, CHART_CHANGES, RESTARTS, REGULARISED, EVENTS = range(7)
-N_COUNTS = 7
+SEARCHES = 7
+N_COUNTS = 8
+# Behind them, the evaluations after which the frame must end (its deadline).
+LIMIT = N_COUNTS
+N_COUNT_SLOTS = N_COUNTS + 1
 
 # Columns of the log, a flat array of MAX_EVENTS rows: body (0 A, 1 B), from, to, value of the
 # switching function, slope.

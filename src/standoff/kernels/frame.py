@@ -27,7 +27,10 @@ LOST = 38  # 1 where the last frame had no certified witness points: start globa
 ERRORS = 39  # projection errors, integrated beside the parameters (Fig. 3 of the paper)
 INTEGRAL = 43  # time integral of the projection errors (PI feedback)
 GAIN = 47  # K of the last stage, 1/s
-N_STATE = 48
+LAST_NORMAL = 48  # unit, from A to B
+LAST_DISTANCE = 51  # of the cores, signed
+INSIDE = 52  # 1 where the last frame was solved in contact: this one begins there
+N_STATE = 53
 
 # Options.
 LAW_PC, LAW_PAPER = 0, 1
@@ -35,24 +38,28 @@ PREDICT_NONE, PREDICT_SECANT, PREDICT_FEEDFORWARD, PREDICT_FEEDFORWARD_2 = range
 O_LAW, O_PREDICTOR, O_INTEGRATOR, O_GAIN, O_TOLERANCE = range(5)
 # The rest is for the paper's law: its feedback and the variants that the paper prints.
 O_FEEDBACK, O_REALISATION, O_SATURATION, O_SWITCHING, O_SOLVE = range(5, 10)
-O_DATA = 10  # what the feedback needs
+O_DEPTH = 10  # which depth is followed in penetration
+O_DEADLINE = 11  # most second-order evaluations a frame
+O_DATA = 12  # what the feedback needs
 N_OPTIONS = O_DATA + 16
 FEEDBACK_LINEAR, FEEDBACK_MATRIX, FEEDBACK_PI, FEEDBACK_POWER, FEEDBACK_MOTION = range(5)
 EVALUATED, INTEGRATED = 0, 1
 SATURATE_HOLD, SATURATE_ZERO = 0, 1
 SWITCH_MULTIPLIERS, SWITCH_VORONOI, SWITCH_NONE = range(3)
 SOLVE_RANKED, SOLVE_PLAIN = 0, 1
+DEPTH_GLOBAL, DEPTH_LOCAL = 0, 1
 
 # Output.
 DISTANCE, LOWER_BOUND = 0, 1
 POINT_A, POINT_B, NORMAL = 2, 5, 8
 OUT_MODE, OUT_Q = 11, 15
 OUT_RATE, VELOCITY_A, VELOCITY_B, RESIDUAL, STATUS = 19, 20, 23, 26, 27
-OUT_COUNTS = 28
+UPPER_BOUND = 28
+OUT_COUNTS = 29
 N_OUT = OUT_COUNTS + N_COUNTS
 
 # Status numbers, those of standoff.tracking.Status.
-CONVERGED, TRACKING, OVERLAPPING, NOT_CERTIFIED = range(4)
+CONVERGED, TRACKING, OVERLAPPING, NOT_CERTIFIED, LOCAL, GLOBAL, DEADLINE = range(7)
 
 # How a start begins.
 START_ANYWHERE, START_DESCEND, START_HERE = range(3)

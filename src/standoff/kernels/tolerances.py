@@ -108,3 +108,32 @@ CLOSEST_SAMPLES = 16
 CLOSEST_STEPS = 60
 # Voronoi tests of one frame: a point may cross a face, an edge and a vertex of each body.
 MAX_VORONOI_PASSES = 8
+
+# In contact the pair is shifted out along its normal until it stands this far apart (in contact
+# scales: both sizes and radii): H is regular there, and a greater gap would slow the descent.
+SHIFTED_GAP = 0.05
+# Steps of the descent of s(n): each lowers the depth; Newton's method ends it, mostly at once.
+# Near the focal depth, where the branch ends, the descent is slow.
+MAX_SHIFTS = 40
+# Newton's method is tried where a step of that descent has turned n by less than this (chord).
+NEWTON_TURN = 0.3
+# Residual (relative to the span) at which the contact-regular form is solved.
+CONTACT_RESIDUAL = 1e-12
+# A flat direction's radius of curvature, in spans: as good as infinite.
+FLAT_RADIUS = 1e12
+# A minimum whose least radius exceeds the depth by less than this (relative) may be none.
+FOCAL_MARGIN = 1e-9
+# How far (chord) the normal is turned off a stationary direction that is no minimum.
+NUDGE = 1e-3
+
+# A depth is global when no direction's can be less by more than this part of it: near one minimum
+# any direction within acos(1 - 1e-3) = 2.6 degrees is as good, so the polytope may be coarse.
+DEPTH_PROOF = 1e-3
+# Points that the search of all depths may add to its polytope: smooth pairs take 20 to 40.
+MAX_PROBES = 120
+# Other minima that a proven search still tries, where one might be less by DEPTH_PROOF.
+MAX_RIVALS = 8
+# A point is above a facet from here on (in contact scales): below it is coplanar.
+COPLANAR = 1e-11
+# Half the length of the prism over a planar difference, in contact scales: no depth reaches it.
+PRISM = 2.0

@@ -7,44 +7,40 @@ the poses it is given.
 import numpy as np
 
 from standoff.kernels.answer import judge, write_answer
-from standoff.kernels.certified import UNCERTIFIED, settle_and_weigh, weigh
-from standoff.kernels.cold_start import global_query
+from standoff.kernels.certified import CERTIFIED, UNCERTIFIED, settle_and_weigh, weigh
 from standoff.kernels.compiling import kernel, pointer
+from standoff.kernels.contact import contact_rates
 from standoff.kernels.descent import ORIGIN, pair_jets
 from standoff.kernels.events import (
+    EVALUATIONS,
     EVENT_COLUMNS,
     EVENTS,
+    LIMIT,
     MAX_EVENTS,
+    N_COUNT_SLOTS,
     N_COUNTS,
     RESTARTS,
     tidy_events,
 )
 from standoff.kernels.frame import (
     FINE,
-    INTEGRAL,
     LAW_PAPER,
     LAW_PC,
-    LOST,
     MODE,
     N_OUT,
     N_STATE,
+    O_DEADLINE,
     O_LAW,
-    O_SWITCHING,
     O_TOLERANCE,
     OUT_COUNTS,
-    OVERLAPPING,
     POSE,
     START_ANYWHERE,
     START_HERE,
-    SWITCH_NONE,
-    TRACKING,
-    TWIST,
-    Q,
     refusal,
 )
 from standoff.kernels.integrators import N_CHANGES, NONE, rates_at
-from standoff.kernels.paper_law import apply_step, paper_frame, read_errors
-from standoff.kernels.prediction import carry_over, keep, predict
+from standoff.kernels.paper_law import read_errors
+from standoff.kernels.prediction import carry_over, keep
 from standoff.kernels.rigid import (
     mean_twist,
     read_rotation,
@@ -53,47 +49,10 @@ from standoff.kernels.rigid import (
     relative_twist,
 )
 from standoff.kernels.tolerances import START_GAP
+from standoff.kernels.track import anywhere, from_state, track
 
-
-@kernel
-def track(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
-    """Witness points of this frame from the last one's: (fresh, outcome, d, bound, normal).
-
-    The predictor-corrector predicts with the feedforward, then makes one Newton correction (the
-    paper's feedback under Euler with K h = 1), more where a mode changes; where the certificate's
-    gap stays above the tolerance it corrects to roundoff, then restarts. `fresh` tells whether
-    w_ff belongs to the final mode.
-    """
-    R, p, v, w = motion
-    tolerance = options[O_TOLERANCE]
-    if state[LOST] == 0.0 or options[O_SWITCHING] == SWITCH_NONE:
-        if options[O_LAW] == LAW_PAPER:
-            before = (
-                read_rotation(state, POSE),
-                read_vector(state, POSE + 9),
-                read_vector(state, TWIST),
-                read_vector(state, TWIST + 3),
-            )
-            paper_frame(pair, before, motion, state, options, h, mode, q, counts, events, dq)
-            jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-            outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, ORIGIN, tolerance)
-            return False, outcome, d, bound, normal
-        predict(state, options, h, dq)
-        apply_step(pair, mode, q, dq, counts, events)
-        for k in range(2):
-            goal = tolerance if k == 0 else 0.0
-            fresh, outcome, d, bound, normal = settle_and_weigh(
-                pair, R, p, v, w, mode, q, w_ff, 1.0, goal, tolerance, counts, events
-            )
-            if outcome != UNCERTIFIED:
-                return fresh, outcome, d, bound, normal
-    counts[RESTARTS] += 1
-    outcome, d, bound, normal = global_query(pair, R, p, mode, q, w_ff, tolerance, counts, events)
-    if options[O_LAW] == LAW_PAPER:
-        for k in range(4):
-            state[INTEGRAL + k] = 0.0
-        read_errors(pair, R, p, state, mode, q)
-    return False, outcome, d, bound, normal
+# A start has no deadline.
+NO_LIMIT = 1 << 40
 
 
 @kernel
@@ -113,10 +72,10 @@ def start_frame(
     motion = (R, p, v, w)
     goal = min(options[O_TOLERANCE], START_GAP)
     outcome, d, bound, normal = UNCERTIFIED, 0.0, -1.0, (0.0, 0.0, 0.0)
+    inside, n_rate = False, ORIGIN
+    counts[LIMIT] = NO_LIMIT
     if given != START_ANYWHERE:
-        for k in range(4):
-            mode[k] = int(state[MODE + k])
-            q[k] = state[Q + k]
+        from_state(state, mode, q)
         if given == START_HERE:
             jet_a, jet_b = pair_jets(pair, R, p, mode, q)
             outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, ORIGIN, goal)
@@ -124,24 +83,28 @@ def start_frame(
             _, outcome, d, bound, normal = settle_and_weigh(
                 pair, R, p, v, w, mode, q, w_ff, 0.0, 0.0, goal, counts, events
             )
-    if outcome == UNCERTIFIED and given != START_HERE:
+    upper = d
+    if outcome != CERTIFIED and given != START_HERE:
         counts[RESTARTS] += 0 if given == START_ANYWHERE else 1
-        outcome, d, bound, normal = global_query(pair, R, p, mode, q, w_ff, goal, counts, events)
+        outcome, d, bound, upper, normal, inside = anywhere(
+            pair, R, p, options, goal, mode, q, w_ff, counts, events
+        )
     kind = LAW_PAPER if given == START_HERE else LAW_PC
-    status = judge(pair, kind, outcome, p, d, bound, goal)
-    if options[O_SWITCHING] == SWITCH_NONE and status == OVERLAPPING:
-        status = TRACKING
-    if has_twist and d > 0.0:
+    status = judge(pair, kind, outcome, p, d, bound, upper, goal, False)
+    jets = pair_jets(pair, R, p, mode, q)
+    if inside:
+        n_rate = contact_rates(pair, motion, jets, normal, d, w_ff, counts)
+    elif has_twist and d > 0.0:
         feedforward_now(pair, options, motion, mode, q, w_ff, counts)
     for k in range(N_STATE):
         state[k] = 0.0
     if options[O_LAW] == LAW_PAPER:
         read_errors(pair, R, p, state, mode, q)
     counts[EVENTS] = 0
-    keep(state, motion, has_twist, options, 0.0, mode, q, w_ff, False, status)
-    jets = pair_jets(pair, R, p, mode, q)
+    keep(state, motion, has_twist, options, 0.0, mode, q, w_ff, False, status, d, normal, inside)
+    query = (d, bound, upper, normal)
     write_answer(
-        pair, Ta, xi_a, has_twist, motion, mode, q, w_ff, jets, (d, bound, normal), status, out
+        pair, Ta, xi_a, has_twist, motion, mode, q, w_ff, jets, query, inside, n_rate, status, out
     )
     for k in range(N_COUNTS):
         out[OUT_COUNTS + k] = counts[k]
@@ -161,7 +124,7 @@ def start(pair, Ta, Tb, xi_a, xi_b, has_twist, options, state, given, out):
     refused = refusal(pointer(Ta, 0), pointer(Tb, 0), pointer(xi_a, 0), pointer(xi_b, 0))
     if refused != FINE:
         return refused
-    ints, reals = np.zeros(4 + N_COUNTS, dtype=np.int64), np.zeros(8)
+    ints, reals = np.zeros(4 + N_COUNT_SLOTS, dtype=np.int64), np.zeros(8)
     log = np.empty(MAX_EVENTS * EVENT_COLUMNS)
     start_frame(
         pair_pointers(pair),
@@ -188,12 +151,12 @@ def start(pair, Ta, Tb, xi_a, xi_b, has_twist, options, state, given, out):
 def step_frame(
     pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events, mode, q, w_ff, dq, counts
 ):
+    from_state(state, mode, q)
     for k in range(4):
-        mode[k] = int(state[MODE + k])
-        q[k] = state[Q + k]
         w_ff[k] = 0.0
     for k in range(N_COUNTS):
         counts[k] = 0
+    counts[LIMIT] = int(options[O_DEADLINE])
     R, p = relative_pose(Ta, Tb)
     if has_twist:
         v, w = relative_twist(Ta, Tb, xi_a, xi_b)
@@ -201,22 +164,26 @@ def step_frame(
         before = read_rotation(state, POSE)
         v, w = mean_twist(before, read_vector(state, POSE + 9), R, p, h)
     motion = (R, p, v, w)
-    fresh, outcome, d, bound, normal = track(
+    fresh, outcome, d, bound, upper, normal, inside = track(
         pair, motion, state, options, h, mode, q, w_ff, dq, counts, events
     )
-    status = judge(pair, options[O_LAW], outcome, p, d, bound, options[O_TOLERANCE])
-    if options[O_SWITCHING] == SWITCH_NONE and status == OVERLAPPING:
-        status = TRACKING  # of one feature, not of the bodies: the other may be inside
-    if not fresh and has_twist and d > 0.0:
+    exhausted = counts[EVALUATIONS] >= counts[LIMIT]
+    tolerance = options[O_TOLERANCE]
+    status = judge(pair, options[O_LAW], outcome, p, d, bound, upper, tolerance, exhausted)
+    jets = pair_jets(pair, R, p, mode, q)
+    n_rate = ORIGIN
+    if inside:
+        n_rate = contact_rates(pair, motion, jets, normal, d, w_ff, counts)
+    elif not fresh and has_twist and d > 0.0:
         feedforward_now(pair, options, motion, mode, q, w_ff, counts)
     old_a, old_b = int(state[MODE]), int(state[MODE + 2])
     same = carry_over(pair, state, mode)
     if counts[EVENTS] > 0 or old_a != mode[0] or old_b != mode[2]:
         tidy_events(events, counts, old_a, old_b, mode[0], mode[2])
-    keep(state, motion, has_twist, options, h, mode, q, w_ff, same, status)
-    jets = pair_jets(pair, R, p, mode, q)
+    keep(state, motion, has_twist, options, h, mode, q, w_ff, same, status, d, normal, inside)
+    query = (d, bound, upper, normal)
     write_answer(
-        pair, Ta, xi_a, has_twist, motion, mode, q, w_ff, jets, (d, bound, normal), status, out
+        pair, Ta, xi_a, has_twist, motion, mode, q, w_ff, jets, query, inside, n_rate, status, out
     )
     for k in range(N_COUNTS):
         out[OUT_COUNTS + k] = counts[k]
@@ -231,7 +198,7 @@ def step(pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events):
     refused = refusal(pointer(Ta, 0), pointer(Tb, 0), pointer(xi_a, 0), pointer(xi_b, 0))
     if refused != FINE:
         return refused
-    ints, reals = np.empty(4 + N_COUNTS, dtype=np.int64), np.empty(8 + N_CHANGES)
+    ints, reals = np.empty(4 + N_COUNT_SLOTS, dtype=np.int64), np.empty(8 + N_CHANGES)
     step_frame(
         pair_pointers(pair),
         pointer(Ta, 0),
@@ -261,7 +228,7 @@ def run(pair, poses_a, poses_b, twists_a, twists_b, has_twist, steps, options, s
     poses (n, 12), twists (n, 6), steps (n,), outs (n, N_OUT). Returns (-1, FINE), or the frame
     that was refused and why; the frames before it are answered.
     """
-    ints, reals = np.empty(4 + N_COUNTS, dtype=np.int64), np.empty(8 + N_CHANGES)
+    ints, reals = np.empty(4 + N_COUNT_SLOTS, dtype=np.int64), np.empty(8 + N_CHANGES)
     pointers = pair_pointers(pair)
     mode, counts = pointer(ints, 0), pointer(ints, 4)
     q, w_ff, dq = pointer(reals, 0), pointer(reals, 4), pointer(reals, 8)

@@ -6,6 +6,8 @@ import difflib
 import math
 from typing import Any
 
+import numpy as np
+
 from standoff.kernels import frame as K
 from standoff.kernels import integrators as I
 
@@ -24,6 +26,7 @@ SWITCHINGS = {
     "voronoi": K.SWITCH_VORONOI,
     "none": K.SWITCH_NONE,
 }
+DEPTHS = {"global": K.DEPTH_GLOBAL, "local": K.DEPTH_LOCAL}
 SOLVES = {"ranked": K.SOLVE_RANKED, "plain": K.SOLVE_PLAIN}
 
 
@@ -46,3 +49,11 @@ def positive_number(value: Any, name: str, allow_infinite: bool = False) -> floa
     if not number > 0.0 or (math.isinf(number) and not allow_infinite):
         raise ValueError(f"{name} = {number}: must be positive and finite.")
     return number
+
+
+def whole_number(value: Any, name: str) -> int:
+    """A positive whole number; text, True and fractions are none."""
+    whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    if not whole or value < 1:
+        raise ValueError(f"{name} = {value!r}: must be a whole number of at least 1.")
+    return int(value)

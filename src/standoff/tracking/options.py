@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.kernels import frame as K
+from standoff.kernels.tracker import NO_LIMIT
 from standoff.tracking.choices import (
+    DEPTHS,
     INTEGRATORS,
     LAWS,
     PREDICTORS,
@@ -19,6 +21,7 @@ from standoff.tracking.choices import (
     SWITCHINGS,
     choice,
     positive_number,
+    whole_number,
 )
 from standoff.tracking.feedback import Feedback, check_stable, feedback_of
 
@@ -77,6 +80,8 @@ def pack_options(
     tolerance: float,
     feedback: Any = None,
     variants: Variants | None = None,
+    depth: str = "global",
+    deadline: int | None = None,
 ) -> tuple[NDArray[np.float64], Feedback]:
     """The array of options the kernels read, and the feedback. Default gain: K dt = 1."""
     dt = positive_number(dt, "dt")
@@ -100,5 +105,7 @@ def pack_options(
     options[K.O_SATURATION] = SATURATIONS[variants.saturation]
     options[K.O_SWITCHING] = SWITCHINGS[variants.switching]
     options[K.O_SOLVE] = SOLVES[variants.solve]
+    options[K.O_DEPTH] = choice(depth, "depth", DEPTHS)
+    options[K.O_DEADLINE] = NO_LIMIT if deadline is None else whole_number(deadline, "deadline")
     options.flags.writeable = False
     return options, chosen

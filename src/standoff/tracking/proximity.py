@@ -38,6 +38,8 @@ class Counts(NamedTuple):
         solution, so that no step was made).
     saturations : int
         Components of a step that were zeroed at a boundary (``saturation="zero"``).
+    searches : int
+        Searches over all directions of depth in penetration.
     """
 
     evaluations: int
@@ -47,6 +49,7 @@ class Counts(NamedTuple):
     restarts: int
     regularised: int
     saturations: int
+    searches: int
 
 
 class Event(NamedTuple):
@@ -85,11 +88,18 @@ class Proximity:
     Attributes
     ----------
     distance : float
-        Between the witness points, an upper bound of the true distance. nan while overlapping.
+        Signed: between the witness points while apart, an upper bound of the true distance; less
+        the depth in penetration: B moved by depth * normal touches A.
     lower_bound : float
-        A certified lower bound of the true distance (docs/certificate.md).
+        A certified lower bound of the true signed distance (docs/certificate.md).
+    upper_bound : float
+        An upper bound of it: the distance itself while apart, less than 0.999 of the depth where
+        the status is GLOBAL.
+    depth : float
+        0 while apart, else how deep B is in A along the normal.
     point_a, point_b : (3,) arrays
-        Witness points on A and B.
+        Witness points on A and B; in penetration the deepest ones: point_b - point_a is
+        distance * normal in contact too.
     normal : (3,) array
         Unit vector from A to B; of all candidates the one with the greatest lower bound.
     feature_a, feature_b : Feature
@@ -108,15 +118,24 @@ class Proximity:
     counts : Counts
     events : tuple of Event
         The switches of this step.
+    poses : pair of (12,) arrays
+        World poses of A and B that the answer holds for: R row-major, p.
     """
 
-    __slots__ = ("_a", "_b", "_out", "events", "time")
+    __slots__ = ("_a", "_b", "_out", "events", "poses", "time")
 
     def __init__(
-        self, a: Body, b: Body, out: Array, events: tuple[Event, ...] = (), time: float = 0.0
+        self,
+        a: Body,
+        b: Body,
+        out: Array,
+        events: tuple[Event, ...] = (),
+        time: float = 0.0,
+        poses: tuple[Array, Array] | None = None,
     ) -> None:
         out.flags.writeable = False
         self._a, self._b, self._out = a, b, out
+        self.poses = poses
         self.events = events
         self.time = time
 
@@ -142,6 +161,14 @@ class Proximity:
     @property
     def lower_bound(self) -> float:
         return float(self._out[K.LOWER_BOUND])
+
+    @property
+    def upper_bound(self) -> float:
+        return float(self._out[K.UPPER_BOUND])
+
+    @property
+    def depth(self) -> float:
+        return max(0.0, -self.distance)
 
     @property
     def point_a(self) -> Array:
@@ -204,8 +231,8 @@ class Proximity:
 
     @property
     def certified(self) -> bool:
-        """Is the gap between distance and lower bound within the tolerance?"""
-        return self.status is Status.CONVERGED
+        """Is the signed distance proven: CONVERGED while apart, GLOBAL in penetration?"""
+        return self.status in (Status.CONVERGED, Status.GLOBAL)
 
     @property
     def counts(self) -> Counts:
@@ -218,6 +245,7 @@ class Proximity:
             int(o[N.RESTARTS]),
             int(o[N.REGULARISED]),
             int(o[N.SATURATIONS]),
+            int(o[N.SEARCHES]),
         )
 
     def __repr__(self) -> str:

@@ -206,7 +206,13 @@ class Recording:
     @property
     def certified(self) -> NDArray[np.bool_]:
         """Whether each frame's gap is within the tolerance, shape (n,)."""
-        return np.asarray(self.status == Status.CONVERGED)
+        return np.asarray((self.status == Status.CONVERGED) | (self.status == Status.GLOBAL))
+
+    @property
+    def penetrating(self) -> NDArray[np.bool_]:
+        """Whether the bodies touch or overlap in each frame, shape (n,)."""
+        inside = [s in (Status.LOCAL, Status.GLOBAL, Status.OVERLAPPING) for s in self.status]
+        return np.asarray(inside, dtype=bool)
 
     @property
     def gap(self) -> Array:
@@ -232,10 +238,9 @@ class Recording:
     def modes(self) -> list[Visit]:
         """Return the visited modes in order of time.
 
-        A stay ends at the instant of the switch that ends it. While the bodies overlap there is
-        no mode: the stay before ends at the last frame with a distance, the next one begins at
-        the first frame that has one again. Of switches at one instant only the last mode is
-        visited.
+        A stay ends at the instant of the switch that ends it. Where an overlap has no depth there
+        is no mode: the stay before ends at the last frame with one, the next one begins at the
+        first frame that has one again. Of switches at one instant only the last mode is visited.
         """
         visits: list[Visit] = []
         events = list(self.events)

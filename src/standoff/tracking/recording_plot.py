@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
 from standoff.tracking.recording import Recording
-from standoff.tracking.status import Status
 
 try:
     from matplotlib import colormaps
@@ -97,10 +96,9 @@ def write_plot(recording: Recording, path: Path, ending: str) -> None:
 def draw(recording: Recording) -> Figure:
     """Return the picture of a recording."""
     names = ["distance", "gap"]
-    apart = recording.status != Status.OVERLAPPING
     for body, values in (("A", recording.parameters_a), ("B", recording.parameters_b)):
         names.append(f"band {body}")
-        if not np.isnan(values[apart]).all():
+        if not np.isnan(values).all():
             names.append(f"parameters {body}")
     figure, axes = _panels(names)
     origin = float(recording.time[0]) if abs(recording.time[0]) > LONG_WAY_OFF else 0.0
@@ -183,9 +181,9 @@ def _draw_distance(axes: Axes, times: Array, recording: Recording) -> None:
 
 def _shade_overlaps(axes: Axes, times: Array, recording: Recording, *, named: bool) -> None:
     edges = _frame_edges(times)
-    label = "overlapping: no distance" if named else "_"
-    for status, first, last in _runs(recording.status.tolist()):
-        if status is Status.OVERLAPPING:
+    label = "in penetration" if named else "_"
+    for inside, first, last in _runs(recording.penetrating.tolist()):
+        if inside:
             axes.axvspan(edges[first], edges[last], color="0.8", linewidth=0, label=label)
             label = "_"  # one legend entry for all
 
@@ -261,11 +259,7 @@ def _draw_band(
         if stay.end - stay.start >= LABEL_SHARE * (times[-1] - times[0]):
             _name_stay(axes, stay)
     _shade_overlaps(axes, times, recording, named=False)
-    switches = [
-        event.time - origin
-        for event in recording.events
-        if event.body == body and recording.status[event.frame] is not Status.OVERLAPPING
-    ]
+    switches = [event.time - origin for event in recording.events if event.body == body]
     ticks = axes.plot(
         switches,
         [1.16] * len(switches),
@@ -332,13 +326,12 @@ def _draw_parameters(
     values = recording.parameters_a if body == "A" else recording.parameters_b
     features = recording.feature_a if body == "A" else recording.feature_b
     charts = np.nan_to_num(values[:, 2], nan=-1.0).tolist()
-    overlapping = recording.status == Status.OVERLAPPING
-    keys = list(zip(features.tolist(), charts, overlapping.tolist(), strict=True))
+    keys = list(zip(features.tolist(), charts, strict=True))
     for k, (name, colour, dashes) in enumerate(PARAMETERS):
         label = name
-        for (_, _, away), first, last in _runs(keys):
+        for _, first, last in _runs(keys):
             part = values[first:last, k]
-            if away or np.isnan(part).all():
+            if np.isnan(part).all():
                 continue
             # One frame alone has no line.
             marker = "." if last - first == 1 else ""

@@ -342,7 +342,9 @@ class _Run:
         self, state: TrackerState, answer: Proximity, frame: int, before: float, time: float
     ) -> list[RecordedEvent]:
         known = answer.status in (Status.CONVERGED, Status.TRACKING)
-        if self.locate and known and state.data[K.LOST] == 0.0:
+        # in contact the switching functions are those of the pair shifted out: dated to frames
+        outside = state.data[K.LOST] == 0.0 and state.data[K.INSIDE] == 0.0
+        if self.locate and known and outside:
             step = Step(self.tracker, self._flat, state, before, time, answer.row)
             events = located_events(step, frame, answer.events)
             if events is not None:

@@ -12,6 +12,9 @@ class Status(Enum):
     TRACKING = 1
     OVERLAPPING = 2
     NOT_CERTIFIED = 3
+    LOCAL = 4
+    GLOBAL = 5
+    DEADLINE = 6
 
     @property
     def advice(self) -> str:
@@ -29,11 +32,23 @@ _ADVICE = {
         "paper's gain towards so.max_gain, shorten the step, or give a finite tolerance."
     ),
     Status.OVERLAPPING: (
-        "The bodies touch or overlap: there is no distance until they part. The next step starts "
-        "globally."
+        "The bodies are proven to overlap, but no depth was found: the distance is no more than 0; "
+        "report the pair with its poses."
     ),
     Status.NOT_CERTIFIED: (
         "No start reached a gap within the tolerance: the distance is an upper bound and the "
         "lower bound holds; loosen the tolerance, or report the pair with its poses."
+    ),
+    Status.LOCAL: (
+        "The bodies overlap, and moving B by depth * normal parts them; a lesser depth may exist "
+        "in another direction, down to the upper bound: depth='global' searches for it."
+    ),
+    Status.GLOBAL: (
+        "The bodies overlap, moving B by depth * normal parts them, and it is proven that no "
+        "direction needs less than 0.999 of it."
+    ),
+    Status.DEADLINE: (
+        "The evaluations allowed for this step ran out: the lower bound holds and the next step "
+        "goes on from here; allow more evaluations, or shorten the step."
     ),
 }

@@ -32,6 +32,10 @@ from standoff.tracking.status import Status
 Array = NDArray[np.float64]
 
 
+# Statuses of answers that a proof of overlap may decide.
+UNDECIDED = (float(Status.NOT_CERTIFIED.value), float(Status.TRACKING.value))
+
+
 class Tracker:
     """Keeps the minimum distance of two convex bodies while they move.
 
@@ -70,6 +74,13 @@ class Tracker:
         Gap between distance and lower bound, less the bodies' own slack (``Body.check``),
         relative to the pair's size, above which the predictor-corrector corrects again, then
         restarts. inf: one correction, whatever the gap.
+    depth : "global" or "local"
+        In penetration, prove in every frame that no direction has a lesser depth, and search for
+        it where one may; or follow the local minimum alone, which costs less.
+    deadline : int, optional
+        Most evaluations a step may take; then it ends with the best certified answer so far, and
+        the status DEADLINE where that is not within the tolerance. One more may be made for the
+        rates.
 
     Raises
     ------
@@ -94,6 +105,8 @@ class Tracker:
         saturation: str | None = None,
         switching: str = "multipliers",
         solve: str = "ranked",
+        depth: str = "global",
+        deadline: int | None = None,
     ) -> None:
         check_pair(a, b)
         self.a, self.b = a, b
@@ -101,7 +114,16 @@ class Tracker:
         self.law, self.predictor, self.integrator = law, predictor, integrator
         self.variants = Variants.of(realisation, saturation, switching, solve)
         self.options, self.feedback = pack_options(
-            law, predictor, integrator, gain, dt, tolerance, feedback, self.variants
+            law,
+            predictor,
+            integrator,
+            gain,
+            dt,
+            tolerance,
+            feedback,
+            self.variants,
+            depth,
+            deadline,
         )
         self.packed = (a.ints, a.reals, b.ints, b.reals)
         self.planar = a.dimension == 2 or b.dimension == 2
@@ -250,7 +272,7 @@ class Tracker:
         )
         if bad:
             self._refuse(bad, _matrix(buffer.pose_a), _matrix(buffer.pose_b))
-        if buffer.out[K.STATUS] != K.CONVERGED:
+        if buffer.out[K.STATUS] in UNDECIDED:
             self._name_overlap(buffer.state, buffer.out, buffer.pose_a, buffer.pose_b)
         return float(buffer.out[K.DISTANCE])
 
@@ -337,13 +359,13 @@ class Tracker:
     def _answer(
         self, data: Array, out: Array, log: Array, flat_a: Array, flat_b: Array
     ) -> tuple[TrackerState, Proximity]:
-        if out[K.STATUS] != K.CONVERGED:
+        if out[K.STATUS] in UNDECIDED:
             self._name_overlap(data, out, flat_a, flat_b)
         data.flags.writeable = False
         time = float(data[K.TIME])
         count = int(out[K.OUT_COUNTS + N.EVENTS])
         events = self._events(log, count, time) if count else ()
-        proximity = Proximity(self.a, self.b, out, events, time)
+        proximity = Proximity(self.a, self.b, out, events, time, (flat_a, flat_b))
         return TrackerState(data, proximity), proximity
 
     def _events(self, log: Array, count: int, time: float) -> tuple[Event, ...]:
@@ -358,12 +380,10 @@ class Tracker:
 
     def _name_overlap(self, data: Array, out: Array, flat_a: Array, flat_b: Array) -> None:
         """Give an uncertified pair without a positive bound the status OVERLAPPING, if proven."""
-        uncertain = out[K.STATUS] in (Status.NOT_CERTIFIED.value, Status.TRACKING.value)
-        if not uncertain or out[K.LOWER_BOUND] > 0.0 or self.variants.switching == "none":
+        if out[K.DISTANCE] <= 0.0 or out[K.LOWER_BOUND] > 0.0 or self.variants.switching == "none":
             return
         if cores_overlap(self.a, self.b, flat_a, flat_b):
-            out[: K.OUT_MODE] = np.nan
-            out[K.OUT_RATE : K.STATUS] = np.nan
+            out[K.DISTANCE] = out[K.UPPER_BOUND] = 0.0
             out[K.STATUS] = float(Status.OVERLAPPING.value)
             data[K.LOST] = 1.0
 
@@ -376,7 +396,7 @@ def _matrix(flat: Array) -> Array:
 
 
 def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
-    """The minimum distance of two bodies at two poses: cold, global, certified.
+    """The signed minimum distance of two bodies at two poses: cold, global, certified.
 
     Parameters
     ----------
@@ -388,7 +408,8 @@ def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
     Returns
     -------
     Proximity
-        ``status`` is OVERLAPPING and ``distance`` nan where the bodies touch or overlap.
+        In penetration ``distance`` is less than 0, the least depth, and ``status`` GLOBAL (or
+        LOCAL, where it could not be proven to be the least).
 
     Raises
     ------

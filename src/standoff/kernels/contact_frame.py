@@ -1,0 +1,70 @@
+"""A query in contact or penetration: follow the local minimum of s(n), and prove it the least."""
+
+from math import inf, nan
+
+import numpy as np
+
+from standoff.kernels.certificate import certify_along
+from standoff.kernels.certified import CERTIFIED, PENETRATING, UNCERTIFIED
+from standoff.kernels.compiling import kernel, pointer
+from standoff.kernels.depth_search import save, search
+from standoff.kernels.descent import pair_jets
+from standoff.kernels.events import EVENTS
+from standoff.kernels.penetration import begin_along, descend, plane_normal
+from standoff.kernels.tolerances import MAX_RIVALS
+from standoff.kernels.vectors import dot, norm, sub
+
+
+@kernel
+def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, counts, events):
+    """(outcome, d, bound, upper, normal): signed distance of the cores and its bounds.
+
+    `known`: n and (mode, q) are those of a frame before. `everywhere`: search all directions
+    unless one does. `upper` is at least the signed distance.
+    """
+    best_mode, best_q = np.empty(4, dtype=np.int64), np.empty(4)
+    least, found, d = -inf, False, nan
+    plane, normal = plane_normal(pair, R)
+    if plane:
+        n = normal
+        if not known:
+            begin_along(pair, R, n, mode, q)
+    if known or plane:
+        found, n, d = descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events)
+    save(mode, q, pointer(best_mode, 0), pointer(best_q, 0))
+    if plane:
+        least = -d
+    elif not found or (everywhere and d <= 0.0):
+        logged = counts[EVENTS]
+        found, d, n, least = search(
+            pair,
+            R,
+            p,
+            found,
+            d,
+            n,
+            mode,
+            q,
+            pointer(best_mode, 0),
+            pointer(best_q, 0),
+            w_ff,
+            tolerance,
+            float(MAX_RIVALS),
+            counts,
+            events,
+        )
+        counts[EVENTS] = logged
+        save(pointer(best_mode, 0), pointer(best_q, 0), mode, q)
+    best_mode[0], best_q[0] = 0, 0.0  # alive until here, see `pointer`
+    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+    gap = sub(jet_b[0], jet_a[0])
+    d = dot(n, gap)
+    bound, _ = certify_along(pair, R, p, mode, q, jet_a[0], jet_b[0], n)
+    upper = norm(gap)
+    if least >= 0.0:
+        upper = min(upper, -least)
+    if not found:
+        return UNCERTIFIED, d, bound, upper, n
+    if d > 0.0 and bound > 0.0:
+        return CERTIFIED, d, bound, d, n
+    return PENETRATING, d, bound, max(upper, d), n

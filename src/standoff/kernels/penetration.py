@@ -1,0 +1,261 @@
+"""The signed distance in contact and penetration: local minima of s(n) = h_A(n) + h_B(-n).
+
+h are the support functions: B moved by s(n) n just touches A, so the depth is the least s(n), and
+the distance of bodies apart is the greatest -s(n). The pair (A, B + T), shifted out by
+T = (s(n) + g) n, stands apart, and the ordinary descent with all its switching finds its closest
+points x_a, x_b. Their direction n' has s(n') = (s(n) + g) n'.n - d' <= s(n), as d' >= g: a descent
+of s over features of both bodies, whose fixed points are the stationary ones. Newton's method on
+the contact-regular form ends it.
+"""
+
+from math import inf, sqrt
+
+from standoff.kernels import layout as L
+from standoff.kernels.certificate import certify_along
+from standoff.kernels.certified import on_feature
+from standoff.kernels.cold_start import begin_at, support_sample
+from standoff.kernels.compiling import kernel
+from standoff.kernels.contact import newton
+from standoff.kernels.descent import ORIGIN, pair_jets, settle
+from standoff.kernels.events import EVALUATIONS, LIMIT, RESTARTS
+from standoff.kernels.features import pair_slack, pair_span
+from standoff.kernels.tolerances import (
+    BLUR,
+    CONTACT_RESIDUAL,
+    FLAT_RADIUS,
+    FOCAL_MARGIN,
+    MAX_SHIFTS,
+    NEWTON_TURN,
+    NUDGE,
+    SHIFTED_GAP,
+    TOUCHING,
+)
+from standoff.kernels.vectors import (
+    add,
+    axpy,
+    cross,
+    dot,
+    norm,
+    rotate,
+    rotate_back,
+    scale,
+    sub,
+    unit,
+)
+
+UP = (0.0, 0.0, 1.0)  # outward normal of a half-space, in its frame
+
+
+@kernel
+def contact_scale(pair):
+    """The length that shifts and depths are measured by: both sizes and radii."""
+    total = pair[1][L.SIZE] + pair[3][L.SIZE] + pair[1][L.RADIUS] + pair[3][L.RADIUS]
+    return total if total > 0.0 else 1.0
+
+
+@kernel
+def box_support(reals, n):
+    """h(n) of the body's box, n in its frame: at least that of the core."""
+    total = 0.0
+    for k in range(3):
+        total += n[k] * reals[L.BOX_CENTRE + k] + abs(n[k]) * reals[L.BOX_HALF + k]
+    return total
+
+
+@kernel
+def box_depth(pair, R, p, n):
+    """At least s(n), from the bodies' boxes; n is the normal of a body without one."""
+    ia, ra, ib, rb = pair
+    total = -dot(n, p)
+    if not ia[L.UNBOUNDED]:
+        total += box_support(ra, n)
+    if not ib[L.UNBOUNDED]:
+        total += box_support(rb, scale(-1.0, rotate_back(R, n)))
+    return total
+
+
+@kernel
+def plane_normal(pair, R):
+    """(is a body a half-space, the only direction from A to B that can part it from the other)."""
+    if pair[0][L.UNBOUNDED]:
+        return True, UP
+    if pair[2][L.UNBOUNDED]:
+        return True, scale(-1.0, rotate(R, UP))
+    return False, UP
+
+
+@kernel
+def begin_along(pair, R, n, mode, q):
+    """Set the witness points to the samples farthest along n and -n."""
+    ia, ra, ib, rb = pair
+    begin_at(ia, ra, 0, support_sample(ia, ra, n), mode, q)
+    begin_at(ib, rb, 1, support_sample(ib, rb, scale(-1.0, rotate_back(R, n))), mode, q)
+
+
+@kernel
+def tangents(n):
+    """Two unit vectors square to n and to each other."""
+    axis = (1.0, 0.0, 0.0) if abs(n[0]) < 0.6 else (0.0, 1.0, 0.0)
+    e = unit(cross(n, axis))
+    return e, cross(n, e)
+
+
+@kernel
+def radii(jet, n, e_1, e_2, flat):
+    """(r_11, r_12, r_22): how fast the support point of a feature moves as its outward normal n
+    turns, along e_1 and e_2; at most `flat`. For a face the inverse of the shape operator, 0 for
+    a vertex.
+    """
+    fu, fv = jet[1], jet[2]
+    au, av = dot(fu, fu), dot(fv, fv)
+    if au == 0.0 and av == 0.0:
+        return 0.0, 0.0, 0.0
+    if av == 0.0 or au == 0.0:
+        t, tt, a = (fu, jet[3], au) if av == 0.0 else (fv, jet[5], av)
+        r = a / max(-dot(n, tt), a / flat)
+        i, k = dot(e_1, t) / sqrt(a), dot(e_2, t) / sqrt(a)
+        return r * i * i, r * i * k, r * k * k
+    # whitened by the lengths of the tangents
+    su, sv = 1.0 / sqrt(au), 1.0 / sqrt(av)
+    b_uu = max(-dot(n, jet[3]) * su * su, 0.0) + 1.0 / flat
+    b_uv = -dot(n, jet[4]) * su * sv
+    b_vv = max(-dot(n, jet[5]) * sv * sv, 0.0) + 1.0 / flat
+    det = max(b_uu * b_vv - b_uv * b_uv, b_uu / flat, b_vv / flat)
+    p_1, p_2 = dot(e_1, fu) * su, dot(e_2, fu) * su
+    q_1, q_2 = dot(e_1, fv) * sv, dot(e_2, fv) * sv
+    r_11 = (p_1 * p_1 * b_vv - 2.0 * p_1 * q_1 * b_uv + q_1 * q_1 * b_uu) / det
+    r_12 = (p_1 * p_2 * b_vv - (p_1 * q_2 + p_2 * q_1) * b_uv + q_1 * q_2 * b_uu) / det
+    r_22 = (p_2 * p_2 * b_vv - 2.0 * p_2 * q_2 * b_uv + q_2 * q_2 * b_uu) / det
+    return r_11, r_12, r_22
+
+
+@kernel
+def focal_depth(pair, jet_a, jet_b, n, span):
+    """(focal depth, direction): the least eigenvalue of the sum of both radii of curvature along
+    n, beyond which a stationary direction is no minimum of s, and its unit vector.
+    """
+    e_1, e_2 = tangents(n)
+    flat = FLAT_RADIUS * span
+    a_11, a_12, a_22 = radii(jet_a, n, e_1, e_2, flat)
+    b_11, b_12, b_22 = radii(jet_b, scale(-1.0, n), e_1, e_2, flat)
+    r_11, r_12, r_22 = a_11 + b_11, a_12 + b_12, a_22 + b_22
+    if pair[0][L.DIMENSION] == 2 or pair[2][L.DIMENSION] == 2:
+        flat_way = (-n[1], n[0], 0.0)
+        i, k = dot(flat_way, e_1), dot(flat_way, e_2)
+        return i * i * r_11 + 2.0 * i * k * r_12 + k * k * r_22, flat_way
+    mean, half = 0.5 * (r_11 + r_22), 0.5 * (r_11 - r_22)
+    root = sqrt(half * half + r_12 * r_12)
+    # det / (mean + root): the difference mean - root loses the lesser one's digits
+    least = (r_11 * r_22 - r_12 * r_12) / (mean + root) if mean + root > 0.0 else 0.0
+    if r_11 <= r_22:
+        x, y = half - root, r_12
+    else:
+        x, y = -r_12, half + root
+    length = sqrt(x * x + y * y)
+    if length == 0.0:
+        return least, e_1
+    return least, add(scale(x / length, e_1), scale(y / length, e_2))
+
+
+@kernel
+def is_minimum(pair, jet_a, jet_b, n, d, span):
+    """(is it a minimum of s, the direction along which it falls most)."""
+    least, way = focal_depth(pair, jet_a, jet_b, n, span)
+    return least >= -d * (1.0 - FOCAL_MARGIN) - CONTACT_RESIDUAL * span, way
+
+
+@kernel
+def shifted(pair, R, p, n, d, mode, q, w_ff, counts, events):
+    """(apart, n', d'): one step of the descent from the direction n, where the signed distance is
+    at least d; mode and q are warm and get the closest points of the shifted pair.
+    """
+    gap = SHIFTED_GAP * contact_scale(pair)
+    shift = scale(max(gap - d, 0.0), n)
+    moved = add(p, shift)
+    _, _, jet_a, jet_b = settle(
+        pair, R, moved, ORIGIN, ORIGIN, mode, q, w_ff, 0.0, 0.0, counts, events
+    )
+    between = sub(jet_b[0], jet_a[0])
+    far = norm(between)
+    if far <= TOUCHING * pair_span(pair, moved, far) or far == 0.0:
+        return False, n, d
+    n = scale(1.0 / far, between)
+    return True, n, dot(n, sub(between, shift))
+
+
+@kernel
+def minimum_along(pair, R, p, mode, q, n, d, tolerance, counts):
+    """(found, n, d): Newton's method from a direction, accepted where it ends at a certified
+    minimum no deeper than the start. Else mode and q are as they were.
+    """
+    old_mode = (mode[0], mode[1], mode[2], mode[3])
+    old_q = (q[0], q[1], q[2], q[3])
+    span = pair_span(pair, p, abs(d))
+    if span == 0.0:
+        span = contact_scale(pair)
+    fits, error, n_new, d_new = newton(pair, R, p, mode, q, n, d, span, counts)
+    plane, normal = plane_normal(pair, R)
+    if fits and error <= CONTACT_RESIDUAL and d_new >= d - CONTACT_RESIDUAL * span:
+        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+        if plane:  # any other n, be it by roundoff, bounds nothing
+            n_new = normal
+            d_new = dot(n_new, sub(jet_b[0], jet_a[0]))
+        bound, blur = certify_along(pair, R, p, mode, q, jet_a[0], jet_b[0], n_new)
+        allowed = min(tolerance, BLUR) * span + pair_slack(pair) + min(blur, BLUR * span)
+        if (
+            d_new - bound <= allowed
+            and on_feature(pair, mode, q)
+            and is_minimum(pair, jet_a, jet_b, n_new, d_new, span)[0]
+        ):
+            return True, n_new, d_new
+    mode[0], mode[1], mode[2], mode[3] = old_mode
+    q[0], q[1], q[2], q[3] = old_q
+    return False, n, d
+
+
+@kernel
+def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
+    """(found, n, d) of the local minimum of s reached from the direction n; (mode, q) are warm.
+
+    d is a guess of the signed distance along n, nan for none. Not found: n and d are the last of
+    the descent.
+    """
+    if d != d:
+        d = -box_depth(pair, R, p, n)
+    restarted = False
+    before = -inf
+    for _ in range(MAX_SHIFTS):
+        apart, n_new, d_new = shifted(pair, R, p, n, d, mode, q, w_ff, counts, events)
+        if not apart:  # the guess was too near
+            farther = -box_depth(pair, R, p, n)
+            if d <= farther or counts[EVALUATIONS] >= counts[LIMIT]:
+                return False, n, d
+            d = farther
+            continue
+        turn = norm(sub(n_new, n))
+        n, d = n_new, d_new
+        if turn <= NEWTON_TURN:
+            found, n_end, d_end = minimum_along(pair, R, p, mode, q, n, d, tolerance, counts)
+            if found:
+                return True, n_end, d_end
+        if counts[EVALUATIONS] >= counts[LIMIT]:
+            return False, n, d
+        span = pair_span(pair, p, abs(d))
+        if turn <= CONTACT_RESIDUAL or d <= before:
+            # at rest, yet no certified minimum: a saddle is left along its steepest way, and
+            # witness points on a far side start again from the samples
+            jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+            minimal, way = is_minimum(pair, jet_a, jet_b, n, d, span)
+            if minimal:
+                if restarted:
+                    return False, n, d
+                restarted = True
+                counts[RESTARTS] += 1
+                begin_along(pair, R, n, mode, q)
+            else:
+                n = unit(axpy(NUDGE, way, n))
+                d = -box_depth(pair, R, p, n)
+            before = -inf
+            continue
+        before = d
+    return False, n, d

@@ -1,0 +1,151 @@
+"""The witness points of one frame from those of the last, in both laws, apart or in contact."""
+
+from math import inf
+
+from standoff.kernels.certified import (
+    CERTIFIED,
+    PENETRATING,
+    UNCERTIFIED,
+    settle_and_weigh,
+    weigh,
+)
+from standoff.kernels.cold_start import global_query
+from standoff.kernels.compiling import kernel
+from standoff.kernels.contact_frame import contact_query
+from standoff.kernels.descent import ORIGIN, pair_jets
+from standoff.kernels.events import EVALUATIONS, LIMIT, RESTARTS
+from standoff.kernels.frame import (
+    DEPTH_GLOBAL,
+    INSIDE,
+    INTEGRAL,
+    LAST_DISTANCE,
+    LAST_NORMAL,
+    LAW_PAPER,
+    LOST,
+    MODE,
+    O_DEPTH,
+    O_LAW,
+    O_SWITCHING,
+    O_TOLERANCE,
+    POSE,
+    SWITCH_NONE,
+    TWIST,
+    Q,
+)
+from standoff.kernels.paper_law import apply_step, paper_frame, read_errors
+from standoff.kernels.penetration import contact_scale
+from standoff.kernels.prediction import predict
+from standoff.kernels.rigid import read_rotation, read_vector
+from standoff.kernels.tolerances import SHIFTED_GAP
+from standoff.kernels.vectors import dot, sub
+
+
+@kernel
+def from_state(state, mode, q):
+    for k in range(4):
+        mode[k] = int(state[MODE + k])
+        q[k] = state[Q + k]
+
+
+@kernel
+def follow(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
+    """(fresh, outcome, d, bound, normal, apart) of one step of the law outside contact.
+
+    The predictor-corrector predicts with the feedforward, then makes one Newton correction (the
+    paper's feedback under Euler with K h = 1), more where a mode changes; where the certificate's
+    gap stays above the tolerance it corrects to roundoff. `apart` tells that the witness points
+    have not passed each other along the last normal.
+    """
+    R, p, v, w = motion
+    n = read_vector(state, LAST_NORMAL)
+    tolerance = options[O_TOLERANCE]
+    if options[O_LAW] == LAW_PAPER:
+        before = (
+            read_rotation(state, POSE),
+            read_vector(state, POSE + 9),
+            read_vector(state, TWIST),
+            read_vector(state, TWIST + 3),
+        )
+        paper_frame(pair, before, motion, state, options, h, mode, q, counts, events, dq)
+        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+        outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, ORIGIN, tolerance)
+        apart = dot(n, sub(jet_b[0], jet_a[0])) > 0.0 or dot(n, n) == 0.0
+        return False, outcome, d, bound, normal, apart
+    predict(state, options, h, dq)
+    apply_step(pair, mode, q, dq, counts, events)
+    if state[LAST_DISTANCE] < SHIFTED_GAP * contact_scale(pair):
+        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+        if dot(n, sub(jet_b[0], jet_a[0])) <= 0.0:
+            return False, UNCERTIFIED, 0.0, -inf, n, False
+    fresh, outcome, d, bound, normal = settle_and_weigh(
+        pair, R, p, v, w, mode, q, w_ff, 1.0, tolerance, tolerance, counts, events
+    )
+    if outcome == UNCERTIFIED:
+        fresh, outcome, d, bound, normal = settle_and_weigh(
+            pair, R, p, v, w, mode, q, w_ff, 1.0, 0.0, tolerance, counts, events
+        )
+    return fresh, outcome, d, bound, normal, True
+
+
+@kernel
+def anywhere(pair, R, p, options, goal, mode, q, w_ff, counts, events):
+    """(outcome, d, bound, upper, normal, inside) of a cold query, apart or not."""
+    outcome, d, bound, normal = global_query(pair, R, p, mode, q, w_ff, goal, counts, events)
+    if outcome == CERTIFIED or counts[EVALUATIONS] >= counts[LIMIT]:
+        return outcome, d, bound, d, normal, False
+    outcome, d, bound, upper, normal = contact_query(
+        pair, R, p, False, normal, True, mode, q, w_ff, goal, counts, events
+    )
+    return outcome, d, bound, upper, normal, outcome == PENETRATING
+
+
+@kernel
+def track(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
+    """This frame from the last one: (fresh, outcome, d, bound, upper, normal, inside).
+
+    Outside contact one step of the law; in contact, where the witness points pass each other, the
+    local minimum of the depth is followed; where neither certifies, a global start. `fresh` tells
+    whether w_ff belongs to the final mode.
+    """
+    R, p, _, _ = motion
+    tolerance = options[O_TOLERANCE]
+    alone = options[O_SWITCHING] == SWITCH_NONE
+    everywhere = options[O_DEPTH] == DEPTH_GLOBAL
+    if state[LOST] == 0.0 or alone:
+        inside = state[INSIDE] != 0.0 and not alone
+        if not inside:
+            fresh, outcome, d, bound, normal, apart = follow(
+                pair, motion, state, options, h, mode, q, w_ff, dq, counts, events
+            )
+            lags = options[O_LAW] == LAW_PAPER and apart and outcome == UNCERTIFIED
+            if outcome == CERTIFIED or alone or lags:
+                return fresh, outcome, d, bound, d, normal, False
+            near = state[LAST_DISTANCE] < SHIFTED_GAP * contact_scale(pair)
+            if counts[EVALUATIONS] >= counts[LIMIT] and apart:
+                return fresh, outcome, d, bound, d, normal, False
+            inside = near or not apart
+            from_state(state, mode, q)
+        if inside:
+            n = read_vector(state, LAST_NORMAL)
+            outcome, d, bound, upper, normal = contact_query(
+                pair, R, p, True, n, everywhere, mode, q, w_ff, tolerance, counts, events
+            )
+            exhausted = counts[EVALUATIONS] >= counts[LIMIT]
+            if outcome != UNCERTIFIED or exhausted:
+                begin_errors(pair, R, p, options, state, mode, q)
+                return False, outcome, d, bound, upper, normal, outcome != CERTIFIED
+    counts[RESTARTS] += 1
+    outcome, d, bound, upper, normal, inside = anywhere(
+        pair, R, p, options, tolerance, mode, q, w_ff, counts, events
+    )
+    begin_errors(pair, R, p, options, state, mode, q)
+    return False, outcome, d, bound, upper, normal, inside
+
+
+@kernel
+def begin_errors(pair, R, p, options, state, mode, q):
+    """The paper's law begins anew: its integrated errors are those of the witness points."""
+    if options[O_LAW] == LAW_PAPER:
+        for k in range(4):
+            state[INTEGRAL + k] = 0.0
+        read_errors(pair, R, p, state, mode, q)
