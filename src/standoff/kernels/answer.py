@@ -44,7 +44,8 @@ def judge(pair, law_kind, outcome, p, d, bound, upper, tolerance, exhausted):
     goal = START_GAP if tolerance == inf else tolerance
     span = pair_span(pair, p, abs(d))
     near = d - bound <= goal * span + pair_slack(pair)
-    if d <= radii or outcome == PENETRATING:
+    # within the tolerance of touching the bound's sign says nothing
+    if d <= radii or outcome == PENETRATING or (near and bound <= radii):
         if near or outcome in (CERTIFIED, PENETRATING):
             proof = DEPTH_PROOF * (radii - d) + TOUCHING * span + pair_slack(pair)
             return GLOBAL if upper - d <= proof else LOCAL

@@ -164,8 +164,25 @@ def bound_roundoff(pair, p, x_a, x_b, y_b):
 
 @kernel
 def certify_along(pair, R, p, mode, q, x_a, x_b, n):
-    """(lower bound of the cores' signed distance from the plane square to n alone, blur)."""
+    """(lower bound of the cores' signed distance from the plane square to n alone, blur).
+
+    n must be the plane's own normal where one body is a half-space: nothing hangs over that one.
+    """
+    ia, ra, ib, rb = pair
     y_b = rotate_back(R, sub(x_b, p))
+    if ia[L.UNBOUNDED] or ib[L.UNBOUNDED]:
+        bound, blur = dot(n, sub(x_b, x_a)), 0.0
+        if not ia[L.UNBOUNDED]:
+            cone, miss = cone_normal(ia, ra, mode[0], mode[1], q[0], q[1], n)
+            bound -= overhang(ia, ra, x_a, sub(n, cone), miss)
+            blur = overhang(ia, ra, x_a, ZERO, miss)
+        if not ib[L.UNBOUNDED]:
+            m = into_b(R, n)
+            cone, miss = cone_normal(ib, rb, mode[2], mode[3], q[2], q[3], m)
+            bound -= overhang(ib, rb, y_b, sub(m, cone), miss)
+            blur = overhang(ib, rb, y_b, ZERO, miss)
+        slack = ra[L.SLACK] + rb[L.SLACK]
+        return bound - slack - bound_roundoff(pair, p, x_a, x_b, y_b), blur
     bound, blur = plane_bound(pair, R, mode, q, x_a, y_b, sub(x_b, x_a), n)
     slack = pair[1][L.SLACK] + pair[3][L.SLACK]
     return bound - slack - bound_roundoff(pair, p, x_a, x_b, y_b), blur

@@ -56,6 +56,8 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
         counts[EVENTS] = logged
         save(pointer(best_mode, 0), pointer(best_q, 0), mode, q)
     best_mode[0], best_q[0] = 0, 0.0  # alive until here, see `pointer`
+    if plane:
+        n = normal
     jet_a, jet_b = pair_jets(pair, R, p, mode, q)
     gap = sub(jet_b[0], jet_a[0])
     d = dot(n, gap)

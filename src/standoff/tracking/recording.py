@@ -36,6 +36,7 @@ COUNT_COLUMNS = [
         N.RESTARTS,
         N.REGULARISED,
         N.SATURATIONS,
+        N.SEARCHES,
     )
 ]
 
@@ -131,7 +132,7 @@ class Recording:
     parameters_a, parameters_b : ndarray, shape (n, 3)
         nan where the feature has fewer parameters.
     status : ndarray of Status, shape (n,)
-    counts : ndarray of int, shape (n, 7)
+    counts : ndarray of int, shape (n, 8)
         Work of each frame, in the order of `Counts`.
     events : tuple of RecordedEvent
         In order of frame and time. Of each body the source of an event is the target of the one
