@@ -12,8 +12,8 @@ from math import inf, sqrt
 
 from standoff.kernels import layout as L
 from standoff.kernels.certificate import certify_along
-from standoff.kernels.certified import on_feature
-from standoff.kernels.cold_start import begin_at, support_sample
+from standoff.kernels.certified import UNCERTIFIED, on_feature, weigh
+from standoff.kernels.cold_start import begin_at, global_query, support_sample
 from standoff.kernels.compiling import kernel
 from standoff.kernels.contact import newton
 from standoff.kernels.descent import ORIGIN, pair_jets, settle
@@ -24,10 +24,12 @@ from standoff.kernels.tolerances import (
     CONTACT_RESIDUAL,
     FLAT_RADIUS,
     FOCAL_MARGIN,
+    MAX_LEAP,
     MAX_SHIFTS,
     NEWTON_TURN,
     NUDGE,
     SHIFTED_GAP,
+    START_GAP,
     TOUCHING,
 )
 from standoff.kernels.vectors import (
@@ -175,6 +177,13 @@ def shifted(pair, R, p, n, d, mode, q, w_ff, counts, events):
     _, _, jet_a, jet_b = settle(
         pair, R, moved, ORIGIN, ORIGIN, mode, q, w_ff, 0.0, 0.0, counts, events
     )
+    outcome, _, _, _ = weigh(pair, R, moved, mode, q, jet_a, jet_b, ORIGIN, START_GAP)
+    if outcome == UNCERTIFIED and counts[EVALUATIONS] < counts[LIMIT]:
+        # stuck on a far side
+        counts[RESTARTS] += 1
+        begin_along(pair, R, n, mode, q)
+        global_query(pair, R, moved, mode, q, w_ff, START_GAP, counts, events)
+        jet_a, jet_b = pair_jets(pair, R, moved, mode, q)
     between = sub(jet_b[0], jet_a[0])
     far = norm(between)
     if far <= TOUCHING * pair_span(pair, moved, far) or far == 0.0:
@@ -223,16 +232,23 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
     if d != d:
         d = -box_depth(pair, R, p, n)
     restarted = False
-    before = -inf
+    before, ahead = -inf, 0.0
+    start = n
     for _ in range(MAX_SHIFTS):
-        apart, n_new, d_new = shifted(pair, R, p, n, d, mode, q, w_ff, counts, events)
+        apart, n_new, d_new = shifted(pair, R, p, start, d, mode, q, w_ff, counts, events)
         if not apart:  # the guess was too near
-            farther = -box_depth(pair, R, p, n)
+            farther = -box_depth(pair, R, p, start)
             if d <= farther or counts[EVALUATIONS] >= counts[LIMIT]:
                 return False, n, d
             d = farther
             continue
-        turn = norm(sub(n_new, n))
+        turn = norm(sub(n_new, start))
+        if ahead > 0.0 and d_new < d:
+            start, ahead = n, 0.0  # leapt too far
+            continue
+        # near the focal depth steps shrink by little: the next one starts ahead, farther each time
+        ahead = min(2.0 * ahead, MAX_LEAP) if ahead > 0.0 else 1.0
+        start = unit(axpy(ahead, sub(n_new, start), n_new))
         n, d = n_new, d_new
         if turn <= NEWTON_TURN:
             found, n_end, d_end = minimum_along(pair, R, p, mode, q, n, d, tolerance, counts)
@@ -252,10 +268,11 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
                 restarted = True
                 counts[RESTARTS] += 1
                 begin_along(pair, R, n, mode, q)
+                start = n
             else:
-                n = unit(axpy(NUDGE, way, n))
-                d = -box_depth(pair, R, p, n)
-            before = -inf
+                start = unit(axpy(NUDGE, way, n))
+                d = -box_depth(pair, R, p, start)
+            before, ahead = -inf, 0.0
             continue
         before = d
     return False, n, d
