@@ -87,7 +87,7 @@ def test_diagrams_are_what_their_script_draws(tmp_path: Path) -> None:
     script = DOCS / "images" / "draw_diagrams.py"
     subprocess.run([sys.executable, str(script), str(tmp_path)], check=True)
     drawn = sorted(tmp_path.iterdir())
-    assert len(drawn) == 2
+    assert len(drawn) == 3
     for file in drawn:
         assert file.read_bytes() == (script.parent / file.name).read_bytes(), file.name
 

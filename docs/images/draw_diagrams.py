@@ -1,4 +1,4 @@
-"""Draw the pages' diagrams: architecture.svg (a step, room by room) and certificate.svg.
+"""Draw the pages' diagrams: architecture.svg (a step, room by room), certificate.svg, touching.svg.
 
 Run: python docs/images/draw_diagrams.py [FOLDER]. Plain Python; the same run gives the same bytes.
 """
@@ -217,9 +217,49 @@ def certificate() -> str:
     return d.svg()
 
 
+def panel(d: Drawing, x: float, flag: str, why: str) -> None:
+    d.text(x + 110, 232, flag, 14, anchor="middle", bold="yes")
+    d.text(x + 110, 252, why, 12, anchor="middle", fill=SOFT)
+
+
+def pair(d: Drawing, a: tuple[float, float], b: tuple[float, float]) -> None:
+    """Two witness points and the line between them."""
+    d.line([a, b], RED, width="1.6")
+    for x, y in (a, b):
+        d.parts.append(f"<circle cx='{x:g}' cy='{y:g}' r='3.5' fill='{RED}'/>")
+
+
+def touching() -> str:
+    d = Drawing(740, 270, "Unique witness points, a segment of them, a circle of normals")
+    for x in (20.0, 260.0):
+        d.shape([(x, 160), (x + 220, 160), (x + 220, 200), (x, 200)], BODY_A)
+    d.shape(ellipse(130, 85, 70, 42, 0.3), BODY_B)
+    lowest = max(ellipse(130, 85, 70, 42, 0.3), key=lambda p: p[1])
+    pair(d, (lowest[0], 160), lowest)
+    panel(d, 20, "dimension 0", "one pair of witness points")
+    d.shape([(330, 50), (420, 50), (420, 130), (330, 130)], BODY_B)
+    d.line([(330, 160), (420, 160)], RED, width="4")
+    d.line([(330, 130), (420, 130)], RED, width="4")
+    for k in range(4):
+        pair(d, (330 + 30 * k, 160), (330 + 30 * k, 130))
+    panel(d, 260, "dimension 1", "any pair above each other")
+    d.shape(ellipse(610, 105, 75, 75, 0.0), BODY_A)
+    d.shape(ellipse(610, 105, 30, 30, 0.0), BODY_B)
+    for k in range(12):
+        way = math.cos(math.pi * k / 6), math.sin(math.pi * k / 6)
+        d.arrow([ray((610.0, 105.0), way, 75), ray((610.0, 105.0), way, 98)], RED)
+    panel(d, 500, "normal_dimension", "any direction parts them")
+    return d.svg()
+
+
 def main() -> None:
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent
-    for name, draw in (("architecture.svg", architecture), ("certificate.svg", certificate)):
+    drawings = {
+        "architecture.svg": architecture,
+        "certificate.svg": certificate,
+        "touching.svg": touching,
+    }
+    for name, draw in drawings.items():
         handle, part = tempfile.mkstemp(suffix=".svg", dir=folder)
         with os.fdopen(handle, "w", encoding="utf-8") as file:
             file.write(draw())

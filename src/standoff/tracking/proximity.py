@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,9 @@ from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import layout as L
 from standoff.tracking.status import Status
+
+if TYPE_CHECKING:
+    from standoff.tracking.witness_set import WitnessSet
 
 Array = NDArray[np.float64]
 
@@ -247,6 +250,17 @@ class Proximity:
             int(o[N.SATURATIONS]),
             int(o[N.SEARCHES]),
         )
+
+    def witness_set(self) -> WitnessSet:
+        """All pairs of witness points that this answer could have named (docs/touching.md)."""
+        from standoff.tracking.witness_set import witness_set  # it reads answers itself
+
+        return witness_set(self)
+
+    @property
+    def unique(self) -> bool:
+        """Are the witness points and the normal the only ones? Found anew at each call."""
+        return self.witness_set().unique
 
     def __repr__(self) -> str:
         return (
