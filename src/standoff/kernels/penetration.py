@@ -28,6 +28,7 @@ from standoff.kernels.tolerances import (
     MAX_SHIFTS,
     NEWTON_TURN,
     NUDGE,
+    SADDLE_SHIFTS,
     SHIFTED_GAP,
     START_GAP,
     TOUCHING,
@@ -44,6 +45,9 @@ from standoff.kernels.vectors import (
     sub,
     unit,
 )
+
+# What Newton's method ended at.
+NOTHING, MINIMUM, SADDLE = range(3)
 
 UP = (0.0, 0.0, 1.0)  # outward normal of a half-space, in its frame
 
@@ -160,13 +164,6 @@ def focal_depth(pair, jet_a, jet_b, n, span):
 
 
 @kernel
-def is_minimum(pair, jet_a, jet_b, n, d, span):
-    """(is it a minimum of s, the direction along which it falls most)."""
-    least, way = focal_depth(pair, jet_a, jet_b, n, span)
-    return least >= -d * (1.0 - FOCAL_MARGIN) - CONTACT_RESIDUAL * span, way
-
-
-@kernel
 def shifted(pair, R, p, n, d, mode, q, w_ff, counts, events):
     """(apart, n', d'): one step of the descent from the direction n, where the signed distance is
     at least d; mode and q are warm and get the closest points of the shifted pair.
@@ -194,8 +191,9 @@ def shifted(pair, R, p, n, d, mode, q, w_ff, counts, events):
 
 @kernel
 def minimum_along(pair, R, p, mode, q, n, d, tolerance, counts):
-    """(found, n, d): Newton's method from a direction, accepted where it ends at a certified
-    minimum no deeper than the start. Else mode and q are as they were.
+    """(kind, n, d, way): Newton's method from a direction, taken where it ends at a certified
+    stationary direction no deeper than the start: MINIMUM, or SADDLE, which falls along `way`.
+    Else NOTHING, and mode and q are as they were.
     """
     old_mode = (mode[0], mode[1], mode[2], mode[3])
     old_q = (q[0], q[1], q[2], q[3])
@@ -211,15 +209,18 @@ def minimum_along(pair, R, p, mode, q, n, d, tolerance, counts):
             d_new = dot(n_new, sub(jet_b[0], jet_a[0]))
         bound, blur = certify_along(pair, R, p, mode, q, jet_a[0], jet_b[0], n_new)
         allowed = min(tolerance, BLUR) * span + pair_slack(pair) + min(blur, BLUR * span)
-        if (
-            d_new - bound <= allowed
-            and on_feature(pair, mode, q)
-            and is_minimum(pair, jet_a, jet_b, n_new, d_new, span)[0]
-        ):
-            return True, n_new, d_new
+        if d_new - bound <= allowed and on_feature(pair, mode, q):
+            least, way = focal_depth(pair, jet_a, jet_b, n_new, span)
+            minimal = least >= -d_new * (1.0 - FOCAL_MARGIN) - CONTACT_RESIDUAL * span
+            return MINIMUM if minimal else SADDLE, n_new, d_new, way
+    restore(mode, q, old_mode, old_q)
+    return NOTHING, n, d, n
+
+
+@kernel
+def restore(mode, q, old_mode, old_q):
     mode[0], mode[1], mode[2], mode[3] = old_mode
     q[0], q[1], q[2], q[3] = old_q
-    return False, n, d
 
 
 @kernel
@@ -227,18 +228,23 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
     """(found, n, d) of the local minimum of s reached from the direction n; (mode, q) are warm.
 
     d is a guess of the signed distance along n, nan for none. Not found: n and d are the last of
-    the descent.
+    the descent. A saddle is left along its steepest way; where s does not fall there by more than
+    roundoff (across a crease, whose radius of curvature is 0 on a line only), it is the minimum.
     """
     if d != d:
         d = -box_depth(pair, R, p, n)
-    restarted = False
+    restarted, falls = False, 0
     before, ahead = -inf, 0.0
     start = n
+    top_mode, top_q = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
+    top_n, top = n, -inf
     for _ in range(MAX_SHIFTS):
+        if counts[EVALUATIONS] >= counts[LIMIT]:
+            return False, n, d
         apart, n_new, d_new = shifted(pair, R, p, start, d, mode, q, w_ff, counts, events)
         if not apart:  # the guess was too near
             farther = -box_depth(pair, R, p, start)
-            if d <= farther or counts[EVALUATIONS] >= counts[LIMIT]:
+            if d <= farther:
                 return False, n, d
             d = farther
             continue
@@ -250,29 +256,34 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
         ahead = min(2.0 * ahead, MAX_LEAP) if ahead > 0.0 else 1.0
         start = unit(axpy(ahead, sub(n_new, start), n_new))
         n, d = n_new, d_new
-        if turn <= NEWTON_TURN:
-            found, n_end, d_end = minimum_along(pair, R, p, mode, q, n, d, tolerance, counts)
-            if found:
-                return True, n_end, d_end
-        if counts[EVALUATIONS] >= counts[LIMIT]:
-            return False, n, d
         span = pair_span(pair, p, abs(d))
-        if turn <= CONTACT_RESIDUAL or d <= before:
-            # at rest, yet no certified minimum: a saddle is left along its steepest way, and
-            # witness points on a far side start again from the samples
-            jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-            minimal, way = is_minimum(pair, jet_a, jet_b, n, d, span)
-            if minimal:
-                if restarted:
-                    return False, n, d
-                restarted = True
-                counts[RESTARTS] += 1
-                begin_along(pair, R, n, mode, q)
-                start = n
-            else:
-                start = unit(axpy(NUDGE, way, n))
+        if top > -inf:
+            falls += 1
+            if d > top + CONTACT_RESIDUAL * span:
+                top, falls = -inf, 0
+            elif falls > SADDLE_SHIFTS:
+                restore(mode, q, top_mode, top_q)
+                return True, top_n, top
+        if turn <= NEWTON_TURN:
+            kind, n_end, d_end, way = minimum_along(pair, R, p, mode, q, n, d, tolerance, counts)
+            if kind == MINIMUM:
+                return True, n_end, d_end
+            if kind == SADDLE and top == -inf:
+                top_mode = (mode[0], mode[1], mode[2], mode[3])
+                top_q = (q[0], q[1], q[2], q[3])
+                top_n, top = n_end, d_end
+                start = unit(axpy(NUDGE, way, n_end))
                 d = -box_depth(pair, R, p, start)
-            before, ahead = -inf, 0.0
+                before, ahead = -inf, 0.0
+                continue
+        if turn <= CONTACT_RESIDUAL or d <= before:
+            # at rest, yet not certified: witness points on a far side start from the samples
+            if restarted:
+                return False, n, d
+            restarted = True
+            counts[RESTARTS] += 1
+            begin_along(pair, R, n, mode, q)
+            start, before, ahead = n, -inf, 0.0
             continue
         before = d
     return False, n, d

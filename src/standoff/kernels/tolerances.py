@@ -127,6 +127,8 @@ FLAT_RADIUS = 1e12
 FOCAL_MARGIN = 1e-9
 # How far (chord) the normal is turned off a stationary direction that is no minimum.
 NUDGE = 1e-3
+# Steps in which s must have fallen below such a direction's, else that is the minimum.
+SADDLE_SHIFTS = 6
 
 # A depth is global when no direction's can be less by more than this part of it: near one minimum
 # any direction within acos(1 - 1e-3) = 2.6 degrees is as good, so the polytope may be coarse.
