@@ -1,10 +1,10 @@
 """Sliding contact, oscillation through contact and tilts through parallel, against the truth.
 
-Run with ``python -m benchmarks.touching --steps 1000000``; ``--scene NAME`` picks one. Frames of
-1 ms in the compiled loop. Of every run it prints the frames lost (no depth or distance certified,
-or wrong by more than 1e-9 of the size), the greatest errors of distance, normal and witness point
-(where that is unique; else how far it left the set) over the size, the greatest jump of A's witness
-point in a frame over the frame's motion, and the most evaluations a frame.
+Run with ``python -m benchmarks.touching --steps 1000000``; ``--scene NAME``, ``--gap=-1e-02`` pick
+some. Frames of 1 ms in the compiled loop. Of every run it prints the frames lost (no depth or
+distance certified, or wrong by more than 1e-9 of the size), the greatest errors of distance, normal
+and witness point (where that is unique; else how far it left the set) over the size, the greatest
+jump of A's witness point in a frame over the frame's motion, and the most evaluations a frame.
 """
 
 from __future__ import annotations
@@ -154,6 +154,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--steps", type=int, default=10000, help="frames of 1 ms a run")
     parser.add_argument("--scene", default="", help="scenes whose names hold this")
+    parser.add_argument("--gap", action="append", help="only this gap, by its name in the table")
     parser.add_argument("--no-twists", action="store_true", help="predict by the secant")
     options = parser.parse_args()
     print(HEADER)
@@ -161,6 +162,8 @@ def main() -> None:
         if options.scene not in scene.name:
             continue
         for name, gap in gaps_of(scene):
+            if options.gap and name not in options.gap:
+                continue
             report = run(scene, name, gap, options.steps, twists=not options.no_twists)
             print(report, flush=True)
 

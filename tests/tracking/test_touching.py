@@ -10,6 +10,7 @@ from benchmarks.touching import DT, RIGHT, run
 from benchmarks.touching_scenes import SCENES, SWING, gaps_of, oscillating
 
 import standoff as so
+from tracking.contact_cases import CASES, OVERLAPS
 
 STEPS = int(os.environ.get("STANDOFF_TOUCHING_STEPS", "4000"))
 DISTANCE = 1e-12
@@ -97,6 +98,38 @@ def test_the_flag_tells_the_scene(scene):
                 part = so_frames(frames, k)
                 for x in (answer.point_a, *found.points_a):
                     assert scene.outside(part, x[None]).max() <= WITNESS * scene.size
+
+
+REST = [
+    case for case in CASES if "sliver" not in case.name
+]  # which part sideways when they overlap
+
+
+@pytest.mark.parametrize("case", REST, ids=str)
+def test_cold_answers_at_rest(case):
+    """Distance, normal and set of witness points of a cold query, from a gap into overlap."""
+    n = np.array(case.normal)
+    size = sum(body.size for body in (case.a, case.b) if body.bounded)
+    for gap in case.gaps:
+        pose = so.Pose.exp(case.turn, case.position + gap * n)
+        answer = so.distance(case.a, case.b, HOME, pose)
+        found = answer.witness_set()
+        assert answer.certified or answer.status is so.Status.LOCAL
+        assert abs(answer.distance - gap) <= DISTANCE * size
+        assert found.dimension == case.dim
+        assert found.normal_dimension == (case.normals if gap == 0.0 else 0)
+        assert found.residual <= WITNESS * size
+        if not found.normal_dimension:
+            assert np.linalg.norm(answer.normal - n) <= NORMAL
+
+
+@pytest.mark.parametrize("case", OVERLAPS, ids=str)
+def test_cold_answers_in_overlap(case):
+    answer = so.distance(case.a, case.b, HOME, so.Pose.exp(case.turn, case.position))
+    found = answer.witness_set()
+    depth = float(np.subtract(case.x, case.y) @ np.array(case.normal))
+    assert answer.distance == pytest.approx(-depth, abs=DISTANCE)
+    assert (found.dimension, found.normal_dimension) == (case.dim, case.normals)
 
 
 def so_frames(frames, k):
