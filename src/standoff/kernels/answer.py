@@ -5,7 +5,7 @@ from math import inf
 import numpy as np
 
 from standoff.kernels import layout as L
-from standoff.kernels.certified import CERTIFIED, PENETRATING
+from standoff.kernels.certified import CERTIFIED, PENETRATING, UNCERTIFIED
 from standoff.kernels.compiling import kernel
 from standoff.kernels.features import pair_slack, pair_span
 from standoff.kernels.feedback import gradient_norm
@@ -44,6 +44,8 @@ def judge(pair, law_kind, outcome, p, d, bound, upper, tolerance, exhausted):
     goal = START_GAP if tolerance == inf else tolerance
     span = pair_span(pair, p, abs(d))
     near = d - bound <= goal * span + pair_slack(pair)
+    if exhausted and outcome == UNCERTIFIED:
+        return DEADLINE
     # within the tolerance of touching the bound's sign says nothing
     if d <= radii or outcome == PENETRATING or (near and bound <= radii):
         if near or outcome in (CERTIFIED, PENETRATING):
@@ -51,8 +53,6 @@ def judge(pair, law_kind, outcome, p, d, bound, upper, tolerance, exhausted):
             return GLOBAL if upper - d <= proof else LOCAL
     elif bound > radii and (near or (outcome == CERTIFIED and tolerance < inf)):
         return CONVERGED
-    if exhausted:
-        return DEADLINE
     if law_kind == LAW_PAPER or tolerance == inf:
         return TRACKING
     return NOT_CERTIFIED

@@ -13,10 +13,11 @@ from standoff.kernels.features import (
     edge_record,
     noisy_normal,
     planar_edge_normal,
+    vertex_point,
     vertex_record,
 )
 from standoff.kernels.switching import apex_normal, end_direction, steepest_in_sector
-from standoff.kernels.tolerances import EPS
+from standoff.kernels.tolerances import EPS, FRONT
 from standoff.kernels.vectors import axpy, cross, dot, norm, rotate, rotate_back, scale, sub, unit
 
 # Lengths of the certificate carry a few roundings each; the bound is lowered by this many eps
@@ -60,8 +61,26 @@ def edge_cone(ints, reals, feature, t, n):
 
 
 @kernel
+def behind(ints, reals, feature, n):
+    """Do some points of the body lie behind the plane square to n at a vertex, as they must?
+
+    At a smooth vertex no direction rises along the inward normal either.
+    """
+    x = vertex_point(ints, reals, feature)
+    count = ints[L.N_SAMPLES]
+    for k in range(3):
+        o = ints[L.SAMPLE_REALS] + L.SAMPLE_STRIDE * (k * count // 3)
+        if dot(n, sub((reals[o], reals[o + 1], reals[o + 2]), x)) > FRONT * reals[L.SIZE]:
+            return False
+    return True
+
+
+@kernel
 def vertex_cone(ints, reals, feature, n):
-    """A unit outward normal near n at a vertex: n itself where no direction of the fan rises."""
+    """A unit outward normal near n at a vertex: n itself where no direction of the fan rises.
+
+    Zero, which bounds nothing, where it is an inward one.
+    """
     r = vertex_record(ints, feature)
     fan, n_fan = ints[r + L.VERTEX_FAN], ints[r + L.VERTEX_N_FAN]
     worst, at = 0.0, -1
@@ -83,7 +102,7 @@ def vertex_cone(ints, reals, feature, n):
             else:
                 best = chart_normal(ints, reals, chart, reals[o + 1], reals[o + 2])
     if at < 0:
-        return n
+        return n if behind(ints, reals, feature, n) else ZERO
     cone, count = ints[r + L.VERTEX_CONE], ints[r + L.VERTEX_N_CONE]
     if count == 0:
         if at < n_fan:  # a faceless end: its cone is the half-space of the edge's direction

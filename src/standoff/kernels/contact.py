@@ -13,7 +13,7 @@ from standoff.kernels import layout as L
 from standoff.kernels.certificate import cone_normal
 from standoff.kernels.compiling import kernel
 from standoff.kernels.descent import ORIGIN, pair_jets, recentre, walk_pair
-from standoff.kernels.events import CORRECTIONS, EVALUATIONS
+from standoff.kernels.events import CORRECTIONS, EVALUATIONS, LIMIT
 from standoff.kernels.features import chart_normal, dimension, pair_span
 from standoff.kernels.system import contact_feedforward, contact_jacobian, contact_residual
 from standoff.kernels.tolerances import CONTACT_STEPS, NEAR_CONTACT, PIVOT
@@ -130,6 +130,8 @@ def newton(pair, R, p, mode, q, n, d, span, counts):
     error = scaled_residual(jet_a, jet_b, n, d, span, scales, r)
     fits = True
     for _ in range(CONTACT_STEPS):
+        if counts[EVALUATIONS] >= counts[LIMIT]:
+            break
         y = solve_contact(jet_a, jet_b, n, d, span, scales, J, r)
         counts[EVALUATIONS] += 1
         step = (-y[0] * scales[0], -y[1] * scales[1], -y[2] * scales[2], -y[3] * scales[3])

@@ -10,8 +10,9 @@ from standoff.kernels.compiling import kernel, pointer
 from standoff.kernels.depth_search import save, search
 from standoff.kernels.descent import pair_jets
 from standoff.kernels.events import EVENTS
+from standoff.kernels.features import pair_slack, pair_span
 from standoff.kernels.penetration import begin_along, descend, plane_normal
-from standoff.kernels.tolerances import MAX_RIVALS
+from standoff.kernels.tolerances import BLUR, DEPTH_PROOF, MAX_RIVALS
 from standoff.kernels.vectors import dot, norm, sub
 
 
@@ -19,8 +20,8 @@ from standoff.kernels.vectors import dot, norm, sub
 def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, counts, events):
     """(outcome, d, bound, upper, normal): signed distance of the cores and its bounds.
 
-    `known`: n and (mode, q) are those of a frame before. `everywhere`: search all directions
-    unless one does. `upper` is at least the signed distance.
+    `known`: n and (mode, q) are those of a frame before. `everywhere`: prove the depth the least,
+    and search where it is not. `upper` is at least the signed distance.
     """
     best_mode, best_q = np.empty(4, dtype=np.int64), np.empty(4)
     least, found, d = -inf, False, nan
@@ -34,7 +35,9 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
     save(mode, q, pointer(best_mode, 0), pointer(best_q, 0))
     if plane:
         least = -d
-    elif not found or (everywhere and d <= 0.0):
+    elif not found or d <= 0.0:
+        # followed alone, the minimum is still asked whether the bodies overlap at all
+        proof, rivals = (DEPTH_PROOF, float(MAX_RIVALS)) if everywhere else (1.0, 0.0)
         logged = counts[EVENTS]
         found, d, n, least = search(
             pair,
@@ -49,7 +52,8 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
             pointer(best_q, 0),
             w_ff,
             tolerance,
-            float(MAX_RIVALS),
+            proof,
+            rivals,
             counts,
             events,
         )
@@ -61,8 +65,13 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
     jet_a, jet_b = pair_jets(pair, R, p, mode, q)
     gap = sub(jet_b[0], jet_a[0])
     d = dot(n, gap)
-    bound, _ = certify_along(pair, R, p, mode, q, jet_a[0], jet_b[0], n)
+    bound, blur = certify_along(pair, R, p, mode, q, jet_a[0], jet_b[0], n)
     upper = norm(gap)
+    span = pair_span(pair, p, abs(d))
+    if d - bound > min(tolerance, BLUR) * span + pair_slack(pair) + min(blur, BLUR * span):
+        # no stationary direction: what is achieved is the bound, or the points' own distance
+        d = bound if bound <= 0.0 else upper
+        found = found and bound <= 0.0
     if least >= 0.0:
         upper = min(upper, -least)
     if not found:

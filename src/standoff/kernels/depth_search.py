@@ -8,6 +8,7 @@ boundary. The search ends when no facet is nearer than the least depth found.
 from math import inf, nan
 
 from standoff.kernels import layout as L
+from standoff.kernels.certificate import certify_along
 from standoff.kernels.cold_start import sample_point, support_sample
 from standoff.kernels.compiling import kernel
 from standoff.kernels.descent import pair_jets
@@ -30,7 +31,6 @@ from standoff.kernels.penetration import (
     shifted,
 )
 from standoff.kernels.tolerances import (
-    DEPTH_PROOF,
     MAX_PROBES,
     PRISM,
     TOUCHING,
@@ -101,10 +101,16 @@ def seed_hull(pair, R, p, hull, size):
 
 
 @kernel
+def witness_points(pair, R, p, mode, q):
+    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+    return jet_a[0], jet_b[0]
+
+
+@kernel
 def difference(pair, R, p, mode, q):
     """x_a - x_b of the present witness points, a point of A - B."""
-    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-    return sub(jet_a[0], jet_b[0])
+    x_a, x_b = witness_points(pair, R, p, mode, q)
+    return sub(x_a, x_b)
 
 
 @kernel
@@ -115,13 +121,30 @@ def save(mode, q, best_mode, best_q):
 
 @kernel
 def search(
-    pair, R, p, found, d, n, mode, q, best_mode, best_q, w_ff, tolerance, rivals, counts, events
+    pair,
+    R,
+    p,
+    found,
+    d,
+    n,
+    mode,
+    q,
+    best_mode,
+    best_q,
+    w_ff,
+    tolerance,
+    proof,
+    rivals,
+    counts,
+    events,
 ):
     """(found, d, n, least): the least depth of the cores, from the local minimum given (if found).
 
     (best_mode, best_q) are those of the minimum given and get those of the answer; mode and q
     are scratch. `least` bounds every depth from below: -inf where the origin is not known to lie
-    in A - B. `rivals` is how many other minima a proven search still tries, as a float.
+    in A - B. `proof` is the part of the depth that another one may be less by: 1 asks only
+    whether the bodies overlap. `rivals` is how many other minima a proven search still tries, as
+    a float. A descent that ends uncertified still gives a depth that parts the bodies: its bound.
     """
     size = contact_scale(pair)
     radius = pair[1][L.RADIUS] + pair[3][L.RADIUS]
@@ -151,7 +174,7 @@ def search(
         if at < 0:
             break
         nu = facet_normal(hull, at)
-        proven = found and least + radius >= (1.0 - DEPTH_PROOF) * (radius - d) - TOUCHING * size
+        proven = found and least + radius >= (1.0 - proof) * (radius - d) - TOUCHING * size
         if proven:
             # another minimum may still be less by DEPTH_PROOF, away from this one
             if least >= -d - TOUCHING * size or tried >= rivals:
@@ -175,7 +198,10 @@ def search(
             ok, n_new, d_new = descend(
                 pair, R, p, n_new, d_new, mode, q, w_ff, tolerance, counts, events
             )
-            if ok and (not found or d_new > d):
+            if not ok:
+                x_a, x_b = witness_points(pair, R, p, mode, q)
+                d_new, _ = certify_along(pair, R, p, mode, q, x_a, x_b, n_new)
+            if d_new > -inf and (not found or d_new > d):
                 found, n, d = True, n_new, d_new
                 save(mode, q, best_mode, best_q)
             grow_difference(hull, difference(pair, R, p, mode, q), size)

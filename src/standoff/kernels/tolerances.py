@@ -52,6 +52,9 @@ PCURVE_OVERLAP = 1e-12
 # An atlas's chart is left when |u| or |v| passes RECHART (dimensionless, gnomonic).
 RECHART = 1.2
 
+# A point of a body this far (in sizes) in front of a plane at one of its vertices is no roundoff.
+FRONT = 1e-9
+
 # Surfaces closer than TOUCHING scales, with no positive lower bound, touch or overlap.
 TOUCHING = 1e-13
 
@@ -135,6 +138,9 @@ SADDLE_SHIFTS = 6
 DEPTH_PROOF = 1e-3
 # Points that the search of all depths may add to its polytope: smooth pairs take 20 to 40.
 MAX_PROBES = 120
+# Closer than this (in spans) a certified pair is polished in the contact-regular form: the
+# direction between its witness points has lost more than six digits.
+POLISHED = 1e-5
 # Other minima that a proven search still tries, where one might be less by DEPTH_PROOF.
 MAX_RIVALS = 8
 # A point is above a facet from here on (in contact scales): below it is coplanar.

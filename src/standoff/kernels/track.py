@@ -2,6 +2,7 @@
 
 from math import inf
 
+from standoff.kernels.certificate import certify_along
 from standoff.kernels.certified import (
     CERTIFIED,
     PENETRATING,
@@ -33,10 +34,10 @@ from standoff.kernels.frame import (
     Q,
 )
 from standoff.kernels.paper_law import apply_step, paper_frame, read_errors
-from standoff.kernels.penetration import contact_scale
+from standoff.kernels.penetration import NOTHING, contact_scale, minimum_along
 from standoff.kernels.prediction import predict
 from standoff.kernels.rigid import read_rotation, read_vector
-from standoff.kernels.tolerances import SHIFTED_GAP
+from standoff.kernels.tolerances import POLISHED, SHIFTED_GAP
 from standoff.kernels.vectors import dot, sub
 
 
@@ -88,10 +89,27 @@ def follow(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
 
 
 @kernel
+def polished(pair, R, p, mode, q, n, d, bound, tolerance, counts):
+    """(d, bound, n) of a certified pair very near contact, after Newton's method in the
+    contact-regular form: the direction between its witness points has lost its digits."""
+    if d > POLISHED * contact_scale(pair) or counts[EVALUATIONS] >= counts[LIMIT]:
+        return d, bound, n
+    kind, n_new, d_new, _ = minimum_along(pair, R, p, mode, q, n, bound, tolerance, counts)
+    if kind == NOTHING:
+        return d, bound, n
+    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+    bound_new, _ = certify_along(pair, R, p, mode, q, jet_a[0], jet_b[0], n_new)
+    return d_new, bound_new, n_new
+
+
+@kernel
 def anywhere(pair, R, p, options, goal, mode, q, w_ff, counts, events):
     """(outcome, d, bound, upper, normal, inside) of a cold query, apart or not."""
     outcome, d, bound, normal = global_query(pair, R, p, mode, q, w_ff, goal, counts, events)
-    if outcome == CERTIFIED or counts[EVALUATIONS] >= counts[LIMIT]:
+    if outcome == CERTIFIED:
+        d, bound, normal = polished(pair, R, p, mode, q, normal, d, bound, goal, counts)
+        return outcome, d, bound, d, normal, False
+    if counts[EVALUATIONS] >= counts[LIMIT]:
         return outcome, d, bound, d, normal, False
     outcome, d, bound, upper, normal = contact_query(
         pair, R, p, False, normal, True, mode, q, w_ff, goal, counts, events
@@ -118,6 +136,10 @@ def track(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
                 pair, motion, state, options, h, mode, q, w_ff, dq, counts, events
             )
             lags = options[O_LAW] == LAW_PAPER and apart and outcome == UNCERTIFIED
+            if outcome == CERTIFIED and options[O_LAW] != LAW_PAPER and not alone:
+                d, bound, normal = polished(
+                    pair, R, p, mode, q, normal, d, bound, tolerance, counts
+                )
             if outcome == CERTIFIED or alone or lags:
                 return fresh, outcome, d, bound, d, normal, False
             near = state[LAST_DISTANCE] < SHIFTED_GAP * contact_scale(pair)
