@@ -18,14 +18,16 @@ from random import Random
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
-SILENCE = 60.0
+SILENCE = 180.0
 """Seconds without an input ended, after which the worker is taken to hang in compiled code."""
 SECONDS = 10.0
 """Most seconds for one input; Python code is stopped there."""
+TOLD = 100
+"""Inputs between two summaries under Atheris."""
 MEMORY = 8 << 30
 """Bytes of memory a worker may take."""
-PARTS = ("scene", "geometry", "bodies", "motion", "tracking")
-"""Packages whose coverage Atheris follows; what Numba compiles it cannot."""
+KERNELS = [f"standoff.kernels.{file.stem}" for file in (ROOT / "src/standoff/kernels").glob("*.py")]
+"""Modules whose coverage Atheris cannot follow: Numba would compile its marks too."""
 
 
 def limit_memory() -> None:
@@ -84,16 +86,16 @@ class Worker:
         for file, content in corpus.items():
             (Path(folder) / file).write_bytes(content)
         limits = [f"-max_total_time={int(60 * minutes)}", f"-seed={seed % 2**31}", "-max_len=20000"]
+        limits.append(f"-artifact_prefix={folder}/")
         quiet = ["-verbosity=0", "-rss_limit_mb=0", "-timeout=0"]
-        atheris.Setup(
-            [sys.argv[0], *limits, *quiet, folder],
-            lambda data: self.attempt(name, data),
-            custom_mutator=mutate,
-        )
-        try:
-            atheris.Fuzz()
-        finally:
-            print(self.summary(), flush=True)
+
+        def attempt(data: bytes) -> None:
+            self.attempt(name, data)
+            if self.counts.total() % TOLD == 0:  # libFuzzer ends the process without a word
+                print(self.summary(), flush=True)
+
+        atheris.Setup([sys.argv[0], *limits, *quiet, folder], attempt, custom_mutator=mutate)
+        atheris.Fuzz()
 
     def summary(self) -> str:
         told = ", ".join(f"{count} {word}" for word, count in self.counts.most_common())
@@ -107,7 +109,9 @@ def work(arguments: Any) -> int:
     if arguments.atheris:
         import atheris
 
-        with atheris.instrument_imports(include=[f"standoff.{part}" for part in PARTS]):
+        with atheris.instrument_imports(
+            include=["standoff"], exclude=["standoff.kernels", *KERNELS]
+        ):
             import fuzz.targets  # noqa: F401
     worker = Worker(arguments.target, Path(arguments.current))
     run = worker.run_guided if arguments.atheris else worker.run

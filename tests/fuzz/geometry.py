@@ -27,7 +27,10 @@ ROUNDOFF = 1e-9
 
 def geometry_input(seeds: list[bytes], random: Random) -> bytes:
     """Return a mutated program."""
-    tree, other = (json.loads(random.choice(seeds)) for _ in range(2))
+    try:
+        tree, other = (json.loads(random.choice(seeds)) for _ in range(2))
+    except ValueError:  # cut off to a greatest length, or empty
+        return b"{}"
     return json.dumps(mutated([tree], random, [other])[:1]).encode()
 
 
@@ -39,7 +42,10 @@ def check_geometry(content: bytes) -> str:
     Broken
         The law of constructors does not hold.
     """
-    tree = json.loads(content)
+    try:
+        tree = json.loads(content)
+    except ValueError:
+        return "no program"
     tree = tree[0] if isinstance(tree, list) and tree else tree
     kept = copy.deepcopy(tree)
     made: Any = None
