@@ -14,7 +14,6 @@ from standoff.motion.bounds import cross, length
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.state import TrackerState
-from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
 
 Array = NDArray[np.float64]
@@ -122,10 +121,5 @@ class Moment:
             since = self.time - before.time
             self.state = tracker.step(before.state, *poses, *twists, dt=since)[0]
         answer = self.state.proximity
-        if answer.status is Status.OVERLAPPING:
-            # proven, without a depth: they touch at least
-            self.upper = 0.0
-            return
-        self.lower = answer.lower_bound
-        self.upper = getattr(answer, "upper_bound", answer.distance)
+        self.lower, self.upper = answer.lower_bound, answer.upper_bound
         self.rate = answer.rate
