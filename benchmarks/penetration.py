@@ -115,12 +115,12 @@ def accuracy(cases: int, seed: int) -> None:
         for low, high in SHARES:
             rows, total, statuses = focal_errors(name, low, high, cases, seed)
             if not len(rows):
-                print(f"{name:24s} {low:8.0e}-{high:<6.3g} none of {total} is the least")
+                print(f"{name:24s} {low:8g}-{high:<7g} none of {total} is the least")
                 continue
             columns = [f"{np.median(c):.1e}/{c.max():.1e}" for c in rows.T]
             told = " ".join(f"{count} {status.lower()}" for status, count in statuses.most_common())
             print(
-                f"{name:24s} {low:8.0e}-{high:<6.3g} {len(rows):6d}/{total:<6d} distance "
+                f"{name:24s} {low:8g}-{high:<7g} {len(rows):6d}/{total:<6d} distance "
                 f"{columns[0]:16s} points {columns[1]:16s} normal {columns[2]:16s} {told}",
                 flush=True,
             )

@@ -116,7 +116,10 @@ KINDS: dict[str, Kind] = {
 
 @dataclass(frozen=True)
 class Case:
-    """Two placed bodies that overlap, the proven least depth, and a motion that ends there."""
+    """Two placed bodies that overlap, the proven least depth, and a motion that ends there.
+
+    ``motion`` is None where none is drawn.
+    """
 
     label: str
     a: Twin
@@ -126,7 +129,7 @@ class Case:
     normal: Array
     depth: float
     lower: float
-    motion: Callable[[float], tuple[Placed, Placed]]
+    motion: Callable[[float], tuple[Placed, Placed]] | None
 
     @property
     def placed(self) -> tuple[Placed, Placed]:
@@ -223,10 +226,10 @@ def draw_case(name: str, seed: int, number: int) -> Case:
 
 def track_into(case: Case, depth: str, blind: bool = False) -> list[so.Proximity]:
     """The answers of a tracker along the case's motion; ``blind``: without velocities."""
+    if case.motion is None:
+        raise ValueError(f"{case.label} has no motion")
+    poses = case.motion
     tracker = so.Tracker(case.a.body, case.b.body, dt=DT, depth=depth)
-
-    def poses(t: float) -> tuple[Placed, Placed]:
-        return case.motion(t)
 
     def flat(placed: Placed) -> tuple[Array, Array]:
         return placed.rotation, placed.position

@@ -35,6 +35,8 @@ DIFFERENCE = 1e-6
 """Half the time over which B's velocity is taken as a difference, s."""
 SPIN_A, SPIN_B = np.array([0.3, -0.2, 0.5]), np.array([-0.4, 0.7, 0.2])
 """Angular velocities, rad/s, in world."""
+TURNED = 1.0
+"""Time that the bodies have turned before the first frame, s: no plane of theirs is shared."""
 ORBIT = 0.5
 """How far A swings, a length."""
 
@@ -130,8 +132,8 @@ Gap = Callable[[Array], Array]
 
 def _placed(slide: Slide, gap: Gap, t: Array) -> tuple[Array, ...]:
     """Return R_A, p_A, R_B, p_B, x in world and n in world at times (k,)."""
-    turn_a = Rotation.from_rotvec(np.outer(t, SPIN_A)).as_matrix()
-    turn_b = Rotation.from_rotvec(np.outer(t, SPIN_B)).as_matrix()
+    turn_a = Rotation.from_rotvec(np.outer(t + TURNED, SPIN_A)).as_matrix()
+    turn_b = Rotation.from_rotvec(np.outer(t + TURNED, SPIN_B)).as_matrix()
     shift = ORBIT * np.stack([np.sin(0.6 * t), np.cos(0.4 * t), np.sin(0.3 * t + 1)], axis=1)
     x, n = slide.path(t)
     x, n = (np.einsum("kij,kj->ki", turn_a, rows) for rows in (x, n))
