@@ -5,8 +5,10 @@ import pytest
 
 from standoff.kernels import frame as K
 from standoff.soak.cases import draw_case
-from standoff.soak.checks import judge
+from standoff.soak.checks import GLOBAL, LOCAL, judge, search
+from standoff.soak.motions import Frames
 from standoff.soak.running import track
+from standoff.soak.shapes import Shape, made
 from standoff.tracking.tracker import Tracker
 
 TOLERANCE = 1e-10
@@ -50,3 +52,56 @@ def test_a_silent_zero_is_seen():
     rows[6, [K.DISTANCE, K.LOWER_BOUND]] = 0.0
     faults = judge(a, b, frames, rows, TOLERANCE).faults
     assert "a silent zero" in [fault.what for fault in faults if fault.frame == 6]
+
+
+def balls(offset, turn=0.0):
+    """Balls of radii 2 and 1 whose centres are `offset` apart: the answer along a normal that is
+    turned away from their line, called GLOBAL."""
+    a, b = made(Shape("sphere", {"r": 2.0})), made(Shape("sphere", {"r": 1.0}))
+    pose = np.eye(3, 4).T.ravel()[None]
+    poses_b = pose.copy()
+    poses_b[0, 9] = offset
+    frames = Frames(pose, poses_b, np.zeros((1, 6)), np.zeros((1, 6)), np.ones(1))
+    n = np.array([np.cos(turn), np.sin(turn), 0.0])
+    row = np.zeros(K.N_OUT)
+    row[[K.DISTANCE, K.LOWER_BOUND]] = offset * n[0] - 3.0
+    if hasattr(K, "UPPER_BOUND"):
+        row[K.UPPER_BOUND] = offset - 3.0
+    row[K.POINT_A : K.POINT_A + 3] = 2.0 * n
+    row[K.POINT_B : K.POINT_B + 3] = 2.0 * n + row[K.DISTANCE] * n
+    row[K.NORMAL : K.NORMAL + 3] = n
+    row[K.STATUS] = GLOBAL
+    return a, b, frames, row[None]
+
+
+def deep_faults(a, b, frames, rows):
+    judged = judge(a, b, frames, rows, TOLERANCE)
+    found = judged.faults + search(a, b, frames, rows, judged, np.array([0]))
+    return [fault.what for fault in found]
+
+
+def test_a_depth_is_judged_by_its_normal_and_by_all_others():
+    assert deep_faults(*balls(2.5)) == []
+    # along another normal the push is longer; that alone is no fault, to call it GLOBAL is
+    a, b, frames, rows = balls(2.5, turn=0.3)
+    assert "GLOBAL, but a lesser depth exists" in deep_faults(a, b, frames, rows)
+    rows[0, K.POINT_B : K.POINT_B + 3] = (
+        np.array([2.5, 0.0, 0.0]) - rows[0, K.NORMAL : K.NORMAL + 3]
+    )
+    rows[0, K.STATUS] = LOCAL
+    assert deep_faults(a, b, frames, rows) == ["the points are not on the normal"]
+    # balls that are apart, along a normal that does not part them
+    assert "said to overlap, but a plane parts them" in deep_faults(*balls(3.1, turn=0.9))
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        (0.1, "the depth does not part the bodies"),
+        (-0.1, "the depth is not that along the normal"),
+    ],
+)
+def test_a_wrong_depth_is_seen(change, what):
+    a, b, frames, rows = balls(2.5)
+    rows[0, K.DISTANCE] += change
+    assert what in deep_faults(a, b, frames, rows)
