@@ -65,8 +65,7 @@ def balls(offset, turn=0.0):
     n = np.array([np.cos(turn), np.sin(turn), 0.0])
     row = np.zeros(K.N_OUT)
     row[[K.DISTANCE, K.LOWER_BOUND]] = offset * n[0] - 3.0
-    if hasattr(K, "UPPER_BOUND"):
-        row[K.UPPER_BOUND] = offset - 3.0
+    row[K.UPPER_BOUND] = offset - 3.0
     row[K.POINT_A : K.POINT_A + 3] = 2.0 * n
     row[K.POINT_B : K.POINT_B + 3] = 2.0 * n + row[K.DISTANCE] * n
     row[K.NORMAL : K.NORMAL + 3] = n

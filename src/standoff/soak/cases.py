@@ -26,7 +26,7 @@ PER_DRAWER = 64
 SHAPES, PAIRS = 0, 1
 """Streams of a seed's random numbers."""
 
-FAMILIES = {"apart": 0.5, "touching": 0.2, "passing": 0.2, "inside": 0.1}
+FAMILIES = {"apart": 0.75, "touching": 0.12, "passing": 0.1, "inside": 0.03}
 """Shares of the motions: kept apart by a gap; built to touch at one frame, in small motions; let
 into one another by a fifth of the lesser body at most; around one another's middle."""
 
@@ -106,13 +106,17 @@ def _stream(seed: int, stream: int, number: int) -> Rng:
 
 
 def _draw_options(rng: Rng) -> dict[str, Any]:
-    """Mostly the defaults; other predictors, tolerances and the paper's law now and then."""
+    """Mostly the defaults; other predictors, tolerances, deadlines and the paper's law now and then."""
     options: dict[str, Any] = {}
     if rng.random() < 0.3:
         names = ["feedforward-2", "feedforward", "secant", "none"]
         options["predictor"] = str(rng.choice(names))
     if rng.random() < 0.1:
         options["tolerance"] = float(10.0 ** rng.uniform(-11.0, -4.0))
+    if rng.random() < 0.15:
+        options["depth"] = "local"
+    if rng.random() < 0.05:
+        options["deadline"] = int(rng.integers(1, 200))
     if rng.random() < 0.04:
         options["law"] = "paper"
         options.pop("predictor", None)

@@ -42,7 +42,7 @@ flat in n, so that it is good to the square of this."""
 PROVEN = 1e-3
 """GLOBAL says that no depth is less than (1 - PROVEN) of the one that is reported."""
 
-LOCAL, GLOBAL = getattr(K, "LOCAL", 4), getattr(K, "GLOBAL", 5)
+LOCAL, GLOBAL = K.LOCAL, K.GLOBAL
 
 BLURRED = frozenset(
     {"superellipsoid", "creased superellipsoid", "egg", "spindle", "gore"}
@@ -155,7 +155,7 @@ class _Checks:
         where: NDArray[np.bool_] | bool = True,
     ) -> None:
         """Note the first frame where a value is above what is allowed, or no number."""
-        wrong = ~(value <= allowed) & where & (self.status != Status.OVERLAPPING.value)
+        wrong = ~(value <= allowed) & where
         if wrong.any():
             k = int(wrong.argmax())
             limit = float(np.broadcast_to(allowed, value.shape)[k])
@@ -185,9 +185,8 @@ class _Checks:
             self.noise,
             apart,
         )
-        if hasattr(K, "UPPER_BOUND"):
-            upper = self.rows[:, K.UPPER_BOUND]
-            self.expect("the upper bound is too low", self.separation - upper, self.noise)
+        upper = self.rows[:, K.UPPER_BOUND]
+        self.expect("the upper bound is too low", self.separation - upper, self.noise)
 
     def points(self, n: Array, height_a: Array, height_b: Array) -> None:
         """Witness points lie on their bodies, as far apart as the distance says."""
@@ -243,7 +242,7 @@ def search(
         limit = PROVEN * depth + noise
         if rows[k, K.STATUS] == GLOBAL and depth - least > limit:
             faults.append(Fault(k, "GLOBAL, but a lesser depth exists", depth - least, limit))
-        if hasattr(K, "UPPER_BOUND") and -least > rows[k, K.UPPER_BOUND] + noise:
+        if -least > rows[k, K.UPPER_BOUND] + noise:
             over = -least - rows[k, K.UPPER_BOUND]
             faults.append(Fault(k, "a direction separates beyond the upper bound", over, noise))
     return faults

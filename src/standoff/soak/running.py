@@ -154,7 +154,7 @@ def count(tally: Tally, case: Case, rows: Array, judged: Judged) -> None:
     tally.count("certified", (apart | (status == GLOBAL)).sum())
     counts = rows[:, K.OUT_COUNTS :]
     tally.count("restarted", (counts[1:, N.RESTARTS] > 0.0).sum())
-    tally.count("searched", (counts[1:, N.N_COUNTS - 1] > 0.0).sum() if N.N_COUNTS > 7 else 0)
+    tally.count("searched", (counts[1:, N.SEARCHES] > 0.0).sum())
     for name, column in COUNTED.items():
         tally.note(f"{name} in a step", counts[:, column].max())
     if deep.any():
