@@ -106,7 +106,7 @@ def _stream(seed: int, stream: int, number: int) -> Rng:
 
 
 def _draw_options(rng: Rng) -> dict[str, Any]:
-    """Mostly the defaults; other predictors, tolerances, deadlines and the paper's law now and then."""
+    """Mostly the defaults; now and then others, and the paper's law."""
     options: dict[str, Any] = {}
     if rng.random() < 0.3:
         names = ["feedforward-2", "feedforward", "secant", "none"]

@@ -35,10 +35,6 @@ ON_BODY = 1e-11
 """Part of the size by which a witness point may lie outside its body: the overlap of trimming
 curves (1e-12 of their parameters) and the roundoff of charts."""
 
-SAME_LINE = 1e-7
-"""Part of the size by which the witness points of a penetration may lie off the normal: depth is
-flat in n, so that it is good to the square of this."""
-
 PROVEN = 1e-3
 """GLOBAL says that no depth is less than (1 - PROVEN) of the one that is reported."""
 
@@ -79,12 +75,15 @@ class Judged(NamedTuple):
         -s(n), length.
     size : (n,) array
         Lengths that roundoff is a part of.
+    aside : (n,) array
+        How far the points of a penetration lie off the normal, over the size; else 0.
     faults : list of Fault
         In order of frames.
     """
 
     separation: Array
     size: Array
+    aside: Array
     faults: list[Fault]
 
 
@@ -114,9 +113,11 @@ def judge(a: Made, b: Made, frames: Frames, rows: Array, tolerance: float) -> Ju
     checks.numbers(told)
     checks.expect("the normal is not the half-space's", lengths(told - n), UNIT)
     checks.bounds()
-    checks.points(n, height_a, height_b)
+    checks.points(n)
     checks.certified(tolerance)
-    return Judged(separation, size, sorted(checks.faults, key=lambda fault: fault.frame))
+    checks.deepest(tolerance, n, height_a, height_b)
+    faults = sorted(checks.faults, key=lambda fault: fault.frame)
+    return Judged(separation, size, checks.aside, faults)
 
 
 def _own_normals(a: Made, b: Made, frames: Frames, n: Array) -> Array:
@@ -145,6 +146,8 @@ class _Checks:
         self.status = rows[:, K.STATUS].astype(int)
         self.noise = ROUNDOFF * size
         self.slack = a.body.reals[L.SLACK] + b.body.reals[L.SLACK]
+        self.between = rows[:, K.POINT_B : K.POINT_B + 3] - rows[:, K.POINT_A : K.POINT_A + 3]
+        self.aside = np.zeros(len(rows))
         self.faults: list[Fault] = []
 
     def expect(
@@ -163,7 +166,9 @@ class _Checks:
 
     def numbers(self, n: Array) -> None:
         """No nan, no infinite number; a unit normal."""
-        told = self.rows[:, : K.NORMAL + 3]
+        told = np.column_stack([self.rows[:, : K.NORMAL + 3], self.rows[:, K.UPPER_BOUND]])
+        unknown = (self.status == Status.NOT_CERTIFIED.value) & (self.bound == -np.inf)
+        told[unknown, K.LOWER_BOUND] = 0.0  # beside a half-space: no bound is known, and it says so
         self.expect("a number that is not finite", (~np.isfinite(told)).sum(axis=1), 0.0)
         self.expect("the normal is no unit vector", np.abs(lengths(n) - 1.0), UNIT)
         known = np.isin(self.status, [s.value for s in Status])
@@ -188,39 +193,52 @@ class _Checks:
         upper = self.rows[:, K.UPPER_BOUND]
         self.expect("the upper bound is too low", self.separation - upper, self.noise)
 
-    def points(self, n: Array, height_a: Array, height_b: Array) -> None:
+    def points(self, n: Array) -> None:
         """Witness points lie on their bodies, as far apart as the distance says."""
         x_a = self.rows[:, K.POINT_A : K.POINT_A + 3]
         x_b = self.rows[:, K.POINT_B : K.POINT_B + 3]
         allowed = ON_BODY * self.size + self.slack
         self.expect("point_a is off A", outside(self.a, self.frames.poses_a, x_a, n), allowed)
         self.expect("point_b is off B", outside(self.b, self.frames.poses_b, x_b, -n), allowed)
-        between = x_b - x_a
-        apart, deep = apart_of(self.status), deep_of(self.status)
+        apart = apart_of(self.status)
         # the swept balls' points lie along n, which is not quite the cores' direction
         radii = self.a.body.radius + self.b.body.radius
         turned = radii * np.abs(self.distance - self.separation) / np.maximum(self.distance, TINY)
-        off = np.abs(lengths(between) - np.abs(self.distance))
+        off = np.abs(lengths(self.between) - np.abs(self.distance))
         self.expect("the points are not at the distance", off, allowed + turned, apart)
-        self.expect("the points are not at the depth", off, allowed, deep)
-        aside = lengths(between - self.distance[:, None] * n)
-        self.expect("the points are not on the normal", aside, SAME_LINE * self.size, deep)
-        reach_a = np.abs(dots(n, x_a) - height_a)
-        self.expect("point_a is not the farthest along the normal", reach_a, allowed, deep)
-        reach_b = np.abs(dots(n, x_b) + height_b)
-        self.expect("point_b is not the farthest along the normal", reach_b, allowed, deep)
 
     def certified(self, tolerance: float) -> None:
         """Apart: the normal separates by the distance. In penetration: the depth parts them."""
         apart, deep = apart_of(self.status), deep_of(self.status)
-        blur = BLUR if {self.a.shape.kind, self.b.shape.kind} & BLURRED else 0.0
-        allowed = (tolerance + blur) * self.size + self.slack + self.noise
+        allowed = self._gap(tolerance)
         short = self.distance - self.separation
         self.expect("certified, but the normal separates by less", short, allowed, apart)
         self.expect("certified apart at no distance", -self.distance, 0.0, apart)
         self.expect("the depth does not part the bodies", short, allowed, deep)
         self.expect("the depth is not that along the normal", -short, allowed, deep)
         self.expect("a depth where there is none", self.distance, self.noise, deep)
+
+    def deepest(self, tolerance: float, n: Array, height_a: Array, height_b: Array) -> None:
+        """In penetration the points are the farthest along the normal, and on one line with it.
+
+        A depth is flat in its normal: where it is good to the tolerance, the line is to its root.
+        """
+        deep, allowed = deep_of(self.status), self._gap(tolerance) + ON_BODY * self.size
+        aside = self.between - self.distance[:, None] * n
+        self.aside = np.where(deep, lengths(aside) / self.size, 0.0)
+        off = np.sqrt(2.0 * allowed / self.size)
+        self.expect("the points are not on the normal", self.aside, off, deep)
+        for what, sign, at, height in (
+            ("point_a is not the farthest along the normal", 1.0, K.POINT_A, height_a),
+            ("point_b is not the farthest along the normal", -1.0, K.POINT_B, height_b),
+        ):
+            reach = sign * dots(n, self.rows[:, at : at + 3])
+            self.expect(what, np.abs(reach - height), allowed, deep)
+
+    def _gap(self, tolerance: float) -> Array:
+        """How far an answer may be from its bound, (n,)."""
+        blur = BLUR if {self.a.shape.kind, self.b.shape.kind} & BLURRED else 0.0
+        return np.asarray((tolerance + blur) * self.size + self.slack + self.noise)
 
 
 def search(

@@ -158,6 +158,7 @@ def count(tally: Tally, case: Case, rows: Array, judged: Judged) -> None:
     for name, column in COUNTED.items():
         tally.note(f"{name} in a step", counts[:, column].max())
     if deep.any():
+        tally.note("points off the normal in penetration, over size", judged.aside.max())
         tally.note("depth over size", (-rows[deep, K.DISTANCE] / judged.size[deep]).max())
     if apart.any():
         short = (rows[apart, K.DISTANCE] - judged.separation[apart]) / judged.size[apart]
