@@ -192,6 +192,7 @@ class _Checks:
         )
         upper = self.rows[:, K.UPPER_BOUND]
         self.expect("the upper bound is too low", self.separation - upper, self.noise)
+        self.expect("the distance is above its upper bound", self.distance - upper, self.noise)
 
     def points(self, n: Array) -> None:
         """Witness points lie on their bodies, as far apart as the distance says."""
