@@ -88,6 +88,7 @@ def test_a_depth_is_judged_by_its_normal_and_by_all_others():
         np.array([2.5, 0.0, 0.0]) - rows[0, K.NORMAL : K.NORMAL + 3]
     )
     rows[0, K.STATUS] = LOCAL
+    assert judge(a, b, frames, rows, TOLERANCE).unrest[0] > 1e3
     assert deep_faults(a, b, frames, rows) == ["the points are not on the normal"]
     # balls that are apart, along a normal that does not part them
     assert "said to overlap, but a plane parts them" in deep_faults(*balls(3.1, turn=0.9))

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import layout as L
 from standoff.kernels.tolerances import BLUR
@@ -34,6 +35,8 @@ UNIT = 1e-12
 ON_BODY = 1e-11
 """Part of the size by which a witness point may lie outside its body: the overlap of trimming
 curves (1e-12 of their parameters) and the roundoff of charts."""
+
+COUNT = K.OUT_COUNTS + N.EVALUATIONS
 
 PROVEN = 1e-3
 """GLOBAL says that no depth is less than (1 - PROVEN) of the one that is reported."""
@@ -75,19 +78,21 @@ class Judged(NamedTuple):
         -s(n), length.
     size : (n,) array
         Lengths that roundoff is a part of.
-    aside : (n,) array
-        How far the points of a penetration lie off the normal, over the size; else 0.
+    unrest : (n,) array
+        How far the points of a penetration lie off the normal, over what the tolerance allows.
     faults : list of Fault
         In order of frames.
     """
 
     separation: Array
     size: Array
-    aside: Array
+    unrest: Array
     faults: list[Fault]
 
 
-def judge(a: Made, b: Made, frames: Frames, rows: Array, tolerance: float) -> Judged:
+def judge(
+    a: Made, b: Made, frames: Frames, rows: Array, tolerance: float, deadline: float = np.inf
+) -> Judged:
     """Check every answer.
 
     Parameters
@@ -96,8 +101,8 @@ def judge(a: Made, b: Made, frames: Frames, rows: Array, tolerance: float) -> Ju
     frames : Frames
     rows : ndarray, shape (n, N_OUT)
         As ``standoff.kernels.frame`` lays them out.
-    tolerance : float
-        The tracker's.
+    tolerance, deadline : float
+        The tracker's. Answers that took the deadline's evaluations need not be at rest.
 
     Returns
     -------
@@ -115,9 +120,9 @@ def judge(a: Made, b: Made, frames: Frames, rows: Array, tolerance: float) -> Ju
     checks.bounds()
     checks.points(n)
     checks.certified(tolerance)
-    checks.deepest(tolerance, n, height_a, height_b)
+    checks.deepest(tolerance, n, height_a, height_b, rows[:, COUNT] < deadline)
     faults = sorted(checks.faults, key=lambda fault: fault.frame)
-    return Judged(separation, size, checks.aside, faults)
+    return Judged(separation, size, checks.unrest, faults)
 
 
 def _own_normals(a: Made, b: Made, frames: Frames, n: Array) -> Array:
@@ -147,7 +152,7 @@ class _Checks:
         self.noise = ROUNDOFF * size
         self.slack = a.body.reals[L.SLACK] + b.body.reals[L.SLACK]
         self.between = rows[:, K.POINT_B : K.POINT_B + 3] - rows[:, K.POINT_A : K.POINT_A + 3]
-        self.aside = np.zeros(len(rows))
+        self.unrest = np.zeros(len(rows))
         self.faults: list[Fault] = []
 
     def expect(
@@ -216,19 +221,26 @@ class _Checks:
         self.expect("certified, but the normal separates by less", short, allowed, apart)
         self.expect("certified apart at no distance", -self.distance, 0.0, apart)
         self.expect("the depth does not part the bodies", short, allowed, deep)
-        self.expect("the depth is not that along the normal", -short, allowed, deep)
         self.expect("a depth where there is none", self.distance, self.noise, deep)
 
-    def deepest(self, tolerance: float, n: Array, height_a: Array, height_b: Array) -> None:
+    def deepest(
+        self, tolerance: float, n: Array, height_a: Array, height_b: Array, whole: NDArray[np.bool_]
+    ) -> None:
         """In penetration the points are the farthest along the normal, and on one line with it.
 
-        A depth is flat in its normal: where it is good to the tolerance, the line is to its root.
+        A depth is flat in its normal: where it is good to a part of itself, the line is to its
+        root. Beyond the tolerance's the answer is not at rest, which is counted; a fault is only
+        what GLOBAL does not allow.
         """
-        deep, allowed = deep_of(self.status), self._gap(tolerance) + ON_BODY * self.size
+        deep = deep_of(self.status) & whole
+        allowed = self._gap(tolerance) + ON_BODY * self.size
+        short = self.separation - self.distance
+        self.expect("the depth is not that along the normal", short, allowed, deep)
         aside = self.between - self.distance[:, None] * n
-        self.aside = np.where(deep, lengths(aside) / self.size, 0.0)
-        off = np.sqrt(2.0 * allowed / self.size)
-        self.expect("the points are not on the normal", self.aside, off, deep)
+        rest = np.sqrt(2.0 * allowed * self.size)
+        self.unrest = np.where(deep, lengths(aside) / rest, 0.0)
+        limit = np.sqrt(2.0 * PROVEN) * self.size / rest
+        self.expect("the points are not on the normal", self.unrest, limit, deep)
         for what, sign, at, height in (
             ("point_a is not the farthest along the normal", 1.0, K.POINT_A, height_a),
             ("point_b is not the farthest along the normal", -1.0, K.POINT_B, height_b),

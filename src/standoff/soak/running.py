@@ -85,7 +85,8 @@ def run_case(case: Case, a: Made, b: Made, frames: Frames) -> tuple[Tally, Failu
         fault = Fault(answers.refused, "the frame was refused", 1.0, 0.0)
         return tally, Failure(case, fault, cold=False)
     tolerance = float(tracker.options[K.O_TOLERANCE])
-    judged = judge(a, b, frames, answers.rows, tolerance)
+    deadline = float(tracker.options[K.O_DEADLINE])
+    judged = judge(a, b, frames, answers.rows, tolerance, deadline)
     count(tally, case, answers.rows, judged)
     looked = _to_search(answers.rows)
     tally.count("depths searched for", len(looked))
@@ -158,7 +159,8 @@ def count(tally: Tally, case: Case, rows: Array, judged: Judged) -> None:
     for name, column in COUNTED.items():
         tally.note(f"{name} in a step", counts[:, column].max())
     if deep.any():
-        tally.note("points off the normal in penetration, over size", judged.aside.max())
+        tally.note("unrest of a depth, over what the tolerance allows", judged.unrest.max())
+        tally.count("depths not at rest", (judged.unrest > 1.0).sum())
         tally.note("depth over size", (-rows[deep, K.DISTANCE] / judged.size[deep]).max())
     if apart.any():
         short = (rows[apart, K.DISTANCE] - judged.separation[apart]) / judged.size[apart]
@@ -195,7 +197,8 @@ def compare(
             return [Fault(k, "the frame was refused", 1.0, 0.0)]
     some = frames.part(numbers)
     tolerance = float(cold_tracker.options[K.O_TOLERANCE])
-    alone = judge(a, b, some, cold, tolerance)
+    deadline = float(cold_tracker.options[K.O_DEADLINE])
+    alone = judge(a, b, some, cold, tolerance, deadline)
     status = cold[:, K.STATUS].astype(int)
     tally.count("cold queries", len(numbers))
     tally.count("cold certified", (apart_of(status) | (status == GLOBAL)).sum())
