@@ -11,9 +11,6 @@ import standoff as so
 from oracles.exact_pairs import random_rotation
 from standoff.geometry import ConicArc, RationalBezier, ellipsoid_patches
 
-pytestmark = pytest.mark.skipif(
-    not hasattr(so.Proximity, "upper_bound"), reason="signed distance is not there yet"
-)
 HOME = np.eye(4)
 CUBE = [[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]
 

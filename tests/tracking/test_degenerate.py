@@ -19,9 +19,6 @@ from oracles import support as oracle
 from oracles.exact_pairs import exact_pair
 
 HOME = np.eye(4)
-contact = pytest.mark.skipif(
-    not hasattr(so.Proximity, "upper_bound"), reason="signed distance is not there yet"
-)
 LEVELS = [(name, level) for name, kind in KINDS.items() for level in kind.levels]
 OPEN = {
     ("thin superellipsoid", 1e4): 0.15,
@@ -219,7 +216,6 @@ def test_missing_twists():
         assert known or np.isnan(answer.rate)
 
 
-@contact
 @pytest.mark.parametrize(("name", "level"), LEVELS)
 def test_overlapping(name, level):
     """Sunk along a normal by 1e-9 to 1e-1 of the thickness there: never deeper than that."""
@@ -227,7 +223,6 @@ def test_overlapping(name, level):
     assert not tally.failures
 
 
-@contact
 @pytest.mark.parametrize("predictor", ["feedforward-2", "secant"])
 def test_teleports_into_each_other(predictor):
     """Apart, sunk and deep by turns, jumping by many sizes between frames."""
@@ -251,7 +246,6 @@ def _sunk(pose, rng):
     return sunk(pose, answer.normal, float(np.exp(rng.uniform(np.log(1e-6), np.log(0.1)))))
 
 
-@contact
 @pytest.mark.parametrize("factor", FACTORS)
 def test_wrong_twists_in_penetration(factor):
     """The pair of `moving_pair` pressed together: a local minimum is kept, whatever the twists."""
@@ -272,7 +266,6 @@ def test_wrong_twists_in_penetration(factor):
         assert np.isfinite([*answer.point_a, *answer.normal]).all()
 
 
-@contact
 @pytest.mark.parametrize("twists", [True, False])
 @pytest.mark.parametrize("name", sorted(KINDS))
 def test_motion(name, twists):
