@@ -21,6 +21,10 @@ WRONG = 1e-6
 """An answer whose distance is off by more, over the size, counts as wrong."""
 ELSEWHERE = 0.05
 """Angle (rad) from the true normal beyond which a depth is another minimum's."""
+BOUND_SLACK = 1e-12
+"""What a lower bound may be above the truth, over the size: roundoff."""
+SEARCHED_SLACK = 1e-7
+"""The same where the truth is a searched depth, known to 1e-8."""
 PROVEN = 1e-3
 """What GLOBAL promises: no depth is less than (1 - this) of the reported one."""
 OURS = "Standoff"
@@ -62,6 +66,7 @@ class Row:
     verdict: str
     status: str
     certified: bool | None
+    lower_bound: float
     shape_a: str
     shape_b: str
     solid_a: str
@@ -70,12 +75,28 @@ class Row:
     pose_b: list[float]
 
 
-def own_answer(case: Case) -> tuple[PeerAnswer, Status, bool]:
-    """Return Standoff's cold answer, its status and whether it is certified."""
+@dataclass(frozen=True)
+class OwnAnswer(PeerAnswer):
+    """Standoff's answer with what it claims: status, certificate, lower bound (length)."""
+
+    status: Status
+    certified: bool
+    lower_bound: float
+
+
+def own_answer(case: Case) -> OwnAnswer:
+    """Return Standoff's cold answer."""
     truth = case.truth
     found = distance(case.a.body, case.b.body, truth.pose_a, truth.pose_b)
-    answer = PeerAnswer(found.distance, found.point_a, found.point_b, found.normal)
-    return answer, found.status, found.certified
+    return OwnAnswer(
+        found.distance,
+        found.point_a,
+        found.point_b,
+        found.normal,
+        found.status,
+        found.certified,
+        found.lower_bound,
+    )
 
 
 def errors(case: Case, answer: PeerAnswer) -> tuple[float, float, float]:
@@ -91,13 +112,15 @@ def errors(case: Case, answer: PeerAnswer) -> tuple[float, float, float]:
     return abs(answer.distance - truth.distance) / case.size, witness / case.size, turn
 
 
-def judge(case: Case, answer: PeerAnswer, claims_least: bool = False) -> Verdict:
+def judge(case: Case, answer: PeerAnswer) -> Verdict:
     """Judge one answer by its distance, and by its normal where that is another minimum's.
 
-    Parameters
-    ----------
-    claims_least : does it promise that no depth is less, but for `PROVEN`?
+    Ours is wrong also by a lower bound above the truth, or a promise of the least depth, good to
+    `PROVEN`, that it does not keep.
     """
+    if isinstance(answer, OwnAnswer) and not bounded_rightly(case, answer):
+        return Verdict.WRONG
+    claims_least = isinstance(answer, OwnAnswer) and answer.certified
     slack = WRONG * case.size
     if not isfinite(answer.distance):
         return Verdict.NOTHING
@@ -116,6 +139,13 @@ def judge(case: Case, answer: PeerAnswer, claims_least: bool = False) -> Verdict
         return Verdict.OTHER
     allowed = least * (1 + 2 * PROVEN) + slack
     return Verdict.WRONG if claims_least and depth > allowed else Verdict.DEEPER
+
+
+def bounded_rightly(case: Case, answer: OwnAnswer) -> bool:
+    """Is the certified lower bound none above the true distance?"""
+    truth = case.truth.distance if case.constructed else -case.least
+    slack = BOUND_SLACK if case.constructed else SEARCHED_SLACK
+    return not answer.lower_bound > truth + slack * case.size
 
 
 def is_elsewhere(case: Case, answer: PeerAnswer) -> bool:
@@ -137,18 +167,18 @@ def _described(solid: Solid) -> str:
     return repr(values)
 
 
-def _row(
-    case: Case,
-    engine: str,
-    answer: PeerAnswer,
-    status: str = "",
-    certified: bool | None = None,
-    claims_least: bool = False,
-) -> Row:
-    verdict = judge(case, answer, claims_least)
+def _claims(answer: PeerAnswer) -> tuple[str, bool | None, float]:
+    if isinstance(answer, OwnAnswer):
+        return answer.status.name, answer.certified, answer.lower_bound
+    return "", None, nan
+
+
+def _row(case: Case, engine: str, answer: PeerAnswer) -> Row:
+    verdict = judge(case, answer)
     compared = verdict is not Verdict.NOTHING and not is_elsewhere(case, answer)
     found = errors(case, answer) if compared else (nan, nan, nan)
     truth = case.truth
+    status, certified, lower_bound = _claims(answer)
     return Row(
         engine,
         *case.kinds,
@@ -164,6 +194,7 @@ def _row(
         str(verdict),
         status,
         certified,
+        lower_bound,
         case.a.kind.name,
         case.b.kind.name,
         _described(case.a),
@@ -175,8 +206,7 @@ def _row(
 
 def measure_case(case: Case) -> Row:
     """Ask Standoff."""
-    answer, status, certified = own_answer(case)
-    return _row(case, OURS, answer, status.name, certified, claims_least=certified)
+    return _row(case, OURS, own_answer(case))
 
 
 def measure_peer(case: Case, peer: Peer) -> Row | None:
