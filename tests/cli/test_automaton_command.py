@@ -33,6 +33,8 @@ def test_visited(standoff: Standoff, passing: Path) -> None:
 
 
 def test_an_uncertified_run_tells_in_the_exit_code(standoff: Standoff, crossing: Path) -> None:
+    text = crossing.read_text()
+    crossing.write_text(text.replace("[track]\n", '[track]\ndepth = "local"\n'))
     assert standoff("automaton", crossing).code == 0
     ended = standoff("automaton", crossing, "--visited")
     assert ended.code == 3

@@ -79,6 +79,19 @@ def test_penetration_is_certified(standoff: Standoff, crossing: Path) -> None:
     assert facts["closest"]["distance"] < 0.0
 
 
+def test_a_followed_depth_and_a_deadline_are_not_certified(
+    standoff: Standoff, crossing: Path
+) -> None:
+    ended = standoff("track", crossing, "--depth", "local", "--json")
+    assert ended.code == 3
+    assert json.loads(ended.out)["settings"]["depth"] == "local"
+    assert "LOCAL" in json.loads(ended.out)["statuses"]
+    facts = json.loads(standoff("track", crossing, "--deadline", 2, "--json").out)
+    assert facts["settings"]["deadline"] == 2
+    assert "DEADLINE" in facts["statuses"]
+    assert standoff("track", crossing, "--deadline", 0).code == 2
+
+
 def test_depth_is_told(standoff: Standoff, crossing: Path) -> None:
     ended = standoff("distance", crossing, "--time", 1.0, "--json")
     assert ended.code == 0

@@ -126,12 +126,10 @@ def test_plot_names_what_it_shows(standoff: Standoff, passing: Path) -> None:
     assert "overlapping" not in drawn
 
 
-def test_plot_marks_what_is_missing(standoff: Standoff, crossing: Path) -> None:
+def test_plot_marks_penetration(standoff: Standoff, crossing: Path) -> None:
     target = crossing.with_name("run.svg")
     standoff("track", crossing, "--plot", target)
-    assert "<!-- overlapping: no distance -->" in target.read_text()
-    standoff("track", crossing, "--plot", target, "--start", 0.9, "--duration", 0.1)
-    assert "<!-- overlapping: no distance -->" in target.read_text()
+    assert "<!-- in penetration -->" in target.read_text()
     standoff(
         *("track", crossing, "--plot", target, "--duration", 0.2),
         *("--law", "paper", "--gain", 5, "--predictor", "none"),

@@ -50,6 +50,10 @@ class TrackCommand:
     """In place of the scene's, for the paper's law: multipliers, voronoi or none."""
     solve: Annotated[str | None, arg(metavar="SOLVE", help_behavior_hint="")] = None
     """In place of the scene's, for the paper's law: ranked or plain."""
+    depth: Annotated[str | None, arg(metavar="DEPTH", help_behavior_hint="")] = None
+    """In place of the scene's, in penetration: global (proven the least) or local."""
+    deadline: Annotated[int | None, arg(metavar="N", help_behavior_hint="")] = None
+    """In place of the scene's: most evaluations a step."""
     step: Annotated[str | None, arg(metavar="SECONDS|samples", help_behavior_hint="")] = None
     """In place of the scene's: time from frame to frame in s, or 'samples'."""
     start: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None

@@ -53,6 +53,7 @@ def answer_facts(scene: Scene, time: float, answer: Proximity) -> dict[str, Any]
         "time": time,
         "distance": answer.distance,
         "lower_bound": answer.lower_bound,
+        "upper_bound": answer.upper_bound,
         "point_a": _numbers(answer.point_a),
         "point_b": _numbers(answer.point_b),
         "normal": _numbers(answer.normal),

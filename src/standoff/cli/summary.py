@@ -36,6 +36,7 @@ def answer_lines(scene: Scene, time: float, answer: Proximity) -> list[str]:
         line("time", f"{_time(time)}"),
         line("distance", f"{answer.distance:.15g} {unit}"),
         line("lower bound", f"{answer.lower_bound:.15g} {unit}"),
+        line("upper bound", f"{answer.upper_bound:.15g} {unit}"),
         line(
             f"on {scene.pair[0]}"[:MARGIN], f"{_vector(answer.point_a)} {unit}, {answer.feature_a}"
         ),

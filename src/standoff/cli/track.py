@@ -114,8 +114,9 @@ def _settings(scene: Scene, command: TrackCommand) -> TrackSettings:
             step = float(command.step)
         except ValueError:
             step = command.step  # refused with the other settings, in the same words
-    names = ("law", "predictor", "integrator", "gain", *asdict(Variants()), "start", "duration")
-    given = {name: getattr(command, name) for name in names} | {"step": step}
+    names = ("law", "predictor", "integrator", "gain", *asdict(Variants()), "depth", "deadline")
+    given = {name: getattr(command, name) for name in (*names, "start", "duration")}
+    given |= {"step": step}
     try:
         return scene.settings.overridden(given)
     except SceneError as error:

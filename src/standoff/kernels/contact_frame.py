@@ -9,11 +9,11 @@ from standoff.kernels.certified import CERTIFIED, PENETRATING, UNCERTIFIED
 from standoff.kernels.compiling import kernel, pointer
 from standoff.kernels.depth_search import save, search
 from standoff.kernels.descent import pair_jets
-from standoff.kernels.events import EVENTS
+from standoff.kernels.events import EVALUATIONS, EVENTS, LIMIT
 from standoff.kernels.features import pair_slack, pair_span
 from standoff.kernels.penetration import begin_along, descend, plane_normal
-from standoff.kernels.tolerances import BLUR, DEPTH_PROOF, MAX_RIVALS
-from standoff.kernels.vectors import dot, norm, sub
+from standoff.kernels.tolerances import ALIGNED, BLUR, DEPTH_PROOF, MAX_RIVALS
+from standoff.kernels.vectors import axpy, dot, norm, sub
 
 
 @kernel
@@ -68,10 +68,11 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
     bound, blur = certify_along(pair, R, p, mode, q, jet_a[0], jet_b[0], n)
     upper = norm(gap)
     span = pair_span(pair, p, abs(d))
-    if d - bound > min(tolerance, BLUR) * span + pair_slack(pair) + min(blur, BLUR * span):
-        # no stationary direction: what is achieved is the bound, or the points' own distance
+    allowed = min(tolerance, BLUR) * span + pair_slack(pair) + min(blur, BLUR * span)
+    if d - bound > allowed or norm(axpy(-d, n, gap)) > ALIGNED * span:
+        # not at rest: what is achieved is the bound, or the points' own distance
         d = bound if bound <= 0.0 else upper
-        found = found and bound <= 0.0
+        found = found and bound <= 0.0 and counts[EVALUATIONS] < counts[LIMIT]
     if least >= 0.0:
         upper = min(upper, -least)
     if not found:

@@ -124,6 +124,8 @@ MAX_LEAP = 16.0
 NEWTON_TURN = 0.3
 # Residual (relative to the span) at which the contact-regular form is solved.
 CONTACT_RESIDUAL = 1e-12
+# Witness points in contact are at rest where they are off the normal by less than this (spans).
+ALIGNED = 1e-9
 # A flat direction's radius of curvature, in spans: as good as infinite.
 FLAT_RADIUS = 1e12
 # A minimum whose least radius exceeds the depth by less than this (relative) may be none.

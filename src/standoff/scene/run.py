@@ -102,6 +102,8 @@ def prepare(scene: Scene, settings: TrackSettings) -> tuple[Tracker, Array]:
             saturation=settings.saturation,
             switching=settings.switching,
             solve=settings.solve,
+            depth=settings.depth,
+            deadline=settings.deadline,
         )
     except (ValueError, TypeError) as error:
         raise SceneError(str(error), key="track", file=scene.file) from error

@@ -10,6 +10,7 @@ from standoff.scene.errors import SceneError
 from standoff.scene.feedbacks import feedback_facts, feedback_text, read_feedback
 from standoff.scene.reader import Table, shown
 from standoff.tracking.choices import (
+    DEPTHS,
     INTEGRATORS,
     LAWS,
     PREDICTORS,
@@ -50,6 +51,10 @@ class TrackSettings:
         Of the paper's law, as `standoff.Tracker` takes them.
     saturation : str or None
         The same; None: the one that goes with the switching.
+    depth : "global" or "local"
+        Which depth is followed in penetration, as `standoff.Tracker` takes it.
+    deadline : int or None
+        Most evaluations a step; None: no limit.
     step : float or "samples" or None
         Time from frame to frame [s]; None: the samples' own times if there are any.
     start, duration : float or None
@@ -66,6 +71,8 @@ class TrackSettings:
     switching: str = "multipliers"
     solve: str = "ranked"
     tolerance: float = 1e-10
+    depth: str = "global"
+    deadline: int | None = None
     step: float | str | None = None
     start: float | None = None
     duration: float | None = None
@@ -131,6 +138,8 @@ def read_settings(
         switching=table.choice("switching", list(SWITCHINGS), usual.switching),
         solve=table.choice("solve", list(SOLVES), usual.solve),
         tolerance=table.positive("tolerance", usual.tolerance),
+        depth=table.choice("depth", list(DEPTHS), usual.depth),
+        deadline=table.count("deadline", 1) if "deadline" in table else usual.deadline,
         step=_step(table, usual.step),
         start=table.number("start") if "start" in table else usual.start,
         duration=_optional_positive(table, "duration", usual.duration),

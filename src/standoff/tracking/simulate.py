@@ -71,6 +71,8 @@ def simulate(
     saturation: str | None = None,
     switching: str = "multipliers",
     solve: str = "ranked",
+    depth: str = "global",
+    deadline: int | None = None,
     locate: bool = True,
     progress: Progress | None = None,
 ) -> Recording:
@@ -92,6 +94,8 @@ def simulate(
         As `Tracker` takes them.
     feedback, realisation, saturation, switching, solve
         Of the paper's law, as `Tracker` takes them.
+    depth, deadline
+        As `Tracker` takes them.
     locate : bool
         Find the instants of the switches within their steps; else they are dated to the frames.
         Paths are asked for poses between the frames.
@@ -126,6 +130,8 @@ def simulate(
         saturation=saturation,
         switching=switching,
         solve=solve,
+        depth=depth,
+        deadline=deadline,
     )
     paths = moving(path_a, "path_a"), moving(path_b, "path_b")
     return track_along(tracker, *paths, times, locate=locate, progress=progress)
