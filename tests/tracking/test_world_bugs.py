@@ -19,8 +19,8 @@ from standoff.geometry import ellipsoid_patches
 HOME = np.eye(4)
 EPS = float(np.finfo(float).eps)
 SLIDE = 1e-13
-"""Gaps below this part of the size are told from 0 to that much only: what is apart by less may
-slide that far to the side: 14 of 4,860 kissing boxes missed by more than 1e-14, all apart."""
+"""Roundoff of kissing bodies, over the size: 969 of 972 were right to 1e-15, the rest to 1.4e-14;
+below a gap of 1e-13 points that are apart may also slide that far to the side."""
 REST = (np.zeros(3), np.zeros(3))
 
 
