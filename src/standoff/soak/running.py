@@ -154,6 +154,8 @@ def count(tally: Tally, case: Case, rows: Array, judged: Judged) -> None:
     apart, deep = apart_of(status), deep_of(status)
     tally.count("certified", (apart | (status == GLOBAL)).sum())
     counts = rows[:, K.OUT_COUNTS :]
+    open_ = (status == LOCAL) & (rows[:, K.DISTANCE] > ROUNDOFF * judged.size)
+    tally.count("LOCAL at a positive distance", open_.sum())
     tally.count("restarted", (counts[1:, N.RESTARTS] > 0.0).sum())
     tally.count("searched", (counts[1:, N.SEARCHES] > 0.0).sum())
     for name, column in COUNTED.items():
