@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import layout as L
 from standoff.kernels.tolerances import BLUR
@@ -38,8 +37,6 @@ UNIT = 1e-12
 ON_BODY = 1e-11
 """Part of the size by which a witness point may lie outside its body: the overlap of trimming
 curves (1e-12 of their parameters) and the roundoff of charts."""
-
-COUNT = K.OUT_COUNTS + N.EVALUATIONS
 
 PROVEN = 1e-3
 """GLOBAL says that no depth is less than (1 - PROVEN) of the one that is reported."""
@@ -82,7 +79,8 @@ class Judged(NamedTuple):
     size : (n,) array
         Lengths that roundoff is a part of.
     unrest : (n,) array
-        How far the points of a penetration lie off the normal, over what the tolerance allows.
+        How far a depth is from that along its normal, and its points from the farthest and from
+        one line with it, over what the tolerance allows.
     faults : list of Fault
         In order of frames.
     """
@@ -93,9 +91,7 @@ class Judged(NamedTuple):
     faults: list[Fault]
 
 
-def judge(
-    a: Made, b: Made, frames: Frames, rows: Array, tolerance: float, deadline: float = np.inf
-) -> Judged:
+def judge(a: Made, b: Made, frames: Frames, rows: Array, tolerance: float) -> Judged:
     """Check every answer.
 
     Parameters
@@ -104,8 +100,8 @@ def judge(
     frames : Frames
     rows : ndarray, shape (n, N_OUT)
         As ``standoff.kernels.frame`` lays them out.
-    tolerance, deadline : float
-        The tracker's. Answers that took the deadline's evaluations need not be at rest.
+    tolerance : float
+        The tracker's.
 
     Returns
     -------
@@ -123,7 +119,7 @@ def judge(
     checks.bounds()
     checks.points(n)
     checks.certified(tolerance)
-    checks.deepest(tolerance, n, height_a, height_b, rows[:, COUNT] < deadline)
+    checks.deepest(tolerance, n, height_a, height_b)
     faults = sorted(checks.faults, key=lambda fault: fault.frame)
     return Judged(separation, size, checks.unrest, faults)
 
@@ -228,30 +224,28 @@ class _Checks:
         proven = self.status == GLOBAL
         self.expect("a depth where there is none", self.distance, self.noise, proven)
 
-    def deepest(
-        self, tolerance: float, n: Array, height_a: Array, height_b: Array, whole: NDArray[np.bool_]
-    ) -> None:
-        """In penetration the points are the farthest along the normal, and on one line with it.
+    def deepest(self, tolerance: float, n: Array, height_a: Array, height_b: Array) -> None:
+        """In penetration: is the depth that along the normal, and on one line with it the points?
 
         A depth is flat in its normal: where it is good to a part of itself, the line is to its
-        root. Beyond the tolerance's the answer is not at rest, which is counted; a fault is only
-        what GLOBAL does not allow.
+        root. Beyond what the tolerance allows the answer is not at rest, which is counted; a
+        fault is only what GLOBAL does not allow.
         """
-        deep = deep_of(self.status) & whole
-        allowed = self._gap(tolerance) + ON_BODY * self.size
+        deep, proven = deep_of(self.status), self.status == GLOBAL
+        gap = self._gap(tolerance) + ON_BODY * self.size
         short = self.separation - self.distance
-        self.expect("the depth is not that along the normal", short, allowed, deep)
-        aside = self.between - self.distance[:, None] * n
-        rest = np.sqrt(2.0 * allowed * self.size)
-        self.unrest = np.where(deep, lengths(aside) / rest, 0.0)
-        limit = np.sqrt(2.0 * PROVEN) * self.size / rest
-        self.expect("the points are not on the normal", self.unrest, limit, deep)
-        for what, sign, at, height in (
-            ("point_a is not the farthest along the normal", 1.0, K.POINT_A, height_a),
-            ("point_b is not the farthest along the normal", -1.0, K.POINT_B, height_b),
-        ):
-            reach = sign * dots(n, self.rows[:, at : at + 3])
-            self.expect(what, np.abs(reach - height), allowed, deep)
+        aside = lengths(self.between - self.distance[:, None] * n)
+        reach_a = np.abs(dots(n, self.rows[:, K.POINT_A : K.POINT_A + 3]) - height_a)
+        reach_b = np.abs(dots(n, self.rows[:, K.POINT_B : K.POINT_B + 3]) + height_b)
+        off = np.maximum(np.maximum(reach_a, reach_b), short) / gap
+        off = np.maximum(off, aside / np.sqrt(2.0 * gap * self.size))
+        self.unrest = np.where(deep, off, 0.0)
+        loose = gap + PROVEN * np.abs(self.distance)
+        self.expect("the depth is not that along the normal", short, loose, proven)
+        self.expect("point_a is not the farthest along the normal", reach_a, loose, proven)
+        self.expect("point_b is not the farthest along the normal", reach_b, loose, proven)
+        limit = np.sqrt(2.0 * loose * self.size)
+        self.expect("the points are not on the normal", aside, limit, proven)
 
     def _gap(self, tolerance: float) -> Array:
         """How far an answer may be from its bound, (n,)."""

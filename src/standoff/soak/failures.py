@@ -175,8 +175,7 @@ def _stepped(facts: Facts, case: Case, a: Made, b: Made, tracker: Tracker) -> Fa
     )
     row = np.empty((1, K.N_OUT))
     _step(tracker, one, case.motion.twists, _array(step["state"]), row[0])
-    tolerance, deadline = (float(tracker.options[k]) for k in (K.O_TOLERANCE, K.O_DEADLINE))
-    faults = judge(a, b, one, row, tolerance, deadline).faults
+    faults = judge(a, b, one, row, float(tracker.options[K.O_TOLERANCE])).faults
     return faults[0]._replace(frame=facts["frame"]) if faults else None
 
 
