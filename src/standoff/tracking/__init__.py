@@ -19,6 +19,12 @@ from standoff.tracking.recording import (
     open_recording,
 )
 from standoff.tracking.simulate import simulate
+from standoff.tracking.spatial_point_answer import (
+    DepthMinimum,
+    SpatialPointProximity,
+    SpatialPointState,
+)
+from standoff.tracking.spatial_point_tracker import SpatialPointTracker
 from standoff.tracking.state import FrameBuffer, TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker, distance
@@ -27,6 +33,7 @@ from standoff.tracking.witness_set import WitnessSet, witness_set
 __all__ = [
     "Automaton",
     "Counts",
+    "DepthMinimum",
     "Event",
     "Feature",
     "FrameBuffer",
@@ -45,6 +52,9 @@ __all__ = [
     "RecordedEvent",
     "Recording",
     "RunInfo",
+    "SpatialPointProximity",
+    "SpatialPointState",
+    "SpatialPointTracker",
     "Status",
     "Tracker",
     "TrackerState",

@@ -129,9 +129,16 @@ def record_point(
 
     Raises
     ------
+    TypeError
+        No `PointTracker`.
     ValueError
         Times that do not increase, or what the tracker refuses.
     """
+    if not isinstance(tracker, PointTracker):
+        raise TypeError(
+            f"{tracker!r} is not a PointTracker: so.record_point serves planar bodies; "
+            "so.SpatialPointTracker locates the switches itself, in step."
+        )
     clock = np.asarray(times, dtype=np.float64)
     if clock.ndim != 1 or len(clock) < 1 or not (np.diff(clock) > 0.0).all():
         raise ValueError(f"times of shape {clock.shape}: give one or more, strictly increasing.")

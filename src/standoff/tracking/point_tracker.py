@@ -100,7 +100,10 @@ class PointTracker:
         if not isinstance(body, Body):
             raise TypeError(f"{body!r} is not a Body: make one with so.shapes.planar_loop.")
         if body.dimension != 2:
-            raise ValueError(f"{body!r} is not planar: give one of so.shapes.planar_loop.")
+            raise ValueError(
+                f"{body!r} is not planar: give one of so.shapes.planar_loop, or give it to "
+                "so.SpatialPointTracker."
+            )
         if switching == "none":
             raise ValueError(
                 "switching='none' stays on one feature: give 'multipliers' or 'voronoi'."
