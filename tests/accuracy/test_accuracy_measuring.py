@@ -27,6 +27,11 @@ ROUNDOFF = 1e-12
 point, and where little curves and the gap is small that turns it a lot."""
 
 
+FLAT = 1e-3
+"""Stiffness over the size below which the crease of a superellipsoid is near: s(n) has other
+minima there that are less than 1e-3 deeper."""
+
+
 def truth_of_gap(case: Case) -> PeerAnswer:
     truth = case.truth
     return PeerAnswer(truth.distance, truth.point_a, truth.point_b, truth.normal)
@@ -137,6 +142,26 @@ def test_rows_of_other_minima_have_no_errors() -> None:
     assert row.normal_error == pytest.approx(np.pi / 2)
 
 
+def test_a_lesser_depth_close_by_is_another_minimum() -> None:
+    """A point in a box with a corner cut a little: the constructed face is not the nearest."""
+    tilt = np.array([np.sin(0.02), 0.0, np.cos(0.02)])
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2
+    # the upper face a little lower towards +x, so that its normal is tilt
+    corners[:, 2] -= np.where(corners[:, 2] > 0, np.tan(0.02) * corners[:, 0], 0)
+    base = point_in_box(0.2)
+    cut = Solid(named(["polytope"])[0], {"vertices": corners})
+    depth = float(cut.support.heights(tilt[None])[0] - base.truth.point_b @ tilt)
+    built = float(cut.support.heights(np.array([[0, 0, 1.0]]))[0] - base.truth.point_b[2])
+    case = replace(
+        base, a=cut, truth=replace(base.truth, distance=-built, normal=np.array([0, 0, 1.0]))
+    )
+    assert depth < built - 1e-3
+    assert is_elsewhere(case, answer(depth, list(tilt)))
+    assert not is_elsewhere(case, answer(depth - 1e-7, list(tilt)))  # not the depth of its normal
+    assert not is_elsewhere(case, answer(built, [0, 0, 1]))
+    assert judge(replace(case, least=built), answer(depth, list(tilt))) is Verdict.OTHER
+
+
 def test_summary_counts_and_leaves_out_what_is_missing(cases_of) -> None:
     rows = [measure_case(case) for case in cases_of("sphere", "box") if case.level > 0]
     good, off, silent = rows
@@ -181,6 +206,8 @@ def test_depths_reach_the_targets(part, cases_of) -> None:
     for case in some_cases(cases_of):
         found = own_answer(case)
         if case.level > 0 or case.truth.stiffness < -case.truth.distance:
+            continue
+        if "creased superellipsoid" in case.kinds and case.truth.stiffness < FLAT * case.size:
             continue
         told = f"{case.kinds} {case.level} {found} {case.truth}"
         assert found.status in (Status.LOCAL, Status.GLOBAL), told

@@ -25,6 +25,8 @@ BOUND_SLACK = 1e-12
 """What a lower bound may be above the truth, over the size: roundoff."""
 SEARCHED_SLACK = 1e-7
 """The same where the truth is a searched depth, known to 1e-8."""
+SHALLOWER = 1e-11
+"""Depths less than the constructed one by this, over the size, are no roundoff."""
 PROVEN = 1e-3
 """What GLOBAL promises: no depth is less than (1 - this) of the reported one."""
 OURS = "Standoff"
@@ -142,20 +144,32 @@ def judge(case: Case, answer: PeerAnswer) -> Verdict:
 
 
 def bounded_rightly(case: Case, answer: OwnAnswer) -> bool:
-    """Is the certified lower bound none above the true distance?"""
+    """Is the certified lower bound none above the true distance?
+
+    The depth along the reported normal is true, so the distance is none below that either.
+    """
     truth = case.truth.distance if case.constructed else -case.least
+    if case.level < 0 and case.a.bounded and case.b.bounded:
+        along = float(support_sum(case.a, case.b, case.truth, answer.normal[None])[0])
+        truth = max(truth, -along)
     slack = BOUND_SLACK if case.constructed else SEARCHED_SLACK
     return not answer.lower_bound > truth + slack * case.size
 
 
 def is_elsewhere(case: Case, answer: PeerAnswer) -> bool:
-    """Is a depth that of another stationary point: its normal another, and its depth true?"""
+    """Is a depth that of another stationary point: its normal another, and its depth true?
+
+    Near the focal depth two minima may be close together; a true depth below the constructed one
+    is another minimum's however close.
+    """
     if case.level > 0 or not (case.a.bounded and case.b.bounded):
         return False
-    if not errors(case, answer)[2] > ELSEWHERE:
-        return False
     along = float(support_sum(case.a, case.b, case.truth, answer.normal[None])[0])
-    return abs(along + answer.distance) <= WRONG * case.size
+    off = abs(along + answer.distance) / case.size
+    less = (answer.distance - case.truth.distance) / case.size
+    if less > SHALLOWER and off <= SHALLOWER:
+        return True
+    return errors(case, answer)[2] > ELSEWHERE and off <= WRONG
 
 
 def _numbers(pose: Pose) -> list[float]:
