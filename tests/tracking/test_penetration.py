@@ -24,6 +24,7 @@ from oracles.bounds import separation
 from oracles.depth import least_depth
 from oracles.exact_pairs import exact_pair, random_rotation
 from oracles.poses import rotation_about
+from oracles.superellipsoids import Superellipsoid
 from oracles.support import Placed
 
 SLOW = {"planar": 2}
@@ -236,6 +237,35 @@ def test_symmetric_poses(name, tie):
             answer = ask(case)
             assert not judged(case, [answer])
             assert excess(case, answer) <= PROMISED
+
+
+SQUIRCLE = (0.6, 0.8, 0.5, 0.9, 1.1)
+
+
+@pytest.mark.parametrize("spot", [(0.1, 0, 0), (0, 0, 0.2), (0, 0.1, 0)])
+def test_point_in_a_superellipsoid(spot):
+    """On an axis the far pole's normal is that of the near one reversed: it is no normal there."""
+    a = Placed(Superellipsoid(*SQUIRCLE), np.eye(3), np.zeros(3))
+    depth = least_depth(a, Placed(oracle.Point(), np.eye(3), spot))[1]
+    body = so.shapes.superellipsoid(*SQUIRCLE)
+    at = so.Pose.exp([0, 0, 0], spot)
+    answer = so.distance(body, so.shapes.point(), so.Pose.identity(), at)
+    assert answer.status is so.Status.GLOBAL
+    assert answer.distance == pytest.approx(-depth, abs=1e-9)
+
+
+@pytest.mark.parametrize("depth", [1e-6, 1e-2])
+def test_superellipsoids_in_one_plane_of_symmetry(depth):
+    """Contact on the meridians of both, where the surfaces are creased."""
+    other = (0.4, 0.3, 0.5, 1.1, 0.9)
+    turns = {"rotation_a": np.eye(3), "rotation_b": np.eye(3)}
+    shapes = (Superellipsoid(*SQUIRCLE), Superellipsoid(*other))
+    normal = np.array([0.93777703, 0, 0.34723802])
+    pair = exact_pair(*shapes, -depth, np.random.default_rng(), normal=normal, **turns)
+    bodies = [so.shapes.superellipsoid(*numbers) for numbers in (SQUIRCLE, other)]
+    answer = so.distance(*bodies, pair.pose_a, pair.pose_b)
+    assert answer.status is so.Status.GLOBAL
+    assert answer.distance == pytest.approx(-depth, abs=1e-12)
 
 
 RATED = {
