@@ -31,7 +31,7 @@ paper: $(CLI)
 	$(BIN)/standoff paper all -o build/paper
 
 test: $(ALL)
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist worksteal
 
 lint: $(ALL)
 	$(BIN)/ruff check .

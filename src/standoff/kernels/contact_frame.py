@@ -75,6 +75,8 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
         found = found and bound <= 0.0 and counts[EVALUATIONS] < counts[LIMIT]
     if least >= 0.0:
         upper = min(upper, -least)
+    if upper > 0.0 and d <= 0.0 and counts[EVALUATIONS] >= counts[LIMIT]:
+        found = False  # cut off before any overlap was shown
     if not found:
         return UNCERTIFIED, d, bound, upper, n
     if d > 0.0 and bound > 0.0:
