@@ -13,7 +13,7 @@ import pytest
 import standoff as so
 from families.degenerate import KINDS, scaled
 from families.degenerate_motion import track
-from families.degenerate_queries import GLOBAL, Pose, Tally, deep, draw, faults, judge, run, sunk
+from families.degenerate_queries import GLOBAL, Pose, Tally, deep, faults, judge, run, sunk
 from families.shapes import Twin
 from oracles import support as oracle
 from oracles.exact_pairs import exact_pair
@@ -44,9 +44,9 @@ def spoilt(answer, **changes):
 
 def test_the_judge_sees_what_is_wrong():
     rng = np.random.default_rng()
-    kind = KINDS["thin ellipsoid"]
-    body = kind.make(rng, 1e2)
-    pose = draw(kind, body, body, rng)
+    body = KINDS["thin ellipsoid"].make(rng, 1e2)
+    pair = exact_pair(body.shape, body.shape, 0.1, rng)
+    pose = Pose(body, body, pair.a, pair.b, pair.distance, pair.distance)
     answer = so.distance(body.body, body.body, *pose.poses)
     d, off = answer.distance, 1e-6 * pose.size
     assert not faults(pose, spoilt(answer))
