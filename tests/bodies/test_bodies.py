@@ -243,7 +243,7 @@ def assert_same(found, known, error=1e-12):
     if known.certified:
         assert found.distance == pytest.approx(known.distance, abs=error)
         turn = np.linalg.norm(found.normal - known.normal)
-        assert turn <= error / min(known.distance, 1.0)
+        assert turn <= error / min(abs(known.distance), 1.0)
 
 
 @pytest.mark.parametrize("name", SMOOTH)

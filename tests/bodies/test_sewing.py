@@ -44,7 +44,7 @@ def assert_same_answers(sewn, known, poses=POSES, seed=None):
         if q.certified:
             certified += 1
             assert p.distance == pytest.approx(q.distance, abs=1e-12), pose
-            np.testing.assert_allclose(p.normal, q.normal, atol=1e-9 / min(q.distance, 1.0))
+            np.testing.assert_allclose(p.normal, q.normal, atol=1e-9 / min(abs(q.distance), 1.0))
             if other.name != "box" and known.name == "ellipsoid":  # else not always unique
                 np.testing.assert_allclose(p.point_a, q.point_a, atol=1e-9)
                 np.testing.assert_allclose(p.point_b, q.point_b, atol=1e-9)

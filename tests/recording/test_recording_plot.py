@@ -89,7 +89,7 @@ def test_an_overlap_is_shaded() -> None:
     band = panel(figure, "A: active features of box")
     switches = line(band, "switch")[0]
     assert len(switches) == sum(e.body == "A" for e in recording.events)
-    assert (recording.distance[recording.penetrating] < 0.0).all()
+    assert (recording.distance[recording.penetrating] < 1e-12).all()
 
 
 def test_uncertified_frames_are_marked() -> None:

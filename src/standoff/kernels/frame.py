@@ -30,7 +30,8 @@ GAIN = 47  # K of the last stage, 1/s
 LAST_NORMAL = 48  # unit, from A to B
 LAST_DISTANCE = 51  # of the cores, signed
 INSIDE = 52  # 1 where the last frame was solved in contact: this one begins there
-N_STATE = 53
+LAST_BOUND = 53  # lower bound of the cores' signed distance
+N_STATE = 54
 
 # Options.
 LAW_PC, LAW_PAPER = 0, 1

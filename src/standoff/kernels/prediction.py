@@ -8,6 +8,7 @@ from standoff.kernels.frame import (
     HAS_TWIST,
     HISTORY,
     INSIDE,
+    LAST_BOUND,
     LAST_DISTANCE,
     LAST_NORMAL,
     LAST_RATE,
@@ -73,7 +74,7 @@ def carry_over(pair, state, mode):
 
 
 @kernel
-def keep(state, motion, has_twist, options, h, mode, q, w_ff, same, status, d, n, inside):
+def keep(state, motion, has_twist, options, h, mode, q, w_ff, same, status, query, inside):
     """Write the state after a frame. `same`: the rates of two frames belong to one mode."""
     R, p, v, w = motion
     feed = has_twist and options[O_PREDICTOR] >= PREDICT_FEEDFORWARD
@@ -101,8 +102,10 @@ def keep(state, motion, has_twist, options, h, mode, q, w_ff, same, status, d, n
     state[HAS_TWIST] = 1.0 if feed else 0.0
     state[LAST_STEP] = h
     state[TIME] += h
+    d, bound, _, n = query
     for k in range(3):
         state[LAST_NORMAL + k] = n[k]
     state[LAST_DISTANCE] = d
+    state[LAST_BOUND] = bound
     state[INSIDE] = 1.0 if inside else 0.0
     state[LOST] = 1.0 if status in (OVERLAPPING, NOT_CERTIFIED) else 0.0

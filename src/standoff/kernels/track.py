@@ -19,6 +19,7 @@ from standoff.kernels.frame import (
     DEPTH_GLOBAL,
     INSIDE,
     INTEGRAL,
+    LAST_BOUND,
     LAST_DISTANCE,
     LAST_NORMAL,
     LAW_PAPER,
@@ -70,7 +71,9 @@ def follow(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
         paper_frame(pair, before, motion, state, options, h, mode, q, counts, events, dq)
         jet_a, jet_b = pair_jets(pair, R, p, mode, q)
         outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, ORIGIN, tolerance)
-        apart = dot(n, sub(jet_b[0], jet_a[0])) > 0.0 or dot(n, n) == 0.0
+        # while it still converges from a wrong start the normal tells nothing
+        settled = state[LAST_BOUND] > 0.5 * state[LAST_DISTANCE]
+        apart = dot(n, sub(jet_b[0], jet_a[0])) > 0.0 or not settled
         return False, outcome, d, bound, normal, apart
     predict(state, options, h, dq)
     apply_step(pair, mode, q, dq, counts, events)

@@ -101,8 +101,8 @@ def start_frame(
     if options[O_LAW] == LAW_PAPER:
         read_errors(pair, R, p, state, mode, q)
     counts[EVENTS] = 0
-    keep(state, motion, has_twist, options, 0.0, mode, q, w_ff, False, status, d, normal, inside)
     query = (d, bound, upper, normal)
+    keep(state, motion, has_twist, options, 0.0, mode, q, w_ff, False, status, query, inside)
     write_answer(
         pair, Ta, xi_a, has_twist, motion, mode, q, w_ff, jets, query, inside, n_rate, status, out
     )
@@ -180,8 +180,8 @@ def step_frame(
     same = carry_over(pair, state, mode)
     if counts[EVENTS] > 0 or old_a != mode[0] or old_b != mode[2]:
         tidy_events(events, counts, old_a, old_b, mode[0], mode[2])
-    keep(state, motion, has_twist, options, h, mode, q, w_ff, same, status, d, normal, inside)
     query = (d, bound, upper, normal)
+    keep(state, motion, has_twist, options, h, mode, q, w_ff, same, status, query, inside)
     write_answer(
         pair, Ta, xi_a, has_twist, motion, mode, q, w_ff, jets, query, inside, n_rate, status, out
     )

@@ -24,7 +24,7 @@ class TrackerState:
 
     Attributes
     ----------
-    data : (53,) array
+    data : (54,) array
         Read-only, laid out in ``standoff.kernels.frame``.
     proximity : Proximity
         The answer at the frame of this state.
