@@ -12,7 +12,7 @@ from standoff.kernels.certificate import certify
 from standoff.kernels.certified import CERTIFIED
 from standoff.kernels.cold_start import begin_at, global_query
 from standoff.kernels.descent import pair_jets, settle
-from standoff.kernels.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNTS, RESTARTS
+from standoff.kernels.events import EVENT_COLUMNS, MAX_EVENTS, RESTARTS, new_counts
 from standoff.kernels.features import chart_normal, chart_record, coedge_parameters
 from standoff.kernels.trimming import on_face
 
@@ -184,7 +184,7 @@ class Case:
     def settle(self):
         """The library's own descent."""
         mode, q = self.mode.copy(), self.q.copy()
-        counts, log = np.zeros(N_COUNTS, dtype=np.int64), np.empty(EVENT_COLUMNS * MAX_EVENTS)
+        counts, log = new_counts(), np.empty(EVENT_COLUMNS * MAX_EVENTS)
         forward = np.zeros(4)
         settle(self.pair, self.R, self.p, STILL, STILL, mode, q, forward, 0, 0.0, counts, log)
         return mode, q, counts
@@ -198,7 +198,7 @@ class Case:
     def restart(self):
         """(accepted, distance, normal, restarts) of the library's global query."""
         mode, q = np.zeros(4, dtype=np.int64), np.zeros(4)
-        counts, log = np.zeros(N_COUNTS, dtype=np.int64), np.empty(EVENT_COLUMNS * MAX_EVENTS)
+        counts, log = new_counts(), np.empty(EVENT_COLUMNS * MAX_EVENTS)
         outcome, d, _, n = global_query(
             self.pair, self.R, self.p, mode, q, np.zeros(4), GOAL, counts, log
         )

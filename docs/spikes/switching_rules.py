@@ -18,7 +18,7 @@ from standoff.kernels.descent import (
     take_hit,
     walk_pair,
 )
-from standoff.kernels.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNTS
+from standoff.kernels.events import EVENT_COLUMNS, MAX_EVENTS, new_counts
 from standoff.kernels.features import (
     best_coedge,
     chart_record,
@@ -170,7 +170,7 @@ def descend(rule, pair, R, p, mode, q, tally):
     if rule == ZEROING:
         return descend_zeroing(pair, R, p, mode, q, tally)
     size = pair[1][L.SIZE] + pair[3][L.SIZE]
-    counts, events = np.zeros(N_COUNTS, dtype=np.int64), np.empty(EVENT_COLUMNS * MAX_EVENTS)
+    counts, events = new_counts(), np.empty(EVENT_COLUMNS * MAX_EVENTS)
     stalls, polish, last_smooth = 0, 0, -1
     last_slope, last_release = 1e300, 1e300
     for _ in range(MAX_ITERATIONS):
@@ -283,7 +283,7 @@ def hold(pair, mode, q, carrier, held, body, hit, index, t, counts, events):
 def descend_zeroing(pair, R, p, mode, q, tally):
     """The paper's rule: solve with the faces, then zero what is infeasible."""
     size = pair[1][L.SIZE] + pair[3][L.SIZE]
-    counts, events = np.zeros(N_COUNTS, dtype=np.int64), np.empty(EVENT_COLUMNS * MAX_EVENTS)
+    counts, events = new_counts(), np.empty(EVENT_COLUMNS * MAX_EVENTS)
     carrier, held = np.full(2, -1), np.zeros(2)
     stalls, last_release = 0, 1e300
     ia, ra, ib, rb = pair

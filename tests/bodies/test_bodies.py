@@ -239,11 +239,13 @@ TRACKED = 1e-9
 
 
 def assert_same(found, known, error=1e-12):
-    assert found.status is known.status
-    if known.certified:
+    if known.distance <= 0.0:  # of depths that nearly tie either may be found
+        assert found.distance == pytest.approx(known.distance, abs=1e-3 * known.depth + 1e-12)
+    elif known.certified:
+        assert found.status is known.status
         assert found.distance == pytest.approx(known.distance, abs=error)
         turn = np.linalg.norm(found.normal - known.normal)
-        assert turn <= error / min(abs(known.distance), 1.0)
+        assert turn <= error / min(known.distance, 1.0)
 
 
 @pytest.mark.parametrize("name", SMOOTH)

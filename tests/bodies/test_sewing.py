@@ -40,11 +40,15 @@ def assert_same_answers(sewn, known, poses=POSES, seed=None):
         pose = so.Pose(turn, known.size * rng.normal(size=3))
         other = PARTNERS[k % len(PARTNERS)]
         p, q = so.distance(sewn, other, home, pose), so.distance(known, other, home, pose)
+        if q.distance <= 0.0:  # of depths that nearly tie either may be found
+            certified += q.certified
+            assert p.distance == pytest.approx(q.distance, abs=1e-3 * q.depth + 1e-12), pose
+            continue
         assert p.status is q.status, pose
         if q.certified:
             certified += 1
             assert p.distance == pytest.approx(q.distance, abs=1e-12), pose
-            np.testing.assert_allclose(p.normal, q.normal, atol=1e-9 / min(abs(q.distance), 1.0))
+            np.testing.assert_allclose(p.normal, q.normal, atol=1e-9 / min(q.distance, 1.0))
             if other.name != "box" and known.name == "ellipsoid":  # else not always unique
                 np.testing.assert_allclose(p.point_a, q.point_a, atol=1e-9)
                 np.testing.assert_allclose(p.point_b, q.point_b, atol=1e-9)

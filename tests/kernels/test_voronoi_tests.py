@@ -79,7 +79,7 @@ def test_voronoi_tests_lead_to_the_nearest_feature(name: str) -> None:
     body = BODIES[name]
     begins = starts(body)
     rng = np.random.default_rng(11)
-    counts, log = np.zeros(N.N_COUNTS, dtype=np.int64), np.zeros(N.MAX_EVENTS * N.EVENT_COLUMNS)
+    counts, log = N.new_counts(), np.zeros(N.MAX_EVENTS * N.EVENT_COLUMNS)
     longest, far_side = 0, 0
     for x in points(body, 60, rng):
         pose = so.Pose(np.eye(3), x)

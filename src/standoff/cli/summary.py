@@ -153,7 +153,7 @@ def _advice(statuses: dict[Status, int], frames: int) -> list[str]:
     return [
         line("", f"{status.name} in {count} of {frames}: {status.advice}")
         for status, count in statuses.items()
-        if status is not Status.CONVERGED
+        if status not in (Status.CONVERGED, Status.GLOBAL)
     ]
 
 

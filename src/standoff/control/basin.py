@@ -85,7 +85,7 @@ def basin(
     if steps < 1 or not len(starts):
         raise ValueError(f"{len(starts)} starts of {steps} steps: give at least one of each.")
     true = distance(tracker.a, tracker.b, pose_a, pose_b)
-    if not true.certified:
+    if not true.certified or true.distance <= 0.0:
         raise ValueError(f"The pair has no certified distance to compare with: {true!r}.")
     frames = _Frames(tracker, flat_pose(pose_a), flat_pose(pose_b), steps)
     last = np.array([frames.after(*start) for start in starts])

@@ -118,7 +118,7 @@ def lyapunov_level(
         or the witness points are vertices, which have no parameters.
     """
     best = distance(a, b, pose_a, pose_b)
-    if not best.certified:
+    if not best.certified or best.distance <= 0.0:
         raise ValueError(f"The pair has no certified minimum: {best!r}.")
     system = _System(a, b, pose_a, pose_b)
     q0 = system.place((best.feature_a, best.parameters_a), (best.feature_b, best.parameters_b))

@@ -11,6 +11,7 @@ N_COUNTS = 8
 # Behind them, the evaluations after which the frame must end (its deadline).
 LIMIT = N_COUNTS
 N_COUNT_SLOTS = N_COUNTS + 1
+NO_LIMIT = 1 << 40
 
 # Columns of the log, a flat array of MAX_EVENTS rows: body (0 A, 1 B), from, to, value of the
 # switching function, slope.
@@ -18,6 +19,13 @@ BODY, SOURCE, TARGET, VALUE, SLOPE_COLUMN = range(5)
 EVENT_COLUMNS = 5
 MAX_EVENTS = 64
 ERASED = -1.0
+
+
+def new_counts() -> np.ndarray:
+    """Counts of zero, without a deadline, for kernels called by themselves."""
+    counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
+    counts[LIMIT] = NO_LIMIT
+    return counts
 
 
 @kernel

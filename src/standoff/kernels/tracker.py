@@ -19,6 +19,7 @@ from standoff.kernels.events import (
     MAX_EVENTS,
     N_COUNT_SLOTS,
     N_COUNTS,
+    NO_LIMIT,
     RESTARTS,
     tidy_events,
 )
@@ -51,9 +52,6 @@ from standoff.kernels.rigid import (
 from standoff.kernels.tolerances import START_GAP
 from standoff.kernels.track import anywhere, from_state, track
 
-# A start has no deadline.
-NO_LIMIT = 1 << 40
-
 
 @kernel
 def feedforward_now(pair, options, motion, mode, q, w_ff, counts):
@@ -73,7 +71,7 @@ def start_frame(
     goal = min(options[O_TOLERANCE], START_GAP)
     outcome, d, bound, normal = UNCERTIFIED, 0.0, -1.0, (0.0, 0.0, 0.0)
     inside, n_rate = False, ORIGIN
-    counts[LIMIT] = NO_LIMIT
+    counts[LIMIT] = NO_LIMIT  # a start has no deadline
     if given != START_ANYWHERE:
         from_state(state, mode, q)
         if given == START_HERE:

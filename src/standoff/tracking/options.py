@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.kernels import frame as K
-from standoff.kernels.tracker import NO_LIMIT
+from standoff.kernels.events import NO_LIMIT
 from standoff.tracking.choices import (
     DEPTHS,
     INTEGRATORS,

@@ -308,7 +308,8 @@ class PointTracker:
                 outside, answer = self.outer.step(outside, HOME, pose, *twists(v), dt=INSTANT * h)
         else:
             outside, answer = self.outer.step(before, HOME, pose, *twists(v), dt=h)
-        if answer.status is Status.OVERLAPPING:  # within roundoff of the boundary
+        touching = (Status.OVERLAPPING, Status.GLOBAL, Status.LOCAL)
+        if answer.status in touching:  # within roundoff of the boundary
             edge, t0 = best.feature.index, best.parameter
             witness = np.append(self.boundary.point(edge, t0), 0.0)
             return Found(
