@@ -26,7 +26,10 @@ def weigh(pair, R, p, mode, q, jet_a, jet_b, hint, tolerance):
     span = pair_span(pair, p, d)
     if not on_feature(pair, mode, q):
         return UNCERTIFIED, d, bound, normal
-    if bound > 0.0 and d - bound <= tolerance * span + pair_slack(pair) + min(blur, BLUR * span):
+    # a body's own slack may reach over the gap: the points are apart all the same
+    slack = pair_slack(pair)
+    apart = bound > 0.0 or (slack > 0.0 and d > TOUCHING * span)
+    if apart and d - bound <= tolerance * span + slack + min(blur, BLUR * span):
         return CERTIFIED, d, bound, normal
     if bound <= 0.0 and d <= TOUCHING * span:
         return TOUCHING_OR_OVERLAPPING, d, bound, normal
