@@ -18,7 +18,8 @@ from standoff.soak.running import run_case
 from standoff.soak.tally import Tally
 
 PATIENCE = 300.0
-"""Seconds that one pair may take and still not hang: thousands of times the usual."""
+"""Seconds that one pair may take and still not hang: thousands of times the usual. Time in which
+this process sleeps, too, as in a suspended computer, does not count."""
 
 LOOK = 1.0
 """Seconds between looks for a pair that hangs."""
@@ -100,27 +101,34 @@ class _Worker:
         context = multiprocessing.get_context("spawn")
         self.seed, self.frames = seed, frames
         self.pipe, other = context.Pipe()
-        self.place: Any = context.Array("d", 2, lock=False)
+        self.place: Any = context.Value("q", 0, lock=False)
         arguments = (other, seed, frames, self.place)
         self.process = context.Process(target=_work, args=arguments, daemon=True)
         self.process.start()
         other.close()
         self.part: Part = (0, 0)
+        self.seen, self.waited, self.looked = -1, 0.0, time.monotonic()
 
     def give(self, part: Part) -> None:
         """Send a part; the clock of its first pair begins."""
         self.part = part
-        self.place[:] = [float(part[0]), time.monotonic()]
+        self.place.value = part[0]
+        self.seen, self.waited, self.looked = part[0], 0.0, time.monotonic()
         self.pipe.send(part)
 
     def lost(self, why: str) -> Done:
         """Return the failure of the pair at which the process died or hangs."""
-        number = int(self.place[0])
+        number = int(self.place.value)
         facts = exception_facts(self.seed, number, self.frames, why)
         return Done(self.part, Tally(), number, facts)
 
     def hangs(self) -> bool:
-        return time.monotonic() - float(self.place[1]) > PATIENCE
+        """Look at the clock: has the pair been at work for too long?"""
+        now, number = time.monotonic(), int(self.place.value)
+        passed = min(now - self.looked, 2.0 * LOOK)
+        self.waited = self.waited + passed if number == self.seen else 0.0
+        self.seen, self.looked = number, now
+        return self.waited > PATIENCE
 
     def end(self) -> None:
         self.process.kill()
@@ -181,7 +189,7 @@ def _work(pipe: Connection, seed: int, frames: int, place: Any) -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
 
     def at(number: int) -> None:
-        place[:] = [float(number), time.monotonic()]
+        place.value = number
 
     while True:
         try:
