@@ -33,6 +33,7 @@ from standoff.kernels.penetration import (
 from standoff.kernels.tolerances import (
     MAX_PROBES,
     PRISM,
+    SHIFTED_GAP,
     TOUCHING,
 )
 from standoff.kernels.vectors import add, norm, rotate, rotate_back, scale, sub, unit
@@ -185,7 +186,17 @@ def search(
             tried += 1.0
         begin_along(pair, R, nu, mode, q)
         apart, n_new, d_new = shifted(
-            pair, R, p, nu, -box_depth(pair, R, p, nu), mode, q, w_ff, counts, events
+            pair,
+            R,
+            p,
+            nu,
+            -box_depth(pair, R, p, nu),
+            SHIFTED_GAP,
+            mode,
+            q,
+            w_ff,
+            counts,
+            events,
         )
         if not apart:
             facets[at, CLOSED] = 1.0

@@ -24,6 +24,7 @@ from standoff.kernels.tolerances import (
     CONTACT_RESIDUAL,
     FLAT_RADIUS,
     FOCAL_MARGIN,
+    LEAST_GAP,
     MAX_LEAP,
     MAX_SHIFTS,
     NEWTON_TURN,
@@ -164,11 +165,12 @@ def focal_depth(pair, jet_a, jet_b, n, span):
 
 
 @kernel
-def shifted(pair, R, p, n, d, mode, q, w_ff, counts, events):
+def shifted(pair, R, p, n, d, gap, mode, q, w_ff, counts, events):
     """(apart, n', d'): one step of the descent from the direction n, where the signed distance is
-    at least d; mode and q are warm and get the closest points of the shifted pair.
+    at least d; mode and q are warm and get the closest points of the pair shifted out to `gap`
+    (in contact scales).
     """
-    gap = SHIFTED_GAP * contact_scale(pair)
+    gap *= contact_scale(pair)
     shift = scale(max(gap - d, 0.0), n)
     moved = add(p, shift)
     _, _, jet_a, jet_b = settle(
@@ -234,26 +236,31 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
     if d != d:
         d = -box_depth(pair, R, p, n)
     restarted, falls = False, 0
-    before, ahead = -inf, 0.0
+    before, ahead, gap = -inf, 0.0, SHIFTED_GAP
     start = n
+    last_mode, last_q = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
     top_mode, top_q = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
     top_n, top = n, -inf
     for _ in range(MAX_SHIFTS):
         if counts[EVALUATIONS] >= counts[LIMIT]:
-            return False, n, d
-        apart, n_new, d_new = shifted(pair, R, p, start, d, mode, q, w_ff, counts, events)
+            break
+        apart, n_new, d_new = shifted(pair, R, p, start, d, gap, mode, q, w_ff, counts, events)
         if not apart:  # the guess was too near
             farther = -box_depth(pair, R, p, start)
             if d <= farther:
-                return False, n, d
+                break
             d = farther
             continue
         turn = norm(sub(n_new, start))
         if ahead > 0.0 and d_new < d:
             start, ahead = n, 0.0  # leapt too far
             continue
+        last_mode, last_q = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
         # near the focal depth steps shrink by little: the next one starts ahead, farther each time
-        ahead = min(2.0 * ahead, MAX_LEAP) if ahead > 0.0 else 1.0
+        ahead = 2.0 * ahead if ahead > 0.0 else 1.0
+        if ahead > MAX_LEAP:
+            # features that meet beside the normal turn it by their offset over the gap
+            ahead, gap = MAX_LEAP, max(gap / MAX_LEAP, LEAST_GAP)
         start = unit(axpy(ahead, sub(n_new, start), n_new))
         n, d = n_new, d_new
         span = pair_span(pair, p, abs(d))
@@ -279,11 +286,12 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
         if turn <= CONTACT_RESIDUAL or d <= before:
             # at rest, yet not certified: witness points on a far side start from the samples
             if restarted:
-                return False, n, d
+                break
             restarted = True
             counts[RESTARTS] += 1
             begin_along(pair, R, n, mode, q)
             start, before, ahead = n, -inf, 0.0
             continue
         before = d
+    restore(mode, q, last_mode, last_q)
     return False, n, d

@@ -115,6 +115,8 @@ MAX_VORONOI_PASSES = 8
 # In contact the pair is shifted out along its normal until it stands this far apart (in contact
 # scales: both sizes and radii): H is regular there, and a greater gap would slow the descent.
 SHIFTED_GAP = 0.05
+# The least such gap: still far above START_GAP, with which far-side minima are told.
+LEAST_GAP = 1e-5
 # Steps of the descent of s(n): each lowers the depth; Newton's method ends it, mostly at once.
 # Near the focal depth, where the branch ends, the descent is slow.
 MAX_SHIFTS = 40
