@@ -226,6 +226,24 @@ def restore(mode, q, old_mode, old_q):
 
 
 @kernel
+def next_start(n, start, n_new, turn, ahead, gap):
+    """(start, ahead, gap) of the next step, after one from `start` to n_new; n was the last.
+
+    Near the focal depth steps shrink by little, and features that meet beside the normal turn it
+    by their offset over the gap only: the next step starts ahead, farther each time, and the pair
+    moves in where that is not enough. A step
+    that goes back has leapt past.
+    """
+    step = sub(n_new, start)
+    if dot(step, sub(start, n)) < 0.0 or turn == 0.0:
+        return n_new, 0.0, gap
+    ahead = 2.0 * ahead if ahead > 0.0 else 1.0
+    if ahead > MAX_LEAP:
+        ahead, gap = MAX_LEAP, max(gap / MAX_LEAP, LEAST_GAP)
+    return unit(axpy(min(ahead, NEWTON_TURN / turn), step, n_new)), ahead, gap
+
+
+@kernel
 def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
     """(found, n, d) of the local minimum of s reached from the direction n; (mode, q) are warm.
 
@@ -245,6 +263,9 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
         if counts[EVALUATIONS] >= counts[LIMIT]:
             break
         apart, n_new, d_new = shifted(pair, R, p, start, d, gap, mode, q, w_ff, counts, events)
+        if not apart and ahead > 0.0:
+            start, ahead = n, 0.0  # leapt too far
+            continue
         if not apart:  # the guess was too near
             farther = -box_depth(pair, R, p, start)
             if d <= farther:
@@ -256,12 +277,7 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
             start, ahead = n, 0.0  # leapt too far
             continue
         last_mode, last_q = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
-        # near the focal depth steps shrink by little: the next one starts ahead, farther each time
-        ahead = 2.0 * ahead if ahead > 0.0 else 1.0
-        if ahead > MAX_LEAP:
-            # features that meet beside the normal turn it by their offset over the gap
-            ahead, gap = MAX_LEAP, max(gap / MAX_LEAP, LEAST_GAP)
-        start = unit(axpy(ahead, sub(n_new, start), n_new))
+        start, ahead, gap = next_start(n, start, n_new, turn, ahead, gap)
         n, d = n_new, d_new
         span = pair_span(pair, p, abs(d))
         if top > -inf:
@@ -293,5 +309,8 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
             start, before, ahead = n, -inf, 0.0
             continue
         before = d
+    if top > -inf and not d > top + CONTACT_RESIDUAL * pair_span(pair, p, abs(top)):
+        restore(mode, q, top_mode, top_q)
+        return True, top_n, top
     restore(mode, q, last_mode, last_q)
     return False, n, d
