@@ -140,8 +140,9 @@ SADDLE_SHIFTS = 6
 # A depth is global when no direction's can be less by more than this part of it: near one minimum
 # any direction within acos(1 - 1e-3) = 2.6 degrees is as good, so the polytope may be coarse.
 DEPTH_PROOF = 1e-3
-# Points that the search of all depths may add to its polytope: smooth pairs take 20 to 40.
-MAX_PROBES = 120
+# Points that the search of all depths may add to its polytope: smooth pairs take 20 to 40, a ring
+# of equal minima 100 to 300.
+MAX_PROBES = 320
 # Closer than this (in spans) a certified pair is polished in the contact-regular form: the
 # direction between its witness points has lost more than six digits.
 POLISHED = 1e-5
