@@ -26,6 +26,7 @@ from standoff.kernels.tolerances import (
     FOCAL_MARGIN,
     LEAST_GAP,
     MAX_LEAP,
+    MAX_RESTARTS,
     MAX_SHIFTS,
     NEWTON_TURN,
     NUDGE,
@@ -177,7 +178,8 @@ def shifted(pair, R, p, n, d, gap, mode, q, w_ff, counts, events):
         pair, R, moved, ORIGIN, ORIGIN, mode, q, w_ff, 0.0, 0.0, counts, events
     )
     outcome, _, _, _ = weigh(pair, R, moved, mode, q, jet_a, jet_b, ORIGIN, START_GAP)
-    if outcome == UNCERTIFIED and counts[EVALUATIONS] < counts[LIMIT]:
+    allowed = counts[EVALUATIONS] < counts[LIMIT] and counts[RESTARTS] < MAX_RESTARTS
+    if outcome == UNCERTIFIED and allowed:
         # stuck on a far side
         counts[RESTARTS] += 1
         begin_along(pair, R, n, mode, q)

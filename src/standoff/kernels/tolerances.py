@@ -132,6 +132,9 @@ ALIGNED = 1e-9
 FLAT_RADIUS = 1e12
 # A minimum whose least radius exceeds the depth by less than this (relative) may be none.
 FOCAL_MARGIN = 1e-9
+# Restarts of one query from which on its depths are sought without more of them: where witness
+# points stay uncertified beside a thin body's collapsed side, none of them would help.
+MAX_RESTARTS = 60
 # How far (chord) the normal is turned off a stationary direction that is no minimum.
 NUDGE = 1e-3
 # Steps in which s must have fallen below such a direction's, else that is the minimum.

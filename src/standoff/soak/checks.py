@@ -41,6 +41,8 @@ curves (1e-12 of their parameters) and the roundoff of charts."""
 PROVEN = 1e-3
 """GLOBAL says that no depth is less than (1 - PROVEN) of the one that is reported."""
 
+BOX_CENTRE = slice(L.BOX_CENTRE, L.BOX_CENTRE + 3)
+
 LOCAL, GLOBAL = K.LOCAL, K.GLOBAL
 
 BLURRED = frozenset(
@@ -133,7 +135,9 @@ def _own_normals(a: Made, b: Made, frames: Frames, n: Array) -> Array:
 
 
 def _sizes(a: Made, b: Made, frames: Frames, rows: Array) -> Array:
-    sizes = sum(made.body.size for made in (a, b) if made.body.bounded)
+    """The tolerance is a part of sizes, distance and how far bodies stand from their origins."""
+    bodies = [made.body for made in (a, b) if made.body.bounded]
+    sizes = sum(body.size + float(np.linalg.norm(body.reals[BOX_CENTRE])) for body in bodies)
     away = lengths(frames.poses_a[:, 9:]) + lengths(frames.poses_b[:, 9:])
     # a point that touches a half-space at the origin has no size at all
     return np.maximum(sizes + away + np.abs(np.nan_to_num(rows[:, K.DISTANCE])), LEAST)
@@ -266,11 +270,14 @@ def search(
     if not len(numbers):
         return []
     found = least_depths(a, b, frames, numbers)
+    slack = a.body.reals[L.SLACK] + b.body.reals[L.SLACK]
     faults = []
     for k, least in zip(numbers.tolist(), found.tolist(), strict=True):
         depth, noise = -rows[k, K.DISTANCE], ROUNDOFF * judged.size[k]
-        if least < -noise:
-            faults.append(Fault(k, "said to overlap, but a plane parts them", -least, noise))
+        # a distance above 0 says no such thing, nor does a depth within the bodies' own slack
+        limit = noise + slack + max(-depth, 0.0)
+        if -least > limit:
+            faults.append(Fault(k, "said to overlap, but a plane parts them", -least, limit))
         limit = PROVEN * depth + noise
         if rows[k, K.STATUS] == GLOBAL and depth - least > limit:
             faults.append(Fault(k, "GLOBAL, but a lesser depth exists", depth - least, limit))
