@@ -20,8 +20,9 @@ PLANE_TILT = 1e-12
 LAST_ROW = [0.0, 0.0, 0.0, 1.0]
 # Where R (row-major) and p stand in a 4x4 matrix.
 ROTATION_THEN_POSITION = np.array([0, 1, 2, 4, 5, 6, 8, 9, 10, 3, 7, 11])
+# Left writable, as given twists are: for a read-only one Numba would compile the kernels anew, in
+# the middle of a run. Nothing writes to it.
 NO_TWIST = np.zeros(6)
-NO_TWIST.flags.writeable = False
 
 
 def flat_pose(pose: PoseLike) -> Array:
