@@ -66,7 +66,7 @@ POLISH_RATIO = 0.5
 # orders of magnitude nearer.
 SHARP_POLISH = 60
 
-# Releases in a row that may fail to lower E before a descent ends where it is.
+# Releases of one descent that may fail to lower E before it ends where it is.
 MAX_STALLS = 3
 
 # Bound on iterations of one descent and on passes of release: far above what was ever seen.
