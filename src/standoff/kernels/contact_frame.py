@@ -77,8 +77,12 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
         upper = min(upper, -least)
     if upper > 0.0 and d <= 0.0 and counts[EVALUATIONS] >= counts[LIMIT]:
         found = False  # cut off before any overlap was shown
+    if d > 0.0 and bound > 0.0:
+        # apart: the distance is that of the points, which near contact need not be along n
+        d = norm(gap)
+        if found and d - bound <= allowed:
+            return CERTIFIED, d, bound, d, n
+        found = False
     if not found:
         return UNCERTIFIED, d, bound, upper, n
-    if d > 0.0 and bound > 0.0:
-        return CERTIFIED, d, bound, d, n
     return PENETRATING, d, bound, max(upper, d), n
