@@ -62,6 +62,15 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
     best_mode[0], best_q[0] = 0, 0.0  # alive until here, see `pointer`
     if plane:
         n = normal
+    return conclude(pair, R, p, found, least, n, mode, q, tolerance, counts)
+
+
+@kernel
+def conclude(pair, R, p, found, least, n, mode, q, tolerance, counts):
+    """What `contact_query` returns, of the witness points found along n.
+
+    `least` bounds every depth from below, -inf where no overlap was shown.
+    """
     jet_a, jet_b = pair_jets(pair, R, p, mode, q)
     gap = sub(jet_b[0], jet_a[0])
     d = dot(n, gap)

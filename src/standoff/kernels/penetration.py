@@ -28,6 +28,7 @@ from standoff.kernels.tolerances import (
     MAX_LEAP,
     MAX_RESTARTS,
     MAX_SHIFTS,
+    MOVE_IN,
     NEWTON_TURN,
     NUDGE,
     SADDLE_SHIFTS,
@@ -228,21 +229,17 @@ def restore(mode, q, old_mode, old_q):
 
 
 @kernel
-def next_start(n, start, n_new, turn, ahead, gap):
-    """(start, ahead, gap) of the next step, after one from `start` to n_new; n was the last.
+def next_start(n, start, n_new, turn, ahead):
+    """(start, ahead) of the next step, after one from `start` to n_new; n was the last.
 
-    Near the focal depth steps shrink by little, and features that meet beside the normal turn it
-    by their offset over the gap only: the next step starts ahead, farther each time, and the pair
-    moves in where that is not enough. A step
-    that goes back has leapt past.
+    Near the focal depth steps shrink by little, so the next one starts ahead, farther each time. A
+    long step back had leapt past.
     """
     step = sub(n_new, start)
-    if dot(step, sub(start, n)) < 0.0 or turn == 0.0:
-        return n_new, 0.0, gap
-    ahead = 2.0 * ahead if ahead > 0.0 else 1.0
-    if ahead > MAX_LEAP:
-        ahead, gap = MAX_LEAP, max(gap / MAX_LEAP, LEAST_GAP)
-    return unit(axpy(min(ahead, NEWTON_TURN / turn), step, n_new)), ahead, gap
+    if turn == 0.0 or (turn > NEWTON_TURN and dot(step, sub(start, n)) < 0.0):
+        return n_new, 0.0
+    ahead = min(2.0 * ahead, MAX_LEAP) if ahead > 0.0 else 1.0
+    return unit(axpy(min(ahead, NEWTON_TURN / turn), step, n_new)), ahead
 
 
 @kernel
@@ -261,7 +258,7 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
     last_mode, last_q = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
     top_mode, top_q = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
     top_n, top = n, -inf
-    for _ in range(MAX_SHIFTS):
+    for k in range(1, MAX_SHIFTS + 1):
         if counts[EVALUATIONS] >= counts[LIMIT]:
             break
         apart, n_new, d_new = shifted(pair, R, p, start, d, gap, mode, q, w_ff, counts, events)
@@ -279,7 +276,10 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
             start, ahead = n, 0.0  # leapt too far
             continue
         last_mode, last_q = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
-        start, ahead, gap = next_start(n, start, n_new, turn, ahead, gap)
+        start, ahead = next_start(n, start, n_new, turn, ahead)
+        if k % MOVE_IN == 0:
+            # features that meet beside the normal turn it by their offset over the gap
+            gap = max(gap / MAX_LEAP, LEAST_GAP)
         n, d = n_new, d_new
         span = pair_span(pair, p, abs(d))
         if top > -inf:

@@ -120,8 +120,10 @@ LEAST_GAP = 1e-5
 # Steps of the descent of s(n): each lowers the depth; Newton's method ends it, mostly at once.
 # Near the focal depth, where the branch ends, the descent is slow.
 MAX_SHIFTS = 40
-# How far, in steps, the next one may start ahead; farther, and the pair moves in by this factor.
+# How far, in steps, the next one may start ahead.
 MAX_LEAP = 16.0
+# Steps after which the pair moves in, the gap less by MAX_LEAP.
+MOVE_IN = 6
 # Newton's method is tried where a step of that descent has turned n by less than this (chord).
 NEWTON_TURN = 0.3
 # Residual (relative to the span) at which the contact-regular form is solved.
