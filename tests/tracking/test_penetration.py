@@ -239,6 +239,22 @@ def test_symmetric_poses(name, tie):
             assert excess(case, answer) <= PROMISED
 
 
+RINGS = {
+    "cylinders": (so.shapes.cylinder(0.5, 1.0), so.shapes.cylinder(0.5, 1.0), 1.0),
+    "cylinder and point": (so.shapes.cylinder(0.5, 1.0), so.shapes.point(), 0.5),
+    "cylinder and segment": (so.shapes.cylinder(0.5, 1.0), so.shapes.segment(1.0), 0.5),
+    "spheroid and capsule": (so.shapes.ellipsoid(1, 1, 0.5), so.shapes.capsule(0.3, 1.0), 1.3),
+}
+
+
+@pytest.mark.parametrize("pair", RINGS)
+def test_rings_of_equal_depths_are_proven(pair):
+    a, b, depth = RINGS[pair]
+    answer = so.distance(a, b, so.Pose.identity(), so.Pose.identity())
+    assert answer.status is so.Status.GLOBAL
+    assert answer.depth == pytest.approx(depth, abs=1e-12)
+
+
 SQUIRCLE = (0.6, 0.8, 0.5, 0.9, 1.1)
 
 
