@@ -32,7 +32,8 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
             begin_along(pair, R, n, mode, q)
     if known or plane:
         found, n, d = descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events)
-    save(mode, q, pointer(best_mode, 0), pointer(best_q, 0))
+    best = (pointer(best_mode, 0), pointer(best_q, 0))
+    save(mode, q, best[0], best[1])
     if plane:
         least = -d
     elif not found or d <= 0.0:
@@ -40,25 +41,10 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
         proof, rivals = (DEPTH_PROOF, float(MAX_RIVALS)) if everywhere else (1.0, 0.0)
         logged = counts[EVENTS]
         found, d, n, least = search(
-            pair,
-            R,
-            p,
-            found,
-            d,
-            n,
-            mode,
-            q,
-            pointer(best_mode, 0),
-            pointer(best_q, 0),
-            w_ff,
-            tolerance,
-            proof,
-            rivals,
-            counts,
-            events,
+            pair, R, p, found, d, n, mode, q, best, w_ff, tolerance, proof, rivals, counts, events
         )
         counts[EVENTS] = logged
-        save(pointer(best_mode, 0), pointer(best_q, 0), mode, q)
+        save(best[0], best[1], mode, q)
     best_mode[0], best_q[0] = 0, 0.0  # alive until here, see `pointer`
     if plane:
         n = normal

@@ -121,27 +121,45 @@ def save(mode, q, best_mode, best_q):
 
 
 @kernel
-def search(
-    pair,
-    R,
-    p,
-    found,
-    d,
-    n,
-    mode,
-    q,
-    best_mode,
-    best_q,
-    w_ff,
-    tolerance,
-    proof,
-    rivals,
-    counts,
-    events,
-):
+def keep(candidate, found, d, n, mode, q, best):
+    """(found, d, n): the candidate (found, d, n) where it is less deep, its features saved."""
+    if candidate[0] and (not found or candidate[1] > d):
+        save(mode, q, best[0], best[1])
+        return candidate
+    return found, d, n
+
+
+@kernel
+def search_flat(pair, R, p, way, found, d, n, mode, q, best, w_ff, tolerance, counts, events):
+    """What `search` returns where A - B has no inside: two segments, say. The origin is on one
+    side of it, square to `way`, or on it.
+    """
+    for side in (1.0, -1.0):
+        nu = scale(side, way)
+        begin_along(pair, R, nu, mode, q)
+        ok, n_new, d_new = descend(pair, R, p, nu, nan, mode, q, w_ff, tolerance, counts, events)
+        found, d, n = keep((ok, d_new, n_new), found, d, n, mode, q, best)
+    touching = found and abs(d) <= TOUCHING * contact_scale(pair)
+    return found, d, n, 0.0 if touching else -inf
+
+
+@kernel
+def deepest_below(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
+    """(parts, d, n): the local minimum of s below a step along n, or what that step itself parts
+    the bodies by, where the descent ends uncertified.
+    """
+    ok, n, d = descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events)
+    if not ok:
+        x_a, x_b = witness_points(pair, R, p, mode, q)
+        d, _ = certify_along(pair, R, p, mode, q, x_a, x_b, n)
+    return d > -inf, d, n
+
+
+@kernel
+def search(pair, R, p, found, d, n, mode, q, best, w_ff, tolerance, proof, rivals, counts, events):
     """(found, d, n, least): the least depth of the cores, from the local minimum given (if found).
 
-    (best_mode, best_q) are those of the minimum given and get those of the answer; mode and q
+    best = (mode, q) are those of the minimum given and get those of the answer; mode and q
     are scratch. `least` bounds every depth from below: -inf where the origin is not known to lie
     in A - B. `proof` is the part of the depth that another one may be less by: 1 asks only
     whether the bodies overlap. `rivals` is how many other minima a proven search still tries, as
@@ -150,22 +168,14 @@ def search(
     size = contact_scale(pair)
     radius = pair[1][L.RADIUS] + pair[3][L.RADIUS]
     counts[SEARCHES] += 1
-    planar = pair[0][L.DIMENSION] == 2 or pair[2][L.DIMENSION] == 2
-    hull = empty_hull(planar)
+    hull = empty_hull(pair[0][L.DIMENSION] == 2 or pair[2][L.DIMENSION] == 2)
     solid, way = seed_hull(pair, R, p, hull, size)
     if not solid:
-        # two segments, say: the origin is on one side of their flat difference, or on it
-        for side in (1.0, -1.0):
-            begin_along(pair, R, scale(side, way), mode, q)
-            ok, n_new, d_new = descend(
-                pair, R, p, scale(side, way), nan, mode, q, w_ff, tolerance, counts, events
-            )
-            if ok and (not found or d_new > d):
-                found, n, d = True, n_new, d_new
-                save(mode, q, best_mode, best_q)
-        return found, d, n, 0.0 if found and abs(d) <= TOUCHING * size else -inf
+        return search_flat(
+            pair, R, p, way, found, d, n, mode, q, best, w_ff, tolerance, counts, events
+        )
     if found:
-        grow_difference(hull, difference(pair, R, p, best_mode, best_q), size)
+        grow_difference(hull, difference(pair, R, p, best[0], best[1]), size)
     facets = hull[3]
     tried = 0.0
     for _ in range(MAX_PROBES):
@@ -185,36 +195,19 @@ def search(
                 continue
             tried += 1.0
         begin_along(pair, R, nu, mode, q)
+        outer = -box_depth(pair, R, p, nu)
         apart, n_new, d_new = shifted(
-            pair,
-            R,
-            p,
-            nu,
-            -box_depth(pair, R, p, nu),
-            SHIFTED_GAP,
-            mode,
-            q,
-            w_ff,
-            counts,
-            events,
+            pair, R, p, nu, outer, SHIFTED_GAP, mode, q, w_ff, counts, events
         )
         if not apart:
             facets[at, CLOSED] = 1.0
             continue
-        x = difference(pair, R, p, mode, q)
-        grown = grow_difference(hull, x, size)
+        grown = grow_difference(hull, difference(pair, R, p, mode, q), size)
         if grown != GREW:
             facets[at, CLOSED] = 1.0
         if proven or not found or d_new > d + TOUCHING * size:
-            ok, n_new, d_new = descend(
-                pair, R, p, n_new, d_new, mode, q, w_ff, tolerance, counts, events
-            )
-            if not ok:
-                x_a, x_b = witness_points(pair, R, p, mode, q)
-                d_new, _ = certify_along(pair, R, p, mode, q, x_a, x_b, n_new)
-            if d_new > -inf and (not found or d_new > d):
-                found, n, d = True, n_new, d_new
-                save(mode, q, best_mode, best_q)
+            end = deepest_below(pair, R, p, n_new, d_new, mode, q, w_ff, tolerance, counts, events)
+            found, d, n = keep(end, found, d, n, mode, q, best)
             grow_difference(hull, difference(pair, R, p, mode, q), size)
         if grown == BROKEN:
             break
