@@ -12,6 +12,7 @@ from standoff.bodies.support_sets import LEVEL, ROUNDINGS, support_set
 from standoff.geometry.flat_sets import FlatSet, shared
 from standoff.kernels import layout as L
 from standoff.motion import Pose, PoseLike
+from standoff.tracking.equal_depths import equal_normals
 from standoff.tracking.normal_sets import normal_dimension
 from standoff.tracking.proximity import Proximity
 
@@ -45,6 +46,11 @@ class WitnessSet:
         order around the normal. Where an arc bounds it, points along the arc.
     normal : (3,) array
         Unit vector from A to B that the set belongs to.
+    normals : (k, 3) array
+        That normal and, in overlap, others along which the bodies are as deep in each other: two
+        for an ellipsoid about the centre of another, six for a cube in the middle of a cube. Found
+        by descents from 53 directions, so a narrow one may be missed; where ``normal_dimension``
+        is not 0, not looked for.
     residual : float
         Greatest length of point_b - point_a - distance * normal over the pairs: large where the
         answer was no optimum.
@@ -55,16 +61,18 @@ class WitnessSet:
     points_a: Array
     points_b: Array
     normal: Array
+    normals: Array
     residual: float
 
     @property
     def unique(self) -> bool:
         """Are witness points and normal the only ones?"""
-        return self.dimension == 0 and self.normal_dimension == 0
+        return self.dimension == self.normal_dimension == 0 and len(self.normals) == 1
 
     def __repr__(self) -> str:
         kind = ("a point", "a segment", "an area")[self.dimension]
-        return f"WitnessSet({kind}, normal_dimension={self.normal_dimension})"
+        others = f", {len(self.normals)} normals" if len(self.normals) > 1 else ""
+        return f"WitnessSet({kind}, normal_dimension={self.normal_dimension}{others})"
 
 
 def witness_set(
@@ -92,8 +100,7 @@ def witness_set(
     -----
     The set is {(x, y): y - x = distance * normal}, x where A, and y where B, touches its
     supporting plane along the normal: the overlap of two flat sets seen along it. What is
-    parallel to 1e-9 rad counts as parallel. Other global minima in penetration, along other
-    normals (a cube within a cube has six), are not looked for.
+    parallel to 1e-9 rad counts as parallel. Along the other ``normals`` there are other sets.
     """
     first, second = _poses(proximity, pose_a, pose_b)
     if not np.isfinite(proximity.distance):
@@ -105,9 +112,11 @@ def witness_set(
     size_a, size_b = (float(body.reals[L.SIZE]) for body in (a, b))
     span = size_a + size_b + abs(proximity.distance) + a.radius + b.radius
     core_distance = proximity.distance + a.radius + b.radius
-    several = 0
+    several, normals = 0, n[None]
     if core_distance <= TOUCHING * span:
         several = normal_dimension(a, b, first, second, n)
+        if not several:
+            normals = equal_normals(a, b, first, second, n, proximity.distance)
     x, y = proximity.point_a, proximity.point_b
     origin = first.translation
     sides = [
@@ -119,7 +128,7 @@ def witness_set(
     points_b = on_b + origin - b.radius * n
     off = points_b - points_a - proximity.distance * n
     residual = float(np.linalg.norm(off, axis=1).max())
-    return WitnessSet(across, several, points_a, points_b, n, residual)
+    return WitnessSet(across, several, points_a, points_b, n, normals, residual)
 
 
 def _poses(
