@@ -25,6 +25,7 @@ from standoff.kernels.tolerances import (
     FLAT_RADIUS,
     FOCAL_MARGIN,
     LEAST_GAP,
+    LESS_REACH,
     MAX_LEAP,
     MAX_RESTARTS,
     MAX_SHIFTS,
@@ -139,9 +140,9 @@ def radii(jet, n, e_1, e_2, flat):
 
 
 @kernel
-def focal_depth(pair, jet_a, jet_b, n, span):
-    """(focal depth, direction): the least eigenvalue of the sum of both radii of curvature along
-    n, beyond which a stationary direction is no minimum of s, and its unit vector.
+def principal_radii(pair, jet_a, jet_b, n, span):
+    """(least, way, greatest, other way): the eigenvalues and unit vectors of the sum of both radii
+    of curvature along n. In the plane the greatest is inf.
     """
     e_1, e_2 = tangents(n)
     flat = FLAT_RADIUS * span
@@ -151,7 +152,7 @@ def focal_depth(pair, jet_a, jet_b, n, span):
     if pair[0][L.DIMENSION] == 2 or pair[2][L.DIMENSION] == 2:
         flat_way = (-n[1], n[0], 0.0)
         i, k = dot(flat_way, e_1), dot(flat_way, e_2)
-        return i * i * r_11 + 2.0 * i * k * r_12 + k * k * r_22, flat_way
+        return i * i * r_11 + 2.0 * i * k * r_12 + k * k * r_22, flat_way, inf, UP
     mean, half = 0.5 * (r_11 + r_22), 0.5 * (r_11 - r_22)
     root = sqrt(half * half + r_12 * r_12)
     # det / (mean + root): the difference mean - root loses the lesser one's digits
@@ -161,9 +162,29 @@ def focal_depth(pair, jet_a, jet_b, n, span):
     else:
         x, y = -r_12, half + root
     length = sqrt(x * x + y * y)
-    if length == 0.0:
-        return least, e_1
-    return least, add(scale(x / length, e_1), scale(y / length, e_2))
+    x, y = (x / length, y / length) if length > 0.0 else (1.0, 0.0)
+    way = add(scale(x, e_1), scale(y, e_2))
+    other = add(scale(-y, e_1), scale(x, e_2))
+    return least, way, mean + root, other
+
+
+@kernel
+def newton_start(pair, R, p, n, mode, q, reach):
+    """(defined, start): Newton's step of s(n) from n, no farther than `reach`; along directions in
+    which s is concave, where the focal depth is passed, as far downhill. (mode, q) are the points
+    farthest along n. Not defined where a corner makes s(n) linear.
+    """
+    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+    between = sub(jet_a[0], jet_b[0])
+    s = dot(n, between)
+    least, way, most, other = principal_radii(pair, jet_a, jet_b, n, contact_scale(pair))
+    if least <= CONTACT_RESIDUAL * contact_scale(pair):
+        return False, n
+    g_1, g_2 = dot(way, between), dot(other, between)
+    h_1, h_2 = abs(least - s), abs(most - s)
+    step_1 = -g_1 / h_1 if abs(g_1) < reach * h_1 else (-reach if g_1 > 0.0 else reach)
+    step_2 = -g_2 / h_2 if abs(g_2) < reach * h_2 else (-reach if g_2 > 0.0 else reach)
+    return True, unit(axpy(step_1, way, axpy(step_2, other, n)))
 
 
 @kernel
@@ -215,7 +236,8 @@ def minimum_along(pair, R, p, mode, q, n, d, tolerance, counts):
         bound, blur = certify_along(pair, R, p, mode, q, jet_a[0], jet_b[0], n_new)
         allowed = min(tolerance, BLUR) * span + pair_slack(pair) + min(blur, BLUR * span)
         if d_new - bound <= allowed and on_feature(pair, mode, q):
-            least, way = focal_depth(pair, jet_a, jet_b, n_new, span)
+            # the focal depth: beyond it a stationary direction is no minimum
+            least, way, _, _ = principal_radii(pair, jet_a, jet_b, n_new, span)
             minimal = least >= -d_new * (1.0 - FOCAL_MARGIN) - CONTACT_RESIDUAL * span
             return MINIMUM if minimal else SADDLE, n_new, d_new, way
     restore(mode, q, old_mode, old_q)
@@ -230,10 +252,10 @@ def restore(mode, q, old_mode, old_q):
 
 @kernel
 def next_start(n, start, n_new, turn, ahead):
-    """(start, ahead) of the next step, after one from `start` to n_new; n was the last.
+    """(start, ahead) of the next step at corners, after one from `start` to n_new; n was the last.
 
-    Near the focal depth steps shrink by little, so the next one starts ahead, farther each time. A
-    long step back had leapt past.
+    Steps may shrink by little, so the next one starts ahead, farther each time. A long step back
+    had leapt past.
     """
     step = sub(n_new, start)
     if turn == 0.0 or (turn > NEWTON_TURN and dot(step, sub(start, n)) < 0.0):
@@ -253,7 +275,7 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
     if d != d:
         d = -box_depth(pair, R, p, n)
     restarted, falls = False, 0
-    before, ahead, gap = -inf, 0.0, SHIFTED_GAP
+    before, ahead, gap, reach = -inf, 0.0, SHIFTED_GAP, NEWTON_TURN
     start = n
     last_mode, last_q = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
     top_mode, top_q = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
@@ -262,8 +284,8 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
         if counts[EVALUATIONS] >= counts[LIMIT]:
             break
         apart, n_new, d_new = shifted(pair, R, p, start, d, gap, mode, q, w_ff, counts, events)
-        if not apart and ahead > 0.0:
-            start, ahead = n, 0.0  # leapt too far
+        if ahead > 0.0 and (not apart or d_new < d):
+            start, ahead, reach = n, 0.0, reach / LESS_REACH  # leapt too far
             continue
         if not apart:  # the guess was too near
             farther = -box_depth(pair, R, p, start)
@@ -272,11 +294,14 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
             d = farther
             continue
         turn = norm(sub(n_new, start))
-        if ahead > 0.0 and d_new < d:
-            start, ahead = n, 0.0  # leapt too far
-            continue
         last_mode, last_q = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
-        start, ahead = next_start(n, start, n_new, turn, ahead)
+        if ahead > 0.0:
+            reach = min(2.0 * reach, NEWTON_TURN)
+        curved, farther_on = newton_start(pair, R, p, n_new, mode, q, reach)
+        if curved:
+            start, ahead = farther_on, 1.0
+        else:
+            start, ahead = next_start(n, start, n_new, turn, ahead)
         if k % MOVE_IN == 0:
             # features that meet beside the normal turn it by their offset over the gap
             gap = max(gap / MAX_LEAP, LEAST_GAP)

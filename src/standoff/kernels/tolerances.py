@@ -118,10 +118,11 @@ SHIFTED_GAP = 0.05
 # The least such gap: still far above START_GAP, with which far-side minima are told.
 LEAST_GAP = 1e-5
 # Steps of the descent of s(n): each lowers the depth; Newton's method ends it, mostly at once.
-# Near the focal depth, where the branch ends, the descent is slow.
 MAX_SHIFTS = 40
-# How far, in steps, the next one may start ahead.
+# How far, in steps, the next one may start ahead at corners.
 MAX_LEAP = 16.0
+# How many times less far Newton's step of s(n) may go after one that went too far.
+LESS_REACH = 8.0
 # Steps after which the pair moves in, the gap less by MAX_LEAP.
 MOVE_IN = 6
 # Newton's method is tried where a step of that descent has turned n by less than this (chord).
