@@ -44,9 +44,10 @@ _ADVICE = {
         "The bodies are at the clearance or below it at the start: part them, or start later."
     ),
     ImpactStatus.UNDECIDED: (
-        "The budget of evaluations ran out, or the answers at the instants beyond `time` are not "
-        "certified: the bodies are proven apart up to `time`; raise max_evaluations, shorten the "
-        "duration, or loosen the tolerance."
+        "The bodies are proven apart up to `time`; no contact is proven next. Either the budget of "
+        "evaluations ran out: raise max_evaluations, shorten the duration, or loosen the tolerance. "
+        "Or the answers beyond `time` are not certified, or the motion is too fast for "
+        "floating-point times: take a `start` nearer to zero, or a slower motion."
     ),
 }
 

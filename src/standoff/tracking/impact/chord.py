@@ -73,7 +73,7 @@ class Chords:
     def sag(self, start: Moment, end: Moment, balls: bool) -> float:
         """S between two moments in `prepare`'s time: of the bodies, or of their bounding balls."""
         span = end.time - start.time
-        bend = 0.5 * span**2
+        bend = 0.5 * span * span
         ends = start.ball if balls else start, end.ball if balls else end
         normals = ends[0].normal, ends[1].normal
         if self.boxes[0].plane or self.boxes[1].plane:

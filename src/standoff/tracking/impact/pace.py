@@ -29,17 +29,21 @@ class Pace:
         self._before: tuple[float, float, float] | None = None
 
     def saw_sag(self, sag: float, span: float) -> None:
-        """Learn from the sag of an interval."""
-        self.sag = max(sag, 0.0) / span**2
+        """Learn from the sag of an interval; nothing from one whose square is no number."""
+        square = span * span
+        if square > 0.0 and math.isfinite(sag):
+            self.sag = max(sag, 0.0) / square
 
     def moved(self, time: float, gap: float, rate: float) -> None:
         """Learn from the gap and its rate at the time that is proven now."""
         if self._before is not None and time > self._before[0] and math.isfinite(rate):
             last_time, last_gap, last_rate = self._before
             span = time - last_time
-            told = last_gap + (last_rate + 0.5 * self.bend * span) * span
-            self.doubt = abs(gap - told) / span**2
-            self.bend = (rate - last_rate) / span
+            square = span * span
+            if square > 0.0:
+                told = last_gap + (last_rate + 0.5 * self.bend * span) * span
+                self.doubt = abs(gap - told) / square
+                self.bend = (rate - last_rate) / span
         self._before = (time, gap, rate) if math.isfinite(rate) else None
 
     def ahead(self, gap: float, rate: float, target: float, longest: float) -> float:

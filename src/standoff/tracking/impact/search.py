@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import Any
 
 from standoff.bodies.body import Body
@@ -39,6 +40,9 @@ ROUNDINGS = 8.0
 NEIGHBOURS = 4.0
 """Times within so many roundings of each other have nothing useful between them."""
 
+SHORTEST = sys.float_info.min
+"""Nor have times this near [s]: below it floating point loses digits."""
+
 
 def time_of_impact(
     a: Body,
@@ -65,7 +69,7 @@ def time_of_impact(
         A path of ``standoff.motion``; with a pose the body is at rest. A path of your own goes into
         ``standoff.motion.Bounded``, which says how fast it can be.
     duration : float
-        Time to search [s].
+        Time to search [s]; ``start + duration`` must differ from ``start`` in floating point.
     clearance : float
         Distance that counts as impact, zero for contact [length].
     tolerance : float
@@ -85,8 +89,8 @@ def time_of_impact(
     TypeError
         Not a body, neither path nor pose, or a path of which no bounds are known.
     ValueError
-        A negative clearance, a tolerance, duration or budget that is not positive, a pair that
-        cannot be tracked, or what a path refuses.
+        A negative clearance, a tolerance, duration or budget that is not positive, a duration that
+        rounding loses beside the start, a pair that cannot be tracked, or what a path refuses.
     """
     clearance = number(clearance, "clearance")
     if clearance < 0.0:
@@ -113,16 +117,23 @@ def _end(paths: tuple[Any, Any], start: float, duration: float) -> float:
     Raises
     ------
     ValueError
-        If a path ends before.
+        If a path ends before, or no time is left between the start and the end.
     """
     end = start + duration
+    if not end > start:
+        raise ValueError(
+            f"start + duration = {start!r} + {duration!r} is the start again, as times there are "
+            f"{math.ulp(start):.2g} s apart: give a longer duration, or a start nearer to zero "
+            "(PoseSamples.starting_at moves samples of a far epoch)."
+        )
     for path in paths:
         last = float(getattr(path, "end", math.inf))
-        if last < end <= last + NEIGHBOURS * EPS * max(abs(last), abs(start)):
+        if start < last < end <= last + NEIGHBOURS * EPS * max(abs(last), abs(start)):
             end = last
         if last < end:
+            advice = "shorter duration" if start < last else "start before that"
             raise ValueError(
-                f"start + duration = {end!r}, and a path ends at {last!r}: give a shorter duration."
+                f"start + duration = {end!r}, and a path ends at {last!r}: give a {advice}."
             )
     return end
 
@@ -219,13 +230,17 @@ class _Search:
                 before = ahead[-1].time
                 if not self._useful(ahead[-1]):
                     ahead.pop()
-            longest = min(stop - self.now.time, SHORTEN * (before - self.now.time))
-            if longest <= NEIGHBOURS * EPS * max(abs(self.now.time), abs(stop)):
+            # A short time before the stop is looked at as any other; only where an instant was
+            # refused is there nothing left to look at.
+            least = max(NEIGHBOURS * EPS * abs(self.now.time), SHORTEST)
+            left, longest = stop - self.now.time, SHORTEN * (before - self.now.time)
+            if longest <= least:
                 return self._stuck(before)
-            span = pace.ahead(gap, rate, target, longest)
+            longest = min(left, longest)
+            span = max(least, pace.ahead(gap, rate, target, longest))
             if not balls and self.gap(self.now, balls=True) > 0.0:
                 span = max(span, self._ahead_by_balls(longest))
-            time = stop if span >= stop - self.now.time else self.now.time + span
+            time = stop if span >= left else self.now.time + span
             ahead.append(self.look(time))
         return None
 
@@ -307,7 +322,7 @@ class _Search:
 
     def _stuck(self, before: float) -> Impact:
         """The answer where no time is left between the present instant and a refused one."""
-        if self.latest <= before:
+        if self.latest <= before < math.inf:
             return self._answer(ImpactStatus.IMPACT, self.latest)
         return self._answer(ImpactStatus.UNDECIDED, self.latest)
 
