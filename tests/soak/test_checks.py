@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from standoff.kernels import frame as K
+from standoff.kernels import layout as L
 from standoff.soak.cases import draw_case
-from standoff.soak.checks import GLOBAL, LOCAL, judge, search
+from standoff.soak.checks import BLURRED, GLOBAL, LOCAL, judge, search
 from standoff.soak.motions import Frames
 from standoff.soak.running import track
 from standoff.soak.shapes import Shape, made
@@ -20,7 +21,7 @@ def apart():
         case, a, b, frames = draw_case(5, number, 10)
         if case.family == "apart" and a.body.bounded and b.body.bounded:
             tracker = Tracker(a.body, b.body, case.motion.step, tolerance=TOLERANCE)
-            return a, b, frames, track(tracker, frames, case.motion.twists).rows
+            return a, b, frames, track(tracker, frames, True).rows
     raise AssertionError("no such pair")
 
 
@@ -40,17 +41,92 @@ def apart():
 )
 def test_a_wrong_number_is_seen(column, change):
     a, b, frames, rows = apart()
-    assert judge(a, b, frames, rows, TOLERANCE).faults == []
+    assert judge(a, b, frames, rows, TOLERANCE, True).faults == []
     rows[4, column] += change * (a.body.size + b.body.size + 1.0)
-    faults = judge(a, b, frames, rows, TOLERANCE).faults
+    faults = judge(a, b, frames, rows, TOLERANCE, True).faults
     assert faults
     assert faults[0].frame == 4
+
+
+@pytest.mark.parametrize(
+    ("columns", "value"),
+    [
+        (slice(K.OUT_RATE, K.OUT_RATE + 1), np.nan),
+        (slice(K.VELOCITY_A, K.RESIDUAL), np.nan),
+        (slice(K.VELOCITY_B, K.VELOCITY_B + 1), np.inf),
+        (slice(K.RESIDUAL, K.RESIDUAL + 1), np.nan),
+        (slice(K.RESIDUAL, K.RESIDUAL + 1), 1e9),
+        (slice(K.OUT_MODE, K.OUT_Q), -7.0),
+        (slice(K.OUT_MODE, K.OUT_MODE + 1), 1e6),
+        (slice(K.OUT_MODE + 2, K.OUT_MODE + 3), 0.5),
+        (slice(K.OUT_Q, K.OUT_RATE), np.nan),
+        (slice(K.OUT_COUNTS, K.OUT_COUNTS + 1), -1.0),
+    ],
+)
+def test_a_wrong_number_beside_the_distance_is_seen(columns, value):
+    a, b, frames, rows = apart()
+    rows[3, columns] = value
+    faults = judge(a, b, frames, rows, TOLERANCE, True).faults
+    assert [fault.frame for fault in faults] == [3] * len(faults)
+    assert faults
+
+
+@pytest.mark.parametrize(
+    ("columns", "what"),
+    [
+        (slice(K.OUT_RATE, K.OUT_RATE + 1), "the rate is not that of the bodies' motion"),
+        (slice(K.VELOCITY_A, K.VELOCITY_B), "point_a leaves its body"),
+        (slice(K.VELOCITY_B, K.RESIDUAL), "point_b leaves its body"),
+    ],
+)
+def test_doubled_rates_are_seen(columns, what):
+    """Of all families: also in contact, and beside a half-space."""
+    seen = 0
+    for number in range(40):
+        case, a, b, frames = draw_case(5, number, 10)
+        if case.options.get("law") == "paper" or {a.shape.kind, b.shape.kind} & BLURRED:
+            continue  # their points need not be at rest to roundoff
+        tracker = Tracker(a.body, b.body, case.motion.step, **case.options)
+        rows = track(tracker, frames, True).rows
+        tolerance = float(tracker.options[K.O_TOLERANCE])
+        assert judge(a, b, frames, rows, tolerance, True).faults == []
+        rows[5, columns] *= 2.0
+        doubled = rows[5, columns]
+        along = doubled if len(doubled) == 1 else doubled @ rows[5, K.NORMAL : K.NORMAL + 3]
+        if not np.abs(along) > 0.3 * np.linalg.norm(doubled):
+            continue  # of no length, or along the surface: there it may have any
+        faults = judge(a, b, frames, rows, tolerance, True).faults
+        assert (5, what) in [(fault.frame, fault.what) for fault in faults], case
+        seen += 1
+    assert seen > 5
+
+
+def test_rates_are_known_only_where_twists_are():
+    a, b, frames, rows = apart()
+    faults = judge(a, b, frames, rows, TOLERANCE, False).faults
+    assert [fault.what for fault in faults] == ["a rate or velocity without twists"]
+    rows[:, K.OUT_RATE : K.RESIDUAL] = np.nan
+    assert judge(a, b, frames, rows, TOLERANCE, False).faults == []
+
+
+def test_a_chart_of_another_face_is_seen():
+    for number in range(100):
+        _, a, b, frames = draw_case(5, number, 10)
+        if a.shape.kind == "superellipsoid" and b.body.bounded:
+            break
+    rows = track(Tracker(a.body, b.body), frames, True).rows
+    on_face = rows[:, K.OUT_MODE] < a.body.n_faces
+    assert on_face.any()
+    k = int(on_face.argmax())
+    rows[k, K.OUT_MODE + 1] = a.body.ints[L.N_CHARTS]
+    faults = judge(a, b, frames, rows, TOLERANCE, True).faults
+    assert (k, "no feature of A") in [(fault.frame, fault.what) for fault in faults]
 
 
 def test_a_silent_zero_is_seen():
     a, b, frames, rows = apart()
     rows[6, [K.DISTANCE, K.LOWER_BOUND]] = 0.0
-    faults = judge(a, b, frames, rows, TOLERANCE).faults
+    faults = judge(a, b, frames, rows, TOLERANCE, True).faults
     assert "a silent zero" in [fault.what for fault in faults if fault.frame == 6]
 
 
@@ -74,7 +150,7 @@ def balls(offset, turn=0.0):
 
 
 def deep_faults(a, b, frames, rows):
-    judged = judge(a, b, frames, rows, TOLERANCE)
+    judged = judge(a, b, frames, rows, TOLERANCE, True)
     found = judged.faults + search(a, b, frames, rows, judged, np.array([0]))
     return [fault.what for fault in found]
 
@@ -89,7 +165,7 @@ def test_a_depth_is_judged_by_its_normal_and_by_all_others():
     assert "the points are not on the normal" in deep_faults(a, b, frames, rows)
     rows[0, K.STATUS] = LOCAL
     assert deep_faults(a, b, frames, rows) == []
-    assert judge(a, b, frames, rows, TOLERANCE).unrest[0] > 1e3
+    assert judge(a, b, frames, rows, TOLERANCE, True).unrest[0] > 1e3
     # balls that are apart, along a normal that does not part them
     assert "said to overlap, but a plane parts them" in deep_faults(*balls(3.1, turn=0.9))
 

@@ -16,6 +16,7 @@ from standoff.kernels import frame as K
 from standoff.kernels import layout as L
 from standoff.kernels.tolerances import BLUR
 from standoff.soak.directions import least_depths
+from standoff.soak.motion_checks import number_checks, rate_checks, residual_check
 from standoff.soak.motions import Frames
 from standoff.soak.placing import heights, outside
 from standoff.soak.shapes import Made
@@ -93,7 +94,7 @@ class Judged(NamedTuple):
     faults: list[Fault]
 
 
-def judge(a: Made, b: Made, frames: Frames, rows: Array, tolerance: float) -> Judged:
+def judge(a: Made, b: Made, frames: Frames, rows: Array, tolerance: float, twists: bool) -> Judged:
     """Check every answer.
 
     Parameters
@@ -104,6 +105,8 @@ def judge(a: Made, b: Made, frames: Frames, rows: Array, tolerance: float) -> Ju
         As ``standoff.kernels.frame`` lays them out.
     tolerance : float
         The tracker's.
+    twists : bool
+        Was the tracker told those of the frames? Else rates and velocities are nan.
 
     Returns
     -------
@@ -122,6 +125,7 @@ def judge(a: Made, b: Made, frames: Frames, rows: Array, tolerance: float) -> Ju
     checks.points(n)
     checks.certified(tolerance)
     checks.deepest(tolerance, n, height_a, height_b)
+    checks.motion(n, height_a, height_b, twists)
     faults = sorted(checks.faults, key=lambda fault: fault.frame)
     return Judged(separation, size, checks.unrest, faults)
 
@@ -252,6 +256,20 @@ class _Checks:
         self.expect("point_b is not the farthest along the normal", reach_b, loose, proven)
         limit = np.sqrt(2.0 * loose * self.size)
         self.expect("the points are not on the normal", aside, limit, proven)
+
+    def motion(self, n: Array, height_a: Array, height_b: Array, twists: bool) -> None:
+        """All other numbers: features, parameters, residual, counts, rates and velocities."""
+        for check in number_checks(self.a, self.b, self.rows, twists):
+            self.expect(*check)
+        self.expect(*residual_check(self.a, self.b, self.rows, self.noise))
+        if twists:
+            reach_a = np.abs(dots(n, self.rows[:, K.POINT_A : K.POINT_A + 3]) - height_a)
+            reach_b = np.abs(dots(n, self.rows[:, K.POINT_B : K.POINT_B + 3]) + height_b)
+            resting = np.maximum(reach_a, reach_b) <= self.noise
+            resting &= apart_of(self.status) | deep_of(self.status)
+            with np.errstate(invalid="ignore"):  # numbers that are not finite are told above
+                for check in rate_checks(self.frames, self.rows, resting):
+                    self.expect(*check)
 
     def _gap(self, tolerance: float) -> Array:
         """How far an answer may be from its bound, (n,)."""

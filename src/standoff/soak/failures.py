@@ -175,7 +175,8 @@ def _stepped(facts: Facts, case: Case, a: Made, b: Made, tracker: Tracker) -> Fa
     )
     row = np.empty((1, K.N_OUT))
     _step(tracker, one, case.motion.twists, _array(step["state"]), row[0])
-    faults = judge(a, b, one, row, float(tracker.options[K.O_TOLERANCE])).faults
+    tolerance = float(tracker.options[K.O_TOLERANCE])
+    faults = judge(a, b, one, row, tolerance, case.motion.twists).faults
     return faults[0]._replace(frame=facts["frame"]) if faults else None
 
 

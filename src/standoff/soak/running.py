@@ -85,7 +85,7 @@ def run_case(case: Case, a: Made, b: Made, frames: Frames) -> tuple[Tally, Failu
         fault = Fault(answers.refused, "the frame was refused", 1.0, 0.0)
         return tally, Failure(case, fault, cold=False)
     tolerance = float(tracker.options[K.O_TOLERANCE])
-    judged = judge(a, b, frames, answers.rows, tolerance)
+    judged = judge(a, b, frames, answers.rows, tolerance, case.motion.twists)
     count(tally, case, answers.rows, judged)
     looked = _to_search(answers.rows)
     tally.count("depths searched for", len(looked))
@@ -198,7 +198,7 @@ def compare(
             return [Fault(k, "the frame was refused", 1.0, 0.0)]
     some = frames.part(numbers)
     tolerance = float(cold_tracker.options[K.O_TOLERANCE])
-    alone = judge(a, b, some, cold, tolerance)
+    alone = judge(a, b, some, cold, tolerance, twists=False)
     status = cold[:, K.STATUS].astype(int)
     tally.count("cold queries", len(numbers))
     tally.count("cold certified", (apart_of(status) | (status == GLOBAL)).sum())
