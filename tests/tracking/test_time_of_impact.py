@@ -338,69 +338,6 @@ def test_a_path_of_ones_own_needs_a_bound() -> None:
     check(so.time_of_impact(a, b, REST, path, 4.0), math.acos(-0.5), 1e-7)
 
 
-def along_x(times: Any, places: Any) -> PoseSamples:
-    return PoseSamples(times, [at(float(x), 0.0, 0.0) for x in places])
-
-
-def test_a_piece_of_time_of_a_few_roundings_is_searched_as_any_other() -> None:
-    """0.1 + 0.2 is one rounding after the sample at 0.3."""
-    ball = so.shapes.sphere(0.1)
-    moving = along_x([0.0, 0.1, 0.2, 0.3, 0.4], [0.0, 0.001, 0.002, 0.003, 0.004])
-    found = so.time_of_impact(ball, ball, moving, at(1.0, 0.0, 0.0), 0.2, start=0.1)
-    assert (found.status, found.time) == (so.ImpactStatus.NO_IMPACT, 0.1 + 0.2)
-    # two clocks of ten samples a second, 0.1 k and its running sum; they meet after 0.75 s
-    clock = np.arange(11) * 0.1
-    summed = np.cumsum(np.full(11, 0.1)) - 0.1
-    assert 0.0 < np.abs(summed - clock).max() < 1e-15
-    paths = along_x(clock, clock), along_x(summed, 1.7 - summed)
-    check(so.time_of_impact(ball, ball, *paths, float(min(clock[-1], summed[-1]))), 0.75, 1e-8)
-
-
-def test_logs_of_a_far_epoch_with_clocks_of_their_own() -> None:
-    rng = np.random.default_rng()
-    ball = so.shapes.sphere(0.1)
-    for _ in range(10):
-        times = 1.7e9 + np.cumsum(rng.normal(1e-2, 2e-4, 60)), 1.7e9 + np.arange(1, 60) / 100.0
-        # a sample of each within a few roundings of one of the other (2.4e-7 s)
-        times[1][10:50:5] = times[0][10:50:5] + rng.integers(-4, 5, 8) * math.ulp(1.7e9)
-        paths = [along_x(np.sort(t), [x] * len(t)) for x, t in enumerate(times)]
-        start = max(path.start for path in paths)
-        end = min(path.end for path in paths)
-        found = so.time_of_impact(ball, ball, *paths, end - start, start=start)
-        assert (found.status, found.time) == (so.ImpactStatus.NO_IMPACT, end)
-    slow = ConstantTwist(at(1.0, 0.0, 0.0), ([-1e-10, 0.0, 0.0], [0.0, 0.0, 0.0]))
-    found = so.time_of_impact(ball, ball, REST, slow, 1e-6, start=1.7e9)
-    assert found.status is so.ImpactStatus.NO_IMPACT
-    found = so.time_of_impact(ball, ball, REST, slow, 1e-320)
-    assert (found.status, found.time) == (so.ImpactStatus.NO_IMPACT, 1e-320)
-
-
-def test_nothing_is_claimed_of_a_motion_too_fast_for_the_times() -> None:
-    """At rest in truth; the bound on its acceleration lets no interval be proven."""
-    ball = so.shapes.sphere(0.1)
-    wild = Bounded(
-        Fixed(at(1.0, 0.0, 0.0)),
-        speed=0.0,
-        acceleration=1e60,
-        angular_speed=0.0,
-        angular_acceleration=0.0,
-    )
-    found = so.time_of_impact(ball, ball, REST, wild, 1.0, start=1.0)
-    assert (found.status, found.time) == (so.ImpactStatus.UNDECIDED, 1.0)
-    assert math.isnan(found.latest)
-    assert "too fast" in found.status.advice
-
-
-@pytest.mark.parametrize(("start", "duration"), [(1.7e9, 1e-7), (1e17, 1.0), (-1e17, 1.0)])
-def test_a_duration_lost_beside_the_start_is_refused(start: float, duration: float) -> None:
-    body = so.shapes.sphere(1.0)  # they overlap: no impact would be wrong
-    with pytest.raises(ValueError, match=r"is the start again.*longer duration"):
-        so.time_of_impact(body, body, REST, at(1.0, 0.0, 0.0), duration, start=start)
-    ended = along_x([0.0, 1.0], [3.0, 3.0])
-    with pytest.raises(ValueError, match=r"a path ends at 1\.0: give a start before that"):
-        so.time_of_impact(body, body, REST, ended, 1e-15, start=1.0)
-
-
 def test_a_small_budget_proves_what_it_can() -> None:
     blade, ball = so.shapes.box(2.0, 0.1, 0.02), so.shapes.sphere(0.1)
     spin = ConstantTwist(REST, ([0.0, 0.0, 0.0], [0.0, 0.0, 100.0]))

@@ -45,7 +45,7 @@ _ADVICE = {
     ),
     ImpactStatus.UNDECIDED: (
         "The bodies are proven apart up to `time`; no contact is proven next. Either the budget of "
-        "evaluations ran out: raise max_evaluations, shorten the duration, or loosen the tolerance. "
+        "evaluations ran out: raise max_evaluations, shorten the duration, loosen the tolerance. "
         "Or the answers beyond `time` are not certified, or the motion is too fast for "
         "floating-point times: take a `start` nearer to zero, or a slower motion."
     ),
