@@ -11,10 +11,18 @@ SHOWN_CHARACTERS = 200
 """Longest piece of an offending value that a message repeats, in characters."""
 
 
-def shown(value: Any) -> str:
+def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
     """Return `value` as a message repeats it: its repr, cut short."""
-    text = repr(value)
-    return text if len(text) <= SHOWN_CHARACTERS else text[: SHOWN_CHARACTERS - 1] + "…"
+    try:
+        text = repr(value)
+    except RecursionError:
+        return f"a {type(value).__name__} nested too deeply to be shown"
+    except ValueError:
+        # Python writes no whole number of more than some thousand decimal digits.
+        if not isinstance(value, int):
+            return f"a {type(value).__name__} with a number too long to be shown"
+        text = hex(value)
+    return text if len(text) <= characters else text[: characters - 1] + "…"
 
 
 def shape_of(value: Any) -> tuple[int, ...] | None:

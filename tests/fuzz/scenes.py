@@ -28,9 +28,9 @@ def scene_input(seeds: list[bytes], random: Random) -> bytes:
         return damaged(seed, random)
     try:
         tree, other = (tomllib.loads(s.decode()) for s in (seed, random.choice(seeds)))
-    except ValueError:  # a seed that is no TOML, kept since it once failed
+        return toml_text(mutated(tree, random, other)).encode("utf-8", "surrogatepass")
+    except (ValueError, RecursionError):  # a seed that Python does not read, once a failure
         return damaged(seed, random)
-    return toml_text(mutated(tree, random, other)).encode("utf-8", "surrogatepass")
 
 
 def check_scene(content: bytes, folder: Path) -> str:

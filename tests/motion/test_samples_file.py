@@ -76,6 +76,11 @@ BAD_LINES = [
     ("a.tum", "0 0 nan 0 0 0 0 1\n", 1, r"y is 'nan'; leave out"),
     ("a.tum", "inf 0 0 0 0 0 0 1\n", 1, r"t is 'inf'"),
     ("a.tum", "0 0 0 high 0 0 0 1\n", 1, r"z is 'high', no number"),
+    ("a.tum", "0 0 0 5_0 0 0 0 1\n", 1, r"z is '5_0', no number; write it such as"),
+    ("a.csv", "t,x,y,z,qx,qy,qz,qw\n0,0,0,5_0,0,0,0,1\n", 2, r"z is '5_0', no number"),
+    ("a.tum", "0 0 0 \u0661\u0662 0 0 0 1\n", 1, r"z is '\u0661\u0662', no number"),
+    ("a.tum", f"0 0 0 {'9_' * 5000}9 0 0 0 1\n", 1, r"z is '9_9_.{190,200}…, no number"),
+    ("a.tum", "0 0 0 0x1 0 0 0 1\n", 1, r"z is '0x1', no number"),
     ("a.tum", "0 0 0 0 0 0 0 1\n1 0 0 0 0.1 0 0 1\n", 2, r"norm 1\.00498756.*qx qy qz qw"),
     ("a.tum", "0 0 0 0 0 0 0 1\n", 0, r"1 samples make no motion"),
     ("a.tum", "# nothing\n", 0, r"0 samples make no motion"),
@@ -120,3 +125,19 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "binary.tum").write_bytes(b"\xff\xfe\x00\x81")
     with pytest.raises(ValueError, match=r"binary\.tum: not a text file"):
         read_pose_samples(tmp_path / "binary.tum")
+
+
+def test_numbers_as_files_write_them(tmp_path: Path) -> None:
+    line = "1e0 +1 -.5 2. 0 0 0 1E+00\n"
+    samples = read_pose_samples(write(tmp_path, "a.tum", "0 0 0 0 0 0 0 1\n" + line))
+    np.testing.assert_array_equal(samples.poses[1].translation, [1.0, -0.5, 2.0])
+
+
+def test_names_that_no_file_has(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match="…: no such file"):
+        read_pose_samples(tmp_path / f"{'x' * 5000}.tum")
+    with pytest.raises(FileNotFoundError, match="no such file"):
+        read_pose_samples("a\0.tum")
+    for value in (0.1, None, b"a.tum", [1.0]):
+        with pytest.raises(TypeError, match=r"file is .*: give the name of a file"):
+            read_pose_samples(value)  # type: ignore[arg-type]

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import tomllib
+import os
 from pathlib import Path
 from typing import NamedTuple
 
 from standoff.bodies.body import Body
 from standoff.cli.errors import CommandError
-from standoff.scene import load_scene
-from standoff.scene.reader import Table, missing_file, unknown_name
+from standoff.scene import SceneError, load_scene
+from standoff.scene.files import file_problem, toml_tables
+from standoff.scene.reader import Table, shown, unknown_name
 from standoff.scene.scene import DEFAULT_LENGTH_UNIT
 from standoff.scene.shapes import read_body
 
@@ -35,19 +36,20 @@ def subjects(what: str, body: str | None) -> list[Subject]:
         If the scene or the shape is refused.
     """
     path = Path(what)
-    if "=" in what and not path.exists():
+    if "=" in what and not os.path.exists(path):
         found = [_shape(what)]
     elif path.suffix.lower() == ".toml":
         scene = load_scene(path)
         found = [Subject(name, made, scene.length_unit) for name, made in scene.bodies.items()]
     elif path.suffix.lower() == ".json":
-        if not path.is_file():
-            raise CommandError(missing_file(path, what, "the current folder"))
+        problem = file_problem(path, what, "the current folder")
+        if problem is not None:
+            raise CommandError(problem)
         table = Table({"shape": "patches", "file": what}, path="body")
         found = [Subject(path.stem, read_body(table), DEFAULT_LENGTH_UNIT)]
     else:
         raise CommandError(
-            f"'{what}' is no scene (.toml), no file of patches (.json) and no shape such as "
+            f"{shown(what)} is no scene (.toml), no file of patches (.json) and no shape such as "
             f"{EXAMPLE}"
         )
     if body is None:
@@ -62,10 +64,11 @@ def subjects(what: str, body: str | None) -> list[Subject]:
 def _shape(text: str) -> Subject:
     """The body of a line such as ``shape = "box", size = [1, 2, 3]``."""
     try:
-        content = tomllib.loads(f"body = {{{text}}}")["body"]
-    except tomllib.TOMLDecodeError as error:
+        content = toml_tables(f"body = {{{text}}}")["body"]
+    except SceneError as error:
         raise CommandError(
-            f"'{text}' is no shape as a scene writes it ({error}); write one such as {EXAMPLE}"
+            f"{shown(text)} is no shape as a scene writes it: it {error}; write one such as "
+            f"{EXAMPLE}"
         ) from error
     body = read_body(Table(content, path="body"))
     return Subject(body.name, body, DEFAULT_LENGTH_UNIT)

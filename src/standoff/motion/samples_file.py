@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import os
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -12,6 +13,12 @@ from standoff.motion.pose import Pose
 from standoff.motion.samples import PoseSamples
 from standoff.motion.samples_table import COLUMNS as _COLUMNS
 from standoff.motion.samples_table import parquet_rows
+from standoff.real_numbers import SHOWN_CHARACTERS, shown
+
+_NUMBER = re.compile(
+    r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|inf(?:inity)?|nan)", re.I
+)
+"""A number as TUM and CSV files write it; which of them have no place here is told by name."""
 
 _TUM_HEADER = "timestamp tx ty tz qx qy qz qw"
 
@@ -38,14 +45,19 @@ def read_pose_samples(file: str | os.PathLike[str]) -> PoseSamples:
 
     Raises
     ------
-    FileNotFoundError, IsADirectoryError
-        If there is no such file.
+    TypeError
+        If `file` is neither a text nor a path.
+    FileNotFoundError, IsADirectoryError, OSError
+        If there is no such file, or it cannot be looked up or read.
     ValueError
         If the ending is none of these or the content is not as above; the message names file and
         line, or row.
     ModuleNotFoundError
         If the file is Parquet and pyarrow is not installed.
     """
+    given: object = file
+    if not isinstance(given, str | os.PathLike):
+        raise TypeError(f"file is {shown(given)}: give the name of a file, a text or a path")
     path = Path(file)
     noun, rows = _rows_of(path)
     times: list[float] = []
@@ -77,8 +89,9 @@ def _rows_of(path: Path) -> tuple[str, Iterator[tuple[int, list[float]]]]:
     ending = path.suffix.lower()
     if ending not in (".tum", ".txt", ".csv", ".parquet"):
         raise ValueError(
-            f"{path}: the ending {ending!r} names no format of pose samples; use .tum (or .txt) "
-            "for a TUM trajectory, .csv for a text table with a header, .parquet for a Parquet one"
+            f"{_told(path)}: the ending {shown(ending)} names no format of pose samples; "
+            "use .tum (or .txt) for a TUM trajectory, .csv for a text table with a header, "
+            ".parquet for a Parquet one"
         )
     _check_file(path)
     if ending == ".parquet":
@@ -88,11 +101,12 @@ def _rows_of(path: Path) -> tuple[str, Iterator[tuple[int, list[float]]]]:
 
 
 def _check_file(path: Path) -> None:
-    if path.is_dir():
+    if os.path.isdir(path):
         raise IsADirectoryError(f"{path} is a folder: give a file of pose samples")
-    if not path.exists():
+    # Unlike a path's own `exists`, this one takes names that no file can have, such as a long one.
+    if not os.path.exists(path):
         raise FileNotFoundError(
-            f"{path}: no such file; the path counts from the folder {Path.cwd()}"
+            f"{_told(path)}: no such file; the path counts from the folder {Path.cwd()}"
         )
 
 
@@ -100,6 +114,8 @@ def _content_lines(path: Path) -> list[tuple[int, str]]:
     try:
         # Spreadsheets write a byte order mark before the first column's name.
         content = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise OSError(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise ValueError(f"{path}: not a text file in UTF-8 ({error.reason})") from error
     numbered = enumerate(content.splitlines(), 1)
@@ -140,14 +156,24 @@ def _cells(text: str) -> list[str]:
 def _numbers(path: Path, line: int, fields: list[str]) -> list[float]:
     values = []
     for column, field in zip(_COLUMNS, fields, strict=True):
-        try:
-            value = float(field)
-        except ValueError as error:
-            raise _fault(path, line, f"{column} is {field!r}, no number") from error
+        # Python alone would also read 5_0 as 50, and the digits of other scripts.
+        if _NUMBER.fullmatch(field) is None:
+            raise _fault(
+                path, line, f"{column} is {shown(field)}, no number; write it such as -12.5e-3"
+            )
+        value = float(field)
         if not math.isfinite(value):
-            raise _fault(path, line, f"{column} is {field!r}; leave out samples without a pose")
+            raise _fault(
+                path, line, f"{column} is {shown(field)}; leave out samples without a pose"
+            )
         values.append(value)
     return values
+
+
+def _told(path: Path) -> str:
+    """A path as a message repeats it; `shown` would put it in quotes."""
+    text = str(path)
+    return text if len(text) <= SHOWN_CHARACTERS else text[: SHOWN_CHARACTERS - 1] + "…"
 
 
 def _fault(path: Path, line: int, problem: str, noun: str = "line") -> ValueError:

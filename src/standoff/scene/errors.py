@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+SHOWN_CHARACTERS = 120
+"""Longest key that a message repeats, in characters; `SceneError.key` has all of it."""
+
 
 class SceneError(ValueError):
     """A scene that cannot be used, with the place and the cure.
@@ -22,7 +25,8 @@ class SceneError(ValueError):
         self.problem = problem
         self.key = key
         self.file = file
-        super().__init__(": ".join(part for part in (str(file or ""), key, problem) if part))
+        place = key if len(key) <= SHOWN_CHARACTERS else key[: SHOWN_CHARACTERS - 1] + "…"
+        super().__init__(": ".join(part for part in (str(file or ""), place, problem) if part))
 
     def found_in(self, file: Path) -> SceneError:
         """Return the same error with `file` named, unless it names one already."""

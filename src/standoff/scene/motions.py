@@ -25,6 +25,7 @@ from standoff.motion import (
     Twist,
     read_pose_samples,
 )
+from standoff.scene.files import existing_file
 from standoff.scene.placements import in_space, read_pose
 from standoff.scene.reader import Array, Table
 
@@ -111,7 +112,7 @@ def _spiral(table: Table, _: Pose) -> Motion:
 
 
 def _samples(table: Table, _: Pose) -> Motion:
-    file = table.existing_file("file", 'file = "hand.tum"')
+    file = existing_file(table, "file", 'file = "hand.tum"')
     samples: PoseSamples = table.build(lambda: read_pose_samples(file), "file")
     start = table.number_or_word("start", FILE_START, 0.0)
     if start is None:

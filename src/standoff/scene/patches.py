@@ -10,6 +10,7 @@ from typing import NamedTuple
 from standoff.geometry import BezierPatch, FormulaSurface, NurbsSurface, Surface
 from standoff.geometry.validation import Array
 from standoff.scene.errors import SceneError
+from standoff.scene.files import beyond_python, existing_file
 from standoff.scene.reader import Table, shown
 
 FORMAT = "standoff-patches"
@@ -69,7 +70,7 @@ def read_patches(table: Table) -> list[Surface]:
     """
     given = table.only_one(("patches", "file"))
     if given == "file":
-        file = table.existing_file("file", 'file = "pebble.json"')
+        file = existing_file(table, "file", 'file = "pebble.json"')
         return [_patch(entry) for entry in _of_file(file).tables("patches")]
     return [_patch(entry) for entry in table.tables("patches")]
 
@@ -83,10 +84,12 @@ def _patch(table: Table) -> Surface:
 def _of_file(file: Path) -> Table:
     """The checked top of a JSON file of patches."""
     try:
-        content = json.loads(file.read_bytes(), object_pairs_hook=_each_key_once)
+        text = file.read_bytes().decode("utf-8-sig")
+        content = json.loads(text, object_pairs_hook=_each_key_once)
+    except SceneError as error:
+        raise error.found_in(file) from error
     except json.JSONDecodeError as error:
-        text = error.doc.rstrip()
-        ended = text.endswith("}") and error.pos < len(text)
+        ended = text.rstrip().endswith("}") and error.pos < len(text.rstrip())
         cut = "" if ended else "; it seems to be cut off: write it again"
         raise SceneError(
             f"is no JSON: {error.msg}: line {error.lineno}, column {error.colno}{cut}", file=file
@@ -95,8 +98,10 @@ def _of_file(file: Path) -> Table:
         raise SceneError(
             f"is no text in UTF-8 (byte {error.start}); save it as UTF-8", file=file
         ) from error
-    except (OSError, ValueError) as error:
-        raise SceneError(str(error), file=file) from error
+    except OSError as error:
+        raise SceneError(f"cannot be read: {error.strerror}", file=file) from error
+    except (RecursionError, ValueError) as error:
+        raise SceneError(beyond_python(text, error), file=file) from error
     if not isinstance(content, dict):
         raise SceneError(f"must be an object in braces, got {shown(content)}", file=file)
     top = Table(content, file=file, json=True)
@@ -119,5 +124,5 @@ def _each_key_once(pairs: list[tuple[str, object]]) -> dict[str, object]:
     if len(content) < len(pairs):
         names = [name for name, _ in pairs]
         twice = next(name for name in names if names.count(name) > 1)
-        raise ValueError(f"the key '{twice}' stands twice in one object; keep one of them")
+        raise SceneError(f"the key {shown(twice)} stands twice in one object; keep one of them")
     return content

@@ -15,6 +15,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from standoff import real_numbers
 from standoff.scene.errors import SceneError
 
 Array = npt.NDArray[np.float64]
@@ -27,17 +28,13 @@ Half catches swapped, missing and doubled letters in short keys, and stays silen
 has nothing to do with any known key.
 """
 
-NEAREST_FILE_CUTOFF = 0.8
-"""The same for file names, which are alike by their ending alone."""
-
 SHOWN_CHARACTERS = 60
 """Longest piece of an offending value that a message repeats, in characters: one terminal line."""
 
 
 def shown(value: object) -> str:
     """Return `value` as a message repeats it: its repr, cut to one line."""
-    text = repr(value)
-    return text if len(text) <= SHOWN_CHARACTERS else text[: SHOWN_CHARACTERS - 1] + "…"
+    return real_numbers.shown(value, SHOWN_CHARACTERS)
 
 
 def one_of(names: Iterable[str]) -> str:
@@ -58,8 +55,8 @@ def unknown_name(name: str, known: Iterable[str], noun: str) -> str:
     names = sorted(known)
     likely = nearest(name, names)
     if likely is not None:
-        return f"unknown {noun} '{name}'; did you mean '{likely}'?"
-    return f"unknown {noun} '{name}'; known here: {one_of(names)}"
+        return f"unknown {noun} {shown(name)}; did you mean '{likely}'?"
+    return f"unknown {noun} {shown(name)}; known here: {one_of(names)}"
 
 
 class Table:
@@ -319,15 +316,6 @@ class Table:
             raise self.error(f"is an empty list; {fix}", key)
         return [self._table(value, f"{key}[{index}]") for index, value in enumerate(values)]
 
-    def existing_file(self, key: str, example: str) -> Path:
-        """Return a file named relative to the scene file, known to exist."""
-        name = self.text(key, example=example)
-        folder = self.file.parent if self.file is not None else Path()
-        path = folder / name
-        if not path.is_file():
-            raise self.error(missing_file(path, name), key)
-        return path
-
     def _below(self, key: str) -> str:
         return f"{self.path}.{key}" if self.path else key
 
@@ -363,19 +351,3 @@ class Table:
         if not math.isfinite(number):
             raise self.error(f"must be a finite number, got {shown(value)}", key)
         return number
-
-
-def missing_file(path: Path, name: str, folder: str = "the scene file") -> str:
-    """Return the sentence about a file that is not there, with the nearest name beside it.
-
-    `folder` says what relative paths count from.
-    """
-    if path.is_dir():
-        return f"'{name}' is a folder; name a file in it"
-    if not path.parent.is_dir():
-        return f"no file '{name}': its folder does not exist; paths are relative to {folder}"
-    beside = [entry.name for entry in path.parent.iterdir() if entry.is_file()]
-    likely = nearest(path.name, beside, NEAREST_FILE_CUTOFF)
-    if likely is not None:
-        return f"no file '{name}'; did you mean '{likely}'?"
-    return f"no file '{name}'; paths are relative to {folder}"

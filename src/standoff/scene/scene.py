@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,11 +10,12 @@ from pathlib import Path
 from standoff.bodies.body import Body
 from standoff.motion import Pose
 from standoff.scene.errors import SceneError
+from standoff.scene.files import file_problem, toml_tables
 from standoff.scene.frames import check_time, frame_times, start_time
 from standoff.scene.motions import Motion, at_rest, read_motion
 from standoff.scene.pairs import Pair, read_pairs
 from standoff.scene.placements import read_pose
-from standoff.scene.reader import Array, Table, Value, missing_file, shown, unknown_name
+from standoff.scene.reader import Array, Table, Value, shown, unknown_name
 from standoff.scene.settings import TrackSettings, read_settings
 from standoff.scene.shapes import read_body
 
@@ -158,9 +158,9 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
     path = Path(file)
     text = _text_of(path)
     try:
-        content = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"is no TOML: {error}", file=path) from error
+        content = toml_tables(text)
+    except SceneError as error:
+        raise error.found_in(path) from error
     top = Table(content, file=path)
     _check_version(top)
     top.expect(*KEYS)
@@ -184,10 +184,12 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
 
 
 def _text_of(path: Path) -> str:
-    if not path.is_file():
-        raise SceneError(missing_file(path, str(path), "the current folder"))
+    problem = file_problem(path, str(path), "the current folder")
+    if problem is not None:
+        raise SceneError(problem)
     try:
-        return path.read_bytes().decode("utf-8")
+        # Some editors write a byte order mark before the text.
+        return path.read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise SceneError(
             f"is no text in UTF-8 (byte {error.start}); save it as UTF-8", file=path

@@ -1,0 +1,114 @@
+"""Files that a scene is read from: whether they are there, and what Python's parsers refuse."""
+
+from __future__ import annotations
+
+import re
+import stat
+import sys
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from standoff.scene.errors import SceneError
+from standoff.scene.reader import Table, nearest, shown
+
+NEAREST_FILE_CUTOFF = 0.8
+"""Least likeness (difflib ratio, 0 to 1) of a file name that is suggested for another: file names
+are alike by their ending alone."""
+
+DEEPEST_SHOWN = 50
+"""Brackets in brackets at which the place of too deep a nesting is told; scenes need six."""
+
+
+def file_problem(path: Path, name: str, folder: str = "the scene file") -> str | None:
+    """Return why `path` cannot be read as a file, None where it can.
+
+    Parameters
+    ----------
+    path : Path
+    name : str
+        What the user called it.
+    folder : str
+        What relative paths count from.
+    """
+    try:
+        mode = path.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return _missing(path, name, folder)
+    except (OSError, ValueError) as error:
+        # Too long a name, a folder that may not be entered, a character that no name may have.
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        return f"no file {shown(name)}: {reason}; name another"
+    if stat.S_ISDIR(mode):
+        return f"{shown(name)} is a folder; name a file in it"
+    return None if stat.S_ISREG(mode) else f"{shown(name)} is no file on a disk; name one"
+
+
+def _missing(path: Path, name: str, folder: str) -> str:
+    if not path.parent.is_dir():
+        return f"no file {shown(name)}: its folder does not exist; paths are relative to {folder}"
+    try:
+        beside: Sequence[str] = [entry.name for entry in path.parent.iterdir() if entry.is_file()]
+    except OSError:
+        beside = ()
+    likely = nearest(path.name, beside, NEAREST_FILE_CUTOFF)
+    if likely is not None:
+        return f"no file {shown(name)}; did you mean '{likely}'?"
+    return f"no file {shown(name)}; paths are relative to {folder}"
+
+
+def existing_file(table: Table, key: str, example: str) -> Path:
+    """Return the file that `key` names, relative to the scene file.
+
+    Raises
+    ------
+    SceneError
+        If the key or the file is missing; `example` is the line to add.
+    """
+    name = table.text(key, example=example)
+    path = (table.file.parent if table.file is not None else Path()) / name
+    problem = file_problem(path, name)
+    if problem is not None:
+        raise table.error(problem, key)
+    return path
+
+
+def toml_tables(text: str) -> dict[str, Any]:
+    """Return the tables of a TOML text.
+
+    Raises
+    ------
+    SceneError
+        If it is no TOML, or holds what Python does not read: too many digits, too deep lists.
+    """
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(f"is no TOML: {error}") from error
+    except (RecursionError, ValueError) as error:
+        raise SceneError(beyond_python(text, error)) from error
+
+
+def beyond_python(text: str, error: Exception) -> str:
+    """Return the sentence about valid TOML or JSON that Python's parsers refuse all the same."""
+    if isinstance(error, RecursionError):
+        opening = r"[\[{]\s*(?:[\w.\"-]+\s*[=:]\s*)?"
+        deep = re.search(f"(?:{opening}){{{DEEPEST_SHOWN}}}", text)
+        place = _place(text, deep)
+        return f"holds lists or tables in one another beyond all use{place}; take them apart"
+    most = sys.get_int_max_str_digits()
+    long = re.search(rf"\d[\d_]{{{most},}}", text) if most else None
+    if long is None:
+        return f"cannot be read: {error}"
+    return (
+        f"holds a whole number of more than {most} digits{_place(text, long)}; write a number "
+        "within 1e308, such as 1.5e300"
+    )
+
+
+def _place(text: str, found: re.Match[str] | None) -> str:
+    if found is None:
+        return ""
+    line = text.count("\n", 0, found.start()) + 1
+    return f", {shown(found[0])} on line {line}"
