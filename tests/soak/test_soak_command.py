@@ -2,6 +2,9 @@
 depend on the seed alone."""
 
 import json
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -122,6 +125,87 @@ def test_a_pair_that_hangs_or_kills_its_process_fails(run, tmp_path, monkeypatch
     monkeypatch.undo()
     # such a failure has no answers: replaying it runs the pair
     assert run("--replay", tmp_path / "death" / "failure-0.json")[0] == 0
+
+
+def test_the_clock_of_a_pair_begins_when_the_kernels_are_there(monkeypatch):
+    monkeypatch.setattr(processes, "PATIENCE", 0.0)
+    worker = processes._Worker(SEED, 30)
+    try:
+        worker.give((0, 1))
+        time.sleep(0.01)
+        assert not worker.hangs()
+        monkeypatch.setattr(processes, "PREPARATION", 0.0)
+        assert worker.hangs()
+        assert worker.hear() is None
+        time.sleep(0.01)
+        assert worker.hangs()
+        monkeypatch.setattr(processes, "PATIENCE", 300.0)
+        assert not worker.hangs()
+        done = worker.hear()
+        assert done is not None
+        assert done.tally.sums["frames"] == 30
+    finally:
+        worker.end()
+
+
+PREPARED = f"""
+import gc
+from numba.core.dispatcher import Dispatcher
+from standoff.soak.preparing import compile_kernels
+from standoff.soak.processes import run_part
+
+def entered():
+    kernels = [one for one in gc.get_objects() if isinstance(one, Dispatcher)]
+    return {{one.__name__: list(one.overloads) for one in kernels if one.overloads}}
+
+compile_kernels()
+before = entered()
+assert run_part({SEED}, 5, (0, 128)).facts is None
+print(len(before), before == entered())
+"""
+
+
+def test_no_pair_compiles_a_kernel():
+    ran = subprocess.run(
+        [sys.executable, "-c", PREPARED], capture_output=True, text=True, check=True
+    )
+    count, same = ran.stdout.split()
+    assert int(count) > 3
+    assert same == "True"
+
+
+ORPHAN = f"""
+import time
+from standoff.soak.processes import _Worker
+
+worker = _Worker({SEED}, 2000)
+worker.give((0, 10**9))
+worker.hear()
+print("ready", flush=True)
+time.sleep(1e6)
+"""
+
+
+def test_workers_end_with_their_parent(tmp_path):
+    """They hold the parent's stdout, which ends with the last of them."""
+    script = [sys.executable, "-c", ORPHAN]
+    with subprocess.Popen(script, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as parent:
+        assert parent.stdout is not None
+        assert parent.stdout.readline() == b"ready\n"
+        parent.kill()
+        out, err = parent.communicate(timeout=60.0)
+    assert (out, err) == (b"", b"")
+
+
+def test_a_folder_that_cannot_be_written_is_refused_first(run, tmp_path, monkeypatch):
+    def refuse(**_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("tempfile.TemporaryFile", refuse)
+    monkeypatch.setattr("standoff.cli.soak.soak", lambda *_: pytest.fail("it began"))
+    code, _, err = run("--pairs", 1, *COMMON, "-o", tmp_path)
+    assert code == 2
+    assert f"{tmp_path} cannot be written (Permission denied)" in err
 
 
 def test_an_exception_is_a_failure(run, tmp_path, monkeypatch):

@@ -15,7 +15,7 @@ from rich.progress import Progress as Bar
 from standoff.cli.arguments import SoakCommand
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra, WriteError
 from standoff.cli.facts import json_text
-from standoff.cli.output import write_whole
+from standoff.cli.output import check_target, write_whole
 from standoff.soak.failures import Facts, read_failure, replay
 from standoff.soak.ledger import NAME, Ledger
 from standoff.soak.processes import Done, Tell, soak
@@ -82,6 +82,7 @@ def _ledger(command: SoakCommand) -> Ledger:
         raise CommandError(
             f"-o {folder}: the folder cannot be made ({error.strerror}); name another"
         ) from error
+    check_target(folder / NAME, "-o", [".json"])
     there = (folder / NAME).exists()
     if there and not command.resume:
         raise CommandError(

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import signal
 import sys
+import threading
 import time
 import traceback
 from collections.abc import Callable, Iterator
@@ -14,12 +16,16 @@ from typing import Any, NamedTuple
 from standoff.soak.cases import draw_case
 from standoff.soak.failures import Facts, exception_facts, failure_facts
 from standoff.soak.ledger import Ledger, Part
+from standoff.soak.preparing import compile_kernels
 from standoff.soak.running import run_case
 from standoff.soak.tally import Tally
 
 PATIENCE = 300.0
 """Seconds that one pair may take and still not hang: thousands of times the usual. Time in which
 this process sleeps, too, as in a suspended computer, does not count."""
+
+PREPARATION = 3600.0
+"""Seconds that a process may take to compile or load the kernels: minutes on a busy machine."""
 
 LOOK = 1.0
 """Seconds between looks for a pair that hangs."""
@@ -107,14 +113,33 @@ class _Worker:
         self.process.start()
         other.close()
         self.part: Part = (0, 0)
-        self.seen, self.waited, self.looked = -1, 0.0, time.monotonic()
+        self.ready = False
+        self.begin()
+
+    def begin(self) -> None:
+        """The clock of a part's first pair begins; before it is ready, that of its preparation."""
+        self.seen, self.waited, self.looked = self.part[0], 0.0, time.monotonic()
 
     def give(self, part: Part) -> None:
-        """Send a part; the clock of its first pair begins."""
+        """Send a part, to be begun when the process is ready."""
         self.part = part
         self.place.value = part[0]
-        self.seen, self.waited, self.looked = part[0], 0.0, time.monotonic()
+        self.begin()
         self.pipe.send(part)
+
+    def hear(self) -> Done | None:
+        """Return a part that is done; None of a process that tells that it is ready.
+
+        Raises
+        ------
+        EOFError, OSError
+            It died.
+        """
+        said: Done | None = self.pipe.recv()
+        if said is None:
+            self.ready = True
+            self.begin()
+        return said
 
     def lost(self, why: str) -> Done:
         """Return the failure of the pair at which the process died or hangs."""
@@ -123,12 +148,12 @@ class _Worker:
         return Done(self.part, Tally(), number, facts)
 
     def hangs(self) -> bool:
-        """Look at the clock: has the pair been at work for too long?"""
+        """Look at the clock: has the pair, or the preparation, been at work for too long?"""
         now, number = time.monotonic(), int(self.place.value)
         passed = min(now - self.looked, 2.0 * LOOK)
         self.waited = self.waited + passed if number == self.seen else 0.0
         self.seen, self.looked = number, now
-        return self.waited > PATIENCE
+        return self.waited > (PATIENCE if self.ready else PREPARATION)
 
     def end(self) -> None:
         self.process.kill()
@@ -171,29 +196,44 @@ def _heard(workers: list[_Worker]) -> Iterator[tuple[_Worker, Done]]:
     for worker in list(workers):
         if worker.pipe in ready:
             try:
-                yield worker, worker.pipe.recv()
+                done = worker.hear()
             except (EOFError, OSError):
                 worker.process.join()
                 code = worker.process.exitcode
-                yield worker, worker.lost(f"the process died (exit code {code})")
+                done = worker.lost(f"the process died (exit code {code})")
+            if done is not None:
+                yield worker, done
         elif worker.hangs():
             worker.process.kill()
             worker.process.join()
-            yield worker, worker.lost(f"no answer in {PATIENCE:g} s: the pair hangs")
+            why = f"no answer in {PATIENCE:g} s: the pair hangs"
+            if not worker.ready:
+                why = f"the kernels were not ready in {PREPARATION:g} s"
+            yield worker, worker.lost(why)
 
 
 def _work(pipe: Connection, seed: int, frames: int, place: Any) -> None:
-    """Run parts until the pipe closes."""
+    """Compile the kernels, say so, and run parts until the pipe closes or the parent is gone."""
     # The parent ends its workers on Ctrl-C; a traceback of each would only hide its message.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+    threading.Thread(target=_end_with_parent, daemon=True).start()
 
     def at(number: int) -> None:
         place.value = number
 
-    while True:
-        try:
-            part = pipe.recv()
-        except (EOFError, OSError):
-            return
-        pipe.send(run_part(seed, frames, part, at))
+    compile_kernels()
+    try:
+        pipe.send(None)
+        while True:
+            pipe.send(run_part(seed, frames, pipe.recv(), at))
+    except (EOFError, OSError):
+        return
+
+
+def _end_with_parent() -> None:
+    """End this process as soon as the one that started it has ended, however that was."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
