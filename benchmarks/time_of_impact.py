@@ -46,9 +46,10 @@ class Tally:
         self.statuses[found.status.name] += 1
         if wrong:
             self.wrong.append(f"{wrong} in {case.describe()}")
-        if case.beyond == 0.0 and found.status.name == "IMPACT":
-            # what is proven: contact at `latest` at the latest, and at the time it was built for
-            self.leads.append((min(case.time, found.latest) - found.time) / case.time)
+        if case.beyond == 0.0 and found.status.name in ("IMPACT", "GRAZING"):
+            # what is proven: contact at `latest` of an impact, and at the time it was built for
+            until = found.latest if found.status.name == "IMPACT" else case.time
+            self.leads.append((min(case.time, until) - found.time) / case.time)
             size = found.tolerance * 1e9
             self.gaps.append((found.proximity.distance - case.clearance) / size)
         self.evaluations.append(found.evaluations)

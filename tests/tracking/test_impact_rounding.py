@@ -3,11 +3,12 @@
 import math
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 
 import standoff as so
-from standoff.motion import Bounded, ConstantTwist, Fixed, PoseSamples
+from standoff.motion import Bounded, Carried, ConstantTwist, Fixed, Offset, PoseSamples, Screw
 
 REST = so.Pose.identity()
 
@@ -79,3 +80,66 @@ def test_a_duration_lost_beside_the_start_is_refused(start: float, duration: flo
     ended = along_x([0.0, 1.0], [3.0, 3.0])
     with pytest.raises(ValueError, match=r"a path ends at 1\.0: give a start before that"):
         so.time_of_impact(body, body, REST, ended, 1e-15, start=1.0)
+
+
+@pytest.mark.parametrize(("arm", "tolerance"), [(1e3, 1e-12), (6.4e6, 1e-9), (6.4e6, 1e-12)])
+@pytest.mark.parametrize("kind", ["offset", "carried", "bounded"])
+def test_far_carriers_whose_arms_cancel(kind: str, arm: float, tolerance: float) -> None:
+    """The body's place is t - 2, and the obstacle's a binary fraction: exact."""
+    rng = np.random.default_rng()
+    ball, back = so.shapes.sphere(0.5), at(arm, 0.0, 0.0)
+    velocity = ([1.0, 0.0, 0.0], [0.0, 0.0, 0.0])
+    path: Any = Offset(ConstantTwist(at(-arm - 2.0, 0.0, 0.0), velocity), back)
+    if kind == "carried":
+        path = Carried(Fixed(at(-arm - 2.0, 0.0, 0.0)), ConstantTwist(back, velocity))
+    if kind == "bounded":
+        rates = dict.fromkeys(("acceleration", "angular_speed", "angular_acceleration"), 0.0)
+        path = Bounded(path, speed=1.0, **rates, lengths=2.0 * arm + 10.0)
+    for _ in range(10):
+        place = float(rng.integers(1 << 20)) / (1 << 20)
+        goal = at(place, 0.0, 0.0)
+        found = so.time_of_impact(ball, ball, path, goal, 5.0, tolerance=tolerance)
+        assert found.status is so.ImpactStatus.IMPACT
+        assert found.time <= place + 1.0 <= found.latest
+        assert found.error < 10.0 * found.tolerance
+
+
+def test_a_screw_about_a_far_point_is_never_late() -> None:
+    """The contact to 40 digits: the place of a ball's centre on its circle, by cosine and sine."""
+    rng = np.random.default_rng()
+    ball = so.shapes.sphere(0.5)
+    for _ in range(30):
+        arm, angle = float(10.0 ** rng.uniform(6, 8)), rng.uniform(0, math.tau)
+        speed = float(10.0 ** rng.uniform(-1, 1))
+        out = np.array([math.cos(angle), math.sin(angle), 0.0])
+        point, rate = out * arm, speed / arm
+        path = Screw(REST, (0.0, 0.0, 1.0), point, rate)
+        goal = (speed + 1.0) * np.array([out[1], -out[0], 0.0])
+        with mpmath.workdps(40):
+            numbers = [mpmath.mpf(float(number)) for number in (rate, *point[:2], *goal[:2])]
+
+            def gap(t: Any, numbers: Any = numbers) -> Any:
+                omega, x, y, goal_x, goal_y = numbers
+                cosine, sine = mpmath.cos(omega * t), mpmath.sin(omega * t)
+                return (
+                    mpmath.hypot(
+                        x - cosine * x + sine * y - goal_x, y - sine * x - cosine * y - goal_y
+                    )
+                    - 1
+                )
+
+            truth = mpmath.findroot(gap, (0.9, 1.1), solver="anderson", tol=1e-50)
+            found = so.time_of_impact(ball, ball, path, at(*goal), 1.5, tolerance=1e-12)
+            assert found.status is so.ImpactStatus.IMPACT
+            assert found.time <= truth <= found.latest
+            assert gap(mpmath.mpf(found.latest)) < 0
+            assert found.error * speed < 10.0 * found.tolerance
+
+
+def test_touching_as_given_is_contact_at_the_start() -> None:
+    """A pose that is given carries no rounding; the spheres touch to the last digit."""
+    ball = so.shapes.sphere(1.0)
+    away = ConstantTwist(at(2.0, 0.0, 0.0), ([1.0, 0.0, 0.0], [0.0, 0.0, 0.0]))
+    for path in (Fixed(at(2.0, 0.0, 0.0)), away, along_x([0.0, 1.0], [2.0, 3.0])):
+        found = so.time_of_impact(ball, ball, REST, path, 1.0)
+        assert (found.status, found.time) == (so.ImpactStatus.AT_START, 0.0)

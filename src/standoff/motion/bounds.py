@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol, cast
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray
-from standoff.motion.pose import PoseLike
+from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import TwistLike
 
 
@@ -33,6 +33,11 @@ class MotionBounds:
     axis : (3,) array or None
         A unit vector of the world to which the accelerations of all points of the body are
         perpendicular all the time, if there is one: that of a screw.
+    lengths : float
+        Sum of the greatest lengths that are turned or added to make the pose [length]: arms,
+        offsets, and ways as rate times time, also where they cancel. Each leaves its roundings in
+        the pose, which `time_of_impact` allows for. The distance of the body itself need not be
+        counted; zero says that the pose is one that was given.
     """
 
     speed: float
@@ -40,6 +45,7 @@ class MotionBounds:
     angular_speed: float
     angular_acceleration: float
     axis: FloatArray | None = None
+    lengths: float = 0.0
 
 
 class BoundedPath(Protocol):
@@ -56,7 +62,7 @@ class BoundedPath(Protocol):
     def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
         """Return bounds that hold from time `first` to `last` [s], between two breaks.
 
-        `point` (3,) is fixed in the body, in its coordinates.
+        `point` (3,) is fixed in the body, in its coordinates. The two times may be one.
         """
         ...
 
@@ -82,6 +88,10 @@ class Bounded:
         No less than the body's angular acceleration [rad/s²].
     breaks : array_like, shape (n,)
         Times at which the velocities jump, if there are any [s].
+    lengths : float, optional
+        No less than the sum of the lengths that your ``pose`` turns or adds up [length], as
+        `MotionBounds` tells. Without it they are taken to be no greater than the distance of the
+        body's origin from the world's: give it where far arms or offsets cancel.
 
     Raises
     ------
@@ -100,6 +110,7 @@ class Bounded:
         angular_speed: float,
         angular_acceleration: float,
         breaks: ArrayLike = (),
+        lengths: float | None = None,
     ) -> None:
         pose, twist = getattr(path, "pose", None), getattr(path, "twist", None)
         if not callable(pose) or not callable(twist):
@@ -113,6 +124,7 @@ class Bounded:
             _bound(angular_speed, "angular_speed"),
             _bound(angular_acceleration, "angular_acceleration"),
         )
+        self._lengths = None if lengths is None else _bound(lengths, "lengths")
         times = np.asarray(breaks, dtype=np.float64)
         self._breaks = np.sort(inputs.array(times, "breaks", (times.size,)))
 
@@ -128,8 +140,11 @@ class Bounded:
 
     def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
         """Return bounds that hold from time `first` to `last` [s] for a point of the body."""
-        del first, last
-        return of_point(self._origin, point)
+        lengths = self._lengths
+        if lengths is None:
+            away = length(Pose.of(self.pose(first)).translation)
+            lengths = away + self._origin.speed * (last - first)
+        return replace(of_point(self._origin, point), lengths=lengths)
 
     def breaks(self, first: float, last: float) -> Sequence[float]:
         """Return the times strictly between `first` and `last` [s] at which the twist jumps."""
@@ -154,11 +169,15 @@ def of_point(origin: MotionBounds, point: FloatArray) -> MotionBounds:
         origin.angular_speed,
         origin.angular_acceleration,
         origin.axis,
+        origin.lengths,
     )
 
 
 def turning(
-    omega: FloatArray, velocity: FloatArray, rotation: FloatArray | None = None
+    omega: FloatArray,
+    velocity: FloatArray,
+    rotation: FloatArray | None = None,
+    lengths: float = 0.0,
 ) -> MotionBounds:
     """Return the bounds for a point whose velocity turns with the body at a constant rate.
 
@@ -168,7 +187,8 @@ def turning(
     axis = None
     if rate > 0.0:
         axis = omega / rate if rotation is None else rotation @ (omega / rate)
-    return MotionBounds(length(velocity), length(cross(omega, velocity)), rate, 0.0, axis)
+    bend = length(cross(omega, velocity))
+    return MotionBounds(length(velocity), bend, rate, 0.0, axis, lengths)
 
 
 def bounds_of(path: object, first: float, last: float, point: FloatArray) -> MotionBounds:

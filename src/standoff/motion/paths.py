@@ -122,13 +122,15 @@ class ConstantTwist:
 
     def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
         """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
-        del first, last
         v, omega = self._twist.v, self._twist.omega
+        longest = max(abs(first), abs(last))
         if self._twist.frame == "body":
-            return turning(omega, v + cross(omega, point), self._initial.rotation)
+            # v and ω × point may cancel, but not the roundings of the way and of the turn.
+            ways = longest * (length(v) + length(omega) * length(point))
+            return turning(omega, v + cross(omega, point), self._initial.rotation, ways)
         # The origin goes straight, and the point turns about it.
         about = turning(omega, cross(omega, self._initial.rotation @ point))
-        return replace(about, speed=about.speed + length(v))
+        return replace(about, speed=about.speed + length(v), lengths=longest * length(v))
 
     def breaks(self, first: float, last: float) -> Sequence[float]:
         """Return no times: the twist never jumps."""
@@ -191,9 +193,10 @@ class Screw:
 
     def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
         """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
-        del first, last
         arm = self._initial.apply(point) - self._point
-        return turning(self._omega, cross(self._omega, arm) + self._advance)
+        lengths = length(self._point) + length(self._initial.translation - self._point)
+        lengths += length(self._advance) * max(abs(first), abs(last))
+        return turning(self._omega, cross(self._omega, arm) + self._advance, None, lengths)
 
     def breaks(self, first: float, last: float) -> Sequence[float]:
         """Return no times: the twist never jumps."""
@@ -245,7 +248,9 @@ class Offset:
 
     def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
         """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
-        return bounds_of(self._path, first, last, self._offset.apply(point))
+        carrier = bounds_of(self._path, first, last, self._offset.apply(point))
+        # The carrier's distance is no more than that of the body and of the two together.
+        return replace(carrier, lengths=carrier.lengths + length(self._offset.translation))
 
     def breaks(self, first: float, last: float) -> Sequence[float]:
         """Return the times strictly between two [s] at which the carrying path's twist jumps."""
@@ -293,8 +298,9 @@ class Carried:
     def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
         """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
         inner = bounds_of(self._within, first, last, point)
-        place = self._within.pose(first).apply(point)
-        outer = bounds_of(self._carrier, first, last, place)
+        within = self._within.pose(first)
+        outer = bounds_of(self._carrier, first, last, within.apply(point))
+        farther = (inner.speed + inner.angular_speed * length(point)) * (last - first)
         # With u the way of the point in the carrier's axes since `first`, the place's own motion
         # and that of R u add: d²(R u)/dt² has the terms (α × u + ω × (ω × u)), 2 ω × u', u''.
         away = inner.speed * (last - first)
@@ -309,6 +315,7 @@ class Carried:
             outer.angular_acceleration
             + inner.angular_acceleration
             + outer.angular_speed * inner.angular_speed,
+            lengths=outer.lengths + inner.lengths + length(within.translation) + farther,
         )
 
     def breaks(self, first: float, last: float) -> Sequence[float]:

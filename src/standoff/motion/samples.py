@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from standoff.motion import inputs
-from standoff.motion.bounds import MotionBounds, cross, turning
+from standoff.motion.bounds import MotionBounds, cross, length, turning
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.tolerances import HALF_TURN
@@ -136,8 +136,17 @@ class PoseSamples:
                 f"the next one is at {float(self.times[index + 1])!r}"
             )
         twist = self._twists[index]
-        rotation = self.poses[index].rotation
-        return turning(twist.omega, twist.v + cross(twist.omega, point), rotation)
+        velocity = twist.v + cross(twist.omega, point)
+        lengths = self._lengths(index, first, last)
+        return turning(twist.omega, velocity, self.poses[index].rotation, lengths)
+
+    def _lengths(self, index: int, first: float, last: float) -> float:
+        """Return what `MotionBounds` calls lengths; at a sample alone the pose is the given one."""
+        begin = float(self.times[index])
+        if first == last and first in (begin, self.end):
+            return 0.0
+        ends = (length(self.poses[k].translation) for k in (index, index + 1))
+        return sum(ends) + length(self._twists[index].v) * (last - begin)
 
     def breaks(self, first: float, last: float) -> Sequence[float]:
         """Return the times of the samples strictly between `first` and `last` [s]."""

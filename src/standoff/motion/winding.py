@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from standoff.motion import inputs
-from standoff.motion.bounds import MotionBounds
+from standoff.motion.bounds import MotionBounds, length
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose
 from standoff.motion.twist import Twist
@@ -97,13 +97,14 @@ class Helix:
 
     def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
         """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
-        del first, last
+        lengths = length(self._centre) + self._radius
+        lengths += abs(self._climb) * max(abs(first), abs(last))
         away, turn = self._radius, 0.0
         if self._turning:
             x, y, _ = point.tolist()
             away, turn = math.hypot(self._radius + x, y), abs(self._rate)
         speed = math.hypot(self._rate * away, self._climb)
-        return MotionBounds(speed, self._rate**2 * away, turn, 0.0, self._axis)
+        return MotionBounds(speed, self._rate**2 * away, turn, 0.0, self._axis, lengths)
 
     def breaks(self, first: float, last: float) -> Sequence[float]:
         """Return no times: the twist never jumps."""
@@ -186,14 +187,17 @@ class Spiral:
         # In polar axes the point stays at (distance + x, y); its velocity is rate times
         # (growth - y, distance + x), its acceleration rate² times (-distance - x, 2 growth - y).
         x, y, _ = point.tolist() if self._turning else (0.0, 0.0, 0.0)
-        ends = (self._radius + self._growth * self._rate * t + x for t in (first, last))
-        away, rate = max(map(abs, ends)), abs(self._rate)
+        ends = [self._radius + self._growth * self._rate * t for t in (first, last)]
+        away, rate = max(abs(end + x) for end in ends), abs(self._rate)
+        # The distance is a sum too, of the radius and the growth.
+        lengths = length(self._centre) + 2.0 * self._radius + max(map(abs, ends))
         return MotionBounds(
             rate * math.hypot(self._growth - y, away),
             rate**2 * math.hypot(away, 2.0 * self._growth - y),
             rate if self._turning else 0.0,
             0.0,
             np.array([0.0, 0.0, 1.0]),
+            lengths,
         )
 
     def breaks(self, first: float, last: float) -> Sequence[float]:

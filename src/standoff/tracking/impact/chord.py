@@ -30,15 +30,6 @@ from standoff.tracking.impact.moment import Box, Moment
 
 Array = NDArray[np.float64]
 
-EPS = float(np.finfo(np.float64).eps)
-
-POSE_ROUNDINGS = 16.0
-"""Roundings of the greatest length that a pose and a world point carry: the products of a rotation
-with a point, and those that made the rotation."""
-
-TIME_ROUNDINGS = 4.0
-"""Roundings of the time, each worth the way of the bodies in it: paths multiply rates by it."""
-
 STALE = 4.0
 """Bounds on the motion are taken anew where they hold for an interval this many times as long."""
 
@@ -56,14 +47,9 @@ class Chords:
         if within and self.last - self.first <= STALE * (last - start.time):
             return
         self.first, self.last = start.time, last
-        points = [box.middle for box in self.boxes]
-        placed = start.a, start.b
-        for k, box in enumerate(self.boxes):
-            if box.plane:  # the point of its frame that is beside the other body
-                points[k] = placed[k].rotation.T @ (placed[1 - k].centre - placed[k].p)
         self.bounds = tuple(
             bounds_of(path, start.time, last, point)
-            for path, point in zip(self.paths, points, strict=True)
+            for path, point in zip(self.paths, start.points, strict=True)
         )
         self.speed = sum(
             bound.speed + bound.angular_speed * box.reach
@@ -119,10 +105,6 @@ class Chords:
         away = reach + (self.last - self.first) * speed
         turning = _turning(wall) * away + 2.0 * wall.angular_speed * speed
         return own + wall.acceleration + turning
-
-    def rounding(self, moment: Moment) -> float:
-        """What rounding of the poses and of time may do to a separation (length)."""
-        return EPS * (POSE_ROUNDINGS * moment.far + TIME_ROUNDINGS * abs(moment.time) * self.speed)
 
 
 def _turning(bound: MotionBounds) -> float:

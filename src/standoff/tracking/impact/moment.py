@@ -10,13 +10,22 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.kernels import layout as L
-from standoff.motion.bounds import cross, length
+from standoff.motion.bounds import bounds_of, cross, length
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.state import TrackerState
 from standoff.tracking.tracker import Tracker
 
 Array = NDArray[np.float64]
+
+EPS = float(np.finfo(np.float64).eps)
+
+POSE_ROUNDINGS = 16.0
+"""Roundings of each length that goes into a pose or a world point: the products of a rotation with
+a point, and those that made the rotation."""
+
+TIME_ROUNDINGS = 4.0
+"""Roundings of the time, each worth the way of the bodies in it: paths multiply rates by it."""
 
 
 class Placed:
@@ -87,13 +96,40 @@ class Moment:
         self.a = Placed(boxes[0].middle, paths[0], time)
         self.b = Placed(boxes[1].middle, paths[1], time)
         self.ball = Ball(boxes, self.a, self.b)
-        # the lengths that went in, whose roundings a separation carries
-        far = [box.reach for box in boxes]
-        far += [length(x) for x in (self.a.p, self.b.p, self.a.centre, self.b.centre)]
-        self.far = sum(far)
+        self.points = self._points(boxes)
+        self._round(boxes, paths)
         self.state: TrackerState | None = None
         self.lower, self.upper = -math.inf, math.inf
         self.rate = math.nan
+
+    def _round(self, boxes: tuple[Box, Box], paths: tuple[Any, Any]) -> None:
+        """Find what rounding of the poses and of time may do to a separation (length)."""
+        bounds = [
+            bounds_of(path, self.time, self.time, point)
+            for path, point in zip(paths, self.points, strict=True)
+        ]
+        composed = sum(bound.lengths for bound in bounds)
+        far = [length(x) for x in (self.a.p, self.b.p, self.a.centre, self.b.centre)]
+        speed = 0.0
+        for bound, box in zip(bounds, boxes, strict=True):
+            far.append(box.reach)
+            speed += bound.speed + bound.angular_speed * box.reach
+        self.rounding = EPS * (
+            POSE_ROUNDINGS * (sum(far) + composed) + TIME_ROUNDINGS * abs(self.time) * speed
+        )
+        # where no length went in the poses are the given ones
+        self.doubt = self.rounding if composed > 0.0 else 0.0
+
+    def _points(self, boxes: tuple[Box, Box]) -> list[Array]:
+        """The point of each body whose motion counts, in its coordinates: the box's centre.
+
+        Of a half-space it is the point of its frame that is beside the other body.
+        """
+        placed = self.a, self.b
+        return [
+            placed[k].rotation.T @ (placed[1 - k].centre - placed[k].p) if box.plane else box.middle
+            for k, box in enumerate(boxes)
+        ]
 
     @property
     def asked(self) -> bool:

@@ -12,8 +12,8 @@ from standoff.motion.bounds import breaks_of, known
 from standoff.motion.inputs import number
 from standoff.tracking.choices import positive_number
 from standoff.tracking.impact.answer import Impact, ImpactStatus
-from standoff.tracking.impact.chord import EPS, Chords
-from standoff.tracking.impact.moment import Box, Moment
+from standoff.tracking.impact.chord import Chords
+from standoff.tracking.impact.moment import EPS, Box, Moment
 from standoff.tracking.impact.pace import SHORTEN, Pace
 from standoff.tracking.simulate import Moving, moving
 from standoff.tracking.tracker import Tracker
@@ -191,13 +191,17 @@ class _Search:
             return
         self.queries += 1
         moment.ask(self.tracker, self.known)
-        if moment.upper <= self.clearance:
+        if self.touches(moment):
             self.latest = min(self.latest, moment.time)
+
+    def touches(self, moment: Moment) -> bool:
+        """Is it proven to be in contact, also at the poses that rounding has moved?"""
+        return moment.upper + moment.doubt <= self.clearance
 
     def gap(self, moment: Moment, balls: bool = False) -> float:
         """Certified distance beyond the clearance, less what rounding may do."""
         lower = moment.ball.lower if balls else moment.lower
-        return lower - self.clearance - self.chords.rounding(moment)
+        return lower - self.clearance - moment.rounding
 
     # --- one piece of time without a break --------------------------------------------------
 
@@ -210,7 +214,7 @@ class _Search:
         ahead: list[Moment] = []
         before = math.inf  # the next instant to look at is before this one
         while self.now.time < stop:
-            tolerance = max(self.tolerance, ROUNDINGS * self.chords.rounding(self.now))
+            tolerance = max(self.tolerance, ROUNDINGS * self.now.rounding)
             gap = self.gap(self.now, balls=True)
             balls = gap > max(BALLS_APART * self.reach, 2.0 * tolerance)
             target = BALLS_AIM * self.reach
@@ -272,7 +276,7 @@ class _Search:
 
     def _useful(self, moment: Moment) -> bool:
         """Will it serve once more: it is clear of the clearance, or known to be in contact?"""
-        return self.gap(moment) > 0.0 or moment.upper <= self.clearance
+        return self.gap(moment) > 0.0 or self.touches(moment)
 
     # --- the end ----------------------------------------------------------------------------
 
@@ -282,7 +286,7 @@ class _Search:
         self.known = self.now
         if self.gap(self.now) > tolerance:
             return None
-        if self.now.time == start and self.now.upper <= self.clearance:
+        if self.now.time == start and self.touches(self.now):
             return self._answer(ImpactStatus.AT_START, start)
         near = self._probe(tolerance)
         if self.latest < math.inf:
@@ -312,7 +316,7 @@ class _Search:
             except _Spent:
                 break
             self.ask(moment)
-            if moment.upper <= self.clearance:
+            if self.touches(moment):
                 break
             if moment.upper <= self.clearance + tolerance:
                 near = time
@@ -334,7 +338,7 @@ class _Search:
             status,
             self.now.proximity,
             self.clearance,
-            max(self.tolerance, ROUNDINGS * self.chords.rounding(self.now)),
+            max(self.tolerance, ROUNDINGS * self.now.rounding),
             self.steps,
             self.evaluations,
             self.queries,
