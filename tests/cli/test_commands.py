@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import subprocess
 import sys
@@ -131,9 +132,43 @@ def test_impact(standoff: Standoff, passing: Path) -> None:
     assert f"latest        {found.latest:.12g} s" in ended.out
     ended = standoff("impact", passing, "--duration", 0.1)
     assert ended.code == 0
-    assert "NO_IMPACT at 0 cm" in ended.out
+    assert "impact        NO_IMPACT\n" in ended.out
+    assert "clearance     0 cm\n" in ended.out
     assert "latest        none" in ended.out
-    assert standoff("impact", passing, "--clearance", -1.0).code == 2
+    for clearance in (-1.0, "inf", "nan"):
+        ended = standoff("impact", passing, "--clearance", clearance)
+        assert ended.code == 2
+        assert f"--clearance: must be zero or more and finite, got {clearance}" in ended.err
+
+
+def test_impact_needs_no_frames(standoff: Standoff, tmp_path: Path) -> None:
+    """Ten samples a second; two logs whose clocks differ by a rounding here and there."""
+    stamps = {
+        "a": [0.1 * k for k in range(11)],
+        "b": list(itertools.accumulate([0.0] + [0.1] * 10)),
+    }
+    assert stamps["a"] != stamps["b"]
+    for name, times in stamps.items():
+        rows = (f"{t!r} {0.0 if name == 'a' else 1.0} 0 0 0 0 0 1" for t in times)
+        (tmp_path / f"{name}.tum").write_text("\n".join(rows) + "\n")
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        "version = 1\n"
+        + "".join(f'[bodies.{n}]\nshape = "sphere"\nradius = 0.1\n' for n in "ab")
+        + "".join(f'[motions.{n}]\nkind = "samples"\nfile = "{n}.tum"\n' for n in "ab")
+        + '[pair]\na = "a"\nb = "b"\n'
+    )
+    facts = json.loads(standoff("impact", scene, "--json").out)
+    assert (facts["impact"], facts["latest"]) == ("NO_IMPACT", None)
+    ended = standoff("impact", scene, "--start", 0.32, "--duration", 0.05)
+    assert ended.code == 0
+    assert f"time          {0.32 + 0.05:.12g} s" in ended.out
+    ended = standoff("impact", scene, "--duration", 3.0)
+    assert ended.code == 2
+    assert "--duration: 3 s from 0 s on end at 3 s, after the last pose sample" in ended.err
+    ended = standoff("impact", scene, "--start", repr(stamps["b"][-1]))
+    assert ended.code == 2
+    assert "--start: no time is left after" in ended.err
 
 
 def test_options_take_the_place_of_the_scene_s(standoff: Standoff, passing: Path) -> None:

@@ -1,6 +1,7 @@
 """Bounds on speed and acceleration against differences of the poses."""
 
 import itertools
+from typing import Any
 
 import numpy as np
 import pytest
@@ -74,6 +75,16 @@ def test_samples_bound_one_interval_only() -> None:
     assert list(breaks_of(samples, 1.0, 3.0)) == []
     with pytest.raises(ValueError, match="within one interval"):
         bounds_of(samples, 0.5, 2.0, np.zeros(3))
+
+
+@pytest.mark.parametrize(
+    "breaks", ["a", 5.0, None, [[1.0, 2.0]], [1.0, "2"], [1.0, np.inf], [True]]
+)
+def test_breaks_are_a_sequence_of_times(breaks: Any) -> None:
+    told = dict.fromkeys(("speed", "acceleration", "angular_speed", "angular_acceleration"), 1.0)
+    with pytest.raises(ValueError, match=r"^breaks is "):
+        Bounded(Fixed(Pose.identity()), **told, breaks=breaks)
+    assert list(Bounded(Fixed(Pose.identity()), **told).breaks(0.0, 1.0)) == []
 
 
 def test_a_bound_path_answers_for_every_point_and_keeps_its_breaks() -> None:

@@ -362,6 +362,15 @@ def test_the_status_says_what_to_do() -> None:
         ({"duration": -1.0}, "duration = -1.0"),
         ({"start": math.inf}, "start is inf"),
         ({"max_evaluations": 1}, "max_evaluations = 1"),
+        ({"max_evaluations": 2.5}, "max_evaluations = 2.5: must be a whole number"),
+        ({"max_evaluations": None}, "max_evaluations = None: must be a whole number"),
+        ({"max_evaluations": "5"}, "max_evaluations = '5': must be a whole number"),
+        ({"max_evaluations": math.nan}, "max_evaluations = nan: must be a whole number"),
+        ({"duration": True}, "duration = True is not a number"),
+        ({"tolerance": True}, "tolerance = True is not a number"),
+        ({"duration": 10**400}, "is not a number"),
+        ({"duration": 1e308}, r"duration = 1e\+308: no time may be beyond 1e\+100 s"),
+        ({"start": -1e200}, r"start = -1e\+200, duration = 1\.0: no time may be beyond"),
     ],
 )
 def test_bad_input_is_refused(options: dict[str, Any], message: str) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from standoff.cli.arguments import ImpactCommand
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import impact_facts, pairs_text
@@ -37,6 +39,12 @@ def _found(scene: Scene, command: ImpactCommand) -> Impact:
         settings = scene.settings.overridden(given)
     except SceneError as error:
         raise CommandError(f"--{error.key}: {error.problem}") from error
-    if not command.clearance >= 0.0:
-        raise CommandError(f"--clearance: must be zero or more, got {command.clearance}")
-    return first_impact(scene, settings, command.clearance)
+    if not 0.0 <= command.clearance < math.inf:
+        raise CommandError(f"--clearance: must be zero or more and finite, got {command.clearance}")
+    try:
+        return first_impact(scene, settings, command.clearance)
+    except SceneError as error:
+        option = error.key.removeprefix("track.")
+        if given.get(option) is None:
+            raise
+        raise CommandError(f"--{option}: {error.problem}") from error

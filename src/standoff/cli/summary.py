@@ -56,7 +56,8 @@ def impact_lines(scene: Scene, found: Impact) -> list[str]:
     latest = "none" if np.isnan(found.latest) else f"{found.latest:.12g} s"
     at = next(k for k, text in enumerate(lines) if text.startswith("time"))
     lines[at : at + 1] = [
-        line("impact", f"{found.status.name} at {found.clearance:g} {scene.length_unit}"),
+        line("impact", found.status.name),
+        line("clearance", f"{found.clearance:g} {scene.length_unit}"),
         line("", found.status.advice),
         line("time", f"{found.time:.12g} s"),
         line("latest", latest),

@@ -14,6 +14,7 @@ from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import TwistLike
+from standoff.real_numbers import shape_of, shown
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ class Bounded:
     TypeError
         If the path has no ``pose`` and ``twist``.
     ValueError
-        If a bound is negative or not finite.
+        If a bound is negative or not finite, or the breaks are no sequence of finite numbers.
     """
 
     def __init__(
@@ -125,8 +126,7 @@ class Bounded:
             _bound(angular_acceleration, "angular_acceleration"),
         )
         self._lengths = None if lengths is None else _bound(lengths, "lengths")
-        times = np.asarray(breaks, dtype=np.float64)
-        self._breaks = np.sort(inputs.array(times, "breaks", (times.size,)))
+        self._breaks = np.sort(_times(breaks, "breaks"))
 
     def pose(self, t: float) -> PoseLike:
         """Return where the body is at time `t` [s]."""
@@ -157,6 +157,14 @@ def _bound(value: float, name: str) -> float:
     if read < 0.0:
         raise ValueError(f"{name} is {read}: a bound is zero or above")
     return read
+
+
+def _times(value: ArrayLike, name: str) -> FloatArray:
+    """Read a sequence of times, as many as there are."""
+    shape = shape_of(value)
+    if shape is None or len(shape) != 1:
+        raise ValueError(f"{name} is {shown(value)}: give a sequence of times, such as [1.0, 2.5]")
+    return inputs.array(value, name, (shape[0],))
 
 
 def of_point(origin: MotionBounds, point: FloatArray) -> MotionBounds:

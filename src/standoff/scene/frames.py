@@ -56,6 +56,26 @@ def start_time(settings: TrackSettings, motions: Iterable[Motion]) -> float:
     return first if math.isfinite(first) else 0.0
 
 
+def time_window(settings: TrackSettings, motions: Iterable[Motion]) -> tuple[float, float]:
+    """Return the times [s] between which the pair is looked at; no frame need lie between them.
+
+    Raises
+    ------
+    SceneError
+        If the end is not settled, is beyond the samples, or is no later than the start.
+    """
+    motions = list(motions)
+    start = start_time(settings, motions)
+    end = _end(settings, motions, start)
+    if not end > start:
+        raise SceneError(
+            f"no time is left after {start!r} s, as the pose samples end at {end!r} s or times "
+            f"there are {math.ulp(start):.2g} s apart; begin earlier, or give a longer duration",
+            key="track.start" if settings.duration is None else "track.duration",
+        )
+    return start, end
+
+
 def frame_times(settings: TrackSettings, motions: Iterable[Motion]) -> Array:
     """Return the times of all frames [s], shape (n,), strictly increasing.
 

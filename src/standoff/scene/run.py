@@ -47,7 +47,9 @@ def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity]:
 def first_impact(
     scene: Scene, settings: TrackSettings | None = None, clearance: float = 0.0
 ) -> Impact:
-    """Return the first time at which the pair comes to a clearance, between its frames' ends.
+    """Return the first time at which the pair comes to a clearance, within the scene's times.
+
+    A search needs no frames: it begins at the start and ends after the duration.
 
     Parameters
     ----------
@@ -66,8 +68,8 @@ def first_impact(
     SceneError
         If the times are not possible, or the pair cannot be asked for a distance.
     """
-    times = scene.times(settings or scene.settings)
-    start, duration = float(times[0]), float(times[-1] - times[0])
+    start, end = scene.window(settings)
+    duration = end - start
     a, b = scene.pair_bodies
     path_a, path_b = (motion.path for motion in scene.pair_motions)
     try:

@@ -11,7 +11,7 @@ from standoff.bodies.body import Body
 from standoff.motion import Pose
 from standoff.scene.errors import SceneError
 from standoff.scene.files import file_problem, toml_tables
-from standoff.scene.frames import check_time, frame_times, start_time
+from standoff.scene.frames import check_time, frame_times, start_time, time_window
 from standoff.scene.motions import Motion, at_rest, read_motion
 from standoff.scene.pairs import Pair, read_pairs
 from standoff.scene.placements import read_pose
@@ -123,6 +123,13 @@ class Scene:
         """Return the frame times [s] of a run, shape (n,), see `frame_times`."""
         try:
             return frame_times(settings or self.settings, self.pair_motions)
+        except SceneError as error:
+            raise error.found_in(self.file) from error
+
+    def window(self, settings: TrackSettings | None = None) -> tuple[float, float]:
+        """Return the times [s] between which the pair is looked at, see `time_window`."""
+        try:
+            return time_window(settings or self.settings, self.pair_motions)
         except SceneError as error:
             raise error.found_in(self.file) from error
 

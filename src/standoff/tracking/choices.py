@@ -41,10 +41,11 @@ def choice(value: Any, name: str, table: dict[str, int]) -> int:
 
 def positive_number(value: Any, name: str, allow_infinite: bool = False) -> float:
     try:
-        if isinstance(value, (str, bytes)):  # float() reads "5", arithmetic does not
-            raise TypeError("text")
+        # float() reads "5" and True, but neither was meant as a number
+        if isinstance(value, (str, bytes, bool, np.bool_)):
+            raise TypeError("no number")
         number = float(value)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{name} = {value!r} is not a number.") from error
     if not number > 0.0 or (math.isinf(number) and not allow_infinite):
         raise ValueError(f"{name} = {number}: must be positive and finite.")

@@ -9,8 +9,8 @@ from typing import Any
 from standoff.bodies.body import Body
 from standoff.motion import PoseLike
 from standoff.motion.bounds import breaks_of, known
-from standoff.motion.inputs import number
-from standoff.tracking.choices import positive_number
+from standoff.motion.inputs import GREATEST, number
+from standoff.tracking.choices import positive_number, whole_number
 from standoff.tracking.impact.answer import Impact, ImpactStatus
 from standoff.tracking.impact.chord import Chords
 from standoff.tracking.impact.moment import EPS, Box, Moment
@@ -89,8 +89,9 @@ def time_of_impact(
     TypeError
         Not a body, neither path nor pose, or a path of which no bounds are known.
     ValueError
-        A negative clearance, a tolerance, duration or budget that is not positive, a duration that
-        rounding loses beside the start, a pair that cannot be tracked, or what a path refuses.
+        A negative clearance, a tolerance or duration that is not positive, a budget that is no
+        whole number of at least 2, times beyond 1e100 s, a duration lost beside the start, a
+        pair that cannot be tracked, or what a path refuses.
     """
     clearance = number(clearance, "clearance")
     if clearance < 0.0:
@@ -100,7 +101,7 @@ def time_of_impact(
         )
     duration = positive_number(duration, "duration")
     tolerance = positive_number(tolerance, "tolerance")
-    if max_evaluations < 2:
+    if whole_number(max_evaluations, "max_evaluations") < 2:
         raise ValueError(f"max_evaluations = {max_evaluations}: at least 2 are needed.")
     paths = moving(path_a, "path_a"), moving(path_b, "path_b")
     for path in paths:
@@ -120,6 +121,10 @@ def _end(paths: tuple[Any, Any], start: float, duration: float) -> float:
         If a path ends before, or no time is left between the start and the end.
     """
     end = start + duration
+    if max(abs(start), end) > GREATEST:
+        raise ValueError(
+            f"start = {start!r}, duration = {duration!r}: no time may be beyond {GREATEST:g} s."
+        )
     if not end > start:
         raise ValueError(
             f"start + duration = {start!r} + {duration!r} is the start again, as times there are "
