@@ -11,6 +11,10 @@ SHOWN_CHARACTERS = 200
 """Longest piece of an offending value that a message repeats, in characters."""
 
 
+DEEPEST = 8
+"""Most dimensions of an array that is read. NumPy itself stops walking at 32 and at 64."""
+
+
 def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
     """Return `value` as a message repeats it: its repr, cut short."""
     try:
@@ -27,10 +31,17 @@ def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
 
 def shape_of(value: Any) -> tuple[int, ...] | None:
     """Return the shape of what may be an array; None where its rows differ in length."""
+    if isinstance(value, np.ndarray):
+        return tuple(value.shape)
     try:
-        return tuple(np.shape(value))
+        # As objects, so that no element is read as a number, which a masked one would warn of.
+        objects = np.array(value, dtype=object)
     except (ValueError, RecursionError):
         return None
+    if objects.ndim > DEEPEST:
+        return None
+    ragged = any(isinstance(item, list | tuple | np.ndarray) for item in objects.flat)
+    return None if ragged else tuple(objects.shape)
 
 
 def real_array(value: Any) -> NDArray[np.float64]:
@@ -49,10 +60,16 @@ def real_array(value: Any) -> NDArray[np.float64]:
     given = value if isinstance(value, np.ndarray) else np.array(value, dtype=object)
     if given.dtype.kind not in "iufO":
         raise TypeError(f"numbers of the kind {given.dtype}")
+    if given.ndim > DEEPEST:
+        raise ValueError(f"lists in lists, more than {DEEPEST} deep")
+    if isinstance(given, np.ma.MaskedArray) and np.ma.is_masked(given):
+        raise TypeError("a masked array: fill it, or leave the masked numbers out")
     if given.dtype.kind == "O":
         for item in given.flat:
             if isinstance(item, bool | np.bool_ | str | bytes) or item is None:
-                raise TypeError(f"{item!r} is no number")
+                raise TypeError(f"{shown(item)} is no number")
+            if item is np.ma.masked:
+                raise TypeError("a masked number")
     try:
         return np.array(given, dtype=np.float64)
     except OverflowError as error:

@@ -43,6 +43,7 @@ CALLS: dict[str, Callable[..., Any]] = {
             *(g.Line, g.ConicArc, g.RationalBezier, g.NurbsCurve, g.FormulaCurve),
             *(g.Plane, g.Sphere, g.Cylinder, g.Cone, g.Torus, g.NurbsSurface, g.BezierPatch),
             *(g.Revolution, g.Extrusion, g.SuperellipsoidPole, g.FormulaSurface),
+            *(g.SurfaceCurve, g.NurbsPcurve, g.pcurve_of),
             *(m.Pose, m.Twist, m.Fixed, m.ConstantTwist, m.Screw, m.Helix, m.Spiral),
             *(m.Offset, m.Carried, m.PoseSamples, so.Edge, so.Apex),
         )

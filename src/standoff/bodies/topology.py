@@ -94,8 +94,13 @@ def check_parts(
     vertices: Array, edges: Sequence[Any], faces: Sequence[Any], dimension: int
 ) -> None:
     """Raise BodyError where parts are of the wrong kind, loose, or bound no convex body."""
-    if dimension not in (2, 3):
-        raise BodyError(f"dimension = {dimension!r}: give 2 (planar loop) or 3.")
+    given: Any = dimension
+    if (
+        isinstance(given, bool)
+        or not isinstance(given, int | np.integer)
+        or dimension not in (2, 3)
+    ):
+        raise BodyError(f"dimension = {shown(dimension)}: give 2 (planar loop) or 3.")
     for name, parts, kind in (("Edge", edges, Edge), ("Face", faces, Face)):
         for k, part in enumerate(parts):
             if not isinstance(part, kind):
@@ -124,7 +129,8 @@ def check_parts(
 
 def parts_of(parts: Any, name: str) -> tuple[Any, ...]:
     """`parts` as a tuple; TypeError where they are no sequence."""
-    if isinstance(parts, str | bytes | dict) or not isinstance(parts, Iterable):
+    no_list = isinstance(parts, np.ndarray) and parts.ndim == 0  # which says it were iterable
+    if no_list or isinstance(parts, str | bytes | dict) or not isinstance(parts, Iterable):
         raise TypeError(f"{name} = {shown(parts)}: give a list.")
     return tuple(parts)
 

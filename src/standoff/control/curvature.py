@@ -13,9 +13,11 @@ from standoff.bodies.body import Body
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
 from standoff.geometry.swept import Extrusion
-from standoff.geometry.validation import Array
+from standoff.geometry.validation import Array, finite
 from standoff.kernels import layout as L
 from standoff.kernels.entries import coedge_parameters, on_face
+from standoff.real_numbers import shown
+from standoff.tracking.inputs import check_body
 from standoff.tracking.proximity import charts_of
 
 # Tangents whose area falls below this part of their lengths' product, or of which one (over the
@@ -69,8 +71,7 @@ def least_curvature(body: Body) -> LeastCurvature:
     TypeError
         Not a body.
     """
-    if not isinstance(body, Body):
-        raise TypeError(f"{body!r} is not a Body: make one with so.shapes or Body.from_brep.")
+    check_body(body)
     found = [_of_face(body, k) for k in range(body.n_faces)]
     if not body.n_faces:
         found = [_of_edge(body, e.curve) for e in body.edge_parts]
@@ -83,7 +84,28 @@ def principal_curvatures(surface: Surface, u: float, v: float) -> tuple[float, f
     """(least, greatest) curvature towards f_u x f_v, 1/length; None at a pole of the surface.
 
     A sphere whose f_u x f_v points outwards has (-1/r, -1/r).
+
+    Parameters
+    ----------
+    surface : Surface
+    u, v : float
+        Its parameters; angles in radians.
+
+    Returns
+    -------
+    (float, float) or None
+
+    Raises
+    ------
+    ValueError
+        Not a surface, or a parameter that is no finite number.
     """
+    if not isinstance(surface, Surface):
+        raise ValueError(f"surface is {shown(surface)}: give a Surface.")
+    return _curvatures(surface, float(finite(u, "u", ())), float(finite(v, "v", ())))
+
+
+def _curvatures(surface: Surface, u: float, v: float) -> tuple[float, float] | None:
     _, xu, xv, xuu, xuv, xvv = surface.jet(u, v)
     normal = np.cross(xu, xv)
     area = float(np.linalg.norm(normal))
@@ -124,13 +146,13 @@ def _search_chart(body: Body, number: int, surface: Surface) -> float:
     def curvature(at: Array) -> float:
         if not on_face(body.ints, body.reals, number, at[0], at[1]):
             return math.inf
-        both = principal_curvatures(surface, at[0], at[1])
+        both = _curvatures(surface, at[0], at[1])
         return math.inf if both is None else min(-outward * both[0], -outward * both[1])
 
     inside = _samples(body, number)
     boundary = [
         min(-outward * k for k in both)
-        for both in (principal_curvatures(surface, *at) for at in _sides(body, number))
+        for both in (_curvatures(surface, *at) for at in _sides(body, number))
         if both is not None
     ]
     best = min(boundary, default=math.inf)

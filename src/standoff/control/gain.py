@@ -13,7 +13,8 @@ from standoff.control.curvature import least_curvature
 from standoff.geometry.surfaces import Plane, Sphere
 from standoff.geometry.validation import finite, not_negative, positive
 from standoff.kernels import layout as L
-from standoff.tracking.inputs import check_pair
+from standoff.real_numbers import real_array, shape_of, shown
+from standoff.tracking.inputs import check_body, check_pair
 
 # A root of a derivative counts as real where its imaginary part is below this part of it.
 REAL_ROOT = 1e-6
@@ -115,7 +116,15 @@ def witness_speeds(
     -------
     (float, float)
         Of A's and of B's witness point, length/s; inf where there is no bound.
+
+    Raises
+    ------
+    ValueError
+        Numbers that are negative, NaN or not in order, or a speed that is not finite.
     """
+    curvature_a, curvature_b = _curvature(curvature_a), _curvature(curvature_b)
+    speed, spin = _motion(speed, spin)
+    distance = _ends(distance)
     if curvature_a == curvature_b == 0.0 and (speed > 0.0 or spin > 0.0):
         return math.inf, math.inf
     v, (p_a, p_b, bottom) = Polynomial([speed, spin]), _inverse(curvature_a, curvature_b)
@@ -178,7 +187,26 @@ def least_eigenvalue(curvature_a: float, curvature_b: float, distance: float) ->
 
     1 + d (kA + kB)/2 - sqrt(1 + (d (kA - kB)/2)²), for least curvatures kA, kB and distance d;
     against a point 1 + d k. It is 0 at contact and where both bodies may be flat.
+
+    Parameters
+    ----------
+    curvature_a, curvature_b : float
+        Least normal curvatures of the cores, 1/length; inf for a point.
+    distance : float
+        Of the cores, length.
+
+    Returns
+    -------
+    float
+        Dimensionless.
+
+    Raises
+    ------
+    ValueError
+        A curvature that is negative or NaN, a distance that is negative or not finite.
     """
+    curvature_a, curvature_b = _curvature(curvature_a), _curvature(curvature_b)
+    distance = not_negative(distance, "distance")
     point = math.isinf(curvature_a), math.isinf(curvature_b)
     if all(point):
         return 1.0  # no parameters: the masked identity
@@ -196,7 +224,22 @@ def reach(body: Body) -> float:
 
     Exact where it is made of vertices and straight or plane parts, or of a whole ellipsoid about
     its origin; else the farthest corner of its box.
+
+    Parameters
+    ----------
+    body : Body
+
+    Returns
+    -------
+    float
+        Length; inf for a half-space.
+
+    Raises
+    ------
+    TypeError
+        Not a body.
     """
+    check_body(body)
     if not body.bounded:
         return math.inf
     centre = body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
@@ -219,18 +262,37 @@ def _motion(speed: float, spin: float) -> tuple[float, float]:
 
 
 def _range(distance: Any) -> tuple[float, float]:
-    if np.ndim(distance) == 0:
+    if shape_of(distance) == ():
         return not_negative(distance, "distance"), math.inf
-    least, most = (float(x) for x in finite(distance, "distance", (2,)))
-    if not 0.0 <= least <= most:
-        raise ValueError(f"distance = {distance!r}: give (least, most) with 0 <= least <= most.")
+    return _ends(finite(distance, "distance", (2,)))
+
+
+def _ends(distance: Any) -> tuple[float, float]:
+    """(least, most), both zero or above; the second may be infinite."""
+    try:
+        least, most = (float(x) for x in real_array(distance).reshape(2))
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"distance = {shown(distance)}: give (least, most).") from error
+    if not (0.0 <= least <= most and least < math.inf):
+        raise ValueError(
+            f"distance = {shown(distance)}: give (least, most) with 0 <= least <= most."
+        )
     return least, most
+
+
+def _curvature(value: Any) -> float:
+    """A least curvature: zero or above, inf for a point."""
+    try:
+        curvature = float(real_array(value).reshape(()))
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"A least curvature of {shown(value)} is not a number.") from error
+    if not curvature >= 0.0:
+        raise ValueError(f"A least curvature of {curvature}: give 0 or more, inf for a point.")
+    return curvature
 
 
 def _fraction(curvature: float) -> tuple[float, float]:
     """(n, m) with curvature = n / m: finite for a point too."""
-    if not curvature >= 0.0:
-        raise ValueError(f"A least curvature of {curvature}: give 0 or more, inf for a point.")
     return (1.0, 0.0) if math.isinf(curvature) else (curvature, 1.0)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from standoff.geometry.validation import not_negative, positive
 from standoff.kernels import integrators as I
+from standoff.real_numbers import shown
 from standoff.tracking.choices import INTEGRATORS, choice
 from standoff.tracking.feedback import Feedback, growth_factor
 
@@ -48,7 +50,22 @@ def growth_polynomial(integrator: str) -> Polynomial:
 
 
 def stability_limit(integrator: str) -> float:
-    """The least z = K h > 0 at which |R(-z)| reaches 1: beyond it the errors grow."""
+    """The least z = K h > 0 at which |R(-z)| reaches 1: beyond it the errors grow.
+
+    Parameters
+    ----------
+    integrator : "euler", "heun", "midpoint" or "rk4"
+
+    Returns
+    -------
+    float
+        Gain times step, dimensionless.
+
+    Raises
+    ------
+    ValueError
+        Unknown integrator.
+    """
     factor = growth_polynomial(integrator)
     crossings = np.concatenate([(factor - 1.0).roots(), (factor + 1.0).roots()])
     real = -crossings.real[np.abs(crossings.imag) <= REAL_ROOT]
@@ -69,8 +86,19 @@ def sampled_roots(integrator: str, feedback: Feedback, dt: float) -> Complex:
     -------
     (n,) complex array
         Inside the unit circle the loop is stable. As the gain grows they draw the root locus.
+
+    Raises
+    ------
+    TypeError
+        Not a feedback.
+    ValueError
+        Unknown integrator; a step that is not positive; a feedback that does not go with them.
     """
     step = positive(dt, "dt")
+    choice(integrator, "integrator", INTEGRATORS)
+    given: Any = feedback
+    if isinstance(given, type) or not isinstance(given, Feedback):
+        raise TypeError(f"feedback is {shown(feedback)}: give one of so.feedback.")
     rates = np.asarray(feedback.resolved(integrator, step).rates(), dtype=np.complex128)
     return np.atleast_1d(np.asarray(growth_factor(integrator, rates * step), dtype=np.complex128))
 
@@ -137,10 +165,12 @@ def euler_min_gain(error: float, acceleration: float, dt: float) -> float:
     -------
     float
         K, 1/s; inf where Euler would not be stable with it (2/dt and above).
+
+    Raises
+    ------
+    ValueError
+        An error or a step that is not positive, a negative acceleration.
     """
-    gain = (
-        positive(dt, "dt")
-        * not_negative(acceleration, "acceleration")
-        / (2.0 * positive(error, "error"))
-    )
+    dt = positive(dt, "dt")
+    gain = dt * not_negative(acceleration, "acceleration") / (2.0 * positive(error, "error"))
     return gain if gain * dt < stability_limit("euler") else math.inf

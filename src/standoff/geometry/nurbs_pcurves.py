@@ -65,8 +65,8 @@ class NurbsPcurve(Pcurve):
 
     def __init__(self, control_points: Any, knots: Any, weights: Any = None) -> None:
         points = finite(control_points, "control_points", (-1, 2))
-        w = checked_weights(weights, points)
         vector = knot_vector(knots, len(points), "knots", "control points")
+        w = checked_weights(weights, points)
         rows = np.column_stack([points * w[:, None], w])
         spans = [
             BezierPcurve(matrix @ rows[start : start + vector.degree + 1], a, b)

@@ -16,6 +16,7 @@ from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
 from standoff.kernels.entries import pcurve_jet
+from standoff.real_numbers import shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +58,10 @@ def pcurve_of(curve: Curve, surface: Surface) -> Pcurve:
     ValueError
         The kinds do not meet in a line or conic of (u, v).
     """
+    if not isinstance(curve, Curve):
+        raise ValueError(f"curve is {shown(curve)}: give a Curve.")
+    if not isinstance(surface, Surface):
+        raise ValueError(f"surface is {shown(surface)}: give a Surface.")
     own = curve.pcurve_on(surface)
     if own is not None:
         return own

@@ -10,8 +10,9 @@ import numpy as np
 from standoff.geometry.curves import Curve, fill_curve
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
+from standoff.geometry.validation import Array, finite
 from standoff.kernels import layout as L
+from standoff.real_numbers import shown
 
 
 class SurfaceCurve(Curve):
@@ -41,8 +42,15 @@ class SurfaceCurve(Curve):
         last: float,
         others: Sequence[tuple[Surface, Pcurve]] = (),
     ) -> None:
+        first, last = float(finite(first, "first", ())), float(finite(last, "last", ()))
         if not first < last:
             raise ValueError(f"SurfaceCurve from t = {first} to {last}: give first < last.")
+        _check_chart((surface, pcurve), "SurfaceCurve")
+        listed: Any = others
+        if not isinstance(listed, Sequence) or isinstance(listed, str | bytes):
+            raise ValueError(f"others = {shown(listed)}: give a list of (surface, pcurve).")
+        for number, one in enumerate(listed):
+            _check_chart(one, f"others[{number}]")
         object.__setattr__(self, "surface", surface)
         object.__setattr__(self, "pcurve", pcurve)
         object.__setattr__(self, "others", tuple(others))
@@ -51,10 +59,16 @@ class SurfaceCurve(Curve):
     @staticmethod
     def isoline(surface: Surface, *, u: Any = None, v: Any = None) -> SurfaceCurve:
         """The curve u = const (v its parameter) or v = const over the surface's domain."""
+        if not isinstance(surface, Surface):
+            raise ValueError(f"surface is {shown(surface)}: give a Surface.")
+        if (u is None) == (v is None):
+            raise ValueError(f"isoline at u = {shown(u)}, v = {shown(v)}: give one of them.")
         u0, u1, v0, v1 = surface.domain
         if u is not None:
+            u = float(finite(u, "u", ()))
             matrix = np.array([[0.0, 0.0, u], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
             return SurfaceCurve(surface, Pcurve(L.LINE, matrix), v0, v1)
+        v = float(finite(v, "v", ()))
         matrix = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, v], [0.0, 0.0, 1.0]])
         return SurfaceCurve(surface, Pcurve(L.LINE, matrix), u0, u1)
 
@@ -97,3 +111,12 @@ class SurfaceCurve(Curve):
             self.last,
             [(s.transformed(linear, shift), p) for s, p in self.others],
         )
+
+
+def _check_chart(one: Any, name: str) -> None:
+    """Raise ValueError where something given is no pair of a surface and a pcurve."""
+    surface, pcurve = one if isinstance(one, tuple | list) and len(one) == 2 else (one, None)
+    if not isinstance(surface, Surface):
+        raise ValueError(f"{name}: the surface is {shown(surface)}: give a Surface.")
+    if not isinstance(pcurve, Pcurve):
+        raise ValueError(f"{name}: the pcurve is {shown(pcurve)}: give a Pcurve.")

@@ -12,6 +12,7 @@ from standoff.geometry.surfaces import Domain, Surface
 from standoff.geometry.torus import checked_turn, full_turn
 from standoff.geometry.validation import LEAST, Array, finite, vector3
 from standoff.kernels import layout as L
+from standoff.real_numbers import shown
 
 # Points of a profile that are looked at.
 PROFILE_SAMPLES = 65
@@ -201,7 +202,7 @@ class Extrusion(Surface):
 
 def _profile_points(profile: Any, name: str) -> Array:
     if not isinstance(profile, Curve):
-        raise ValueError(f"{name} of {profile!r}: give a Curve as its profile.")
+        raise ValueError(f"{name} of {shown(profile)}: give a Curve as its profile.")
     spots = np.linspace(profile.first, profile.last, PROFILE_SAMPLES)
     points = np.array([profile.point(float(t)) for t in spots])
     extent = float(np.ptp(points, axis=0).max())

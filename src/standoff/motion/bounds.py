@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol, cast
+from typing import Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -113,10 +113,9 @@ class Bounded:
         breaks: ArrayLike = (),
         lengths: float | None = None,
     ) -> None:
-        pose, twist = getattr(path, "pose", None), getattr(path, "twist", None)
-        if not callable(pose) or not callable(twist):
-            raise TypeError(f"{path!r} is no path: it needs pose(t) and twist(t)")
-        self._pose, self._twist = pose, twist
+        check_path(path)
+        given: Any = path
+        self._pose, self._twist = given.pose, given.twist
         self.start = float(getattr(path, "start", -math.inf))
         self.end = float(getattr(path, "end", math.inf))
         self._origin = MotionBounds(
@@ -150,6 +149,12 @@ class Bounded:
         """Return the times strictly between `first` and `last` [s] at which the twist jumps."""
         within = self._breaks[(self._breaks > first) & (self._breaks < last)]
         return [float(t) for t in within]
+
+
+def check_path(path: object) -> None:
+    """Raise TypeError where something given is no path."""
+    if not all(callable(getattr(path, name, None)) for name in ("pose", "twist")):
+        raise TypeError(f"{shown(path)} is no path: it needs pose(t) and twist(t)")
 
 
 def _bound(value: float, name: str) -> float:
@@ -231,7 +236,7 @@ def known(path: object) -> BoundedPath:
     """
     if not callable(getattr(path, "bounds", None)) or not callable(getattr(path, "breaks", None)):
         raise TypeError(
-            f"nothing is known of how fast {path!r} moves between two times: wrap it in "
+            f"nothing is known of how fast {shown(path)} moves between two times: wrap it in "
             "standoff.motion.Bounded(path, speed=..., acceleration=..., angular_speed=..., "
             "angular_acceleration=...)"
         )

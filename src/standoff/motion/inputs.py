@@ -16,10 +16,18 @@ GREATEST = 1e100
 """Greatest component of a vector or matrix, in any unit: its square stays in float64."""
 
 
+LONGEST = 400
+"""Longest array that a message repeats, in characters: a matrix of 4 by 4 with all its digits."""
+
+
 def text(value: ArrayLike) -> str:
     """Write an array on one line, short enough for an error message."""
-    shown = np.array2string(np.asarray(value), precision=6, threshold=20, edgeitems=3)
-    return " ".join(shown.split())
+    try:
+        given = np.asarray(value)
+        written = " ".join(np.array2string(given, precision=6, threshold=20, edgeitems=3).split())
+    except (ValueError, RecursionError):  # too deep a list, or too long a whole number
+        return shown(value)
+    return written if len(written) <= LONGEST else written[: LONGEST - 1] + "…"
 
 
 def array(
@@ -47,7 +55,7 @@ def array(
 def number(value: SupportsFloat, name: str) -> float:
     """Read one finite number."""
     try:
-        if isinstance(value, bool | np.bool_ | str | bytes):
+        if isinstance(value, bool | np.bool_ | str | bytes | np.ma.MaskedArray):
             raise TypeError("no number")
         read = float(value)
     except (TypeError, ValueError, OverflowError) as error:
@@ -55,6 +63,13 @@ def number(value: SupportsFloat, name: str) -> float:
     if not math.isfinite(read):
         raise ValueError(f"{name} is {read}: give a finite number")
     return read
+
+
+def word(value: object, name: str, known: tuple[str, ...]) -> None:
+    """Refuse everything but the words of `known`; an array would only be compared by element."""
+    if not isinstance(value, str) or value not in known:
+        choices = " or ".join(f'"{choice}"' for choice in known)
+        raise ValueError(f"{name} is {shown(value)}: give {choices}")
 
 
 def direction(value: ArrayLike, name: str) -> FloatArray:

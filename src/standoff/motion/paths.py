@@ -12,7 +12,15 @@ from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 from standoff.motion import inputs
-from standoff.motion.bounds import MotionBounds, bounds_of, breaks_of, cross, length, turning
+from standoff.motion.bounds import (
+    MotionBounds,
+    bounds_of,
+    breaks_of,
+    check_path,
+    cross,
+    length,
+    turning,
+)
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import Twist, TwistLike
@@ -221,6 +229,7 @@ class Offset:
     """
 
     def __init__(self, path: Path, pose: PoseLike) -> None:
+        check_path(path)
         self._path = path
         self._offset = Pose.of(pose)
 
@@ -269,6 +278,8 @@ class Carried:
     """
 
     def __init__(self, carrier: Path, within: Path) -> None:
+        check_path(carrier)
+        check_path(within)
         self._carrier = carrier
         self._within = within
 

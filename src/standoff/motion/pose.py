@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray, text
 from standoff.motion.tolerances import ORTHONORMALITY, QUATERNION_ROUNDING, UNIT_QUATERNION
+from standoff.real_numbers import shape_of, shown
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -96,13 +97,13 @@ class Pose:
             return value
         if _is_pair(value):
             rotation, translation = value
-            if np.shape(rotation) == (4,):
+            if shape_of(rotation) == (4,):
                 raise ValueError(_unnamed_quaternion(rotation))
             return cls(rotation, translation)
         try:
             given = np.asarray(value)
-        except ValueError as error:
-            raise ValueError(f"no pose: {value!r}; {_ACCEPTED}") from error
+        except (ValueError, RecursionError) as error:
+            raise ValueError(f"no pose: {shown(value)}; {_ACCEPTED}") from error
         if given.shape == (4,):
             raise ValueError(_unnamed_quaternion(given))
         if given.shape != (4, 4):

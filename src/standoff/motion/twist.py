@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray, text
 from standoff.motion.pose import Pose, PoseLike
+from standoff.real_numbers import shown
 
 Frame: TypeAlias = Literal["world", "body"]
 """The axes in which a twist's components are given."""
@@ -51,8 +52,7 @@ class Twist:
     frame: Frame
 
     def __init__(self, v: ArrayLike, omega: ArrayLike, frame: Frame = "world") -> None:
-        if frame not in get_args(Frame):
-            raise ValueError(f'frame is {frame!r}: give "world" or "body"')
+        inputs.word(frame, "frame", get_args(Frame))
         object.__setattr__(self, "v", inputs.array(v, "v", (3,)))
         object.__setattr__(self, "omega", inputs.array(omega, "omega", (3,)))
         object.__setattr__(self, "frame", frame)
@@ -75,8 +75,8 @@ class Twist:
             return value
         try:
             given = np.asarray(value)
-        except ValueError as error:
-            raise ValueError(f"no twist: {value!r}; {_ACCEPTED}") from error
+        except (ValueError, RecursionError) as error:
+            raise ValueError(f"no twist: {shown(value)}; {_ACCEPTED}") from error
         if given.shape not in ((6,), (2, 3)):
             raise ValueError(f"no twist: shape {given.shape}, value {text(given)}; {_ACCEPTED}")
         v, omega = given.reshape(2, 3)

@@ -207,8 +207,7 @@ class Spiral:
 
 
 def _turns(orientation: Orientation) -> bool:
-    if orientation not in get_args(Orientation):
-        raise ValueError(f'orientation is {orientation!r}: give "fixed" or "turning"')
+    inputs.word(orientation, "orientation", get_args(Orientation))
     return orientation == "turning"
 
 

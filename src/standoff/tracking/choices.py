@@ -10,6 +10,7 @@ import numpy as np
 
 from standoff.kernels import frame as K
 from standoff.kernels import integrators as I
+from standoff.real_numbers import shown
 
 LAWS = {"predictor-corrector": K.LAW_PC, "paper": K.LAW_PAPER}
 PREDICTORS = {
@@ -34,19 +35,19 @@ def choice(value: Any, name: str, table: dict[str, int]) -> int:
     """The number of a named option; the error lists the names and the nearest one."""
     if isinstance(value, str) and value in table:
         return table[value]
-    near = difflib.get_close_matches(str(value), list(table), 1)
+    near = difflib.get_close_matches(value, list(table), 1) if isinstance(value, str) else ()
     hint = f" Did you mean {near[0]!r}?" if near else ""
-    raise ValueError(f"Unknown {name} {value!r}: choose one of {sorted(table)}.{hint}")
+    raise ValueError(f"Unknown {name} {shown(value)}: choose one of {sorted(table)}.{hint}")
 
 
 def positive_number(value: Any, name: str, allow_infinite: bool = False) -> float:
     try:
-        # float() reads "5" and True, but neither was meant as a number
-        if isinstance(value, (str, bytes, bool, np.bool_)):
+        # float() reads "5" and True, but neither was meant as a number, and a masked one as NaN
+        if isinstance(value, (str, bytes, bool, np.bool_, np.ma.MaskedArray)):
             raise TypeError("no number")
         number = float(value)
     except (TypeError, ValueError, OverflowError) as error:
-        raise ValueError(f"{name} = {value!r} is not a number.") from error
+        raise ValueError(f"{name} = {shown(value)} is not a number.") from error
     if not number > 0.0 or (math.isinf(number) and not allow_infinite):
         raise ValueError(f"{name} = {number}: must be positive and finite.")
     return number
@@ -56,5 +57,5 @@ def whole_number(value: Any, name: str) -> int:
     """A positive whole number; text, True and fractions are none."""
     whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
     if not whole or value < 1:
-        raise ValueError(f"{name} = {value!r}: must be a whole number of at least 1.")
+        raise ValueError(f"{name} = {shown(value)}: must be a whole number of at least 1.")
     return int(value)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import product
+from numbers import Complex, Real
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -17,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from standoff.kernels import frame as K
 from standoff.kernels import integrators as I
+from standoff.real_numbers import DEEPEST, shown
 from standoff.tracking.choices import INTEGRATORS, choice, positive_number
 
 Array = NDArray[np.float64]
@@ -40,12 +42,22 @@ def growth_factor(integrator: str, z: Any) -> Any:
     z : complex or array of complex
         The rate times the step (dimensionless); -K h for the paper's law.
 
+    Returns
+    -------
+    complex or array of complex
+        Of the shape of `z`; real where `z` is.
+
+    Raises
+    ------
+    ValueError
+        Unknown integrator, or `z` is not numeric.
+
     Notes
     -----
     From the tableaux of ``standoff.kernels.integrators``, stage by stage.
     """
     number = choice(integrator, "integrator", INTEGRATORS)
-    z = np.asarray(z)
+    z = _complex(z)
     stage: Any = np.zeros_like(z)
     total: Any = np.ones_like(z)
     for i in range(int(I.STAGES[number])):
@@ -54,11 +66,43 @@ def growth_factor(integrator: str, z: Any) -> Any:
     return total[()]
 
 
+def _complex(z: Any) -> Any:
+    """z as an array of floating or complex numbers; ValueError where it is not numeric."""
+    try:
+        given = z if isinstance(z, np.ndarray) else np.array(z, dtype=object)
+        if given.dtype.kind in "fc" and not isinstance(given, np.ma.MaskedArray):
+            return given
+        entries: list[Any] = given.ravel().tolist() if given.ndim <= DEEPEST else [None]
+        if all(isinstance(x, Real) and not isinstance(x, bool) for x in entries):
+            return given.astype(np.float64)
+        if all(isinstance(x, Complex) and not isinstance(x, bool) for x in entries):
+            return given.astype(np.complex128)
+    except (TypeError, ValueError, OverflowError, RecursionError) as error:
+        raise ValueError(f"z = {shown(z)} is not numeric.") from error
+    raise ValueError(f"z = {shown(z)} is not numeric.")
+
+
 def max_gain(integrator: str, dt: float) -> float:
-    """The largest stable gain of the paper's law, 1/s, for an integrator and a step in s.
+    """The largest stable gain of the paper's law for an integrator and a step.
 
     The errors obey dPsi/dt = -K Psi, so the limit is that of the integrator on the negative real
     axis: K dt < 2 for Euler, Heun and midpoint, 2.785 for RK4 (docs/laws.md).
+
+    Parameters
+    ----------
+    integrator : "euler", "heun", "midpoint" or "rk4"
+    dt : float
+        Time from frame to frame, s, positive.
+
+    Returns
+    -------
+    float
+        K, 1/s; a gain must stay below it.
+
+    Raises
+    ------
+    ValueError
+        Unknown integrator, or a step that is not positive and finite.
     """
     number = choice(integrator, "integrator", INTEGRATORS)
     return I.STABILITY_LIMITS[number] / positive_number(dt, "dt")

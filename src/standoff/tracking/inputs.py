@@ -12,6 +12,7 @@ from standoff.bodies.body import Body
 from standoff.kernels import frame as K
 from standoff.kernels.entries import on_face
 from standoff.motion import Pose, PoseLike, Twist, TwistLike
+from standoff.real_numbers import shown
 from standoff.tracking.proximity import charts_of
 
 Array = NDArray[np.float64]
@@ -59,11 +60,16 @@ def same_body(a: Body, b: Body) -> bool:
     return np.array_equal(a.ints, b.ints) and np.array_equal(a.reals, b.reals)
 
 
+def check_body(body: object) -> None:
+    """Raise TypeError where something given is no body."""
+    if not isinstance(body, Body):
+        raise TypeError(f"{shown(body)} is not a Body: make one with so.shapes or Body.from_brep.")
+
+
 def check_pair(a: Body, b: Body) -> None:
     """Raise ValueError where two bodies cannot be a pair."""
-    for body in (a, b):
-        if not isinstance(body, Body):
-            raise TypeError(f"{body!r} is not a Body: make one with so.shapes or Body.from_brep.")
+    check_body(a)
+    check_body(b)
     if not a.bounded and not b.bounded:
         raise ValueError("Two half-spaces have no pair of witness points: one must be bounded.")
     if a.dimension != b.dimension:
@@ -108,7 +114,7 @@ def place(state: Array, at: int, body: Body, feature: Any, parameters: Any) -> N
         index = operator.index(index)
     except (TypeError, ValueError) as error:
         raise ValueError(
-            f"{feature!r} is no feature: give so.Feature('face', 0) or ('face', 0)."
+            f"{shown(feature)} is no feature: give so.Feature('face', 0) or ('face', 0)."
         ) from error
     sizes = {"face": body.n_faces, "edge": body.n_edges, "vertex": body.n_vertices}
     if kind not in sizes or not 0 <= index < sizes[kind]:
@@ -118,12 +124,14 @@ def place(state: Array, at: int, body: Body, feature: Any, parameters: Any) -> N
     try:
         values = np.atleast_1d(np.asarray(parameters, dtype=np.float64)).ravel()
     except (TypeError, ValueError) as error:
-        raise ValueError(f"Parameters {parameters!r} are not numbers.") from error
+        raise ValueError(f"Parameters {shown(parameters)} are not numbers.") from error
     wanted = {"face": 2, "edge": 1, "vertex": 0}[kind]
     atlas = kind == "face" and charts_of(body, index)[1] > 1
     if len(values) not in (wanted, wanted + atlas) or not np.isfinite(values).all():
         also = " (and the number of its chart)" if atlas else ""
-        raise ValueError(f"A {kind} takes {wanted} finite parameters{also}, not {parameters!r}.")
+        raise ValueError(
+            f"A {kind} takes {wanted} finite parameters{also}, not {shown(parameters)}."
+        )
     offset = {"face": 0, "edge": body.n_faces, "vertex": body.n_faces + body.n_edges}[kind]
     chart = -1
     if kind == "face":

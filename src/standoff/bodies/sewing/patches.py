@@ -15,6 +15,7 @@ from standoff.bodies.sewing.sides import SIDE_NAMES, Side, gap
 from standoff.bodies.topology import BodyError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
+from standoff.real_numbers import shown
 
 # Halvings of one patch before it counts as singular: 2^8 pieces on its way round.
 MAX_HALVINGS = 8
@@ -73,7 +74,7 @@ def check_patches(patches: Sequence[Any]) -> None:
         raise BodyError("No patches: a body needs a closed shell of them.")
     for k, surface in enumerate(patches):
         if not isinstance(surface, Surface):
-            raise BodyError(f"patch {k} is {surface!r}: give a Surface with a finite domain.")
+            raise BodyError(f"patch {k} is {shown(surface)}: give a Surface with a finite domain.")
         if not np.isfinite(surface.domain).all():
             raise BodyError(
                 f"patch {k} is a {type(surface).__name__} without limits (domain "

@@ -20,6 +20,7 @@ from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array, positive
+from standoff.real_numbers import shown
 
 # Sides closer than this part of the body's size are one edge: the roundoff of making patches.
 SEWING_TOLERANCE = 1e-9
@@ -61,8 +62,12 @@ def sew(patches: Sequence[Any], tolerance: float | None = None) -> Sewn:
     BodyError
         Sides that match none or several, two shells, no volume; the message names the patches.
     """
-    if isinstance(patches, Surface) or not isinstance(patches, Iterable):
-        raise BodyError(f"patches = {patches!r}: give a sequence of surfaces that close a shell.")
+    given: Any = patches
+    no_list = isinstance(given, np.ndarray) and given.ndim == 0
+    if no_list or isinstance(patches, Surface) or not isinstance(patches, Iterable):
+        raise BodyError(
+            f"patches = {shown(patches)}: give a sequence of surfaces that close a shell."
+        )
     patches = list(patches)
     check_patches(patches)
     size = _size(patches)

@@ -15,6 +15,7 @@ from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, RationalBezier
 from standoff.geometry.nurbs import BezierPatch
 from standoff.geometry.swept import Revolution
 from standoff.geometry.validation import Array, positive
+from standoff.real_numbers import shown
 
 # Fewer patches than this would not keep their normals within a hemisphere.
 LEAST_PATCHES = 3
@@ -137,7 +138,7 @@ def _patches(patches: int, name: str) -> int:
     whole = isinstance(given, Integral) and not isinstance(given, bool)
     if not whole or not LEAST_PATCHES <= given <= MOST_PATCHES:
         raise BodyError(
-            f"{name}: patches = {patches!r}: give a whole number, at least 3 and at most "
+            f"{name}: patches = {shown(patches)}: give a whole number, at least 3 and at most "
             f"{MOST_PATCHES}."
         )
     return int(patches)

@@ -8,7 +8,7 @@ from standoff.bodies.body import Body
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere
-from standoff.geometry.validation import Array, finite, positive
+from standoff.geometry.validation import Array, finite, matrix3, positive
 
 # A gnomonic chart alone serves a face up to this tangent of the angle from its centre.
 SINGLE_CHART_REACH = 3.0
@@ -29,7 +29,8 @@ _AXES = np.array(
 
 def sphere_atlas(linear: Array, centre: Array) -> tuple[Sphere, ...]:
     """Six overlapping gnomonic charts of the ellipsoid linear @ (unit sphere) + centre."""
-    return tuple(Sphere(linear @ turn, centre) for turn in _AXES)
+    axes = matrix3(linear, "linear")
+    return tuple(Sphere(axes @ turn, centre) for turn in _AXES)
 
 
 def ellipsoid(a: float, b: float, c: float) -> Body:

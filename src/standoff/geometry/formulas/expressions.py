@@ -15,6 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from standoff.real_numbers import real_array, shown
+
 FUNCTIONS = {
     "sin": "sin", "cos": "cos", "tan": "tan",
     "asin": "asin", "acos": "acos", "atan": "atan", "atan2": "atan2",
@@ -82,21 +84,32 @@ def parameter_values(
     taken = {*variables, *FUNCTIONS, *CONSTANTS}
     values = {}
     if not isinstance(parameters, Mapping | None):
-        raise FormulaError(f"parameters = {parameters!r}: give a mapping of names to numbers.")
+        raise FormulaError(f"parameters = {shown(parameters)}: give a mapping of names to numbers.")
     for name, value in dict(parameters or {}).items():
         if not str(name).isidentifier() or name in taken:
             raise FormulaError(
-                f"Parameter {name!r}: give a name that is an identifier and is not one of "
+                f"Parameter {shown(name)}: give a name that is an identifier and is not one of "
                 f"{', '.join(sorted(taken))}."
             )
         try:
-            number = float(value)
-        except (TypeError, ValueError, OverflowError) as error:
-            raise FormulaError(f"Parameter {name} = {value!r} is not a number.") from error
+            # SymPy's own numbers are taken too.
+            number = float(real_array(float(value) if hasattr(value, "free_symbols") else value))
+        except (TypeError, ValueError) as error:
+            raise FormulaError(f"Parameter {name} = {shown(value)} is not a number.") from error
         if not np.isfinite(number):
             raise FormulaError(f"Parameter {name} = {number}: give a finite number.")
         values[name] = _fraction(repr(number))
     return values
+
+
+def _number(given: Any, name: str) -> float:
+    try:
+        number = float(real_array(given))
+    except (TypeError, ValueError) as error:
+        raise FormulaError(f"{name} = {shown(given)} is not a number.") from error
+    if not np.isfinite(number):
+        raise FormulaError(f"{name} = {number}: give a finite number.")
+    return number
 
 
 def read_expression(
@@ -124,12 +137,11 @@ def read_expression(
     elif isinstance(given, sympy.Expr):
         result = _rebuilt(given, name, known, variables, parameters)
     elif isinstance(given, int | float | np.integer | np.floating):
-        if not np.isfinite(float(given)):
-            raise FormulaError(f"{name} = {given}: give a finite number.")
-        result = _fraction(repr(float(given)))
+        result = _fraction(repr(_number(given, name)))
     else:
         raise FormulaError(
-            f"{name} is {given!r}: give text such as 'a*cos(u)', a SymPy expression or a number."
+            f"{name} is {shown(given)}: give text such as 'a*cos(u)', a SymPy expression or a "
+            "number."
         )
     if not result.is_number and result.free_symbols <= set(symbols.values()):
         if result.has(sympy.zoo, sympy.nan, sympy.oo, sympy.I):

@@ -1,0 +1,226 @@
+"""One call that works for every public function and constructor, argument by argument.
+
+Tests put other values in place of single arguments. Where a call has been left out it says why.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import standoff as so
+from standoff import control, geometry, motion
+from standoff.geometry import Line
+
+MODULES: dict[str, ModuleType] = {
+    "standoff": so,
+    "standoff.shapes": so.shapes,
+    "standoff.geometry": geometry,
+    "standoff.motion": motion,
+    "standoff.control": control,
+}
+NOT_CALLED = {
+    **dict.fromkeys(("Surface", "Curve", "Body"), "abstract, or made by its static methods"),
+    **dict.fromkeys(("Path", "BoundedPath"), "protocols"),
+    "FrameBuffer": "made from a tracker and a state, which need compiled kernels and check nothing",
+}
+"""Public classes with parameters whose constructors are not tried, and why."""
+
+SPHERE, BOX = so.shapes.sphere(0.5), so.shapes.box(1.0, 1.0, 1.0)
+HOME, AWAY = np.eye(4), so.Pose(np.eye(3), [3.0, 0.0, 0.0])
+PLANE = geometry.Plane.through(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 1.0, 0]))
+DIAGONAL = Line([0.0, 0.0], [1.0, 1.0])
+PCURVE = geometry.pcurve_of(DIAGONAL, PLANE)
+KNOTS = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]
+NET = [[[0.0, 0.0, 0.0], [0.0, 1.0, 0.1]], [[1.0, 0.0, 0.1], [1.0, 1.0, 0.5]]]
+MERIDIAN = Line([1.0, 0.0, -1.0], [2.0, 0.0, 1.0])
+CHART = {"linear": np.eye(3), "shift": np.zeros(3), "domain": (-1.0, 1.0, -1.0, 1.0)}
+RIGHT_ANGLES = {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}
+WINDING = {"rate": 1.0, "phase": 0.1, "orientation": "fixed"}
+AXES = {"a": 1.0, "b": 2.0, "c": 3.0}
+LOOP = [Line([0, 0], [1, 0]), Line([1, 0], [0, 1]), Line([0, 1], [0, 0])]
+
+SHAPES: dict[str, dict[str, Any]] = {
+    "box": {"x": 1.0, "y": 2.0, "z": 3.0, "rounding": 0.1},
+    "cap": {"radius": 1.0, "offset": 0.1},
+    "capsule": {"r": 1.0, "length": 2.0},
+    "cone": {"r": 1.0, "height": 2.0},
+    "cylinder": {"r": 1.0, "length": 2.0},
+    "egg": {"radius": 1.0, "length": 3.0, "taper": 0.3},
+    "ellipsoid": AXES,
+    "gore": {"radius": 1.0, "height": 3.0, "patches": 4},
+    "halfspace": {},
+    "hull_of_revolution": {"curve": MERIDIAN},
+    "lens": {"radius": 1.0, "offset": 0.4},
+    "planar_loop": {"curves": LOOP, "radius": 0.1},
+    "point": {},
+    "polytope": RIGHT_ANGLES,
+    "rounded_polytope": {**RIGHT_ANGLES, "rounding": 0.01},
+    "segment": {"length": 1.0},
+    "sphere": {"r": 1.0},
+    "sphere_atlas": {"linear": np.eye(3), "centre": np.zeros(3)},
+    "spindle": {"radius": 1.0, "length": 3.0, "patches": 3},
+    "superellipsoid": {**AXES, "e1": 0.5, "e2": 0.5},
+}
+
+GEOMETRY: dict[str, dict[str, Any]] = {
+    "BezierPatch": {"control_points": NET, "weights": [[1.0, 1.0], [1.0, 2.0]]},
+    **dict.fromkeys(("Cone", "Cylinder", "Plane", "Sphere"), CHART),
+    "SuperellipsoidPole": {**CHART, "e1": 0.5, "e2": 0.5},
+    "SuperellipsoidSide": {**CHART, "e1": 0.5, "e2": 0.5},
+    "ConicArc": {"centre": [0, 0], "a": [1, 0], "b": [0, 1], "first": 0.0, "last": 1.0},
+    "Extrusion": {"profile": DIAGONAL, "direction": [0, 0, 1], "first": 0.0, "last": 1.0},
+    "FormulaCurve": {
+        "x": "a*cos(t)",
+        "y": "sin(t)",
+        "z": "0",
+        "first": 0.0,
+        "last": 1.0,
+        "parameters": {"a": 2.0},
+    },
+    "FormulaSurface": {
+        "x": "a*u",
+        "y": "v",
+        "z": "u**2 + v**2",
+        "domain": [0, 1, 0, 1],
+        "parameters": {"a": 2.0},
+    },
+    "Line": {"p": [0.0, 0.0], "q": [1.0, 1.0]},
+    "NurbsCurve": {"control_points": [[0, 0], [1, 0], [1, 1]], "knots": KNOTS, "weights": [1] * 3},
+    "NurbsPcurve": {"control_points": [[0, 0], [1, 0], [1, 1]], "knots": KNOTS, "weights": [1] * 3},
+    "NurbsSurface": {
+        "control_points": NET,
+        "weights": [[1.0, 1.0], [1.0, 2.0]],
+        "knots_u": [0, 0, 1, 1],
+        "knots_v": [0, 0, 1, 1],
+    },
+    "Pcurve": {"kind": PCURVE.kind, "matrix": PCURVE.matrix},
+    "RationalBezier": {"control_points": [[0, 0], [1, 0], [1, 1]], "weights": [1.0, 1.0, 2.0]},
+    "Revolution": {"profile": MERIDIAN, "first": 0.0, "last": 1.0},
+    "SurfaceCurve": {
+        "surface": PLANE,
+        "pcurve": PCURVE,
+        "first": 0.0,
+        "last": 1.0,
+        "others": [(PLANE, PCURVE)],
+    },
+    "Plane.through": {"origin": [0, 0, 0], "along_u": [1, 0, 0], "along_v": [0, 1, 0]},
+    "SurfaceCurve.isoline": {"surface": geometry.BezierPatch(NET), "u": 0.5},
+    "Torus": {"major": 2.0, "minor": 1.0, "u0": 0.0, "u1": 1.0, "v0": 0.0, "v1": 1.0},
+    "ellipsoid_octants": AXES,
+    "ellipsoid_patches": AXES,
+    "pcurve_of": {"curve": DIAGONAL, "surface": PLANE},
+}
+
+MOTION: dict[str, dict[str, Any]] = {
+    "Bounded": {
+        "path": motion.Fixed(HOME),
+        "speed": 0.0,
+        "acceleration": 0.0,
+        "angular_speed": 0.0,
+        "angular_acceleration": 0.0,
+        "breaks": [0.5],
+    },
+    "Carried": {"carrier": motion.Fixed(HOME), "within": motion.Fixed(HOME)},
+    "ConstantTwist": {"pose": HOME, "twist": so.Twist.zero()},
+    "Fixed": {"pose": HOME},
+    "Helix": {"radius": 1.0, "pitch": 0.5, "centre": [0, 0, 0], "axis": [0, 0, 1], **WINDING},
+    "Offset": {"path": motion.Fixed(HOME), "pose": HOME},
+    "Pose": {"rotation": np.eye(3), "translation": [0.0, 0.0, 0.0]},
+    "PoseSamples": {"times": [0.0, 1.0], "poses": [HOME, AWAY]},
+    "Screw": {
+        "pose": HOME,
+        "axis": [0, 0, 1],
+        "point": [1, 0, 0],
+        "angular_rate": 1.0,
+        "pitch": 0.1,
+    },
+    "Spiral": {"radius": 1.0, "growth": 0.1, "centre": [0.0, 0.0], **WINDING},
+    "Twist": {"v": [1.0, 0.0, 0.0], "omega": [0.0, 0.0, 1.0], "frame": "world"},
+    "Pose.exp": {"rotation_vector": [0.0, 0.0, 1.0], "translation": [0.0, 0.0, 0.0]},
+    "Pose.from_wxyz": {"quaternion": [1.0, 0, 0, 0], "translation": [0.0, 0.0, 0.0]},
+    "Pose.from_xyzw": {"quaternion": [0.0, 0, 0, 1], "translation": [0.0, 0.0, 0.0]},
+    "Pose.of": {"value": HOME},
+    "Twist.between": {"first": HOME, "second": AWAY, "duration": 1.0},
+    "Twist.of": {"value": np.zeros(6)},
+    "read_pose_samples": {"file": "no_such_file.tum"},
+}
+
+
+BODIES: dict[str, dict[str, Any]] = {
+    "Body.from_brep": {
+        "vertices": [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]],
+        "faces": [],
+        "dimension": 3,
+        "edges": [so.Edge(Line([0, 0, -1], [0, 0, 1]), 0, 1)],
+        "radius": 0.1,
+        "tolerance": 1e-9,
+        "convexity_tolerance": 1e-6,
+    },
+    "Body.from_patches": {
+        "patches": geometry.ellipsoid_octants(1.0, 2.0, 3.0),
+        "tolerance": 1e-9,
+        "convexity_tolerance": 1e-6,
+        "radius": 0.1,
+    },
+    "max_gain": {"integrator": "heun", "dt": 1e-3},
+}
+"""Not of `standoff.shapes`, but they check like its shapes."""
+
+CONTROL: dict[str, dict[str, Any]] = {
+    "euler_min_gain": {"error": 1e-3, "acceleration": 0.1, "dt": 1e-3},
+    "growth_factor": {"integrator": "heun", "z": -0.5},
+    "growth_polynomial": {"integrator": "heun"},
+    "least_curvature": {"body": SPHERE},
+    "least_eigenvalue": {"curvature_a": 1.0, "curvature_b": 2.0, "distance": 0.1},
+    "min_gain": {
+        "a": SPHERE,
+        "b": SPHERE,
+        "error": 1e-3,
+        "speed": 0.1,
+        "spin": 0.1,
+        "distance": (0.1, 1.0),
+    },
+    "principal_curvatures": {"surface": geometry.Sphere(**CHART), "u": 0.1, "v": 0.2},
+    "reach": {"body": BOX},
+    "sampled_roots": {"integrator": "heun", "feedback": so.feedback.Linear(1.0), "dt": 1e-3},
+    "stability_limit": {"integrator": "heun"},
+    "steady_error": {"integrator": "heun", "gain": 1.0, "dt": 1e-3, "acceleration": 0.1},
+    "witness_speeds": {
+        "curvature_a": 1.0,
+        "curvature_b": 2.0,
+        "distance": (0.1, 1.0),
+        "speed": 1.0,
+        "spin": 0.1,
+    },
+}
+
+
+class Call(NamedTuple):
+    """A public name, what it names, and arguments with which it works."""
+
+    name: str
+    public: Callable[..., Any]
+    arguments: dict[str, Any]
+
+
+def calls() -> list[Call]:
+    """Return every call of this table."""
+    tables = (
+        (so.shapes, SHAPES),
+        (geometry, GEOMETRY),
+        (motion, MOTION),
+        (so, BODIES),
+        (control, CONTROL),
+    )
+    found = []
+    for module, table in tables:
+        for name, arguments in table.items():
+            public: Any = module
+            for part in name.split("."):
+                public = getattr(public, part)
+            found.append(Call(f"{module.__name__.split('.')[-1]}.{name}", public, arguments))
+    return found
