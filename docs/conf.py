@@ -20,7 +20,7 @@ version = release = standoff.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "paper"]
 # the tables of a report are included by its page
-exclude_patterns = ["_extensions", "accuracy-report"]
+exclude_patterns = ["_extensions", "accuracy-report/accuracy.md"]
 
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3

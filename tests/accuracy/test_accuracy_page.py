@@ -3,17 +3,22 @@
 import re
 from pathlib import Path
 
-from standoff.accuracy.cases import pairs
+import pytest
+
+from standoff.accuracy.cases import DEPTHS, GAPS, pairs
+from standoff.accuracy.measuring import Row
 from standoff.accuracy.peers.all_peers import all_peers
-from standoff.accuracy.report import ENGINE_HEADER, PAIR_HEADER
+from standoff.accuracy.report import ENGINE_HEADER, LEVEL_HEADER, PAIR_HEADER, level_name
 from standoff.accuracy.solids import KINDS
 
-PAGE = Path(__file__).parents[2] / "docs" / "accuracy-report" / "accuracy.md"
+DOCS = Path(__file__).parents[2] / "docs"
+REPORT = DOCS / "accuracy-report"
+PAGE = REPORT / "accuracy.md"
 
 
-def rows(heading: str) -> list[list[str]]:
+def rows(heading: str, page: Path = PAGE) -> list[list[str]]:
     """The cells of the table below a heading, its own header first."""
-    section = PAGE.read_text("utf-8").split(f"## {heading}\n")[1].split("\n## ")[0]
+    section = page.read_text("utf-8").split(f"## {heading}\n")[1].split("\n## ")[0]
     lines = re.findall(r"^\| (.*) \|$", section, re.MULTILINE)
     return [line.split(" | ") for line in lines if not line.startswith("---")]
 
@@ -23,6 +28,33 @@ def test_pairs_are_those_of_the_catalogue() -> None:
     assert header == list(PAIR_HEADER)
     names = [f"{first.name} – {second.name}" for first, second in pairs(KINDS)]
     assert [line[0] for line in lines] == names
+
+
+@pytest.mark.parametrize(("name", "levels"), [("gaps", GAPS), ("depths", [-d for d in DEPTHS])])
+def test_every_pair_has_median_and_worst_at_each_level(name, levels) -> None:
+    page = REPORT / f"{name}.md"
+    assert page.read_text("utf-8").count("\n## ") == len(levels)
+    wanted = [
+        f"{first.name} – {second.name}"
+        for first, second in pairs(KINDS)
+        if name == "gaps" or not (first.flat and second.flat)
+    ]
+    for level in levels:
+        header, *lines = rows(level_name(level).capitalize(), page)
+        assert header == list(LEVEL_HEADER)
+        assert [line[0] for line in lines] == wanted
+        for line in lines:
+            if line[1:4] == ["– / –"] * 3:
+                continue  # all cases have another least depth than the constructed one
+            both = [[float(x) for x in cell.split(" / ")] for cell in line[1:4]]
+            assert all(middle <= worst for middle, worst in both), line
+
+
+def test_the_columns_of_the_file_are_documented() -> None:
+    section = (DOCS / "accuracy.md").read_text("utf-8").split("## The Parquet file\n")[1]
+    lines = re.findall(r"^\| (`.*?) \|", section.split("\n## ")[0], re.MULTILINE)
+    names = [name for line in lines for name in re.findall(r"`(\w+)`", line)]
+    assert names == list(Row.__annotations__)
 
 
 def test_engines_are_those_of_the_command() -> None:

@@ -26,7 +26,7 @@ MISSING = {
     "MuJoCo, default": {"point", "segment", "NURBS ellipsoid", "superellipsoid", "egg", "cone"}
     | {"creased superellipsoid", "cap", "lens", "spindle", "gore", "torus hull"}
     | {"rounded box", "polytope", "rounded polytope"},
-    "python-fcl": {"point", "segment", "NURBS ellipsoid", "superellipsoid", "egg", "half-space"}
+    "python-fcl": {"point", "segment", "NURBS ellipsoid", "superellipsoid", "egg", "halfspace"}
     | {"creased superellipsoid", "cap", "lens", "spindle", "gore", "torus hull"}
     | {"rounded box", "rounded polytope"},
     "OpenCASCADE": {kind.name for kind in KINDS}

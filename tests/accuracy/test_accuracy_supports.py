@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
+import standoff as so
 from families.accuracy_twins import TWINS
 from standoff.accuracy.solids import DIRECTIONS, KINDS, Solid
 from standoff.accuracy.supports import extended
 
-WITHOUT_TWIN = {"torus hull", "half-space"}
+WITHOUT_TWIN = {"torus hull", "halfspace"}
 """They are tested by themselves."""
 EVEN = DIRECTIONS[::7]
 
@@ -37,7 +38,7 @@ def test_torus_hull_is_that_of_sampled_points(solids) -> None:
 
 
 def test_half_space_is_supported_along_z_only(solids) -> None:
-    (solid,) = solids["half-space"]
+    (solid,) = solids["halfspace"]
     heights = solid.support.points(np.array([[0, 0, 2.0], [0.1, 0, 1.0]]))
     assert heights[0].tolist() == [0, 0, 0]
     assert np.isinf(heights[1]).all()
@@ -72,3 +73,11 @@ def test_faces_of_hulls(name, count, solids) -> None:
     # Euler: every edge has two faces, and a face as many edges as corners
     assert vertices - corners / 2 + faces == 2
     assert count is None or faces == count
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+def test_a_solid_is_built_again_from_its_call(kind, solids) -> None:
+    solid = solids[kind.name][0]
+    again = eval(solid.call, {"so": so})
+    assert np.array_equal(again.reals, solid.body.reals)
+    assert np.array_equal(again.ints, solid.body.ints)

@@ -9,9 +9,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from pyarrow import parquet
 
+import standoff as so
 from standoff.accuracy import measuring
 from standoff.accuracy.measuring import Row
 
@@ -25,7 +27,7 @@ def test_files_and_tables(standoff: Standoff, tmp_path: Path) -> None:
     ended = standoff("accuracy", "sphere", "box", "--cases", 2, "--peers", "-o", folder)
     assert ended.err == ""
     names = [path.name for path in sorted(folder.iterdir())]
-    assert names == ["accuracy.md", "accuracy.parquet", "accuracy.png"]
+    assert names == ["accuracy.md", "accuracy.parquet", "accuracy.png", "depths.md", "gaps.md"]
     assert all(f"wrote {folder / name}" in ended.out for name in names)
     assert "sphere – box" in ended.out
     table = parquet.read_table(folder / "accuracy.parquet")
@@ -38,6 +40,27 @@ def test_files_and_tables(standoff: Standoff, tmp_path: Path) -> None:
     page = (folder / "accuracy.md").read_text("utf-8")
     assert page.startswith("Made by `standoff accuracy 'sphere' 'box' --cases 2 --seed 0 --peers`")
     assert (folder / "accuracy.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_any_row_can_be_asked_again(standoff: Standoff, tmp_path: Path) -> None:
+    """Bodies, poses, points and normal of a row are those of its answer."""
+    chosen = ["halfspace", "torus hull", "NURBS ellipsoid"]
+    assert standoff("accuracy", *chosen, "--cases", 1, "-o", tmp_path).code == 0
+    for row in parquet.read_table(tmp_path / "accuracy.parquet").to_pylist():
+        a, b = (eval(row[name], {"so": so}) for name in ("body_a", "body_b"))
+        pose_a, pose_b = (
+            (np.reshape(row[name][:9], (3, 3)), np.array(row[name][9:]))
+            for name in ("pose_a", "pose_b")
+        )
+        found = so.distance(a, b, pose_a, pose_b)
+        assert found.distance == row["distance"], row
+        assert found.point_a.tolist() == row["point_a"]
+        assert found.point_b.tolist() == row["point_b"]
+        assert found.normal.tolist() == row["normal"]
+        true_a, true_b, n = (
+            np.array(row[name]) for name in ("true_point_a", "true_point_b", "true_normal")
+        )
+        np.testing.assert_allclose(true_b - true_a, row["truth"] * n, atol=1e-14 * row["size"])
 
 
 def test_json_and_the_same_cases_again(standoff: Standoff) -> None:

@@ -59,7 +59,7 @@ class Case:
 def pairs(kinds: Sequence[Kind]) -> list[tuple[Kind, Kind]]:
     """Return all pairs but that of two half-spaces."""
     both = combinations_with_replacement(kinds, 2)
-    return [pair for pair in both if {kind.name for kind in pair} != {"half-space"}]
+    return [pair for pair in both if {kind.name for kind in pair} != {"halfspace"}]
 
 
 def catalogue(kinds: Sequence[Kind], seed: int) -> dict[str, tuple[Solid, ...]]:

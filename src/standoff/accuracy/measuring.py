@@ -13,7 +13,8 @@ import numpy as np
 from standoff.accuracy.cases import Case, catalogue, draw_cases, pairs
 from standoff.accuracy.least_depth import least_depth
 from standoff.accuracy.peers.answer import Peer, PeerAnswer, Pose
-from standoff.accuracy.solids import Kind, Solid
+from standoff.accuracy.solids import Kind
+from standoff.accuracy.supports import Array
 from standoff.accuracy.truth import support_sum
 from standoff.tracking import Status, distance
 
@@ -46,9 +47,10 @@ class Verdict(StrEnum):
 class Row:
     """One answer: a row of the Parquet file. Errors are over the size, normals in rad.
 
-    ``pose_a`` and ``pose_b`` are 12 numbers each, R row-major and p; ``solid_a`` and ``solid_b``
-    the arguments of the shapes. ``constructed`` tells whether the constructed answer is the least
-    depth. Errors are NaN where the answer is another minimum's.
+    ``pose_a`` and ``pose_b`` are 12 numbers each, R row-major and p; ``body_a`` and ``body_b``
+    the Python expressions that build the bodies after ``import standoff as so``. ``constructed``
+    tells whether the constructed answer is the least depth. Points and normals are in world axes.
+    Errors are NaN where the answer is another minimum's. docs/accuracy.md tells each column.
     """
 
     engine: str
@@ -71,10 +73,16 @@ class Row:
     lower_bound: float
     shape_a: str
     shape_b: str
-    solid_a: str
-    solid_b: str
+    body_a: str
+    body_b: str
     pose_a: list[float]
     pose_b: list[float]
+    true_point_a: list[float]
+    true_point_b: list[float]
+    true_normal: list[float]
+    point_a: list[float]
+    point_b: list[float]
+    normal: list[float]
 
 
 @dataclass(frozen=True)
@@ -176,9 +184,8 @@ def _numbers(pose: Pose) -> list[float]:
     return [float(x) for x in (*np.ravel(pose[0]), *np.ravel(pose[1]))]
 
 
-def _described(solid: Solid) -> str:
-    values = {name: np.asarray(value).tolist() for name, value in solid.values.items()}
-    return repr(values)
+def _vector(vector: Array) -> list[float]:
+    return [float(x) for x in vector]
 
 
 def _claims(answer: PeerAnswer) -> tuple[str, bool | None, float]:
@@ -211,10 +218,12 @@ def _row(case: Case, engine: str, answer: PeerAnswer) -> Row:
         lower_bound,
         case.a.kind.name,
         case.b.kind.name,
-        _described(case.a),
-        _described(case.b),
+        case.a.call,
+        case.b.call,
         _numbers(truth.pose_a),
         _numbers(truth.pose_b),
+        *map(_vector, (truth.point_a, truth.point_b, truth.normal)),
+        *map(_vector, (answer.point_a, answer.point_b, answer.normal)),
     )
 
 

@@ -80,6 +80,9 @@ PAIR_HEADER = (
 )
 
 
+LEVEL_HEADER = ("pair", "distance", "witness points", "normal", "certified", "wrong")
+
+
 def engine_rows(rows: Sequence[Row], by_level: bool = True) -> list[list[str]]:
     """Return one row an engine and level (or side): errors median / worst, and counts."""
 
@@ -107,6 +110,18 @@ def _counts(found: Summary) -> list[str]:
         str(found.deeper),
         str(found.nothing),
     ]
+
+
+def level_rows(rows: Sequence[Row], level: float) -> list[list[str]]:
+    """Return our errors of every pair at one gap or depth: median / worst, and counts."""
+    ours = [row for row in rows if row.engine == OURS and row.level == level]
+    lines = []
+    for name, found in summarised(ours, pair_name).items():
+        _, distance, witness, normal, certified, *_ = _counts(found)
+        wrong = found.wrong + found.deeper + found.nothing
+        proven = f"{certified} of {found.cases}"
+        lines.append([name, distance, witness, normal, proven, str(wrong)])
+    return lines
 
 
 def pair_rows(rows: Sequence[Row]) -> list[list[str]]:
@@ -182,8 +197,8 @@ def page(run: Run) -> str:
         "Errors median / worst.\n",
         table(ENGINE_HEADER, engine_rows(run.rows)),
         "## By pair\n",
-        "Standoff's worst errors. *wrong* counts also answers that are not the least depth, or "
-        "none.\n",
+        "Standoff's worst errors of all gaps and of all depths; gaps.md and depths.md have median "
+        "and worst at each. *wrong* counts also answers that are not the least depth, or none.\n",
         table(PAIR_HEADER, pair_rows(run.rows)),
         "## Beyond the targets\n",
         f"{len(missed)} answers of Standoff miss a target (distance 1e-12, witness points 1e-9, "
@@ -197,6 +212,22 @@ def page(run: Run) -> str:
             table(("pair", *engines), peer_rows(run.rows, engines)),
         ]
     return "\n".join(part for part in parts if part)
+
+
+def levels_page(run: Run, which: str) -> str:
+    """Return our errors of every pair at each of the "gaps" or "depths" as a page of its own."""
+    levels = list(dict.fromkeys(row.level for row in run.rows if side(row) == which))
+    one = which.removesuffix("s")
+    parts = [
+        f"# Errors of every pair at each {one}\n",
+        f"Made by `{run.command}` with Standoff {run.versions[OURS]}: errors of Standoff, median / "
+        f"worst of {run.cases} cases, over the pair's size, normals in rad. *wrong* counts also "
+        "answers that are not the least depth, or none.\n",
+    ]
+    for level in levels:
+        heading = level_name(level).capitalize()
+        parts += [f"## {heading}\n", table(LEVEL_HEADER, level_rows(run.rows, level))]
+    return "\n".join(parts)
 
 
 def facts(run: Run) -> dict[str, object]:
@@ -235,6 +266,11 @@ def facts(run: Run) -> dict[str, object]:
 def write_page(path: Path, run: Run) -> None:
     """Write the tables."""
     path.write_text(page(run), encoding="utf-8")
+
+
+def write_levels(path: Path, run: Run, which: str) -> None:
+    """Write the tables of every gap, or of every depth."""
+    path.write_text(levels_page(run, which), encoding="utf-8")
 
 
 def write_parquet(path: Path, run: Run) -> None:

@@ -50,6 +50,9 @@ class Kind:
     support: Callable[..., S.Support]
     flat: bool = False
     """A point or a segment: two of them enclose no volume and can't penetrate."""
+    call: str = ""
+    """How ``import standoff as so`` builds it from its lengths, as a format string; that of
+    ``so.shapes`` if empty."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,13 +66,22 @@ class Solid:
     def body(self) -> Body:
         return self.kind.build(*self.values.values())
 
+    @property
+    def call(self) -> str:
+        """The Python expression that builds the body after ``import standoff as so``."""
+        values = {name: np.asarray(value).tolist() for name, value in self.values.items()}
+        if self.kind.call:
+            return self.kind.call.format(**values)
+        arguments = ", ".join(f"{name}={value!r}" for name, value in values.items())
+        return f"so.shapes.{self.kind.build.__name__}({arguments})"
+
     @cached_property
     def support(self) -> S.Support:
         return self.kind.support(*self.values.values())
 
     @property
     def bounded(self) -> bool:
-        return self.kind.name != "half-space"
+        return self.kind.name != "halfspace"
 
     @cached_property
     def sampled(self) -> S.Array:
@@ -192,7 +204,13 @@ KINDS: tuple[Kind, ...] = (
     Kind("sphere", _lengths("r"), shapes.sphere, _sphere),
     Kind("capsule", _lengths("r", "length"), shapes.capsule, _capsule),
     Kind("ellipsoid", _lengths("a", "b", "c"), shapes.ellipsoid, S.Ellipsoid),
-    Kind("NURBS ellipsoid", _lengths("a", "b", "c"), _nurbs_ellipsoid, S.Ellipsoid),
+    Kind(
+        "NURBS ellipsoid",
+        _lengths("a", "b", "c"),
+        _nurbs_ellipsoid,
+        S.Ellipsoid,
+        call="so.Body.from_patches(so.geometry.ellipsoid_patches({a!r}, {b!r}, {c!r}))",
+    ),
     Kind(
         "superellipsoid",
         _superellipsoid(0.4, 1.0),
@@ -212,12 +230,19 @@ KINDS: tuple[Kind, ...] = (
     Kind("lens", _lens, shapes.lens, S.Lens),
     Kind("spindle", _bow("length"), shapes.spindle, turned.Spindle),
     Kind("gore", _gore, shapes.gore, turned.Gore),
-    Kind("torus hull", _ring, _torus_hull, turned.RingHull),
+    Kind(
+        "torus hull",
+        _ring,
+        _torus_hull,
+        turned.RingHull,
+        call="so.shapes.hull_of_revolution(so.geometry.ConicArc("
+        "[{ring!r}, 0.0, 0.0], [{width!r}, 0.0, 0.0], [0.0, 0.0, {height!r}]))",
+    ),
     Kind("box", _lengths("x", "y", "z"), shapes.box, _box_support),
     Kind("rounded box", _rounded_box, shapes.box, _box_support),
     Kind("polytope", _polytope, shapes.polytope, S.Hull),
     Kind("rounded polytope", _tangential, shapes.rounded_polytope, _rounded_support),
-    Kind("half-space", lambda rng: {}, shapes.halfspace, S.HalfSpace),
+    Kind("halfspace", lambda rng: {}, shapes.halfspace, S.HalfSpace),
 )
 """All kinds: those of ``so.shapes``, of superellipsoids two, and an ellipsoid of NURBS patches.
 The planar loop is left out: it meets other planar bodies only."""

@@ -25,7 +25,7 @@ from standoff.cli.progress import pairs_bar
 WIDTH = 140
 """Characters of a table where stdout is no terminal, such as a file."""
 
-FILES = ("accuracy.parquet", "accuracy.md", "accuracy.png")
+FILES = ("accuracy.parquet", "accuracy.md", "gaps.md", "depths.md", "accuracy.png")
 
 
 def run_accuracy(command: AccuracyCommand) -> int:
@@ -111,15 +111,18 @@ def _measure(
 def _write(folder: Path, run: report.Run) -> list[Path]:
     from standoff.accuracy.drawing import draw
 
-    parquet, page, picture = (folder / name for name in FILES)
+    targets = [folder / name for name in FILES]
+    parquet, page, gaps, depths, picture = targets
     write_whole(
         {
             parquet: partial(report.write_parquet, run=run),
             page: partial(report.write_page, run=run),
+            gaps: partial(report.write_levels, run=run, which="gaps"),
+            depths: partial(report.write_levels, run=run, which="depths"),
             picture: partial(draw, rows=run.rows),
         }
     )
-    return [parquet, page, picture]
+    return targets
 
 
 def _print(run: report.Run, seconds: float) -> None:

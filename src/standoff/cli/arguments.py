@@ -213,8 +213,8 @@ class AccuracyCommand:
     ] = ()
     """Only pairs of these, such as sphere 'rounded box'; all if none is given."""
     output: Annotated[Path | None, arg(aliases=["-o"], metavar="DIR", help_behavior_hint="")] = None
-    """Write accuracy.parquet (a row a case and engine), accuracy.md (tables) and accuracy.png to
-    this folder; made if it does not exist."""
+    """Write accuracy.parquet (a row a case and engine), accuracy.md, gaps.md and depths.md (tables)
+    and accuracy.png to this folder; made if it does not exist."""
     cases: Annotated[int, arg(metavar="N", help_behavior_hint="")] = 10
     """Cases of each pair at each gap and depth; 10 if not given."""
     seed: Annotated[int, arg(metavar="S", help_behavior_hint="")] = 0

@@ -49,7 +49,7 @@ def _shape(solid: Solid) -> Any:
             return coal.Cylinder(*lengths)
         case "cone":
             return coal.Cone(*lengths)
-        case "half-space":
+        case "halfspace":
             return coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0)
         case "box":
             return coal.Box(*lengths)

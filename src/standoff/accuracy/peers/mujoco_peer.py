@@ -36,7 +36,7 @@ def _geometry(solid: Solid) -> tuple[str, Array] | None:
             return solid.kind.name, np.array([lengths[0], lengths[1] / 2, 0.0])
         case "box":
             return "box", np.array(lengths) / 2
-        case "half-space":
+        case "halfspace":
             return "plane", np.array([1.0, 1.0, 1.0])
     return None
 
