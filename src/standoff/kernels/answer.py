@@ -5,7 +5,12 @@ from math import inf
 import numpy as np
 
 from standoff.kernels import layout as L
-from standoff.kernels.certified import CERTIFIED, PENETRATING, UNCERTIFIED
+from standoff.kernels.certified import (
+    CERTIFIED,
+    PENETRATING,
+    TOUCHING_OR_OVERLAPPING,
+    UNCERTIFIED,
+)
 from standoff.kernels.compiling import kernel
 from standoff.kernels.features import pair_slack, pair_span
 from standoff.kernels.feedback import gradient_norm
@@ -44,7 +49,7 @@ def judge(pair, law_kind, outcome, p, d, bound, upper, tolerance, exhausted):
     goal = START_GAP if tolerance == inf else tolerance
     span = pair_span(pair, p, abs(d))
     near = d - bound <= goal * span + pair_slack(pair)
-    if exhausted and outcome == UNCERTIFIED:
+    if exhausted and (outcome == UNCERTIFIED or (outcome == TOUCHING_OR_OVERLAPPING and not near)):
         return DEADLINE
     # within the tolerance of touching the bound's sign says nothing
     if d <= radii or outcome == PENETRATING or (near and bound <= radii):

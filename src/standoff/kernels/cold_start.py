@@ -88,18 +88,19 @@ def gilbert(pair, R, p):
 
 
 @kernel
-def global_query(pair, R, p, mode, q, w_ff, tolerance, counts, events):
+def global_query(pair, R, p, first, mode, q, w_ff, tolerance, counts, events):
     """(outcome, d, bound, normal) of a cold query; (mode, q) are set to its witness points.
 
     `tolerance` (relative to the pair's size) is the gap between distance and bound at which a
-    start is accepted. Without one, the answer is that of the least gap.
+    start is accepted. Without one, the answer is that of the least gap. `first` (a float: every
+    literal int would compile once more) is the start that is tried first.
     """
     ia, ra, ib, rb = pair
     best_gap, best_d, best_bound, best_normal = inf, inf, -inf, (0.0, 0.0, 0.0)
     best_mode, best_q = (0, 0, 0, 0), (0.0, 0.0, 0.0, 0.0)
     direction = (0.0, 0.0, 0.0)
     outcome = UNCERTIFIED
-    for attempt in range(MAX_STARTS):
+    for attempt in range(int(first), MAX_STARTS):
         if attempt == 0:
             i, j = nearest_facing(pair, R, p)
         else:

@@ -7,22 +7,31 @@ import numpy as np
 from standoff.kernels.certificate import certify_along
 from standoff.kernels.certified import CERTIFIED, PENETRATING, UNCERTIFIED
 from standoff.kernels.compiling import kernel, pointer
-from standoff.kernels.depth_search import save, search
+from standoff.kernels.depth_search import save, search, witness_points
 from standoff.kernels.descent import pair_jets
 from standoff.kernels.events import EVALUATIONS, EVENTS, LIMIT
 from standoff.kernels.features import pair_slack, pair_span
-from standoff.kernels.penetration import begin_along, descend, plane_normal
+from standoff.kernels.penetration import (
+    begin_along,
+    box_depth,
+    descend,
+    from_last,
+    plane_normal,
+)
 from standoff.kernels.tolerances import ALIGNED, BLUR, DEPTH_PROOF, MAX_RIVALS
 from standoff.kernels.vectors import axpy, dot, norm, sub
 
 
 @kernel
-def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, counts, events):
+def contact_query(pair, R, p, warm, n, everywhere, mode, q, w_ff, tolerance, counts, events):
     """(outcome, d, bound, upper, normal): signed distance of the cores and its bounds.
 
-    `known`: n and (mode, q) are those of a frame before. `everywhere`: prove the depth the least,
-    and search where it is not. `upper` is at least the signed distance.
+    `warm` (a float, as is `everywhere`: every literal would compile once more): 1 where n and
+    (mode, q) are those of a frame before, 2 where Newton's method may go on from them.
+    `everywhere`: 1 to prove the depth the least, and search where it is not. `upper` is at least
+    the signed distance.
     """
+    known, last = warm > 0.0, n
     best_mode, best_q = np.empty(4, dtype=np.int64), np.empty(4)
     least, found, d = -inf, False, nan
     plane, normal = plane_normal(pair, R)
@@ -30,7 +39,9 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
         n = normal
         if not known:
             begin_along(pair, R, n, mode, q)
-    if known or plane:
+    if warm > 1.0 and not plane:
+        found, n, d = from_last(pair, R, p, mode, q, n, tolerance, counts)
+    if (known or plane) and not found:
         found, n, d = descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events)
     best = (pointer(best_mode, 0), pointer(best_q, 0))
     save(mode, q, best[0], best[1])
@@ -38,7 +49,7 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
         least = -d
     elif not found or d <= 0.0:
         # followed alone, the minimum is still asked whether the bodies overlap at all
-        proof, rivals = (DEPTH_PROOF, float(MAX_RIVALS)) if everywhere else (1.0, 0.0)
+        proof, rivals = (DEPTH_PROOF, float(MAX_RIVALS)) if everywhere > 0.0 else (1.0, 0.0)
         logged = counts[EVENTS]
         found, d, n, least = search(
             pair, R, p, found, d, n, mode, q, best, w_ff, tolerance, proof, rivals, counts, events
@@ -48,7 +59,24 @@ def contact_query(pair, R, p, known, n, everywhere, mode, q, w_ff, tolerance, co
     best_mode[0], best_q[0] = 0, 0.0  # alive until here, see `pointer`
     if plane:
         n = normal
+    elif known and not found and counts[EVALUATIONS] >= counts[LIMIT]:
+        n = farther_apart(pair, R, p, mode, q, n, last)
     return conclude(pair, R, p, found, least, n, mode, q, tolerance, counts)
+
+
+@kernel
+def bound_along(pair, R, p, mode, q, n):
+    """What a plane square to n is known to keep the cores apart by, less than 0 in overlap."""
+    x_a, x_b = witness_points(pair, R, p, mode, q)
+    bound, _ = certify_along(pair, R, p, mode, q, x_a, x_b, n)
+    return max(bound, -box_depth(pair, R, p, n) - pair_slack(pair))
+
+
+@kernel
+def farther_apart(pair, R, p, mode, q, n, last):
+    """Of two directions the one that is known to keep the cores farther apart."""
+    better = bound_along(pair, R, p, mode, q, last) > bound_along(pair, R, p, mode, q, n)
+    return last if better else n
 
 
 @kernel
@@ -62,6 +90,8 @@ def conclude(pair, R, p, found, least, n, mode, q, tolerance, counts):
     d = dot(n, gap)
     bound, blur = certify_along(pair, R, p, mode, q, jet_a[0], jet_b[0], n)
     upper = norm(gap)
+    if counts[EVALUATIONS] >= counts[LIMIT]:
+        bound = max(bound, -box_depth(pair, R, p, n) - pair_slack(pair))
     span = pair_span(pair, p, abs(d))
     allowed = min(tolerance, BLUR) * span + pair_slack(pair) + min(blur, BLUR * span)
     if d - bound > allowed or norm(axpy(-d, n, gap)) > ALIGNED * span:

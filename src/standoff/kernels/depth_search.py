@@ -93,12 +93,28 @@ def seed_hull(pair, R, p, hull, size):
     solid, way = begin_hull(hull, n, size)
     for _ in range(3):
         # needles: all seeds in line or in a plane; those square to it are asked too
-        if solid or planar:
+        if solid:
             break
         n = seed(pair, R, p, points, n, way, planar, size)
         n = seed(pair, R, p, points, n, scale(-1.0, way), planar, size)
         solid, way = begin_hull(hull, n, size)
     return solid, way
+
+
+@kernel
+def overlap_shown(pair, R, p):
+    """(shown, n, least): is the origin inside the polytope of the seeds, which lies in A - B? n is
+    the normal of its nearest facet, `least` how far that is. No evaluation is made.
+    """
+    hull = empty_hull(pair[0][L.DIMENSION] == 2 or pair[2][L.DIMENSION] == 2)
+    size = contact_scale(pair)
+    solid, n = seed_hull(pair, R, p, hull, size)
+    if not solid:
+        return False, n, 0.0
+    at, least = nearest_facet(hull, True)
+    if at < 0 or least <= TOUCHING * size:
+        return False, n, 0.0
+    return True, facet_normal(hull, at), least
 
 
 @kernel

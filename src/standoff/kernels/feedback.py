@@ -10,7 +10,16 @@ from math import inf, sqrt
 import numpy as np
 
 from standoff.kernels.compiling import kernel
-from standoff.kernels.tolerances import EPS, GRADIENT_NOISE, NEGATIVE, PIVOT, REACH, SHARP, STIFF
+from standoff.kernels.tolerances import (
+    EPS,
+    GRADIENT_NOISE,
+    NEGATIVE,
+    PIVOT,
+    PIVOT_ROUNDINGS,
+    REACH,
+    SHARP,
+    STIFF,
+)
 from standoff.kernels.vectors import dot
 
 
@@ -212,7 +221,11 @@ def law(jet_a, jet_b, g, H, g_t, scale):
         top = 1.0
     f = ldl(Hw)
     least = min(min(f[0], f[1]), min(f[2], f[3]))
-    if least > PIVOT * top:
+    # a pivot that ought to vanish keeps the roundings of those before it, times l²
+    growth = 1.0
+    for k in range(4, 10):
+        growth += f[k] * f[k]
+    if least > max(PIVOT, PIVOT_ROUNDINGS * EPS * growth) * top:
         p, w = negate(ldl_solve(f, gw)), negate(ldl_solve(f, tw))
         flat = 0 if least > STIFF * top else 1
         return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), slope, 0, flat, sharp

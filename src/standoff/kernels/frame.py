@@ -31,7 +31,8 @@ LAST_NORMAL = 48  # unit, from A to B
 LAST_DISTANCE = 51  # of the cores, signed
 INSIDE = 52  # 1 where the last frame was solved in contact: this one begins there
 LAST_BOUND = 53  # lower bound of the cores' signed distance
-N_STATE = 54
+CUT = 54  # how many frames in a row ran out of evaluations, this one included
+N_STATE = 55
 
 # Options.
 LAW_PC, LAW_PAPER = 0, 1

@@ -8,7 +8,7 @@ of s over features of both bodies, whose fixed points are the stationary ones. N
 the contact-regular form ends it.
 """
 
-from math import inf, sqrt
+from math import inf, nan, sqrt
 
 from standoff.kernels import layout as L
 from standoff.kernels.certificate import certify_along
@@ -51,7 +51,7 @@ from standoff.kernels.vectors import (
 )
 
 # What Newton's method ended at.
-NOTHING, MINIMUM, SADDLE = range(3)
+NOTHING, MINIMUM, SADDLE, CUT_OFF = range(4)
 
 UP = (0.0, 0.0, 1.0)  # outward normal of a half-space, in its frame
 
@@ -191,7 +191,7 @@ def newton_start(pair, R, p, n, mode, q, reach):
 def shifted(pair, R, p, n, d, gap, mode, q, w_ff, counts, events):
     """(apart, n', d'): one step of the descent from the direction n, where the signed distance is
     at least d; mode and q are warm and get the closest points of the pair shifted out to `gap`
-    (in contact scales).
+    (in contact scales). Not apart, too, where the evaluations ran out on the way.
     """
     gap *= contact_scale(pair)
     shift = scale(max(gap - d, 0.0), n)
@@ -200,12 +200,13 @@ def shifted(pair, R, p, n, d, gap, mode, q, w_ff, counts, events):
         pair, R, moved, ORIGIN, ORIGIN, mode, q, w_ff, 0.0, 0.0, counts, events
     )
     outcome, _, _, _ = weigh(pair, R, moved, mode, q, jet_a, jet_b, ORIGIN, START_GAP)
-    allowed = counts[EVALUATIONS] < counts[LIMIT] and counts[RESTARTS] < MAX_RESTARTS
-    if outcome == UNCERTIFIED and allowed:
+    if outcome == UNCERTIFIED and counts[EVALUATIONS] >= counts[LIMIT]:
+        return False, n, d  # cut off: the next frame goes on from these points
+    if outcome == UNCERTIFIED and counts[RESTARTS] < MAX_RESTARTS:
         # stuck on a far side
         counts[RESTARTS] += 1
         begin_along(pair, R, n, mode, q)
-        global_query(pair, R, moved, mode, q, w_ff, START_GAP, counts, events)
+        global_query(pair, R, moved, 0.0, mode, q, w_ff, START_GAP, counts, events)
         jet_a, jet_b = pair_jets(pair, R, moved, mode, q)
     between = sub(jet_b[0], jet_a[0])
     far = norm(between)
@@ -216,13 +217,11 @@ def shifted(pair, R, p, n, d, gap, mode, q, w_ff, counts, events):
 
 
 @kernel
-def minimum_along(pair, R, p, mode, q, n, d, tolerance, counts):
+def stationary_along(pair, R, p, mode, q, n, d, tolerance, counts):
     """(kind, n, d, way): Newton's method from a direction, taken where it ends at a certified
     stationary direction no deeper than the start: MINIMUM, or SADDLE, which falls along `way`.
-    Else NOTHING, and mode and q are as they were.
+    Else NOTHING, or CUT_OFF where the evaluations ran out on the way; (mode, q) are where it ended.
     """
-    old_mode = (mode[0], mode[1], mode[2], mode[3])
-    old_q = (q[0], q[1], q[2], q[3])
     span = pair_span(pair, p, abs(d))
     if span == 0.0:
         span = contact_scale(pair)
@@ -240,8 +239,41 @@ def minimum_along(pair, R, p, mode, q, n, d, tolerance, counts):
             least, way, _, _ = principal_radii(pair, jet_a, jet_b, n_new, span)
             minimal = least >= -d_new * (1.0 - FOCAL_MARGIN) - CONTACT_RESIDUAL * span
             return MINIMUM if minimal else SADDLE, n_new, d_new, way
+    cut = fits and counts[EVALUATIONS] >= counts[LIMIT] and on_feature(pair, mode, q)
+    return CUT_OFF if cut else NOTHING, n_new, d_new, n
+
+
+@kernel
+def minimum_along(pair, R, p, mode, q, n, d, tolerance, counts):
+    """What `stationary_along` finds, MINIMUM or SADDLE; else NOTHING, with n and d as given and
+    mode and q as they were.
+    """
+    old_mode = (mode[0], mode[1], mode[2], mode[3])
+    old_q = (q[0], q[1], q[2], q[3])
+    kind, n_new, d_new, way = stationary_along(pair, R, p, mode, q, n, d, tolerance, counts)
+    if kind in (MINIMUM, SADDLE):
+        return kind, n_new, d_new, way
     restore(mode, q, old_mode, old_q)
     return NOTHING, n, d, n
+
+
+@kernel
+def from_last(pair, R, p, mode, q, n, tolerance, counts):
+    """(found, n, d): the local minimum of s by Newton's method from the last frame's direction and
+    points, which they are near. Not found: d is nan, and n and the points are the last frame's or
+    those at which the evaluations ran out.
+    """
+    old_mode = (mode[0], mode[1], mode[2], mode[3])
+    old_q = (q[0], q[1], q[2], q[3])
+    least = -box_depth(pair, R, p, n)
+    kind, n_new, d_new, _ = stationary_along(pair, R, p, mode, q, n, least, tolerance, counts)
+    near = norm(sub(n_new, n)) <= NEWTON_TURN
+    if kind == MINIMUM and near:
+        return True, n_new, d_new
+    if kind == CUT_OFF and near:
+        return False, n_new, nan
+    restore(mode, q, old_mode, old_q)
+    return False, n, nan
 
 
 @kernel
@@ -284,6 +316,8 @@ def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
         if counts[EVALUATIONS] >= counts[LIMIT]:
             break
         apart, n_new, d_new = shifted(pair, R, p, start, d, gap, mode, q, w_ff, counts, events)
+        if not apart and counts[EVALUATIONS] >= counts[LIMIT]:
+            return False, n, d
         if ahead > 0.0 and (not apart or d_new < d):
             start, ahead, reach = n, 0.0, reach / LESS_REACH  # leapt too far
             continue

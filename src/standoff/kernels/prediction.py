@@ -5,6 +5,8 @@ from standoff.kernels.compiling import kernel
 from standoff.kernels.features import chart_jet, chart_record
 from standoff.kernels.feedback import metric_inverse
 from standoff.kernels.frame import (
+    CUT,
+    DEADLINE,
     HAS_TWIST,
     HISTORY,
     INSIDE,
@@ -86,7 +88,8 @@ def keep(state, motion, has_twist, options, h, mode, q, w_ff, same, status, quer
         state[HISTORY] = 2.0 if two else 1.0
     else:
         state[HISTORY] = 0.0
-        if same and h > 0.0:
+        # points cut off on their way have no rate
+        if same and h > 0.0 and status != DEADLINE:
             for k in range(4):
                 state[RATE + k] = (q[k] - state[Q + k]) / h
             state[HISTORY] = 1.0
@@ -109,3 +112,4 @@ def keep(state, motion, has_twist, options, h, mode, q, w_ff, same, status, quer
     state[LAST_BOUND] = bound
     state[INSIDE] = 1.0 if inside else 0.0
     state[LOST] = 1.0 if status in (OVERLAPPING, NOT_CERTIFIED) else 0.0
+    state[CUT] = state[CUT] + 1.0 if status == DEADLINE else 0.0

@@ -8,6 +8,8 @@ EPS = 2.220446049250313e-16
 # Relative pivot of H in the metric of the tangents (dimensionless). Above it the plain factor is
 # the paper's law; below it the pair is nearly parallel and H is decomposed.
 PIVOT = 1e-10
+# Roundings (eps) that a pivot may have lost, times what the elimination has multiplied them by.
+PIVOT_ROUNDINGS = 64.0
 
 # Eigenvalues below -NEGATIVE take their magnitude (dimensionless, relative to the largest).
 NEGATIVE = 1e-10
@@ -158,3 +160,6 @@ MAX_RIVALS = 8
 COPLANAR = 1e-11
 # Half the length of the prism over a planar difference, in contact scales: no depth reaches it.
 PRISM = 2.0
+
+# Evaluations that steps with a deadline may spend on a start before another one is tried.
+PATIENCE = 48.0

@@ -12,10 +12,12 @@ from standoff.kernels.certified import (
 )
 from standoff.kernels.cold_start import global_query
 from standoff.kernels.compiling import kernel
-from standoff.kernels.contact_frame import contact_query
+from standoff.kernels.contact_frame import bound_along, contact_query
+from standoff.kernels.depth_search import overlap_shown
 from standoff.kernels.descent import ORIGIN, pair_jets
 from standoff.kernels.events import EVALUATIONS, LIMIT, RESTARTS
 from standoff.kernels.frame import (
+    CUT,
     DEPTH_GLOBAL,
     INSIDE,
     INTEGRAL,
@@ -35,10 +37,16 @@ from standoff.kernels.frame import (
     Q,
 )
 from standoff.kernels.paper_law import apply_step, paper_frame, read_errors
-from standoff.kernels.penetration import NOTHING, contact_scale, minimum_along
+from standoff.kernels.penetration import (
+    NOTHING,
+    begin_along,
+    contact_scale,
+    minimum_along,
+    restore,
+)
 from standoff.kernels.prediction import predict
 from standoff.kernels.rigid import read_rotation, read_vector
-from standoff.kernels.tolerances import POLISHED, SHIFTED_GAP
+from standoff.kernels.tolerances import PATIENCE, POLISHED, SHIFTED_GAP
 from standoff.kernels.vectors import dot, sub
 
 
@@ -106,18 +114,49 @@ def polished(pair, R, p, mode, q, n, d, bound, tolerance, counts):
 
 
 @kernel
-def anywhere(pair, R, p, options, goal, mode, q, w_ff, counts, events):
-    """(outcome, d, bound, upper, normal, inside) of a cold query, apart or not."""
-    outcome, d, bound, normal = global_query(pair, R, p, mode, q, w_ff, goal, counts, events)
+def anywhere(pair, R, p, options, goal, first, mode, q, w_ff, counts, events):
+    """(outcome, d, bound, upper, normal, inside) of a cold query, apart or not.
+
+    `first` is the start that is tried first.
+    """
+    outcome, d, bound, normal = global_query(pair, R, p, first, mode, q, w_ff, goal, counts, events)
     if outcome == CERTIFIED:
         d, bound, normal = polished(pair, R, p, mode, q, normal, d, bound, goal, counts)
         return outcome, d, bound, d, normal, False
     if counts[EVALUATIONS] >= counts[LIMIT]:
         return outcome, d, bound, d, normal, False
     outcome, d, bound, upper, normal = contact_query(
-        pair, R, p, False, normal, True, mode, q, w_ff, goal, counts, events
+        pair, R, p, 0.0, normal, 1.0, mode, q, w_ff, goal, counts, events
     )
     return outcome, d, bound, upper, normal, outcome == PENETRATING
+
+
+@kernel
+def start_due(state, counts):
+    """(is a global start due, which): after frames in a row that were cut off and have spent
+    PATIENCE evaluations between them, what they went on from leads nowhere.
+    """
+    if state[CUT] == 0.0:
+        return False, 0.0
+    turns = (state[CUT] * counts[LIMIT]) // PATIENCE
+    return turns > ((state[CUT] - 1.0) * counts[LIMIT]) // PATIENCE, (turns + 1.0) % 2.0
+
+
+@kernel
+def cut_off(pair, R, p, d, bound, upper, n, mode, q):
+    """(d, bound, upper, n, inside) of a frame that ran out of evaluations outside contact.
+
+    Where samples alone show that the bodies overlap, the next frame follows the depth from their
+    least direction, and this one answers with what that parts them by.
+    """
+    shown, way, least = overlap_shown(pair, R, p)
+    if not shown or bound > 0.0:
+        return d, bound, upper, n, False
+    begin_along(pair, R, way, mode, q)
+    last, along = bound_along(pair, R, p, mode, q, n), bound_along(pair, R, p, mode, q, way)
+    if last > along:
+        return last, last, -least, n, True
+    return along, along, -least, way, True
 
 
 @kernel
@@ -131,38 +170,52 @@ def track(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
     R, p, _, _ = motion
     tolerance = options[O_TOLERANCE]
     alone = options[O_SWITCHING] == SWITCH_NONE
-    everywhere = options[O_DEPTH] == DEPTH_GLOBAL
-    if state[LOST] == 0.0 or alone:
-        inside = state[INSIDE] != 0.0 and not alone
+    everywhere = 1.0 if options[O_DEPTH] == DEPTH_GLOBAL else 0.0
+    due, first = start_due(state, counts)
+    inside = state[INSIDE] != 0.0 and not alone
+    if alone or (state[LOST] == 0.0 and (inside or not due)):
+        doubted, fresh, d, bound, normal = False, False, 0.0, -inf, ORIGIN
         if not inside:
             fresh, outcome, d, bound, normal, apart = follow(
                 pair, motion, state, options, h, mode, q, w_ff, dq, counts, events
             )
+            near = state[LAST_DISTANCE] < SHIFTED_GAP * contact_scale(pair)
             lags = options[O_LAW] == LAW_PAPER and apart and outcome == UNCERTIFIED
+            # behind the motion, or no longer apart?
+            doubted = lags and bound <= 0.0 and (near or overlap_shown(pair, R, p)[0])
             if outcome == CERTIFIED and options[O_LAW] != LAW_PAPER and not alone:
                 d, bound, normal = polished(
                     pair, R, p, mode, q, normal, d, bound, tolerance, counts
                 )
-            if outcome == CERTIFIED or alone or lags:
+            if outcome == CERTIFIED or alone or (lags and not doubted):
                 return fresh, outcome, d, bound, d, normal, False
-            near = state[LAST_DISTANCE] < SHIFTED_GAP * contact_scale(pair)
             if counts[EVALUATIONS] >= counts[LIMIT] and apart:
-                return fresh, outcome, d, bound, d, normal, False
-            inside = near or not apart
-            from_state(state, mode, q)
+                d, bound, upper, normal, inside = cut_off(pair, R, p, d, bound, d, normal, mode, q)
+                return fresh, UNCERTIFIED, d, bound, upper, normal, inside
+            inside = near or not apart or doubted
         if inside:
+            behind = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
+            from_state(state, mode, q)
+            # after a frame that was cut off Newton's method and the descent take turns
+            warm = 2.0 if state[INSIDE] != 0.0 and state[CUT] % 2.0 == 0.0 else 1.0
             n = read_vector(state, LAST_NORMAL)
-            outcome, d, bound, upper, normal = contact_query(
-                pair, R, p, True, n, everywhere, mode, q, w_ff, tolerance, counts, events
+            outcome, d_in, bound_in, upper, n = contact_query(
+                pair, R, p, warm, n, everywhere, mode, q, w_ff, tolerance, counts, events
             )
+            if doubted and outcome != PENETRATING:
+                restore(mode, q, behind[0], behind[1])
+                return False, UNCERTIFIED, d, bound, d, normal, False
             exhausted = counts[EVALUATIONS] >= counts[LIMIT]
             if outcome != UNCERTIFIED or exhausted:
                 begin_errors(pair, R, p, options, state, mode, q)
-                return False, outcome, d, bound, upper, normal, outcome != CERTIFIED
+                return False, outcome, d_in, bound_in, upper, n, outcome != CERTIFIED
+            from_state(state, mode, q)
     counts[RESTARTS] += 1
     outcome, d, bound, upper, normal, inside = anywhere(
-        pair, R, p, options, tolerance, mode, q, w_ff, counts, events
+        pair, R, p, options, tolerance, first, mode, q, w_ff, counts, events
     )
+    if counts[EVALUATIONS] >= counts[LIMIT] and outcome != CERTIFIED and not inside:
+        d, bound, upper, normal, inside = cut_off(pair, R, p, d, bound, upper, normal, mode, q)
     begin_errors(pair, R, p, options, state, mode, q)
     return False, outcome, d, bound, upper, normal, inside
 

@@ -85,7 +85,7 @@ def start_frame(
     if outcome != CERTIFIED and given != START_HERE:
         counts[RESTARTS] += 0 if given == START_ANYWHERE else 1
         outcome, d, bound, upper, normal, inside = anywhere(
-            pair, R, p, options, goal, mode, q, w_ff, counts, events
+            pair, R, p, options, goal, 0.0, mode, q, w_ff, counts, events
         )
     kind = LAW_PAPER if given == START_HERE else LAW_PC
     status = judge(pair, kind, outcome, p, d, bound, upper, goal, False)
@@ -170,9 +170,9 @@ def step_frame(
     status = judge(pair, options[O_LAW], outcome, p, d, bound, upper, tolerance, exhausted)
     jets = pair_jets(pair, R, p, mode, q)
     n_rate = ORIGIN
-    if inside:
+    if inside and has_twist:
         n_rate = contact_rates(pair, motion, jets, normal, d, w_ff, counts)
-    elif not fresh and has_twist and d > 0.0:
+    elif not inside and not fresh and has_twist and d > 0.0:
         feedforward_now(pair, options, motion, mode, q, w_ff, counts)
     old_a, old_b = int(state[MODE]), int(state[MODE + 2])
     same = carry_over(pair, state, mode)

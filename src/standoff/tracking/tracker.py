@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 
 # Statuses of answers that a proof of overlap may decide.
-UNDECIDED = (float(Status.NOT_CERTIFIED.value), float(Status.TRACKING.value))
+UNDECIDED = (float(Status.NOT_CERTIFIED.value),)
 
 
 class Tracker:
