@@ -178,12 +178,12 @@ def _told(facts: Facts) -> str:
 def _replay(file: Path) -> int:
     try:
         facts = read_failure(file)
-        print(f"the file says: {_told(facts)}")
         again = replay(facts)
     except OSError as error:
         raise CommandError(f"--replay {file}: cannot be read ({error.strerror})") from error
     except ValueError as error:
         raise CommandError(f"--replay {file}: {error}") from error
+    print(f"the file says: {_told(facts)}")
     if again.failure is not None:
         fault, query = again.failure.fault, "cold " if again.failure.cold else ""
         print(

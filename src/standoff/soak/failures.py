@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import traceback
 from pathlib import Path
@@ -14,9 +13,11 @@ from numpy.typing import NDArray
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import tracker as kernels
+from standoff.kernels.tolerances import ROTATION
 from standoff.soak.cases import Case
 from standoff.soak.checks import Fault, judge
 from standoff.soak.motions import Frames
+from standoff.soak.reading import entry, mapping, number, numbers, read_facts, text, whole
 from standoff.soak.running import Failure, run_case, start
 from standoff.soak.shapes import Made, made
 from standoff.tracking.tracker import Tracker
@@ -89,9 +90,9 @@ def _step_facts(case: Case, k: int) -> Facts:
     state, row = np.zeros(K.N_STATE), np.empty(K.N_OUT)
     start(tracker, frames, 0, case.motion.twists, state, row)
     before = state.copy()
-    for number in range(1, k + 1):
+    for at in range(1, k + 1):
         before = state.copy()
-        _step(tracker, frames.part(np.array([number])), case.motion.twists, state, row)
+        _step(tracker, frames.part(np.array([at])), case.motion.twists, state, row)
     return {
         name: _numbers(array[k]) for name, array in zip(frames._fields[:4], frames[:4], strict=True)
     } | {
@@ -107,19 +108,22 @@ def _ready(case: Case) -> tuple[Made, Made, Frames, Tracker]:
     return a, b, case.motion.frames(case.frames), tracker
 
 
-def _step(tracker: Tracker, one: Frames, has_twist: bool, state: Array, row: Array) -> None:
-    kernels.step(
-        tracker.packed,
-        one.poses_a[0],
-        one.poses_b[0],
-        one.twists_a[0],
-        one.twists_b[0],
-        has_twist,
-        float(one.steps[0]),
-        tracker.options,
-        state,
-        row,
-        np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS),
+def _step(tracker: Tracker, one: Frames, has_twist: bool, state: Array, row: Array) -> int:
+    """Answer one frame; FINE, or what was refused."""
+    return int(
+        kernels.step(
+            tracker.packed,
+            one.poses_a[0],
+            one.poses_b[0],
+            one.twists_a[0],
+            one.twists_b[0],
+            has_twist,
+            float(one.steps[0]),
+            tracker.options,
+            state,
+            row,
+            np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS),
+        )
     )
 
 
@@ -131,12 +135,37 @@ def read_failure(file: Path) -> Facts:
     OSError
         It cannot be read.
     ValueError
-        It is no such file.
+        It is no such file, or damaged.
     """
-    facts = json.loads(file.read_text(encoding="utf-8"))
-    if not isinstance(facts, dict) or facts.get("kind") != KIND:
-        raise ValueError(f"{file} is no failure of a soak: its 'kind' is not '{KIND}'.")
+    facts = read_facts(file)
+    if facts.get("kind") != KIND:
+        raise ValueError(f"it is no failure of a soak: its 'kind' is not '{KIND}'")
+    text(entry(facts, "what"), "'what'")
+    if "case" not in facts:
+        for name, least in (("seed", 0), ("number", 0), ("frames", 1)):
+            whole(entry(facts, name), f"'{name}'", least)
+        return facts
+    case = mapping(facts["case"], "'case'")
+    for name, least in (("seed", 0), ("number", 0), ("frames", 1)):
+        whole(entry(case, name), f"the case's '{name}'", least)
+    mapping(entry(case, "options"), "the case's 'options'")
+    if whole(entry(facts, "frame"), "'frame'") >= case["frames"]:
+        raise ValueError(f"'frame' is {facts['frame']}, beyond the case's {case['frames']} frames")
+    for name in ("value", "allowed"):
+        number(entry(facts, name), f"'{name}'")
+    if not isinstance(entry(facts, "cold"), bool):
+        raise ValueError(f"'cold' is {facts['cold']!r}, not true or false")
+    if facts.get("step") is not None:
+        _read_step(mapping(facts["step"], "'step'"))
     return facts
+
+
+def _read_step(step: Facts) -> None:
+    for name, count in (("poses_a", 12), ("poses_b", 12), ("twists_a", 6), ("twists_b", 6)):
+        numbers(entry(step, name), f"the step's '{name}'", count)
+    number(entry(step, "step"), "the step's 'step'")
+    if entry(step, "state") is not None:
+        numbers(step["state"], "the step's 'state'")
 
 
 def replay(facts: Facts) -> Replayed:
@@ -155,11 +184,32 @@ def replay(facts: Facts) -> Replayed:
         )
     try:
         case = Case.of(facts["case"])
-    except (KeyError, TypeError) as error:
-        raise ValueError(f"The file's case is not one of this version: {error!r}") from error
-    a, b, frames, tracker = _ready(case)
+        a, b, frames, tracker = _ready(case)
+    except (
+        ArithmeticError,
+        AttributeError,
+        LookupError,
+        MemoryError,
+        TypeError,
+        ValueError,
+    ) as error:
+        # whatever a body, a path or a tracker makes of numbers that are not its own
+        why = str(error).splitlines()[0] if str(error) else type(error).__name__
+        if isinstance(error, KeyError):
+            why = f"{why} is missing"
+        raise ValueError(f"the file's case is none of this version: {why}") from error
+    if not _is_motion(frames):
+        raise ValueError("the file's motion has poses, twists or steps that are none")
     _, failure = run_case(case, a, b, frames)
     return Replayed(failure, _stepped(facts, case, a, b, tracker))
+
+
+def _is_motion(frames: Frames) -> bool:
+    """Are all numbers finite, steps positive, and rotations orthonormal?"""
+    if not all(np.isfinite(array).all() for array in frames) or frames.steps.min() <= 0.0:
+        return False
+    turns = np.concatenate([frames.poses_a, frames.poses_b])[:, :9].reshape(-1, 3, 3)
+    return bool(np.abs(turns @ turns.transpose(0, 2, 1) - np.eye(3)).max() <= ROTATION)
 
 
 def _stepped(facts: Facts, case: Case, a: Made, b: Made, tracker: Tracker) -> Fault | None:
@@ -174,7 +224,8 @@ def _stepped(facts: Facts, case: Case, a: Made, b: Made, tracker: Tracker) -> Fa
         np.array([step["step"]]),
     )
     row = np.empty((1, K.N_OUT))
-    _step(tracker, one, case.motion.twists, _array(step["state"]), row[0])
+    if _step(tracker, one, case.motion.twists, _array(step["state"]), row[0]) != K.FINE:
+        raise ValueError("the file's step holds no pose or twist")
     tolerance = float(tracker.options[K.O_TOLERANCE])
     faults = judge(a, b, one, row, tolerance, case.motion.twists).faults
     return faults[0]._replace(frame=facts["frame"]) if faults else None

@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from standoff.soak.cases import PER_DRAWER
+from standoff.soak.reading import entry, read_facts, rows, whole
 from standoff.soak.tally import Tally
+from standoff.tracking.status import Status
 from standoff.tracking.whole_files import write_whole
 from standoff.version import __version__
 
@@ -98,12 +100,12 @@ class Ledger:
         """
         file = folder / NAME
         try:
-            facts = json.loads(file.read_text(encoding="utf-8"))
-            known = {name: facts[name] for name in ("standoff", "seed", "frames")}
-            done = [(int(first), int(end)) for first, end in facts["done"]]
+            facts = read_facts(file)
+            known = {name: entry(facts, name) for name in ("standoff", "seed", "frames")}
+            done = _parts(entry(facts, "done"))
             tally = Tally.of(facts)
-        except (KeyError, TypeError, ValueError) as error:
-            raise ValueError(f"{file} is no ledger of a soak: {error!r}") from error
+        except ValueError as error:
+            raise ValueError(f"{file} is no ledger of a soak: {error}") from error
         wanted = {"standoff": __version__, "seed": seed, "frames": frames}
         for name, value in wanted.items():
             if known[name] != value:
@@ -111,4 +113,39 @@ class Ledger:
                     f"{file} is of a run with {name} {known[name]}, not {value}: give that, or "
                     "another folder."
                 )
-        return cls(seed, frames, done, tally)
+        ledger = cls(seed, frames, done, tally)
+        wrong = ledger.inconsistency()
+        if wrong:
+            raise ValueError(f"{file} is damaged: {wrong}. Begin anew in another folder.")
+        return ledger
+
+    def inconsistency(self) -> str:
+        """Return which sums contradict the pairs that are done; "" if none does."""
+        pairs, sums = self.pairs_done(), self.tally.sums
+        frames = pairs * self.frames
+        wanted = {
+            "pairs": (sums["pairs"], pairs),
+            "frames": (sums["frames"], frames),
+            "frames of all statuses": (sum(sums[status.name] for status in Status), frames),
+            "certified": (
+                sums["certified"],
+                sums[Status.CONVERGED.name] + sums[Status.GLOBAL.name],
+            ),
+        }
+        for name, (count, right) in wanted.items():
+            if count != right:
+                return f"it counts {count} {name} where {right} were done"
+        for name, count in sums.items():
+            if count > frames:
+                return f"it counts {count} '{name}' in {frames} frames"
+        return ""
+
+
+def _parts(facts: Any) -> list[Part]:
+    """The parts of plain data: sorted, and apart from each other."""
+    parts: list[Part] = []
+    for first, end in rows(facts, "'done'", 2):
+        least = parts[-1][1] + 1 if parts else 0
+        first = whole(first, "the first pair of a part of 'done'", least)
+        parts.append((first, whole(end, "the end of a part of 'done'", first + 1)))
+    return parts

@@ -6,6 +6,8 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
+from standoff.soak.reading import entry, mapping, number, rows, text, whole
+
 EXAMPLES = 40
 """Frames without a certificate that are kept as examples: those of the lowest pairs."""
 
@@ -52,5 +54,25 @@ class Tally:
 
     @classmethod
     def of(cls, facts: dict[str, Any]) -> Tally:
-        """Return the tally of plain data."""
-        return cls(Counter(facts["sums"]), dict(facts["worst"]), list(facts["examples"]))
+        """Return the tally of plain data.
+
+        Raises
+        ------
+        ValueError
+            It is none.
+        """
+        sums = mapping(entry(facts, "sums"), "'sums'")
+        worst = mapping(entry(facts, "worst"), "'worst'")
+        examples = rows(entry(facts, "examples"), "'examples'", 5)
+        for pair, frame, status, shapes, distance in examples:
+            whole(pair, "an example's pair")
+            whole(frame, "an example's frame")
+            text(status, "an example's status")
+            text(shapes, "an example's pair of shapes")
+            if distance is not None:
+                number(distance, "an example's distance")
+        return cls(
+            Counter({name: whole(value, f"the sum '{name}'") for name, value in sums.items()}),
+            {name: number(value, f"the worst '{name}'") for name, value in worst.items()},
+            examples,
+        )

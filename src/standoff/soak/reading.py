@@ -1,0 +1,97 @@
+"""Plain data of the soak's files, checked before anything is made of it."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+Facts = dict[str, Any]
+
+
+def read_facts(file: Path) -> Facts:
+    """Return the object that a JSON file holds.
+
+    Raises
+    ------
+    OSError
+        It cannot be read.
+    ValueError
+        It is no JSON, or no object, or has numbers that are not finite.
+    """
+    try:
+        found = json.loads(
+            file.read_text(encoding="utf-8"), parse_constant=_refused, parse_float=_finite
+        )
+    except RecursionError as error:
+        raise ValueError("it is nested too deep") from error
+    return mapping(found, "it")
+
+
+def _refused(text: str) -> float:
+    raise ValueError(f"{text} is no number that these files hold")
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    return value if math.isfinite(value) else _refused(text)
+
+
+def entry(facts: Facts, name: str) -> Any:
+    """Return an entry; a ValueError where there is none."""
+    if name not in facts:
+        raise ValueError(f"'{name}' is missing")
+    return facts[name]
+
+
+def whole(value: Any, what: str, least: int = 0) -> int:
+    """Return a whole number; a ValueError where it is none, or below the least."""
+    if isinstance(value, bool) or not isinstance(value, int) or value < least:
+        raise ValueError(f"{what} is {_shown(value)}, not a whole number of {least} or more")
+    return value
+
+
+def number(value: Any, what: str) -> float:
+    """Return a number, also "inf" or "nan" by name; a ValueError where it is none."""
+    known = isinstance(value, int | float) and not isinstance(value, bool)
+    if not known and value not in ("inf", "-inf", "nan"):
+        raise ValueError(f"{what} is {_shown(value)}, not a number")
+    return float(value)
+
+
+def numbers(values: Any, what: str, count: int | None = None) -> list[float]:
+    """Return so many numbers; a ValueError where they are none."""
+    if not isinstance(values, list) or (count is not None and len(values) != count):
+        raise ValueError(f"{what} is no list of {'' if count is None else f'{count} '}numbers")
+    return [number(value, what) for value in values]
+
+
+def text(value: Any, what: str) -> str:
+    """Return a text with something in it; a ValueError where it is none."""
+    if not isinstance(value, str) or not value.strip():
+        raise ValueError(f"{what} is {_shown(value)}, not a text")
+    return value
+
+
+def mapping(value: Any, what: str) -> Facts:
+    """Return an object; a ValueError where it is none."""
+    if not isinstance(value, dict):
+        raise ValueError(f"{what} is {_shown(value)}, not an object")
+    return value
+
+
+def rows(value: Any, what: str, length: int) -> list[list[Any]]:
+    """Return a list of lists of one length; a ValueError where it is none."""
+    if not isinstance(value, list):
+        raise ValueError(f"{what} is {_shown(value)}, not a list")
+    for row in value:
+        if not isinstance(row, list) or len(row) != length:
+            raise ValueError(f"{what} holds {_shown(row)}, not a list of {length}")
+    return value
+
+
+def _shown(value: Any) -> str:
+    """A value for a message, cut short."""
+    shown = repr(value)
+    return shown if len(shown) <= 40 else f"{shown[:37]}..."
