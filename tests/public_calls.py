@@ -24,12 +24,13 @@ MODULES: dict[str, ModuleType] = {
 }
 NOT_CALLED = {
     **dict.fromkeys(("Surface", "Curve", "Body"), "abstract, or made by its static methods"),
-    **dict.fromkeys(("Path", "BoundedPath"), "protocols"),
+    **dict.fromkeys(("Apex", "Edge", "Face"), "plain records, checked by `Body.from_brep`"),
     "FrameBuffer": "made from a tracker and a state, which need compiled kernels and check nothing",
 }
 """Public classes with parameters whose constructors are not tried, and why."""
 
 SPHERE, BOX = so.shapes.sphere(0.5), so.shapes.box(1.0, 1.0, 1.0)
+DISC = so.shapes.planar_loop([geometry.ConicArc([0.0, 0.0], [1.0, 0.0], [0.0, 1.0])])
 HOME, AWAY = np.eye(4), so.Pose(np.eye(3), [3.0, 0.0, 0.0])
 PLANE = geometry.Plane.through(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 1.0, 0]))
 DIAGONAL = Line([0.0, 0.0], [1.0, 1.0])
@@ -224,3 +225,50 @@ def calls() -> list[Call]:
                 public = getattr(public, part)
             found.append(Call(f"{module.__name__.split('.')[-1]}.{name}", public, arguments))
     return found
+
+
+def pair_calls() -> list[Call]:
+    """Return the calls that ask about a pair of bodies, or run it."""
+    pair = {"a": SPHERE, "b": BOX}
+    posed = {**pair, "pose_a": HOME, "pose_b": AWAY}
+    moving = motion.ConstantTwist(AWAY, so.Twist([-1.0, 0.0, 0.0], np.zeros(3)))
+    moved = {**pair, "path_a": HOME, "path_b": moving, "duration": 0.01}
+    options = {"dt": 1e-3, "law": "paper", "predictor": "none", "tolerance": 1e-9}
+    tables: dict[str, tuple[ModuleType, dict[str, Any]]] = {
+        "Tracker": (so, {**pair, **options, "gain": 100.0, "integrator": "heun"}),
+        "PointTracker": (so, {"body": DISC, "dt": 1e-3, "law": "paper", "tolerance": 1e-9}),
+        "SpatialPointTracker": (so, {"body": BOX, "dt": 1e-3, "tolerance": 1e-9}),
+        "distance": (so, posed),
+        "open_recording": (so, {"path": "no_such_file.parquet"}),
+        "pair_system": (
+            so,
+            {**posed, "place_a": (so.Feature("vertex", 0), ()), "place_b": (("face", 0), (0, 0))},
+        ),
+        "record_point": (
+            so,
+            {
+                "tracker": so.PointTracker(DISC),
+                "path": motion.Fixed(so.Pose(np.eye(3), [2.0, 0.0, 0.0])),
+                "times": [0.0, 1e-3],
+            },
+        ),
+        "simulate": (so, {**moved, "dt": 1e-3}),
+        "time_of_impact": (so, {**moved, "start": 0.0, "tolerance": 1e-9, "clearance": 0.0}),
+        "voronoi_regions": (so, {"body": DISC, "reach": 1.0, "tolerance": 1e-6}),
+        "witness_set": (so, {"proximity": so.distance(*posed.values()), "pose_a": HOME}),
+        "basin": (
+            control,
+            {
+                "tracker": so.Tracker(SPHERE, BOX),
+                "pose_a": HOME,
+                "pose_b": AWAY,
+                "starts": [(("vertex", 0), ()), (("face", 0), (0.0, 0.0))],
+                "steps": 1,
+            },
+        ),
+        "lyapunov_level": (control, {**posed, "directions": 4, "seed": 0}),
+    }
+    return [
+        Call(f"{module.__name__.split('.')[-1]}.{name}", getattr(module, name), arguments)
+        for name, (module, arguments) in tables.items()
+    ]

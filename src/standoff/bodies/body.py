@@ -106,6 +106,8 @@ class Body:
         ------
         BodyError
             Open or doubly used edges, parts that do not meet, a boundary that is not convex.
+        TypeError
+            Edges or faces that are no list.
         ValueError
             NaN, infinite, negative or wrongly shaped numbers.
         """

@@ -10,7 +10,15 @@ from standoff.bodies.body import Body
 
 @dataclass(frozen=True, order=True)
 class Feature:
-    """A face, edge or vertex of a body, numbered within its kind."""
+    """A face, edge or vertex of a body, numbered within its kind.
+
+    Attributes
+    ----------
+    kind : str
+        "face", "edge" or "vertex".
+    index : int
+        From 0.
+    """
 
     kind: str
     index: int

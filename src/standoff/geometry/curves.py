@@ -21,7 +21,16 @@ FULL_TURN = 2.0 * np.pi
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A parametric curve on [first, last]; `data` is what its kernel reads."""
+    """A parametric curve on [first, last], lengths in the body's frame.
+
+    Parameters
+    ----------
+    data : array
+        What its kernel reads. Make a curve by one of the classes below this one, which check
+        their arguments.
+    first, last : float
+        Range of the parameter t.
+    """
 
     data: Array = field(repr=False)
     first: float
@@ -79,7 +88,18 @@ def _affine(linear: Array, shift: Array) -> Array:
 
 
 class Line(Curve):
-    """The segment from p (t = 0) to q (t = 1)."""
+    """The segment from p (t = 0) to q (t = 1).
+
+    Parameters
+    ----------
+    p, q : (3,) array_like, or (2,) in the plane z = 0
+        Two different points, length.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, or twice the same point.
+    """
 
     kind = L.LINE
 
@@ -96,6 +116,18 @@ class ConicArc(Curve):
     """The elliptic arc centre + a cos t + b sin t, t from first to last; closed for a full turn.
 
     Arcs of parabolas and hyperbolas are rational Bezier curves of degree 2.
+
+    Parameters
+    ----------
+    centre, a, b : (3,) array_like, or (2,) in the plane z = 0
+        Centre and two conjugate semi-axes, not parallel; length.
+    first, last : float
+        Eccentric angles, radians; more than nothing and at most 2 pi apart.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, parallel or zero axes, a wrong range.
     """
 
     kind = L.CONIC
@@ -122,7 +154,21 @@ class ConicArc(Curve):
 
 
 class RationalBezier(Curve):
-    """A rational Bezier curve on [0, 1]: (n + 1, 2 or 3) control points, positive weights."""
+    """A rational Bezier curve on [0, 1].
+
+    Parameters
+    ----------
+    control_points : (n + 1, 3) array_like, or (n + 1, 2) in the plane z = 0
+        At least two, length; the first two differ, and the last two.
+    weights : (n + 1,) array_like, optional
+        Positive, within a factor of 1e12, dimensionless; ones when left out.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, a single point, doubled ends, weights that are
+        not positive or too far apart.
+    """
 
     kind = L.BEZIER
 

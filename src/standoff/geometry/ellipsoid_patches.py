@@ -23,12 +23,17 @@ def ellipsoid_patches(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
 
     Parameters
     ----------
-    a, b, c : semi-axes along x, y, z, length.
+    a, b, c : float
+        Semi-axes along x, y, z, length, positive.
+
+    Returns
+    -------
+    tuple of BezierPatch
 
     Raises
     ------
     ValueError
-        A semi-axis that is not positive.
+        A semi-axis that is not finite or not positive.
     """
     axes = np.array([positive(a, "a"), positive(b, "b"), positive(c, "c")])
     points, weights = _cube_tile()
@@ -44,12 +49,17 @@ def ellipsoid_octants(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
 
     Parameters
     ----------
-    a, b, c : semi-axes along x, y, z, length.
+    a, b, c : float
+        Semi-axes along x, y, z, length, positive.
+
+    Returns
+    -------
+    tuple of BezierPatch
 
     Raises
     ------
     ValueError
-        A semi-axis that is not positive.
+        A semi-axis that is not finite or not positive.
     """
     axes = np.array([positive(a, "a"), positive(b, "b"), positive(c, "c")])
     round_ = np.array([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])

@@ -8,6 +8,7 @@ sphere is a conic there), on a cylinder or cone the angle or the generator.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -16,15 +17,44 @@ from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
 from standoff.kernels.entries import pcurve_jet
-from standoff.real_numbers import shown
+from standoff.real_numbers import real_array, shown
 
 
 @dataclass(frozen=True, eq=False)
 class Pcurve:
-    """kind LINE or CONIC, and its 3x3 matrix."""
+    """A trimming curve: homogeneous (u, v) as an affine image of a line or a unit circle.
+
+    Parameters
+    ----------
+    kind : int
+        LINE or CONIC of `standoff.kernels.layout`; take those of `pcurve_of`, or a `NurbsPcurve`.
+    matrix : (3, 3) array_like
+        P of P (t, 0, 1) for a line, of P (cos t, sin t, 1) for a conic, t in radians.
+
+    Raises
+    ------
+    ValueError
+        Another kind, a wrong shape, or a number that is not finite.
+    """
 
     kind: int
     matrix: Array
+
+    def __post_init__(self) -> None:
+        given: Any = self.kind
+        if isinstance(given, bool) or not isinstance(given, int) or given not in (L.LINE, L.CONIC):
+            raise ValueError(
+                f"Pcurve of kind {shown(given)}: give {L.LINE} (line) or {L.CONIC} (conic)."
+            )
+        try:
+            matrix = real_array(self.matrix)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"Pcurve.matrix is not numeric: {shown(self.matrix)}") from error
+        if matrix.shape != (3, 3) or not np.isfinite(matrix).all():
+            raise ValueError(
+                f"Pcurve.matrix = {shown(self.matrix)}: give a (3, 3) array of finite numbers."
+            )
+        object.__setattr__(self, "matrix", matrix)
 
     @property
     def data(self) -> Array:
@@ -53,10 +83,22 @@ def pcurve_of(curve: Curve, surface: Surface) -> Pcurve:
 
     A curve that was made on the surface brings its own (`Curve.pcurve_on`).
 
+    Parameters
+    ----------
+    curve : Curve
+        A `Line` or `ConicArc` in the surface, or a curve that was made on it.
+    surface : Surface
+        A `Plane`, `Sphere`, `Cylinder` or `Cone` for lines and conic arcs.
+
+    Returns
+    -------
+    Pcurve
+        With the curve's own parameter.
+
     Raises
     ------
     ValueError
-        The kinds do not meet in a line or conic of (u, v).
+        No curve, no surface, or the kinds do not meet in a line or conic of (u, v).
     """
     if not isinstance(curve, Curve):
         raise ValueError(f"curve is {shown(curve)}: give a Curve.")

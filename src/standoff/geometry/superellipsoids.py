@@ -32,7 +32,22 @@ def checked_exponent(value: object, name: str) -> float:
 class SuperellipsoidPole(Surface):
     """Gnomonic chart (u, v, 1) F(u, v)^(-e1/2) of a superellipsoid, about its axis.
 
-    The columns of `linear` are the semi-axes towards u, v and the chart's centre.
+    Parameters
+    ----------
+    linear : (3, 3) array_like, regular
+        Its columns are the semi-axes towards u, v and the chart's centre, length.
+    shift : (3,) array_like
+        The superellipsoid's centre, length.
+    domain : (u0, u1, v0, v1)
+        Ranges of the parameters, dimensionless; all of the chart by default.
+    e1, e2 : float
+        Exponents along and about the axis, dimensionless, 0.1 to 1.8.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, a singular map, an empty domain, an exponent
+        out of range.
     """
 
     e1: float = 1.0
@@ -57,6 +72,24 @@ class SuperellipsoidPole(Surface):
 
 
 class SuperellipsoidSide(SuperellipsoidPole):
-    """The same about a point of the equator: u runs along it, v along the axis."""
+    """The same about a point of the equator: u runs along it, v along the axis.
+
+    Parameters
+    ----------
+    linear : (3, 3) array_like, regular
+        Its columns are the semi-axes towards u, v and the chart's centre, length.
+    shift : (3,) array_like
+        The superellipsoid's centre, length.
+    domain : (u0, u1, v0, v1)
+        Ranges of the parameters, dimensionless; all of the chart by default.
+    e1, e2 : float
+        Exponents along and about the axis, dimensionless, 0.1 to 1.8.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, a singular map, an empty domain, an exponent
+        out of range.
+    """
 
     kind = L.SUPERELLIPSOID_SIDE

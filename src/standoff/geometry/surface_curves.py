@@ -23,10 +23,20 @@ class SurfaceCurve(Curve):
 
     Parameters
     ----------
-    surface, pcurve : a chart, and the trimming curve in it
+    surface : Surface
+        A chart.
+    pcurve : Pcurve
+        The trimming curve in it.
     first, last : float
-    others : the same curve in other charts: pairs (surface, pcurve). A point is taken from the
-        chart that sees it most centrally.
+        Range of the pcurve's parameter t.
+    others : sequence of pairs (Surface, Pcurve)
+        The same curve in other charts. A point is taken from the chart that sees it most
+        centrally.
+
+    Raises
+    ------
+    ValueError
+        Something else than a surface or a pcurve, a number that is not finite, an empty range.
     """
 
     kind = L.ON_SURFACE
@@ -58,7 +68,24 @@ class SurfaceCurve(Curve):
 
     @staticmethod
     def isoline(surface: Surface, *, u: Any = None, v: Any = None) -> SurfaceCurve:
-        """The curve u = const (v its parameter) or v = const over the surface's domain."""
+        """The curve u = const (v its parameter) or v = const over the surface's domain.
+
+        Parameters
+        ----------
+        surface : Surface
+            A patch: its domain is finite.
+        u, v : float, optional
+            One of the two.
+
+        Returns
+        -------
+        SurfaceCurve
+
+        Raises
+        ------
+        ValueError
+            No surface, both parameters or none, a number that is not finite, an endless domain.
+        """
         if not isinstance(surface, Surface):
             raise ValueError(f"surface is {shown(surface)}: give a Surface.")
         if (u is None) == (v is None):

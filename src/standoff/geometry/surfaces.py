@@ -42,9 +42,17 @@ class Surface(ABC):
 
     Parameters
     ----------
-    linear : (3, 3) array, regular
-    shift : (3,) array, length
-    domain : (u0, u1, v0, v1), parameters; a *patch* is a surface whose domain is finite
+    linear : (3, 3) array_like, regular
+        Lengths of the body's frame.
+    shift : (3,) array_like
+        Length.
+    domain : (u0, u1, v0, v1)
+        Ranges of the parameters; a *patch* is a surface whose domain is finite.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, a singular map, an empty domain.
     """
 
     linear: Array
@@ -146,13 +154,44 @@ class Surface(ABC):
 
 
 class Plane(Surface):
-    """(u, v, 0): the plane through `shift` spanned by the first two columns of `linear`."""
+    """(u, v, 0): the plane through `shift` spanned by the first two columns of `linear`.
+
+    Parameters
+    ----------
+    linear : (3, 3) array_like, regular
+        Its first two columns are the changes with u and v, length; the third, across, plays no
+        part.
+    shift : (3,) array_like
+        The point of u = v = 0, length.
+    domain : (u0, u1, v0, v1)
+        Ranges of the parameters, dimensionless; all of the surface by default.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, a singular map, an empty domain.
+    """
 
     kind = L.PLANE
 
     @staticmethod
     def through(origin: Array, along_u: Array, along_v: Array) -> Plane:
-        """The plane x = origin + u along_u + v along_v."""
+        """The plane x = origin + u along_u + v along_v.
+
+        Parameters
+        ----------
+        origin, along_u, along_v : (3,) array_like
+            Lengths; the last two not parallel.
+
+        Returns
+        -------
+        Plane
+
+        Raises
+        ------
+        ValueError
+            A wrong shape, a number that is not finite, parallel directions.
+        """
         along_u, along_v = vector3(along_u, "along_u"), vector3(along_v, "along_v")
         normal = np.cross(along_u, along_v)
         length = np.linalg.norm(normal)
@@ -169,8 +208,23 @@ class Plane(Surface):
 class Sphere(Surface):
     """The gnomonic chart (u, v, 1)/sqrt(1 + u² + v²): the half of an ellipsoid about `linear` e_z.
 
-    The columns of `linear` are the semi-axes; any orthogonal matrix on its right gives another
-    chart of the same ellipsoid. Every plane section is a conic in (u, v).
+    Every plane section is a conic in (u, v).
+
+    Parameters
+    ----------
+    linear : (3, 3) array_like, regular
+        Its columns are the ellipsoid's semi-axes, length; any orthogonal matrix on its right gives
+        another chart of the same ellipsoid.
+    shift : (3,) array_like
+        The ellipsoid's centre, length.
+    domain : (u0, u1, v0, v1)
+        Ranges of the parameters, tangents of angles from the centre of the chart; all of the
+        surface by default.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, a singular map, an empty domain.
     """
 
     kind = L.SPHERE
@@ -181,7 +235,22 @@ class Sphere(Surface):
 
 
 class Cylinder(Surface):
-    """(cos u, sin u, v); u needs no seam."""
+    """(cos u, sin u, v); u needs no seam.
+
+    Parameters
+    ----------
+    linear : (3, 3) array_like, regular
+        Its first two columns are the semi-axes of the section, the third the change with v; length.
+    shift : (3,) array_like
+        The point of the axis at v = 0, length.
+    domain : (u0, u1, v0, v1)
+        Ranges of the parameters: u in radians; all of the surface by default.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, a singular map, an empty domain.
+    """
 
     kind = L.CYLINDER
     periodic = True
@@ -191,7 +260,23 @@ class Cylinder(Surface):
 
 
 class Cone(Surface):
-    """(v cos u, v sin u, v), v >= 0: the apex is at `shift`."""
+    """(v cos u, v sin u, v), v >= 0: the apex is at `shift`.
+
+    Parameters
+    ----------
+    linear : (3, 3) array_like, regular
+        Its first two columns are the semi-axes of the section at v = 1, the third leads there from
+        the apex; length.
+    shift : (3,) array_like
+        The apex, length.
+    domain : (u0, u1, v0, v1)
+        Ranges of the parameters: u in radians; all of the surface by default.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, a singular map, an empty domain.
+    """
 
     kind = L.CONE
     periodic = True

@@ -224,6 +224,8 @@ class Offset:
 
     Raises
     ------
+    TypeError
+        If the path has no ``pose`` and ``twist``.
     ValueError
         If that is no pose.
     """
@@ -275,6 +277,11 @@ class Carried:
         Of the body that carries, in the world.
     within : Path
         Of the carried body in the axes of the carrying one.
+
+    Raises
+    ------
+    TypeError
+        If a path has no ``pose`` and ``twist``.
     """
 
     def __init__(self, carrier: Path, within: Path) -> None:

@@ -40,6 +40,8 @@ class PoseSamples:
 
     Raises
     ------
+    TypeError
+        If the poses are no sequence.
     ValueError
         If there are fewer than two samples, as many times as poses are not given, times do not
         increase strictly or are not finite, a pose is none, or two samples differ by a half turn,

@@ -31,7 +31,16 @@ RELEASE = 4.0
 
 
 class PointVisit(NamedTuple):
-    """A stay in one mode: the side and the active feature, from `start` to `end` [s]."""
+    """A stay in one mode: the side and the active feature.
+
+    Attributes
+    ----------
+    inside : bool
+        Whether the point was inside the body.
+    feature : Feature
+    start, end : float
+        Times, s.
+    """
 
     inside: bool
     feature: Feature

@@ -121,6 +121,8 @@ class Proximity:
     counts : Counts
     events : tuple of Event
         The switches of this step.
+    time : float
+        Of the frame, s; 0 where no tracker asked.
     poses : pair of (12,) arrays
         World poses of A and B that the answer holds for: R row-major, p.
     """

@@ -76,7 +76,15 @@ class RecordedEvent(NamedTuple):
 
 
 class Visit(NamedTuple):
-    """A stay in one mode: the features of A and B, from `start` to `end` in s."""
+    """A stay in one mode.
+
+    Attributes
+    ----------
+    feature_a, feature_b : Feature
+        Active features of A and B.
+    start, end : float
+        Times, s.
+    """
 
     feature_a: Feature
     feature_b: Feature
@@ -345,6 +353,15 @@ def open_recording(path: str | Path) -> Recording:
 
     Everything is as it was, but for ``pair``: the file holds the bodies' names and digests, not
     the bodies.
+
+    Parameters
+    ----------
+    path : str or Path
+        A Parquet file.
+
+    Returns
+    -------
+    Recording
 
     Raises
     ------

@@ -64,6 +64,13 @@ class FrameBuffer:
     """Arrays of one frame, reused: write into the poses (12 numbers: R row-major, p) and twists.
 
     The arrays are written into, not replaced: the kernels read them by address.
+
+    Parameters
+    ----------
+    tracker : Tracker
+        Whose ``step_into`` will be called.
+    state : TrackerState
+        Where it begins; copied.
     """
 
     def __init__(self, tracker: Tracker, state: TrackerState) -> None:

@@ -31,14 +31,23 @@ def spindle(radius: float, length: float, patches: int = 3) -> Body:
 
     Parameters
     ----------
-    radius : of the equator, length, below length / 2 (there it would be a ball).
-    length : from pole to pole.
-    patches : how many equal patches run from pole to pole, at least 3; their seams are smooth.
+    radius : float
+        Of the equator, length, positive and below length / 2 (there it would be a ball).
+    length : float
+        From pole to pole, length, positive.
+    patches : int
+        How many equal patches run from pole to pole, 3 to 1000; their seams are smooth.
+
+    Returns
+    -------
+    Body
 
     Raises
     ------
     BodyError
-        The arc is a semicircle or more; fewer than 3 patches.
+        The arc is a semicircle or more; `patches` is no whole number from 3 to 1000.
+    ValueError
+        A length that is not finite or not positive.
     """
     bulge, half = _bulge(radius, length, "spindle")
     n = _patches(patches, "spindle")
@@ -63,14 +72,23 @@ def gore(radius: float, height: float, patches: int = 4) -> Body:
 
     Parameters
     ----------
-    radius : of the edges at the equator, length, below height / 2.
-    height : from pole to pole, length.
-    patches : sides of the polygon, at least 3.
+    radius : float
+        Of the edges at the equator, length, positive and below height / 2.
+    height : float
+        From pole to pole, length, positive.
+    patches : int
+        Sides of the polygon, 3 to 1000.
+
+    Returns
+    -------
+    Body
 
     Raises
     ------
     BodyError
-        The arcs are semicircles or more; fewer than 3 patches.
+        The arcs are semicircles or more; `patches` is no whole number from 3 to 1000.
+    ValueError
+        A length that is not finite or not positive.
     """
     bulge, half = _bulge(radius, height, "gore")
     n = _patches(patches, "gore")

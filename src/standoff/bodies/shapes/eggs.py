@@ -35,14 +35,23 @@ def egg(radius: float, length: float, taper: float = 0.4) -> Body:
 
     Parameters
     ----------
-    radius : the greatest, at z = -taper length / 2; length.
-    length : from pole to pole, centred.
-    taper : dimensionless, -0.7 to 0.7; 0 is an ellipsoid.
+    radius : float
+        The greatest, at z = -taper length / 2; length, positive.
+    length : float
+        From pole to pole, centred; length, positive.
+    taper : float
+        Dimensionless, -0.7 to 0.7; 0 is an ellipsoid.
+
+    Returns
+    -------
+    Body
 
     Raises
     ------
     BodyError
         |taper| above 0.7.
+    ValueError
+        A number that is not finite, a length that is not positive.
 
     Notes
     -----

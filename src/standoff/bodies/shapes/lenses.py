@@ -21,6 +21,24 @@ def lens(radius: float, offset: float) -> Body:
 
     The centres are -offset (cos 120°i, sin 120°i, 0), i = 0, 1, 2. Three spherical faces, three
     edges, two vertices.
+
+    Parameters
+    ----------
+    radius : float
+        Of the balls, length, positive.
+    offset : float
+        Of their centres, length, positive and below `radius`; offset / radius from 1e-9 to
+        1 - 1e-9.
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    ValueError
+        A number that is not finite or not positive; an offset that leaves nothing, or a body too
+        near to a ball or too thin.
     """
     r, c = positive(radius, "radius"), positive(offset, "offset")
     if c >= r:

@@ -16,6 +16,28 @@ def planar_loop(curves: Sequence[Curve], radius: float = 0.0) -> Body:
     """A planar convex body: curves in z = 0, each beginning where the one before ends.
 
     One closed conic (an ellipse) is a loop by itself.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        Counterclockwise or clockwise, lengths. Ends may miss each other by 1e-9 of the size.
+    radius : float
+        Swept radius, length, zero or above: the loop grows by it all around, its corners rounded.
+
+    Returns
+    -------
+    Body
+        Planar: its partner must be planar too, or a point or segment in z = 0.
+
+    Raises
+    ------
+    BodyError
+        Fewer than two open curves, ends that do not meet, a loop that leaves z = 0 or is not
+        convex.
+    TypeError
+        No sequence, or something in it that is no `Curve`.
+    ValueError
+        A radius that is negative or not finite.
     """
     curves = parts_of(curves, "curves")
     for k, curve in enumerate(curves):

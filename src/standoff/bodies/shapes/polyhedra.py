@@ -25,9 +25,26 @@ SAME_VERTEX = 1e-10
 
 
 def box(x: float, y: float, z: float, rounding: float = 0.0) -> Body:
-    """Outer lengths x, y, z; `rounding` is the radius of its edges and corners.
+    """A box about the origin, its edges along x, y, z, sharp or rounded.
 
     The core is the box of x - 2 rounding, ..., swept by a ball.
+
+    Parameters
+    ----------
+    x, y, z : float
+        Outer lengths, positive.
+    rounding : float
+        Radius of its edges and corners, length, zero or above; below half of the least length.
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    ValueError
+        A number that is not finite, a length that is not positive, a rounding that is negative or
+        leaves no core.
     """
     lengths = np.array([positive(x, "x"), positive(y, "y"), positive(z, "z")])
     rounding = not_negative(rounding, "rounding")
@@ -42,7 +59,24 @@ def box(x: float, y: float, z: float, rounding: float = 0.0) -> Body:
 
 
 def polytope(vertices: Any) -> Body:
-    """The convex hull of points, (n, 3), n >= 4, not in one plane."""
+    """The convex hull of points.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array_like
+        At least four points that are not in one plane, length. Those inside the hull are left out.
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    BodyError
+        The points span no volume, or their extent is below 1e-50.
+    ValueError
+        A wrong shape, a number that is not finite or beyond 1e50.
+    """
     return _polyhedron(finite(vertices, "vertices", (-1, 3)), name="polytope")
 
 
@@ -55,13 +89,21 @@ def rounded_polytope(vertices: Any, rounding: float) -> Body:
 
     Parameters
     ----------
-    vertices : (n, 3) array, length, n >= 4, not in one plane.
-    rounding : radius of the ball, length; 0 for a sharp polytope.
+    vertices : (n, 3) array_like
+        At least four points that are not in one plane, length.
+    rounding : float
+        Radius of the ball, length; 0 for a sharp polytope.
+
+    Returns
+    -------
+    Body
 
     Raises
     ------
     BodyError
         The points lie in a plane, or `rounding` leaves no core.
+    ValueError
+        A wrong shape, a number that is not finite or beyond 1e50, a negative rounding.
     """
     points = finite(vertices, "vertices", (-1, 3))
     rounding = not_negative(rounding, "rounding")

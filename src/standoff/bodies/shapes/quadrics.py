@@ -28,19 +28,71 @@ _AXES = np.array(
 
 
 def sphere_atlas(linear: Array, centre: Array) -> tuple[Sphere, ...]:
-    """Six overlapping gnomonic charts of the ellipsoid linear @ (unit sphere) + centre."""
+    """Six overlapping gnomonic charts of the ellipsoid linear @ (unit sphere) + centre.
+
+    Parameters
+    ----------
+    linear : (3, 3) array_like
+        Its columns are semi-axes, or any three vectors that map the unit sphere to it; length.
+    centre : (3,) array_like
+        Length.
+
+    Returns
+    -------
+    tuple of six Sphere
+        The charts of one `Face`.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, or a singular map.
+    """
     axes = matrix3(linear, "linear")
     return tuple(Sphere(axes @ turn, centre) for turn in _AXES)
 
 
 def ellipsoid(a: float, b: float, c: float) -> Body:
-    """Semi-axes a, b, c along x, y, z: one smooth face with an atlas of six charts."""
+    """An ellipsoid about the origin: one smooth face with an atlas of six charts.
+
+    Parameters
+    ----------
+    a, b, c : float
+        Semi-axes along x, y, z, length, positive.
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    ValueError
+        A number that is not finite, not positive, beyond 1e50 or below 1e-50.
+    """
     axes = np.diag([positive(a, "a"), positive(b, "b"), positive(c, "c")])
     return Body.from_brep(faces=[Face(sphere_atlas(axes, np.zeros(3)))], name="ellipsoid")
 
 
 def cylinder(r: float, length: float) -> Body:
-    """Two discs and a side without a seam; the rims are closed edges."""
+    """A cylinder about the axis z, centred.
+
+    Two discs and a side without a seam; the rims are closed edges.
+
+    Parameters
+    ----------
+    r : float
+        Radius, length, positive.
+    length : float
+        From disc to disc, length, positive.
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    ValueError
+        A number that is not finite, not positive, beyond 1e50 or below 1e-50.
+    """
     r, half = positive(r, "r"), 0.5 * positive(length, "length")
     x, y = np.array([r, 0.0, 0.0]), np.array([0.0, r, 0.0])
     low, high = np.array([0.0, 0.0, -half]), np.array([0.0, 0.0, half])
@@ -54,7 +106,24 @@ def cylinder(r: float, length: float) -> Body:
 
 
 def cone(r: float, height: float) -> Body:
-    """Base of radius r at -height/2, apex at +height/2."""
+    """A cone about the axis z: its base at -height/2, its apex at +height/2.
+
+    Parameters
+    ----------
+    r : float
+        Radius of the base, length, positive.
+    height : float
+        From base to apex, length, positive.
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    ValueError
+        A number that is not finite, not positive, beyond 1e50 or below 1e-50.
+    """
     r, height = positive(r, "r"), positive(height, "height")
     x, y = np.array([r, 0.0, 0.0]), np.array([0.0, r, 0.0])
     base, apex = np.array([0.0, 0.0, -0.5 * height]), np.array([0.0, 0.0, 0.5 * height])
@@ -71,7 +140,25 @@ def cone(r: float, height: float) -> Body:
 
 
 def cap(radius: float, offset: float) -> Body:
-    """The part z >= offset of a ball, -radius < offset < radius: a disc and a spherical face."""
+    """The part z >= offset of a ball about the origin: a disc and a spherical face.
+
+    Parameters
+    ----------
+    radius : float
+        Of the ball, length, positive.
+    offset : float
+        Height z of the disc, length; above -radius and below radius.
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    ValueError
+        A number that is not finite, a radius that is not positive, an offset that leaves nothing
+        or the whole ball.
+    """
     r = positive(radius, "radius")
     h = float(finite(offset, "offset", ()))
     if not -r < h < r:
@@ -94,6 +181,12 @@ def cap(radius: float, offset: float) -> Body:
 
 
 def halfspace() -> Body:
-    """z <= 0: one plane without a boundary."""
+    """The half-space z <= 0: one plane without a boundary.
+
+    Returns
+    -------
+    Body
+        Unbounded: its partner must be bounded.
+    """
     plane = Plane.through(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 1.0, 0]))
     return Body.from_brep(faces=[Face((plane,))], name="halfspace")

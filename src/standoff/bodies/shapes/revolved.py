@@ -25,8 +25,13 @@ def hull_of_revolution(curve: Curve) -> Body:
 
     Parameters
     ----------
-    curve : in the half-plane y = 0, x >= 0: x is the radius, z the height; open, or a closed
+    curve : Curve
+        In the half-plane y = 0, x >= 0: x is the radius, z the height, lengths; open, or a closed
         `ConicArc`. It may touch the axis at its ends only.
+
+    Returns
+    -------
+    Body
 
     Raises
     ------
@@ -34,7 +39,7 @@ def hull_of_revolution(curve: Curve) -> Body:
         The curve spans no volume; its hull is finer than 2048 samples; a closed curve of another
         kind.
     ValueError
-        It leaves the plane y = 0 or passes the axis.
+        It is no `Curve`, leaves the plane y = 0 or passes the axis.
     """
     whole = Revolution(curve)
     chain = hull_chain(curve)

@@ -22,7 +22,7 @@ Signs = tuple[int, int, int]
 
 
 def superellipsoid(a: float, b: float, c: float, e1: float, e2: float) -> Body:
-    """Semi-axes a, b, c along x, y, z and exponents e1 (along z) and e2 (about z).
+    """A superellipsoid about the origin, with exponents e1 (along z) and e2 (about z).
 
     ``(|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) = 1``: an ellipsoid at e1 = e2 = 1,
     towards 0 a box (e1, e2) or a cylinder (e1 alone), towards 2 an octahedron. Up to 1 the surface
@@ -31,13 +31,19 @@ def superellipsoid(a: float, b: float, c: float, e1: float, e2: float) -> Body:
 
     Parameters
     ----------
-    a, b, c : float, length, positive
-    e1, e2 : float, 0.1 to 1.8
+    a, b, c : float
+        Semi-axes along x, y, z, length, positive.
+    e1, e2 : float
+        Exponents, dimensionless, 0.1 to 1.8.
+
+    Returns
+    -------
+    Body
 
     Raises
     ------
     ValueError
-        A semi-axis that is not positive, an exponent out of range.
+        A number that is not finite, a semi-axis that is not positive, an exponent out of range.
     """
     axes = np.array([positive(a, "a"), positive(b, "b"), positive(c, "c")])
     e1, e2 = checked_exponent(e1, "e1"), checked_exponent(e2, "e2")
