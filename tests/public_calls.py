@@ -32,6 +32,7 @@ NOT_CALLED = {
 SPHERE, BOX = so.shapes.sphere(0.5), so.shapes.box(1.0, 1.0, 1.0)
 DISC = so.shapes.planar_loop([geometry.ConicArc([0.0, 0.0], [1.0, 0.0], [0.0, 1.0])])
 HOME, AWAY = np.eye(4), so.Pose(np.eye(3), [3.0, 0.0, 0.0])
+PLACED = {"pose_a": HOME, "pose_b": AWAY}
 PLANE = geometry.Plane.through(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 1.0, 0]))
 DIAGONAL = Line([0.0, 0.0], [1.0, 1.0])
 PCURVE = geometry.pcurve_of(DIAGONAL, PLANE)
@@ -230,7 +231,7 @@ def calls() -> list[Call]:
 def pair_calls() -> list[Call]:
     """Return the calls that ask about a pair of bodies, or run it."""
     pair = {"a": SPHERE, "b": BOX}
-    posed = {**pair, "pose_a": HOME, "pose_b": AWAY}
+    posed = {**pair, **PLACED}
     moving = motion.ConstantTwist(AWAY, so.Twist([-1.0, 0.0, 0.0], np.zeros(3)))
     moved = {**pair, "path_a": HOME, "path_b": moving, "duration": 0.01}
     options = {"dt": 1e-3, "law": "paper", "predictor": "none", "tolerance": 1e-9}
@@ -255,14 +256,17 @@ def pair_calls() -> list[Call]:
         "simulate": (so, {**moved, "dt": 1e-3}),
         "time_of_impact": (so, {**moved, "start": 0.0, "tolerance": 1e-9, "clearance": 0.0}),
         "voronoi_regions": (so, {"body": DISC, "reach": 1.0, "tolerance": 1e-6}),
-        "witness_set": (so, {"proximity": so.distance(*posed.values()), "pose_a": HOME}),
+        "witness_set": (
+            so,
+            {"proximity": so.distance(*posed.values()), "pose_a": HOME, "pose_b": AWAY},
+        ),
         "basin": (
             control,
             {
                 "tracker": so.Tracker(SPHERE, BOX),
                 "pose_a": HOME,
                 "pose_b": AWAY,
-                "starts": [(("vertex", 0), ()), (("face", 0), (0.0, 0.0))],
+                "starts": [((("vertex", 0), ()), (("face", 0), (0.0, 0.0)))],
                 "steps": 1,
             },
         ),

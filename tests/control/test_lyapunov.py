@@ -98,7 +98,7 @@ def test_pairs_without_a_level() -> None:
 
 def test_bad_basins() -> None:
     tracker = so.Tracker(CAP, POINT)
-    with pytest.raises(ValueError, match="0 starts of 5 steps"):
+    with pytest.raises(ValueError, match=r"starts = \[\] of 5 steps"):
         control.basin(tracker, HOME, ABOVE, [], 5)
     with pytest.raises(ValueError, match="outside face 0"):
         control.basin(tracker, HOME, ABOVE, [((("face", 0), (9.0, 0.0)), (("vertex", 0), ()))], 5)

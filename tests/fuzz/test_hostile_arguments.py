@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fuzz.laws import refusals, watchdog
-from public_calls import Call, calls
+from public_calls import Call, calls, pair_calls
 
 
 def _deep() -> Any:
@@ -57,6 +57,10 @@ HOSTILE: dict[str, Any] = {
 }
 
 
+FEW = ("nan", "negative", "none", "text", "long text", "object", "array of two", "masked", "deep")
+"""Of them, those tried where a call takes a whole query or run."""
+
+
 @pytest.mark.filterwarnings("ignore::DeprecationWarning:numpy")
 @pytest.mark.parametrize("call", calls(), ids=lambda call: call.name)
 def test_an_argument_of_the_wrong_kind(call: Call) -> None:
@@ -67,7 +71,15 @@ def test_an_argument_of_the_wrong_kind(call: Call) -> None:
             assert not said or len(said[0]) < 2000, f"{key} = {kind}"
 
 
-@pytest.mark.parametrize("call", calls(), ids=lambda call: call.name)
+@pytest.mark.parametrize("call", pair_calls(), ids=lambda call: call.name)
+def test_an_argument_of_the_wrong_kind_in_a_query(call: Call) -> None:
+    for key in call.arguments:
+        for kind in FEW:
+            with watchdog(), refusals((ValueError, TypeError, OSError)):
+                call.public(**{**call.arguments, key: HOSTILE[kind]})
+
+
+@pytest.mark.parametrize("call", [*calls(), *pair_calls()], ids=lambda call: call.name)
 def test_the_calls_work(call: Call) -> None:
-    if call.name != "motion.read_pose_samples":
+    if call.name not in ("motion.read_pose_samples", "standoff.open_recording"):
         call.public(**call.arguments)

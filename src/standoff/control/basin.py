@@ -14,7 +14,9 @@ from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import tracker as kernels
 from standoff.motion import PoseLike
+from standoff.real_numbers import shown
 from standoff.tracking import Tracker, distance
+from standoff.tracking.choices import whole_number
 from standoff.tracking.inputs import flat_pose, place
 
 # A run has found the minimum where its distance and witness points are within this part of the
@@ -79,11 +81,23 @@ def basin(
 
     Raises
     ------
+    TypeError
+        No tracker.
     ValueError
         No frames or starts, a start outside its feature, or a pair without a certified distance.
     """
-    if steps < 1 or not len(starts):
-        raise ValueError(f"{len(starts)} starts of {steps} steps: give at least one of each.")
+    if not isinstance(tracker, Tracker):
+        raise TypeError(f"{shown(tracker)} is not a Tracker: make one by so.Tracker(a, b).")
+    steps = whole_number(steps, "steps")
+    given: Any = starts
+    if not isinstance(given, Sequence) or isinstance(given, str | bytes) or not given:
+        raise ValueError(f"starts = {shown(given)} of {steps} steps: give one or more.")
+    for k, start in enumerate(given):
+        pair = isinstance(start, tuple | list) and len(start) == 2
+        if not pair or not all(isinstance(x, tuple | list) and len(x) == 2 for x in start):
+            raise ValueError(
+                f"starts[{k}] = {shown(start)}: give a pair of (feature, parameters) for A and B."
+            )
     true = distance(tracker.a, tracker.b, pose_a, pose_b)
     if not true.certified or true.distance <= 0.0:
         raise ValueError(f"The pair has no certified distance to compare with: {true!r}.")

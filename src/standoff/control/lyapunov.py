@@ -14,7 +14,7 @@ law never leaves it, and a level set below the least value at the curves' ends l
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,9 @@ from standoff.kernels.entries import on_face
 from standoff.kernels.entries import pair_system as evaluate
 from standoff.kernels.tolerances import RECHART
 from standoff.motion import PoseLike
+from standoff.real_numbers import shown
 from standoff.tracking import Feature, distance
+from standoff.tracking.choices import whole_number
 from standoff.tracking.inputs import flat_pose, place
 from standoff.tracking.pair_system import UPPER
 from standoff.tracking.proximity import charts_of
@@ -113,10 +115,17 @@ def lyapunov_level(
 
     Raises
     ------
+    TypeError
+        Not a body.
     ValueError
-        The pair overlaps or touches, H is not positive definite at its optimum (parallel faces),
-        or the witness points are vertices, which have no parameters.
+        `directions` or `seed` is no whole number. The pair overlaps or touches, H is not positive
+        definite at its optimum (parallel faces), or the witness points are vertices, which have
+        no parameters.
     """
+    directions = whole_number(directions, "directions")
+    given: Any = seed
+    if isinstance(given, bool) or not isinstance(given, int | np.integer) or given < 0:
+        raise ValueError(f"seed = {shown(seed)}: give a whole number, zero or above.")
     best = distance(a, b, pose_a, pose_b)
     if not best.certified or best.distance <= 0.0:
         raise ValueError(f"The pair has no certified minimum: {best!r}.")

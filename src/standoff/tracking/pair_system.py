@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from standoff.bodies.body import Body
 from standoff.kernels import frame as K
 from standoff.kernels.entries import pair_system as evaluate
 from standoff.motion import Pose, PoseLike, TwistLike
+from standoff.real_numbers import shown
 from standoff.tracking.inputs import check_in_plane, check_pair, flat_pose, flat_twist, place
 
 Array = NDArray[np.float64]
@@ -79,6 +81,8 @@ def pair_system(
 
     Raises
     ------
+    TypeError
+        Not a body.
     ValueError
         No pose, twist or feature, or parameters outside it; a planar pair out of its plane.
     """
@@ -91,6 +95,12 @@ def pair_system(
     if a.dimension == 2 or b.dimension == 2:
         check_in_plane(flat_a, flat_b)
     return systems.at(systems.q, flat_a, flat_b, xi_a, xi_b)
+
+
+def _two(given: Any, name: str) -> Sequence[Any]:
+    if not isinstance(given, tuple | list) or len(given) != 2:
+        raise ValueError(f"{name} = {shown(given)}: give (feature, parameters).")
+    return given
 
 
 class PairSystems:
@@ -115,8 +125,8 @@ class PairSystems:
     ) -> None:
         check_pair(a, b)
         state = np.zeros(K.N_STATE)
-        place(state, 0, a, *place_a)
-        place(state, 2, b, *place_b)
+        place(state, 0, a, *_two(place_a, "place_a"))
+        place(state, 2, b, *_two(place_b, "place_b"))
         self.packed = (a.ints, a.reals, b.ints, b.reals)
         self.mode = state[K.MODE : K.MODE + 4].astype(np.int64)
         self.counts = [

@@ -11,6 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.kernels.tolerances import SLOPE
+from standoff.motion import inputs
+from standoff.motion.bounds import check_path
+from standoff.real_numbers import shape_of, shown
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.point_answer import PointEvent, PointProximity
 from standoff.tracking.point_events import Switching, events_between
@@ -139,18 +142,22 @@ def record_point(
     Raises
     ------
     TypeError
-        No `PointTracker`.
+        No `PointTracker`, or no path.
     ValueError
         Times that do not increase, or what the tracker refuses.
     """
     if not isinstance(tracker, PointTracker):
         raise TypeError(
-            f"{tracker!r} is not a PointTracker: so.record_point serves planar bodies; "
+            f"{shown(tracker)} is not a PointTracker: so.record_point serves planar bodies; "
             "so.SpatialPointTracker locates the switches itself, in step."
         )
-    clock = np.asarray(times, dtype=np.float64)
-    if clock.ndim != 1 or len(clock) < 1 or not (np.diff(clock) > 0.0).all():
-        raise ValueError(f"times of shape {clock.shape}: give one or more, strictly increasing.")
+    check_path(path)
+    shape = shape_of(times)
+    if shape is None or len(shape) != 1 or not shape[0]:
+        raise ValueError(f"times = {shown(times)}: give a list of one or more.")
+    clock = inputs.array(times, "times", shape)
+    if not (np.diff(clock) > 0.0).all():
+        raise ValueError(f"times = {shown(times)}: give them strictly increasing.")
     x, v = _placed(path, float(clock[0]))
     state = tracker.start(x, v) if start is None else start
     states, events = [state], list[PointEvent]()

@@ -17,6 +17,7 @@ from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.geometry.validation import finite
+from standoff.real_numbers import shown
 from standoff.tracking.choices import positive_number
 from standoff.tracking.feedback import Feedback
 from standoff.tracking.parallel_minima import (
@@ -98,7 +99,7 @@ class PointTracker:
         switching: str = "multipliers",
     ) -> None:
         if not isinstance(body, Body):
-            raise TypeError(f"{body!r} is not a Body: make one with so.shapes.planar_loop.")
+            raise TypeError(f"{shown(body)} is not a Body: make one by so.shapes.planar_loop.")
         if body.dimension != 2:
             raise ValueError(
                 f"{body!r} is not planar: give one of so.shapes.planar_loop, or give it to "

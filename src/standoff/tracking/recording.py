@@ -15,6 +15,7 @@ from standoff.bodies.body import Body
 from standoff.bodies.features import Feature, feature_of
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
+from standoff.real_numbers import shown
 from standoff.tracking.proximity import Counts, charts_of
 from standoff.tracking.status import Status
 from standoff.tracking.whole_files import write_whole
@@ -365,6 +366,8 @@ def open_recording(path: str | Path) -> Recording:
 
     Raises
     ------
+    TypeError
+        If `path` is neither a text nor a Path.
     FileNotFoundError
         If there is no such file.
     ValueError
@@ -375,6 +378,9 @@ def open_recording(path: str | Path) -> Recording:
     """
     from standoff.tracking.recording_file import read_table
 
+    given: object = path
+    if not isinstance(given, str | Path):
+        raise TypeError(f"path is {shown(given)}: give the name of a file, a text or a Path.")
     return read_table(Path(path))
 
 

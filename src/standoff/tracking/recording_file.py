@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import platform
 from collections.abc import Iterable
 from pathlib import Path
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
+from standoff.real_numbers import SHOWN_CHARACTERS, shown
 from standoff.tracking.proximity import Counts
 from standoff.tracking.recording import RecordedEvent, Recording, RunInfo
 from standoff.tracking.status import Status
@@ -125,9 +127,11 @@ def _events(recording: Recording) -> Any:
 
 def read_table(path: Path) -> Recording:
     """Read a recording; see `open_recording`."""
-    if not path.is_file():
-        what = "is a folder" if path.is_dir() else "does not exist"
-        raise FileNotFoundError(f"{path} {what}: name a recording's Parquet file")
+    # Unlike a path's own `is_file`, this one takes names that no file can have, such as a long one.
+    if not os.path.isfile(path):
+        what = "is a folder" if os.path.isdir(path) else "does not exist"
+        named = path if len(str(path)) <= SHOWN_CHARACTERS else shown(str(path))
+        raise FileNotFoundError(f"{named} {what}: name a recording's Parquet file")
     try:
         metadata = _checked(path, pq.read_schema(path).metadata or {})
         table = pq.read_table(path)

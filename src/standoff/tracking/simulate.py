@@ -15,6 +15,7 @@ from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import tracker as kernels
 from standoff.motion import Fixed, Pose, PoseLike, TwistLike
+from standoff.real_numbers import shown
 from standoff.tracking.choices import positive_number
 from standoff.tracking.feedback import Feedback
 from standoff.tracking.inputs import check_in_plane, flat_pose, flat_twist
@@ -145,8 +146,8 @@ def moving(given: Any, name: str) -> Moving:
         return Fixed(Pose.of(given))
     except (ValueError, TypeError) as error:
         raise TypeError(
-            f"{name} = {given!r} is neither a path with pose(t) and twist(t), such as those of "
-            f"standoff.motion, nor a pose: {error}"
+            f"{name} = {shown(given)} is neither a path with pose(t) and twist(t), such as those "
+            f"of standoff.motion, nor a pose: {error}"
         ) from error
 
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.body import Body
 from standoff.geometry.validation import finite
+from standoff.real_numbers import shown
 from standoff.tracking.choices import positive_number
 from standoff.tracking.depth_branches import Branch, DepthBranches
 from standoff.tracking.parallel_minima import HOME, pose_of, twists
@@ -63,7 +64,7 @@ class SpatialPointTracker:
 
     def __init__(self, body: Body, dt: float = 1e-3, tolerance: float = 1e-10) -> None:
         if not isinstance(body, Body):
-            raise TypeError(f"{body!r} is not a Body: make one with so.shapes.")
+            raise TypeError(f"{shown(body)} is not a Body: make one with so.shapes.")
         if body.dimension == 2:
             raise ValueError(f"{body!r} is planar: give it to so.PointTracker.")
         self.body = body

@@ -84,6 +84,8 @@ class Tracker:
 
     Raises
     ------
+    TypeError
+        Not a body.
     ValueError
         Unknown names, numbers that are not positive, an unstable feedback, variants that do not
         go together, a planar body with a spatial one, two half-spaces.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from standoff.bodies.support_sets import LEVEL, ROUNDINGS, support_set
 from standoff.geometry.flat_sets import FlatSet, shared
 from standoff.kernels import layout as L
 from standoff.motion import Pose, PoseLike
+from standoff.real_numbers import shown
 from standoff.tracking.equal_depths import equal_normals
 from standoff.tracking.normal_sets import normal_dimension
 from standoff.tracking.proximity import Proximity
@@ -93,6 +95,8 @@ def witness_set(
 
     Raises
     ------
+    TypeError
+        No answer.
     ValueError
         The answer has no distance; only one pose is given.
 
@@ -102,6 +106,9 @@ def witness_set(
     supporting plane along the normal: the overlap of two flat sets seen along it. What is
     parallel to 1e-9 rad counts as parallel. Along the other ``normals`` there are other sets.
     """
+    given: Any = proximity
+    if not isinstance(given, Proximity):
+        raise TypeError(f"{shown(given)} is no answer: give one of so.distance or a Tracker.")
     first, second = _poses(proximity, pose_a, pose_b)
     if not np.isfinite(proximity.distance):
         raise ValueError(

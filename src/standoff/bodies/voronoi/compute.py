@@ -7,6 +7,7 @@ from standoff.bodies.voronoi.planar import planar_regions
 from standoff.bodies.voronoi.regions import VoronoiRegions
 from standoff.bodies.voronoi.spatial import spatial_regions
 from standoff.geometry.validation import positive
+from standoff.real_numbers import shown
 
 # Of a point and a half-space, where no other is given, length.
 REACH_WITHOUT_SIZE = 1.0
@@ -38,6 +39,8 @@ def voronoi_regions(
     ------
     VoronoiError
         The medial axis did not pass its own check by brute force, or a junction was not found.
+    TypeError
+        Not a body.
     ValueError
         NaN, infinite or negative numbers, or a tolerance too fine.
 
@@ -50,7 +53,7 @@ def voronoi_regions(
     must have its centre on the axis.
     """
     if not isinstance(body, Body):
-        raise TypeError(f"body = {body!r}: give a standoff.Body.")
+        raise TypeError(f"body = {shown(body)}: give a standoff.Body.")
     if reach is None:
         reach = body.size if body.bounded and body.size > 0.0 else REACH_WITHOUT_SIZE
     reach = positive(reach, "reach")
