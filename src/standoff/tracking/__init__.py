@@ -15,7 +15,6 @@ from standoff.tracking.recording import (
     RecordedEvent,
     Recording,
     RunInfo,
-    Visit,
     open_recording,
 )
 from standoff.tracking.simulate import simulate
@@ -28,6 +27,7 @@ from standoff.tracking.spatial_point_tracker import SpatialPointTracker
 from standoff.tracking.state import FrameBuffer, TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker, distance
+from standoff.tracking.visits import Visit
 from standoff.tracking.witness_set import WitnessSet, witness_set
 
 __all__ = [

@@ -19,7 +19,8 @@ from standoff.bodies.features import Feature, feature_of
 from standoff.kernels import layout as L
 
 if TYPE_CHECKING:  # recordings mark an automaton themselves
-    from standoff.tracking.recording import RecordedEvent, Visit
+    from standoff.tracking.recording import RecordedEvent
+    from standoff.tracking.visits import Visit
 
 Kind = Literal["boundary", "smooth", "release"]
 Mode = tuple[Feature, Feature]

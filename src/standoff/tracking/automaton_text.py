@@ -12,7 +12,7 @@ from standoff.bodies.features import Feature
 from standoff.tracking.automaton import Automaton, Mode, Transition, is_smooth, mode_of
 
 if TYPE_CHECKING:
-    from standoff.tracking.recording import Visit
+    from standoff.tracking.visits import Visit
 
 MOST_DRAWN = 24
 """Most modes of a product that is drawn in full; beyond it only visited modes are."""

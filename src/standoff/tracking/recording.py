@@ -18,6 +18,7 @@ from standoff.kernels import frame as K
 from standoff.real_numbers import shown
 from standoff.tracking.proximity import Counts, charts_of
 from standoff.tracking.status import Status
+from standoff.tracking.visits import Visit
 from standoff.tracking.whole_files import write_whole
 
 if TYPE_CHECKING:
@@ -74,23 +75,6 @@ class RecordedEvent(NamedTuple):
     value: float
     slope: float
     located: bool
-
-
-class Visit(NamedTuple):
-    """A stay in one mode.
-
-    Attributes
-    ----------
-    feature_a, feature_b : Feature
-        Active features of A and B.
-    start, end : float
-        Times, s.
-    """
-
-    feature_a: Feature
-    feature_b: Feature
-    start: float
-    end: float
 
 
 @dataclass(frozen=True)
