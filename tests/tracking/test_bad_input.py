@@ -271,3 +271,13 @@ def test_what_is_no_feature(feature):
     tracker = so.Tracker(LENS, POINT)
     with pytest.raises((ValueError, TypeError), match="feature"):
         tracker.start_from(HOME, AWAY, feature, (0, 0), ("vertex", 0), ())
+
+
+def test_what_is_no_state_or_answer_is_named():
+    box = so.shapes.box(1, 1, 1)
+    tracker = so.SpatialPointTracker(box)
+    with pytest.raises(TypeError, match="SpatialPointState"):
+        tracker.step(None, (0, 0, 0))
+    state = so.Tracker(box, box).start(so.Pose.identity(), so.Pose.exp([0, 0, 0], [3, 0, 0]))
+    with pytest.raises(TypeError, match="no answer"):
+        so.witness_set(state)

@@ -143,3 +143,13 @@ def test_a_planar_body_in_itself():
     answer = so.distance(disc, disc, HOME, HOME)
     assert_deep(answer, 1.4)
     assert answer.normal[2] == 0.0
+
+
+@pytest.mark.parametrize("offset", [1e-6, 1e-4, 1e-2, 0.3])
+def test_nearly_concentric_balls_of_patches(offset):
+    """The depth hardly varies with the direction: all but the exact way differ by the offset."""
+    ball = so.shapes.ellipsoid(1, 1, 1)
+    way = random_rotation(np.random.default_rng())[0]
+    answer = so.distance(ball, ball, so.Pose.identity(), so.Pose.exp([0, 0, 0], offset * way))
+    assert answer.distance == pytest.approx(offset - 2.0, abs=1e-13)
+    assert np.linalg.norm(answer.normal - way) <= 4e-12 / offset + 1e-12

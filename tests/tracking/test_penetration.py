@@ -26,6 +26,7 @@ from oracles.exact_pairs import exact_pair, random_rotation
 from oracles.poses import rotation_about
 from oracles.superellipsoids import Superellipsoid
 from oracles.support import Placed
+from standoff.geometry import Line
 
 SLOW = {"planar": 2}
 CASES = 10
@@ -333,3 +334,25 @@ def test_cases_are_what_they_say():
         first, last = case.motion(0.0), case.motion(FRAMES * DT)
         assert np.allclose(last[1].position, case.placed_b.position)
         assert not np.allclose(first[1].position, case.placed_b.position)
+
+
+def test_a_planar_needle_is_searched_across():
+    """Its farthest points along the axes and diagonals are the ends alone."""
+    rng = np.random.default_rng()
+    flat = so.shapes.planar_loop
+    for _ in range(20):
+        turn = rng.uniform(0, np.pi)
+        c, s = np.cos(turn), np.sin(turn)
+        corners = np.array([(0, 0), (1, 0), (0.5, rng.uniform(0.02, 0.2))]) @ [[c, s], [-s, c]]
+        corners = [(x, y, 0.0) for x, y in corners]
+        needle = flat([Line(corners[k], corners[(k + 1) % 3]) for k in range(3)])
+        inside = np.mean(corners, axis=0)
+        at = so.Pose.exp([0, 0, 0], inside)
+        answer = so.distance(needle, so.shapes.point(), so.Pose.identity(), at)
+        sides = [np.subtract(corners[(k + 1) % 3], corners[k]) for k in range(3)]
+        gaps = [
+            abs(np.cross(side, inside - corners[k])[2]) / np.linalg.norm(side)
+            for k, side in enumerate(sides)
+        ]
+        assert answer.status is so.Status.GLOBAL
+        assert answer.distance == pytest.approx(-min(gaps), rel=1e-9)

@@ -213,3 +213,23 @@ def test_without_twists_there_are_no_rates(predictor):
         assert np.isnan(answer.rate)
         assert np.isnan(answer.velocity_a).all()
         assert np.isnan(answer.velocity_b).all()
+
+
+@pytest.mark.parametrize("spin", [0.5, 1.0, 3.0])
+@pytest.mark.parametrize("gap", [0.3, 0.1, 1e-3])
+def test_parallel_faces_that_slide_have_no_wild_rates(gap, spin):
+    """An edge over a face whose chart turns: a pivot of H that vanishes keeps roundings."""
+    a, b = so.shapes.box(0.9, 0.8, 0.6), so.shapes.cylinder(0.4, 0.6)
+    home = so.Pose.identity()
+    v, w = np.array([-0.25, 0.3, 0.0]), np.array([0.0, 0.0, spin])
+    rng = np.random.default_rng()
+    for _ in range(5):
+        start = np.array([*rng.uniform(0.2, 0.35, 2), 0.6 + gap])
+        tracker = so.Tracker(a, b, dt=1e-3)
+        state = tracker.start(home, so.Pose.exp([0, 0, 0], start), twist_b=(v, w))
+        for k in range(1, 6):
+            pose = so.Pose.exp(k * 1e-3 * w, start + k * 1e-3 * v)
+            state, answer = tracker.step(state, home, pose, twist_b=(v, w))
+            fastest = np.linalg.norm(v) + spin
+            assert np.linalg.norm(answer.velocity_a) <= 10.0 * fastest
+            assert np.linalg.norm(answer.velocity_b) <= 10.0 * fastest

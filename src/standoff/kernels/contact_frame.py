@@ -31,6 +31,7 @@ def contact_query(pair, R, p, warm, n, everywhere, mode, q, w_ff, tolerance, cou
     `everywhere`: 1 to prove the depth the least, and search where it is not. `upper` is at least
     the signed distance.
     """
+    n = some_direction(n)
     known, last = warm > 0.0, n
     best_mode, best_q = np.empty(4, dtype=np.int64), np.empty(4)
     least, found, d = -inf, False, nan
@@ -62,6 +63,12 @@ def contact_query(pair, R, p, warm, n, everywhere, mode, q, w_ff, tolerance, cou
     elif known and not found and counts[EVALUATIONS] >= counts[LIMIT]:
         n = farther_apart(pair, R, p, mode, q, n, last)
     return conclude(pair, R, p, found, least, n, mode, q, tolerance, counts)
+
+
+@kernel
+def some_direction(n):
+    """n, or another where it is the (0, 0, 0) between points that coincide."""
+    return n if dot(n, n) > 0.5 else (1.0, 0.0, 0.0)
 
 
 @kernel

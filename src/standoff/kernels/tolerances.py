@@ -163,3 +163,5 @@ PRISM = 2.0
 
 # Evaluations that steps with a deadline may spend on a start before another one is tried.
 PATIENCE = 48.0
+# Frames that were cut off in contact before the other method has its turn.
+TURN = 8.0

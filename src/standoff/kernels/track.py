@@ -12,7 +12,7 @@ from standoff.kernels.certified import (
 )
 from standoff.kernels.cold_start import global_query
 from standoff.kernels.compiling import kernel
-from standoff.kernels.contact_frame import bound_along, contact_query
+from standoff.kernels.contact_frame import bound_along, contact_query, some_direction
 from standoff.kernels.depth_search import overlap_shown
 from standoff.kernels.descent import ORIGIN, pair_jets
 from standoff.kernels.events import EVALUATIONS, LIMIT, RESTARTS
@@ -46,7 +46,7 @@ from standoff.kernels.penetration import (
 )
 from standoff.kernels.prediction import predict
 from standoff.kernels.rigid import read_rotation, read_vector
-from standoff.kernels.tolerances import PATIENCE, POLISHED, SHIFTED_GAP
+from standoff.kernels.tolerances import PATIENCE, POLISHED, SHIFTED_GAP, TURN
 from standoff.kernels.vectors import dot, sub
 
 
@@ -149,6 +149,7 @@ def cut_off(pair, R, p, d, bound, upper, n, mode, q):
     Where samples alone show that the bodies overlap, the next frame follows the depth from their
     least direction, and this one answers with what that parts them by.
     """
+    n = some_direction(n)
     shown, way, least = overlap_shown(pair, R, p)
     if not shown or bound > 0.0:
         return d, bound, upper, n, False
@@ -196,8 +197,9 @@ def track(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
         if inside:
             behind = (mode[0], mode[1], mode[2], mode[3]), (q[0], q[1], q[2], q[3])
             from_state(state, mode, q)
-            # after a frame that was cut off Newton's method and the descent take turns
-            warm = 2.0 if state[INSIDE] != 0.0 and state[CUT] % 2.0 == 0.0 else 1.0
+            # where frames are cut off Newton's method and the descent take turns
+            newton = state[INSIDE] != 0.0 and (state[CUT] // TURN) % 2.0 == 0.0
+            warm = 2.0 if newton else 1.0
             n = read_vector(state, LAST_NORMAL)
             outcome, d_in, bound_in, upper, n = contact_query(
                 pair, R, p, warm, n, everywhere, mode, q, w_ff, tolerance, counts, events

@@ -215,9 +215,13 @@ class PointTracker:
 
         Raises
         ------
+        TypeError
+            ``state`` is none.
         ValueError
             As `start`; a time that is not positive, or too long for the paper's law.
         """
+        if not isinstance(state, PointState):
+            raise TypeError(f"{state!r} is no PointState: get one from tracker.start.")
         x, v = _in_plane(point, "point"), _velocity(velocity)
         h = self.dt if dt is None else positive_number(dt, "dt")
         side = self.boundary.inside(x[:2])

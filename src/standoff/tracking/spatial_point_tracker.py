@@ -114,9 +114,13 @@ class SpatialPointTracker:
 
         Raises
         ------
+        TypeError
+            ``state`` is none.
         ValueError
             As `start`; a time that is not positive.
         """
+        if not isinstance(state, SpatialPointState):
+            raise TypeError(f"{state!r} is no SpatialPointState: get one from tracker.start.")
         x, v = _given(point, velocity)
         h = self.dt if dt is None else positive_number(dt, "dt")
         was_inside, key = state.proximity.inside, state.next_key

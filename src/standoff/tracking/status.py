@@ -41,7 +41,8 @@ _ADVICE = {
     ),
     Status.LOCAL: (
         "The bodies overlap, and moving B by depth * normal parts them; a lesser depth may exist "
-        "in another direction, down to the upper bound: depth='global' searches for it."
+        "in another direction, down to the upper bound: depth='global' searches for it, as far "
+        "as a deadline lets it."
     ),
     Status.GLOBAL: (
         "The bodies overlap, moving B by depth * normal parts them, and it is proven that no "
