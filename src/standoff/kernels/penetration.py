@@ -32,6 +32,7 @@ from standoff.kernels.tolerances import (
     MOVE_IN,
     NEWTON_TURN,
     NUDGE,
+    ROUNDED_RADIUS,
     SADDLE_SHIFTS,
     SHIFTED_GAP,
     START_GAP,
@@ -178,7 +179,9 @@ def newton_start(pair, R, p, n, mode, q, reach):
     between = sub(jet_a[0], jet_b[0])
     s = dot(n, between)
     least, way, most, other = principal_radii(pair, jet_a, jet_b, n, contact_scale(pair))
-    if least <= CONTACT_RESIDUAL * contact_scale(pair):
+    # beside a flat direction the lesser radius keeps that one's roundings
+    noise = ROUNDED_RADIUS * most if most < inf else 0.0
+    if least <= CONTACT_RESIDUAL * contact_scale(pair) + noise:
         return False, n
     g_1, g_2 = dot(way, between), dot(other, between)
     h_1, h_2 = abs(least - s), abs(most - s)

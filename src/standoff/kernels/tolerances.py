@@ -135,6 +135,8 @@ CONTACT_RESIDUAL = 1e-12
 ALIGNED = 1e-9
 # A flat direction's radius of curvature, in spans: as good as infinite.
 FLAT_RADIUS = 1e12
+# The part of the greater radius that the lesser one may be off by: 16 roundings.
+ROUNDED_RADIUS = 3.6e-15
 # A minimum whose least radius exceeds the depth by less than this (relative) may be none.
 FOCAL_MARGIN = 1e-9
 # Restarts of one query from which on its depths are sought without more of them: where witness
