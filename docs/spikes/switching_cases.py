@@ -200,7 +200,7 @@ class Case:
         mode, q = np.zeros(4, dtype=np.int64), np.zeros(4)
         counts, log = new_counts(), np.empty(EVENT_COLUMNS * MAX_EVENTS)
         outcome, d, _, n = global_query(
-            self.pair, self.R, self.p, mode, q, np.zeros(4), GOAL, counts, log
+            self.pair, self.R, self.p, 0.0, mode, q, np.zeros(4), GOAL, counts, log
         )
         return outcome == CERTIFIED, d, n, int(counts[RESTARTS])
 
