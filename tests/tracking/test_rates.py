@@ -233,3 +233,16 @@ def test_parallel_faces_that_slide_have_no_wild_rates(gap, spin):
             fastest = np.linalg.norm(v) + spin
             assert np.linalg.norm(answer.velocity_a) <= 10.0 * fastest
             assert np.linalg.norm(answer.velocity_b) <= 10.0 * fastest
+
+
+def test_points_without_any_size_that_touch_have_rates():
+    """Point, half-space and gap 0 together have no length: none is divided by."""
+    point, plane = so.shapes.point(), so.shapes.halfspace()
+    home, v, w = so.Pose.identity(), np.array([0.3, -0.2, 0.1]), np.zeros(3)
+    for a, b, normal in ((point, plane, (0, 0, -1)), (plane, point, (0, 0, 1))):
+        tracker = so.Tracker(a, b, dt=1e-3)
+        state = tracker.start(home, home, twist_b=(v, w))
+        state, answer = tracker.step(state, home, home, twist_b=(v, w))
+        assert answer.distance == 0.0
+        assert answer.rate == pytest.approx(np.dot(v, normal), abs=1e-12)
+        assert np.all(np.isfinite([answer.velocity_a, answer.velocity_b]))

@@ -180,6 +180,8 @@ def contact_rates(pair, motion, jets, n, d, w_ff, counts):
     jet_a, jet_b = jets
     _, p, v, w = motion
     span = pair_span(pair, p, abs(d))
+    if span == 0.0:
+        span = 1.0  # a point that touches a half-space or a point: any length will do
     J, r, scales = np.empty((8, 8)), np.empty(8), np.empty(8)
     contact_scales(jet_a, jet_b, span, scales)
     r_t = contact_feedforward(jet_a, jet_b, n, ORIGIN, ORIGIN, ORIGIN, p, v, w)
