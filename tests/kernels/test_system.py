@@ -220,7 +220,7 @@ def test_j_and_r_t_are_the_derivatives_of_r(a, b, planar):
     jets = placed.jets(placed.q, placed.poses)
     normal = tuple(placed.normal)
     found = np.empty((8, 8))
-    contact_jacobian(*jets, normal, placed.depth, found)
+    contact_jacobian(*jets, normal, placed.depth, found.reshape(64))
     known = np.stack(
         [difference(lambda s, e=e: residual(y + s * e, placed.poses)) for e in np.eye(8)], axis=1
     )

@@ -1,7 +1,7 @@
 """A descent with its certificate, polished where contact is very near."""
 
 from standoff.kernels.certificate import certify
-from standoff.kernels.compiling import kernel
+from standoff.kernels.compiling import kernel, shared
 from standoff.kernels.contact import polish
 from standoff.kernels.descent import ORIGIN, pair_jets, release_along, settle
 from standoff.kernels.features import dimension, pair_slack, pair_span
@@ -13,9 +13,10 @@ CERTIFIED = 0
 UNCERTIFIED = 1
 TOUCHING_OR_OVERLAPPING = 2
 PENETRATING = 3  # solved in contact: a signed distance that is not certainly positive
+NOT_APART = 4  # not solved: only the query in contact can tell
 
 
-@kernel
+@shared
 def weigh(pair, R, p, mode, q, jet_a, jet_b, hint, tolerance):
     """(outcome, d, bound, normal) of witness points; d and bound are those of the cores.
 
@@ -45,7 +46,7 @@ def on_feature(pair, mode, q):
     return dimension(ib, mode[2]) != 2 or on_face(ib, rb, mode[3], q[2], q[3])
 
 
-@kernel
+@shared
 def settle_and_weigh(pair, R, p, v, w, mode, q, w_ff, least, goal, tolerance, counts, events):
     """(fresh, outcome, d, bound, normal): descend until the slope is below goal |dR|, certify.
 

@@ -10,7 +10,7 @@ from math import inf
 
 from standoff.kernels import layout as L
 from standoff.kernels.certified import UNCERTIFIED, settle_and_weigh
-from standoff.kernels.compiling import kernel
+from standoff.kernels.compiling import kernel, shared
 from standoff.kernels.descent import ORIGIN, pair_jets, set_mode
 from standoff.kernels.events import EVALUATIONS, LIMIT, RESTARTS
 from standoff.kernels.vectors import add, dot, norm, rotate, rotate_back, scale, sub
@@ -87,7 +87,7 @@ def gilbert(pair, R, p):
     return w
 
 
-@kernel
+@shared
 def global_query(pair, R, p, first, mode, q, w_ff, tolerance, counts, events):
     """(outcome, d, bound, normal) of a cold query; (mode, q) are set to its witness points.
 

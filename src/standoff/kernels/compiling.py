@@ -17,18 +17,59 @@ from numba import config, njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from standoff.kernels import modules
+from standoff.kernels.cache import ModuleCache
+from standoff.kernels.entry import Entry
+
 BOUNDS_CHECK = os.environ.get("STANDOFF_BOUNDS_CHECK", "0") not in ("", "0")
 
-CACHED = not BOUNDS_CHECK or bool(config.CACHE_DIR)
+OPTIONS = {"nopython": True, "error_model": "numpy", "boundscheck": BOUNDS_CHECK or None}
 
-kernel = njit(cache=CACHED, error_model="numpy", boundscheck=BOUNDS_CHECK or None)
-# Inlining is for speed alone; checked code would grow out of proportion by it.
-small = njit(
-    cache=CACHED,
-    error_model="numpy",
-    boundscheck=BOUNDS_CHECK or None,
-    forceinline=not BOUNDS_CHECK,
-)
+
+def kernel(function):
+    """Compile what other kernels call."""
+    return _part(function)
+
+
+def small(function):
+    """Compile a kernel and inline it wherever it is called."""
+    # Inlining is for speed alone; checked code would grow out of proportion by it.
+    return _part(function, forceinline=not BOUNDS_CHECK)
+
+
+def _part(function, **options):
+    if config.DISABLE_JIT:
+        return function
+    options = {**OPTIONS, **options}
+    if not modules.AVAILABLE:
+        return njit(**options)(function)
+    made = modules.Part(function, targetoptions=options, pipeline_class=modules.PartCompiler)
+    made.cache_of_calls = ModuleCache(function, called=True)
+    return made
+
+
+def shared(function):
+    """Compile a large kernel, which several entries call, as a module of its own."""
+    if config.DISABLE_JIT or not modules.AVAILABLE:
+        return _part(function)
+    made = modules.Part(function, targetoptions=OPTIONS, pipeline_class=modules.SharedCompiler)
+    made._cache = ModuleCache(function)
+    made.cache_of_calls = ModuleCache(function, called=True)
+    return made
+
+
+def entry(*signature, work):
+    """Compile what Python calls, with all below it as one module, for the types of `signature`.
+
+    `work` names, for who waits, what it is needed for: a key of `notices.WORK`.
+    """
+
+    def decorate(function):
+        if config.DISABLE_JIT:
+            return function
+        return Entry(function, OPTIONS, signature, work)
+
+    return decorate
 
 
 @intrinsic
@@ -42,6 +83,8 @@ def _pointer(typingctx, array, offset):  # type: ignore[no-untyped-def]
 
 # Three rows of ten Bernstein polynomials: NURBS have degrees up to 9.
 STACK_REALS = 32
+# The contact-regular form is 8 x 8.
+MATRIX_REALS = 64
 
 
 if BOUNDS_CHECK:
@@ -51,6 +94,9 @@ if config.DISABLE_JIT:
 
     def stack_reals():  # type: ignore[no-untyped-def]
         return pointer(np.full(STACK_REALS, np.nan), 0)
+
+    def stack_matrix():  # type: ignore[no-untyped-def]
+        return pointer(np.full(MATRIX_REALS, np.nan), 0)
 
     def pointer(array, offset):  # type: ignore[no-untyped-def]
         rest = array.view(np.ndarray)[offset:]
@@ -63,22 +109,34 @@ elif BOUNDS_CHECK:
         """STACK_REALS numbers of the caller's stack, NaN until they are set."""
         return checked_stack(STACK_REALS)
 
+    @intrinsic
+    def stack_matrix(typingctx):  # type: ignore[no-untyped-def]
+        """MATRIX_REALS numbers of the caller's stack, NaN until they are set."""
+        return checked_stack(MATRIX_REALS)
+
     @kernel
     def pointer(array, offset):  # type: ignore[no-untyped-def]
         return checked_pointer(array, offset)
 
 else:
 
-    @intrinsic
-    def stack_reals(typingctx):  # type: ignore[no-untyped-def]
-        """STACK_REALS numbers of the caller's stack, not yet set: no allocation, gone with it."""
-
+    def _stack(count):  # type: ignore[no-untyped-def]
         def codegen(context, builder, signature, args):  # type: ignore[no-untyped-def]
-            block = cgutils.alloca_once(builder, ir.ArrayType(ir.DoubleType(), STACK_REALS))
+            block = cgutils.alloca_once(builder, ir.ArrayType(ir.DoubleType(), count))
             zero = ir.IntType(64)(0)
             return builder.gep(block, [zero, zero], inbounds=True)
 
         return types.CPointer(types.float64)(), codegen
+
+    @intrinsic
+    def stack_reals(typingctx):  # type: ignore[no-untyped-def]
+        """STACK_REALS numbers of the caller's stack, not yet set: no allocation, gone with it."""
+        return _stack(STACK_REALS)
+
+    @intrinsic
+    def stack_matrix(typingctx):  # type: ignore[no-untyped-def]
+        """MATRIX_REALS numbers of the caller's stack, not yet set."""
+        return _stack(MATRIX_REALS)
 
     @small
     def pointer(array, offset):

@@ -7,14 +7,13 @@ otherwise; the feature pair is held.
 
 from math import sqrt
 
-import numpy as np
-
 from standoff.kernels import layout as L
 from standoff.kernels.certificate import cone_normal
-from standoff.kernels.compiling import kernel
+from standoff.kernels.compiling import kernel, shared, stack_matrix, stack_reals
 from standoff.kernels.descent import ORIGIN, pair_jets, recentre, walk_pair
 from standoff.kernels.events import CORRECTIONS, EVALUATIONS, LIMIT
 from standoff.kernels.features import chart_normal, dimension, pair_span
+from standoff.kernels.lapack import least_squares
 from standoff.kernels.system import contact_feedforward, contact_jacobian, contact_residual
 from standoff.kernels.tolerances import CONTACT_STEPS, NEAR_CONTACT, PIVOT
 from standoff.kernels.trimming import NO_HIT
@@ -71,29 +70,29 @@ def scaled_residual(jet_a, jet_b, n, d, span, scales, r):
 
 @kernel
 def factor_and_solve(J, r, n):
-    """Solve J x = r in place (Gauss, partial pivoting): r becomes x. False where J is singular
-    to PIVOT; J is lost."""
+    """Solve J x = r in place (Gauss, partial pivoting; J by rows): r becomes x. False where J is
+    singular to PIVOT; J is lost."""
     for k in range(n):
         pivot = k
         for i in range(k + 1, n):
-            if abs(J[i, k]) > abs(J[pivot, k]):
+            if abs(J[n * i + k]) > abs(J[n * pivot + k]):
                 pivot = i
-        if abs(J[pivot, k]) <= PIVOT:
+        if abs(J[n * pivot + k]) <= PIVOT:
             return False
         if pivot != k:
             for j in range(k, n):
-                J[k, j], J[pivot, j] = J[pivot, j], J[k, j]
+                J[n * k + j], J[n * pivot + j] = J[n * pivot + j], J[n * k + j]
             r[k], r[pivot] = r[pivot], r[k]
         for i in range(k + 1, n):
-            factor = J[i, k] / J[k, k]
+            factor = J[n * i + k] / J[n * k + k]
             if factor != 0.0:
                 for j in range(k + 1, n):
-                    J[i, j] -= factor * J[k, j]
+                    J[n * i + j] -= factor * J[n * k + j]
                 r[i] -= factor * r[k]
     for k in range(n - 1, -1, -1):
         for j in range(k + 1, n):
-            r[k] -= J[k, j] * r[j]
-        r[k] /= J[k, k]
+            r[k] -= J[n * k + j] * r[j]
+        r[k] /= J[n * k + k]
     return True
 
 
@@ -102,22 +101,30 @@ def scaled_jacobian(jet_a, jet_b, n, d, span, scales, J):
     contact_jacobian(jet_a, jet_b, n, d, J)
     for i in range(8):
         for j in range(8):
-            J[i, j] *= scales[i] * scales[j] / span
+            J[8 * i + j] *= scales[i] * scales[j] / span
 
 
 @kernel
-def solve_contact(jet_a, jet_b, n, d, span, scales, J, r):
-    """J^-1 r in scaled columns. Least squares of least norm serve parallel features, where J is
-    singular and consistent."""
+def solve_contact(jet_a, jet_b, n, d, span, scales, r, x):
+    """J^-1 r in scaled columns into x. Least squares of least norm serve parallel features, where
+    J is singular and consistent; where its numbers are not finite, x is 0."""
+    J = stack_matrix()
     scaled_jacobian(jet_a, jet_b, n, d, span, scales, J)
-    x = r.copy()
+    for k in range(8):
+        x[k] = r[k]
     if factor_and_solve(J, x, 8):
-        return x
+        return
     scaled_jacobian(jet_a, jet_b, n, d, span, scales, J)
-    return np.linalg.lstsq(J, r, PIVOT)[0]
+    for i in range(8):
+        x[i] = r[i]
+        for j in range(i):
+            J[8 * i + j], J[8 * j + i] = J[8 * j + i], J[8 * i + j]
+    if not least_squares(J, x, 8, PIVOT):
+        for k in range(8):
+            x[k] = 0.0
 
 
-@kernel
+@shared
 def newton(pair, R, p, mode, q, n, d, span, counts):
     """(fits, error, n, d): Newton's method on r(y) = 0 with the features held; q in place.
 
@@ -125,14 +132,14 @@ def newton(pair, R, p, mode, q, n, d, span, counts):
     feature ends it (`fits` False): the caller's descent decides then.
     """
     jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-    J, r, scales = np.empty((8, 8)), np.empty(8), np.empty(8)
+    r, y, scales = stack_reals(), stack_reals(), stack_reals()
     contact_scales(jet_a, jet_b, span, scales)
     error = scaled_residual(jet_a, jet_b, n, d, span, scales, r)
     fits = True
     for _ in range(CONTACT_STEPS):
         if counts[EVALUATIONS] >= counts[LIMIT]:
             break
-        y = solve_contact(jet_a, jet_b, n, d, span, scales, J, r)
+        solve_contact(jet_a, jet_b, n, d, span, scales, r, y)
         counts[EVALUATIONS] += 1
         step = (-y[0] * scales[0], -y[1] * scales[1], -y[2] * scales[2], -y[3] * scales[3])
         if walk_pair(pair, mode, q, step)[2] != NO_HIT:
@@ -182,12 +189,12 @@ def contact_rates(pair, motion, jets, n, d, w_ff, counts):
     span = pair_span(pair, p, abs(d))
     if span == 0.0:
         span = 1.0  # a point that touches a half-space or a point: any length will do
-    J, r, scales = np.empty((8, 8)), np.empty(8), np.empty(8)
+    r, y, scales = stack_reals(), stack_reals(), stack_reals()
     contact_scales(jet_a, jet_b, span, scales)
     r_t = contact_feedforward(jet_a, jet_b, n, ORIGIN, ORIGIN, ORIGIN, p, v, w)
     for k in range(8):
         r[k] = -r_t[k] * scales[k] / span
-    y = solve_contact(jet_a, jet_b, n, d, span, scales, J, r)
+    solve_contact(jet_a, jet_b, n, d, span, scales, r, y)
     counts[EVALUATIONS] += 1
     for k in range(4):
         w_ff[k] = y[k] * scales[k]

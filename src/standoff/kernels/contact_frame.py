@@ -6,7 +6,7 @@ import numpy as np
 
 from standoff.kernels.certificate import certify_along
 from standoff.kernels.certified import CERTIFIED, PENETRATING, UNCERTIFIED
-from standoff.kernels.compiling import kernel, pointer
+from standoff.kernels.compiling import kernel, pointer, shared
 from standoff.kernels.depth_search import save, search, witness_points
 from standoff.kernels.descent import pair_jets
 from standoff.kernels.events import EVALUATIONS, EVENTS, LIMIT
@@ -22,7 +22,7 @@ from standoff.kernels.tolerances import ALIGNED, BLUR, DEPTH_PROOF, MAX_RIVALS
 from standoff.kernels.vectors import axpy, dot, norm, sub
 
 
-@kernel
+@shared
 def contact_query(pair, R, p, warm, n, everywhere, mode, q, w_ff, tolerance, counts, events):
     """(outcome, d, bound, upper, normal): signed distance of the cores and its bounds.
 

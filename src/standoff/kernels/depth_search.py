@@ -10,7 +10,7 @@ from math import inf, nan
 from standoff.kernels import layout as L
 from standoff.kernels.certificate import certify_along
 from standoff.kernels.cold_start import sample_point, support_sample
-from standoff.kernels.compiling import kernel
+from standoff.kernels.compiling import kernel, shared
 from standoff.kernels.descent import pair_jets
 from standoff.kernels.difference_hull import (
     BROKEN,
@@ -101,7 +101,7 @@ def seed_hull(pair, R, p, hull, size):
     return solid, way
 
 
-@kernel
+@shared
 def overlap_shown(pair, R, p):
     """(shown, n, least): is the origin inside the polytope of the seeds, which lies in A - B? n is
     the normal of its nearest facet, `least` how far that is. No evaluation is made.
@@ -171,7 +171,7 @@ def deepest_below(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
     return d > -inf, d, n
 
 
-@kernel
+@shared
 def search(pair, R, p, found, d, n, mode, q, best, w_ff, tolerance, proof, rivals, counts, events):
     """(found, d, n, least): the least depth of the cores, from the local minimum given (if found).
 

@@ -9,7 +9,7 @@ falls between two releases, no stationary point is met twice.
 import numpy as np
 
 from standoff.kernels import layout as L
-from standoff.kernels.compiling import kernel
+from standoff.kernels.compiling import kernel, shared
 from standoff.kernels.events import (
     CHART_CHANGES,
     CORRECTIONS,
@@ -275,7 +275,7 @@ def advance(pair, R, p, mode, q, step, flat, E, descent, noise, last_smooth, cou
     return True, held, changed, last_smooth, jet_a, jet_b
 
 
-@kernel
+@shared
 def settle(pair, R, p, v, w, mode, q, w_ff, least, tolerance, counts, events):
     """Descend to a stationary point of the automaton from (mode, q), changed in place.
 

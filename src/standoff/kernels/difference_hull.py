@@ -34,8 +34,8 @@ GREW, NO_GAIN, BROKEN = range(3)
 @kernel
 def empty_hull(planar):
     """(sizes, points, corners, facets) of a polytope without points."""
-    sizes = np.zeros(3, dtype=np.int64)
-    sizes[PLANAR] = planar
+    sizes = np.empty(3, dtype=np.int64)
+    sizes[POINTS], sizes[FACETS], sizes[PLANAR] = 0, 0, planar
     return (
         sizes,
         np.empty((MAX_POINTS, 3)),
@@ -83,8 +83,11 @@ def add_facet(hull, i, j, k, size):
 def remove_facet(hull, m):
     sizes, _, corners, facets = hull
     last = sizes[FACETS] - 1
-    corners[m] = corners[last]
-    facets[m] = facets[last]
+    # by elements: a slice would compile Numba's messages about shapes
+    for k in range(3):
+        corners[m, k] = corners[last, k]
+    for k in range(FACET_REALS):
+        facets[m, k] = facets[last, k]
     sizes[FACETS] = last
 
 

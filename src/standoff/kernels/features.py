@@ -7,7 +7,7 @@ A body in the kernels is the pair (ints, reals) of ``layout``. A *mode* of one b
 from math import sqrt
 
 from standoff.kernels import layout as L
-from standoff.kernels.compiling import kernel
+from standoff.kernels.compiling import kernel, shared
 from standoff.kernels.jets import chart_parameters, curve_jet, pcurve_jet, surface_jet
 from standoff.kernels.tolerances import COLLAPSED, EPS, NORMAL_NOISE
 from standoff.kernels.vectors import add, axpy, cross, dot, norm, rotate, scale, unit
@@ -41,37 +41,15 @@ def offset(reals):
     return norm((reals[L.BOX_CENTRE], reals[L.BOX_CENTRE + 1], reals[L.BOX_CENTRE + 2]))
 
 
-@kernel
-def dimension(ints, feature):
-    """2 for a face, 1 for an edge, 0 for a vertex."""
-    if feature < ints[L.N_FACES]:
-        return 2
-    if feature < ints[L.N_FACES] + ints[L.N_EDGES]:
-        return 1
-    return 0
+# Where the records of features stand is plain Python in `layout`, for the layers above too.
+dimension = kernel(L.dimension)
+chart_record = kernel(L.chart_record)
+edge_record = kernel(L.edge_record)
+vertex_record = kernel(L.vertex_record)
+coedge_record = kernel(L.coedge_record)
 
 
-@kernel
-def chart_record(ints, chart):
-    return ints[L.CHARTS] + L.CHART_STRIDE * chart
-
-
-@kernel
-def edge_record(ints, feature):
-    return ints[L.EDGES] + L.EDGE_STRIDE * (feature - ints[L.N_FACES])
-
-
-@kernel
-def vertex_record(ints, feature):
-    return ints[L.VERTICES] + L.VERTEX_STRIDE * (feature - ints[L.N_FACES] - ints[L.N_EDGES])
-
-
-@kernel
-def coedge_record(ints, coedge):
-    return ints[L.COEDGES] + L.COEDGE_STRIDE * coedge
-
-
-@kernel
+@shared
 def chart_jet(ints, reals, chart, u, v):
     c = chart_record(ints, chart)
     return surface_jet(reals, ints[c + L.CHART_KIND], ints[c + L.CHART_REALS], u, v)

@@ -7,9 +7,8 @@ units and of the parametrisation.
 
 from math import inf, sqrt
 
-import numpy as np
-
-from standoff.kernels.compiling import kernel
+from standoff.kernels.compiling import kernel, stack_reals
+from standoff.kernels.lapack import symmetric_eigen
 from standoff.kernels.tolerances import (
     EPS,
     GRADIENT_NOISE,
@@ -124,17 +123,19 @@ def negate(a):
 
 
 @kernel
-def eigen(H):
-    """(values, V, top) of a whitened H: ascending eigenvalues, vectors in columns, the largest."""
-    A = np.empty((4, 4))
+def eigen(H, V, values):
+    """The largest magnitude of the eigenvalues of a whitened H; these, ascending, into `values`,
+    unit vectors into V: 4 numbers each. Negative where H is not finite.
+    """
     k = 0
     for i in range(4):
         for j in range(i, 4):
-            A[i, j] = H[k]
-            A[j, i] = H[k]
+            V[4 * i + j] = H[k]
+            V[4 * j + i] = H[k]
             k += 1
-    values, V = np.linalg.eigh(A)
-    return values, V, max(abs(values[0]), abs(values[3]))
+    if not symmetric_eigen(V, values, 4):
+        return -1.0
+    return max(abs(values[0]), abs(values[3]))
 
 
 @kernel
@@ -143,16 +144,20 @@ def decomposed_solve(H, g, g_t, noise, scale):
 
     Magnitudes for negative eigenvalues; a flat direction without slope is dropped (minimum
     norm: truly parallel), one with a slope is walked REACH scales, to its face's boundary.
+    Without finite numbers there is no step.
     """
-    values, V, top = eigen(H)
-    p = np.zeros(4)
-    w = np.zeros(4)
+    V, values, p, w = stack_reals(), stack_reals(), stack_reals(), stack_reals()
+    for j in range(4):
+        p[j], w[j] = 0.0, 0.0
+    top = eigen(H, V, values)
+    if top < 0.0:
+        return (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
     for i in range(4):
         slope = 0.0
         drift = 0.0
         for j in range(4):
-            slope += V[j, i] * g[j]
-            drift += V[j, i] * g_t[j]
+            slope += V[4 * i + j] * g[j]
+            drift += V[4 * i + j] * g_t[j]
         lam = values[i]
         if abs(lam) > NEGATIVE * top:
             along = -slope / abs(lam)
@@ -165,8 +170,8 @@ def decomposed_solve(H, g, g_t, noise, scale):
         limit = REACH * scale
         along = max(-limit, min(limit, along))
         for j in range(4):
-            p[j] += V[j, i] * along
-            w[j] += V[j, i] * forward
+            p[j] += V[4 * i + j] * along
+            w[j] += V[4 * i + j] * forward
     return (p[0], p[1], p[2], p[3]), (w[0], w[1], w[2], w[3])
 
 
@@ -180,13 +185,18 @@ def stiff_step(jet_a, jet_b, g, H):
     ia = metric_inverse(jet_a[1], jet_a[2])
     ib = metric_inverse(jet_b[1], jet_b[2])
     gw = whiten_gradient(ia, ib, g)
-    values, V, top = eigen(whiten_hessian(ia, ib, H))
-    p = np.zeros(4)
+    V, values, p = stack_reals(), stack_reals(), stack_reals()
+    top = eigen(whiten_hessian(ia, ib, H), V, values)
+    for j in range(4):
+        p[j] = 0.0
+    if top < 0.0:
+        return 0.0, 0.0, 0.0, 0.0
     for i in range(4):
         if values[i] > STIFF * top:
-            slope = V[0, i] * gw[0] + V[1, i] * gw[1] + V[2, i] * gw[2] + V[3, i] * gw[3]
+            v = 4 * i
+            slope = V[v] * gw[0] + V[v + 1] * gw[1] + V[v + 2] * gw[2] + V[v + 3] * gw[3]
             for j in range(4):
-                p[j] -= V[j, i] * slope / values[i]
+                p[j] -= V[v + j] * slope / values[i]
     return unwhiten_step(ia, ib, (p[0], p[1], p[2], p[3]))
 
 

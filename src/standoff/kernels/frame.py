@@ -68,6 +68,8 @@ START_ANYWHERE, START_DESCEND, START_HERE = range(3)
 
 # What a step refuses, with nothing changed.
 FINE, BAD_POSE_A, BAD_POSE_B, BAD_TWIST = range(4)
+# Of `start_apart`: the bodies may touch, ask `start`. Nothing is changed either.
+NOT_KNOWN_APART = 4
 
 
 @kernel

@@ -112,3 +112,28 @@ BEZIER = 2  # degree, homogeneous points
 NURBS_CURVE = 3  # degree, spans n, n + 1 breaks, n times the homogeneous points of a Bezier curve
 FORMULA_CURVE = 4  # address of a compiled jet
 ON_SURFACE = 5  # the image of the edge's own pcurve: nothing
+
+
+def dimension(ints, feature):
+    """2 for a face, 1 for an edge, 0 for a vertex."""
+    if feature < ints[N_FACES]:
+        return 2
+    if feature < ints[N_FACES] + ints[N_EDGES]:
+        return 1
+    return 0
+
+
+def chart_record(ints, chart):
+    return ints[CHARTS] + CHART_STRIDE * chart
+
+
+def edge_record(ints, feature):
+    return ints[EDGES] + EDGE_STRIDE * (feature - ints[N_FACES])
+
+
+def vertex_record(ints, feature):
+    return ints[VERTICES] + VERTEX_STRIDE * (feature - ints[N_FACES] - ints[N_EDGES])
+
+
+def coedge_record(ints, coedge):
+    return ints[COEDGES] + COEDGE_STRIDE * coedge

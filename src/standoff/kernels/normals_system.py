@@ -8,7 +8,8 @@ unit tangents that is the same pair of numbers, turned by a right angle.
 Two faces only: an edge or a vertex has no normal. Notation and frames as in ``system``.
 """
 
-from standoff.kernels.compiling import kernel, small
+from standoff.kernels.compiling import entry, pointer, small
+from standoff.kernels.entry import BLOCKS, READ, READ_BLOCKS, READ_ROWS, ROWS
 from standoff.kernels.system import (
     contact_feedforward,
     contact_jacobian,
@@ -105,7 +106,7 @@ def motion(rows):
 # Entries for Python, on batches: jets of A and B and the motions are arrays (n, 6, 3).
 
 
-@kernel
+@entry(READ_BLOCKS, READ_BLOCKS, READ_BLOCKS, ROWS, BLOCKS, ROWS, work="study")
 def evaluate_normals(jets_a, jets_b, motions, r, J, r_t):
     """Into r (n, 4), J (n, 4, 4) and r_t (n, 4): the set of reference [28]."""
     for k in range(len(jets_a)):
@@ -117,7 +118,7 @@ def evaluate_normals(jets_a, jets_b, motions, r, J, r_t):
             r[k, i], r_t[k, i] = residual[i], rate[i]
 
 
-@kernel
+@entry(READ_BLOCKS, READ_BLOCKS, READ_BLOCKS, ROWS, BLOCKS, ROWS, work="study")
 def evaluate_projection_errors(jets_a, jets_b, motions, Psi, M, b):
     """Into Psi (n, 4), M (n, 4, 4) and b (n, 4): Eqs. (1)-(14)."""
     for k in range(len(jets_a)):
@@ -135,7 +136,7 @@ def evaluate_projection_errors(jets_a, jets_b, motions, Psi, M, b):
                 at += 1
 
 
-@kernel
+@entry(READ_BLOCKS, READ_BLOCKS, READ_ROWS, READ, READ_BLOCKS, ROWS, BLOCKS, ROWS, work="study")
 def evaluate_contact(jets_a, jets_b, normals, depths, motions, r, J, r_t):
     """Into r (n, 8), J (n, 8, 8) and r_t (n, 8): the contact-regular form at (q, n, d)."""
     for k in range(len(jets_a)):
@@ -143,6 +144,6 @@ def evaluate_contact(jets_a, jets_b, normals, depths, motions, r, J, r_t):
         n = vector(normals, k)
         residual = contact_residual(a, b, n, depths[k])
         rate = contact_feedforward(a, b, n, m[0], m[1], m[2], m[3], m[4], m[5])
-        contact_jacobian(a, b, n, depths[k], J[k])
+        contact_jacobian(a, b, n, depths[k], pointer(J.ravel(), 64 * k))
         for i in range(8):
             r[k, i], r_t[k, i] = residual[i], rate[i]

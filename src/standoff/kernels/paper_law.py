@@ -1,6 +1,6 @@
 """One frame of the paper's law: integrate, saturate, switch; with the variants that it prints."""
 
-from standoff.kernels.compiling import kernel
+from standoff.kernels.compiling import kernel, shared
 from standoff.kernels.descent import (
     NO_EDGE,
     pair_jets,
@@ -110,7 +110,7 @@ def read_errors(pair, R, p, state, mode, q):
         state[ERRORS + k] = psi[k]
 
 
-@kernel
+@shared
 def paper_frame(pair, before, motion, state, options, h, mode, q, counts, events, change):
     """Integrate w = -M⁻¹(v(Psi) + b) from the frame before to this one, then switch.
 

@@ -96,27 +96,34 @@ def contact_residual(jet_a, jet_b, n, d):
 
 
 @small
+def at(i, j):
+    """Where row i and column j of an 8 x 8 matrix by rows stand."""
+    return 8 * i + j
+
+
+@small
 def contact_jacobian(jet_a, jet_b, n, d, J):
-    """J = dr/dy into the 8 x 8 array J; symmetric. Masked parameters get 1 on the diagonal."""
+    """J = dr/dy into J, 64 numbers; symmetric. Masked parameters get 1 on the diagonal."""
     fu, fv = jet_a[1], jet_a[2]
     hr, hs = jet_b[1], jet_b[2]
-    J[:, :] = 0.0
-    J[0, 0] = -dot(n, jet_a[3]) + 1.0 - active(fu)
-    J[0, 1] = -dot(n, jet_a[4])
-    J[1, 1] = -dot(n, jet_a[5]) + 1.0 - active(fv)
-    J[2, 2] = dot(n, jet_b[3]) + 1.0 - active(hr)
-    J[2, 3] = dot(n, jet_b[4])
-    J[3, 3] = dot(n, jet_b[5]) + 1.0 - active(hs)
+    for k in range(64):
+        J[k] = 0.0
+    J[at(0, 0)] = -dot(n, jet_a[3]) + 1.0 - active(fu)
+    J[at(0, 1)] = -dot(n, jet_a[4])
+    J[at(1, 1)] = -dot(n, jet_a[5]) + 1.0 - active(fv)
+    J[at(2, 2)] = dot(n, jet_b[3]) + 1.0 - active(hr)
+    J[at(2, 3)] = dot(n, jet_b[4])
+    J[at(3, 3)] = dot(n, jet_b[5]) + 1.0 - active(hs)
     for i in range(3):
-        J[0, 4 + i] = -fu[i]
-        J[1, 4 + i] = -fv[i]
-        J[2, 4 + i] = hr[i]
-        J[3, 4 + i] = hs[i]
-        J[4 + i, 4 + i] = -d
-        J[4 + i, 7] = -n[i]
+        J[at(0, 4 + i)] = -fu[i]
+        J[at(1, 4 + i)] = -fv[i]
+        J[at(2, 4 + i)] = hr[i]
+        J[at(3, 4 + i)] = hs[i]
+        J[at(4 + i, 4 + i)] = -d
+        J[at(4 + i, 7)] = -n[i]
     for i in range(8):
         for j in range(i):
-            J[i, j] = J[j, i]
+            J[at(i, j)] = J[at(j, i)]
 
 
 @small

@@ -5,6 +5,7 @@ from math import inf
 from standoff.kernels.certificate import certify_along
 from standoff.kernels.certified import (
     CERTIFIED,
+    NOT_APART,
     PENETRATING,
     UNCERTIFIED,
     settle_and_weigh,
@@ -58,31 +59,17 @@ def from_state(state, mode, q):
 
 
 @kernel
-def follow(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
-    """(fresh, outcome, d, bound, normal, apart) of one step of the law outside contact.
+def follow_predicted(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
+    """(fresh, outcome, d, bound, normal, apart) of one step of the predictor-corrector.
 
-    The predictor-corrector predicts with the feedforward, then makes one Newton correction (the
-    paper's feedback under Euler with K h = 1), more where a mode changes; where the certificate's
-    gap stays above the tolerance it corrects to roundoff. `apart` tells that the witness points
-    have not passed each other along the last normal.
+    It predicts with the feedforward, then makes one Newton correction (the paper's feedback under
+    Euler with K h = 1), more where a mode changes; where the certificate's gap stays above the
+    tolerance it corrects to roundoff. `apart` tells that the witness points have not passed each
+    other along the last normal.
     """
     R, p, v, w = motion
     n = read_vector(state, LAST_NORMAL)
     tolerance = options[O_TOLERANCE]
-    if options[O_LAW] == LAW_PAPER:
-        before = (
-            read_rotation(state, POSE),
-            read_vector(state, POSE + 9),
-            read_vector(state, TWIST),
-            read_vector(state, TWIST + 3),
-        )
-        paper_frame(pair, before, motion, state, options, h, mode, q, counts, events, dq)
-        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-        outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, ORIGIN, tolerance)
-        # while it still converges from a wrong start the normal tells nothing
-        settled = state[LAST_BOUND] > 0.5 * state[LAST_DISTANCE]
-        apart = dot(n, sub(jet_b[0], jet_a[0])) > 0.0 or not settled
-        return False, outcome, d, bound, normal, apart
     predict(state, options, h, dq)
     apply_step(pair, mode, q, dq, counts, events)
     if state[LAST_DISTANCE] < SHIFTED_GAP * contact_scale(pair):
@@ -100,6 +87,27 @@ def follow(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
 
 
 @kernel
+def follow_paper(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
+    """What `follow_predicted` returns, of one frame of the paper's law."""
+    R, p, _, _ = motion
+    n = read_vector(state, LAST_NORMAL)
+    before = (
+        read_rotation(state, POSE),
+        read_vector(state, POSE + 9),
+        read_vector(state, TWIST),
+        read_vector(state, TWIST + 3),
+    )
+    paper_frame(pair, before, motion, state, options, h, mode, q, counts, events, dq)
+    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+    tolerance = options[O_TOLERANCE]
+    outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, ORIGIN, tolerance)
+    # while it still converges from a wrong start the normal tells nothing
+    settled = state[LAST_BOUND] > 0.5 * state[LAST_DISTANCE]
+    apart = dot(n, sub(jet_b[0], jet_a[0])) > 0.0 or not settled
+    return False, outcome, d, bound, normal, apart
+
+
+@kernel
 def polished(pair, R, p, mode, q, n, d, bound, tolerance, counts):
     """(d, bound, n) of a certified pair very near contact, after Newton's method in the
     contact-regular form: the direction between its witness points has lost its digits."""
@@ -114,11 +122,21 @@ def polished(pair, R, p, mode, q, n, d, bound, tolerance, counts):
 
 
 @kernel
-def anywhere(pair, R, p, options, goal, first, mode, q, w_ff, counts, events):
-    """(outcome, d, bound, upper, normal, inside) of a cold query, apart or not.
-
-    `first` is the start that is tried first.
+def anywhere_apart(pair, R, p, options, goal, first, mode, q, w_ff, counts, events):
+    """(outcome, d, bound, upper, normal, inside) of a cold query where the bodies are apart; else
+    the outcome is NOT_APART, and `anywhere` finds the answer. `first` is the start that is tried
+    first.
     """
+    outcome, d, bound, normal = global_query(pair, R, p, first, mode, q, w_ff, goal, counts, events)
+    if outcome != CERTIFIED:
+        return NOT_APART, d, bound, d, normal, False
+    d, bound, normal = polished(pair, R, p, mode, q, normal, d, bound, goal, counts)
+    return outcome, d, bound, d, normal, False
+
+
+@kernel
+def anywhere(pair, R, p, options, goal, first, mode, q, w_ff, counts, events):
+    """(outcome, d, bound, upper, normal, inside) of a cold query, apart or not."""
     outcome, d, bound, normal = global_query(pair, R, p, first, mode, q, w_ff, goal, counts, events)
     if outcome == CERTIFIED:
         d, bound, normal = polished(pair, R, p, mode, q, normal, d, bound, goal, counts)
@@ -161,12 +179,12 @@ def cut_off(pair, R, p, d, bound, upper, n, mode, q):
 
 
 @kernel
-def track(pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
+def track(follow, pair, motion, state, options, h, mode, q, w_ff, dq, counts, events):
     """This frame from the last one: (fresh, outcome, d, bound, upper, normal, inside).
 
-    Outside contact one step of the law; in contact, where the witness points pass each other, the
-    local minimum of the depth is followed; where neither certifies, a global start. `fresh` tells
-    whether w_ff belongs to the final mode.
+    Outside contact one step of the law, which is `follow`; in contact, where the witness points
+    pass each other, the local minimum of the depth is followed; where neither certifies, a global
+    start. `fresh` tells whether w_ff belongs to the final mode.
     """
     R, p, _, _ = motion
     tolerance = options[O_TOLERANCE]

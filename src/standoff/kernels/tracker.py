@@ -1,4 +1,4 @@
-"""One frame of the hybrid tracker, in both laws, on flat arrays.
+"""The hybrid tracker as Python calls it: starts, steps and runs of frames on flat arrays.
 
 The state goes in and comes out as one float64 array, so that it is a value. A step answers for
 the poses it is given.
@@ -6,106 +6,27 @@ the poses it is given.
 
 import numpy as np
 
-from standoff.kernels.answer import judge, write_answer
-from standoff.kernels.certified import CERTIFIED, UNCERTIFIED, settle_and_weigh, weigh
-from standoff.kernels.compiling import kernel, pointer
-from standoff.kernels.contact import contact_rates
-from standoff.kernels.descent import ORIGIN, pair_jets
+from standoff.kernels.compiling import entry, kernel, pointer
+from standoff.kernels.entry import BOOL, INT, PAIR, READ, REAL, ROWS, WRITE
 from standoff.kernels.events import (
-    EVALUATIONS,
     EVENT_COLUMNS,
-    EVENTS,
-    LIMIT,
     MAX_EVENTS,
     N_COUNT_SLOTS,
-    N_COUNTS,
-    NO_LIMIT,
-    RESTARTS,
-    tidy_events,
 )
 from standoff.kernels.frame import (
     FINE,
     LAW_PAPER,
-    LAW_PC,
-    MODE,
     N_OUT,
-    N_STATE,
-    O_DEADLINE,
+    NOT_KNOWN_APART,
     O_LAW,
-    O_TOLERANCE,
-    OUT_COUNTS,
-    POSE,
-    START_ANYWHERE,
-    START_HERE,
     refusal,
 )
-from standoff.kernels.integrators import N_CHANGES, NONE, rates_at
-from standoff.kernels.paper_law import read_errors
-from standoff.kernels.prediction import carry_over, keep
-from standoff.kernels.rigid import (
-    mean_twist,
-    read_rotation,
-    read_vector,
-    relative_pose,
-    relative_twist,
+from standoff.kernels.frames import frame_paper, frame_predicted, start_frame
+from standoff.kernels.integrators import N_CHANGES
+from standoff.kernels.track import (
+    anywhere,
+    anywhere_apart,
 )
-from standoff.kernels.tolerances import START_GAP
-from standoff.kernels.track import anywhere, from_state, track
-
-
-@kernel
-def feedforward_now(pair, options, motion, mode, q, w_ff, counts):
-    """w_ff at the final witness points, where no evaluation of the frame belongs to them."""
-    rates, _, _, _ = rates_at(pair, options, motion, mode, q, NONE, NONE, 0.0, 1.0, counts)
-    for k in range(4):
-        w_ff[k] = rates[k]
-
-
-@kernel
-def start_frame(
-    pair, Ta, Tb, xi_a, xi_b, has_twist, options, state, given, out, mode, q, w_ff, counts, events
-):
-    R, p = relative_pose(Ta, Tb)
-    v, w = relative_twist(Ta, Tb, xi_a, xi_b)
-    motion = (R, p, v, w)
-    goal = min(options[O_TOLERANCE], START_GAP)
-    outcome, d, bound, normal = UNCERTIFIED, 0.0, -1.0, (0.0, 0.0, 0.0)
-    inside, n_rate = False, ORIGIN
-    counts[LIMIT] = NO_LIMIT  # a start has no deadline
-    if given != START_ANYWHERE:
-        from_state(state, mode, q)
-        if given == START_HERE:
-            jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-            outcome, d, bound, normal = weigh(pair, R, p, mode, q, jet_a, jet_b, ORIGIN, goal)
-        else:
-            _, outcome, d, bound, normal = settle_and_weigh(
-                pair, R, p, v, w, mode, q, w_ff, 0.0, 0.0, goal, counts, events
-            )
-    upper = d
-    if outcome != CERTIFIED and given != START_HERE:
-        counts[RESTARTS] += 0 if given == START_ANYWHERE else 1
-        outcome, d, bound, upper, normal, inside = anywhere(
-            pair, R, p, options, goal, 0.0, mode, q, w_ff, counts, events
-        )
-    kind = LAW_PAPER if given == START_HERE else LAW_PC
-    status = judge(pair, kind, outcome, p, d, bound, upper, goal, False)
-    jets = pair_jets(pair, R, p, mode, q)
-    if inside:
-        n_rate = contact_rates(pair, motion, jets, normal, d, w_ff, counts)
-    elif has_twist and d > 0.0:
-        feedforward_now(pair, options, motion, mode, q, w_ff, counts)
-    for k in range(N_STATE):
-        state[k] = 0.0
-    if options[O_LAW] == LAW_PAPER:
-        read_errors(pair, R, p, state, mode, q)
-    counts[EVENTS] = 0
-    query = (d, bound, upper, normal)
-    keep(state, motion, has_twist, options, 0.0, mode, q, w_ff, False, status, query, inside)
-    write_answer(
-        pair, Ta, xi_a, has_twist, motion, mode, q, w_ff, jets, query, inside, n_rate, status, out
-    )
-    for k in range(N_COUNTS):
-        out[OUT_COUNTS + k] = counts[k]
 
 
 @kernel
@@ -114,17 +35,19 @@ def pair_pointers(pair):
 
 
 @kernel
-def start(pair, Ta, Tb, xi_a, xi_b, has_twist, options, state, given, out):
-    """Begin at a pose: anywhere (a global query), by descent from the state's mode, or there.
-
-    Returns FINE, or what of the poses and twists is refused.
-    """
+def start_by(query_from, pair, Ta, Tb, xi_a, xi_b, has_twist, options, state, given, out):
+    """`start`, with the cold query that it is to make."""
     refused = refusal(pointer(Ta, 0), pointer(Tb, 0), pointer(xi_a, 0), pointer(xi_b, 0))
     if refused != FINE:
         return refused
-    ints, reals = np.zeros(4 + N_COUNT_SLOTS, dtype=np.int64), np.zeros(8)
+    ints, reals = np.empty(4 + N_COUNT_SLOTS, dtype=np.int64), np.empty(8)
+    for k in range(4 + N_COUNT_SLOTS):
+        ints[k] = 0
+    for k in range(8):
+        reals[k] = 0.0
     log = np.empty(MAX_EVENTS * EVENT_COLUMNS)
-    start_frame(
+    answered = start_frame(
+        query_from,
         pair_pointers(pair),
         pointer(Ta, 0),
         pointer(Tb, 0),
@@ -142,62 +65,34 @@ def start(pair, Ta, Tb, xi_a, xi_b, has_twist, options, state, given, out):
         pointer(log, 0),
     )
     ints[0], reals[0], log[0] = 0, 0.0, 0.0  # alive until here, see `pointer`
-    return FINE
+    return answered
 
 
-@kernel
-def step_frame(
-    pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events, mode, q, w_ff, dq, counts
-):
-    from_state(state, mode, q)
-    for k in range(4):
-        w_ff[k] = 0.0
-    for k in range(N_COUNTS):
-        counts[k] = 0
-    counts[LIMIT] = int(options[O_DEADLINE])
-    R, p = relative_pose(Ta, Tb)
-    if has_twist:
-        v, w = relative_twist(Ta, Tb, xi_a, xi_b)
-    else:
-        before = read_rotation(state, POSE)
-        v, w = mean_twist(before, read_vector(state, POSE + 9), R, p, h)
-    motion = (R, p, v, w)
-    fresh, outcome, d, bound, upper, normal, inside = track(
-        pair, motion, state, options, h, mode, q, w_ff, dq, counts, events
-    )
-    exhausted = counts[EVALUATIONS] >= counts[LIMIT]
-    tolerance = options[O_TOLERANCE]
-    status = judge(pair, options[O_LAW], outcome, p, d, bound, upper, tolerance, exhausted)
-    jets = pair_jets(pair, R, p, mode, q)
-    n_rate = ORIGIN
-    if inside and has_twist:
-        n_rate = contact_rates(pair, motion, jets, normal, d, w_ff, counts)
-    elif not inside and not fresh and has_twist and d > 0.0:
-        feedforward_now(pair, options, motion, mode, q, w_ff, counts)
-    old_a, old_b = int(state[MODE]), int(state[MODE + 2])
-    same = carry_over(pair, state, mode)
-    if counts[EVENTS] > 0 or old_a != mode[0] or old_b != mode[2]:
-        tidy_events(events, counts, old_a, old_b, mode[0], mode[2])
-    query = (d, bound, upper, normal)
-    keep(state, motion, has_twist, options, h, mode, q, w_ff, same, status, query, inside)
-    write_answer(
-        pair, Ta, xi_a, has_twist, motion, mode, q, w_ff, jets, query, inside, n_rate, status, out
-    )
-    for k in range(N_COUNTS):
-        out[OUT_COUNTS + k] = counts[k]
-
-
-@kernel
-def step(pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events):
-    """One frame: the state is changed in place, the answer written to `out`.
-
-    Returns FINE; or, with nothing changed, what of the poses and twists is refused.
+@entry(PAIR, WRITE, WRITE, WRITE, WRITE, BOOL, READ, WRITE, INT, WRITE, work="query")
+def start_apart(pair, Ta, Tb, xi_a, xi_b, has_twist, options, state, given, out):
+    """`start` of bodies that are apart; NOT_KNOWN_APART, with nothing changed, where they may not
+    be. It needs none of what is compiled for contact.
     """
+    return start_by(anywhere_apart, pair, Ta, Tb, xi_a, xi_b, has_twist, options, state, given, out)
+
+
+@entry(PAIR, WRITE, WRITE, WRITE, WRITE, BOOL, READ, WRITE, INT, WRITE, work="contact")
+def start(pair, Ta, Tb, xi_a, xi_b, has_twist, options, state, given, out):
+    """Begin at a pose: anywhere (a global query), by descent from the state's mode, or there.
+
+    Returns FINE, or what of the poses and twists is refused.
+    """
+    return start_by(anywhere, pair, Ta, Tb, xi_a, xi_b, has_twist, options, state, given, out)
+
+
+@kernel
+def step_by(frame, pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events):
+    """`step`, with the law's own frame."""
     refused = refusal(pointer(Ta, 0), pointer(Tb, 0), pointer(xi_a, 0), pointer(xi_b, 0))
     if refused != FINE:
         return refused
     ints, reals = np.empty(4 + N_COUNT_SLOTS, dtype=np.int64), np.empty(8 + N_CHANGES)
-    step_frame(
+    frame(
         pair_pointers(pair),
         pointer(Ta, 0),
         pointer(Tb, 0),
@@ -219,13 +114,40 @@ def step(pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events):
     return FINE
 
 
-@kernel
-def run(pair, poses_a, poses_b, twists_a, twists_b, has_twist, steps, options, state, outs, events):
-    """Many frames in one compiled loop; row k of `outs` answers for row k of the poses.
+@entry(PAIR, WRITE, WRITE, WRITE, WRITE, BOOL, REAL, READ, WRITE, WRITE, WRITE, work="frames")
+def step_predicted(pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events):
+    """One frame of the predictor-corrector: the state is changed in place, the answer written to
+    `out`.
 
-    poses (n, 12), twists (n, 6), steps (n,), outs (n, N_OUT). Returns (-1, FINE), or the frame
-    that was refused and why; the frames before it are answered.
+    Returns FINE; or, with nothing changed, what of the poses and twists is refused.
     """
+    return step_by(
+        frame_predicted, pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events
+    )
+
+
+@entry(PAIR, WRITE, WRITE, WRITE, WRITE, BOOL, REAL, READ, WRITE, WRITE, WRITE, work="paper")
+def step_paper(pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events):
+    """`step_predicted`, of the paper's law."""
+    return step_by(frame_paper, pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events)
+
+
+@kernel
+def run_by(
+    frame,
+    pair,
+    poses_a,
+    poses_b,
+    twists_a,
+    twists_b,
+    has_twist,
+    steps,
+    options,
+    state,
+    outs,
+    events,
+):
+    """Many frames in one compiled loop, with the law that they are to follow."""
     ints, reals = np.empty(4 + N_COUNT_SLOTS, dtype=np.int64), np.empty(8 + N_CHANGES)
     pointers = pair_pointers(pair)
     mode, counts = pointer(ints, 0), pointer(ints, 4)
@@ -238,7 +160,7 @@ def run(pair, poses_a, poses_b, twists_a, twists_b, has_twist, steps, options, s
         if why != FINE:
             at = k
             break
-        step_frame(
+        frame(
             pointers,
             Ta,
             Tb,
@@ -258,3 +180,72 @@ def run(pair, poses_a, poses_b, twists_a, twists_b, has_twist, steps, options, s
         )
     ints[0], reals[0] = 0, 0.0  # alive until here, see `pointer`
     return at, why
+
+
+@entry(PAIR, ROWS, ROWS, ROWS, ROWS, BOOL, WRITE, READ, WRITE, ROWS, WRITE, work="runs")
+def run_predicted(
+    pair, poses_a, poses_b, twists_a, twists_b, has_twist, steps, options, state, outs, events
+):
+    """Many frames in one compiled loop; row k of `outs` answers for row k of the poses.
+
+    poses (n, 12), twists (n, 6), steps (n,), outs (n, N_OUT). Returns (-1, FINE), or the frame
+    that was refused and why; the frames before it are answered.
+    """
+    return run_by(
+        frame_predicted,
+        pair,
+        poses_a,
+        poses_b,
+        twists_a,
+        twists_b,
+        has_twist,
+        steps,
+        options,
+        state,
+        outs,
+        events,
+    )
+
+
+@entry(PAIR, ROWS, ROWS, ROWS, ROWS, BOOL, WRITE, READ, WRITE, ROWS, WRITE, work="paper runs")
+def run_paper(
+    pair, poses_a, poses_b, twists_a, twists_b, has_twist, steps, options, state, outs, events
+):
+    """`run_predicted`, of the paper's law."""
+    return run_by(
+        frame_paper,
+        pair,
+        poses_a,
+        poses_b,
+        twists_a,
+        twists_b,
+        has_twist,
+        steps,
+        options,
+        state,
+        outs,
+        events,
+    )
+
+
+def step(pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events):
+    """One frame of the law that the options name: `step_predicted` or `step_paper`."""
+    one = step_paper if options[O_LAW] == LAW_PAPER else step_predicted
+    return one(pair, Ta, Tb, xi_a, xi_b, has_twist, h, options, state, out, events)
+
+
+def run(pair, poses_a, poses_b, twists_a, twists_b, has_twist, steps, options, state, outs, events):
+    """Many frames of the law that the options name: `run_predicted` or `run_paper`."""
+    many = run_paper if options[O_LAW] == LAW_PAPER else run_predicted
+    return many(
+        pair, poses_a, poses_b, twists_a, twists_b, has_twist, steps, options, state, outs, events
+    )
+
+
+def start_anywhere(pair, Ta, Tb, xi_a, xi_b, has_twist, options, state, given, out):
+    """`start`, by way of `start_apart` while nothing has needed what is compiled for contact."""
+    everything = (pair, Ta, Tb, xi_a, xi_b, has_twist, options, state, given, out)
+    if getattr(start, "ready", True):
+        return start(*everything)
+    answered = start_apart(*everything)
+    return start(*everything) if answered == NOT_KNOWN_APART else answered

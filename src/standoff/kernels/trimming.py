@@ -3,7 +3,7 @@
 from math import hypot, inf, pi, sqrt
 
 from standoff.kernels import layout as L
-from standoff.kernels.compiling import kernel
+from standoff.kernels.compiling import kernel, shared
 from standoff.kernels.features import (
     chart_record,
     coedge_parameters,
@@ -146,7 +146,7 @@ def walk_face(ints, reals, chart, u, v, du, dv):
     return best, hit, index, where
 
 
-@kernel
+@shared
 def walk(ints, reals, feature, chart, p, q, dp, dq):
     """(s, hit, index, t) of a step from parameters (p, q) of any feature."""
     dim = dimension(ints, feature)

@@ -45,7 +45,7 @@ def support_point(body: Body, direction: Array) -> Array:
     The witness point against a half-space (in the plane, a long segment) that stands off along
     the direction, square to it.
     """
-    from standoff.tracking.tracker import Tracker  # it asks for this proof itself
+    from standoff.tracking.tracker import ColdQuery  # it asks for this proof itself
 
     n = direction / np.linalg.norm(direction)
     gap = body.size if body.size > 0.0 else 1.0
@@ -58,11 +58,11 @@ def support_point(body: Body, direction: Array) -> Array:
         x = np.cross(np.eye(3)[int(np.abs(n).argmin())], n)
         x /= np.linalg.norm(x)
         facing = np.column_stack([x, np.cross(-n, x), -n])
-    tracker = Tracker(body, wall)
+    tracker = ColdQuery(body, wall)
     home, there = flat_pose(Pose.identity()), flat_pose(Pose(facing, position))
     data, out = np.zeros(K.N_STATE), np.empty(K.N_OUT)
     # The kernel itself: a tracker would ask for this proof again where it cannot certify the wall.
-    kernels.start(
+    kernels.start_anywhere(
         tracker.packed, home, there, NO_TWIST, NO_TWIST, False, tracker.options, data, 0, out
     )
     point, normal = out[K.POINT_A : K.POINT_A + 3], out[K.NORMAL : K.NORMAL + 3]

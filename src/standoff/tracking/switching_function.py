@@ -19,13 +19,6 @@ from standoff.bodies.body import Body
 from standoff.kernels import frame as K
 from standoff.kernels import layout as L
 from standoff.kernels.entries import coedge_conormal, edge_jet, end_direction, feature_jet
-from standoff.kernels.features import (
-    chart_record,
-    coedge_record,
-    dimension,
-    edge_record,
-    vertex_record,
-)
 
 Array = NDArray[np.float64]
 
@@ -87,7 +80,7 @@ class SwitchingFunction:
         free = [
             2 * s + k
             for s, body in enumerate(self.pair)
-            for k in range(dimension(body.ints, self.mode[2 * s]))
+            for k in range(L.dimension(body.ints, self.mode[2 * s]))
         ]
         q = self.q.copy()
         for _ in range(NEWTON_STEPS):
@@ -160,19 +153,19 @@ def _direction(
     body: Body, low: int, high: int, parameter: float
 ) -> Callable[[float], Array] | None:
     ints, reals = body.ints, body.reals
-    dimensions = dimension(ints, low), dimension(ints, high)
+    dimensions = L.dimension(ints, low), L.dimension(ints, high)
     if dimensions == (1, 2):
-        edge = edge_record(ints, low)
+        edge = L.edge_record(ints, low)
         for k in ints[edge + L.EDGE_COEDGE_0], ints[edge + L.EDGE_COEDGE_1]:
             if k < 0:
                 continue
-            chart = chart_record(ints, ints[coedge_record(ints, k) + L.COEDGE_CHART])
+            chart = L.chart_record(ints, ints[L.coedge_record(ints, k) + L.COEDGE_CHART])
             if ints[chart + L.CHART_FACE] == high:
                 return partial(_conormal, body, low, int(k))
     if dimensions == (0, 1):
         ends = _ends(body, low, high)
         if ends:
-            first = int(ints[edge_record(ints, high) + L.EDGE_REALS]) + L.EDGE_T0
+            first = int(ints[L.edge_record(ints, high) + L.EDGE_REALS]) + L.EDGE_T0
             end = min(ends, key=lambda n: abs(parameter - reals[first + n]))
             direction = np.array(end_direction(ints, reals, high, end))
             return lambda _: direction
@@ -188,7 +181,7 @@ def _conormal(body: Body, edge: int, coedge: int, t: float) -> Array:
 def _ends(body: Body, vertex: int, edge: int) -> list[int]:
     """Return which ends (0, 1) of an edge are at a vertex, both packed numbers."""
     ints = body.ints
-    record = vertex_record(ints, vertex)
+    record = L.vertex_record(ints, vertex)
     fan, count = int(ints[record + L.VERTEX_FAN]), int(ints[record + L.VERTEX_N_FAN])
     entries = ints[fan : fan + 2 * count].reshape(count, 2).tolist()
     return [end for number, end in entries if number + body.n_faces == edge]

@@ -12,6 +12,7 @@ from standoff.bodies.features import Feature, feature_of
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import tracker as kernels
+from standoff.kernels.preparing import prepare
 from standoff.motion import Pose, PoseLike, TwistLike
 from standoff.tracking.choices import positive_number
 from standoff.tracking.feedback import Feedback, check_stable
@@ -129,6 +130,11 @@ class Tracker:
         )
         self.packed = (a.ints, a.reals, b.ints, b.reals)
         self.planar = a.dimension == 2 or b.dimension == 2
+        self._prepare()
+
+    def _prepare(self) -> None:
+        """Load, or compile, what the frames can reach: none of them waits for it."""
+        prepare(paper=self.law == "paper")
 
     def start(
         self,
@@ -340,7 +346,7 @@ class Tracker:
     ) -> TrackerState:
         flat_a, flat_b, xi_a, xi_b, has_twist = self._motion(pose_a, pose_b, twist_a, twist_b)
         out = np.empty(K.N_OUT)
-        bad = kernels.start(
+        bad = kernels.start_anywhere(
             self.packed, flat_a, flat_b, xi_a, xi_b, has_twist, self.options, data, given, out
         )
         self._refuse(bad, pose_a, pose_b)
@@ -390,6 +396,13 @@ class Tracker:
             data[K.LOST] = 1.0
 
 
+class ColdQuery(Tracker):
+    """A tracker that is asked for starts only: what frames need is not compiled for it."""
+
+    def _prepare(self) -> None:
+        pass
+
+
 def _matrix(flat: Array) -> Array:
     matrix = np.eye(4)
     matrix[:3, :3] = flat[:9].reshape(3, 3)
@@ -420,4 +433,4 @@ def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
     ValueError
         No pose; a planar body with a spatial one or out of its plane; two half-spaces.
     """
-    return Tracker(a, b).start(pose_a, pose_b).proximity
+    return ColdQuery(a, b).start(pose_a, pose_b).proximity

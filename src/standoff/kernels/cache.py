@@ -1,0 +1,214 @@
+"""Where compiled modules are kept on disk, and when they are trusted.
+
+Numba unpickles what it finds in a cache, and the machine code in it is run: a folder that other
+users can write to is refused. A module is kept under a digest of all the kernels' sources, so an
+edit of any of them compiles anew. Three places are asked: the folder of modules that a wheel
+carries (`shipped`), then, for reading and writing, NUMBA_CACHE_DIR or the package's own
+``__pycache__``, or else the user's cache folder.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import os
+import stat
+import sys
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import llvmlite
+import numba
+from llvmlite import binding as llvm
+from numba.core import config
+from numba.core.caching import (
+    Cache,
+    CompileResultCacheImpl,
+    InTreeCacheLocator,
+    UserProvidedCacheLocator,
+    UserWideCacheLocator,
+)
+
+from standoff.kernels import notices, shipped
+from standoff.kernels.notices import say
+
+HERE = Path(__file__).parent
+
+
+@lru_cache(maxsize=1)
+def source_digest() -> str:
+    """Of all files of this folder, and of the versions that make machine code of them."""
+    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
+    for source in sorted(HERE.glob("*.py")):
+        digest.update(source.name.encode() + b"\0" + source.read_bytes())
+    return digest.hexdigest()
+
+
+def others_can_write(folder: Path) -> str | None:
+    """Why a folder is not safe from other users, or None.
+
+    It, and each folder above it, must belong to this user or to root, or to the owner of the
+    package, and nobody else may write to it; a folder where each may delete only his own (sticky,
+    as the system's temporary one) is safe above.
+    """
+    if os.name != "posix":
+        return None  # Windows: the rights of a user's own folders are inherited
+    trusted = {0, os.getuid(), HERE.stat().st_uid}
+    for level, each in enumerate((folder, *folder.parents)):
+        try:
+            state = each.stat()
+        except OSError:
+            continue
+        if state.st_uid not in trusted:
+            return f"{each} belongs to another user (uid {state.st_uid})"
+        shared = state.st_mode & stat.S_IWOTH or (
+            state.st_mode & stat.S_IWGRP and not _own_group(state.st_gid)
+        )
+        if shared and not (level > 0 and state.st_mode & stat.S_ISVTX):
+            return f"other users can write to {each}"
+    return None
+
+
+def _own_group(gid: int) -> bool:
+    """Is a group that of this user alone?"""
+    import grp
+    import pwd
+
+    try:
+        user = pwd.getpwuid(os.getuid()).pw_name
+        return gid == pwd.getpwuid(os.getuid()).pw_gid and set(grp.getgrgid(gid).gr_mem) <= {user}
+    except KeyError:
+        return False
+
+
+class _Trusted:
+    """Part of a locator: the digest in place of the file's own, and no folder of strangers."""
+
+    _cache_path: str
+
+    def get_source_stamp(self) -> str:
+        return source_digest()
+
+    def ensure_cache_path(self) -> None:
+        folder = Path(self._cache_path)
+        made = folder
+        while not made.exists():
+            made = made.parent
+        why = others_can_write(made.resolve())
+        if why is not None:
+            _refuse(str(folder), why)
+            raise PermissionError(why)
+        super().ensure_cache_path()  # type: ignore[misc]
+
+
+@lru_cache(maxsize=16)
+def _refuse(folder: str, why: str) -> None:
+    say(
+        f"not using the cache folder {folder}: {why}, and the machine code in it would be run. "
+        "Take that right away (chmod go-w), or name another folder in NUMBA_CACHE_DIR."
+    )
+
+
+class _Named(_Trusted, UserProvidedCacheLocator):  # type: ignore[misc]
+    """NUMBA_CACHE_DIR."""
+
+
+class _InTree(_Trusted, InTreeCacheLocator):  # type: ignore[misc]
+    """``__pycache__`` beside the kernels."""
+
+
+class _UserWide(_Trusted, UserWideCacheLocator):  # type: ignore[misc]
+    """The user's cache folder, where the package cannot be written to."""
+
+
+class _Nowhere:
+    """No folder can be used: each process compiles for itself."""
+
+    @classmethod
+    def from_function(cls, function: Any, path: str) -> _Nowhere:
+        return cls()
+
+    def get_cache_path(self) -> str:
+        return os.devnull
+
+    def get_source_stamp(self) -> str:
+        return source_digest()
+
+    def get_disambiguator(self) -> str:
+        return "0"
+
+    def ensure_cache_path(self) -> None:
+        raise OSError("no cache folder")
+
+
+class _Modules(CompileResultCacheImpl):  # type: ignore[misc]
+    """What is written of a compiled module: its code and which other modules it calls."""
+
+    _locator_classes = (_Named, _InTree, _UserWide, _Nowhere)
+
+    def reduce(self, result: Any) -> Any:
+        called = [module.origin for module in getattr(result.library, "modules", ())]
+        exported = sorted(getattr(result.library, "exported", ()))
+        return called, exported, super().reduce(result)
+
+    def rebuild(self, target_context: Any, stored: Any) -> Any:
+        called, exported, reduced = stored
+        for module, name, arguments in called:
+            # code that calls a symbol needs it in place
+            getattr(importlib.import_module(module), name).compile(arguments)
+        result = super().rebuild(target_context, reduced)
+        if exported:
+            fndesc = result.fndesc
+            result.library.exported = set(exported)
+            # a stock function that calls this kernel must not link what stands for it
+            declared = "\n".join(f'declare void @"{name}"()' for name in exported)
+            result.library._shared_module = llvm.parse_assembly(declared)
+            result.library.origin = (fndesc.modname, fndesc.qualname, tuple(fndesc.argtypes))
+        return result
+
+
+class ModuleCache(Cache):  # type: ignore[misc]
+    """The cache of one entry, which is needed for some `work`, or of one shared kernel.
+
+    Nothing is asked of the disk before machine code is.
+    """
+
+    _impl_class = _Modules
+
+    def __init__(self, function: Any, work: str | None = None, called: bool = False) -> None:
+        self._function, self._work, self._ready = function, work, False
+        self._called = called  # of a kernel that Python calls by itself, as tests do
+        self.enable()
+
+    def _begin(self) -> None:
+        if not self._ready:
+            super().__init__(self._function)
+            self._ready = True
+
+    def load_overload(self, signature: Any, target_context: Any) -> Any:
+        self._begin()
+        target_context.refresh()
+        stored = shipped.load(self._impl.filename_base, signature)
+        if stored is not None:
+            return self._impl.rebuild(target_context, stored)
+        found = super().load_overload(signature, target_context)
+        if found is None:
+            notices.compiling(self._work)
+        return found
+
+    def save_overload(self, signature: Any, result: Any) -> None:
+        try:
+            super().save_overload(signature, result)
+        except OSError as error:
+            _unsaved(self._cache_path, str(error))
+
+    def _index_key(self, signature: Any, codegen: Any) -> Any:
+        checked = os.environ.get("STANDOFF_BOUNDS_CHECK", "0") not in ("", "0")
+        how = (str(config.OPT), checked, self._called, sys.version_info[:2])
+        return signature, codegen.magic_tuple(), how
+
+
+@lru_cache(maxsize=1)
+def _unsaved(folder: str, why: str) -> None:
+    say(f"the compiled kernels could not be kept ({why}): each process will compile them anew.")

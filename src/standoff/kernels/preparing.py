@@ -1,0 +1,53 @@
+"""Loading or compiling ahead what a loop will call, so that no frame waits for it."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterator
+
+from standoff.kernels import entries, tracker
+from standoff.kernels.entry import Entry
+
+MODULES = (
+    "standoff.kernels.entries",
+    "standoff.kernels.tracker",
+    "standoff.kernels.normals_system",
+)
+"""Where entries stand."""
+
+ready_for: set[tuple[bool, bool]] = set()
+
+
+def prepare(paper: bool, runs: bool = False) -> None:
+    """Have ready what a tracker can reach, in contact and out of it.
+
+    Parameters
+    ----------
+    paper : bool
+        Of the paper's law; else of the predictor-corrector.
+    runs : bool
+        And the loop over many frames.
+    """
+    if (paper, runs) in ready_for:
+        return
+    needed = [
+        entries.on_face,
+        tracker.start,
+        tracker.step_paper if paper else tracker.step_predicted,
+    ]
+    if runs:
+        needed.append(tracker.run_paper if paper else tracker.run_predicted)
+    for each in needed:
+        if isinstance(each, Entry):  # a plain function under NUMBA_DISABLE_JIT=1
+            each.prepare()
+    # Numba looks it up in the first frame that decomposes a matrix
+    importlib.import_module("scipy.linalg.cython_lapack")
+    ready_for.add((paper, runs))
+
+
+def every_entry() -> Iterator[Entry]:
+    """All entries, in the order of their modules."""
+    for name in MODULES:
+        for each in vars(importlib.import_module(name)).values():
+            if isinstance(each, Entry) and each.py_func.__module__ == name:
+                yield each
