@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.optimize import linprog
-from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+import scipy
 
 from standoff.bodies.body import Body
 from standoff.bodies.topology import BodyError, Edge, Face
@@ -122,7 +121,7 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
     # the inscribed ball: greatest r with normals @ x + r <= offsets
     columns = np.column_stack([normals, np.ones(len(normals))])
     bounds = [(None, None)] * 3 + [(0.0, None)]
-    ball = linprog([0.0, 0.0, 0.0, -1.0], columns, offsets, bounds=bounds).x
+    ball = scipy.optimize.linprog([0.0, 0.0, 0.0, -1.0], columns, offsets, bounds=bounds).x
     inscribed = float(ball[3])
     if rounding > inscribed * (1.0 - LEAST_CORE):
         raise BodyError(
@@ -130,7 +129,7 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
             f"radius {inscribed * unit:.6g}. Give less."
         )
     planes = np.column_stack([normals, rounding - offsets])
-    meeting = HalfspaceIntersection(planes, ball[:3])
+    meeting = scipy.spatial.HalfspaceIntersection(planes, ball[:3])
     size = float(np.ptp(meeting.intersections, axis=0).max())
     vertices: list[Array] = []
     for spot, meet in zip(meeting.intersections, meeting.dual_facets, strict=True):
@@ -181,8 +180,8 @@ def _unit(points: Array) -> float:
 
 def _hull(points: Array) -> Any:
     try:
-        return ConvexHull(points / _unit(points))
-    except (QhullError, ValueError) as error:
+        return scipy.spatial.ConvexHull(points / _unit(points))
+    except (scipy.spatial.QhullError, ValueError) as error:
         raise BodyError(
             f"The {len(points)} vertices span no volume (flat polytope): give at least four "
             "points that are not in one plane."
