@@ -1,5 +1,7 @@
 """What shapes, curves, surfaces and bodies refuse: an error that names the value and the fix."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -68,6 +70,29 @@ def test_empty_cap(offset):
         so.shapes.cap(1, offset)
     with pytest.raises(ValueError, match="offset has a NaN"):
         so.shapes.cap(1, NAN)
+
+
+@pytest.mark.parametrize("flat", [(1.0, 1.0, 1e-16), (1e-20, 2.0, 1e-20), (3.0, 1e40, 1.0)])
+def test_flat_box(flat):
+    """Its faces are nearer to each other than roundoff of their corners."""
+    with pytest.raises(so.BodyError, match=r"core \[.*\] of a box is flat: thinner than 5e-15"):
+        so.shapes.box(*flat)
+    with pytest.raises(so.BodyError, match="span no volume"):
+        so.shapes.polytope(corners(*flat))
+    with pytest.raises(so.BodyError, match=r"is flat.*round it less"):
+        so.shapes.box(2.0, 2.0, 1.0, rounding=np.nextafter(0.5, 0.0))
+
+
+def test_a_box_is_the_polytope_of_its_corners_to_the_last_bit():
+    """Its vertices, edges and faces have the numbers that a hull gives them."""
+    for lengths in (np.ones(3), *10.0 ** np.random.default_rng().uniform(-3.0, 3.0, (20, 3))):
+        box, hull = so.shapes.box(*lengths), so.shapes.polytope(corners(*lengths))
+        assert box.ints.tobytes() == hull.ints.tobytes()
+        assert box.reals.tobytes() == hull.reals.tobytes()
+
+
+def corners(*lengths):
+    return [np.multiply(signs, lengths) / 2.0 for signs in itertools.product((-1, 1), repeat=3)]
 
 
 def test_rounding():

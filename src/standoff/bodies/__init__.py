@@ -1,7 +1,21 @@
 """Bodies: closed sets of convex patches, checked and packed once; ready-made shapes."""
 
-from standoff.bodies.body import Body
-from standoff.bodies.report import BodyReport, DihedralAngle, PatchCheck
-from standoff.bodies.topology import Apex, BodyError, Edge, Face
+from typing import TYPE_CHECKING
+
+from standoff.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from standoff.bodies.body import Body
+    from standoff.bodies.report import BodyReport, DihedralAngle, PatchCheck
+    from standoff.bodies.topology import Apex, BodyError, Edge, Face
+else:
+    __getattr__, __dir__ = on_demand(
+        __name__,
+        {
+            "standoff.bodies.body": ("Body",),
+            "standoff.bodies.report": ("BodyReport", "DihedralAngle", "PatchCheck"),
+            "standoff.bodies.topology": ("Apex", "BodyError", "Edge", "Face"),
+        },
+    )
 
 __all__ = ["Apex", "Body", "BodyError", "BodyReport", "DihedralAngle", "Edge", "Face", "PatchCheck"]

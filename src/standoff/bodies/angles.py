@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy
 
 from standoff.bodies.charts import surface_normal
 from standoff.bodies.orientation import chart_at
@@ -100,7 +100,7 @@ def _minimised(body: Assembled, e: EdgeTurns) -> EdgeTurns:
     width = (curve.last - curve.first) / (len(SHARES) - 1)
 
     def best(t: float, sign: float, value: float) -> tuple[float, float]:
-        result = minimize_scalar(
+        result = scipy.optimize.minimize_scalar(
             lambda s: sign * _turn(body, e.edge, *e.faces, float(s)),
             bounds=(max(t - width, curve.first), min(t + width, curve.last)),
             method="bounded",

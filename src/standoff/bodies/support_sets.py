@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
+import scipy
 
 from standoff.bodies.body import Body
 from standoff.geometry.curves import ConicArc, Curve, Line
@@ -243,7 +243,7 @@ def _peaks(piece: Piece, direction: Array) -> Iterator[Array]:
     yield from piece.points(spots[[0, -1]])
     for k, (a, b) in enumerate(pairwise(slopes)):
         if a > 0.0 >= b:
-            t = brentq(slope, spots[k], spots[k + 1], xtol=1e-15, rtol=1e-15)
+            t = scipy.optimize.brentq(slope, spots[k], spots[k + 1], xtol=1e-15, rtol=1e-15)
             yield piece.jet(float(t))[0]
 
 
@@ -256,7 +256,9 @@ def _arc_parameters(piece: Piece, witness: Array) -> Array:
     even = _spread(piece, ARC_POINTS)
     k = int(((piece.points(even) - witness) ** 2).sum(axis=1).argmin())
     low, high = even[max(k - 1, 0)], even[min(k + 1, ARC_POINTS - 1)]
-    found = minimize_scalar(away, bounds=(low, high), method="bounded", options={"xatol": 1e-12})
+    found = scipy.optimize.minimize_scalar(
+        away, bounds=(low, high), method="bounded", options={"xatol": 1e-12}
+    )
     near = float(found.x) if found.fun < away(float(even[k])) else float(even[k])
     steps = (piece.last - piece.first) * np.concatenate([-NEAR_WITNESS, [0.0], NEAR_WITNESS])
     return np.unique(np.clip(np.concatenate([even, near + steps]), piece.first, piece.last))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import Delaunay
 
 from standoff.bodies.body import Body
 from standoff.geometry.surfaces import Surface
@@ -152,7 +152,7 @@ def _chart_mesh(body: Body, face: int, chart: int, surface: Surface) -> FaceMesh
     spots = np.vstack([outline, grid[kept]])
     if len(spots) < 3:
         return None
-    triangles = Delaunay(spots / step).simplices
+    triangles = scipy.spatial.Delaunay(spots / step).simplices
     middles = spots[triangles].mean(axis=1)
     inside = [on_face(body.ints, body.reals, chart, a, b) for a, b in middles]
     triangles = triangles[np.array(inside, dtype=bool)]

@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from standoff.bodies.body import Body
 from standoff.bodies.tessellation import EdgeLine, FaceMesh
@@ -226,11 +226,11 @@ def _draw_skin(axes: Space, parts: Parts, towards: Array) -> None:
     body = parts.body
     spots = parts.cloud
     if len(spots) > 4 and np.linalg.matrix_rank(spots - spots[0], tol=1e-9 * parts.size) == 3:
-        spots = spots[ConvexHull(spots).vertices]
+        spots = spots[scipy.spatial.ConvexHull(spots).vertices]
     points = (spots[:, None] + body.radius * _ball()).reshape(-1, 3)
     try:
-        hull = ConvexHull(points)
-    except QhullError:  # a radius at roundoff of the core has no skin to be seen
+        hull = scipy.spatial.ConvexHull(points)
+    except scipy.spatial.QhullError:  # a radius at roundoff of the core has no skin to be seen
         return
     seen = hull.equations[:, :3] @ towards > 0.0
     axes.add_collection3d(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from standoff.cli.accuracy import run_accuracy
 from standoff.cli.arguments import (
     AccuracyCommand,
     AutomatonCommand,
@@ -14,13 +13,6 @@ from standoff.cli.arguments import (
     SoakCommand,
     TrackCommand,
 )
-from standoff.cli.automaton import run_automaton
-from standoff.cli.check import run_check
-from standoff.cli.distance import run_distance
-from standoff.cli.impact import run_impact
-from standoff.cli.paper import run_paper
-from standoff.cli.soak import run_soak
-from standoff.cli.track import run_track
 
 
 def run(command: Command) -> int:
@@ -33,20 +25,37 @@ def run(command: Command) -> int:
     WriteError
         If results could not be written.
     """
+    # Each command imports its own module: tracking needs none of the studies.
     match command:
         case TrackCommand():
+            from standoff.cli.track import run_track
+
             return run_track(command)
         case DistanceCommand():
+            from standoff.cli.distance import run_distance
+
             return run_distance(command)
         case ImpactCommand():
+            from standoff.cli.impact import run_impact
+
             return run_impact(command)
         case CheckCommand():
+            from standoff.cli.check import run_check
+
             return run_check(command)
         case AutomatonCommand():
+            from standoff.cli.automaton import run_automaton
+
             return run_automaton(command)
         case PaperCommand():
+            from standoff.cli.paper import run_paper
+
             return run_paper(command)
         case SoakCommand():
+            from standoff.cli.soak import run_soak
+
             return run_soak(command)
         case AccuracyCommand():
+            from standoff.cli.accuracy import run_accuracy
+
             return run_accuracy(command)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 
 from standoff.bodies.body import Body
 from standoff.geometry.curves import ConicArc, Curve, Line
@@ -212,6 +212,6 @@ def _descend(function: Callable[[Array], float], starts: Array) -> float:
         shape = starts.shape[1]
         corners = np.vstack([np.zeros(shape), 0.1 * scale * np.eye(shape)])
         simplex = {**options, "initial_simplex": starts[k] + corners}
-        found = minimize(function, starts[k], method="Nelder-Mead", options=simplex)
+        found = scipy.optimize.minimize(function, starts[k], method="Nelder-Mead", options=simplex)
         least = min(least, float(found.fun))
     return least

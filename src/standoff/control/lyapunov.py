@@ -17,9 +17,8 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
-from scipy.optimize import minimize
 
 from standoff.bodies.body import Body
 from standoff.geometry.validation import Array
@@ -200,7 +199,7 @@ def _least(
     n = len(best.direction)
     corners = best.direction + np.vstack([np.zeros(n), SPREAD * np.eye(n)])
     options = {"initial_simplex": corners, "maxfev": SEARCH * n, "xatol": 1e-6, "fatol": 0.0}
-    minimize(end, best.direction, method="Nelder-Mead", options=options)
+    scipy.optimize.minimize(end, best.direction, method="Nelder-Mead", options=options)
     return min([best, *sought], key=value)
 
 
@@ -227,7 +226,7 @@ def _outwards(system: _System, q0: Array, L: Array, direction: Array, rest: floa
         return 1.0 if system.contains(y[:n]) else -1.0
 
     definite.terminal = on_features.terminal = True  # type: ignore[attr-defined]
-    ended = solve_ivp(
+    ended = scipy.integrate.solve_ivp(
         rate,
         (0.0, LONGEST * system.size),
         np.append(q0, 0.0),

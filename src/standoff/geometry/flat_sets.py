@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import ConvexHull
+import scipy
 
 from standoff.geometry.validation import Array
 
@@ -43,7 +43,7 @@ class FlatSet:
             return FlatSet(0, points[:1])
         if len(extents) < 2 or extents[1] <= least:
             return FlatSet(1, points[[int(along[:, 0].argmin()), int(along[:, 0].argmax())]])
-        return FlatSet(2, points[ConvexHull(points).vertices])
+        return FlatSet(2, points[scipy.spatial.ConvexHull(points).vertices])
 
     def half_planes(self, widened: float) -> tuple[Array, Array]:
         """Normals (k, 2) and offsets (k,): the set widened is {x: normals @ x <= offsets}."""

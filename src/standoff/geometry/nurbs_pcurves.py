@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from standoff.geometry.knots import bezier_spans, knot_vector
 from standoff.geometry.nurbs import checked_weights
@@ -122,7 +122,7 @@ def _turning_pieces(piece: BezierPcurve) -> list[BezierPcurve]:
     bends = np.array([bend(t) for t in ts])
     bends[np.abs(bends) <= STRAIGHT * np.abs(bends).max(initial=0.0)] = 0.0
     cuts = [
-        float(brentq(bend, ts[k], ts[k + 1], xtol=1e-15))
+        float(scipy.optimize.brentq(bend, ts[k], ts[k + 1], xtol=1e-15))
         for k in range(len(ts) - 1)
         if bends[k] * bends[k + 1] < 0.0
     ]

@@ -1,12 +1,37 @@
 """Poses, twists, and paths in time."""
 
-from standoff.motion.bounds import Bounded, BoundedPath, MotionBounds
-from standoff.motion.paths import Carried, ConstantTwist, Fixed, Offset, Path, Screw
-from standoff.motion.pose import Pose, PoseLike
-from standoff.motion.samples import PoseSamples
-from standoff.motion.samples_file import read_pose_samples
-from standoff.motion.twist import Frame, Twist, TwistLike
-from standoff.motion.winding import Helix, Orientation, Spiral
+from typing import TYPE_CHECKING
+
+from standoff.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from standoff.motion.bounds import Bounded, BoundedPath, MotionBounds
+    from standoff.motion.paths import Carried, ConstantTwist, Fixed, Offset, Path, Screw
+    from standoff.motion.pose import Pose, PoseLike
+    from standoff.motion.samples import PoseSamples
+    from standoff.motion.samples_file import read_pose_samples
+    from standoff.motion.twist import Frame, Twist, TwistLike
+    from standoff.motion.winding import Helix, Orientation, Spiral
+else:
+    __getattr__, __dir__ = on_demand(
+        __name__,
+        {
+            "standoff.motion.bounds": ("Bounded", "BoundedPath", "MotionBounds"),
+            "standoff.motion.paths": (
+                "Carried",
+                "ConstantTwist",
+                "Fixed",
+                "Offset",
+                "Path",
+                "Screw",
+            ),
+            "standoff.motion.pose": ("Pose", "PoseLike"),
+            "standoff.motion.samples": ("PoseSamples",),
+            "standoff.motion.samples_file": ("read_pose_samples",),
+            "standoff.motion.twist": ("Frame", "Twist", "TwistLike"),
+            "standoff.motion.winding": ("Helix", "Orientation", "Spiral"),
+        },
+    )
 
 __all__ = [
     "Bounded",

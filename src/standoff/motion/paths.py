@@ -8,8 +8,8 @@ from dataclasses import replace
 from typing import Protocol, runtime_checkable
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from standoff.motion import inputs
 from standoff.motion.bounds import (
@@ -189,7 +189,7 @@ class Screw:
     def pose(self, t: float) -> Pose:
         """Return where the body is at time `t` [s]."""
         seconds = inputs.number(t, "t")
-        turn = Rotation.from_rotvec(self._omega * seconds).as_matrix()
+        turn = scipy.spatial.transform.Rotation.from_rotvec(self._omega * seconds).as_matrix()
         arm = self._initial.translation - self._point
         origin = self._point + turn @ arm + self._advance * seconds
         return Pose.from_checked(turn @ self._initial.rotation, origin)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TypeAlias, TypeGuard
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray, text
@@ -169,7 +169,7 @@ class Pose:
                 "give four components of unit norm, in the order that the name says"
             )
         return cls.from_checked(
-            Rotation.from_quat(xyzw).as_matrix(),
+            scipy.spatial.transform.Rotation.from_quat(xyzw).as_matrix(),
             inputs.array(translation, "translation", (3,)),
             normalised=defect > QUATERNION_ROUNDING,
         )
@@ -193,7 +193,7 @@ class Pose:
         vector = inputs.array(rotation_vector, "rotation_vector", (3,))
         return cls.from_checked(
             # SciPy takes no read-only rotation vector.
-            Rotation.from_rotvec(vector.copy()).as_matrix(),
+            scipy.spatial.transform.Rotation.from_rotvec(vector.copy()).as_matrix(),
             inputs.array(translation, "translation", (3,)),
         )
 

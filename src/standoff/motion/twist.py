@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray, text
@@ -108,7 +108,9 @@ class Twist:
         if seconds <= 0.0:
             raise ValueError(f"duration is {seconds}: give a time above zero")
         relative = Pose.of(first).inverse() @ Pose.of(second)
-        turn: FloatArray = Rotation.from_matrix(relative.rotation).as_rotvec()
+        turn: FloatArray = scipy.spatial.transform.Rotation.from_matrix(
+            relative.rotation
+        ).as_rotvec()
         with np.errstate(over="ignore"):  # a velocity beyond float64 is refused as infinite
             v, omega = _unshear(turn, relative.translation) / seconds, turn / seconds
         return cls(v, omega, "body")
@@ -136,7 +138,7 @@ class Twist:
         placed = Pose.of(pose)
         seconds = inputs.number(duration, "duration")
         turn, shift = self.omega * seconds, self.v * seconds
-        rotation: FloatArray = Rotation.from_rotvec(turn).as_matrix()
+        rotation: FloatArray = scipy.spatial.transform.Rotation.from_rotvec(turn).as_matrix()
         if self.frame == "world":
             return Pose.from_checked(rotation @ placed.rotation, placed.translation + shift)
         return placed @ Pose.from_checked(rotation, _shear(turn, shift))

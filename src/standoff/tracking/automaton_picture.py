@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
+import scipy
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
@@ -291,7 +290,9 @@ def _side_by_side(automaton: Automaton, letter: str) -> dict[Feature, int]:
     number = {feature: k for k, feature in enumerate(features)}
     pairs = np.array([(number[t.source], number[t.target]) for t in automaton.of(letter)])
     joins = np.ones(len(pairs)), pairs.reshape(-1, 2).T
-    order = reverse_cuthill_mckee(csr_array(joins, shape=(len(features),) * 2), symmetric_mode=True)
+    order = scipy.sparse.csgraph.reverse_cuthill_mckee(
+        scipy.sparse.csr_array(joins, shape=(len(features),) * 2), symmetric_mode=True
+    )
     return {features[int(k)]: place for place, k in enumerate(order)}
 
 

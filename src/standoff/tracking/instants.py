@@ -14,8 +14,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from standoff.bodies.features import Feature, feature_of
 from standoff.kernels import events as N
@@ -246,7 +246,9 @@ def _crossing(
     if ends[high] <= 0.0:
         return high if ends[high] >= -SLOPE else None
     finest = 2.0 * float(np.spacing(max(abs(low), abs(high))))
-    root = float(brentq(value, low, high, xtol=finest, rtol=4.0 * np.finfo(float).eps))
+    root = float(
+        scipy.optimize.brentq(value, low, high, xtol=finest, rtol=4.0 * np.finfo(float).eps)
+    )
     return max(root, math.nextafter(low, high))
 
 

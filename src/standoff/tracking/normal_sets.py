@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from standoff.bodies.body import Body
 from standoff.kernels import layout as L
@@ -65,7 +65,7 @@ def normal_dimension(a: Body, b: Body, pose_a: Pose, pose_b: Pose, normal: Array
     for k in np.flatnonzero((found <= np.roll(found, 1)) & (found <= np.roll(found, -1))):
         if found[k] < WORTH_A_SEARCH * found.max():
             bounds = (angles[k] - step, angles[k] + step)
-            least = minimize_scalar(
+            least = scipy.optimize.minimize_scalar(
                 around, bounds=bounds, method="bounded", options={"xatol": 1e-9}
             )
             if least.fun <= SAME * size:

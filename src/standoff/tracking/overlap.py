@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 
 from standoff.bodies.body import Body
 from standoff.kernels import layout as L
@@ -45,7 +45,7 @@ def separating_direction(a: Array, b: Array) -> Array | None:
             np.column_stack([-b, np.ones(len(b)), np.ones(len(b))]),
         ]
     )
-    answer = linprog(
+    answer = scipy.optimize.linprog(
         [0.0, 0.0, 0.0, 0.0, -1.0],
         A_ub=rows,
         b_ub=np.zeros(len(rows)),

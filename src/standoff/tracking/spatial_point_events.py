@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from standoff.tracking.depth_branches import SAME_NORMAL, Branch, DepthBranches
 from standoff.tracking.point_answer import PointEvent
@@ -184,4 +184,4 @@ def _root(
         return first
     if high == 0.0:
         return last
-    return float(brentq(function, first, last, xtol=RESOLUTION))
+    return float(scipy.optimize.brentq(function, first, last, xtol=RESOLUTION))

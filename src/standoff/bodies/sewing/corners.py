@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
+import scipy
 
 from standoff.bodies.sewing.patches import Patch
 from standoff.bodies.sewing.sides import SIDE_NAMES, Side
@@ -60,7 +58,7 @@ def outline(patches: Sequence[Patch], tolerance: float) -> Outline:
     flat = [[side.collapsed(tolerance) for side in row] for row in sides]
     corners = np.array([_corner(patch, k) for patch in patches for k in range(4)])
     number, vertices, spread = _merge(patches, corners, flat, tolerance)
-    tree = KDTree(vertices)
+    tree = scipy.spatial.KDTree(vertices)
     stretches: list[list[Stretch]] = []
     collapsed: list[list[tuple[Side, int]]] = []
     for p, row in enumerate(sides):
@@ -87,13 +85,13 @@ def _merge(
     patches: Sequence[Patch], corners: Array, flat: list[list[bool]], tolerance: float
 ) -> tuple[Array, Array, float]:
     """(vertex of every corner, vertex points, spread)."""
-    pairs = [(int(a), int(b)) for a, b in KDTree(corners).query_pairs(tolerance)]
+    pairs = [(int(a), int(b)) for a, b in scipy.spatial.KDTree(corners).query_pairs(tolerance)]
     for p, row in enumerate(flat):
         pairs += [(4 * p + k, 4 * p + (k + 1) % 4) for k in range(4) if row[k]]
     n = len(corners)
     rows = np.array(pairs, dtype=np.intp).reshape(-1, 2)
-    graph = coo_matrix((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(n, n))
-    count, number = connected_components(graph, directed=False)
+    graph = scipy.sparse.coo_matrix((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(n, n))
+    count, number = scipy.sparse.csgraph.connected_components(graph, directed=False)
     sums = np.zeros((count, 3))
     np.add.at(sums, number, corners)
     means = sums / np.bincount(number, minlength=count)[:, None]
@@ -120,7 +118,7 @@ def _cut(
     start: int,
     stop: int,
     vertices: Array,
-    tree: KDTree,
+    tree: scipy.spatial.KDTree,
     tolerance: float,
 ) -> list[Stretch]:
     """The stretches of a side between the vertices that lie on it (T-junctions)."""

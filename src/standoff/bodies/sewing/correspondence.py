@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import comb
+import scipy
 
 from standoff.bodies.sewing.corners import Stretch
 from standoff.bodies.sewing.sides import Side, in_spans
@@ -163,7 +163,9 @@ def _spline(one: Stretch, other: Stretch, sense: int, goal: float) -> Correspond
 def _bernstein(x: Array) -> Array:
     """Values of the Bernstein polynomials of DEGREE, (len(x), DEGREE + 1)."""
     k = np.arange(DEGREE + 1)
-    values: Array = comb(DEGREE, k) * x[:, None] ** k * (1.0 - x[:, None]) ** (DEGREE - k)
+    values: Array = (
+        scipy.special.comb(DEGREE, k) * x[:, None] ** k * (1.0 - x[:, None]) ** (DEGREE - k)
+    )
     return values
 
 

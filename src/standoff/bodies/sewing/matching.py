@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from standoff.bodies.sewing.corners import Stretch
 from standoff.bodies.sewing.sides import gap
@@ -67,7 +67,7 @@ def _loose_message(stretches: Sequence[Stretch], loose: list[int], tolerance: fl
     open_sides = [stretches[k] for k in loose]
     points = np.concatenate([s.side.polyline for s in open_sides])
     owner = np.repeat(np.arange(len(open_sides)), [len(s.side.polyline) for s in open_sides])
-    tree = KDTree(points)
+    tree = scipy.spatial.KDTree(points)
     lines = []
     for k, stretch in enumerate(open_sides[:MAX_NAMED]):
         near = _neighbours(stretch, tree, owner) - {k}
@@ -83,7 +83,7 @@ def _loose_message(stretches: Sequence[Stretch], loose: list[int], tolerance: fl
     return "The shell is open: " + "; ".join(lines) + "."
 
 
-def _neighbours(stretch: Stretch, tree: KDTree, owner: NDArray[np.intp]) -> set[int]:
+def _neighbours(stretch: Stretch, tree: scipy.spatial.KDTree, owner: NDArray[np.intp]) -> set[int]:
     """Open sides with points among the nearest to a stretch's."""
     count = min(len(owner), 5 * len(stretch.side.polyline))
     return {int(owner[m]) for x in stretch.side.probes for m in tree.query(x, k=count)[1]}

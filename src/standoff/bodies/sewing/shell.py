@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from standoff.bodies.sewing.corners import Outline, Stretch
 from standoff.bodies.sewing.patches import Patch
@@ -28,8 +27,8 @@ def check_shell(patches: Sequence[Patch], shape: Outline, pairs: Pairs) -> None:
     """Raise BodyError for two shells, and for a vertex where patches touch only."""
     rows = np.array([(a.patch, b.patch) for a, b in pairs], dtype=np.intp).reshape(-1, 2)
     n = len(patches)
-    graph = coo_matrix((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(n, n))
-    count, shell = connected_components(graph, directed=False)
+    graph = scipy.sparse.coo_matrix((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(n, n))
+    count, shell = scipy.sparse.csgraph.connected_components(graph, directed=False)
     if count > 1:
         names = [_names(patches, np.flatnonzero(shell == s).tolist()) for s in range(count)]
         raise BodyError(
@@ -56,8 +55,10 @@ def _check_fans(patches: Sequence[Patch], shape: Outline, pairs: Pairs) -> None:
             nodes = [place.setdefault((edge[id(s)], stop), len(place)) for s in (item, following)]
             links.append((nodes[0], nodes[1]))
     rows = np.array(links, dtype=np.intp)
-    graph = coo_matrix((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(len(place),) * 2)
-    _, fan = connected_components(graph, directed=False)
+    graph = scipy.sparse.coo_matrix(
+        (np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(len(place),) * 2
+    )
+    _, fan = scipy.sparse.csgraph.connected_components(graph, directed=False)
     fans: dict[int, set[int]] = {}
     for (_, vertex), node in place.items():
         fans.setdefault(vertex, set()).add(int(fan[node]))

@@ -4,22 +4,49 @@ Semi-axes for ellipsoids; full lengths for box, cylinder, capsule (its cylindric
 cone; all centred, axis z. A cone's apex is at +height/2, its base at -height/2.
 """
 
-from standoff.bodies.shapes.between_poles import gore, spindle
-from standoff.bodies.shapes.eggs import egg
-from standoff.bodies.shapes.lenses import lens
-from standoff.bodies.shapes.planar import planar_loop
-from standoff.bodies.shapes.points_and_sweeps import capsule, point, segment, sphere
-from standoff.bodies.shapes.polyhedra import box, polytope, rounded_polytope
-from standoff.bodies.shapes.quadrics import (
-    cap,
-    cone,
-    cylinder,
-    ellipsoid,
-    halfspace,
-    sphere_atlas,
-)
-from standoff.bodies.shapes.revolved import hull_of_revolution
-from standoff.bodies.shapes.superellipsoids import superellipsoid
+from typing import TYPE_CHECKING
+
+from standoff.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from standoff.bodies.shapes.between_poles import gore, spindle
+    from standoff.bodies.shapes.eggs import egg
+    from standoff.bodies.shapes.lenses import lens
+    from standoff.bodies.shapes.planar import planar_loop
+    from standoff.bodies.shapes.points_and_sweeps import capsule, point, segment, sphere
+    from standoff.bodies.shapes.polyhedra import box, polytope, rounded_polytope
+    from standoff.bodies.shapes.quadrics import (
+        cap,
+        cone,
+        cylinder,
+        ellipsoid,
+        halfspace,
+        sphere_atlas,
+    )
+    from standoff.bodies.shapes.revolved import hull_of_revolution
+    from standoff.bodies.shapes.superellipsoids import superellipsoid
+else:
+    __getattr__, __dir__ = on_demand(
+        __name__,
+        {
+            "standoff.bodies.shapes.between_poles": ("gore", "spindle"),
+            "standoff.bodies.shapes.eggs": ("egg",),
+            "standoff.bodies.shapes.lenses": ("lens",),
+            "standoff.bodies.shapes.planar": ("planar_loop",),
+            "standoff.bodies.shapes.points_and_sweeps": ("capsule", "point", "segment", "sphere"),
+            "standoff.bodies.shapes.polyhedra": ("box", "polytope", "rounded_polytope"),
+            "standoff.bodies.shapes.quadrics": (
+                "cap",
+                "cone",
+                "cylinder",
+                "ellipsoid",
+                "halfspace",
+                "sphere_atlas",
+            ),
+            "standoff.bodies.shapes.revolved": ("hull_of_revolution",),
+            "standoff.bodies.shapes.superellipsoids": ("superellipsoid",),
+        },
+    )
 
 __all__ = [
     "box",

@@ -5,14 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.optimize import linprog
-from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+import scipy
 
 from standoff.bodies.body import Body
 from standoff.bodies.topology import BodyError, Edge, Face
 from standoff.geometry.curves import Line
 from standoff.geometry.surfaces import Plane
 from standoff.geometry.validation import LEAST, Array, finite, not_negative, positive
+
+# A face's vertices, counterclockwise seen from outside, and its outward normal.
+Loop = tuple[list[int], Array]
 
 # Facets of a polytope whose normals differ by less (sine) are one face; hull facets of one
 # plane differ by the roundoff of their vertices.
@@ -22,6 +24,21 @@ COPLANAR = 1e-9
 LEAST_CORE = 1e-6
 # Vertices of the core nearer than this (fraction of its size) are one: more than three planes meet.
 SAME_VERTEX = 1e-10
+# A box whose core is thinner than this fraction of its length is flat: roundoff of its corners.
+FLATTEST = 5e-15
+# The corners and outward normals of a box. Its vertices, edges and faces are numbered by them, and
+# its digest holds the signs of the zeros.
+CORNERS = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
+NORMALS = np.array(
+    [
+        [-0.0, -0.0, -1.0],
+        [0.0, -1.0, 0.0],
+        [1.0, -0.0, -0.0],
+        [-1.0, -0.0, -0.0],
+        [0.0, 1.0, -0.0],
+        [-0.0, -0.0, 1.0],
+    ]
+)
 
 
 def box(x: float, y: float, z: float, rounding: float = 0.0) -> Body:
@@ -42,6 +59,8 @@ def box(x: float, y: float, z: float, rounding: float = 0.0) -> Body:
 
     Raises
     ------
+    BodyError
+        A core that is flat, thinner than 5e-15 of its length.
     ValueError
         A number that is not finite, a length that is not positive, a rounding that is negative or
         leaves no core.
@@ -54,8 +73,14 @@ def box(x: float, y: float, z: float, rounding: float = 0.0) -> Body:
             f"rounding = {rounding} leaves no core in a box {lengths}: give less than half the "
             "least length, or use a capsule or a sphere."
         )
-    signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
-    return _polyhedron(0.5 * core * signs, radius=rounding, name="box")
+    if core.min() < FLATTEST * core.max():
+        raise BodyError(
+            f"The core {core} of a box is flat: thinner than {FLATTEST} of its length. Make it "
+            "thicker, or round it less."
+        )
+    points = 0.5 * core * CORNERS
+    planes = [(n, {int(k) for k in np.flatnonzero(CORNERS @ n > 0.0)}) for n in NORMALS]
+    return _polyhedron(points, _loops(points, planes), radius=rounding, name="box")
 
 
 def polytope(vertices: Any) -> Body:
@@ -77,7 +102,8 @@ def polytope(vertices: Any) -> Body:
     ValueError
         A wrong shape, a number that is not finite or beyond 1e50.
     """
-    return _polyhedron(finite(vertices, "vertices", (-1, 3)), name="polytope")
+    points = finite(vertices, "vertices", (-1, 3))
+    return _polyhedron(points, _facets(points), name="polytope")
 
 
 def rounded_polytope(vertices: Any, rounding: float) -> Body:
@@ -108,13 +134,13 @@ def rounded_polytope(vertices: Any, rounding: float) -> Body:
     points = finite(vertices, "vertices", (-1, 3))
     rounding = not_negative(rounding, "rounding")
     if rounding == 0.0:
-        return _polyhedron(points, name="rounded polytope")
+        return _polyhedron(points, _facets(points), name="rounded polytope")
     unit = _unit(points)
-    facets = _facets(points, _hull(points))
+    facets = _facets(points)
     normals = np.array([normal for _, normal in facets])
     offsets = np.array([max(points[loop] @ normal) for loop, normal in facets])
     core = unit * _inner_vertices(normals, offsets / unit, rounding / unit, unit)
-    return _polyhedron(core, radius=rounding, name="rounded polytope")
+    return _polyhedron(core, _facets(core), radius=rounding, name="rounded polytope")
 
 
 def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float) -> Array:
@@ -122,7 +148,7 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
     # the inscribed ball: greatest r with normals @ x + r <= offsets
     columns = np.column_stack([normals, np.ones(len(normals))])
     bounds = [(None, None)] * 3 + [(0.0, None)]
-    ball = linprog([0.0, 0.0, 0.0, -1.0], columns, offsets, bounds=bounds).x
+    ball = scipy.optimize.linprog([0.0, 0.0, 0.0, -1.0], columns, offsets, bounds=bounds).x
     inscribed = float(ball[3])
     if rounding > inscribed * (1.0 - LEAST_CORE):
         raise BodyError(
@@ -130,7 +156,7 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
             f"radius {inscribed * unit:.6g}. Give less."
         )
     planes = np.column_stack([normals, rounding - offsets])
-    meeting = HalfspaceIntersection(planes, ball[:3])
+    meeting = scipy.spatial.HalfspaceIntersection(planes, ball[:3])
     size = float(np.ptp(meeting.intersections, axis=0).max())
     vertices: list[Array] = []
     for spot, meet in zip(meeting.intersections, meeting.dual_facets, strict=True):
@@ -142,8 +168,7 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
     return np.array(vertices)
 
 
-def _polyhedron(points: Array, radius: float = 0.0, name: str = "polytope") -> Body:
-    loops = _facets(points, _hull(points))
+def _polyhedron(points: Array, loops: list[Loop], name: str, radius: float = 0.0) -> Body:
     used = sorted({k for loop, _ in loops for k in loop})
     number = {k: i for i, k in enumerate(used)}
     edge_number: dict[tuple[int, int], int] = {}
@@ -181,35 +206,41 @@ def _unit(points: Array) -> float:
 
 def _hull(points: Array) -> Any:
     try:
-        return ConvexHull(points / _unit(points))
-    except (QhullError, ValueError) as error:
+        return scipy.spatial.ConvexHull(points / _unit(points))
+    except (scipy.spatial.QhullError, ValueError) as error:
         raise BodyError(
             f"The {len(points)} vertices span no volume (flat polytope): give at least four "
             "points that are not in one plane."
         ) from error
 
 
-def _facets(points: Array, hull: Any) -> list[tuple[list[int], Array]]:
-    """Facets merged by plane: (vertex loop counterclockwise from outside, outward normal)."""
+def _facets(points: Array) -> list[Loop]:
+    """The faces of the points' hull; facets of one plane are one."""
+    hull = _hull(points)
     group = -np.ones(len(hull.simplices), dtype=int)
-    groups: list[tuple[Array, set[int]]] = []
+    planes: list[tuple[Array, set[int]]] = []
     for seed in range(len(group)):
         if group[seed] >= 0:
             continue
         normal = hull.equations[seed, :3]
         members: set[int] = set()
         front = [seed]
-        group[seed] = len(groups)
+        group[seed] = len(planes)
         while front:  # spread over neighbours in the seed's plane
             k = front.pop()
             members.update(int(v) for v in hull.simplices[k])
             for m in hull.neighbors[k]:
                 if group[m] < 0 and np.abs(hull.equations[m, :3] - normal).max() < COPLANAR:
-                    group[m] = len(groups)
+                    group[m] = len(planes)
                     front.append(int(m))
-        groups.append((normal, members))
-    facets = []
-    for normal, members in groups:
+        planes.append((normal, members))
+    return _loops(points, planes)
+
+
+def _loops(points: Array, planes: list[tuple[Array, set[int]]]) -> list[Loop]:
+    """Loops round the vertices of planes, each given by its outward normal and its vertices."""
+    loops = []
+    for normal, members in planes:
         corner = sorted(members)
         centre = points[corner].mean(axis=0)
         first = points[corner[0]] - centre
@@ -217,5 +248,5 @@ def _facets(points: Array, hull: Any) -> list[tuple[list[int], Array]]:
         y = np.cross(normal, x)
         rel = points[corner] - centre
         order = np.argsort(np.arctan2(rel @ y, rel @ x))
-        facets.append(([corner[k] for k in order], normal))
-    return facets
+        loops.append(([corner[k] for k in order], normal))
+    return loops

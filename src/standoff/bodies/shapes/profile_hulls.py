@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.spatial import ConvexHull, QhullError
+import scipy
 
 from standoff.bodies.topology import BodyError
 from standoff.geometry.curves import ConicArc, Curve
@@ -91,8 +90,8 @@ def _runs(curve: Curve, t: Array, points: Array) -> list[_Run]:
     """Runs of samples on the hull's right side, from the lowest up."""
     mirrored = points * np.array([-1.0, 1.0])
     try:
-        hull = ConvexHull(np.concatenate([points, mirrored]))
-    except (QhullError, ValueError) as error:
+        hull = scipy.spatial.ConvexHull(np.concatenate([points, mirrored]))
+    except (scipy.spatial.QhullError, ValueError) as error:
         raise BodyError(
             "The revolved curve spans no volume: it lies on the axis or in one plane square to it."
         ) from error
@@ -143,7 +142,9 @@ def _root(
     if at_low <= 0.0 or at_high >= 0.0:  # no inner maximum: an end of the curve, or flat
         ends = [low] if at_low <= 0.0 else [high]
         return ends[0] if ends[0] in (curve.first, curve.last) and not curve.closed else t
-    return float(brentq(slope, low, high, xtol=1e-300, rtol=4.0 * np.finfo(float).eps))
+    return float(
+        scipy.optimize.brentq(slope, low, high, xtol=1e-300, rtol=4.0 * np.finfo(float).eps)
+    )
 
 
 def _cross(a: Array, b: Array) -> float:

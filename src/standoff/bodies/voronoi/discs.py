@@ -7,7 +7,7 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from standoff.bodies.voronoi.outline import Arc, Foot, Outline, Place
 from standoff.bodies.voronoi.tolerances import (
@@ -108,7 +108,7 @@ def _root(function: Callable[[float], float], us: Array, i: int) -> float:
     a, b = float(us[i]), float(us[i + 1])
     if function(a) >= 0.0 or function(b) <= 0.0:  # zero but for the samples' roundoff
         return a if abs(function(a)) <= abs(function(b)) else b
-    return float(brentq(function, a, b, xtol=ROUNDOFF, rtol=4.0 * ROUNDOFF))
+    return float(scipy.optimize.brentq(function, a, b, xtol=ROUNDOFF, rtol=4.0 * ROUNDOFF))
 
 
 def _radii(foot: Foot, y: Array, yu: Array, least: float) -> tuple[Array, Array]:

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy
 
 from standoff.bodies.voronoi.discs import ROUNDOFF, edge_distances
 from standoff.bodies.voronoi.outline import Outline, Place
@@ -114,7 +114,7 @@ def _bracket(places: list[Place], a: int, b: int, outline: Outline) -> tuple[Pla
         arc = outline.arc(n)
         lo = places[a - 1][1] if a and places[a - 1][0] == n else arc.lo
         hi = places[b][1] if b < len(places) and places[b][0] == n else arc.hi
-        found = minimize_scalar(
+        found = scipy.optimize.minimize_scalar(
             lambda u, arc=arc: -arc.foot(float(u)).curvature,
             bounds=(lo, hi),
             method="bounded",

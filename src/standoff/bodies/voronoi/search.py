@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
@@ -187,6 +187,6 @@ def _stationary(curve: Curve, x: Array) -> list[float]:
     for i in np.flatnonzero((slopes[:-1] < 0.0) & (slopes[1:] >= 0.0)):
         t = us[i + 1]
         if slopes[i + 1] > 0.0:
-            t = brentq(slope, us[i], us[i + 1], xtol=ROUNDOFF, rtol=4.0 * ROUNDOFF)
+            t = scipy.optimize.brentq(slope, us[i], us[i + 1], xtol=ROUNDOFF, rtol=4.0 * ROUNDOFF)
         found.append(float(np.linalg.norm(curve.point(float(t)) - x)))
     return found

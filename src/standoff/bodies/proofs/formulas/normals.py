@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from scipy.optimize import linprog
+import scipy
 
 from standoff.bodies.proofs.formulas.forms import curvature_forms
 from standoff.bodies.proofs.formulas.signs import (
@@ -84,7 +84,7 @@ def centre_of_normals(normals: Array) -> Array | None:
     """
     rows = np.column_stack([-normals, np.ones(len(normals))])
     limits = [(-1.0, 1.0)] * 3 + [(None, None)]
-    found = linprog([0.0, 0.0, 0.0, -1.0], rows, np.zeros(len(rows)), bounds=limits)
+    found = scipy.optimize.linprog([0.0, 0.0, 0.0, -1.0], rows, np.zeros(len(rows)), bounds=limits)
     if found.status != 0 or found.x[3] <= 0.0:
         return None
     axis = found.x[:3] / np.linalg.norm(found.x[:3])

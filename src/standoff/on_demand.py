@@ -1,0 +1,59 @@
+"""Packages that import their public names when these are first asked for (PEP 562).
+
+Importing all of the library takes several times as long as importing Numba, and a program needs
+little of it. Type checkers read the imports that such a package has under TYPE_CHECKING.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
+from importlib.util import find_spec
+from types import ModuleType
+from typing import Any
+
+
+class _Package(ModuleType):
+    """A package one of whose names may also be that of the module it comes from.
+
+    Importing such a module would bind it in the package, in place of what is public by the name.
+    """
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if isinstance(value, ModuleType) and value.__name__ == self._homes.get(name):
+            value = getattr(value, name)
+        super().__setattr__(name, value)
+
+
+def on_demand(
+    package: str, names: Mapping[str, Sequence[str]]
+) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """Return a package's ``__getattr__`` and ``__dir__``.
+
+    Parameters
+    ----------
+    package : the package's ``__name__``.
+    names : by module, what the package hands out of it. The package's own modules, which are
+        handed out as well, need no entry.
+    """
+    homes = {name: module for module, group in names.items() for name in group}
+    this = sys.modules[package]
+    vars(this)["_homes"] = homes
+    this.__class__ = _Package
+
+    def __getattr__(name: str) -> Any:
+        if name in homes:
+            value = getattr(import_module(homes[name]), name)
+            setattr(this, name, value)
+            return value
+        # An import binds a module in its package itself.
+        module = f"{package}.{name}"
+        if name.isidentifier() and not name.startswith("_") and find_spec(module) is not None:
+            return import_module(module)
+        raise AttributeError(f"module {package!r} has no attribute {name!r}")
+
+    def __dir__() -> list[str]:
+        return sorted({*vars(this), *homes})
+
+    return __getattr__, __dir__

@@ -1,0 +1,270 @@
+"""What `import standoff`, its help and one query load, and that every name is there when asked for.
+
+Each is seen from a fresh interpreter. A package that imports on demand (`standoff.on_demand`) names
+what is public three times: for type checkers, in its table, and in `__all__`.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+import standoff as so
+from standoff import bodies, tracking
+
+SOURCE = Path(so.__file__).parent
+ROOT = {"standoff", "standoff.on_demand", "standoff.version"}
+COMMANDS = ("track", "distance", "impact", "check", "automaton", "paper", "soak", "accuracy")
+
+# What draws, writes, reads formulas, or serves the command line alone.
+EXTRAS = {"PIL", "flint", "jinja2", "matplotlib", "pyarrow", "rich", "sympy", "tyro"}
+# Parts of the library that a query of two ready-made shapes has no use for.
+UNUSED = (
+    "accuracy",
+    "bodies.voronoi",
+    "cli",
+    "control",
+    "paper",
+    "scene",
+    "soak",
+    "tracking.automaton",
+    "tracking.impact",
+    "tracking.pair_system",
+    "tracking.point_tracker",
+    "tracking.recording",
+    "tracking.simulate",
+    "tracking.spatial_point_tracker",
+    "tracking.witness_set",
+)
+# Numba imports scipy.linalg when it first runs a compiled function.
+NUMBA_NEEDS = {"scipy.linalg"}
+
+QUERY = """
+import numpy as np
+import standoff as so
+lens, ellipsoid = so.shapes.lens(2.0, 1.0), so.shapes.ellipsoid(1.0, 0.7, 0.5)
+box, capsule = so.shapes.box(1.0, 2.0, 3.0, rounding=0.1), so.shapes.capsule(0.3, 1.0)
+so.shapes.cylinder(0.3, 1.0), so.shapes.sphere(0.3)
+home, there = so.Pose.identity(), so.Pose(np.eye(3), [4.0, 0.3, 0.2])
+assert so.distance(lens, ellipsoid, home, there).certified
+assert so.distance(box, capsule, home, there).certified
+twist = so.Twist([1.0, 0.0, 0.0], [0.0, 0.0, 0.1])
+tracker = so.Tracker(lens, ellipsoid, dt=1e-3)
+state = tracker.start(home, there, twist, twist)
+state, found = tracker.step(state, home, there, twist, twist)
+assert found.certified
+"""
+
+
+def fresh(code: str) -> str:
+    """Run code in an interpreter of its own; returns its standard output."""
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout
+
+
+def loaded(code: str) -> set[str]:
+    """The modules, none of the standard library's, that code imports in a fresh interpreter."""
+    listing = f"""
+import sys
+present = set(sys.modules)
+{code}
+import json
+standard = sys.stdlib_module_names
+new = [name for name in sys.modules if name.partition('.')[0] not in standard]
+print('\\n' + json.dumps([name for name in new if name not in present]))
+"""
+    return set(json.loads(fresh(listing).splitlines()[-1]))
+
+
+def packages(modules: set[str]) -> set[str]:
+    """The packages that modules belong to."""
+    return {name.partition(".")[0] for name in modules}
+
+
+class Declared(NamedTuple):
+    """What the file of a package says that it hands out, by module: (module, name)."""
+
+    for_checkers: set[tuple[str, str]]
+    on_demand: set[tuple[str, str]]
+
+
+def declared(file: Path) -> Declared:
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    (guard,) = (node for node in tree.body if isinstance(node, ast.If))
+    assert isinstance(guard.test, ast.Name)
+    assert guard.test.id == "TYPE_CHECKING"
+    (assigned,) = guard.orelse
+    assert isinstance(assigned, ast.Assign)
+    assert isinstance(assigned.value, ast.Call)
+    table: dict[str, tuple[str, ...]] = ast.literal_eval(assigned.value.args[1])
+    imports = [node for node in guard.body if isinstance(node, ast.ImportFrom)]
+    assert len(imports) == len(guard.body)
+    return Declared(
+        {(str(node.module), alias.name) for node in imports for alias in node.names},
+        {(module, name) for module, names in table.items() for name in names},
+    )
+
+
+FILES = {
+    ".".join(("standoff", *file.relative_to(SOURCE).parent.parts)): file
+    for file in sorted(SOURCE.rglob("__init__.py"))
+    if "= on_demand(" in file.read_text(encoding="utf-8")
+}
+
+
+def test_import_loads_three_modules_and_no_other_package() -> None:
+    assert loaded("import standoff") == ROOT
+
+
+@pytest.mark.parametrize("command", ["", *COMMANDS])
+def test_help_loads_only_what_reads_the_arguments(command: str) -> None:
+    given = [*command.split(), "--help"]
+    modules = loaded(f"from standoff.cli import main\nmain({given})")
+    command_line = {f"standoff.cli{part}" for part in ("", ".arguments", ".entry", ".errors")}
+    assert {name for name in modules if packages({name}) == {"standoff"}} == ROOT | command_line
+    assert not packages(modules) & {"numpy", "scipy", "numba", "llvmlite", *EXTRAS} - {
+        "tyro",
+        "rich",
+    }
+
+
+def test_a_query_loads_neither_scipy_nor_what_it_has_no_use_for() -> None:
+    modules = loaded(QUERY)
+    assert not packages(modules) & EXTRAS
+    scipy = {name for name in modules if name.count(".") == 1 and name.startswith("scipy.")}
+    assert {name for name in scipy if not name.startswith("scipy._")} <= {
+        "scipy.version",
+        *NUMBA_NEEDS,
+    }
+    unused = tuple(f"standoff.{part}" for part in UNUSED)
+    assert [name for name in sorted(modules) if f"{name}.".startswith(unused)] == []
+
+
+def test_every_package_that_should_imports_on_demand() -> None:
+    names = ("standoff", "bodies", "bodies.shapes", "geometry", "motion", "tracking")
+    assert set(FILES) == {name if name == "standoff" else f"standoff.{name}" for name in names}
+
+
+@pytest.mark.parametrize("package", FILES)
+def test_a_package_hands_out_what_type_checkers_read(package: str) -> None:
+    said = declared(FILES[package])
+    own = {(module, name) for module, name in said.for_checkers if module == package}
+    assert said.for_checkers - own == said.on_demand
+    public = import_module(package).__all__
+    assert sorted(name for _, name in said.for_checkers) == sorted(public)
+
+
+@pytest.mark.parametrize("package", FILES)
+def test_a_package_lists_and_has_every_public_name(package: str) -> None:
+    module = import_module(package)
+    assert set(module.__all__) <= set(dir(module))
+    for home, name in declared(FILES[package]).on_demand:
+        assert getattr(module, name) is getattr(import_module(home), name)
+
+
+def test_every_module_of_public_names_can_be_the_first_to_be_imported() -> None:
+    """The kernels stay loaded in between: they import nothing above them, and take long."""
+    homes = {home for file in FILES.values() for home, _ in declared(file).on_demand}
+    fresh(f"""
+import sys
+from importlib import import_module
+import numba, scipy
+for home in {sorted(homes - set(FILES))}:
+    for module in list(sys.modules):
+        if module.startswith('standoff') and not module.startswith('standoff.kernels'):
+            del sys.modules[module]
+    try:
+        import_module(home)
+    except Exception as error:
+        sys.exit(f'{{home}}: {{error!r}}')
+""")
+
+
+def test_all_names_come_by_a_star_and_with_help() -> None:
+    out = fresh("from standoff import *; print(shapes.box(1, 1, 1).name, Tracker.__name__)")
+    assert out.split() == ["box", "Tracker"]
+    out = fresh("import pydoc, standoff; print(pydoc.plain(pydoc.render_doc(standoff)))")
+    assert "class Tracker(" in out
+    assert "time_of_impact(" in out
+
+
+def test_an_unknown_name_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="module 'standoff' has no attribute 'distanse'"):
+        so.distanse  # noqa: B018
+    with pytest.raises(AttributeError, match=r"module .* has no attribute '_Body'"):
+        bodies._Body  # noqa: B018
+    with pytest.raises(ImportError, match="cannot import name 'distanse' from 'standoff'"):
+        exec("from standoff import distanse")
+    assert not hasattr(so, "a.b")
+
+
+def test_modules_of_the_library_are_attributes_without_an_import() -> None:
+    # Lower layers first: a higher one imports them.
+    fresh("""
+import standoff
+for name in ("version", "kernels", "geometry", "motion", "bodies", "tracking", "control"):
+    assert getattr(standoff, name).__name__ == f"standoff.{name}"
+assert standoff.feedback is standoff.tracking.feedback
+assert standoff.feedback.Linear
+""")
+
+
+@pytest.mark.parametrize("package", FILES)
+def test_a_module_never_takes_the_place_of_a_public_name(package: str) -> None:
+    """Importing standoff.tracking.simulate would bind it in its package, where it is a function."""
+    same = [
+        name for home, name in declared(FILES[package]).on_demand if home == f"{package}.{name}"
+    ]
+    assert bool(same) == (package in ("standoff.geometry", "standoff.tracking"))
+    for order in ("name then module", "module then name") if same else ():
+        fresh(f"""
+import sys
+from importlib import import_module
+package = import_module({package!r})
+for name in {same}:
+    if {order!r} == 'name then module':
+        getattr(package, name)
+    module = import_module(f'{{package.__name__}}.{{name}}')
+    assert module is sys.modules[f'{{package.__name__}}.{{name}}']
+    assert getattr(package, name) is getattr(module, name), name
+""")
+
+
+def test_a_name_put_in_its_place_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+    stand_in: Any = object()
+    monkeypatch.setattr(tracking, "simulate", stand_in)
+    assert tracking.simulate is stand_in
+    monkeypatch.undo()
+    assert tracking.simulate is so.simulate
+
+
+def test_threads_may_ask_for_names_at_once() -> None:
+    fresh("""
+import sys, threading
+import standoff
+sys.setswitchinterval(1e-6)
+threads, errors = 8, []
+barrier = threading.Barrier(threads)
+names = list(standoff.__all__)
+def ask(first):
+    barrier.wait()
+    try:
+        for name in names[first:] + names[:first]:
+            getattr(standoff, name)
+    except BaseException as error:
+        errors.append(error)
+running = [threading.Thread(target=ask, args=(6 * k,)) for k in range(threads)]
+for thread in running:
+    thread.start()
+for thread in running:
+    thread.join()
+assert not errors, errors
+""")
