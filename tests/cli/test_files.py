@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -149,11 +149,11 @@ def test_files_appear_whole_or_not_at_all(tmp_path: Path) -> None:
     good, bad = tmp_path / "good.txt", tmp_path / "bad.txt"
     good.write_text("before")
 
-    def after(path: Path) -> None:
-        path.write_text("after")
+    def after(file: BinaryIO) -> None:
+        file.write(b"after")
 
-    def fail(path: Path) -> None:
-        path.write_text("half")
+    def fail(file: BinaryIO) -> None:
+        file.write(b"half")
         raise OSError(28, "No space left on device")
 
     with pytest.raises(WriteError, match="No space left"):

@@ -6,6 +6,7 @@ import json
 import math
 from dataclasses import fields, replace
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import pyarrow as pa
@@ -106,8 +107,8 @@ def test_nothing_is_left_where_writing_fails(
     target = tmp_path / "run.parquet"
     target.write_text("before")
 
-    def fail(_: object, path: Path) -> None:
-        Path(path).write_text("half")
+    def fail(_: object, file: BinaryIO) -> None:
+        file.write(b"half")
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:

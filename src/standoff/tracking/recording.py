@@ -19,7 +19,7 @@ from standoff.real_numbers import shown
 from standoff.tracking.proximity import Counts, charts_of
 from standoff.tracking.status import Status
 from standoff.tracking.visits import Visit
-from standoff.tracking.whole_files import write_whole
+from standoff.whole_files import file_name, write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -296,16 +296,19 @@ class Recording:
         ------
         ModuleNotFoundError
             If matplotlib is not installed; the message names the extra.
+        TypeError
+            If `path` is neither a text nor a Path.
         ValueError
-            If the file's ending is another.
+            If it is empty, or the file's ending is another.
         OSError
-            If the file cannot be written.
+            If the file cannot be written, or is no regular file but a folder, a FIFO or a device.
+            A link stays: what it leads to is replaced.
         """
         from standoff.tracking import recording_plot
 
         if path is None:
             return recording_plot.draw(self)
-        target = Path(path)
+        target = file_name(path)
         ending = target.suffix.lower().removeprefix(".")
         if ending not in recording_plot.FORMATS:
             raise ValueError(
@@ -325,12 +328,18 @@ class Recording:
         ------
         ModuleNotFoundError
             If pyarrow is not installed; the message names the extra.
+        TypeError
+            If `path` is neither a text nor a Path.
+        ValueError
+            If it is empty.
         OSError
-            If the file cannot be written.
+            If the file cannot be written, or is no regular file but a folder, a FIFO or a device.
+            A link stays: what it leads to is replaced.
         """
+        target = file_name(path)
         from standoff.tracking.recording_file import write_table
 
-        write_whole({Path(path): lambda file: write_table(self, file)})
+        write_whole({target: lambda file: write_table(self, file)})
 
 
 def open_recording(path: str | Path) -> Recording:

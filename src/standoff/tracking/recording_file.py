@@ -8,7 +8,7 @@ import os
 import platform
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numba
 import numpy as np
@@ -54,8 +54,8 @@ EVENT = pa.struct(
 )
 
 
-def write_table(recording: Recording, path: Path) -> None:
-    """Write a recording; the same run gives the same file, byte for byte.
+def write_table(recording: Recording, file: BinaryIO) -> None:
+    """Write a recording to a stream; the same run gives the same file, byte for byte.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def write_table(recording: Recording, path: Path) -> None:
     """
     metadata = json.dumps(_metadata(recording.info), ensure_ascii=False, allow_nan=False)
     table = pa.table(_columns(recording))
-    pq.write_table(table.replace_schema_metadata({METADATA: metadata}), path)
+    pq.write_table(table.replace_schema_metadata({METADATA: metadata}), file)
 
 
 def _metadata(info: RunInfo) -> dict[str, Any]:
