@@ -29,7 +29,7 @@ def test_parquet_holds_the_run(standoff: Standoff, passing: Path) -> None:
     recording = record(load_scene(passing))
     assert table.num_rows == 101
     np.testing.assert_array_equal(table["time"], recording.time)
-    for name in ("distance", "lower_bound", "rate", "residual", "certified"):
+    for name in ("distance", "lower_bound", "upper_bound", "rate", "residual", "certified"):
         np.testing.assert_array_equal(table[name], getattr(recording, name))
     for name in ("point_a", "point_b", "normal", "velocity_a", "velocity_b"):
         columns = np.column_stack([table[f"{name}_{axis}"] for axis in "xyz"])
@@ -68,7 +68,7 @@ def test_metadata_tells_how_the_file_came_about(standoff: Standoff, tmp_path: Pa
     standoff("track", scene, "-o", target, "--step", "0.1")
     raw = pq.read_schema(target).metadata[b"standoff"]
     metadata = json.loads(raw)
-    assert (metadata["format"], metadata["format_version"]) == ("standoff-recording", 2)
+    assert (metadata["format"], metadata["format_version"]) == ("standoff-recording", 3)
     assert metadata["source"]["scene_text"] == scene.read_text()
     assert metadata["source"]["settings"]["step"] == 0.1
     assert metadata["source"]["samples_sha256"] == {

@@ -88,8 +88,10 @@ class RunInfo:
     digests : (str, str)
         ``Body.digest`` of A and B.
     options : mapping
-        law, predictor, integrator, gain (1/s), tolerance, dt (the longest step, s), locate; of
-        the paper's law also feedback (as text), realisation, saturation, switching and solve.
+        law, predictor, integrator, gain (1/s), tolerance, dt (the longest step, s), depth,
+        deadline (evaluations, or None), locate; of the paper's law also feedback (as text),
+        realisation, saturation, switching and solve. Of a file of format version 2 depth and
+        deadline are not known, and missing here.
     title : str
     length_unit : str
         Label of lengths; empty where none was given.
@@ -118,8 +120,9 @@ class Recording:
     ----------
     time : ndarray, shape (n,)
         s, strictly increasing.
-    distance, lower_bound, rate, residual : ndarray, shape (n,)
-        As in `Proximity`; nan while overlapping.
+    distance, lower_bound, upper_bound, rate, residual : ndarray, shape (n,)
+        As in `Proximity`; nan while overlapping. ``upper_bound`` is nan in all frames of a file
+        of format version 2, which does not hold it.
     point_a, point_b, normal, velocity_a, velocity_b : ndarray, shape (n, 3)
     feature_a, feature_b : ndarray of Feature, shape (n,)
     parameters_a, parameters_b : ndarray, shape (n, 3)
@@ -138,6 +141,7 @@ class Recording:
     time: Array
     distance: Array
     lower_bound: Array
+    upper_bound: Array
     rate: Array
     residual: Array
     point_a: Array
@@ -176,6 +180,7 @@ class Recording:
             time=time,
             distance=rows[:, K.DISTANCE],
             lower_bound=rows[:, K.LOWER_BOUND],
+            upper_bound=rows[:, K.UPPER_BOUND],
             rate=rows[:, K.OUT_RATE],
             residual=rows[:, K.RESIDUAL],
             point_a=vectors(K.POINT_A),

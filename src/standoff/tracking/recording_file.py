@@ -32,13 +32,18 @@ except ModuleNotFoundError as error:
 Array = NDArray[np.float64]
 
 FORMAT = "standoff-recording"
-FORMAT_VERSION = 2
-"""2 since events are located: their value is that of the switching function."""
+FORMAT_VERSION = 3
+"""2 since events are located: their value is that of the switching function. 3 since there are
+the column `upper_bound` and the options `depth` and `deadline`."""
+
+READ_VERSIONS = (2, 3)
+"""What a file of version 2 does not hold is not made up: its upper bounds are nan, and its options
+have no `depth` and no `deadline`."""
 
 METADATA = b"standoff"
 """Key of the schema's metadata under which the JSON text stands."""
 
-NUMBERS = ("distance", "lower_bound", "rate", "residual")
+NUMBERS = ("distance", "lower_bound", "upper_bound", "rate", "residual")
 VECTORS = ("point_a", "point_b", "normal", "velocity_a", "velocity_b")
 
 EVENT = pa.struct(
@@ -140,7 +145,7 @@ def read_table(path: Path) -> Recording:
     except OSError as error:  # damaged pages; nothing else tells them from a disk's failure
         raise ValueError(f"{path} cannot be read, perhaps it is damaged: {error}") from error
     try:
-        return _recording(table, _info(metadata))
+        return _recording(table, _info(metadata), metadata["format_version"])
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
         raise ValueError(
             f"{path} is marked as a recording, but its content does not fit ({error!r}): another "
@@ -160,13 +165,13 @@ def _checked(path: Path, metadata: dict[bytes, bytes]) -> dict[str, Any]:
             f"{path} is a Parquet file but no recording of Standoff: write one with "
             "recording.save or `standoff track -o`"
         )
-    if version != FORMAT_VERSION:
+    if type(version) is not int or version not in READ_VERSIONS:
         older = isinstance(version, int) and version < FORMAT_VERSION
         fix = "record again" if older else "install the Standoff that wrote it"
         raise ValueError(
             f"{path} is a recording of format version {version!r}, written by Standoff "
-            f"{content.get('standoff', '(unknown)')}; this Standoff reads version "
-            f"{FORMAT_VERSION}: {fix}"
+            f"{content.get('standoff', '(unknown)')}; this Standoff reads versions "
+            f"{' and '.join(map(str, READ_VERSIONS))}: {fix}"
         )
     return dict(content)
 
@@ -184,7 +189,7 @@ def _info(metadata: dict[str, Any]) -> RunInfo:
     )
 
 
-def _recording(table: Any, info: RunInfo) -> Recording:
+def _recording(table: Any, info: RunInfo, version: int) -> Recording:
     def numbers(name: str) -> Array:
         return np.asarray(table[name].to_numpy(), dtype=np.float64)
 
@@ -200,6 +205,7 @@ def _recording(table: Any, info: RunInfo) -> Recording:
         time=numbers("time"),
         distance=numbers("distance"),
         lower_bound=numbers("lower_bound"),
+        upper_bound=numbers("upper_bound") if version > 2 else np.full(len(table), np.nan),
         rate=numbers("rate"),
         residual=numbers("residual"),
         point_a=vectors("point_a"),

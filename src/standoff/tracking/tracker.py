@@ -127,6 +127,8 @@ class Tracker:
             depth,
             deadline,
         )
+        self.depth = depth
+        self.deadline = None if deadline is None else int(self.options[K.O_DEADLINE])
         self.packed = (a.ints, a.reals, b.ints, b.reals)
         self.planar = a.dimension == 2 or b.dimension == 2
 
