@@ -10,6 +10,7 @@ import numpy as np
 from standoff.geometry.validation import Array, check_alike, finite, vector3
 from standoff.kernels import layout as L
 from standoff.kernels.entries import curve_jet
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ FULL_TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class Curve(KeepsReadOnly):
     """A parametric curve on [first, last], lengths in the body's frame.
 
     Parameters

@@ -13,11 +13,12 @@ from scipy.spatial.transform import Rotation
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray, text
 from standoff.motion.tolerances import ORTHONORMALITY, QUATERNION_ROUNDING, UNIT_QUATERNION
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of, shown
 
 
 @dataclass(frozen=True, init=False, eq=False)
-class Pose:
+class Pose(KeepsReadOnly):
     """A rigid placement of a body in the world.
 
     A point with coordinates x in the body is at ``rotation @ x + translation`` in the world.

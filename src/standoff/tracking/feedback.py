@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from standoff.kernels import frame as K
 from standoff.kernels import integrators as I
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import DEEPEST, shown
 from standoff.tracking.choices import INTEGRATORS, choice, positive_number
 
@@ -163,7 +164,7 @@ class Linear:
         return np.array([-float(self.gain)])
 
 
-class GainMatrix:
+class GainMatrix(KeepsReadOnly):
     """Linear feedback with a gain of its own for each error, or a matrix: v = K Psi.
 
     Parameters

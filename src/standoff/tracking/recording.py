@@ -15,6 +15,7 @@ from standoff.bodies.body import Body
 from standoff.bodies.features import Feature, feature_of
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.tracking.proximity import Counts, charts_of
 from standoff.tracking.status import Status
@@ -111,7 +112,7 @@ class RunInfo:
 
 
 @dataclass(frozen=True, eq=False)
-class Recording:
+class Recording(KeepsReadOnly):
     """Answers of a run, by frame; row k of every array belongs to ``time[k]``.
 
     All vectors in world axes, lengths in the bodies' unit.
