@@ -168,6 +168,28 @@ def test_another_format_version(
         so.open_recording(file)
 
 
+def test_what_was_added_may_not_be_nested_too_deeply(
+    recordings: list[so.Recording], tmp_path: Path
+) -> None:
+    file = tmp_path / "run.parquet"
+    for depth, deep in ((49, False), (50, True), (100_000, True)):
+        value: object = 1
+        for _ in range(depth - 1):
+            value = [value]
+        info = replace(recordings[0].info, source={"note": value})
+        if deep:
+            with pytest.raises(ValueError, match=r"info \(source.note\) .*nested too deeply"):
+                replace(recordings[0], info=info).save(file)
+        else:
+            replace(recordings[0], info=info).save(file)
+            assert so.open_recording(file).info.source == info.source
+    table = pq.read_table(file)
+    deep_text = '{"format": "standoff-recording", "source": ' + "[" * 100_000
+    pq.write_table(table.replace_schema_metadata({"standoff": deep_text}), file)
+    with pytest.raises(ValueError, match="no recording of Standoff"):
+        so.open_recording(file)
+
+
 def test_a_file_of_version_2_opens_with_what_it_holds(tmp_path: Path) -> None:
     old = Path(__file__).parent.parent / "fuzz" / "corpus" / "files" / "recording.parquet"
     assert json.loads(pq.read_schema(old).metadata[b"standoff"])["format_version"] == 2

@@ -337,7 +337,7 @@ class Recording(KeepsReadOnly):
         TypeError
             If `path` is neither a text nor a Path.
         ValueError
-            If it is empty.
+            If it is empty, or ``info.source`` is nested too deeply.
         OSError
             If the file cannot be written, or is no regular file but a folder, a FIFO or a device.
             A link stays: what it leads to is replaced.

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
+from standoff.nesting import JSON, text_problem, value_problem
 from standoff.real_numbers import SHOWN_CHARACTERS, shown
 from standoff.tracking.proximity import Counts
 from standoff.tracking.recording import RecordedEvent, Recording, RunInfo
@@ -59,6 +60,10 @@ EVENT = pa.struct(
 )
 
 
+NAMED = 3
+"""Most keys that a message gives of a place in the metadata."""
+
+
 def write_table(recording: Recording, file: BinaryIO) -> None:
     """Write a recording to a stream; the same run gives the same file, byte for byte.
 
@@ -68,8 +73,14 @@ def write_table(recording: Recording, file: BinaryIO) -> None:
         If the file cannot be written.
     TypeError
         If ``info`` holds what JSON cannot.
+    ValueError
+        If ``info`` is nested too deeply.
     """
-    metadata = json.dumps(_metadata(recording.info), ensure_ascii=False, allow_nan=False)
+    facts = _metadata(recording.info)
+    problem, keys = value_problem(facts)
+    if problem:
+        raise ValueError(f"the recording's info ({'.'.join(keys[:NAMED])}) {problem}")
+    metadata = json.dumps(facts, ensure_ascii=False, allow_nan=False)
     table = pa.table(_columns(recording))
     pq.write_table(table.replace_schema_metadata({METADATA: metadata}), file)
 
@@ -156,7 +167,10 @@ def read_table(path: Path) -> Recording:
 def _checked(path: Path, metadata: dict[bytes, bytes]) -> dict[str, Any]:
     """Return a recording's metadata, or say why the file is none."""
     try:
-        content = json.loads(metadata[METADATA])
+        text = metadata[METADATA].decode()
+        if text_problem(text, JSON):
+            raise ValueError("no metadata of ours")
+        content = json.loads(text)
         kind, version = content["format"], content["format_version"]
     except (KeyError, TypeError, ValueError):
         kind, content, version = None, {}, None
