@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from standoff.geometry.validation import Array, check_alike, finite, vector3
+from standoff.geometry.validation import Array, affine_map, check_alike, finite, vector3
 from standoff.kernels import layout as L
 from standoff.kernels.entries import curve_jet
 from standoff.read_only import KeepsReadOnly
@@ -64,6 +64,7 @@ class Curve(KeepsReadOnly):
 
     def transformed(self, linear: Array, shift: Array) -> Curve:
         """The exact image under x -> linear x + shift; the parameter stays the same."""
+        linear, shift = affine_map(linear, shift)
         data = self.data.copy()
         data[0:9] = (linear @ data[0:9].reshape(3, 3)).ravel()
         data[9:12] = linear @ data[9:12] + shift
@@ -200,6 +201,7 @@ class RationalBezier(Curve):
         return int(self.data[0])
 
     def transformed(self, linear: Array, shift: Array) -> Curve:
+        linear, shift = affine_map(linear, shift)
         data = self.data.copy()
         h = data[1:].reshape(-1, 4)
         h[:, :3] = h[:, :3] @ linear.T + h[:, 3:] * shift

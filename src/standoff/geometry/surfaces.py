@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from standoff.geometry.validation import Array, finite, matrix3, vector3
+from standoff.geometry.validation import Array, affine_map, finite, matrix3, vector3
 from standoff.kernels import layout as L
 from standoff.kernels.entries import surface_jet
 from standoff.read_only import KeepsReadOnly
@@ -110,6 +110,7 @@ class Surface(KeepsReadOnly, ABC):
 
     def transformed(self, linear: Array, shift: Array) -> Self:
         """The exact image under x -> linear x + shift; parameters stay the same."""
+        linear, shift = affine_map(linear, shift)
         return replace(self, linear=linear @ self.linear, shift=linear @ self.shift + shift)
 
     def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Self:

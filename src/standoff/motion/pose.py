@@ -101,6 +101,7 @@ class Pose(KeepsReadOnly):
             if shape_of(rotation) == (4,):
                 raise ValueError(_unnamed_quaternion(rotation))
             return cls(rotation, translation)
+        inputs.unmasked(value, "pose")
         try:
             given = np.asarray(value)
         except (ValueError, RecursionError) as error:
@@ -235,6 +236,7 @@ class Pose(KeepsReadOnly):
         ValueError
             If the last axis has not three components.
         """
+        inputs.unmasked(points, "points")
         array = np.asarray(points, dtype=np.float64)
         if array.ndim == 0 or array.shape[-1] != 3:
             raise ValueError(f"points have shape {array.shape}: give an array of shape (..., 3)")

@@ -74,6 +74,7 @@ class Twist(KeepsReadOnly):
         """
         if isinstance(value, Twist):
             return value
+        inputs.unmasked(value, "twist")
         try:
             given = np.asarray(value)
         except (ValueError, RecursionError) as error:

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from standoff.kernels import frame as K
 from standoff.kernels import integrators as I
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import DEEPEST, shown
+from standoff.real_numbers import DEEPEST, MaskedNumbers, real_array, shown
 from standoff.tracking.choices import INTEGRATORS, choice, positive_number
 
 Array = NDArray[np.float64]
@@ -180,7 +180,12 @@ class GainMatrix(KeepsReadOnly):
     """
 
     def __init__(self, gains: ArrayLike) -> None:
-        matrix = np.array(gains, dtype=np.float64)
+        try:
+            matrix = real_array(gains)
+        except MaskedNumbers as error:
+            raise ValueError(f"gains {error}: {shown(gains)}") from error
+        except TypeError as error:
+            raise ValueError(f"gains = {shown(gains)}: {error}") from error
         if matrix.shape == (4,):
             matrix = np.diag(matrix)
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
