@@ -25,7 +25,7 @@ class TrackerState(KeepsReadOnly):
 
     Attributes
     ----------
-    data : (54,) array
+    data : (55,) array
         Read-only, laid out in ``standoff.kernels.frame``.
     proximity : Proximity
         The answer at the frame of this state.
