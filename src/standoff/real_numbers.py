@@ -29,6 +29,30 @@ def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
     return text if len(text) <= characters else text[: characters - 1] + "…"
 
 
+class MaskedNumbers(TypeError):
+    """Some of the numbers given are masked: there is no value to compute with."""
+
+
+def check_unmasked(value: Any) -> None:
+    """Refuse masked numbers, in an array or in lists of arrays: NumPy's own conversions drop the
+    mask and take what lies beneath for data.
+
+    Raises
+    ------
+    MaskedNumbers
+    """
+    waiting, seen = [value], set[int]()
+    while waiting:
+        given = waiting.pop()
+        if isinstance(given, np.ma.MaskedArray) and np.ma.is_masked(given):
+            raise MaskedNumbers("has masked numbers; fill them, or leave them out")
+        if isinstance(given, np.ndarray) and given.dtype.kind == "O":
+            given = given.ravel().tolist()
+        if isinstance(given, list | tuple) and id(given) not in seen:
+            seen.add(id(given))  # a list may hold itself
+            waiting += [item for item in given if isinstance(item, list | tuple | np.ndarray)]
+
+
 def shape_of(value: Any) -> tuple[int, ...] | None:
     """Return the shape of what may be an array; None where its rows differ in length."""
     if isinstance(value, np.ndarray):
@@ -52,24 +76,23 @@ def real_array(value: Any) -> NDArray[np.float64]:
 
     Raises
     ------
+    MaskedNumbers
+        Some of them are masked.
     TypeError
         Something in it is no real number.
     ValueError
         Its rows differ in length, or it is nested too deeply.
     """
+    check_unmasked(value)
     given = value if isinstance(value, np.ndarray) else np.array(value, dtype=object)
     if given.dtype.kind not in "iufO":
         raise TypeError(f"numbers of the kind {given.dtype}")
     if given.ndim > DEEPEST:
         raise ValueError(f"lists in lists, more than {DEEPEST} deep")
-    if isinstance(given, np.ma.MaskedArray) and np.ma.is_masked(given):
-        raise TypeError("a masked array: fill it, or leave the masked numbers out")
     if given.dtype.kind == "O":
         for item in given.flat:
             if isinstance(item, bool | np.bool_ | str | bytes) or item is None:
                 raise TypeError(f"{shown(item)} is no number")
-            if item is np.ma.masked:
-                raise TypeError("a masked number")
     try:
         return np.array(given, dtype=np.float64)
     except OverflowError as error:

@@ -1,6 +1,7 @@
 """What shapes, curves, surfaces and bodies refuse: an error that names the value and the fix."""
 
 import itertools
+import re
 
 import numpy as np
 import pytest
@@ -122,6 +123,43 @@ def test_rounding():
 def test_polytopes(vertices, words):
     with pytest.raises(ValueError, match=words):
         so.shapes.polytope(vertices)
+
+
+THIN = {
+    "slab": lambda h: [(*corner, z) for corner in SQUARE for z in (0.0, h)],
+    "tetrahedron": lambda h: [*((*corner, 0.0) for corner in SQUARE[:3]), (0.3, 0.3, h)],
+    "needle": lambda h: [(0, 0, 0), (h, 0, 0), (0, h, 0), (0, 0, 1)],
+    "blade": lambda h: [(0, 0, 0), (h, 0, 0), (0, h, 0), (0, 0, 1), (h, h, 0.5)],
+    "tent": lambda h: [(0, 0, h), *((np.cos(t), np.sin(t), 0) for t in np.linspace(0, 6.2, 90))],
+}
+
+
+@pytest.mark.parametrize("name", THIN)
+def test_thin_polytopes_are_built_or_told_to_be_thin(name):
+    refused = 0
+    for exponent in range(-6, -17, -1):
+        h = 10.0**exponent
+        for make in (so.shapes.polytope, lambda points, r=0.1 * h: rounded(points, r)):
+            try:
+                make(THIN[name](h))
+            except so.BodyError as error:
+                refused += 1
+                said = str(error)
+                if "span no volume" in said:
+                    assert exponent <= -15
+                    continue
+                found = re.search(r"in one plane: (\S+) thick on an extent of (\S+),", said)
+                assert found, said
+                thick, extent = map(float, found.groups())
+                assert 0.0 < thick < 2.0 * h
+                assert 0.9 < extent < 3.0
+                assert "Make it thicker than" in said
+    assert refused
+    assert make(THIN[name](1e-5)).bounded
+
+
+def rounded(points, rounding):
+    return so.shapes.rounded_polytope(points, rounding)
 
 
 @pytest.mark.parametrize(

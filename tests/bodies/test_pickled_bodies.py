@@ -63,6 +63,31 @@ def test_another_process_gets_the_same_answer_and_digest(name):
     assert done.stdout.decode().split() == [repr(here.distance), body.digest, "CONVERGED"]
 
 
+READ_TRACKER = """
+import pickle, sys
+import numpy as np
+block = [bytearray(1 << 20) for _ in range(7)]  # another layout of the process's memory
+tracker, state, pose = pickle.loads(sys.stdin.buffer.read())
+state, answer = tracker.step(state, np.eye(4), pose)
+print(repr(answer.distance), answer.status.name)
+"""
+
+
+def test_a_tracker_goes_on_in_another_process():
+    """It must not call formulas at the addresses that they had here."""
+    tracker = so.Tracker(formula_ball(1.2), so.shapes.box(1, 0.4, 0.3))
+    pose = so.Pose(np.eye(3), [2.0, 1.5, -1.7])
+    state = tracker.start(np.eye(4), pose)
+    _, here = tracker.step(state, np.eye(4), pose)
+    done = subprocess.run(
+        [sys.executable, "-c", READ_TRACKER],
+        input=pickle.dumps((tracker, state, pose)),
+        capture_output=True,
+        check=True,
+    )
+    assert done.stdout.decode().split() == [repr(here.distance), "CONVERGED"]
+
+
 def test_digests_tell_formulas_apart():
     digests = {formula_ball(scale).digest for scale in (1.2, 1.2, 1.25)}
     assert len(digests) == 2

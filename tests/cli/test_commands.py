@@ -104,6 +104,15 @@ def test_depth_is_told(standoff: Standoff, crossing: Path) -> None:
     assert "upper bound" in told
 
 
+def test_a_time_after_the_scene_s_end_is_refused(standoff: Standoff, passing: Path) -> None:
+    assert standoff("distance", passing, "--time", 2.0).code == 0
+    for time in (99, -1):
+        ended = standoff("distance", passing, "--time", time)
+        assert (ended.code, ended.out) == (2, "")
+        assert f"time: {time} s is outside the scene's times, from 0 s to 2 s" in ended.err
+        assert "a duration of 2 s" in ended.err
+
+
 def test_distance(standoff: Standoff, passing: Path) -> None:
     time, answer = query(load_scene(passing), 0.5)
     facts = json.loads(standoff("distance", passing, "--time", "0.5", "--json").out)

@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -29,7 +29,7 @@ def test_parquet_holds_the_run(standoff: Standoff, passing: Path) -> None:
     recording = record(load_scene(passing))
     assert table.num_rows == 101
     np.testing.assert_array_equal(table["time"], recording.time)
-    for name in ("distance", "lower_bound", "rate", "residual", "certified"):
+    for name in ("distance", "lower_bound", "upper_bound", "rate", "residual", "certified"):
         np.testing.assert_array_equal(table[name], getattr(recording, name))
     for name in ("point_a", "point_b", "normal", "velocity_a", "velocity_b"):
         columns = np.column_stack([table[f"{name}_{axis}"] for axis in "xyz"])
@@ -68,7 +68,7 @@ def test_metadata_tells_how_the_file_came_about(standoff: Standoff, tmp_path: Pa
     standoff("track", scene, "-o", target, "--step", "0.1")
     raw = pq.read_schema(target).metadata[b"standoff"]
     metadata = json.loads(raw)
-    assert (metadata["format"], metadata["format_version"]) == ("standoff-recording", 2)
+    assert (metadata["format"], metadata["format_version"]) == ("standoff-recording", 3)
     assert metadata["source"]["scene_text"] == scene.read_text()
     assert metadata["source"]["settings"]["step"] == 0.1
     assert metadata["source"]["samples_sha256"] == {
@@ -149,11 +149,11 @@ def test_files_appear_whole_or_not_at_all(tmp_path: Path) -> None:
     good, bad = tmp_path / "good.txt", tmp_path / "bad.txt"
     good.write_text("before")
 
-    def after(path: Path) -> None:
-        path.write_text("after")
+    def after(file: BinaryIO) -> None:
+        file.write(b"after")
 
-    def fail(path: Path) -> None:
-        path.write_text("half")
+    def fail(file: BinaryIO) -> None:
+        file.write(b"half")
         raise OSError(28, "No space left on device")
 
     with pytest.raises(WriteError, match="No space left"):

@@ -7,13 +7,13 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import pytest
 
 from families import paper_figures as fakes
 from standoff.cli import paper
-from standoff.paper import catalogue
+from standoff.paper import catalogue, writers
 
 Standoff = Callable[..., Any]
 
@@ -119,7 +119,7 @@ def test_the_list_makes_nothing(standoff: Standoff, tmp_path: Path) -> None:
     [
         (["77"], "unknown figure '77'; known here: 7, 12"),
         (["7", "--jobs", "0"], "--jobs 0: give 1 or more"),
-        (["7", "-o", "taken"], "-o taken: the folder cannot be made (File exists); name another"),
+        (["7", "-o", "taken"], "-o taken: is a file, no folder; name a folder"),
         (["7", "-o", "taken/x"], "-o taken/x: the folder cannot be made (Not a directory)"),
     ],
 )
@@ -142,10 +142,10 @@ def test_bad_input_ends_in_one_message(
 def test_files_that_cannot_be_written_have_their_code(
     standoff: Standoff, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def full(path: Path, data: bytes) -> int:
+    def full(file: BinaryIO) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_bytes", full)
+    monkeypatch.setattr(writers, "_writer", lambda data: full)
     ended = standoff("paper", "7", "-o", tmp_path)
     assert ended.code == 1
     assert "figure 7 failed: could not be written" in ended.err

@@ -7,6 +7,7 @@ import json
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -14,7 +15,7 @@ import pytest
 from PIL import Image
 
 from families import paper_figures as fakes
-from standoff.paper import catalogue
+from standoff.paper import catalogue, writers
 from standoff.paper.catalogue import UnknownFigure, chosen, make
 from standoff.paper.making import Made, make_and_write
 from standoff.paper.processes import Order, make_all
@@ -157,14 +158,15 @@ def test_a_figure_that_fails_says_why_and_writes_nothing(
 def test_a_full_disk_leaves_nothing_of_a_figure(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    write = Path.write_bytes
+    write = writers._writer
 
-    def full(path: Path, data: bytes) -> int:
-        if ".svg" in path.name:
-            raise OSError(28, "No space left on device")
-        return write(path, data)
+    def full(file: BinaryIO) -> None:
+        file.write(b"half")
+        raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_bytes", full)
+    monkeypatch.setattr(
+        writers, "_writer", lambda data: full if data.startswith(b"<?xml") else write(data)
+    )
     made = make_and_write(fakes.GOOD, tmp_path, animations=True)
     assert made.unwritten
     assert "No space left" in made.error

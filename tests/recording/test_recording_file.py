@@ -6,6 +6,7 @@ import json
 import math
 from dataclasses import fields, replace
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import pyarrow as pa
@@ -68,7 +69,7 @@ def test_another_reader_needs_nothing_of_ours(
     assert [event["time"] for event in events] == [event.time for event in recording.events]
     assert all(event["located"] for event in events)
     told = json.loads(table.schema.metadata[b"standoff"])
-    assert (told["format"], told["format_version"]) == ("standoff-recording", 2)
+    assert (told["format"], told["format_version"]) == ("standoff-recording", 3)
     assert told["standoff"] == so.__version__
     assert (told["a"], told["b"]) == recording.info.bodies
     assert (told["a_sha256"], told["b_sha256"]) == tuple(x.digest for x in recording.pair)
@@ -106,8 +107,8 @@ def test_nothing_is_left_where_writing_fails(
     target = tmp_path / "run.parquet"
     target.write_text("before")
 
-    def fail(_: object, path: Path) -> None:
-        Path(path).write_text("half")
+    def fail(_: object, file: BinaryIO) -> None:
+        file.write(b"half")
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:
@@ -154,7 +155,8 @@ def test_what_is_no_recording(recordings: list[so.Recording], tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    ("version", "fix"), [(1, "record again"), (3, "install the Standoff"), ("two", "install")]
+    ("version", "fix"),
+    [(1, "record again"), (4, "install the Standoff"), ("two", "install"), (True, "record again")],
 )
 def test_another_format_version(
     recordings: list[so.Recording], tmp_path: Path, version: object, fix: str
@@ -162,7 +164,55 @@ def test_another_format_version(
     file = tmp_path / "run.parquet"
     recordings[0].save(file)
     rewritten(file, {"format_version": version})
-    with pytest.raises(ValueError, match=f"version {version!r}.*reads version 2: {fix}"):
+    with pytest.raises(ValueError, match=f"version {version!r}.*reads versions 2 and 3: {fix}"):
+        so.open_recording(file)
+
+
+def test_what_was_added_may_not_be_nested_too_deeply(
+    recordings: list[so.Recording], tmp_path: Path
+) -> None:
+    file = tmp_path / "run.parquet"
+    for depth, deep in ((49, False), (50, True), (100_000, True)):
+        value: object = 1
+        for _ in range(depth - 1):
+            value = [value]
+        info = replace(recordings[0].info, source={"note": value})
+        if deep:
+            with pytest.raises(ValueError, match=r"info \(source.note\) .*nested too deeply"):
+                replace(recordings[0], info=info).save(file)
+        else:
+            replace(recordings[0], info=info).save(file)
+            assert so.open_recording(file).info.source == info.source
+    table = pq.read_table(file)
+    deep_text = '{"format": "standoff-recording", "source": ' + "[" * 100_000
+    pq.write_table(table.replace_schema_metadata({"standoff": deep_text}), file)
+    with pytest.raises(ValueError, match="no recording of Standoff"):
+        so.open_recording(file)
+
+
+def test_a_file_of_version_2_opens_with_what_it_holds(tmp_path: Path) -> None:
+    old = Path(__file__).parent.parent / "fuzz" / "corpus" / "files" / "recording.parquet"
+    assert json.loads(pq.read_schema(old).metadata[b"standoff"])["format_version"] == 2
+    recording = so.open_recording(old)
+    assert len(recording) > 0
+    assert np.isfinite(recording.lower_bound).all()
+    assert recording.upper_bound.shape == recording.time.shape
+    assert np.isnan(recording.upper_bound).all()
+    assert not {"depth", "deadline"} & set(recording.info.options)
+    # Saved again it is of today's version, and what was unknown stays so.
+    recording.save(tmp_path / "again.parquet")
+    again = so.open_recording(tmp_path / "again.parquet")
+    assert np.isnan(again.upper_bound).all()
+    assert again.info.options == recording.info.options
+
+
+def test_a_file_of_today_without_upper_bounds_was_changed(
+    recordings: list[so.Recording], tmp_path: Path
+) -> None:
+    file = tmp_path / "run.parquet"
+    recordings[0].save(file)
+    pq.write_table(pq.read_table(file).drop_columns(["upper_bound"]), file)
+    with pytest.raises(ValueError, match=r"does not fit .*upper_bound"):
         so.open_recording(file)
 
 

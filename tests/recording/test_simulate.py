@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -53,7 +54,16 @@ def check_against_steps(recording, a, b, path_a, path_b, tracker) -> None:
         state, answer = tracker.step(state, *moved(time), dt=time - before)
         answers.append(answer)
     for name in (
-        *("distance", "lower_bound", "rate", "residual", "point_a", "point_b", "normal"),
+        *(
+            "distance",
+            "lower_bound",
+            "upper_bound",
+            "rate",
+            "residual",
+            "point_a",
+            "point_b",
+            "normal",
+        ),
         *("velocity_a", "velocity_b", "certified"),
     ):
         np.testing.assert_array_equal(
@@ -192,6 +202,8 @@ def test_info_tells_the_run() -> None:
         "gain": 50.0,
         "tolerance": 1e-10,
         "dt": 1e-2,
+        "depth": "global",
+        "deadline": None,
         "locate": True,
         "feedback": "Linear(gain=50.0)",
         "realisation": "evaluated",
@@ -249,3 +261,19 @@ def test_a_world_twist_path_and_a_body_twist_path_agree() -> None:
     one = so.simulate(a, BOX, path, REST, 0.5, 1e-2)
     two = so.simulate(a, BOX, InBody(path), REST, 0.5, 1e-2)
     np.testing.assert_allclose(one.rate, two.rate, atol=1e-13)
+
+
+@pytest.mark.parametrize(("depth", "deadline"), [("local", 40), ("global", None)])
+def test_depth_and_deadline_are_recorded(depth: str, deadline: int | None, tmp_path: Path) -> None:
+    small = so.shapes.box(0.3, 0.2, 0.25)
+    recording = so.simulate(small, BOX, THROUGH, REST, 2.0, 2e-2, depth=depth, deadline=deadline)
+    recording.save(tmp_path / "run.parquet")
+    for one in (recording, so.open_recording(tmp_path / "run.parquet")):
+        assert one.info.options["depth"] == depth
+        assert one.info.options["deadline"] == deadline
+        np.testing.assert_array_equal(one.upper_bound, recording.upper_bound)
+        apart = one.distance > 0.0
+        assert apart.any()
+        assert not apart.all()
+        np.testing.assert_array_equal(one.upper_bound[apart], one.distance[apart])
+        assert (one.lower_bound <= one.upper_bound + 1e-12).all()

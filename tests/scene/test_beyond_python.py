@@ -21,6 +21,8 @@ SCENES = {
     "deep lists": (BOX.format("size = " + "[" * 3000 + "]" * 3000), "", ["'[[[", "line 4"]),
     "deep tables": (BOX.format("size = " + "{a=" * 3000 + "1" + "}" * 3000), "", ["line 4"]),
     "deep keys": (BOX.format("size" + ".a" * 3000 + " = 1"), "bodies.a.size", ["too deeply"]),
+    "lists one too deep": (BOX.format("size = " + "[" * 51 + "]" * 51), "", ["more than 50"]),
+    "keys one too deep": (BOX.format("size" + ".a" * 48 + " = 1"), "bodies.a.size", ["than 50"]),
     "many digits": (BOX.format(f"size = [1, 1, {'9' * 5000}]"), "", ["'999", "line 4", "1e308"]),
     "many hexadecimal digits": (
         BOX.format(f"size = [1, 1, 0x{'f' * 5000}]"),

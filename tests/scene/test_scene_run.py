@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -183,6 +184,33 @@ def test_query_outside_the_samples(load_text: LoadText, time: float) -> None:
     with pytest.raises(SceneError) as caught:
         query(load_text(HEAD + SAMPLED), time)
     assert caught.value.key == "time"
+
+
+TIMED = {
+    "a duration": (HEAD + TWIST + "[track]\nduration = 0.8\n", 0.0, 0.8),
+    "a start": (HEAD + TWIST + "[track]\nstart = 0.7\nduration = 0.1\n", 0.7, 0.8),
+    "no end": (HEAD + TWIST, 0.0, math.inf),
+    "samples": (HEAD + SAMPLED, 1.0, 3.0),
+    "samples, cut": (HEAD + SAMPLED + "[track]\nstart = 1.5\nduration = 1\n", 1.5, 2.5),
+    "samples, too long": (HEAD + SAMPLED + "[track]\nstart = 1.5\nduration = 9\n", 1.5, 3.0),
+}
+
+
+@pytest.mark.parametrize("name", TIMED)
+def test_an_instant_outside_the_scene_s_times_is_refused(load_text: LoadText, name: str) -> None:
+    text, start, end = TIMED[name]
+    scene = load_text(text)
+    inside = [start, end if math.isfinite(end) else 1e6]
+    for time in inside:
+        assert scene.instant(time) == time
+    outside = [start - 1e-6, -99.0, *([end + 1e-6, end + 99.0] if math.isfinite(end) else ())]
+    for time in outside:
+        with pytest.raises(SceneError, match=r"outside the (scene's times|pose samples)") as caught:
+            query(scene, time)
+        assert caught.value.key == "time"
+        assert caught.value.file == scene.file
+        if "duration" in text and f"{time:g} s is outside the scene's" in caught.value.problem:
+            assert f"from {start:g} s to {end:g} s, a duration of" in caught.value.problem
 
 
 def test_settings_given_in_place_of_the_scene_s(load_text: LoadText) -> None:

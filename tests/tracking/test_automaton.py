@@ -161,7 +161,8 @@ def test_mermaid_names_each_node_before_its_arrows(marked: Automaton) -> None:
 def test_pictures(tmp_path: Path, marked: Automaton, ending: str) -> None:
     for k, drawn in enumerate((marked, automaton(CAPSULE, CONE), automaton(LENS, CAPSULE))):
         target = tmp_path / f"{k}.{ending}"
-        write_automaton(target, ending, drawn, ("crate", "lens"))
+        with target.open("wb") as file:
+            write_automaton(file, ending, drawn, ("crate", "lens"))
         if ending == "png":
             assert imread(target).std() > 0.02
             continue

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 from random_pairs import APART, pairs
 
 import standoff as so
+from standoff.kernels import frame as K
 
 STEP = 1e-2
 OPTIONS = (
@@ -170,3 +172,9 @@ def test_time_adds_up():
         state, answer = tracker.step(state, np.eye(4), so.Pose(np.eye(3), [1.2, 0.3, 0.4]), dt=dt)
     assert state.time == pytest.approx(2.6e-2)
     assert answer.time == state.time
+
+
+def test_the_documented_length_of_a_state_is_the_kernels():
+    (documented,) = re.findall(r"data : \((\d+),\) array", so.TrackerState.__doc__)
+    assert int(documented) == K.N_STATE
+    assert lens_and_point()[1].data.shape == (K.N_STATE,)

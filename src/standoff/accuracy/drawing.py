@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
@@ -15,7 +15,7 @@ FLOOR, CEILING = -17.0, -5.0
 """Powers of ten of the colours' ends: below is roundoff, above is wrong."""
 
 
-def draw(path: Path, rows: Sequence[Row]) -> None:
+def draw(file: BinaryIO, rows: Sequence[Row]) -> None:
     """Draw the worst errors of distance, witness points and normal, for gaps and for depths."""
     from matplotlib.figure import Figure
 
@@ -41,4 +41,4 @@ def draw(path: Path, rows: Sequence[Row]) -> None:
     bar = figure.colorbar(image, ax=axes, shrink=0.6, label="worst error")
     ticks = np.arange(FLOOR, CEILING + 1, 2)
     bar.set_ticks(list(ticks), labels=[f"1e{int(t)}" for t in ticks])
-    figure.savefig(path, format="png", dpi=100)
+    figure.savefig(file, format="png", dpi=100)

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import isnan
-from pathlib import Path
+from typing import BinaryIO
 
 from standoff.accuracy.measuring import OURS, WRONG, Row, columns
 from standoff.accuracy.summary import Summary, misses, summarised
@@ -263,17 +263,17 @@ def facts(run: Run) -> dict[str, object]:
     }
 
 
-def write_page(path: Path, run: Run) -> None:
+def write_page(file: BinaryIO, run: Run) -> None:
     """Write the tables."""
-    path.write_text(page(run), encoding="utf-8")
+    file.write(page(run).encode())
 
 
-def write_levels(path: Path, run: Run, which: str) -> None:
+def write_levels(file: BinaryIO, run: Run, which: str) -> None:
     """Write the tables of every gap, or of every depth."""
-    path.write_text(levels_page(run, which), encoding="utf-8")
+    file.write(levels_page(run, which).encode())
 
 
-def write_parquet(path: Path, run: Run) -> None:
+def write_parquet(file: BinaryIO, run: Run) -> None:
     """Write one row a case and engine; the run's numbers are the file's metadata."""
     import pyarrow as pa
     from pyarrow import parquet
@@ -284,4 +284,4 @@ def write_parquet(path: Path, run: Run) -> None:
         "seed": str(run.seed),
         "versions": json.dumps(dict(run.versions)),
     }
-    parquet.write_table(pa.table(columns(run.rows)).replace_schema_metadata(kept), path)
+    parquet.write_table(pa.table(columns(run.rows)).replace_schema_metadata(kept), file)

@@ -29,6 +29,7 @@ from standoff.geometry.validation import (
     positive,
     vector3,
 )
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of
 
 # A linear map is a similarity (keeps spheres) when its singular values agree to this ratio.
@@ -36,7 +37,7 @@ SIMILARITY_TOLERANCE = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class Body(KeepsReadOnly):
     """A convex body in its own frame. Make one with ``so.shapes``, ``Body.from_patches`` or
     ``Body.from_brep``.
 
@@ -251,16 +252,16 @@ class Body:
             packed.update(repr(formula.expressions).encode())
         return packed.hexdigest()
 
-    def __getstate__(self) -> dict[str, Any]:
+    def __getstate__(self) -> Any:
         formulas = formulas_of(self.edge_parts, self.face_parts)
-        return {**self.__dict__, "addresses": [f.address for f in formulas]}
+        return super().__getstate__(), [f.address for f in formulas]
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
+    def __setstate__(self, stored: Any) -> None:
+        state, old = stored
+        super().__setstate__(state)
         # formulas are compiled anew in another process, at other addresses
-        old = state.pop("addresses")
-        new = [f.address for f in formulas_of(state["edge_parts"], state["face_parts"])]
-        state["reals"] = readdressed(state["reals"], old, new)
-        self.__dict__.update(state)
+        new = [f.address for f in formulas_of(self.edge_parts, self.face_parts)]
+        object.__setattr__(self, "reals", readdressed(self.reals, old, new))
 
     @property
     def bounded(self) -> bool:

@@ -19,7 +19,7 @@ from standoff.accuracy.solids import Kind, named
 from standoff.cli.arguments import AccuracyCommand
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
-from standoff.cli.output import check_target, write_whole
+from standoff.cli.output import check_target, make_folder, write_whole
 from standoff.cli.progress import pairs_bar
 
 WIDTH = 140
@@ -74,13 +74,9 @@ def _text(command: AccuracyCommand) -> str:
 
 
 def _check_output(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise CommandError(
-            f"-o {folder}: the folder cannot be made ({error.strerror}); name another"
-        ) from error
-    check_target(folder / FILES[0], "-o", [".parquet"])
+    make_folder(folder, "-o")
+    for name in FILES:
+        check_target(folder / name, "-o", [Path(name).suffix])
     for library in ("pyarrow", "matplotlib"):
         try:
             __import__(library)

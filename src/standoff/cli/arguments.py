@@ -72,7 +72,7 @@ class DistanceCommand:
     scene: SceneFile
     """Scene file; docs/scene-format.md describes the format."""
     time: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
-    """Scene time in s; the first frame's if not given."""
+    """Scene time in s, from the scene's start to its end; the first frame's if not given."""
     pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """Only this one of the scene's [[pairs]]."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 
 from standoff.cli.arguments import AutomatonCommand
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
-from standoff.cli.output import Writer, check_target, write_whole
+from standoff.cli.output import Writer, check_named, check_target, write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.selection import chosen, target_of
 from standoff.scene import Scene, load_scene, prepare, record
@@ -37,7 +36,7 @@ def run_automaton(command: AutomatonCommand) -> int:
     """
     form = _format(command)
     scenes = chosen(load_scene(command.scene), command.pair)
-    targets = [target_of(command.output, scene, scenes) for scene in scenes]
+    targets = [target_of(command.output, "-o", scene, scenes) for scene in scenes]
     for target in targets:
         if target is not None:
             check_target(target, "-o", [ENDINGS[form]])
@@ -65,6 +64,7 @@ def _format(command: AutomatonCommand) -> str:
     if command.format is None:
         if command.output is None:
             return "text"
+        check_named(command.output, "-o")
         ending = command.output.suffix.lower()
         found = next((form for form, known in ENDINGS.items() if known == ending), None)
         if found is None:
@@ -107,9 +107,7 @@ def _writer(form: str, scene: Scene, found: Automaton) -> Writer:
         from standoff.tracking.automaton_picture import write_automaton
 
         title = f"{scene.title}: modes of {scene.pair[0]} and {scene.pair[1]}"
-        return lambda path: write_automaton(path, "svg", found, scene.pair, title)
+        return lambda file: write_automaton(file, "svg", found, scene.pair, title)
 
-    def write(path: Path) -> None:
-        path.write_text(TEXTS[form](found, scene.pair) + "\n", encoding="utf-8")
-
-    return write
+    text = TEXTS[form](found, scene.pair) + "\n"
+    return lambda file: file.write(text.encode())

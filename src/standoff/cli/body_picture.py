@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
@@ -34,12 +34,12 @@ except ModuleNotFoundError as error:
     raise MissingExtra("matplotlib") from error
 
 
-def write_body(path: Path, ending: str, body: Body, name: str, unit: str) -> None:
-    """Draw a body.
+def write_body(file: BinaryIO, ending: str, body: Body, name: str, unit: str) -> None:
+    """Draw a body to a stream.
 
     Parameters
     ----------
-    path : Path
+    file : binary stream
     ending : str
         The format: ``png``, ``svg`` or ``pdf``.
     body : Body
@@ -73,7 +73,7 @@ def write_body(path: Path, ending: str, body: Body, name: str, unit: str) -> Non
         frameon=False,
         fontsize="small",
     )
-    figure.savefig(path, format=ending)
+    figure.savefig(file, format=ending)
 
 
 def _title(body: Body, name: str) -> str:

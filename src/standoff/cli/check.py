@@ -15,7 +15,7 @@ from standoff.cli.arguments import CheckCommand
 from standoff.cli.body_report import report_rows
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
-from standoff.cli.output import Writer, check_target, write_whole
+from standoff.cli.output import Writer, check_named, check_target, write_whole
 from standoff.cli.subject import Subject, subjects
 
 PLOT_ENDINGS = (".png", ".svg", ".pdf")
@@ -55,6 +55,7 @@ def _target(plot: Path | None, subject: Subject, found: list[Subject]) -> Path |
     """The picture of one body: as the option names it, or with the body's name at its end."""
     if plot is None or len(found) == 1:
         return plot
+    check_named(plot, "--plot")
     plain = "".join(
         letter if letter.isalnum() or letter in "-_" else "_" for letter in subject.name
     )
@@ -78,7 +79,7 @@ def _files(found: list[Subject], targets: list[Path | None]) -> dict[Path, Write
 def _writer(subject: Subject, ending: str) -> Writer:
     from standoff.cli.body_picture import write_body
 
-    return lambda path: write_body(path, ending, subject.body, subject.name, subject.unit)
+    return lambda file: write_body(file, ending, subject.body, subject.name, subject.unit)
 
 
 def _json(found: list[Subject], files: list[Path]) -> str:

@@ -91,6 +91,7 @@ def frame_facts(recording: Recording, frame: int | None) -> dict[str, Any] | Non
         "time": float(recording.time[frame]),
         "distance": float(recording.distance[frame]),
         "lower_bound": float(recording.lower_bound[frame]),
+        "upper_bound": float(recording.upper_bound[frame]),
         "point_a": _numbers(recording.point_a[frame]),
         "point_b": _numbers(recording.point_b[frame]),
         "normal": _numbers(recording.normal[frame]),

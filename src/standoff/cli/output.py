@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all."""
+"""What the commands write, and where: refused before the work where it could not be written."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from standoff import whole_files
 from standoff.cli.errors import CommandError, WriteError
-from standoff.tracking import whole_files
-from standoff.tracking.whole_files import Writer as Writer
+from standoff.whole_files import Writer as Writer
+from standoff.whole_files import destination, kind_of
 
 
 def check_target(target: Path, option: str, endings: Sequence[str]) -> None:
@@ -26,23 +27,21 @@ def check_target(target: Path, option: str, endings: Sequence[str]) -> None:
     Raises
     ------
     CommandError
-        If the ending is another, the folder is missing or cannot be written, or the target is
-        itself a folder.
+        If there is no name or the ending is another, the folder is missing or cannot be written,
+        or the target is itself no regular file.
     """
+    check_named(target, option)
     if target.suffix.lower() not in endings:
         raise CommandError(
             f"{option} {target}: the ending '{target.suffix}' is not known here; "
             f"name a file that ends in {' or '.join(endings)}"
         )
-    if target.is_dir():
-        raise CommandError(f"{option} {target}: is a folder; name a file in it")
-    folder = target.parent
-    if not folder.exists():
-        raise CommandError(
-            f"{option} {target}: the folder {folder} does not exist; create it or name another"
-        )
-    if not folder.is_dir():
-        raise CommandError(f"{option} {target}: {folder} is a file, no folder; name a folder")
+    try:
+        folder = destination(target).parent
+    except whole_files.UnfitTarget as error:
+        raise CommandError(f"{option} {error}") from error
+    except OSError as error:
+        raise CommandError(f"{option} {target}: {error.strerror}; name another") from error
     try:
         with tempfile.TemporaryFile(dir=folder):
             pass
@@ -50,6 +49,41 @@ def check_target(target: Path, option: str, endings: Sequence[str]) -> None:
         raise CommandError(
             f"{option} {target}: the folder {folder} cannot be written ({error.strerror}); "
             "name another, or change its permissions"
+        ) from error
+
+
+def check_named(target: Path, option: str) -> None:
+    """Refuse a path without a file's name: an empty text, which means the current folder, or /.
+
+    Raises
+    ------
+    CommandError
+    """
+    if not target.name:
+        raise CommandError(
+            f"{option}: '{target}' is a folder, and what an empty text stands for; name a file"
+            if target == Path()
+            else f"{option} {target}: is a folder; name a file in it"
+        )
+
+
+def make_folder(folder: Path, option: str) -> None:
+    """Make the folder of several files where there is none.
+
+    Raises
+    ------
+    CommandError
+        If it cannot be made, as where there is something else.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError as error:
+        kind = kind_of(folder.lstat().st_mode)
+        raise CommandError(f"{option} {folder}: is {kind}, no folder; name a folder") from error
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise CommandError(
+            f"{option} {folder}: the folder cannot be made ({reason}); name another"
         ) from error
 
 

@@ -17,7 +17,7 @@ from standoff import __version__
 from standoff.cli.arguments import PaperCommand
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
-from standoff.cli.output import check_target, write_whole
+from standoff.cli.output import check_target, make_folder, write_whole
 from standoff.cli.progress import figures_bar
 from standoff.paper.catalogue import CATALOGUE, UnknownFigure, chosen
 from standoff.paper.figure import Entry
@@ -89,12 +89,7 @@ def _check_extras() -> None:
 
 
 def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise CommandError(
-            f"-o {folder}: the folder cannot be made ({error.strerror}); name another"
-        ) from error
+    make_folder(folder, "-o")
     check_target(folder / REPORT, "-o", [".html"])
 
 
@@ -126,11 +121,7 @@ def _report(made: Sequence[Made], folder: Path) -> Path:
 
     text = report_html(made, of=len(CATALOGUE))
     target = folder / REPORT
-
-    def write(path: Path) -> None:
-        path.write_text(text, encoding="utf-8")
-
-    write_whole({target: write})
+    write_whole({target: lambda file: file.write(text.encode())})
     return target
 
 

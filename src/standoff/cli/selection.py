@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from standoff.cli.errors import CommandError
+from standoff.cli.output import check_named
 from standoff.scene import Scene, SceneError
 
 
@@ -24,8 +25,17 @@ def chosen(scene: Scene, name: str | None) -> tuple[Scene, ...]:
         raise CommandError(f"--pair: {error.problem}") from error
 
 
-def target_of(target: Path | None, scene: Scene, scenes: tuple[Scene, ...]) -> Path | None:
-    """Return the file of one pair: as the option names it, or with the pair's name at its end."""
+def target_of(
+    target: Path | None, option: str, scene: Scene, scenes: tuple[Scene, ...]
+) -> Path | None:
+    """Return the file of one pair: as the option names it, or with the pair's name at its end.
+
+    Raises
+    ------
+    CommandError
+        If the option names no file.
+    """
     if target is None or len(scenes) == 1:
         return target
+    check_named(target, option)
     return target.with_name(f"{target.stem}-{scene.selected.name}{target.suffix}")

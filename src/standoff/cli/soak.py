@@ -15,7 +15,7 @@ from rich.progress import Progress as Bar
 from standoff.cli.arguments import SoakCommand
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra, WriteError
 from standoff.cli.facts import json_text
-from standoff.cli.output import check_target, write_whole
+from standoff.cli.output import check_target, make_folder, write_whole
 from standoff.soak.failures import Facts, read_failure, replay
 from standoff.soak.ledger import NAME, Ledger
 from standoff.soak.processes import Done, Tell, soak
@@ -76,12 +76,7 @@ def run_soak(command: SoakCommand) -> int:
 
 def _ledger(command: SoakCommand) -> Ledger:
     folder = command.output
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise CommandError(
-            f"-o {folder}: the folder cannot be made ({error.strerror}); name another"
-        ) from error
+    make_folder(folder, "-o")
     check_target(folder / NAME, "-o", [".json"])
     there = (folder / NAME).exists()
     if there and not command.resume:
@@ -120,11 +115,7 @@ def _save(ledger: Ledger, folder: Path) -> None:
 def _write_failure(failed: Done, folder: Path) -> Path:
     file = folder / FAILURE.format(failed.failed)
     text = json.dumps(failed.facts, indent=1, allow_nan=False)
-
-    def write(path: Path) -> None:
-        path.write_text(text, encoding="utf-8")
-
-    write_whole({file: write})
+    write_whole({file: lambda stream: stream.write(text.encode())})
     return file
 
 

@@ -67,8 +67,8 @@ def _shape(text: str) -> Subject:
         content = toml_tables(f"body = {{{text}}}")["body"]
     except SceneError as error:
         raise CommandError(
-            f"{shown(text)} is no shape as a scene writes it: it {error}; write one such as "
-            f"{EXAMPLE}"
+            f"{shown(text)} is no shape as a scene writes it: it {error.problem}; write one such "
+            f"as {EXAMPLE}"
         ) from error
     body = read_body(Table(content, path="body"))
     return Subject(body.name, body, DEFAULT_LENGTH_UNIT)

@@ -71,8 +71,8 @@ class _Run(NamedTuple):
 
     @classmethod
     def of(cls, scene: Scene, command: TrackCommand, scenes: tuple[Scene, ...]) -> _Run:
-        output = target_of(command.output, scene, scenes)
-        plot = target_of(command.plot, scene, scenes)
+        output = target_of(command.output, "-o", scene, scenes)
+        plot = target_of(command.plot, "--plot", scene, scenes)
         return cls(scene, _settings(scene, command), output, plot)
 
     def check_files(self) -> None:
@@ -94,12 +94,12 @@ class _Run(NamedTuple):
         if self.output is not None:
             from standoff.tracking.recording_file import write_table
 
-            files[self.output] = lambda path: write_table(recording, path)
+            files[self.output] = lambda file: write_table(recording, file)
         if self.plot is not None:
             from standoff.tracking.recording_plot import write_plot
 
             ending = self.plot.suffix.lower().removeprefix(".")
-            files[self.plot] = lambda path: write_plot(recording, path, ending)
+            files[self.plot] = lambda file: write_plot(recording, file, ending)
         return files
 
     def shown(self, recording: Recording) -> tuple[Scene, TrackSettings, Recording, list[Path]]:

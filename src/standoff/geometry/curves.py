@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from standoff.geometry.validation import Array, check_alike, finite, vector3
+from standoff.geometry.validation import Array, affine_map, check_alike, finite, vector3
 from standoff.kernels import layout as L
 from standoff.kernels.entries import curve_jet
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ FULL_TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class Curve(KeepsReadOnly):
     """A parametric curve on [first, last], lengths in the body's frame.
 
     Parameters
@@ -63,6 +64,7 @@ class Curve:
 
     def transformed(self, linear: Array, shift: Array) -> Curve:
         """The exact image under x -> linear x + shift; the parameter stays the same."""
+        linear, shift = affine_map(linear, shift)
         data = self.data.copy()
         data[0:9] = (linear @ data[0:9].reshape(3, 3)).ravel()
         data[9:12] = linear @ data[9:12] + shift
@@ -199,6 +201,7 @@ class RationalBezier(Curve):
         return int(self.data[0])
 
     def transformed(self, linear: Array, shift: Array) -> Curve:
+        linear, shift = affine_map(linear, shift)
         data = self.data.copy()
         h = data[1:].reshape(-1, 4)
         h[:, :3] = h[:, :3] @ linear.T + h[:, 3:] * shift

@@ -16,13 +16,14 @@ from typing import Any
 import numpy as np
 
 from standoff.geometry.validation import Array, finite
+from standoff.read_only import KeepsReadOnly
 
 # The compiled jets hold one row of basis functions of this degree.
 GREATEST_DEGREE = 9
 
 
 @dataclass(frozen=True, eq=False)
-class KnotVector:
+class KnotVector(KeepsReadOnly):
     """A checked knot vector: `knots` (n + p + 1,) for n coefficients of degree p."""
 
     knots: Array

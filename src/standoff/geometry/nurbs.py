@@ -24,7 +24,7 @@ from standoff.geometry.knots import (
     refine,
 )
 from standoff.geometry.surfaces import Domain, Surface, checked_domain
-from standoff.geometry.validation import Array, check_alike, finite
+from standoff.geometry.validation import Array, affine_map, check_alike, finite
 from standoff.kernels import layout as L
 
 
@@ -137,7 +137,8 @@ class NurbsSurface(Surface):
 
     def transformed(self, linear: Array, shift: Array) -> Self:
         """The exact image under x -> linear x + shift; parameters stay the same."""
-        points = self.control_points @ np.asarray(linear).T + np.asarray(shift)
+        linear, shift = affine_map(linear, shift)
+        points = self.control_points @ linear.T + shift
         return self._with(points, self.domain)
 
     def _with(self, points: Array, domain: Domain) -> Self:

@@ -11,7 +11,7 @@ from standoff.geometry.curves import Curve
 from standoff.geometry.hulls import tight_box
 from standoff.geometry.knots import KnotVector, bezier_spans, elevate_knots, knot_vector, refine
 from standoff.geometry.nurbs import checked_weights
-from standoff.geometry.validation import Array, finite
+from standoff.geometry.validation import Array, affine_map, finite
 from standoff.kernels import layout as L
 from standoff.real_numbers import shape_of
 
@@ -104,9 +104,8 @@ class NurbsCurve(Curve):
 
     def transformed(self, linear: Array, shift: Array) -> NurbsCurve:
         """The exact image under x -> linear x + shift; the parameter stays the same."""
-        return self._new(
-            self.control_points @ np.asarray(linear).T + shift, self.weights, self.vector
-        )
+        linear, shift = affine_map(linear, shift)
+        return self._new(self.control_points @ linear.T + shift, self.weights, self.vector)
 
     def refined(self, knots: Sequence[float]) -> NurbsCurve:
         """The same curve with further knots inserted inside its domain."""

@@ -17,11 +17,12 @@ from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
 from standoff.kernels.entries import pcurve_jet
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import real_array, shown
 
 
 @dataclass(frozen=True, eq=False)
-class Pcurve:
+class Pcurve(KeepsReadOnly):
     """A trimming curve: homogeneous (u, v) as an affine image of a line or a unit circle.
 
     Parameters

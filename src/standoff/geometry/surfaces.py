@@ -12,9 +12,10 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from standoff.geometry.validation import Array, finite, matrix3, vector3
+from standoff.geometry.validation import Array, affine_map, finite, matrix3, vector3
 from standoff.kernels import layout as L
 from standoff.kernels.entries import surface_jet
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import real_array, shape_of, shown
 
 Domain = tuple[float, float, float, float]
@@ -37,7 +38,7 @@ def checked_domain(domain: Any, name: str) -> Domain:
 
 
 @dataclass(frozen=True, eq=False)
-class Surface(ABC):
+class Surface(KeepsReadOnly, ABC):
     """A parametric surface, x(u, v) = linear @ canonical(u, v) + shift.
 
     Parameters
@@ -90,9 +91,9 @@ class Surface(ABC):
         """What the kind's kernel reads behind the affine map."""
         return np.zeros(0)
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
+    def __setstate__(self, stored: Any) -> None:
+        super().__setstate__(stored)
         # a profile's formula is compiled anew in another process, at another address
-        self.__dict__.update(state)
         reals = self.reals.copy()
         reals[L.SURFACE_DATA :] = self._data()
         reals.flags.writeable = False
@@ -109,6 +110,7 @@ class Surface(ABC):
 
     def transformed(self, linear: Array, shift: Array) -> Self:
         """The exact image under x -> linear x + shift; parameters stay the same."""
+        linear, shift = affine_map(linear, shift)
         return replace(self, linear=linear @ self.linear, shift=linear @ self.shift + shift)
 
     def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Self:

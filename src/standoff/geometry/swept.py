@@ -10,7 +10,7 @@ from standoff.geometry.curve_bounds import box_of, curve_breaks, curve_reach
 from standoff.geometry.curves import FULL_TURN, Curve
 from standoff.geometry.surfaces import Domain, Surface
 from standoff.geometry.torus import checked_turn, full_turn
-from standoff.geometry.validation import LEAST, Array, finite, vector3
+from standoff.geometry.validation import LEAST, Array, affine_map, finite, vector3
 from standoff.kernels import layout as L
 from standoff.real_numbers import shown
 
@@ -76,6 +76,7 @@ class Revolution(Surface):
 
     def transformed(self, linear: Array, shift: Array) -> Revolution:
         """The exact image under x -> linear x + shift; parameters stay the same."""
+        linear, shift = affine_map(linear, shift)
         return self._with(self.domain, linear @ self.linear, linear @ self.shift + shift)
 
     def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Revolution:
@@ -168,6 +169,7 @@ class Extrusion(Surface):
 
     def transformed(self, linear: Array, shift: Array) -> Extrusion:
         """The exact image under x -> linear x + shift; parameters stay the same."""
+        linear, shift = affine_map(linear, shift)
         return self._with(self.domain, linear @ self.linear, linear @ self.shift + shift)
 
     def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Extrusion:

@@ -8,7 +8,7 @@ import numpy as np
 
 from standoff.geometry.curves import FULL_TURN
 from standoff.geometry.surfaces import Domain, Surface
-from standoff.geometry.validation import Array, finite, positive
+from standoff.geometry.validation import Array, affine_map, finite, positive
 from standoff.kernels import layout as L
 
 # Angles may pass a whole turn, or the ends of the convex part, by this (radians): roundoff of
@@ -79,6 +79,7 @@ class Torus(Surface):
 
     def transformed(self, linear: Array, shift: Array) -> Torus:
         """The exact image under x -> linear x + shift; parameters stay the same."""
+        linear, shift = affine_map(linear, shift)
         return self._with(self.domain, linear @ self.linear, linear @ self.shift + shift)
 
     def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Torus:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.real_numbers import real_array, shown
+from standoff.real_numbers import MaskedNumbers, real_array, shown
 
 Array = NDArray[np.float64]
 
@@ -25,11 +25,13 @@ def finite(value: Any, name: str, shape: tuple[int, ...]) -> Array:
     Raises
     ------
     ValueError
-        Not numeric (text and truth values are not), of another shape, with a NaN, an infinite
-        number, or one beyond `GREATEST`.
+        Not numeric (text and truth values are not), masked, of another shape, with a NaN, an
+        infinite number, or one beyond `GREATEST`.
     """
     try:
         array = real_array(value)
+    except MaskedNumbers as error:
+        raise ValueError(f"{name} {error}: {shown(value)}") from error
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name} is not numeric: {shown(value)}") from error
     fits = array.ndim == len(shape) and all(
@@ -54,6 +56,11 @@ def vector3(value: Any, name: str) -> Array:
 
 def matrix3(value: Any, name: str) -> Array:
     return finite(value, name, (3, 3))
+
+
+def affine_map(linear: Any, shift: Any) -> tuple[Array, Array]:
+    """(linear, shift) of x -> linear x + shift, checked."""
+    return matrix3(linear, "linear"), vector3(shift, "shift")
 
 
 def positive(value: Any, name: str) -> float:

@@ -14,6 +14,7 @@ from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import TwistLike
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of, shown
 
 
@@ -72,7 +73,7 @@ class BoundedPath(Protocol):
         ...
 
 
-class Bounded:
+class Bounded(KeepsReadOnly):
     """A path of your own, with what you know of its accelerations.
 
     Parameters

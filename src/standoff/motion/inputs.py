@@ -8,7 +8,7 @@ from typing import SupportsFloat
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from standoff.real_numbers import real_array, shown
+from standoff.real_numbers import MaskedNumbers, check_unmasked, real_array, shown
 
 FloatArray = NDArray[np.float64]
 
@@ -36,6 +36,8 @@ def array(
     """Copy `value` to a read-only float64 array of the given shape, no component beyond `most`."""
     try:
         copied = real_array(value)
+    except MaskedNumbers as error:
+        raise ValueError(f"{name} {error}: {shown(value)}") from error
     except (TypeError, ValueError) as error:
         raise ValueError(
             f"{name} is {shown(value)}: give {_numbers(shape)}, all of them real"
@@ -50,6 +52,14 @@ def array(
         raise ValueError(f"{name} is {text(copied)}: no component may be beyond {most:g}")
     copied.setflags(write=False)
     return copied
+
+
+def unmasked(value: object, name: str) -> None:
+    """Refuse masked numbers, before a conversion of NumPy's takes what lies beneath for data."""
+    try:
+        check_unmasked(value)
+    except MaskedNumbers as error:
+        raise ValueError(f"{name} {error}: {shown(value)}") from error
 
 
 def number(value: SupportsFloat, name: str) -> float:

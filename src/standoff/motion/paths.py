@@ -24,6 +24,7 @@ from standoff.motion.bounds import (
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import Twist, TwistLike
+from standoff.read_only import KeepsReadOnly
 
 
 @runtime_checkable
@@ -55,7 +56,7 @@ class Path(Protocol):
         ...
 
 
-class Fixed:
+class Fixed(KeepsReadOnly):
     """A body at rest, for all times.
 
     Parameters
@@ -95,7 +96,7 @@ class Fixed:
         return ()
 
 
-class ConstantTwist:
+class ConstantTwist(KeepsReadOnly):
     """A body whose twist is constant in the axes that the twist names.
 
     With a body-frame twist the motion is a screw, ``pose @ exp(twist · t)``. With a world-frame
@@ -146,7 +147,7 @@ class ConstantTwist:
         return ()
 
 
-class Screw:
+class Screw(KeepsReadOnly):
     """A body that turns about a fixed axis in the world and advances along it.
 
     Parameters
@@ -212,7 +213,7 @@ class Screw:
         return ()
 
 
-class Offset:
+class Offset(KeepsReadOnly):
     """A body fixed to another that follows a path.
 
     Parameters
@@ -268,7 +269,7 @@ class Offset:
         return breaks_of(self._path, first, last)
 
 
-class Carried:
+class Carried(KeepsReadOnly):
     """A body that follows a path of its own in the axes of a body that follows another.
 
     Parameters

@@ -13,11 +13,12 @@ from numpy.typing import ArrayLike
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray, text
 from standoff.motion.tolerances import ORTHONORMALITY, QUATERNION_ROUNDING, UNIT_QUATERNION
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of, shown
 
 
 @dataclass(frozen=True, init=False, eq=False)
-class Pose:
+class Pose(KeepsReadOnly):
     """A rigid placement of a body in the world.
 
     A point with coordinates x in the body is at ``rotation @ x + translation`` in the world.
@@ -100,6 +101,7 @@ class Pose:
             if shape_of(rotation) == (4,):
                 raise ValueError(_unnamed_quaternion(rotation))
             return cls(rotation, translation)
+        inputs.unmasked(value, "pose")
         try:
             given = np.asarray(value)
         except (ValueError, RecursionError) as error:
@@ -234,6 +236,7 @@ class Pose:
         ValueError
             If the last axis has not three components.
         """
+        inputs.unmasked(points, "points")
         array = np.asarray(points, dtype=np.float64)
         if array.ndim == 0 or array.shape[-1] != 3:
             raise ValueError(f"points have shape {array.shape}: give an array of shape (..., 3)")

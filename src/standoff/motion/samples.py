@@ -13,10 +13,11 @@ from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.tolerances import HALF_TURN
 from standoff.motion.twist import Twist
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 
 
-class PoseSamples:
+class PoseSamples(KeepsReadOnly):
     """A body whose pose is known at certain times, and moves on a screw between two of them.
 
     Between samples the pose is the geodesic of SE(3), ``P_i exp(s log(P_i⁻¹ P_{i+1}))`` with s

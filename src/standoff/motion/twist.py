@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray, text
 from standoff.motion.pose import Pose, PoseLike
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 
 Frame: TypeAlias = Literal["world", "body"]
@@ -20,7 +21,7 @@ Frame: TypeAlias = Literal["world", "body"]
 
 
 @dataclass(frozen=True, init=False, eq=False)
-class Twist:
+class Twist(KeepsReadOnly):
     """The velocity of a rigid body: linear part first.
 
     Both frames hold the same two vectors, the velocity of the body's origin and the angular
@@ -73,6 +74,7 @@ class Twist:
         """
         if isinstance(value, Twist):
             return value
+        inputs.unmasked(value, "twist")
         try:
             given = np.asarray(value)
         except (ValueError, RecursionError) as error:

@@ -14,12 +14,13 @@ from standoff.motion.bounds import MotionBounds, length
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose
 from standoff.motion.twist import Twist
+from standoff.read_only import KeepsReadOnly
 
 Orientation: TypeAlias = Literal["fixed", "turning"]
 """Whether a winding body keeps the world's axes, or turns once with each winding."""
 
 
-class Helix:
+class Helix(KeepsReadOnly):
     """A body whose origin winds about an axis at a constant distance.
 
     Parameters
@@ -112,7 +113,7 @@ class Helix:
         return ()
 
 
-class Spiral:
+class Spiral(KeepsReadOnly):
     """A body whose origin follows an Archimedean spiral in the plane z = 0.
 
     With the angle turned since t = 0, α = rate · t, the origin is at the distance

@@ -11,7 +11,7 @@ from pathlib import Path
 from standoff.paper.catalogue import make
 from standoff.paper.figure import Entry, Statement, shown_tables
 from standoff.paper.writers import ANIMATION, files_of
-from standoff.tracking.whole_files import write_whole
+from standoff.whole_files import write_whole
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from standoff import __version__
 from standoff.paper import style
 from standoff.paper.figure import Animation, Artwork, Entry
-from standoff.tracking.whole_files import Writer
+from standoff.whole_files import Writer
 
 try:
     import pyarrow as pa
@@ -140,7 +140,4 @@ def files_of(
 
 
 def _writer(data: bytes) -> Writer:
-    def write(path: Path) -> None:
-        path.write_bytes(data)
-
-    return write
+    return lambda file: file.write(data)

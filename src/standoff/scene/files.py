@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from standoff.nesting import TOML, text_problem, value_problem
 from standoff.scene.errors import SceneError
 from standoff.scene.reader import Table, nearest, shown
 
@@ -17,8 +18,8 @@ NEAREST_FILE_CUTOFF = 0.8
 """Least likeness (difflib ratio, 0 to 1) of a file name that is suggested for another: file names
 are alike by their ending alone."""
 
-DEEPEST_SHOWN = 50
-"""Brackets in brackets at which the place of too deep a nesting is told; scenes need six."""
+NAMED = 3
+"""Most keys that the place of too deep a nesting has, such as ``bodies.tool.size``."""
 
 
 def file_problem(path: Path, name: str, folder: str = "the scene file") -> str | None:
@@ -80,23 +81,26 @@ def toml_tables(text: str) -> dict[str, Any]:
     Raises
     ------
     SceneError
-        If it is no TOML, or holds what Python does not read: too many digits, too deep lists.
+        If it is no TOML, is nested too deeply, or holds a number of more digits than Python reads.
     """
+    problem = text_problem(text, TOML)
+    if problem:
+        raise SceneError(problem)
     try:
-        return tomllib.loads(text)
+        tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise SceneError(f"is no TOML: {error}") from error
-    except (RecursionError, ValueError) as error:
+    except ValueError as error:
         raise SceneError(beyond_python(text, error)) from error
+    # Dotted keys nest tables without a bracket.
+    problem, keys = value_problem(tables)
+    if problem:
+        raise SceneError(problem, key=".".join(keys[:NAMED]))
+    return tables
 
 
 def beyond_python(text: str, error: Exception) -> str:
     """Return the sentence about valid TOML or JSON that Python's parsers refuse all the same."""
-    if isinstance(error, RecursionError):
-        opening = r"[\[{]\s*(?:[\w.\"-]+\s*[=:]\s*)?"
-        deep = re.search(f"(?:{opening}){{{DEEPEST_SHOWN}}}", text)
-        place = _place(text, deep)
-        return f"holds lists or tables in one another beyond all use{place}; take them apart"
     most = sys.get_int_max_str_digits()
     long = re.search(rf"\d[\d_]{{{most},}}", text) if most else None
     if long is None:

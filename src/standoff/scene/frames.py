@@ -47,6 +47,36 @@ def check_time(time: float, motions: Iterable[Motion], key: str) -> float:
     return time
 
 
+def check_instant(time: float, settings: TrackSettings, motions: Iterable[Motion]) -> float:
+    """Return `time` [s] if it lies within the scene's times.
+
+    They go from the start to the end of the duration, or of the pose samples. A scene that has
+    neither ends nowhere.
+
+    Raises
+    ------
+    SceneError
+        If it lies outside, or is not finite.
+    """
+    motions = list(motions)
+    check_time(time, motions, "time")
+    start, end = start_time(settings, motions), time_span(motions)[1]
+    room, told = 0.0, ""
+    if settings.duration is not None:
+        end = min(end, start + settings.duration)
+        # A sum such as 0.7 + 0.1 may be a rounding error below the end that is meant.
+        room = WHOLE_STEPS * settings.duration
+        told = f", a duration of {settings.duration:g} s"
+    if not start <= time <= end + room:
+        reach = f"from {start:g} s" + (f" to {end:g} s" if math.isfinite(end) else " on")
+        raise SceneError(
+            f"{time:g} s is outside the scene's times, {reach}{told}; give a time within them, or "
+            "change 'start' or 'duration' of [track]",
+            key="time",
+        )
+    return time
+
+
 def start_time(settings: TrackSettings, motions: Iterable[Motion]) -> float:
     """Return the first instant [s]: the one asked for, else the first that all motions know."""
     motions = list(motions)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from standoff.geometry import BezierPatch, FormulaSurface, NurbsSurface, Surface
 from standoff.geometry.validation import Array
+from standoff.nesting import JSON, text_problem
 from standoff.scene.errors import SceneError
 from standoff.scene.files import beyond_python, existing_file
 from standoff.scene.reader import Table, shown
@@ -85,6 +86,9 @@ def _of_file(file: Path) -> Table:
     """The checked top of a JSON file of patches."""
     try:
         text = file.read_bytes().decode("utf-8-sig")
+        problem = text_problem(text, JSON)
+        if problem:
+            raise SceneError(problem)
         content = json.loads(text, object_pairs_hook=_each_key_once)
     except SceneError as error:
         raise error.found_in(file) from error
@@ -100,7 +104,7 @@ def _of_file(file: Path) -> Table:
         ) from error
     except OSError as error:
         raise SceneError(f"cannot be read: {error.strerror}", file=file) from error
-    except (RecursionError, ValueError) as error:
+    except ValueError as error:
         raise SceneError(beyond_python(text, error), file=file) from error
     if not isinstance(content, dict):
         raise SceneError(f"must be an object in braces, got {shown(content)}", file=file)

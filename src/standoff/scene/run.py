@@ -23,7 +23,7 @@ def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity]:
     ----------
     scene : Scene
     time : float, optional
-        Scene time [s]; the first frame's if not given.
+        Scene time [s], from the scene's start to its end; the first frame's if not given.
 
     Returns
     -------
@@ -33,7 +33,7 @@ def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity]:
     Raises
     ------
     SceneError
-        If a motion is not known then, or the pair cannot be asked for a distance.
+        If the instant is outside the scene's times, or the pair cannot be asked for a distance.
     """
     instant = scene.instant(time)
     a, b = scene.pair_bodies

@@ -11,7 +11,7 @@ from standoff.bodies.body import Body
 from standoff.motion import Pose
 from standoff.scene.errors import SceneError
 from standoff.scene.files import file_problem, toml_tables
-from standoff.scene.frames import check_time, frame_times, start_time, time_window
+from standoff.scene.frames import check_instant, frame_times, start_time, time_window
 from standoff.scene.motions import Motion, at_rest, read_motion
 from standoff.scene.pairs import Pair, read_pairs
 from standoff.scene.placements import read_pose
@@ -134,11 +134,12 @@ class Scene:
             raise error.found_in(self.file) from error
 
     def instant(self, time: float | None = None) -> float:
-        """Return `time` [s] if the pair's motions are known then; None: the first frame's."""
+        """Return `time` [s] if it is one of the scene's, see `check_instant`; None: the first
+        frame's."""
         try:
             if time is None:
                 return start_time(self.settings, self.pair_motions)
-            return check_time(time, self.pair_motions, "time")
+            return check_instant(time, self.settings, self.pair_motions)
         except SceneError as error:
             raise error.found_in(self.file) from error
 

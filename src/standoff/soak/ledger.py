@@ -11,8 +11,8 @@ from standoff.soak.cases import PER_DRAWER
 from standoff.soak.reading import entry, read_facts, rows, whole
 from standoff.soak.tally import Tally
 from standoff.tracking.status import Status
-from standoff.tracking.whole_files import write_whole
 from standoff.version import __version__
+from standoff.whole_files import write_whole
 
 NAME = "soak.json"
 Part = tuple[int, int]
@@ -81,11 +81,7 @@ class Ledger:
             As on a full disk.
         """
         text = json.dumps(self.facts(), indent=1, allow_nan=False)
-
-        def write(path: Path) -> None:
-            path.write_text(text, encoding="utf-8")
-
-        write_whole({folder / NAME: write})
+        write_whole({folder / NAME: lambda file: file.write(text.encode())})
 
     @classmethod
     def read(cls, folder: Path, seed: int, frames: int) -> Ledger:

@@ -7,6 +7,8 @@ import math
 from pathlib import Path
 from typing import Any
 
+from standoff.nesting import JSON, text_problem
+
 Facts = dict[str, Any]
 
 
@@ -18,15 +20,13 @@ def read_facts(file: Path) -> Facts:
     OSError
         It cannot be read.
     ValueError
-        It is no JSON, or no object, or has numbers that are not finite.
+        It is no JSON, or no object, is nested too deeply, or has numbers that are not finite.
     """
-    try:
-        found = json.loads(
-            file.read_text(encoding="utf-8"), parse_constant=_refused, parse_float=_finite
-        )
-    except RecursionError as error:
-        raise ValueError("it is nested too deep") from error
-    return mapping(found, "it")
+    content = file.read_text(encoding="utf-8")
+    problem = text_problem(content, JSON)
+    if problem:
+        raise ValueError(f"it {problem}")
+    return mapping(json.loads(content, parse_constant=_refused, parse_float=_finite), "it")
 
 
 def _refused(text: str) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import scipy
@@ -53,13 +53,13 @@ SWEEPS = 8
 
 
 def write_automaton(
-    path: Path, ending: str, automaton: Automaton, names: Names = ("A", "B"), title: str = ""
+    file: BinaryIO, ending: str, automaton: Automaton, names: Names = ("A", "B"), title: str = ""
 ) -> None:
-    """Draw an automaton.
+    """Draw an automaton to a stream.
 
     Parameters
     ----------
-    path : Path
+    file : binary stream
     ending : str
         The format: ``svg``, ``png`` or ``pdf``.
     automaton : Automaton
@@ -101,7 +101,7 @@ def write_automaton(
     )
     # The arrows end at the features' boxes, whose sizes are known once they were laid out.
     figure.draw_without_rendering()
-    figure.savefig(path, format=ending)
+    figure.savefig(file, format=ending)
 
 
 def _height_below(automaton: Automaton) -> float:

@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from standoff.kernels import frame as K
 from standoff.kernels import integrators as I
-from standoff.real_numbers import DEEPEST, shown
+from standoff.read_only import KeepsReadOnly
+from standoff.real_numbers import DEEPEST, MaskedNumbers, real_array, shown
 from standoff.tracking.choices import INTEGRATORS, choice, positive_number
 
 Array = NDArray[np.float64]
@@ -163,7 +164,7 @@ class Linear:
         return np.array([-float(self.gain)])
 
 
-class GainMatrix:
+class GainMatrix(KeepsReadOnly):
     """Linear feedback with a gain of its own for each error, or a matrix: v = K Psi.
 
     Parameters
@@ -179,7 +180,12 @@ class GainMatrix:
     """
 
     def __init__(self, gains: ArrayLike) -> None:
-        matrix = np.array(gains, dtype=np.float64)
+        try:
+            matrix = real_array(gains)
+        except MaskedNumbers as error:
+            raise ValueError(f"gains {error}: {shown(gains)}") from error
+        except TypeError as error:
+            raise ValueError(f"gains = {shown(gains)}: {error}") from error
         if matrix.shape == (4,):
             matrix = np.diag(matrix)
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all():

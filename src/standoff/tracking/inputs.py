@@ -12,7 +12,7 @@ from standoff.bodies.body import Body
 from standoff.kernels import frame as K
 from standoff.kernels.entries import on_face
 from standoff.motion import Pose, PoseLike, Twist, TwistLike
-from standoff.real_numbers import shown
+from standoff.real_numbers import MaskedNumbers, check_unmasked, shown
 from standoff.tracking.proximity import charts_of
 
 Array = NDArray[np.float64]
@@ -28,7 +28,7 @@ NO_TWIST = np.zeros(6)
 
 def flat_pose(pose: PoseLike) -> Array:
     """12 numbers (R row-major, p) of a pose; checked by the kernel, or here by Pose."""
-    if isinstance(pose, np.ndarray) and pose.shape == (4, 4) and pose.dtype == np.float64:
+    if type(pose) is np.ndarray and pose.shape == (4, 4) and pose.dtype == np.float64:
         if pose[3].tolist() != LAST_ROW:
             Pose.of(pose)  # says what is wrong with it
         return np.asarray(pose.take(ROTATION_THEN_POSITION))
@@ -45,7 +45,7 @@ def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
         return NO_TWIST
     if isinstance(twist, tuple) and len(twist) == 2:
         v, omega = twist
-        if getattr(v, "shape", None) == getattr(omega, "shape", None) == (3,):
+        if type(v) is type(omega) is np.ndarray and v.shape == omega.shape == (3,):
             flat = np.empty(6)
             flat[:3], flat[3:] = v, omega
             return flat
@@ -111,6 +111,7 @@ def place(state: Array, at: int, body: Body, feature: Any, parameters: Any) -> N
     """Write a feature and its parameters into a state, checked."""
     try:
         kind, index = feature
+        check_unmasked(index)
         index = operator.index(index)
     except (TypeError, ValueError) as error:
         raise ValueError(
@@ -122,7 +123,10 @@ def place(state: Array, at: int, body: Body, feature: Any, parameters: Any) -> N
             f"{body!r} has no {kind} {index}: faces, edges and vertices are numbered from 0."
         )
     try:
+        check_unmasked(parameters)
         values = np.atleast_1d(np.asarray(parameters, dtype=np.float64)).ravel()
+    except MaskedNumbers as error:
+        raise ValueError(f"The parameter list {error}: {shown(parameters)}") from error
     except (TypeError, ValueError) as error:
         raise ValueError(f"Parameters {shown(parameters)} are not numbers.") from error
     wanted = {"face": 2, "edge": 1, "vertex": 0}[kind]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
+from standoff.read_only import KeepsReadOnly
 from standoff.tracking.planar_boundary import INTERVALS, Bracket, Place, PlanarBoundary
 from standoff.tracking.point_answer import Minimum
 from standoff.tracking.point_minima import descend, measured, parameter_rate, within
@@ -69,7 +70,7 @@ class Parallel(NamedTuple):
         return self._replace(minima=tuple(self.minima[k] for k in kept), laws=laws)
 
 
-class ParallelTracker:
+class ParallelTracker(KeepsReadOnly):
     """Begins, carries and completes the minima.
 
     Parameters

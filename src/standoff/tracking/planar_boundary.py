@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.kernels.entries import planar_edge_normal
+from standoff.read_only import KeepsReadOnly
 
 Array = NDArray[np.float64]
 Place = tuple[int, float]
@@ -75,7 +76,7 @@ class Bracket(NamedTuple):
         return 0.5 * (self.low + self.high)
 
 
-class PlanarBoundary:
+class PlanarBoundary(KeepsReadOnly):
     """The curves of a planar body, sampled once. All in the body's frame, in x and y.
 
     Parameters

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
+from standoff.read_only import KeepsReadOnly
 from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
@@ -92,7 +93,7 @@ class PointCounts(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class PointProximity:
+class PointProximity(KeepsReadOnly):
     """The signed distance of a point to a body, and how it was proven. Vectors in world axes.
 
     Attributes

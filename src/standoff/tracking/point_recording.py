@@ -13,6 +13,7 @@ from standoff.bodies.features import Feature
 from standoff.kernels.tolerances import SLOPE
 from standoff.motion import inputs
 from standoff.motion.bounds import check_path
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of, shown
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.point_answer import PointEvent, PointProximity
@@ -52,7 +53,7 @@ class PointVisit(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class PointRecording:
+class PointRecording(KeepsReadOnly):
     """Answers of a run, by frame; row k of every array belongs to ``time[k]``.
 
     Attributes

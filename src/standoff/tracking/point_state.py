@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
+from standoff.read_only import KeepsReadOnly
 from standoff.tracking.parallel_minima import Parallel
 from standoff.tracking.planar_boundary import PlanarBoundary
 from standoff.tracking.point_answer import Minimum, PointCounts, PointEvent, PointProximity
@@ -21,7 +22,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class PointState:
+class PointState(KeepsReadOnly):
     """The warm start, as a value: goes into a step and comes out of it, never changed.
 
     Attributes

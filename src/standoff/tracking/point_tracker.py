@@ -17,6 +17,7 @@ from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.geometry.validation import finite
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.tracking.choices import positive_number
 from standoff.tracking.feedback import Feedback
@@ -49,7 +50,7 @@ INSTANT = 1e-9
 """Part of a step in which the automaton outside switches, but hardly moves, when it is entered."""
 
 
-class PointTracker:
+class PointTracker(KeepsReadOnly):
     """Keeps the signed distance of a moving point to a planar body, inside and outside.
 
     The body is at home in the world, and the point moves in z = 0; for a moving body give the

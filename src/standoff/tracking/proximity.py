@@ -13,6 +13,7 @@ from standoff.bodies.features import feature_of as feature_of
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import layout as L
+from standoff.read_only import KeepsReadOnly
 from standoff.tracking.status import Status
 
 if TYPE_CHECKING:
@@ -85,7 +86,7 @@ def charts_of(body: Body, face: int) -> tuple[int, int]:
     return int(body.ints[row]), int(body.ints[row + 1])
 
 
-class Proximity:
+class Proximity(KeepsReadOnly):
     """Witness points of two bodies and their certified distance; all vectors in world axes.
 
     Attributes
@@ -143,11 +144,6 @@ class Proximity:
         self.poses = poses
         self.events = events
         self.time = time
-
-    def __setstate__(self, state: tuple[None, dict[str, object]]) -> None:
-        for name, value in state[1].items():
-            object.__setattr__(self, name, value)
-        self._out.flags.writeable = False  # NumPy forgets it when stored
 
     @property
     def bodies(self) -> tuple[Body, Body]:

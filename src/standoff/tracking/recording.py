@@ -15,11 +15,12 @@ from standoff.bodies.body import Body
 from standoff.bodies.features import Feature, feature_of
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.tracking.proximity import Counts, charts_of
 from standoff.tracking.status import Status
 from standoff.tracking.visits import Visit
-from standoff.tracking.whole_files import write_whole
+from standoff.whole_files import file_name, write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -88,8 +89,10 @@ class RunInfo:
     digests : (str, str)
         ``Body.digest`` of A and B.
     options : mapping
-        law, predictor, integrator, gain (1/s), tolerance, dt (the longest step, s), locate; of
-        the paper's law also feedback (as text), realisation, saturation, switching and solve.
+        law, predictor, integrator, gain (1/s), tolerance, dt (the longest step, s), depth,
+        deadline (evaluations, or None), locate; of the paper's law also feedback (as text),
+        realisation, saturation, switching and solve. Of a file of format version 2 depth and
+        deadline are not known, and missing here.
     title : str
     length_unit : str
         Label of lengths; empty where none was given.
@@ -109,7 +112,7 @@ class RunInfo:
 
 
 @dataclass(frozen=True, eq=False)
-class Recording:
+class Recording(KeepsReadOnly):
     """Answers of a run, by frame; row k of every array belongs to ``time[k]``.
 
     All vectors in world axes, lengths in the bodies' unit.
@@ -118,8 +121,9 @@ class Recording:
     ----------
     time : ndarray, shape (n,)
         s, strictly increasing.
-    distance, lower_bound, rate, residual : ndarray, shape (n,)
-        As in `Proximity`; nan while overlapping.
+    distance, lower_bound, upper_bound, rate, residual : ndarray, shape (n,)
+        As in `Proximity`; nan while overlapping. ``upper_bound`` is nan in all frames of a file
+        of format version 2, which does not hold it.
     point_a, point_b, normal, velocity_a, velocity_b : ndarray, shape (n, 3)
     feature_a, feature_b : ndarray of Feature, shape (n,)
     parameters_a, parameters_b : ndarray, shape (n, 3)
@@ -138,6 +142,7 @@ class Recording:
     time: Array
     distance: Array
     lower_bound: Array
+    upper_bound: Array
     rate: Array
     residual: Array
     point_a: Array
@@ -176,6 +181,7 @@ class Recording:
             time=time,
             distance=rows[:, K.DISTANCE],
             lower_bound=rows[:, K.LOWER_BOUND],
+            upper_bound=rows[:, K.UPPER_BOUND],
             rate=rows[:, K.OUT_RATE],
             residual=rows[:, K.RESIDUAL],
             point_a=vectors(K.POINT_A),
@@ -296,16 +302,19 @@ class Recording:
         ------
         ModuleNotFoundError
             If matplotlib is not installed; the message names the extra.
+        TypeError
+            If `path` is neither a text nor a Path.
         ValueError
-            If the file's ending is another.
+            If it is empty, or the file's ending is another.
         OSError
-            If the file cannot be written.
+            If the file cannot be written, or is no regular file but a folder, a FIFO or a device.
+            A link stays: what it leads to is replaced.
         """
         from standoff.tracking import recording_plot
 
         if path is None:
             return recording_plot.draw(self)
-        target = Path(path)
+        target = file_name(path)
         ending = target.suffix.lower().removeprefix(".")
         if ending not in recording_plot.FORMATS:
             raise ValueError(
@@ -325,12 +334,18 @@ class Recording:
         ------
         ModuleNotFoundError
             If pyarrow is not installed; the message names the extra.
+        TypeError
+            If `path` is neither a text nor a Path.
+        ValueError
+            If it is empty, or ``info.source`` is nested too deeply.
         OSError
-            If the file cannot be written.
+            If the file cannot be written, or is no regular file but a folder, a FIFO or a device.
+            A link stays: what it leads to is replaced.
         """
+        target = file_name(path)
         from standoff.tracking.recording_file import write_table
 
-        write_whole({Path(path): lambda file: write_table(self, file)})
+        write_whole({target: lambda file: write_table(self, file)})
 
 
 def open_recording(path: str | Path) -> Recording:

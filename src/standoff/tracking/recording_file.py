@@ -8,13 +8,14 @@ import os
 import platform
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
+from standoff.nesting import JSON, text_problem, value_problem
 from standoff.real_numbers import SHOWN_CHARACTERS, shown
 from standoff.tracking.proximity import Counts
 from standoff.tracking.recording import RecordedEvent, Recording, RunInfo
@@ -32,13 +33,18 @@ except ModuleNotFoundError as error:
 Array = NDArray[np.float64]
 
 FORMAT = "standoff-recording"
-FORMAT_VERSION = 2
-"""2 since events are located: their value is that of the switching function."""
+FORMAT_VERSION = 3
+"""2 since events are located: their value is that of the switching function. 3 since there are
+the column `upper_bound` and the options `depth` and `deadline`."""
+
+READ_VERSIONS = (2, 3)
+"""What a file of version 2 does not hold is not made up: its upper bounds are nan, and its options
+have no `depth` and no `deadline`."""
 
 METADATA = b"standoff"
 """Key of the schema's metadata under which the JSON text stands."""
 
-NUMBERS = ("distance", "lower_bound", "rate", "residual")
+NUMBERS = ("distance", "lower_bound", "upper_bound", "rate", "residual")
 VECTORS = ("point_a", "point_b", "normal", "velocity_a", "velocity_b")
 
 EVENT = pa.struct(
@@ -54,8 +60,12 @@ EVENT = pa.struct(
 )
 
 
-def write_table(recording: Recording, path: Path) -> None:
-    """Write a recording; the same run gives the same file, byte for byte.
+NAMED = 3
+"""Most keys that a message gives of a place in the metadata."""
+
+
+def write_table(recording: Recording, file: BinaryIO) -> None:
+    """Write a recording to a stream; the same run gives the same file, byte for byte.
 
     Raises
     ------
@@ -63,10 +73,16 @@ def write_table(recording: Recording, path: Path) -> None:
         If the file cannot be written.
     TypeError
         If ``info`` holds what JSON cannot.
+    ValueError
+        If ``info`` is nested too deeply.
     """
-    metadata = json.dumps(_metadata(recording.info), ensure_ascii=False, allow_nan=False)
+    facts = _metadata(recording.info)
+    problem, keys = value_problem(facts)
+    if problem:
+        raise ValueError(f"the recording's info ({'.'.join(keys[:NAMED])}) {problem}")
+    metadata = json.dumps(facts, ensure_ascii=False, allow_nan=False)
     table = pa.table(_columns(recording))
-    pq.write_table(table.replace_schema_metadata({METADATA: metadata}), path)
+    pq.write_table(table.replace_schema_metadata({METADATA: metadata}), file)
 
 
 def _metadata(info: RunInfo) -> dict[str, Any]:
@@ -140,7 +156,7 @@ def read_table(path: Path) -> Recording:
     except OSError as error:  # damaged pages; nothing else tells them from a disk's failure
         raise ValueError(f"{path} cannot be read, perhaps it is damaged: {error}") from error
     try:
-        return _recording(table, _info(metadata))
+        return _recording(table, _info(metadata), metadata["format_version"])
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
         raise ValueError(
             f"{path} is marked as a recording, but its content does not fit ({error!r}): another "
@@ -151,7 +167,10 @@ def read_table(path: Path) -> Recording:
 def _checked(path: Path, metadata: dict[bytes, bytes]) -> dict[str, Any]:
     """Return a recording's metadata, or say why the file is none."""
     try:
-        content = json.loads(metadata[METADATA])
+        text = metadata[METADATA].decode()
+        if text_problem(text, JSON):
+            raise ValueError("no metadata of ours")
+        content = json.loads(text)
         kind, version = content["format"], content["format_version"]
     except (KeyError, TypeError, ValueError):
         kind, content, version = None, {}, None
@@ -160,13 +179,13 @@ def _checked(path: Path, metadata: dict[bytes, bytes]) -> dict[str, Any]:
             f"{path} is a Parquet file but no recording of Standoff: write one with "
             "recording.save or `standoff track -o`"
         )
-    if version != FORMAT_VERSION:
+    if type(version) is not int or version not in READ_VERSIONS:
         older = isinstance(version, int) and version < FORMAT_VERSION
         fix = "record again" if older else "install the Standoff that wrote it"
         raise ValueError(
             f"{path} is a recording of format version {version!r}, written by Standoff "
-            f"{content.get('standoff', '(unknown)')}; this Standoff reads version "
-            f"{FORMAT_VERSION}: {fix}"
+            f"{content.get('standoff', '(unknown)')}; this Standoff reads versions "
+            f"{' and '.join(map(str, READ_VERSIONS))}: {fix}"
         )
     return dict(content)
 
@@ -184,7 +203,7 @@ def _info(metadata: dict[str, Any]) -> RunInfo:
     )
 
 
-def _recording(table: Any, info: RunInfo) -> Recording:
+def _recording(table: Any, info: RunInfo, version: int) -> Recording:
     def numbers(name: str) -> Array:
         return np.asarray(table[name].to_numpy(), dtype=np.float64)
 
@@ -200,6 +219,7 @@ def _recording(table: Any, info: RunInfo) -> Recording:
         time=numbers("time"),
         distance=numbers("distance"),
         lower_bound=numbers("lower_bound"),
+        upper_bound=numbers("upper_bound") if version > 2 else np.full(len(table), np.nan),
         rate=numbers("rate"),
         residual=numbers("residual"),
         point_a=vectors("point_a"),

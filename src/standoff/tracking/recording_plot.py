@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from itertools import groupby
-from pathlib import Path
-from typing import NamedTuple, TypeAlias, TypeVar
+from typing import BinaryIO, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,15 +81,15 @@ class Stay(NamedTuple):
     end: float
 
 
-def write_plot(recording: Recording, path: Path, ending: str) -> None:
-    """Draw a recording to a file in one of `FORMATS`.
+def write_plot(recording: Recording, file: BinaryIO, ending: str) -> None:
+    """Draw a recording to a stream in one of `FORMATS`.
 
     Raises
     ------
     OSError
         If the file cannot be written.
     """
-    draw(recording).savefig(path, format=ending)
+    draw(recording).savefig(file, format=ending)
 
 
 def draw(recording: Recording) -> Figure:

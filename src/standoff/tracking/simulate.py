@@ -207,6 +207,8 @@ def _run_info(tracker: Tracker, locate: bool) -> RunInfo:
         **({"feedback": str(tracker.feedback), **asdict(tracker.variants)} if paper else {}),
         "tolerance": float(tracker.options[K.O_TOLERANCE]),
         "dt": tracker.dt,
+        "depth": tracker.depth,
+        "deadline": tracker.deadline,
         "locate": locate,
     }
     return RunInfo(

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
+from standoff.read_only import KeepsReadOnly
 from standoff.tracking.depth_branches import Branch
 from standoff.tracking.point_answer import PointCounts, PointEvent
 from standoff.tracking.state import TrackerState
@@ -44,7 +45,7 @@ class DepthMinimum(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class SpatialPointProximity:
+class SpatialPointProximity(KeepsReadOnly):
     """The signed distance of a point to a spatial body. Vectors in the body's frame.
 
     Attributes
@@ -100,7 +101,7 @@ class SpatialPointProximity:
 
 
 @dataclass(frozen=True, eq=False)
-class SpatialPointState:
+class SpatialPointState(KeepsReadOnly):
     """The warm start, as a value: goes into a step and comes out of it, never changed.
 
     Attributes

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.body import Body
 from standoff.geometry.validation import finite
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.tracking.choices import positive_number
 from standoff.tracking.depth_branches import Branch, DepthBranches
@@ -32,7 +33,7 @@ TIE = 4.0 * float(np.finfo(float).eps)
 """Two depths that differ by less, in sizes of the body, are equal: the active one stays."""
 
 
-class SpatialPointTracker:
+class SpatialPointTracker(KeepsReadOnly):
     """Keeps the signed distance of a moving point to a spatial body, inside and outside.
 
     The body is at home in the world; for a moving body give the point in the body's frame.

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
+from standoff.read_only import KeepsReadOnly
 from standoff.tracking.proximity import Proximity
 
 if TYPE_CHECKING:
@@ -19,12 +20,12 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class TrackerState:
+class TrackerState(KeepsReadOnly):
     """The warm start, as a value: goes into a step and comes out of it, never changed.
 
     Attributes
     ----------
-    data : (54,) array
+    data : (55,) array
         Read-only, laid out in ``standoff.kernels.frame``.
     proximity : Proximity
         The answer at the frame of this state.
@@ -32,11 +33,6 @@ class TrackerState:
 
     data: Array
     proximity: Proximity
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        for name, value in state.items():
-            object.__setattr__(self, name, value)
-        self.data.flags.writeable = False  # NumPy forgets it when stored
 
     @property
     def time(self) -> float:

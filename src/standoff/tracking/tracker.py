@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature, feature_of
+from standoff.bodies.packing import Ints
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import tracker as kernels
 from standoff.kernels.preparing import prepare
 from standoff.motion import Pose, PoseLike, TwistLike
+from standoff.read_only import KeepsReadOnly
 from standoff.tracking.choices import positive_number
 from standoff.tracking.feedback import Feedback, check_stable
 from standoff.tracking.inputs import (
@@ -37,7 +39,7 @@ Array = NDArray[np.float64]
 UNDECIDED = (float(Status.NOT_CERTIFIED.value),)
 
 
-class Tracker:
+class Tracker(KeepsReadOnly):
     """Keeps the minimum distance of two convex bodies while they move.
 
     Parameters
@@ -128,7 +130,9 @@ class Tracker:
             depth,
             deadline,
         )
-        self.packed = (a.ints, a.reals, b.ints, b.reals)
+        self.depth = depth
+        self.deadline = None if deadline is None else int(self.options[K.O_DEADLINE])
+        self.packed = self._packed()
         self.planar = a.dimension == 2 or b.dimension == 2
         self._prepare()
 
@@ -352,6 +356,16 @@ class Tracker:
         self._refuse(bad, pose_a, pose_b)
         events = np.empty(0)
         return self._answer(data, out, events, flat_a, flat_b)[0]
+
+    def _packed(self) -> tuple[Ints, Array, Ints, Array]:
+        """What the kernels read of both bodies."""
+        return self.a.ints, self.a.reals, self.b.ints, self.b.reals
+
+    def __setstate__(self, stored: Any) -> None:
+        super().__setstate__(stored)
+        # the bodies' own: in another process their formulas have other addresses
+        self.packed = self._packed()
+        self._prepare()
 
     def _refuse(self, why: int, pose_a: PoseLike, pose_b: PoseLike) -> None:
         if why == K.FINE:

@@ -13,6 +13,7 @@ from standoff.bodies.support_sets import LEVEL, ROUNDINGS, support_set
 from standoff.geometry.flat_sets import FlatSet, shared
 from standoff.kernels import layout as L
 from standoff.motion import Pose, PoseLike
+from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.tracking.equal_depths import equal_normals
 from standoff.tracking.normal_sets import normal_dimension
@@ -32,7 +33,7 @@ LOOSENESS = 4.0
 
 
 @dataclass(frozen=True, eq=False)
-class WitnessSet:
+class WitnessSet(KeepsReadOnly):
     """All pairs of points that are as far apart as the distance says, world axes.
 
     Attributes

@@ -39,6 +39,9 @@ NORMALS = np.array(
         [-0.0, -0.0, 1.0],
     ]
 )
+# Thickness over extent below which a polytope that cannot be built is told to be too thin: its
+# facets' planes are then one to roundoff, or to COPLANAR where there are many. It refuses nothing.
+THIN = 1e-6
 
 
 def box(x: float, y: float, z: float, rounding: float = 0.0) -> Body:
@@ -80,7 +83,7 @@ def box(x: float, y: float, z: float, rounding: float = 0.0) -> Body:
         )
     points = 0.5 * core * CORNERS
     planes = [(n, {int(k) for k in np.flatnonzero(CORNERS @ n > 0.0)}) for n in NORMALS]
-    return _polyhedron(points, _loops(points, planes), radius=rounding, name="box")
+    return _solid(points, _loops(points, planes), rounding, "box")
 
 
 def polytope(vertices: Any) -> Body:
@@ -98,12 +101,12 @@ def polytope(vertices: Any) -> Body:
     Raises
     ------
     BodyError
-        The points span no volume, or their extent is below 1e-50.
+        The points span no volume, are too thin for their extent, or extend over less than 1e-50.
     ValueError
         A wrong shape, a number that is not finite or beyond 1e50.
     """
     points = finite(vertices, "vertices", (-1, 3))
-    return _polyhedron(points, _facets(points), name="polytope")
+    return _polyhedron(points, points, name="polytope")
 
 
 def rounded_polytope(vertices: Any, rounding: float) -> Body:
@@ -127,29 +130,42 @@ def rounded_polytope(vertices: Any, rounding: float) -> Body:
     Raises
     ------
     BodyError
-        The points lie in a plane, or `rounding` leaves no core.
+        The points lie in a plane or are too thin for their extent, or `rounding` leaves no core.
     ValueError
         A wrong shape, a number that is not finite or beyond 1e50, a negative rounding.
     """
     points = finite(vertices, "vertices", (-1, 3))
     rounding = not_negative(rounding, "rounding")
     if rounding == 0.0:
-        return _polyhedron(points, _facets(points), name="rounded polytope")
+        return _polyhedron(points, points, name="rounded polytope")
     unit = _unit(points)
     facets = _facets(points)
     normals = np.array([normal for _, normal in facets])
     offsets = np.array([max(points[loop] @ normal) for loop, normal in facets])
-    core = unit * _inner_vertices(normals, offsets / unit, rounding / unit, unit)
-    return _polyhedron(core, _facets(core), radius=rounding, name="rounded polytope")
+    try:
+        core = unit * _inner_vertices(normals, offsets / unit, rounding / unit, unit)
+    except scipy.spatial.QhullError as error:
+        raise _thin(points) or BodyError(f"The core was not found: {_line(error)}") from error
+    return _polyhedron(core, points, radius=rounding, name="rounded polytope")
 
 
 def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float) -> Array:
-    """The vertices of normals @ x <= offsets - rounding, (n, 3); all in parts of `unit`."""
+    """The vertices of normals @ x <= offsets - rounding, (n, 3); all in parts of `unit`.
+
+    Raises
+    ------
+    BodyError
+        The rounding leaves none.
+    QhullError
+        They are lost in roundoff.
+    """
     # the inscribed ball: greatest r with normals @ x + r <= offsets
     columns = np.column_stack([normals, np.ones(len(normals))])
     bounds = [(None, None)] * 3 + [(0.0, None)]
     ball = scipy.optimize.linprog([0.0, 0.0, 0.0, -1.0], columns, offsets, bounds=bounds).x
     inscribed = float(ball[3])
+    if inscribed <= 0.0:
+        raise scipy.spatial.QhullError("no ball fits into the polytope")
     if rounding > inscribed * (1.0 - LEAST_CORE):
         raise BodyError(
             f"rounding = {rounding * unit} leaves no core: the polytope's inscribed ball has "
@@ -168,7 +184,40 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
     return np.array(vertices)
 
 
-def _polyhedron(points: Array, loops: list[Loop], name: str, radius: float = 0.0) -> Body:
+def _polyhedron(points: Array, given: Array, radius: float = 0.0, name: str = "polytope") -> Body:
+    """The hull of points; a message about its thickness is of the points that were given."""
+    try:
+        return _solid(points, _facets(points), radius, name)
+    except BodyError as error:
+        # Points that Qhull finds in one plane are told as such.
+        flat = points is given and isinstance(
+            error.__cause__, scipy.spatial.QhullError | ValueError
+        )
+        thin = None if flat else _thin(given)
+        if thin is None:
+            raise
+        raise thin from error
+
+
+def _thin(points: Array) -> BodyError | None:
+    """What to say of a polytope that cannot be built, if it is because it is thin."""
+    axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
+    extent, thickness = (float(np.ptp(points @ axis)) for axis in (axes[0], axes[-1]))
+    if thickness >= THIN * extent:
+        return None
+    return BodyError(
+        f"The {len(points)} vertices are too nearly in one plane: {thickness:.3g} thick on an "
+        f"extent of {extent:.3g}, so that its facets are not told apart. Make it thicker than "
+        f"{THIN * extent:.1g}, or take a flat body, so.shapes.planar_loop."
+    )
+
+
+def _line(error: Exception) -> str:
+    """The first line of Qhull's message, which goes on with tables."""
+    return str(error).strip().splitlines()[0]
+
+
+def _solid(points: Array, loops: list[Loop], radius: float, name: str) -> Body:
     used = sorted({k for loop, _ in loops for k in loop})
     number = {k: i for i, k in enumerate(used)}
     edge_number: dict[tuple[int, int], int] = {}

@@ -13,6 +13,7 @@ from standoff.bodies.voronoi.discs import edge_distances
 from standoff.bodies.voronoi.outline import Outline, outline_of
 from standoff.bodies.voronoi.search import Boundary
 from standoff.geometry.validation import Array, finite
+from standoff.real_numbers import shape_of
 
 # Bodies whose sampled boundaries are kept.
 KEPT = 16
@@ -20,8 +21,9 @@ KEPT = 16
 
 def nearest_feature(body: Body, point: ArrayLike) -> Feature:
     """The feature with the boundary point nearest to a point, (2,) or (3,), body frame."""
-    given = np.asarray(point)
-    x = finite(np.append(given, 0.0) if given.shape == (2,) else point, "point", (3,))
+    if shape_of(point) == (2,):
+        point = np.append(finite(point, "point", (2,)), 0.0)
+    x = finite(point, "point", (3,))
     if body.dimension == 3:
         return _boundary(body).nearest(x)
     if x[2] != 0.0:

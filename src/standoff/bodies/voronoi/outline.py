@@ -20,6 +20,7 @@ from standoff.bodies.voronoi.tolerances import CORNER_TURN, OUTLINE_SAMPLES
 from standoff.geometry.curves import Curve
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
+from standoff.read_only import KeepsReadOnly
 
 Place: TypeAlias = tuple[int, float]
 
@@ -39,7 +40,7 @@ class Foot(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Arc:
+class Arc(KeepsReadOnly):
     """A smooth piece of an edge: u = sign times the curve's own parameter, from lo to hi."""
 
     edge: int
@@ -88,7 +89,7 @@ class Arc:
 
 
 @dataclass(frozen=True)
-class Outline:
+class Outline(KeepsReadOnly):
     """arcs counterclockwise; joints[n]: the vertex before arc n (-1 for none); turns[n] of the
     normal there, radians; size of the body, length."""
 

@@ -12,6 +12,7 @@ from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.bodies.voronoi.nearest import nearest_feature
 from standoff.geometry.validation import Array
+from standoff.read_only import KeepsReadOnly
 
 
 class RegionBoundary(NamedTuple):
@@ -102,7 +103,7 @@ class MedialBranch(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class VoronoiRegions:
+class VoronoiRegions(KeepsReadOnly):
     """What separates the Voronoi regions of a body's features. Made by ``so.voronoi_regions``.
 
     A feature's region is the set of points that have their nearest point of the boundary on it;

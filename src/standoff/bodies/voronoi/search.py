@@ -15,6 +15,7 @@ from standoff.geometry.curves import Curve
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
 from standoff.kernels.entries import chart_normal, feature_jet, on_face
+from standoff.read_only import KeepsReadOnly
 
 # Samples along an edge, and along each side of a chart.
 ALONG, GRID, COARSE_GRID, FEW_CHARTS = 65, 13, 5, 24
@@ -53,7 +54,7 @@ class _Samples(NamedTuple):
         return [self.parameters[k].copy() for k in (*rim, *within)]
 
 
-class Boundary:
+class Boundary(KeepsReadOnly):
     """A body's boundary, sampled once; `nearest` refines from the samples."""
 
     def __init__(self, body: Body) -> None:

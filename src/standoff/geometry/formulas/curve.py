@@ -17,7 +17,7 @@ from standoff.geometry.formulas.checks import (
 )
 from standoff.geometry.formulas.compiled import Formula, compiled
 from standoff.geometry.formulas.enclosures import Enclosure, grid, hull
-from standoff.geometry.validation import Array
+from standoff.geometry.validation import Array, affine_map
 from standoff.kernels import layout as L
 
 # Boxes whose hull is the box of a curve: its excess falls with the square.
@@ -85,7 +85,7 @@ class FormulaCurve(Curve):
 
     def transformed(self, linear: Array, shift: Array) -> FormulaCurve:
         """The exact image under x -> linear x + shift, by the same compiled function."""
-        linear = np.asarray(linear, dtype=np.float64)
+        linear, shift = affine_map(linear, shift)
         image = linear @ self.linear, linear @ self.shift + shift
         return _curve(self.formula, (self.first, self.last), *image)
 

@@ -18,7 +18,7 @@ from standoff.geometry.formulas.compiled import Formula, compiled
 from standoff.geometry.formulas.enclosures import Enclosure, grid, hull
 from standoff.geometry.formulas.expressions import FormulaError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
+from standoff.geometry.validation import Array, affine_map
 from standoff.kernels import layout as L
 
 # Boxes a side whose hull is the box of a patch: its excess falls with the square.
@@ -77,7 +77,7 @@ class FormulaSurface(Surface):
 
     def transformed(self, linear: Array, shift: Array) -> FormulaSurface:
         """The exact image under x -> linear x + shift, by the same compiled function."""
-        linear = np.asarray(linear, dtype=np.float64)
+        linear, shift = affine_map(linear, shift)
         return _surface(
             self.formula, self.domain, linear @ self.linear, linear @ self.shift + shift
         )

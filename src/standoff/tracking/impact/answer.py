@@ -8,6 +8,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.read_only import KeepsReadOnly
 from standoff.tracking.proximity import Proximity
 
 Array = NDArray[np.float64]
@@ -53,7 +54,7 @@ _ADVICE = {
 
 
 @dataclass(frozen=True, eq=False)
-class Impact:
+class Impact(KeepsReadOnly):
     """The first time at which two bodies come to a clearance, bracketed.
 
     Attributes
