@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.linalg import expm
+from scipy.spatial.transform import Rotation
 
 import standoff as so
+from standoff.geometry import BezierPatch
 from standoff.tracking.feedback import growth_factor
 
 DOME = so.shapes.cap(1.0, 0.2)
@@ -201,3 +203,38 @@ def test_a_feedback_is_for_the_papers_law() -> None:
         so.Tracker(DOME, POINT, law="paper", feedback=3.0)
     with pytest.raises(ValueError, match="least gain"):
         so.Tracker(DOME, POINT, law="paper", feedback=so.feedback.MotionGain(1.0, least=1e9))
+
+
+def frustum(top: float) -> so.Body:
+    """A pyramid cut off near its tip, sewn from six bilinear patches."""
+    ring = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+    low = np.column_stack([ring, np.zeros(4)])
+    high = np.column_stack([top * ring, np.ones(4)])
+    corners = [(low[i], high[i], low[i - 3], high[i - 3]) for i in range(4)]
+    corners += [(high[0], high[3], high[1], high[2]), (low[0], low[1], low[3], low[2])]
+    return so.Body.from_patches([BezierPatch(np.reshape(four, (2, 2, 3))) for four in corners])
+
+
+def test_an_integral_that_winds_up_is_saturated_and_counted() -> None:
+    # in frame 33 it had reached 3e20, and LAPACK's refusal of infinite numbers left the step
+    body = frustum(0.01)
+    tracker = so.Tracker(
+        body, body, H, law="paper", integrator="rk4", feedback=so.feedback.PI(300.0, 1e4)
+    )
+    turn, velocity = np.array([215.25, -90.62, 522.04]), np.array([-1.3063, 0.5681, -1.4545])
+    first = so.Pose.from_wxyz(
+        [-1.45861645e-02, -1.09736594e-04, -3.95872320e-02, 9.99109645e-01],
+        [-2.36573473, 0.26016529, 1.82636612],
+    )
+    state = tracker.start(REST, first)
+    saturations = 0
+    for k in range(1, 200):
+        turned = Rotation.from_rotvec(turn * k * H).as_matrix() @ first.rotation
+        pose = so.Pose(turned, first.translation + velocity * k * H)
+        state, answer = tracker.step(state, REST, pose, twist_b=so.Twist(velocity, turn))
+        saturations += answer.counts.saturations
+        assert np.isfinite(answer.distance)
+        assert answer.lower_bound <= so.distance(body, body, REST, pose).upper_bound + 1e-12
+        # ten spans of a tangent's length at most, over K_i / K_p
+        assert np.abs(state.integral).max() <= 10.0 * 12.0 * 3.0 / (1e4 / 300.0)
+    assert saturations > 0

@@ -14,17 +14,27 @@ from standoff.kernels.features import pair_span
 from standoff.kernels.feedback import gradient_norm
 from standoff.kernels.frame import (
     ERRORS,
+    FEEDBACK_PI,
     INTEGRAL,
     MODE,
+    O_DATA,
+    O_FEEDBACK,
     O_SATURATION,
     O_SWITCHING,
     SATURATE_ZERO,
     SWITCH_MULTIPLIERS,
     SWITCH_VORONOI,
 )
-from standoff.kernels.integrators import integrate
+from standoff.kernels.integrators import N_CHANGES, integrate
 from standoff.kernels.system import gradient, projection_errors
-from standoff.kernels.tolerances import EPS, MAX_VORONOI_PASSES, SLOPE, SLOPE_NOISE, TOUCHING
+from standoff.kernels.tolerances import (
+    EPS,
+    MAX_VORONOI_PASSES,
+    SLOPE,
+    SLOPE_NOISE,
+    TOUCHING,
+    WOUND_UP,
+)
 from standoff.kernels.trimming import HIT_LIMIT, NO_HIT, walk
 from standoff.kernels.vectors import norm, rotate_back, sub
 from standoff.kernels.voronoi import voronoi_switch
@@ -80,7 +90,35 @@ def voronoi_passes(pair, R, p, mode, q, span, counts, events):
 
 
 @kernel
-def remember(pair, R, p, state, mode, q, change, saturated, moved):
+def saturate_integral(pair, R, p, options, state, mode, q, counts):
+    """Keep each part of the integral within what WOUND_UP spans of error would command; those that
+    are cut are counted as saturations."""
+    if options[O_FEEDBACK] != FEEDBACK_PI:
+        return
+    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+    span = pair_span(pair, p, norm(sub(jet_a[0], jet_b[0])))
+    for k in range(4):
+        tangent = jet_a[1 + k] if k < 2 else jet_b[k - 1]
+        most = WOUND_UP * span * norm(tangent) / options[O_DATA]
+        if not abs(state[INTEGRAL + k]) <= most:
+            state[INTEGRAL + k] = most if state[INTEGRAL + k] > 0.0 else -most
+            counts[SATURATIONS] += 1
+
+
+@kernel
+def drop_unbounded(change, counts):
+    """A frame whose integration overflows changes nothing, and counts as saturated."""
+    total = 0.0
+    for k in range(N_CHANGES):
+        total += 0.0 * change[k]  # NaN from an infinite or no number
+    if total != 0.0:
+        for k in range(N_CHANGES):
+            change[k] = 0.0
+        counts[SATURATIONS] += 1
+
+
+@kernel
+def remember(pair, R, p, options, state, mode, q, change, saturated, moved, counts):
     """Carry the integrated errors and their integral over the frame.
 
     Where a switch, a change of chart or a saturation has `moved` them the errors are read anew
@@ -97,6 +135,7 @@ def remember(pair, R, p, state, mode, q, change, saturated, moved):
             moved = True
             state[INTEGRAL + at] = 0.0
             state[INTEGRAL + at + 1] = 0.0
+    saturate_integral(pair, R, p, options, state, mode, q, counts)
     if moved:
         read_errors(pair, R, p, state, mode, q)
 
@@ -117,6 +156,7 @@ def paper_frame(pair, before, motion, state, options, h, mode, q, counts, events
     before and motion are (R, p, v, w) of B in A's frame at the frame before and at this one.
     """
     integrate(pair, before, motion, h, options, state, mode, q, counts, change)
+    drop_unbounded(change, counts)
     counts[CORRECTIONS] += 1
     if options[O_SATURATION] == SATURATE_ZERO:
         zeroed_step(pair, mode, q, change, counts, events)
@@ -137,4 +177,4 @@ def paper_frame(pair, before, motion, state, options, h, mode, q, counts, events
         voronoi_passes(pair, R, p, mode, q, span, counts, events)
     saturated = counts[SATURATIONS] > 0
     moved = saturated or counts[CHART_CHANGES] + counts[EVENTS] > 0
-    remember(pair, R, p, state, mode, q, change, saturated, moved)
+    remember(pair, R, p, options, state, mode, q, change, saturated, moved, counts)

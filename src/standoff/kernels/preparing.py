@@ -15,6 +15,15 @@ MODULES = (
 )
 """Where entries stand."""
 
+BODIES = ("on_face", "chart_normal", "surface_jet", "curve_jet", "pcurve_jet", "planar_edge_normal")
+"""What places a start, and builds the half-space against which an overlap is proven."""
+
+LOCATING = ("feature_jet", "edge_jet", "coedge_conormal", "end_direction")
+"""What locates the instant of a switch in a recorded run."""
+
+SCIPY = ("scipy.linalg.cython_lapack", "scipy.optimize")
+"""Imported by Numba in the first frame that decomposes a matrix, and by a proof of overlap."""
+
 ready_for: set[tuple[bool, bool]] = set()
 
 
@@ -30,18 +39,15 @@ def prepare(paper: bool, runs: bool = False) -> None:
     """
     if (paper, runs) in ready_for:
         return
-    needed = [
-        entries.on_face,
-        tracker.start,
-        tracker.step_paper if paper else tracker.step_predicted,
-    ]
+    needed = [getattr(entries, name) for name in BODIES + (LOCATING if runs else ())]
+    needed += [tracker.start, tracker.step_paper if paper else tracker.step_predicted]
     if runs:
         needed.append(tracker.run_paper if paper else tracker.run_predicted)
     for each in needed:
         if isinstance(each, Entry):  # a plain function under NUMBA_DISABLE_JIT=1
             each.prepare()
-    # Numba looks it up in the first frame that decomposes a matrix
-    importlib.import_module("scipy.linalg.cython_lapack")
+    for name in SCIPY:
+        importlib.import_module(name)
     ready_for.add((paper, runs))
 
 

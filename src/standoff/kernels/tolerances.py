@@ -167,3 +167,8 @@ PRISM = 2.0
 PATIENCE = 48.0
 # Frames that were cut off in contact before the other method has its turn.
 TURN = 8.0
+
+# The integral part of a PI feedback commands at most the error of WOUND_UP spans (dimensionless:
+# a cosine times the pair's span over it): of an error of one span, the greatest that there can be,
+# it has then seen ten times what the gains make of it. More comes of a loop that diverges.
+WOUND_UP = 10.0

@@ -41,7 +41,9 @@ class Counts(NamedTuple):
         Solves in which the Hessian had to be decomposed (with ``solve="plain"``: that had no
         solution, so that no step was made).
     saturations : int
-        Components of a step that were zeroed at a boundary (``saturation="zero"``).
+        Components of a step that were zeroed at a boundary (``saturation="zero"``); of the
+        paper's law also components of a PI feedback's integral that were cut, and frames whose
+        integration overflowed and so changed nothing.
     searches : int
         Searches over all directions of depth in penetration.
     """

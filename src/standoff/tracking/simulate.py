@@ -14,6 +14,7 @@ from standoff.bodies.body import Body
 from standoff.kernels import events as N
 from standoff.kernels import frame as K
 from standoff.kernels import tracker as kernels
+from standoff.kernels.preparing import prepare
 from standoff.motion import Fixed, Pose, PoseLike, TwistLike
 from standoff.real_numbers import shown
 from standoff.tracking.choices import positive_number
@@ -189,6 +190,7 @@ def track_along(
     """
     if state is not None:
         tracker.check_state(state)
+    prepare(paper=tracker.law == "paper", runs=True)
     run = _Run(tracker, path_a, path_b, times, locate)
     run.go(progress, state)
     pair = tracker.a, tracker.b
