@@ -8,10 +8,14 @@ import numpy as np
 
 from standoff.bodies.packing import Chart, Coedge
 from standoff.bodies.topology import Apex, BodyError, Edge, Face
+from standoff.geometry.formulas import FormulaSurface
+from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.pcurves import Pcurve, pcurve_of
 from standoff.geometry.surfaces import Surface
+from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
+from standoff.kernels.tolerances import EPS, NORMAL_NOISE
 
 # |u|, |v| of an atlas's gnomonic charts: they overlap from RECHART (1.2) to here.
 ATLAS_LIMIT = 2.0
@@ -78,6 +82,23 @@ def surface_normal(surface: Surface, u: float, v: float) -> Array:
     if length == 0.0:
         return np.asarray(near / np.linalg.norm(near))
     return np.asarray(np.copysign(1.0, normal @ near) * normal / length)
+
+
+def normal_noise(surface: Surface, u: float, v: float, size: float) -> float:
+    """How far, radians, roundoff may turn a normal beside a collapsed side; 0 where none is lost.
+
+    The same bound as the kernels', which the certificate takes off at such a point: with a turn
+    of no more the surface is within NORMAL_NOISE roundings of one without it. `size` is the
+    body's, length.
+    """
+    if not isinstance(surface, NurbsSurface | Revolution | Extrusion | FormulaSurface):
+        return 0.0
+    x, xu, xv, _, xuv, _ = surface.jet(u, v)
+    a, b = float(np.linalg.norm(xu)), float(np.linalg.norm(xv))
+    if min(a, b) <= COLLAPSED_TANGENT * max(a, b):
+        return 0.0  # `surface_normal` takes the limit there, which keeps its digits
+    lost = NORMAL_NOISE * EPS * (size + float(np.linalg.norm(x))) * float(np.linalg.norm(xuv))
+    return min(lost / (a * b), 2.0)
 
 
 def _inwards(surface: Surface, u: float, v: float) -> tuple[float, float]:

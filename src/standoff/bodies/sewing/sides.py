@@ -136,11 +136,11 @@ def in_spans(breaks: Array) -> Array:
 def _knots(surface: Surface, axis: int) -> Array:
     """Where the polynomial pieces of a surface meet along u (axis 0) or v (axis 1)."""
     if isinstance(surface, NurbsSurface):
-        return (surface.vector_u, surface.vector_v)[axis].breaks
+        return (surface.essential_u, surface.essential_v)[axis].breaks
     if isinstance(surface, Extrusion | Revolution):
         along_profile = axis == (1 if isinstance(surface, Revolution) else 0)
         if along_profile and isinstance(surface.profile, NurbsCurve):
-            return surface.profile.vector.breaks
+            return surface.profile.essential.breaks
     return np.zeros(0)
 
 
