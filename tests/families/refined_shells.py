@@ -12,11 +12,7 @@ from families import nurbs_bodies
 from families import patch_shells as shells
 from standoff.geometry import (
     BezierPatch,
-    Extrusion,
-    NurbsCurve,
     NurbsSurface,
-    Revolution,
-    Surface,
     ellipsoid_octants,
     ellipsoid_patches,
 )
@@ -38,7 +34,7 @@ def lens_prism() -> list[NurbsSurface]:
     for side in (1.0, -1.0):
         points = np.column_stack([x, side * 1.1 * (1.0 - (x / 0.9) ** 2), 0.0 * x])
         w = np.array([1.0, 0.83, 1.1, 1.0])
-        rows = np.stack([points, points + [0.2, -0.3, 1.2]], axis=1)
+        rows = np.stack([points, points + np.array([0.2, -0.3, 1.2])], axis=1)
         nets.append(nurbs_bodies.net(rows, np.stack([w, w], axis=1)))
     caps = [np.stack([net[:, end] for net in nets], axis=1) for end in (0, 1)]
     return [_bezier(net) for net in (*nets, *caps)]
@@ -50,7 +46,7 @@ def quadratic_prism() -> list[NurbsSurface]:
     nets = []
     for side in (1.0, -1.0):
         points = np.column_stack([x, side * np.array([0.0, 1.0, 0.0]), 0.0 * x])
-        rows = np.stack([points, points + [0.0, 0.0, 1.0]], axis=1)
+        rows = np.stack([points, points + np.array([0.0, 0.0, 1.0])], axis=1)
         nets.append(nurbs_bodies.net(rows, np.ones((3, 2))))
     caps = [np.stack([net[:, end] for net in nets], axis=1) for end in (0, 1)]
     return [_bezier(net) for net in (*nets, *caps)]
@@ -87,14 +83,6 @@ def fillet_box(half: Sequence[float] = (0.5, 0.4, 0.3), r: float = 0.07) -> list
     return patches
 
 
-def bicubic_cushion() -> list[NurbsSurface]:
-    return [_bezier(net) for net in nurbs_bodies.cushion_nets(np.random.default_rng(5), 3, 3)]
-
-
-def egg() -> list[NurbsSurface]:
-    return [_bezier(net) for net in nurbs_bodies.egg_nets(0.7, 1.0, 0.3)]
-
-
 def spline_cushion() -> list[NurbsSurface]:
     """A C2 bicubic spline with knots of its own over a square, four walls and a floor."""
     knots = np.array([-1, -1, -1, -1, -0.4, 0.1, 0.55, 1, 1, 1, 1.0])
@@ -102,9 +90,8 @@ def spline_cushion() -> list[NurbsSurface]:
     one = np.array([knots[i + 1 : i + 4].mean() for i in range(7)])
     triples = [knots[i + 1 : i + 4] for i in range(7)]
     two = np.array([(a * b + b * c + c * a) / 3.0 for a, b, c in triples])
-    bump = np.maximum(0.0, knots[2:9] - 0.1) ** 2 * 0.05
     x, y = np.meshgrid(one, one, indexing="ij")
-    z = 1.5 - 0.3 * two[:, None] - 0.2 * two[None, :] - 0.1 * x * y - 0.0 * bump
+    z = 1.5 - 0.3 * two[:, None] - 0.2 * two[None, :] - 0.1 * x * y
     z = z - 0.1 * np.abs(one) ** 3  # no polynomial: its knots are needed
     lid = NurbsSurface(np.stack([x, y, z], axis=-1), knots, knots)
     patches = [lid, BezierPatch([[(-1, -1, 0), (-1, 1, 0)], [(1, -1, 0), (1, 1, 0)]])]
@@ -115,20 +102,38 @@ def spline_cushion() -> list[NurbsSurface]:
 
 
 def one_patch_ball() -> list[NurbsSurface]:
-    """An ellipsoid as one patch of a full turn with two poles."""
+    """An ellipsoid as one patch of a full turn with two poles, of double knots that it needs."""
     corners = np.array(
         [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0]]
     )
     profile = np.array([[0, -1], [1, -1], [1, 0], [1, 1], [0, 1]])
-    points = np.array([[[0.5 * r * x, 0.8 * r * y, 0.6 * z] for r, z in profile] for x, y in corners])
+    points = np.array(
+        [[[0.5 * r * x, 0.8 * r * y, 0.6 * z] for r, z in profile] for x, y in corners]
+    )
     one = np.array([1, R, 1, R, 1, R, 1, R, 1])
     ku = np.array([0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]) / 4.0
     kv = np.array([0, 0, 0, 1, 1, 2, 2, 2]) / 2.0
     return [NurbsSurface(points, ku, kv, np.outer(one, one[:5]))]
 
 
-def cone() -> list[Surface]:
+def cone() -> list[NurbsSurface]:
+    """Both patches turn once, and collapse at an end."""
     return [shells.turned(((0.0, 1.0), (0.6, -0.5))), shells.turned(((0.6, -0.5), (0.0, -0.5)))]
+
+
+def cylinder() -> list[NurbsSurface]:
+    rims = ((0.0, -0.5), (0.4, -0.5)), ((0.4, -0.5), (0.4, 0.5)), ((0.4, 0.5), (0.0, 0.5))
+    return [shells.turned(pair) for pair in rims]
+
+
+def bicubic_cushion() -> list[NurbsSurface]:
+    """A bicubic lid on plane walls."""
+    return [_bezier(net) for net in nurbs_bodies.cushion_nets(np.random.default_rng(5), 3, 3)]
+
+
+def egg() -> list[NurbsSurface]:
+    """Six patches of degree (8, 8)."""
+    return [_bezier(net) for net in nurbs_bodies.egg_nets(0.7, 1.0, 0.3)]
 
 
 SHELLS: dict[str, Callable[[], list[NurbsSurface]]] = {
@@ -141,13 +146,15 @@ SHELLS: dict[str, Callable[[], list[NurbsSurface]]] = {
     "lens": lambda: [_bezier(net) for net in nurbs_bodies.lens_nets(1.0, 0.45)],
     "bicubic": bicubic_cushion,
     "spline": spline_cushion,
-    "cylinder": lambda: shells.cylinder(0.4, 1.0),
+    "cylinder": cylinder,
     "cone": cone,
     "ball": one_patch_ball,
 }
 
 
-def cluster(domain: tuple[float, float], spacing: float, count: int, at: float = 0.41) -> list[float]:
+def cluster(
+    domain: tuple[float, float], spacing: float, count: int, at: float = 0.41
+) -> list[float]:
     """`count` knots about a place, parts of the domain, `spacing` apart."""
     first, last = domain
     shares = at + spacing * (np.arange(count) - 0.5 * (count - 1))

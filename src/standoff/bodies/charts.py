@@ -124,7 +124,10 @@ def make_charts(
                     raise BodyError(f"Face {i} names edge {j}; there are {len(edges)} edges.")
                 curve = edges[j].curve
                 pcurve = loop_pcurve(face, k, edges, surface)
-                spans = visible_spans(pcurve, curve.first, curve.last)
+                # the weight of a pcurve that was given is no depth, only positive where it is seen
+                given = len(face.pcurves) > 0 and face.pcurves[k] is not None
+                rim = 0.0 if given else CHART_RIM
+                spans = visible_spans(pcurve, curve.first, curve.last, rim)
                 if len(face.charts) == 1 and spans != [(curve.first, curve.last)]:
                     raise BodyError(
                         f"Face {i} does not see the whole of edge {j} in its one gnomonic chart: "
@@ -180,17 +183,19 @@ def _ends(c: Coedge, edges: Sequence[Edge]) -> dict[int, float]:
     return {vertex: c.pcurve.point(t)[0] for vertex, t in pairs if vertex is not None}
 
 
-def visible_spans(pcurve: Pcurve, first: float, last: float) -> list[tuple[float, float]]:
+def visible_spans(
+    pcurve: Pcurve, first: float, last: float, margin: float = CHART_RIM
+) -> list[tuple[float, float]]:
     """The parameter ranges of a pcurve that its chart sees, with a small margin to its rim."""
     if pcurve.kind == L.BEZIER:
         return [(first, last)]
     if pcurve.kind == L.LINE:
-        return _visible_line(pcurve, first, last)
+        return _visible_line(pcurve, first, last, margin)
     a, b, c = pcurve.matrix[2]
     reach = float(np.hypot(a, b))
     if reach == 0.0 and c == 1.0:  # a plane's parameters, no gnomonic chart's: there is no rim
         return [(first, last)]
-    rim = CHART_RIM * float(np.abs(pcurve.matrix).max()) - c
+    rim = margin * float(np.abs(pcurve.matrix).max()) - c
     if reach == 0.0 or abs(rim) >= reach:
         return [(first, last)] if -rim > reach or (reach == 0.0 and rim < 0.0) else []
     middle, half = float(np.arctan2(b, a)), float(np.arccos(rim / reach))
@@ -204,11 +209,13 @@ def visible_spans(pcurve: Pcurve, first: float, last: float) -> list[tuple[float
     return spans
 
 
-def _visible_line(pcurve: Pcurve, first: float, last: float) -> list[tuple[float, float]]:
+def _visible_line(
+    pcurve: Pcurve, first: float, last: float, margin: float
+) -> list[tuple[float, float]]:
     slope, level = float(pcurve.matrix[2, 0]), float(pcurve.matrix[2, 2])
     if slope == 0.0:
         return [(first, last)] if level > 0.0 else []
-    rim = (CHART_RIM * float(np.abs(pcurve.matrix).max()) - level) / slope
+    rim = (margin * float(np.abs(pcurve.matrix).max()) - level) / slope
     first, last = (max(first, rim), last) if slope > 0.0 else (first, min(last, rim))
     return [(first, last)] if first < last else []
 

@@ -91,7 +91,7 @@ def essential_row(vector: KnotVector, h: Array) -> tuple[KnotVector, Array, floa
     less, row = _along_first(vector, h[:, None], place)
     if less is vector:
         return vector, h, 0.0
-    return less, row[:, 0], place.moved(h[:, None], _inserted_again(vector, less) @ row[:, 0])
+    return less, row[:, 0], place.moved(h, _inserted_again(vector, less) @ row[:, 0])
 
 
 def _moved_net(
@@ -141,9 +141,7 @@ def _candidates(vector: KnotVector, h: Array, place: Place) -> list[float]:
     return found
 
 
-def _without(
-    vector: KnotVector, left_out: Sequence[float], h: Array
-) -> tuple[KnotVector, Array]:
+def _without(vector: KnotVector, left_out: Sequence[float], h: Array) -> tuple[KnotVector, Array]:
     """The spline without some of its knots that is nearest at its control points."""
     knots = vector.knots.tolist()
     for knot in left_out:

@@ -7,8 +7,8 @@ or the least curvature and its places are known well. No sampling decides.
 
 Where the curvature only touches zero, along a line inside a span, the bound falls with the square
 of the boxes' width and is left at some 1e-5 of the size: not proven, yet not found to bend inward.
-A knot on the line (`refined`) lets it be proven: where a first proof fails, spans end at spare knots
-too.
+A knot on the line (`refined`) lets it be proven: where a first proof fails, a second one cuts the
+spans at spare knots too.
 """
 
 from __future__ import annotations
@@ -98,22 +98,22 @@ def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
         A knot where the surface may be creased: a proof needs each smooth part by itself.
     """
     _refuse_creases(surface)
-    proof = _proven(surface, outward, spare=False)
-    if not proof.convex and any(len(knots) for knots in surface.spare_knots()):
-        finer = _proven(surface, outward, spare=True)
+    proof, bent = _proven(surface, outward, spare=False)
+    if not proof.convex and not bent and any(len(knots) for knots in surface.spare_knots()):
+        finer, _ = _proven(surface, outward, spare=True)
         proof = finer if finer.convex else proof
     return proof
 
 
-def _proven(surface: NurbsSurface, outward: int | None, spare: bool) -> PatchProof:
-    """As `prove`, by spans that end at spare knots too, or not."""
+def _proven(surface: NurbsSurface, outward: int | None, spare: bool) -> tuple[PatchProof, bool]:
+    """As `prove`, by spans that end at spare knots too, or not; was an inward bend found."""
     grid, size, reach = _grid(surface, spare)
     pieces = _pieces(grid, reach)
     every = [piece.forms for piece in pieces]
     plane = plane_nearness([piece.points for piece in pieces], every)
     moved = max(piece.moved for piece in pieces)
     if plane.distance <= ROUNDED * max(reach, 1.0) and plane.turn <= STRAIGHT * max(reach, 1.0):
-        return PatchProof(
+        proof = PatchProof(
             convex=True,
             defect=(plane.rise + moved) * size,
             method="bernstein",
@@ -122,6 +122,7 @@ def _proven(surface: NurbsSurface, outward: int | None, spare: bool) -> PatchPro
             sense=0,
             tilt=plane.turn,
         )
+        return proof, False
     pieces, near = _straightened(grid, pieces, reach) or (pieces, Nearness(0.0, 0.0))
     bends = np.concatenate([_bends(piece.forms) for piece in pieces])
     sense = outward if outward is not None else (-1 if float(bends.sum()) > 0.0 else 1)
@@ -132,7 +133,7 @@ def _proven(surface: NurbsSurface, outward: int | None, spare: bool) -> PatchPro
     convex = rise <= PROVEN * max(reach, 1.0) and all(r.convex for r in results)
     rise, tilt = min(rise + near.rise, plane.rise), min(tilt + near.turn, plane.turn)
     flat = convex and float(np.abs(bends).max(initial=0.0)) <= NEARLY_FLAT and _flat(pieces, sense)
-    return PatchProof(
+    proof = PatchProof(
         convex=convex,
         defect=(rise + moved) * size,
         method="bernstein",
@@ -142,6 +143,7 @@ def _proven(surface: NurbsSurface, outward: int | None, spare: bool) -> PatchPro
         tilt=tilt,
         curvature=-max((d.curvature for d in dents), default=0.0) / size,
     )
+    return proof, results[worst].found < -ROUNDING
 
 
 def _refuse_creases(surface: NurbsSurface) -> None:

@@ -127,9 +127,7 @@ def _formula(surface: Revolution | Extrusion, profile: FormulaCurve) -> FormulaS
 Domain = tuple[float, float, float, float]
 
 
-def _patches(
-    surface: Revolution | Extrusion, spare: bool
-) -> list[tuple[Domain, BezierPatch]]:
+def _patches(surface: Revolution | Extrusion, spare: bool) -> list[tuple[Domain, BezierPatch]]:
     """Rational Bezier patches that tile the surface, each with its part of the domain."""
     u0, u1, v0, v1 = surface.domain
     found = []
