@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 import scipy
 
-from standoff.bodies.charts import surface_normal
+from standoff.bodies.charts import normal_noise, surface_normal
 from standoff.bodies.orientation import chart_at
 from standoff.bodies.packing import Assembled
 from standoff.bodies.report import DihedralAngle
@@ -50,25 +50,25 @@ class EdgeTurns:
     doubt: float
 
 
-def edge_turns(body: Assembled) -> list[EdgeTurns]:
-    """The turns of every edge between two faces, sampled."""
+def edge_turns(body: Assembled, size: float) -> list[EdgeTurns]:
+    """The turns of every edge between two faces, sampled; `size` is the body's, length."""
     users: list[list[int]] = [[] for _ in body.edges]
     for i, face in enumerate(body.faces):
         for j, _ in face.loop:
             users[j].append(i)
     return [
-        _sampled(body, j, used[0], used[1])
+        _sampled(body, size, j, used[0], used[1])
         for j, used in enumerate(users)
         if len(used) == 2 and used[0] != used[1]
     ]
 
 
-def _sampled(body: Assembled, j: int, one: int, other: int) -> EdgeTurns:
+def _sampled(body: Assembled, size: float, j: int, one: int, other: int) -> EdgeTurns:
     curve = body.edges[j].curve
     flat = all(isinstance(body.faces[i].charts[0], Plane) for i in (one, other))
     shares = SHARES[8:9] if flat else SHARES
     times = curve.first + shares * (curve.last - curve.first)
-    turns = np.array([_turn(body, j, one, other, float(t)) for t in times])
+    turns = np.array([_turn(body, size, j, one, other, float(t)) for t in times])
     k, m = int(turns.argmin()), int(turns.argmax())
     doubt = DOUBT * max(_rise(turns, k), _rise(-turns, m))
     least, greatest = float(turns[k]), float(turns[m])
@@ -80,14 +80,14 @@ def _rise(values: Array, k: int) -> float:
     return float(np.abs(values[max(k - 1, 0) : k + 2] - values[k]).max())
 
 
-def refined(body: Assembled, found: Sequence[EdgeTurns]) -> list[EdgeTurns]:
+def refined(body: Assembled, found: Sequence[EdgeTurns], size: float) -> list[EdgeTurns]:
     """Extremes minimised where they may be concave, or the least or the greatest of all."""
     if not found:
         return []
     least = min(e.least for e in found)
     greatest = max(e.greatest for e in found)
     return [
-        _minimised(body, e)
+        _minimised(body, size, e)
         if e.doubt > TURN_NOISE
         and (e.least - e.doubt < max(least, 0.0) or e.greatest + e.doubt > greatest)
         else e
@@ -95,13 +95,13 @@ def refined(body: Assembled, found: Sequence[EdgeTurns]) -> list[EdgeTurns]:
     ]
 
 
-def _minimised(body: Assembled, e: EdgeTurns) -> EdgeTurns:
+def _minimised(body: Assembled, size: float, e: EdgeTurns) -> EdgeTurns:
     curve = body.edges[e.edge].curve
     width = (curve.last - curve.first) / (len(SHARES) - 1)
 
     def best(t: float, sign: float, value: float) -> tuple[float, float]:
         result = scipy.optimize.minimize_scalar(
-            lambda s: sign * _turn(body, e.edge, *e.faces, float(s)),
+            lambda s: sign * _turn(body, size, e.edge, *e.faces, float(s)),
             bounds=(max(t - width, curve.first), min(t + width, curve.last)),
             method="bounded",
         )
@@ -114,8 +114,11 @@ def _minimised(body: Assembled, e: EdgeTurns) -> EdgeTurns:
     return EdgeTurns(e.edge, e.faces, least, at_least, greatest, at_greatest, doubt=0.0)
 
 
-def _turn(body: Assembled, j: int, one: int, other: int, t: float) -> float:
-    """Angle from face `one`'s outward normal to the other's, positive where the edge is convex."""
+def _turn(body: Assembled, size: float, j: int, one: int, other: int, t: float) -> float:
+    """Angle from face `one`'s outward normal to the other's, positive where the edge is convex.
+
+    A negative one is nearer to zero by what roundoff may turn the normals (`normal_noise`).
+    """
     tangent = body.edges[j].curve.jet(t)[1]
     length = float(np.linalg.norm(tangent))
     if length == 0.0:
@@ -124,9 +127,13 @@ def _turn(body: Assembled, j: int, one: int, other: int, t: float) -> float:
     n0 = chart.outward * surface_normal(chart.surface, u, v)
     side = next(c.side for c in chart.coedges if c.edge == j) * chart.outward
     inward = side * np.cross(n0, tangent / length)
+    noise = normal_noise(chart.surface, u, v, size)
     chart, u, v = chart_at(body.charts, other, j, t)
     n1 = chart.outward * surface_normal(chart.surface, u, v)
-    return float(np.arctan2(-inward @ n1, n0 @ n1))
+    turn = float(np.arctan2(-inward @ n1, n0 @ n1))
+    if turn < 0.0:
+        turn = min(turn + noise + normal_noise(chart.surface, u, v, size), 0.0)
+    return turn
 
 
 def dihedral(body: Assembled, j: int, turn: float, t: float) -> DihedralAngle:

@@ -8,10 +8,14 @@ import numpy as np
 
 from standoff.bodies.packing import Chart, Coedge
 from standoff.bodies.topology import Apex, BodyError, Edge, Face
+from standoff.geometry.formulas import FormulaSurface
+from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.pcurves import Pcurve, pcurve_of
 from standoff.geometry.surfaces import Surface
+from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.validation import Array
 from standoff.kernels import layout as L
+from standoff.kernels.tolerances import EPS, NORMAL_NOISE
 
 # |u|, |v| of an atlas's gnomonic charts: they overlap from RECHART (1.2) to here.
 ATLAS_LIMIT = 2.0
@@ -80,6 +84,23 @@ def surface_normal(surface: Surface, u: float, v: float) -> Array:
     return np.asarray(np.copysign(1.0, normal @ near) * normal / length)
 
 
+def normal_noise(surface: Surface, u: float, v: float, size: float) -> float:
+    """How far, radians, roundoff may turn a normal beside a collapsed side; 0 where none is lost.
+
+    The same bound as the kernels', which the certificate takes off at such a point: with a turn
+    of no more the surface is within NORMAL_NOISE roundings of one without it. `size` is the
+    body's, length.
+    """
+    if not isinstance(surface, NurbsSurface | Revolution | Extrusion | FormulaSurface):
+        return 0.0
+    x, xu, xv, _, xuv, _ = surface.jet(u, v)
+    a, b = float(np.linalg.norm(xu)), float(np.linalg.norm(xv))
+    if min(a, b) <= COLLAPSED_TANGENT * max(a, b):
+        return 0.0  # `surface_normal` takes the limit there, which keeps its digits
+    lost = NORMAL_NOISE * EPS * (size + float(np.linalg.norm(x))) * float(np.linalg.norm(xuv))
+    return min(lost / (a * b), 2.0)
+
+
 def _inwards(surface: Surface, u: float, v: float) -> tuple[float, float]:
     """Parameters a little further inside the domain; a cone's domain is v >= 0."""
     u0, u1, v0, v1 = surface.domain
@@ -103,7 +124,10 @@ def make_charts(
                     raise BodyError(f"Face {i} names edge {j}; there are {len(edges)} edges.")
                 curve = edges[j].curve
                 pcurve = loop_pcurve(face, k, edges, surface)
-                spans = visible_spans(pcurve, curve.first, curve.last)
+                # the weight of a pcurve that was given is no depth, only positive where it is seen
+                given = len(face.pcurves) > 0 and face.pcurves[k] is not None
+                rim = 0.0 if given else CHART_RIM
+                spans = visible_spans(pcurve, curve.first, curve.last, rim)
                 if len(face.charts) == 1 and spans != [(curve.first, curve.last)]:
                     raise BodyError(
                         f"Face {i} does not see the whole of edge {j} in its one gnomonic chart: "
@@ -159,17 +183,19 @@ def _ends(c: Coedge, edges: Sequence[Edge]) -> dict[int, float]:
     return {vertex: c.pcurve.point(t)[0] for vertex, t in pairs if vertex is not None}
 
 
-def visible_spans(pcurve: Pcurve, first: float, last: float) -> list[tuple[float, float]]:
+def visible_spans(
+    pcurve: Pcurve, first: float, last: float, margin: float = CHART_RIM
+) -> list[tuple[float, float]]:
     """The parameter ranges of a pcurve that its chart sees, with a small margin to its rim."""
     if pcurve.kind == L.BEZIER:
         return [(first, last)]
     if pcurve.kind == L.LINE:
-        return _visible_line(pcurve, first, last)
+        return _visible_line(pcurve, first, last, margin)
     a, b, c = pcurve.matrix[2]
     reach = float(np.hypot(a, b))
     if reach == 0.0 and c == 1.0:  # a plane's parameters, no gnomonic chart's: there is no rim
         return [(first, last)]
-    rim = CHART_RIM * float(np.abs(pcurve.matrix).max()) - c
+    rim = margin * float(np.abs(pcurve.matrix).max()) - c
     if reach == 0.0 or abs(rim) >= reach:
         return [(first, last)] if -rim > reach or (reach == 0.0 and rim < 0.0) else []
     middle, half = float(np.arctan2(b, a)), float(np.arccos(rim / reach))
@@ -183,11 +209,13 @@ def visible_spans(pcurve: Pcurve, first: float, last: float) -> list[tuple[float
     return spans
 
 
-def _visible_line(pcurve: Pcurve, first: float, last: float) -> list[tuple[float, float]]:
+def _visible_line(
+    pcurve: Pcurve, first: float, last: float, margin: float
+) -> list[tuple[float, float]]:
     slope, level = float(pcurve.matrix[2, 0]), float(pcurve.matrix[2, 2])
     if slope == 0.0:
         return [(first, last)] if level > 0.0 else []
-    rim = (CHART_RIM * float(np.abs(pcurve.matrix).max()) - level) / slope
+    rim = (margin * float(np.abs(pcurve.matrix).max()) - level) / slope
     first, last = (max(first, rim), last) if slope > 0.0 else (first, min(last, rim))
     return [(first, last)] if first < last else []
 

@@ -56,18 +56,19 @@ def finish(
     blind = blind_charts(parts, ints, reals)
     if blind:
         parts = without_charts(parts, blind)
-    turns = edge_turns(parts)
+        ints, reals = pack(parts, [], (np.zeros(3), np.zeros(3)), radius, 0.0)
+    box = body_box(parts, ints, reals)
+    size = np.inf if box is None else float(np.linalg.norm(box[1] - box[0]))
+    turns = edge_turns(parts, size)
     parts = replace(parts, smooth=_smooth(parts, turns))
     ints, reals = pack(parts, [], (np.zeros(3), np.zeros(3)), radius, 0.0)
-    box = body_box(parts, ints, reals)
     samples = boundary_samples(parts, ints, reals)
-    size = np.inf if box is None else float(np.linalg.norm(box[1] - box[0]))
     if box is not None and size + radius <= 0.0 and len(parts.vertices) != 1:
         raise BodyError("The body has no extent.")
     share = CONVEXITY_TOLERANCE * size if convexity_tolerance is None else convexity_tolerance
     found = Convexity((), 0.0, 1.0)
     if parts.dimension == 3:
-        turns = refined(parts, turns)
+        turns = refined(parts, turns, size)
         check_vertices(parts)
         found = convexity(parts, turns, size, share, known)
     else:
@@ -76,7 +77,7 @@ def finish(
         allowed = found.defect + 2.0 * joined.residual + SAMPLED_DEFECT * size
         seen = check_convex(samples, size, allowed)
         found = replace(found, defect=max(found.defect, seen, 0.0))
-    slack = _slack(found, joined.residual, size)
+    slack = _slack(found, joined.residual, _moved(parts), size)
     ints, reals = pack(parts, samples, box, radius, slack)
     report = _report(parts, joined, turns, found, size + 2.0 * radius, share, slack)
     return Packed(parts, ints, reals, report)
@@ -90,17 +91,23 @@ def _smooth(parts: Assembled, turns: list[EdgeTurns]) -> list[bool]:
     return smooth
 
 
-def _slack(found: Convexity, residual: float, size: float) -> float:
-    """What the certificate subtracts: 0 where defect and residual are roundoff."""
-    both = sum(x for x in (found.defect, residual) if x > ROUNDOFF * size)
-    if both == 0.0:
+def _moved(parts: Assembled) -> float:
+    """How far the boundary may lie from the one given, for knots that were left out."""
+    surfaces = [chart.surface.moved for chart in parts.charts]
+    return max([0.0, *surfaces, *(edge.curve.moved for edge in parts.edges)])
+
+
+def _slack(found: Convexity, residual: float, moved: float, size: float) -> float:
+    """What the certificate subtracts: 0 where all three are roundoff."""
+    total = sum(x for x in (found.defect, residual, moved) if x > ROUNDOFF * size)
+    if total == 0.0:
         return 0.0
     if not np.isfinite(found.widen):
         raise BodyError(
             f"A knife edge (faces back to back) with a defect of {found.defect:.3g} and a sewing "
             f"residual of {residual:.3g}: no lower bound holds there. Sew it exactly."
         )
-    return both * found.widen
+    return total * found.widen
 
 
 def _report(

@@ -130,8 +130,8 @@ def _joints(curve: Curve, number: int) -> list[float]:
     if not isinstance(curve, NurbsCurve):
         return [curve.first, curve.last]
     inside = []
-    for k, knot in enumerate(curve.vector.breaks[1:-1].tolist()):
-        if curve.vector.multiplicity(knot) < curve.degree:
+    for k, knot in enumerate(curve.essential.breaks[1:-1].tolist()):
+        if curve.essential.multiplicity(knot) < curve.degree:
             continue
         before, after = (block[:, :2] / block[:, 3:] for block in curve.blocks[k : k + 2])
         if abs(_angle(before[-1] - before[-2], after[1] - after[0])) > CORNER_ROUNDOFF:
@@ -143,7 +143,7 @@ def _joints(curve: Curve, number: int) -> list[float]:
 
 
 def _run(curve: Curve, right: bool) -> _Run:
-    breaks = curve.vector.breaks if isinstance(curve, NurbsCurve) else (curve.first, curve.last)
+    breaks = curve.essential.breaks if isinstance(curve, NurbsCurve) else (curve.first, curve.last)
     ts = np.unique([np.linspace(a, b, TURN_POINTS) for a, b in pairwise(breaks)])
     normals = np.array([_normal(curve, float(t), right) for t in (ts if right else ts[::-1])])
     turn = sum(_angle(a, b) for a, b in pairwise(normals))

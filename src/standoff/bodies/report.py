@@ -52,7 +52,8 @@ class BodyReport:
     convexity_tolerance : the greatest convexity defect accepted, length.
     sewing_residual : the greatest distance met between parts that were joined, length.
     sewing_tolerance : within which parts were joined, length.
-    slack : what the certificate subtracts for both, length.
+    slack : what the certificate subtracts for both, and for spare knots of a spline that were left
+        out, length; 0 where that is roundoff.
     notes : what was turned, split or merged.
     """
 

@@ -175,7 +175,7 @@ def _surface_breaks(surface: Surface) -> tuple[Array, Array]:
     u0, u1, v0, v1 = surface.domain
     us, vs = np.zeros(0), np.zeros(0)
     if isinstance(surface, NurbsSurface):
-        us, vs = surface.vector_u.breaks, surface.vector_v.breaks
+        us, vs = surface.essential_u.breaks, surface.essential_v.breaks
     elif isinstance(surface, Revolution):
         vs = surface.profile.spans()
     elif isinstance(surface, Extrusion):
@@ -215,7 +215,7 @@ def _reaches(line: _Isoline, direction: Array, height: float) -> bool:
     """May a line between two spans of a NURBS rise to a height: do the control points beside it?"""
     if not isinstance(line.surface, NurbsSurface):
         return True
-    across, along = line.surface.vector_u.breaks, line.surface.vector_v.breaks
+    across, along = line.surface.essential_u.breaks, line.surface.essential_v.breaks
     blocks = line.surface.blocks
     if line.axis == 1:
         across, along, blocks = along, across, blocks.swapaxes(0, 1)

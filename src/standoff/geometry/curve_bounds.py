@@ -55,7 +55,7 @@ def rational_parts(curve: RationalBezier | NurbsCurve, first: float, last: float
     if isinstance(curve, RationalBezier):
         breaks, blocks = np.array([0.0, 1.0]), curve.data[1:].reshape(1, -1, 4)
     else:
-        breaks, blocks = curve.vector.breaks, curve.blocks
+        breaks, blocks = curve.essential.breaks, curve.blocks
     found = []
     for a, b, block in zip(breaks[:-1], breaks[1:], blocks, strict=True):
         low, high = max(float(a), first), min(float(b), last)

@@ -50,6 +50,12 @@ class Curve(KeepsReadOnly):
     def closed(self) -> bool:
         return False
 
+    @property
+    def moved(self) -> float:
+        """How far the curve may lie from the one given, length: 0 but for splines, whose spare
+        knots are left out (``knot_removal``)."""
+        return 0.0
+
     def pcurve_on(self, surface: Surface) -> Pcurve | None:
         """The trimming curve on a surface that the curve was made on, else None."""
         return None

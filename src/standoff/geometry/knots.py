@@ -153,26 +153,26 @@ def refine(vector: KnotVector, new: Sequence[float], name: str) -> tuple[KnotVec
         raise ValueError(f"{name}: knot {outside[0]} is not inside the domain ({first}, {last}).")
     knots = np.sort(np.concatenate([vector.knots, extra]))
     knot_vector(knots, vector.count + len(extra), name, "control points")
+    return insertion(vector, extra.tolist())
+
+
+def insertion(vector: KnotVector, new: Sequence[float]) -> tuple[KnotVector, Array]:
+    """As `refine`, of knots that are known to be good."""
     refined, matrix = vector, np.eye(vector.count)
-    for knot in extra:
-        refined, step = _inserted(refined, float(knot))
-        matrix = step @ matrix
+    for knot in new:
+        refined, matrix = _inserted(refined, knot, matrix)
     return refined, matrix
 
 
-def _inserted(vector: KnotVector, knot: float) -> tuple[KnotVector, Array]:
+def _inserted(vector: KnotVector, knot: float, rows: Array) -> tuple[KnotVector, Array]:
     """One knot inserted by Boehm's rule: every new coefficient lies between two old ones."""
     p, t, s = vector.degree, vector.knots, vector.span_of(knot)
-    matrix = np.zeros((vector.count + 1, vector.count))
-    for i in range(vector.count + 1):
-        a = 1.0 if i <= s - p else 0.0
-        if s - p < i <= s:
-            a = float((knot - t[i]) / (t[i + p] - t[i]))
-        if a > 0.0:
-            matrix[i, i] = a
-        if a < 1.0:
-            matrix[i, i - 1] = 1.0 - a
-    return KnotVector(np.insert(t, s + 1, knot), p), matrix
+    changed = slice(s - p + 1, s + 1)
+    a = np.clip((knot - t[changed]) / (t[s + 1 : s + 1 + p] - t[changed]), 0.0, 1.0)[:, None]
+    between = a * rows[changed] + (1.0 - a) * rows[s - p : s]
+    return KnotVector(np.insert(t, s + 1, knot), p), np.concatenate(
+        [rows[: s - p + 1], between, rows[s:]]
+    )
 
 
 def elevate_knots(vector: KnotVector, times: int) -> tuple[KnotVector, Array]:
@@ -196,8 +196,7 @@ def _clamped(vector: KnotVector) -> tuple[KnotVector, Array]:
     matrix = np.eye(vector.count)
     for end in (first, last):
         for _ in range(p - vector.multiplicity(end)):
-            vector, step = _inserted(vector, end)
-            matrix = step @ matrix
+            vector, matrix = _inserted(vector, end, matrix)
     # coefficient i is the blossom at knots i + 1 .. i + p: all first, or all last, at the ends
     low = int(np.searchsorted(vector.knots, first, side="right")) - p - 1
     high = int(np.searchsorted(vector.knots, last, side="left"))

@@ -1,7 +1,8 @@
 """NURBS surfaces and rational Bezier patches of degree 1 to 9.
 
 The kernels read a NURBS as its grid of Bezier patches, found once and exactly (to roundoff) by
-knot insertion; in any span the jet is then that of one rational Bezier patch.
+knot insertion; in any span the jet is then that of one rational Bezier patch. Knots that the
+surface does not need cut no spans (``knot_removal``).
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 
 from standoff.geometry.bernstein import segment
 from standoff.geometry.hulls import tight_box
+from standoff.geometry.knot_removal import essential_net
 from standoff.geometry.knots import (
     GREATEST_DEGREE,
     KnotVector,
@@ -58,6 +60,11 @@ class NurbsSurface(Surface):
     ValueError
         A NaN, a wrong shape, unsorted or too many equal knots, counts that disagree, a degree
         outside 1 .. 9, a weight that is not positive, or control points without extent.
+
+    Notes
+    -----
+    A knot that the surface can do without (inserted, say) cuts no span: `essential_u` and
+    `essential_v` are the knot vectors without these.
     """
 
     kind = L.NURBS
@@ -66,7 +73,10 @@ class NurbsSurface(Surface):
     weights: Array
     vector_u: KnotVector
     vector_v: KnotVector
+    essential_u: KnotVector
+    essential_v: KnotVector
     blocks: Array
+    _moved: float
 
     def __init__(
         self, control_points: Any, knots_u: Any, knots_v: Any, weights: Any = None
@@ -81,12 +91,17 @@ class NurbsSurface(Surface):
     def _set(
         self, points: Array, w: Array, vector_u: KnotVector, vector_v: KnotVector, domain: Domain
     ) -> None:
+        h = np.concatenate([points * w[..., None], w[..., None]], axis=2)
+        essential_u, essential_v, net, moved = essential_net(vector_u, vector_v, h)
         values = {
             "control_points": points,
             "weights": w,
             "vector_u": vector_u,
             "vector_v": vector_v,
-            "blocks": _bezier_blocks(points, w, vector_u, vector_v),
+            "essential_u": essential_u,
+            "essential_v": essential_v,
+            "blocks": _bezier_blocks(net, essential_u, essential_v),
+            "_moved": moved,
         }
         for name, value in values.items():
             if isinstance(value, np.ndarray) and value.flags.writeable:
@@ -98,8 +113,13 @@ class NurbsSurface(Surface):
     def _data(self) -> Array:
         nu, nv, rows, columns = self.blocks.shape[:4]
         head = [rows - 1.0, columns - 1.0, float(nu), float(nv)]
-        breaks = (self.vector_u.breaks, self.vector_v.breaks)
+        breaks = (self.essential_u.breaks, self.essential_v.breaks)
         return np.concatenate([head, *breaks, self.blocks.ravel()])
+
+    @property
+    def moved(self) -> float:
+        """A bound of how far leaving out spare knots moved the surface, length."""
+        return self._moved
 
     @property
     def degrees(self) -> tuple[int, int]:
@@ -117,9 +137,16 @@ class NurbsSurface(Surface):
         """Knots inside the domain where the surface may be less than C2."""
         u0, u1, v0, v1 = self.domain
         return (
-            tuple(t for t in self.vector_u.rough() if u0 < t < u1),
-            tuple(t for t in self.vector_v.rough() if v0 < t < v1),
+            tuple(t for t in self.essential_u.rough() if u0 < t < u1),
+            tuple(t for t in self.essential_v.rough() if v0 < t < v1),
         )
+
+    def spare_knots(self) -> tuple[Array, Array]:
+        """(us, vs) inside the domain: knots at which no span ends."""
+        u0, u1, v0, v1 = self.domain
+        us = np.setdiff1d(self.vector_u.breaks, self.essential_u.breaks)
+        vs = np.setdiff1d(self.vector_v.breaks, self.essential_v.breaks)
+        return us[(u0 < us) & (us < u1)], vs[(v0 < vs) & (vs < v1)]
 
     def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Self:
         """The same surface on a smaller domain; parameters stay the same.
@@ -133,23 +160,29 @@ class NurbsSurface(Surface):
         a, b, c, d = self.domain
         if not (a <= smaller[0] and smaller[1] <= b and c <= smaller[2] and smaller[3] <= d):
             raise ValueError(f"The domain {smaller} leaves the surface's own, {self.domain}.")
-        return self._with(self.control_points, smaller)
+        surface = object.__new__(type(self))
+        for name, value in vars(self).items():
+            object.__setattr__(surface, name, value)
+        object.__setattr__(surface, "domain", smaller)
+        return surface
 
     def transformed(self, linear: Array, shift: Array) -> Self:
         """The exact image under x -> linear x + shift; parameters stay the same."""
         linear, shift = affine_map(linear, shift)
         points = self.control_points @ linear.T + shift
-        return self._with(points, self.domain)
-
-    def _with(self, points: Array, domain: Domain) -> Self:
         surface = object.__new__(type(self))
-        surface._set(points, self.weights, self.vector_u, self.vector_v, domain)
+        surface._set(points, self.weights, self.vector_u, self.vector_v, self.domain)
         return surface
 
-    def spans(self) -> list[Span]:
-        """The Bezier patches of the domain, u major, those on its rim cut to it."""
+    def spans(self, spare: bool = False) -> list[Span]:
+        """The Bezier patches of the domain, u major, those on its rim cut to it.
+
+        spare : cut them at knots too that the surface does not need.
+        """
         u0, u1, v0, v1 = self.domain
-        parts_u, parts_v = _cuts(self.vector_u, u0, u1), _cuts(self.vector_v, v0, v1)
+        us, vs = self.spare_knots() if spare else (np.zeros(0), np.zeros(0))
+        parts_u = _cuts(self.essential_u, np.array([u0, *us, u1]))
+        parts_v = _cuts(self.essential_v, np.array([v0, *vs, v1]))
         return [
             Span(
                 (low_u, high_u, low_v, high_v),
@@ -265,9 +298,8 @@ def checked_weights(weights: Any, points: Array) -> Array:
     return w
 
 
-def _bezier_blocks(points: Array, w: Array, vector_u: KnotVector, vector_v: KnotVector) -> Array:
-    """(nu, nv, p + 1, q + 1, 4) homogeneous Bezier points of every span."""
-    h = np.concatenate([points * w[..., None], w[..., None]], axis=2)
+def _bezier_blocks(h: Array, vector_u: KnotVector, vector_v: KnotVector) -> Array:
+    """(nu, nv, p + 1, q + 1, 4) homogeneous Bezier points of every span, from (n, m, 4)."""
     p, q = vector_u.degree, vector_v.degree
     rows, columns = bezier_spans(vector_u), bezier_spans(vector_v)
     blocks = np.empty((len(rows), len(columns), p + 1, q + 1, 4))
@@ -278,20 +310,21 @@ def _bezier_blocks(points: Array, w: Array, vector_u: KnotVector, vector_v: Knot
     return blocks
 
 
-def _cuts(vector: KnotVector, first: float, last: float) -> list[tuple[int, float, float, Array]]:
-    """Spans that meet [first, last]: number, ends, and the matrix that cuts its Bezier points."""
-    breaks = vector.breaks
+def _cuts(vector: KnotVector, places: Array) -> list[tuple[int, float, float, Array]]:
+    """Parts of spans between places, ascending: the span's number, the part's ends, and the
+    matrix that cuts the span's Bezier points."""
     cuts = []
-    for i, (a, b) in enumerate(pairwise(breaks)):
-        low, high = max(float(a), first), min(float(b), last)
-        if low < high:
-            whole = low == a and high == b
-            matrix = (
-                np.eye(vector.degree + 1)
-                if whole
-                else segment(vector.degree, (low - a) / (b - a), (high - a) / (b - a))
-            )
-            cuts.append((i, low, high, matrix))
+    for i, (a, b) in enumerate(pairwise(vector.breaks.tolist())):
+        inside = places[(a < places) & (places < b)].tolist()
+        for low, high in pairwise([max(a, places[0]), *inside, min(b, places[-1])]):
+            if low < high:
+                whole = low == a and high == b
+                matrix = (
+                    np.eye(vector.degree + 1)
+                    if whole
+                    else segment(vector.degree, (low - a) / (b - a), (high - a) / (b - a))
+                )
+                cuts.append((i, float(low), float(high), matrix))
     return cuts
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from standoff.geometry.curves import Curve
 from standoff.geometry.hulls import tight_box
+from standoff.geometry.knot_removal import essential_row
 from standoff.geometry.knots import KnotVector, bezier_spans, elevate_knots, knot_vector, refine
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.validation import Array, affine_map, finite
@@ -34,6 +35,11 @@ class NurbsCurve(Curve):
     ------
     ValueError
         As `NurbsSurface`.
+
+    Notes
+    -----
+    `essential` is the knot vector without knots that the curve can do without, as of
+    `NurbsSurface`.
     """
 
     kind = L.NURBS_CURVE
@@ -41,7 +47,9 @@ class NurbsCurve(Curve):
     control_points: Array
     weights: Array
     vector: KnotVector
+    essential: KnotVector
     blocks: Array
+    _moved: float
 
     def __init__(self, control_points: Any, knots: Any, weights: Any = None) -> None:
         if (shape_of(control_points) or ())[1:] == (2,):
@@ -52,15 +60,19 @@ class NurbsCurve(Curve):
         self._set(points, checked_weights(weights, points), vector)
 
     def _set(self, points: Array, w: Array, vector: KnotVector) -> None:
-        blocks = bezier_blocks(points, w, vector)
+        h = np.column_stack([points * w[:, None], w])
+        essential, row, moved = essential_row(vector, h)
+        blocks = bezier_blocks(row, essential)
         head = [float(vector.degree), float(len(blocks))]
         first, last = vector.domain
         values = {
             "control_points": points,
             "weights": w,
             "vector": vector,
+            "essential": essential,
             "blocks": blocks,
-            "data": np.concatenate([head, vector.breaks, blocks.ravel()]),
+            "_moved": moved,
+            "data": np.concatenate([head, essential.breaks, blocks.ravel()]),
             "first": first,
             "last": last,
         }
@@ -68,6 +80,11 @@ class NurbsCurve(Curve):
             if isinstance(value, np.ndarray):
                 value.flags.writeable = False
             object.__setattr__(self, name, value)
+
+    @property
+    def moved(self) -> float:
+        """A bound of how far leaving out spare knots moved the curve, length."""
+        return self._moved
 
     @property
     def degree(self) -> int:
@@ -96,11 +113,15 @@ class NurbsCurve(Curve):
 
     def breaks(self) -> tuple[float, ...]:
         """Knots inside the domain where the curve may be less than C2."""
-        return self.vector.rough()
+        return self.essential.rough()
+
+    def spare_knots(self) -> Array:
+        """Knots at which no polynomial piece ends."""
+        return np.setdiff1d(self.vector.breaks, self.essential.breaks)
 
     def spans(self) -> Array:
-        """Its different knots: one polynomial piece between two of them."""
-        return self.vector.breaks
+        """Its different essential knots: one polynomial piece between two of them."""
+        return self.essential.breaks
 
     def transformed(self, linear: Array, shift: Array) -> NurbsCurve:
         """The exact image under x -> linear x + shift; the parameter stays the same."""
@@ -137,8 +158,7 @@ class NurbsCurve(Curve):
         return curve
 
 
-def bezier_blocks(points: Array, w: Array, vector: KnotVector) -> Array:
-    """(spans, p + 1, d + 1) homogeneous Bezier points (w x, ..., w) of every span."""
-    h = np.column_stack([points * w[:, None], w])
+def bezier_blocks(h: Array, vector: KnotVector) -> Array:
+    """(spans, p + 1, 4) homogeneous Bezier points (w x, w) of every span, from (n, 4)."""
     p = vector.degree
     return np.array([matrix @ h[a : a + p + 1] for a, matrix in bezier_spans(vector)])

@@ -142,6 +142,12 @@ class Surface(KeepsReadOnly, ABC):
         """
         return None
 
+    @property
+    def moved(self) -> float:
+        """How far the surface may lie from the one given, length: 0 but for splines, whose spare
+        knots are left out (``knot_removal``)."""
+        return 0.0
+
     @abstractmethod
     def highest(self, direction: Array) -> tuple[float, float] | None:
         """(u, v) where direction @ x is greatest on the whole surface; direction (3,), body frame.

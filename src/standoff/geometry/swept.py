@@ -88,6 +88,11 @@ class Revolution(Surface):
         surface._set(self.profile, domain, linear, shift)
         return surface
 
+    @property
+    def moved(self) -> float:
+        """How far the spare knots of the profile, left out, may have moved the surface, length."""
+        return float(np.linalg.norm(self.linear, 2)) * self.profile.moved
+
     def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Knots of the profile where it is not C², as v."""
         return (), curve_breaks(self.profile, *self.domain[2:])
@@ -180,6 +185,11 @@ class Extrusion(Surface):
         surface = object.__new__(Extrusion)
         surface._set(self.profile, self.direction, domain, linear, shift)
         return surface
+
+    @property
+    def moved(self) -> float:
+        """How far the spare knots of the profile, left out, may have moved the surface, length."""
+        return float(np.linalg.norm(self.linear, 2)) * self.profile.moved
 
     def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Knots of the profile where it is not C², as u."""

@@ -7,7 +7,8 @@ or the least curvature and its places are known well. No sampling decides.
 
 Where the curvature only touches zero, along a line inside a span, the bound falls with the square
 of the boxes' width and is left at some 1e-5 of the size: not proven, yet not found to bend inward.
-A knot on the line (`refined`) lets it be proven.
+A knot on the line (`refined`) lets it be proven: where a first proof fails, a second one cuts the
+spans at spare knots too.
 """
 
 from __future__ import annotations
@@ -97,13 +98,22 @@ def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
         A knot where the surface may be creased: a proof needs each smooth part by itself.
     """
     _refuse_creases(surface)
-    grid, size, reach = _grid(surface)
+    proof, bent = _proven(surface, outward, spare=False)
+    if not proof.convex and not bent and any(len(knots) for knots in surface.spare_knots()):
+        finer, _ = _proven(surface, outward, spare=True)
+        proof = finer if finer.convex else proof
+    return proof
+
+
+def _proven(surface: NurbsSurface, outward: int | None, spare: bool) -> tuple[PatchProof, bool]:
+    """As `prove`, by spans that end at spare knots too, or not; was an inward bend found."""
+    grid, size, reach = _grid(surface, spare)
     pieces = _pieces(grid, reach)
     every = [piece.forms for piece in pieces]
     plane = plane_nearness([piece.points for piece in pieces], every)
     moved = max(piece.moved for piece in pieces)
     if plane.distance <= ROUNDED * max(reach, 1.0) and plane.turn <= STRAIGHT * max(reach, 1.0):
-        return PatchProof(
+        proof = PatchProof(
             convex=True,
             defect=(plane.rise + moved) * size,
             method="bernstein",
@@ -112,6 +122,7 @@ def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
             sense=0,
             tilt=plane.turn,
         )
+        return proof, False
     pieces, near = _straightened(grid, pieces, reach) or (pieces, Nearness(0.0, 0.0))
     bends = np.concatenate([_bends(piece.forms) for piece in pieces])
     sense = outward if outward is not None else (-1 if float(bends.sum()) > 0.0 else 1)
@@ -122,7 +133,7 @@ def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
     convex = rise <= PROVEN * max(reach, 1.0) and all(r.convex for r in results)
     rise, tilt = min(rise + near.rise, plane.rise), min(tilt + near.turn, plane.turn)
     flat = convex and float(np.abs(bends).max(initial=0.0)) <= NEARLY_FLAT and _flat(pieces, sense)
-    return PatchProof(
+    proof = PatchProof(
         convex=convex,
         defect=(rise + moved) * size,
         method="bernstein",
@@ -132,10 +143,11 @@ def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
         tilt=tilt,
         curvature=-max((d.curvature for d in dents), default=0.0) / size,
     )
+    return proof, results[worst].found < -ROUNDING
 
 
 def _refuse_creases(surface: NurbsSurface) -> None:
-    vectors = (surface.vector_u, surface.vector_v)
+    vectors = (surface.essential_u, surface.essential_v)
     for name, vector, knots in zip("uv", vectors, surface.breaks(), strict=True):
         for knot in knots:
             if vector.multiplicity(knot) >= vector.degree:
@@ -146,7 +158,7 @@ def _refuse_creases(surface: NurbsSurface) -> None:
                 )
 
 
-def _grid(surface: NurbsSurface) -> tuple[Grid, float, float]:
+def _grid(surface: NurbsSurface, spare: bool) -> tuple[Grid, float, float]:
     """The spans of a surface about its centre, scaled to the size one.
 
     Also the size, length, and how many sizes away from the origin the control points lie.
@@ -154,7 +166,7 @@ def _grid(surface: NurbsSurface) -> tuple[Grid, float, float]:
     low, high = surface.box()
     centre, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
     reach = float(np.maximum(np.abs(low), np.abs(high)).max()) / size
-    spans = surface.spans()
+    spans = surface.spans(spare)
     us = np.unique([span.domain[:2] for span in spans])
     vs = np.unique([span.domain[2:] for span in spans])
     h = np.array([span.points for span in spans])

@@ -50,7 +50,20 @@ def prove_swept(surface: Revolution | Extrusion, outward: int | None = None) -> 
     """
     if isinstance(surface.profile, FormulaCurve):
         return interval.prove(_formula(surface, surface.profile), outward)
-    parts = _patches(surface)
+    proof = _proven(surface, outward, spare=False)
+    if not proof.convex and _has_spare_knots(surface.profile):
+        finer = _proven(surface, outward, spare=True)
+        proof = finer if finer.convex else proof
+    return proof
+
+
+def _has_spare_knots(profile: Curve) -> bool:
+    return isinstance(profile, NurbsCurve) and len(profile.spare_knots()) > 0
+
+
+def _proven(surface: Revolution | Extrusion, outward: int | None, spare: bool) -> PatchProof:
+    """As `prove_swept`, of pieces of the profile that end at its spare knots too, or not."""
+    parts = _patches(surface, spare)
     patches = [patch for _, patch in parts]
     if outward is None:
         outward = _bulging(surface)
@@ -114,21 +127,21 @@ def _formula(surface: Revolution | Extrusion, profile: FormulaCurve) -> FormulaS
 Domain = tuple[float, float, float, float]
 
 
-def _patches(surface: Revolution | Extrusion) -> list[tuple[Domain, BezierPatch]]:
+def _patches(surface: Revolution | Extrusion, spare: bool) -> list[tuple[Domain, BezierPatch]]:
     """Rational Bezier patches that tile the surface, each with its part of the domain."""
     u0, u1, v0, v1 = surface.domain
     found = []
     if isinstance(surface, Revolution):
         for arc in _arcs(u0, u1):
             across, weights = _arc_points(*arc)
-            for first, last, h in rational_pieces(surface.profile, v0, v1):
+            for first, last, h in rational_pieces(surface.profile, v0, v1, spare):
                 # homogeneous: (r cos, r sin, z) of the tensor product
                 x = across[:, None, 0] * h[None, :, 0]
                 y = across[:, None, 1] * h[None, :, 0]
                 z, w = (weights[:, None] * h[None, :, k] for k in (2, 3))
                 found.append(((*arc, first, last), _patch(surface, np.stack([x, y, z, w], -1))))
         return found
-    for first, last, h in rational_pieces(surface.profile, u0, u1):
+    for first, last, h in rational_pieces(surface.profile, u0, u1, spare):
         moved = [h + np.append(v * surface.direction, 0.0) * h[:, 3:] for v in (v0, v1)]
         found.append(((first, last, v0, v1), _patch(surface, np.stack(moved, 1))))
     return found
@@ -139,8 +152,12 @@ def _patch(surface: Revolution | Extrusion, h: Array) -> BezierPatch:
     return BezierPatch(points @ surface.linear.T + surface.shift, h[..., 3])
 
 
-def rational_pieces(curve: Curve, first: float, last: float) -> list[tuple[float, float, Array]]:
+def rational_pieces(
+    curve: Curve, first: float, last: float, spare: bool = False
+) -> list[tuple[float, float, Array]]:
     """(first, last, homogeneous Bezier points (p + 1, 4)) of the smooth pieces of a curve.
+
+    spare : cut them at knots too that a spline does not need.
 
     Raises
     ------
@@ -163,21 +180,23 @@ def rational_pieces(curve: Curve, first: float, last: float) -> list[tuple[float
     if isinstance(curve, RationalBezier):
         breaks, blocks = np.array([0.0, 1.0]), curve.data[1:].reshape(1, -1, 4)
     elif isinstance(curve, NurbsCurve):
-        breaks, blocks = curve.vector.breaks, curve.blocks
+        breaks, blocks = curve.essential.breaks, curve.blocks
         for knot in curve.breaks():
-            if first < knot < last and curve.vector.multiplicity(knot) >= curve.degree:
+            if first < knot < last and curve.essential.multiplicity(knot) >= curve.degree:
                 raise ValueError(
                     f"The profile may be creased at its knot {knot}: split the surface there "
                     "(surface.restricted) and prove its parts."
                 )
     else:
         raise TypeError(f"No convexity proof for a profile of {type(curve).__name__}.")
+    extra = curve.spare_knots() if spare and isinstance(curve, NurbsCurve) else np.zeros(0)
     pieces = []
-    for (a, b), block in zip(pairwise(breaks), blocks, strict=True):
-        low, high = max(float(a), first), min(float(b), last)
-        if low < high:
-            cut = segment(len(block) - 1, (low - a) / (b - a), (high - a) / (b - a))
-            pieces.append((low, high, cut @ block))
+    for (a, b), block in zip(pairwise(breaks.tolist()), blocks, strict=True):
+        inside = extra[(extra > max(a, first)) & (extra < min(b, last))]
+        for low, high in pairwise([max(a, first), *inside.tolist(), min(b, last)]):
+            if low < high:
+                cut = segment(len(block) - 1, (low - a) / (b - a), (high - a) / (b - a))
+                pieces.append((low, high, cut @ block))
     return pieces
 
 

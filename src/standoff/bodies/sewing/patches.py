@@ -45,13 +45,18 @@ class Patch:
     def side(self, name: str) -> Side:
         return Side.of(self.surface, self.label, name)
 
+    def middle(self, along: str) -> float:
+        """Where to halve it: amid its parameter, or where that is uneven amid its longer side."""
+        ends = (("v0", "v1"), ("u0", "u1"))[along == "v"]
+        side = max((self.side(name) for name in ends), key=lambda side: side.length)
+        return side.middle if side.uneven else 0.5 * (side.first + side.last)
+
     def halves(self, along: str) -> tuple[Patch, Patch]:
         u0, u1, v0, v1 = self.surface.domain
+        middle = self.middle(along)
         if along == "u":
-            middle = 0.5 * (u0 + u1)
             parts = (u0, middle, v0, v1), (middle, u1, v0, v1)
         else:
-            middle = 0.5 * (v0 + v1)
             parts = (u0, u1, v0, middle), (u0, u1, middle, v1)
         first, second = (Patch(self.surface.restricted(*part), self.given, True) for part in parts)
         return first, second

@@ -18,8 +18,13 @@ SIDE_NAMES = ("v0", "u1", "v1", "u0")
 SENSES = {"v0": 1, "u1": 1, "v1": -1, "u0": -1}
 # Points of the polyline that starts a projection.
 POLYLINE = 17
-# Newton steps of one projection: it starts within a link of the polyline.
-PROJECTION_STEPS = 30
+# A link of it that is a greater part of its length is halved, at most so often: where a parameter
+# runs unevenly, as weights of a ratio of 1e6 make it, even parameters lie in one place.
+LONGEST_LINK = 0.25
+LINK_HALVINGS = 40
+# Newton steps of one projection: it starts within a link of the polyline, and halves the range
+# where it would leave it.
+PROJECTION_STEPS = 60
 # A projection has arrived when its step is below this part of the side's parameter range.
 PROJECTION_STEP = 4e-16
 # Shares of a side where it is compared with another: none symmetric, none at an end.
@@ -73,9 +78,35 @@ class Side:
 
     @cached_property
     def knots(self) -> Array:
-        """Parameters of the polyline, ascending: POLYLINE even ones and the curve's knots."""
-        even = np.linspace(self.first, self.last, POLYLINE)
-        return np.union1d(even, self.breaks)
+        """Parameters of the polyline, ascending: POLYLINE even ones, the curve's knots, and more
+        where its links would be long."""
+        return self._halved(self._even)
+
+    @cached_property
+    def _even(self) -> Array:
+        return np.union1d(np.linspace(self.first, self.last, POLYLINE), self.breaks)
+
+    def _halved(self, knots: Array) -> Array:
+        points = np.array([self.point(float(t)) for t in knots])
+        for _ in range(LINK_HALVINGS):
+            links = np.linalg.norm(np.diff(points, axis=0), axis=1)
+            middles = 0.5 * (knots[:-1] + knots[1:])
+            long = (links > LONGEST_LINK * links.sum()) & (middles > knots[:-1])
+            if not long.any():
+                break
+            more = np.array([self.point(float(t)) for t in middles[long]])
+            places = np.flatnonzero(long) + 1
+            knots = np.insert(knots, places, middles[long])
+            points = np.insert(points, places, more, axis=0)
+        return knots
+
+    @cached_property
+    def middle(self) -> float:
+        """The parameter that halves the side's length, about: that of a point of its polyline."""
+        links = np.linalg.norm(np.diff(self.polyline, axis=0), axis=1)
+        way = np.concatenate([[0.0], np.cumsum(links)])
+        inner = np.abs(way[1:-1] - 0.5 * way[-1])
+        return float(self.knots[1 + int(inner.argmin())])
 
     @cached_property
     def polyline(self) -> Array:
@@ -92,7 +123,14 @@ class Side:
         ts = self.first + PROBES * (self.last - self.first)
         if len(self.breaks) > 2:
             ts = np.concatenate([ts, in_spans(self.breaks)])
+        if self.uneven:
+            ts = np.concatenate([ts, 0.5 * (self.knots[:-1] + self.knots[1:])])
         return np.array([self.point(float(t)) for t in ts])
+
+    @property
+    def uneven(self) -> bool:
+        """Do even parameters lie too far apart in space to show the side."""
+        return len(self.knots) > len(self._even)
 
     def collapsed(self, tolerance: float) -> bool:
         """Is the whole side within the tolerance of one point?"""
@@ -110,6 +148,7 @@ class Side:
         low = float(self.knots[max(k - 1, 0)])
         high = float(self.knots[min(k + 1, len(self.knots) - 1)])
         t = float(self.knots[k])
+        met_low = met_high = False  # has the projection been at that end, and turned back
         for _ in range(PROJECTION_STEPS):
             y, yt, ytt = self.jet(t)
             away = y - x
@@ -119,7 +158,15 @@ class Side:
             if speed == 0.0:
                 break
             step = -slope / (bend if bend > 0.1 * speed else speed)
-            new = min(max(t + step, low), high)
+            if slope < 0.0:
+                low, met_low = t, True
+            elif slope > 0.0:
+                high, met_high = t, True
+            new = t + step
+            if new <= low:
+                new = 0.5 * (low + high) if met_low and new < low else low
+            elif new >= high:
+                new = 0.5 * (low + high) if met_high and new > high else high
             if abs(new - t) <= PROJECTION_STEP * (self.last - self.first):
                 t = new
                 break
@@ -136,11 +183,11 @@ def in_spans(breaks: Array) -> Array:
 def _knots(surface: Surface, axis: int) -> Array:
     """Where the polynomial pieces of a surface meet along u (axis 0) or v (axis 1)."""
     if isinstance(surface, NurbsSurface):
-        return (surface.vector_u, surface.vector_v)[axis].breaks
+        return (surface.essential_u, surface.essential_v)[axis].breaks
     if isinstance(surface, Extrusion | Revolution):
         along_profile = axis == (1 if isinstance(surface, Revolution) else 0)
         if along_profile and isinstance(surface.profile, NurbsCurve):
-            return surface.profile.vector.breaks
+            return surface.profile.essential.breaks
     return np.zeros(0)
 
 

@@ -1,0 +1,181 @@
+"""Knots that a spline can do without, found from its control points.
+
+Inserted knots leave a surface as it is, but cut it into spans; over a span of h of the domain,
+control points rounded by eps leave tangents wrong by eps/h and curvatures by eps/h^2. So jets and
+proofs work on the spline with the fewest knots, its *essential* ones. The control points there
+are a least-squares solution, and how far the surface has moved is bounded by inserting the knots
+again: two splines over the same knots are no farther apart than their control points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from standoff.geometry.knots import KnotVector, insertion
+from standoff.geometry.validation import Array
+
+# A knot is spare if the surface without it moves by no more than this fraction of its size, or if
+# that is more, of its distance from the origin: insertions, one after the other, round each
+# control point by a few 1e-16.
+SPARE = 1e-14
+# Weights that differ by less than this fraction are equal but for such rounding: the spline is
+# then kept polynomial.
+SAME_WEIGHTS = 1e-14
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """Where homogeneous control points lie: a centre (3,), and the greatest distances of a point
+    from it and from the origin, lengths."""
+
+    centre: Array
+    radius: float
+    reach: float
+
+    @staticmethod
+    def of(h: Array) -> Place:
+        """Of points (..., 4), components (w x, w y, w z, w)."""
+        points = (h[..., :3] / h[..., 3:]).reshape(-1, 3)
+        low, high = points.min(axis=0), points.max(axis=0)
+        reach = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))
+        return Place(0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low)), reach)
+
+    @property
+    def limit(self) -> float:
+        """How far a spline may move for a knot left out, length."""
+        return SPARE * max(2.0 * self.radius, self.reach)
+
+    def moved(self, h: Array, other: Array) -> float:
+        """A bound of the distance between splines of the same knots, at equal parameters.
+
+        With x = sum B h / sum B w, the other's point less x is sum B (dX - x dw) / sum B w', and
+        so no longer than the greatest |dX - x dw| / w'. inf where a weight is not positive.
+        """
+        if float(other[..., 3].min()) <= 0.0:
+            return np.inf
+        change = other - h
+        off = np.linalg.norm(change[..., :3] - change[..., 3:] * self.centre, axis=-1)
+        off = off + self.radius * np.abs(change[..., 3])
+        return float((off / other[..., 3]).max())
+
+
+def essential_net(
+    u: KnotVector, v: KnotVector, h: Array
+) -> tuple[KnotVector, KnotVector, Array, float]:
+    """A surface's homogeneous control points (n, m, 4) on its essential knots.
+
+    Returns
+    -------
+    (u, v, points, moved) : knot vectors, points (n', m', 4), a bound of how far the surface has
+        moved, length.
+    """
+    place = Place.of(h)
+    u_less, net = _along_first(u, h, place)
+    v_less, net = _along_first(v, net.swapaxes(0, 1), place)
+    net = net.swapaxes(0, 1)
+    moved = _moved_net(u, v, u_less, v_less, h, net, place)
+    if moved > place.limit:  # each alone stays within the limit, but not both
+        v_less, (u_less, net) = v, _along_first(u, h, place)
+        moved = _moved_net(u, v, u_less, v_less, h, net, place)
+    if u_less is u and v_less is v:
+        return u, v, h, 0.0
+    return u_less, v_less, net, moved
+
+
+def essential_row(vector: KnotVector, h: Array) -> tuple[KnotVector, Array, float]:
+    """A curve's homogeneous control points (n, 4), as `essential_net`."""
+    place = Place.of(h)
+    less, row = _along_first(vector, h[:, None], place)
+    if less is vector:
+        return vector, h, 0.0
+    return less, row[:, 0], place.moved(h, _inserted_again(vector, less) @ row[:, 0])
+
+
+def _moved_net(
+    u: KnotVector,
+    v: KnotVector,
+    u_less: KnotVector,
+    v_less: KnotVector,
+    h: Array,
+    net: Array,
+    place: Place,
+) -> float:
+    rows, columns = _inserted_again(u, u_less), _inserted_again(v, v_less)
+    return place.moved(h, np.einsum("ia,abc,jb->ijc", rows, net, columns))
+
+
+def _along_first(vector: KnotVector, h: Array, place: Place) -> tuple[KnotVector, Array]:
+    """(n, m, 4) points without the spare knots along their first axis."""
+    left_out: list[float] = []
+    found = vector, h
+    waiting = [group] if (group := _candidates(vector, h, place)) else []
+    while waiting:
+        # all together as a rule; where they move the surface too far, as many as may go
+        group = waiting.pop(0)
+        trial = _without(vector, [*left_out, *group], h)
+        if place.moved(h, _applied(_inserted_again(vector, trial[0]), trial[1])) <= place.limit:
+            left_out, found = [*left_out, *group], trial
+        elif len(group) > 1:
+            middle = len(group) // 2
+            waiting = [group[:middle], group[middle:], *waiting]
+    return found
+
+
+def _candidates(vector: KnotVector, h: Array, place: Place) -> list[float]:
+    """Inner knots that may be left out one by one, each as often as it may."""
+    p, t = vector.degree, vector.knots
+    found: list[float] = []
+    for knot in vector.breaks[1:-1].tolist():
+        times = vector.multiplicity(knot)
+        first = int(np.searchsorted(t, knot))
+        near = KnotVector(t[first - p - 1 : first + times + p + 1], p)
+        part = h[first - p - 1 : first + times]
+        for count in range(times, 0, -1):
+            less, points = _without(near, [knot] * count, part)
+            if place.moved(part, _applied(_inserted_again(near, less), points)) <= place.limit:
+                found += [knot] * count
+                break
+    return found
+
+
+def _without(vector: KnotVector, left_out: Sequence[float], h: Array) -> tuple[KnotVector, Array]:
+    """The spline without some of its knots that is nearest at its control points."""
+    knots = vector.knots.tolist()
+    for knot in left_out:
+        knots.remove(knot)
+    less = KnotVector(np.array(knots), vector.degree)
+    matrix = _inserted_again(vector, less)
+    # each point by its own weight, so that light points are as exact as heavy ones
+    scale = 1.0 / h[..., 3].mean(axis=1)[:, None]
+    matrix, rows = matrix * scale, h.reshape(len(h), -1) * scale
+    points = np.empty((less.count, rows.shape[1]))
+    # the ends of clamped knots stay the same points, bit for bit
+    kept = [k for k, i in ((0, 0), (-1, -1)) if matrix[i, k] == scale[i, 0]]
+    inner = slice(1 if 0 in kept else 0, -1 if -1 in kept else None)
+    for k in kept:
+        points[k] = h[k].ravel()
+        rows = rows - matrix[:, k, None] * points[k]
+    points[inner] = np.linalg.lstsq(matrix[:, inner], rows, rcond=None)[0]
+    points = points.reshape(less.count, *h.shape[1:])
+    weights = points[..., 3]
+    if float(np.ptp(h[..., 3])) <= SAME_WEIGHTS * float(h[..., 3].max()):
+        weights[:] = h[0, 0, 3]
+    return less, points
+
+
+def _inserted_again(vector: KnotVector, less: KnotVector) -> Array:
+    """The matrix (n, n') from the points on fewer knots to those on all."""
+    values, counts = np.unique(vector.knots, return_counts=True)
+    missing = [
+        knot
+        for knot, count in zip(values.tolist(), counts.tolist(), strict=True)
+        for _ in range(count - less.multiplicity(knot))
+    ]
+    return insertion(less, missing)[1]
+
+
+def _applied(matrix: Array, h: Array) -> Array:
+    return np.tensordot(matrix, h, 1)
