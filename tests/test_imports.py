@@ -55,12 +55,23 @@ so.shapes.cylinder(0.3, 1.0), so.shapes.sphere(0.3)
 home, there = so.Pose.identity(), so.Pose(np.eye(3), [4.0, 0.3, 0.2])
 assert so.distance(lens, ellipsoid, home, there).certified
 assert so.distance(box, capsule, home, there).certified
+"""
+
+TRACKED = (
+    QUERY
+    + """
+import sys
 twist = so.Twist([1.0, 0.0, 0.0], [0.0, 0.0, 0.1])
 tracker = so.Tracker(lens, ellipsoid, dt=1e-3)
+before = set(sys.modules)
 state = tracker.start(home, there, twist, twist)
 state, found = tracker.step(state, home, there, twist, twist)
 assert found.certified
+state, found = tracker.step(state, home, home, twist, twist)
+assert found.distance < 0.0
+assert set(sys.modules) == before, set(sys.modules) - before
 """
+)
 
 
 def fresh(code: str) -> str:
@@ -144,6 +155,13 @@ def test_a_query_loads_neither_scipy_nor_what_it_has_no_use_for() -> None:
         "scipy.version",
         *NUMBA_NEEDS,
     }
+    unused = tuple(f"standoff.{part}" for part in UNUSED)
+    assert [name for name in sorted(modules) if f"{name}.".startswith(unused)] == []
+
+
+def test_a_tracker_imports_before_its_loop_what_frames_need() -> None:
+    modules = loaded(TRACKED)
+    assert not packages(modules) & EXTRAS
     unused = tuple(f"standoff.{part}" for part in UNUSED)
     assert [name for name in sorted(modules) if f"{name}.".startswith(unused)] == []
 
