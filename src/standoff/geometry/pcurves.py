@@ -60,7 +60,7 @@ class Pcurve(KeepsReadOnly):
     @property
     def data(self) -> Array:
         """What the kernels read."""
-        return self.matrix.ravel()
+        return self.matrix.flatten()
 
     def homogeneous(self, t: float) -> tuple[Array, Array, Array]:
         """(h, h_t, h_tt), each (3,): homogeneous (u, v) and its derivatives."""

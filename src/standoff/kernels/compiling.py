@@ -5,8 +5,7 @@ the middle of a step. `small` asks LLVM to inline: measured in docs/spikes/dispa
 it a step takes 1.6 times as long.
 
 With STANDOFF_BOUNDS_CHECK=1 in the environment every index of an array or a pointer is checked, at
-several times the cost; see `bounds`. It then keeps machine code only where NUMBA_CACHE_DIR says, so
-that checked and unchecked code never share a cache.
+several times the cost; see `bounds`. Checked and unchecked code are kept apart in the cache.
 """
 
 import os

@@ -23,7 +23,7 @@ def curve_jet(reals, kind, o, t):
     return jets.curve_jet(pointer(reals, 0), kind, o, t)
 
 
-@entry(READ, INT, INT, REAL, work="bodies")
+@entry(WRITE, INT, INT, REAL, work="bodies")
 def pcurve_jet(reals, kind, o, t):
     return jets.pcurve_jet(pointer(reals, 0), kind, o, t)
 

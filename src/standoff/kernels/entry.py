@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 from numba import types
 from numba.core.registry import CPUDispatcher
 from numba.core.typing.typeof import Purpose, typeof
@@ -42,14 +41,23 @@ class Entry(CPUDispatcher):  # type: ignore[misc]
         return self.signature in self.overloads
 
     def prepare(self) -> None:
-        """Load the machine code, or compile it."""
+        """Load the machine code, or compile it; nothing is compiled after that."""
         if not self.ready:
             with notices.waiting(self.work):
                 self.compile(self.signature)
+            self.disable_compile()
 
     def _compile_for_args(self, *args: Any, **kws: Any) -> Any:
-        """Called by Numba where no machine code fits the arguments."""
+        """Called by Numba at the first call, where nothing was prepared."""
         self.prepare()
+        self._check(args)
+        return self.overloads[self.signature].entry_point
+
+    def _explain_matching_error(self, *args: Any, **kws: Any) -> None:
+        """Called by Numba where the machine code does not fit the arguments."""
+        self._check(args)
+
+    def _check(self, args: tuple[Any, ...]) -> None:
         names = self._compiler.pysig.parameters
         for name, given, wanted in zip(names, args, self.signature, strict=True):
             kind = typeof(given, Purpose.argument)
@@ -58,13 +66,3 @@ class Entry(CPUDispatcher):  # type: ignore[misc]
                     f"{self.py_func.__name__}: {name} is {kind}, not {wanted}; the kernels are "
                     "compiled for one kind of arguments, before the loop begins."
                 )
-        return self.overloads[self.signature].entry_point
-
-
-def read_only(array: Any, dtype: Any = np.float64) -> Any:
-    """A read-only, contiguous view or copy of an array, as entries take bodies and options."""
-    fitting = np.ascontiguousarray(array, dtype=dtype)
-    if fitting.flags.writeable:
-        fitting = fitting.view()
-        fitting.flags.writeable = False
-    return fitting
