@@ -15,18 +15,22 @@ import numba
 from llvmlite import binding as llvm
 from numba.core import config
 
-X86_64_V3 = (
-    "avx avx2 bmi bmi2 cx16 f16c fma lzcnt movbe popcnt sahf sse3 sse4.1 sse4.2 ssse3 xsave"
-).split()
+# fmt: off
+X86_64_V3 = [
+    "avx", "avx2", "bmi", "bmi2", "cx16", "f16c", "fma", "lzcnt", "movbe", "popcnt", "sahf",
+    "sse3", "sse4.1", "sse4.2", "ssse3", "xsave",
+]
 """What the level x86-64-v3 of the x86-64 psABI has above the first level, in LLVM's names."""
 
-HAVE_V3 = frozenset(
-    "x86-64-v3 x86-64-v4 core-avx2 haswell broadwell skylake skylake-avx512 skx cascadelake "
-    "cooperlake cannonlake icelake-client icelake-server rocketlake tigerlake sapphirerapids "
-    "emeraldrapids graniterapids graniterapids-d alderlake raptorlake meteorlake arrowlake "
-    "arrowlake-s lunarlake pantherlake gracemont sierraforest grandridge clearwaterforest "
-    "znver1 znver2 znver3 znver4 znver5".split()
-)
+HAVE_V3 = frozenset({
+    "x86-64-v3", "x86-64-v4", "core-avx2", "haswell", "broadwell", "skylake",
+    "skylake-avx512", "skx", "cascadelake", "cooperlake", "cannonlake", "icelake-client",
+    "icelake-server", "rocketlake", "tigerlake", "sapphirerapids", "emeraldrapids",
+    "graniterapids", "graniterapids-d", "alderlake", "raptorlake", "meteorlake",
+    "arrowlake", "arrowlake-s", "lunarlake", "pantherlake", "gracemont", "sierraforest",
+    "grandridge", "clearwaterforest", "znver1", "znver2", "znver3", "znver4", "znver5",
+})
+# fmt: on
 """LLVM's names of processors with all of `X86_64_V3`: llvmlite tells the features of the host only,
 so of a processor that NUMBA_CPU_NAME names nothing but the name is known."""
 
@@ -64,6 +68,8 @@ def lacking(features: Iterable[str]) -> str | None:
         return f"this processor lacks {', '.join(missing)}"
     if config.CPU_NAME is not None and config.CPU_NAME not in HAVE_V3:
         return f"NUMBA_CPU_NAME={config.CPU_NAME} is not known to have {', '.join(features)}"
+    if not config.ENABLE_AVX:
+        return "NUMBA_ENABLE_AVX is 0"
     if config.CPU_FEATURES:
         # as LLVM reads the list, the last word on a feature counts
         named = {each[1:]: each[0] == "+" for each in config.CPU_FEATURES.split(",") if each}

@@ -26,8 +26,6 @@ FOLDER = Path(__file__).parent / "compiled"
 """Looked at once, when the first machine code is needed."""
 
 MANIFEST = "manifest.json"
-OPTIMISATION = "3"
-"""The NUMBA_OPT that it is compiled with: Numba's own."""
 
 
 def load(function: Any, signature: Any) -> Any:
@@ -92,13 +90,13 @@ def misfit(manifest: dict[str, Any]) -> str | None:
         return "STANDOFF_BOUNDS_CHECK is set"
     if not modules.AVAILABLE:
         return f"{modules.FORCE_STOCK} is set"
-    if str(config.OPT) != OPTIMISATION:
-        return f"it is for NUMBA_OPT={OPTIMISATION}, and that is {config.OPT}"
     if manifest["sources"] != machine.source_digest():
         return "it was compiled from other sources of the kernels"
     unsafe = others_can_write(FOLDER.resolve())
     if unsafe is not None:
-        return f"{unsafe}, and the machine code in it would be run; take that right away (chmod go-w)"
+        return (
+            f"{unsafe}, and the machine code in it would be run; take that right away (chmod go-w)"
+        )
     return None
 
 
@@ -109,6 +107,7 @@ def made_by() -> dict[str, str]:
         "Numba": numba.__version__,
         "llvmlite": llvmlite.__version__,
         "system": machine.system(),
+        "NUMBA_OPT": str(getattr(config.OPT, "_raw_value", config.OPT)),  # "max" too equals 3
     }
 
 

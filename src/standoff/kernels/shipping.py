@@ -1,9 +1,9 @@
 """Writes the machine code that a wheel carries: ``python -m standoff.kernels.shipping FOLDER``.
 
 All entries and the kernels that they share are compiled in a process of their own, with an empty
-cache, for the level x86-64-v3 on x86-64 and for the least processor of any other architecture.
-`make wheel` does this and packs the folder (``hatch_build.py``). Nothing that is compiled is run,
-so the processor of who builds does not matter, but its architecture.
+cache: for the level x86-64-v3 on x86-64, for LLVM's `generic` processor on other architectures.
+`make wheel` does this and packs the folder (``hatch_build.py``). What is compiled is not run here,
+so a builder of the right architecture need not have the level itself.
 """
 
 from __future__ import annotations
@@ -19,14 +19,15 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import numba
 from numba.core import config
 from numba.core.serialize import dumps
 
-from standoff.kernels import machine, shipped
+from standoff.kernels import machine, modules, shipped
 from standoff.kernels.cache import stored_of
 
 INTEL = ("x86_64", "amd64")
-# set by `build` for `write`, which must run in the process that it starts
+# Set by `build` in the process that it starts: the processor is named before Numba is imported.
 TARGETED = "STANDOFF_SHIPPING"
 
 
@@ -50,7 +51,6 @@ def build(folder: Path) -> None:
             "NUMBA_CACHE_DIR": empty,
             "NUMBA_CPU_NAME": target()[0],
             "NUMBA_CPU_FEATURES": "",
-            "NUMBA_OPT": shipped.OPTIMISATION,
         }
         command = [sys.executable, "-m", "standoff.kernels.shipping", str(folder)]
         subprocess.run(command, env=environment, check=True)
@@ -66,27 +66,34 @@ def write(folder: Path, entries: Iterable[Any]) -> None:
     entries : Iterable[Any]
         Of `Entry`.
     """
+    if not modules.AVAILABLE:
+        raise RuntimeError(
+            f"Numba {numba.__version__} compiles each kernel by itself; use a version that begins "
+            f"with {modules.WRITTEN_FOR}, and leave {modules.FORCE_STOCK} unset"
+        )
     processor, features = target()
-    if config.CPU_NAME != processor or config.CPU_FEATURES != "":
+    if processor != config.CPU_NAME or config.CPU_FEATURES != "":
         raise RuntimeError(
             f"set NUMBA_CPU_NAME={processor} and an empty NUMBA_CPU_FEATURES, not "
             f"{config.CPU_NAME} and {config.CPU_FEATURES}"
         )
     folder.mkdir(parents=True, exist_ok=True)
-    modules: dict[str, tuple[str, str]] = {}
+    written: dict[str, tuple[str, str]] = {}
     for function, result in compiled(entries):
         key = shipped.key_of(function, tuple(result.signature.args))
-        if key not in modules:
+        if key not in written:
             data = dumps(stored_of(result))
-            name = f"{function.__module__.rpartition('.')[2]}.{function.__name__}.{len(modules)}.bin"
+            name = (
+                f"{function.__module__.rpartition('.')[2]}.{function.__name__}.{len(written)}.bin"
+            )
             (folder / name).write_bytes(data)
-            modules[key] = (name, sha256(data).hexdigest())
+            written[key] = (name, sha256(data).hexdigest())
     manifest = {
         **shipped.made_by(),
         "processor": processor,
         "features": features,
         "sources": machine.source_digest(),
-        "modules": modules,
+        "modules": written,
     }
     (folder / shipped.MANIFEST).write_text(json.dumps(manifest, indent=1) + "\n")
 
