@@ -7,7 +7,7 @@ CLI := .venv/.installed-cli
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 DECLARED := pyproject.toml constraints.txt
 
-.PHONY: venv demo paper test lint types layers docs clean
+.PHONY: venv demo paper wheel test lint types layers docs clean
 
 venv: $(ALL)
 
@@ -29,6 +29,12 @@ demo: $(CLI)
 
 paper: $(CLI)
 	$(BIN)/standoff paper all -o build/paper
+
+# A wheel with compiled kernels for this Python, platform and Numba (docs/wheels.md).
+wheel: $(CLI)
+	rm -rf build/compiled
+	$(BIN)/python -m standoff.kernels.shipping build/compiled
+	STANDOFF_COMPILED="$(CURDIR)/build/compiled" $(PIP) wheel -q --no-deps -w dist .
 
 test: $(ALL)
 	$(BIN)/python -m pytest -n auto --dist worksteal

@@ -9,17 +9,13 @@ carries (`shipped`), then, for reading and writing, NUMBA_CACHE_DIR or the packa
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import os
-import stat
 import sys
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import llvmlite
-import numba
 from llvmlite import binding as llvm
 from numba.core import config
 from numba.core.caching import (
@@ -29,57 +25,13 @@ from numba.core.caching import (
     UserProvidedCacheLocator,
     UserWideCacheLocator,
 )
+from numba.core.compiler import CompileResult
+from numba.core.runtime import rtsys
 
 from standoff.kernels import notices, shipped
+from standoff.kernels.machine import bounds_checked, source_digest
 from standoff.kernels.notices import say
-
-HERE = Path(__file__).parent
-
-
-@lru_cache(maxsize=1)
-def source_digest() -> str:
-    """Of all files of this folder, and of the versions that make machine code of them."""
-    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
-    for source in sorted(HERE.glob("*.py")):
-        digest.update(source.name.encode() + b"\0" + source.read_bytes())
-    return digest.hexdigest()
-
-
-def others_can_write(folder: Path) -> str | None:
-    """Why a folder is not safe from other users, or None.
-
-    It, and each folder above it, must belong to this user or to root, or to the owner of the
-    package, and nobody else may write to it; a folder where each may delete only his own (sticky,
-    as the system's temporary one) is safe above.
-    """
-    if os.name != "posix":
-        return None  # Windows: the rights of a user's own folders are inherited
-    trusted = {0, os.getuid(), HERE.stat().st_uid}
-    for level, each in enumerate((folder, *folder.parents)):
-        try:
-            state = each.stat()
-        except OSError:
-            continue
-        if state.st_uid not in trusted:
-            return f"{each} belongs to another user (uid {state.st_uid})"
-        shared = state.st_mode & stat.S_IWOTH or (
-            state.st_mode & stat.S_IWGRP and not _own_group(state.st_gid)
-        )
-        if shared and not (level > 0 and state.st_mode & stat.S_ISVTX):
-            return f"other users can write to {each}"
-    return None
-
-
-def _own_group(gid: int) -> bool:
-    """Is a group that of this user alone?"""
-    import grp
-    import pwd
-
-    try:
-        user = pwd.getpwuid(os.getuid()).pw_name
-        return gid == pwd.getpwuid(os.getuid()).pw_gid and set(grp.getgrgid(gid).gr_mem) <= {user}
-    except KeyError:
-        return False
+from standoff.kernels.trust import others_can_write
 
 
 class _Trusted:
@@ -142,30 +94,40 @@ class _Nowhere:
         raise OSError("no cache folder")
 
 
+def stored_of(result: Any) -> Any:
+    """What is kept of a compiled module: which others it calls, its symbols, its code."""
+    called = [module.origin for module in getattr(result.library, "modules", ())]
+    exported = sorted(getattr(result.library, "exported", ()))
+    return called, exported, result._reduce()
+
+
+def rebuilt(target_context: Any, stored: Any) -> Any:
+    """The compiled module that `stored_of` took apart."""
+    called, exported, reduced = stored
+    for module, name, arguments in called:
+        # code that calls a symbol needs it in place
+        getattr(importlib.import_module(module), name).compile(arguments)
+    result = CompileResult._rebuild(target_context, *reduced)
+    if exported:
+        fndesc = result.fndesc
+        result.library.exported = set(exported)
+        # a stock function that calls this kernel must not link what stands for it
+        declared = "\n".join(f'declare void @"{name}"()' for name in exported)
+        result.library._shared_module = llvm.parse_assembly(declared)
+        result.library.origin = (fndesc.modname, fndesc.qualname, tuple(fndesc.argtypes))
+    return result
+
+
 class _Modules(CompileResultCacheImpl):  # type: ignore[misc]
-    """What is written of a compiled module: its code and which other modules it calls."""
+    """How Numba's cache takes modules apart, and where it may keep them."""
 
     _locator_classes = (_Named, _InTree, _UserWide, _Nowhere)
 
     def reduce(self, result: Any) -> Any:
-        called = [module.origin for module in getattr(result.library, "modules", ())]
-        exported = sorted(getattr(result.library, "exported", ()))
-        return called, exported, super().reduce(result)
+        return stored_of(result)
 
     def rebuild(self, target_context: Any, stored: Any) -> Any:
-        called, exported, reduced = stored
-        for module, name, arguments in called:
-            # code that calls a symbol needs it in place
-            getattr(importlib.import_module(module), name).compile(arguments)
-        result = super().rebuild(target_context, reduced)
-        if exported:
-            fndesc = result.fndesc
-            result.library.exported = set(exported)
-            # a stock function that calls this kernel must not link what stands for it
-            declared = "\n".join(f'declare void @"{name}"()' for name in exported)
-            result.library._shared_module = llvm.parse_assembly(declared)
-            result.library.origin = (fndesc.modname, fndesc.qualname, tuple(fndesc.argtypes))
-        return result
+        return rebuilt(target_context, stored)
 
 
 class ModuleCache(Cache):  # type: ignore[misc]
@@ -187,12 +149,15 @@ class ModuleCache(Cache):  # type: ignore[misc]
             self._ready = True
 
     def load_overload(self, signature: Any, target_context: Any) -> Any:
-        self._begin()
-        target_context.refresh()
-        stored = shipped.load(self._impl.filename_base, signature)
+        # All that machine code needs. Numba's own `load_overload` imports its whole library of
+        # implementations here, which takes half a second; who compiles does that too.
+        rtsys.initialize(target_context)
+        stored = None if self._called else shipped.load(self._function, signature)
         if stored is not None:
-            return self._impl.rebuild(target_context, stored)
-        found = super().load_overload(signature, target_context)
+            return rebuilt(target_context, stored)
+        self._begin()
+        with self._guard_against_spurious_io_errors():
+            found = self._load_overload(signature, target_context)
         if found is None:
             notices.compiling(self._work)
         return found
@@ -204,8 +169,7 @@ class ModuleCache(Cache):  # type: ignore[misc]
             _unsaved(self._cache_path, str(error))
 
     def _index_key(self, signature: Any, codegen: Any) -> Any:
-        checked = os.environ.get("STANDOFF_BOUNDS_CHECK", "0") not in ("", "0")
-        how = (str(config.OPT), checked, self._called, sys.version_info[:2])
+        how = (str(config.OPT), bounds_checked(), self._called, sys.version_info[:2])
         return signature, codegen.magic_tuple(), how
 
 
