@@ -117,3 +117,13 @@ def test_a_kernel_called_from_python_answers_as_in_a_module() -> None:
     for u in (-0.3, 0.2):
         jet = features.feature_jet(a, b, 0, 0, u, 0.1)
         assert jet == entries.feature_jet(a, b, 0, 0, u, 0.1)
+
+
+def test_a_damaged_file_of_the_cache_is_told_and_compiled_anew(tmp_path) -> None:
+    version = __import__("numba").__version__
+    made, values = jets(tmp_path, version, "0")
+    for file in tmp_path.rglob("entries.curve_jet*.nbc"):
+        file.write_bytes(file.read_bytes()[:100])
+    for file in tmp_path.rglob("entries.surface_jet*.nbi"):
+        file.write_bytes(b"nothing of use")
+    assert jets(tmp_path, version, "0") == (made, values)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import pickle
 import sys
 from functools import lru_cache
 from pathlib import Path
@@ -28,10 +29,13 @@ from numba.core.caching import (
 from numba.core.compiler import CompileResult
 from numba.core.runtime import rtsys
 
-from standoff.kernels import notices, shipped
+from standoff.kernels import modules, notices, shipped
 from standoff.kernels.machine import bounds_checked, source_digest
 from standoff.kernels.notices import say
 from standoff.kernels.trust import others_can_write
+
+DAMAGED = (EOFError, pickle.UnpicklingError, ValueError, TypeError, KeyError, IndexError)
+"""What reading a truncated or overwritten file of pickles raises."""
 
 
 class _Trusted:
@@ -156,8 +160,13 @@ class ModuleCache(Cache):  # type: ignore[misc]
         if stored is not None:
             return rebuilt(target_context, stored)
         self._begin()
-        with self._guard_against_spurious_io_errors():
-            found = self._load_overload(signature, target_context)
+        found = None
+        try:
+            with self._guard_against_spurious_io_errors():
+                found = self._load_overload(signature, target_context)
+        except DAMAGED as error:
+            say(f"{self._cache_path}: what was kept there is damaged ({error}); compiling anew.")
+            self.flush()
         if found is None:
             notices.compiling(self._work)
         return found
@@ -169,7 +178,9 @@ class ModuleCache(Cache):  # type: ignore[misc]
             _unsaved(self._cache_path, str(error))
 
     def _index_key(self, signature: Any, codegen: Any) -> Any:
-        how = (str(config.OPT), bounds_checked(), self._called, sys.version_info[:2])
+        # code of modules calls symbols that stock compilation does not make
+        kind = (modules.AVAILABLE, self._called, bounds_checked())
+        how = (*kind, str(config.OPT), sys.version_info[:2])
         return signature, codegen.magic_tuple(), how
 
 
