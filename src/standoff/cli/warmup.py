@@ -75,7 +75,8 @@ def _ready(entry: Entry) -> Ready:
 
 
 def _tell(one: Ready, place: str, to_stderr: bool) -> None:
-    line = f"{place:>5}  {one.name:<42}  {one.seconds:6.2f} s  {one.how:<8}  {one.what}"
+    name = one.name.rpartition(".")[2]
+    line = f"{place:>5} {one.seconds:6.2f} s  {one.how:<8}  {name}: {one.what}"
     print(line, file=sys.stderr if to_stderr else sys.stdout, flush=True)
 
 
