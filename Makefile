@@ -13,13 +13,16 @@ venv: $(ALL)
 
 $(BIN)/python:
 	$(PYTHON) -c 'import sys; sys.exit(None if (3, 11) <= sys.version_info < (3, 15) else "Standoff needs Python 3.11 to 3.14; this is " + sys.version.split()[0] + ". Name another: make PYTHON=python3.12 ...")'
+	@echo "Making a virtual environment in .venv ..."
 	$(PYTHON) -m venv .venv
 
 $(ALL): $(DECLARED) | $(BIN)/python
+	@echo "Installing Standoff, all its extras and the tools into .venv: once, some minutes ..."
 	$(PIP) install -q -c constraints.txt -e ".[cli,test,dev,peers,docs]"
 	@touch $(ALL) $(CLI)
 
 $(CLI): $(DECLARED) | $(BIN)/python
+	@echo "Installing Standoff and what its commands need into .venv: once, about a minute ..."
 	$(PIP) install -q -c constraints.txt -e ".[cli]"
 	@touch $(CLI)
 
@@ -37,6 +40,7 @@ wheel: $(CLI)
 	STANDOFF_COMPILED="$(CURDIR)/build/compiled" $(PIP) wheel -q --no-deps -w dist .
 
 test: $(ALL)
+	$(BIN)/standoff warmup
 	$(BIN)/python -m pytest -n auto --dist worksteal
 
 lint: $(ALL)

@@ -21,7 +21,10 @@ from standoff import bodies, tracking
 
 SOURCE = Path(so.__file__).parent
 ROOT = {"standoff", "standoff.on_demand", "standoff.version"}
-COMMANDS = ("track", "distance", "impact", "check", "automaton", "paper", "soak", "accuracy")
+COMMANDS = (
+    *("track", "distance", "impact", "check", "automaton"),
+    *("paper", "soak", "accuracy", "warmup"),
+)
 
 # What draws, writes, reads formulas, or serves the command line alone.
 EXTRAS = {"PIL", "flint", "jinja2", "matplotlib", "pyarrow", "rich", "sympy", "tyro"}

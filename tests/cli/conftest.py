@@ -46,8 +46,9 @@ Standoff = Callable[..., Ended]
 
 
 @pytest.fixture
-def standoff(capsys: pytest.CaptureFixture[str]) -> Standoff:
-    """Run the command line within this process."""
+def standoff(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Standoff:
+    """Run the command line within this process; it does not say what it is about to do."""
+    monkeypatch.setenv("STANDOFF_QUIET", "1")
 
     def run(*arguments: object) -> Ended:
         capsys.readouterr()

@@ -18,7 +18,9 @@ MISSING = object()
 
 
 @pytest.fixture
-def refused(capsys: pytest.CaptureFixture[str]):
+def refused(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("STANDOFF_QUIET", "1")
+
     def run(*arguments: object) -> str:
         capsys.readouterr()
         code = main(["soak", *(str(argument) for argument in arguments)])

@@ -225,6 +225,21 @@ class AccuracyCommand:
     """Print the summary as JSON."""
 
 
+@dataclass(frozen=True)
+class WarmupCommand:
+    """Compile all kernels ahead, once for this installation, so that no later use waits for it.
+
+    What is compiled already is only loaded. Bodies of formulas bring code of their own, which each
+    process compiles where it makes them: that is no part of this.
+
+    Exit codes: 0 done, 1 the machine code could not be kept, 3 finished, but a kernel could not be
+    compiled.
+    """
+
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Print what was compiled as JSON; what is done meanwhile is told on stderr."""
+
+
 Command = (
     TrackCommand
     | DistanceCommand
@@ -234,6 +249,7 @@ Command = (
     | PaperCommand
     | SoakCommand
     | AccuracyCommand
+    | WarmupCommand
 )
 
 DESCRIPTION = """Exact, certified minimum distance of curved convex bodies in motion.
@@ -257,7 +273,8 @@ def parse(arguments: Sequence[str]) -> Command:
         | Annotated[AutomatonCommand, subcommand("automaton")]
         | Annotated[PaperCommand, subcommand("paper")]
         | Annotated[SoakCommand, subcommand("soak")]
-        | Annotated[AccuracyCommand, subcommand("accuracy")],
+        | Annotated[AccuracyCommand, subcommand("accuracy")]
+        | Annotated[WarmupCommand, subcommand("warmup")],
         prog="standoff",
         description=DESCRIPTION,
         args=arguments,

@@ -12,6 +12,7 @@ from standoff.cli.arguments import (
     PaperCommand,
     SoakCommand,
     TrackCommand,
+    WarmupCommand,
 )
 
 
@@ -59,3 +60,7 @@ def run(command: Command) -> int:
             from standoff.cli.accuracy import run_accuracy
 
             return run_accuracy(command)
+        case WarmupCommand():
+            from standoff.cli.warmup import run_warmup
+
+            return run_warmup(command)

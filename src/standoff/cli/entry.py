@@ -51,7 +51,11 @@ def _run(given: list[str]) -> int:
 
     command = parse(given or ["--help"])
 
-    # The library comes after the parse, so that help and typing errors need not wait for it.
+    # The library comes after the parse, so that help and typing errors need not wait for it, and
+    # after a word to those who do.
+    from standoff.cli.announcement import announce
+
+    announce(command)
     from standoff.cli.commands import run
     from standoff.scene import SceneError
 

@@ -14,6 +14,7 @@ class ExitCode(IntEnum):
     NOT_CERTIFIED = 3
     FIGURE_FAILED = 3  # the same for `paper`: finished, but not all is as it should be
     CHECK_FAILED = 3  # the same for `soak`: an answer failed a check
+    NOT_COMPILED = 3  # the same for `warmup`: a kernel is refused by the compiler
     INTERRUPTED = 130  # 128 + SIGINT, the shells' convention
 
 

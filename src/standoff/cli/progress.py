@@ -23,8 +23,7 @@ def progress_bar() -> Iterator[Progress | None]:
         yield None
         return
     with Bar(console=Console(stderr=True), transient=True) as bar:
-        # The kernels are compiled before the first answer and kept on disk for later runs.
-        task = bar.add_task("starting (the very first run compiles)", total=None)
+        task = bar.add_task("starting", total=None)
 
         def show(done: int, total: int) -> None:
             bar.update(task, completed=done, total=total, description="tracking")
@@ -39,7 +38,7 @@ def figures_bar(total: int) -> Iterator[Tell]:
         yield lambda entry, result: None
         return
     with Bar(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("starting (the very first run compiles)", total=total)
+        task = bar.add_task("starting", total=total)
         begun: dict[str, None] = {}
 
         def show(entry: Entry, result: object) -> None:
@@ -60,7 +59,7 @@ def pairs_bar(total: int) -> Iterator[Callable[[str], None]]:
         yield lambda pair: None
         return
     with Bar(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("starting (the very first run compiles)", total=total)
+        task = bar.add_task("starting", total=total)
 
         def show(pair: str) -> None:
             bar.update(task, description=pair)

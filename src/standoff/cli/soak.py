@@ -126,10 +126,7 @@ def _bar(ledger: Ledger, pairs: int) -> Iterator[Tell]:
         yield lambda done: None
         return
     with Bar(console=Console(stderr=True), transient=True) as bar:
-        # The kernels are compiled before the first answer and kept on disk for later runs.
-        task = bar.add_task(
-            "starting (the very first run compiles)", total=pairs, completed=ledger.pairs_done()
-        )
+        task = bar.add_task("starting", total=pairs, completed=ledger.pairs_done())
 
         def show(done: Done) -> None:
             certified = ledger.tally.sums["certified"]

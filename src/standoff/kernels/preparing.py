@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Iterator
+from pathlib import Path
 
-from standoff.kernels import entries, tracker
+from standoff.kernels import cache, entries, tracker
 from standoff.kernels.entry import Entry
 
 MODULES = (
@@ -57,3 +58,25 @@ def every_entry() -> Iterator[Entry]:
         for each in vars(importlib.import_module(name)).values():
             if isinstance(each, Entry) and each.py_func.__module__ == name:
                 yield each
+
+
+def prepare_all() -> None:
+    """Have every entry ready, before other processes that ask for them are started."""
+    for each in every_entry():
+        each.prepare()
+
+
+def name_of(entry: Entry) -> str:
+    """Its module and its own name, such as ``tracker.start``."""
+    return f"{entry.py_func.__module__.rpartition('.')[2]}.{entry.py_func.__name__}"
+
+
+def was_compiled(entry: Entry) -> bool:
+    """Was its machine code made in this process? Else it was found on disk."""
+    return bool(entry.stats.cache_misses)
+
+
+def kept_in(entry: Entry) -> Path | None:
+    """The folder of its machine code, once it is ready; None where it could not be kept."""
+    folder = Path(entry.stats.cache_path)
+    return folder if folder.is_dir() and not cache._unsaved.cache_info().misses else None

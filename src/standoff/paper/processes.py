@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -11,6 +12,8 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import NamedTuple
 
+from standoff.kernels.notices import QUIET
+from standoff.kernels.preparing import prepare_all
 from standoff.paper.figure import Entry
 from standoff.paper.making import Made, make_and_write
 
@@ -89,6 +92,7 @@ class _Worker:
 
 
 def _side_by_side(chapters: Sequence[list[Entry]], order: Order, jobs: int, hear: Tell) -> None:
+    prepare_all()  # once, here, and not side by side in each worker
     waiting = list(chapters)
     workers: list[_Worker] = []
     try:
@@ -132,6 +136,7 @@ def _receive(worker: _Worker, hear: Tell) -> list[Entry] | None:
 
 def _work(pipe: Connection, order: Order) -> None:
     """Make chapters until the pipe closes."""
+    os.environ[QUIET] = "1"  # what there is to say of the compiler its parent has said
     # The parent ends its workers on Ctrl-C; a traceback of each would only hide its message.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # Leave by an exception, so that no half-written file stays behind.

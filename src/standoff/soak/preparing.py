@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from standoff.kernels.preparing import prepare_all
 from standoff.soak.cases import Case
 from standoff.soak.motions import Motion, Path
 from standoff.soak.running import run_case
@@ -18,7 +19,8 @@ no part of the kernels, and counts as the pair's time."""
 
 
 def compile_kernels() -> None:
-    """Make a body of every kind, and track and ask a pair: kernels are compiled as a whole."""
+    """Have all kernels ready; make a body of every kind, and track and ask a pair."""
+    prepare_all()
     rng = np.random.default_rng(0)
     bodies = [
         made(Shape(name, kind.draw(rng)))

@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection, wait
 from typing import Any, NamedTuple
 
+from standoff.kernels.notices import QUIET
+from standoff.kernels.preparing import prepare_all
 from standoff.soak.cases import draw_case
 from standoff.soak.failures import Facts, exception_facts, failure_facts
 from standoff.soak.ledger import Ledger, Part
@@ -25,7 +27,8 @@ PATIENCE = 300.0
 this process sleeps, too, as in a suspended computer, does not count."""
 
 PREPARATION = 3600.0
-"""Seconds that a process may take to compile or load the kernels: minutes on a busy machine."""
+"""Seconds that a process may take to load the kernels, or to compile them where they cannot be
+kept: minutes on a busy machine."""
 
 LOOK = 1.0
 """Seconds between looks for a pair that hangs."""
@@ -163,6 +166,8 @@ class _Worker:
 
 def _side_by_side(ledger: Ledger, parts: list[Part], jobs: int, hear: Tell) -> Done | None:
     """Hand out the parts in order; after a failure only what lies before it is waited for."""
+    if parts:
+        prepare_all()  # once, here, and not side by side in each worker
     waiting = list(parts)
     workers: list[_Worker] = []
     first: Done | None = None
@@ -213,7 +218,8 @@ def _heard(workers: list[_Worker]) -> Iterator[tuple[_Worker, Done]]:
 
 
 def _work(pipe: Connection, seed: int, frames: int, place: Any) -> None:
-    """Compile the kernels, say so, and run parts until the pipe closes or the parent is gone."""
+    """Load the kernels, say so, and run parts until the pipe closes or the parent is gone."""
+    os.environ[QUIET] = "1"  # what there is to say of the compiler its parent has said
     # The parent ends its workers on Ctrl-C; a traceback of each would only hide its message.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))

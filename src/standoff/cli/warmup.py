@@ -1,0 +1,132 @@
+"""``standoff warmup``: all kernels compiled ahead."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from rich.console import Console
+from rich.progress import Progress as Bar
+
+from standoff import __version__
+from standoff.cli.arguments import WarmupCommand
+from standoff.cli.errors import ExitCode
+from standoff.cli.facts import json_text
+from standoff.kernels.entry import Entry
+from standoff.kernels.notices import WORK, told_elsewhere
+from standoff.kernels.preparing import every_entry, kept_in, name_of, was_compiled
+
+
+class Ready(NamedTuple):
+    """What became of an entry."""
+
+    name: str
+    what: str
+    seconds: float
+    compiled: bool
+    error: str = ""
+
+    @property
+    def how(self) -> str:
+        if self.error:
+            return "failed"
+        return "compiled" if self.compiled else "loaded"
+
+
+def run_warmup(command: WarmupCommand) -> int:
+    """Load or compile every entry, and tell of each when it is done."""
+    entries = list(every_entry())
+    done: list[Ready] = []
+    started = time.perf_counter()
+    try:
+        with told_elsewhere(), _bar(len(entries)) as show:
+            for number, entry in enumerate(entries, 1):
+                show(f"{name_of(entry)}, {WORK[entry.work].what}", number - 1)
+                done.append(_ready(entry))
+                _tell(done[-1], f"{number}/{len(entries)}", command.json)
+                show("", number)
+    except KeyboardInterrupt:
+        print(
+            f"standoff: interrupted after {len(done)} of {len(entries)}; these need not be "
+            "compiled again",
+            file=sys.stderr,
+        )
+        return ExitCode.INTERRUPTED
+    ready = [entry for entry in entries if entry.ready]
+    folder = kept_in(ready[-1]) if ready else None
+    print(_json(done, folder, started) if command.json else _total(done, folder, started))
+    return _ended(done, folder)
+
+
+def _ready(entry: Entry) -> Ready:
+    started = time.perf_counter()
+    error = ""
+    try:
+        entry.prepare()
+    except Exception as raised:  # whatever Numba or LLVM raise: the others are tried all the same
+        error = f"{type(raised).__name__}: {raised}"
+    seconds = time.perf_counter() - started
+    compiled = entry.ready and was_compiled(entry)
+    return Ready(name_of(entry), WORK[entry.work].what, seconds, compiled, error)
+
+
+def _tell(one: Ready, place: str, to_stderr: bool) -> None:
+    name = one.name.rpartition(".")[2]
+    line = f"{place:>5} {one.seconds:6.2f} s  {one.how:<8}  {name}: {one.what}"
+    print(line, file=sys.stderr if to_stderr else sys.stdout, flush=True)
+
+
+@contextmanager
+def _bar(total: int) -> Iterator[Callable[[str, int], None]]:
+    """Show which entry is at work, where stderr is a terminal."""
+    if not sys.stderr.isatty():
+        yield lambda doing, completed: None
+        return
+    console = Console(stderr=True)
+    # A stdout that is no terminal stays what it is: the bar would take its lines.
+    with Bar(console=console, transient=True, redirect_stdout=sys.stdout.isatty()) as bar:
+        task = bar.add_task("starting", total=total)
+        yield lambda doing, completed: bar.update(task, description=doing, completed=completed)
+
+
+def _total(done: Sequence[Ready], folder: Path | None, started: float) -> str:
+    if not done:
+        return "nothing to compile: NUMBA_DISABLE_JIT=1 runs the kernels as plain Python"
+    count = {how: sum(one.how == how for one in done) for how in ("compiled", "loaded")}
+    seconds = time.perf_counter() - started
+    kept = "kept nowhere" if folder is None else f"kept in {folder}"
+    return (
+        f"{count['compiled']} compiled, {count['loaded']} loaded, in {seconds:.1f} s; "
+        f"what is compiled is {kept}"
+    )
+
+
+def _json(done: Sequence[Ready], folder: Path | None, started: float) -> str:
+    return json_text(
+        {
+            "standoff": __version__,
+            "seconds": time.perf_counter() - started,
+            "folder": None if folder is None else str(folder),
+            "entries": [one._asdict() | {"error": one.error or None} for one in done],
+        }
+    )
+
+
+def _ended(done: Sequence[Ready], folder: Path | None) -> ExitCode:
+    failed = [one for one in done if one.error]
+    for one in failed:
+        print(f"standoff: {one.name} could not be compiled: {one.error}", file=sys.stderr)
+    if failed:
+        return ExitCode.NOT_COMPILED
+    if folder is None and any(one.compiled for one in done):
+        print(
+            "standoff: the machine code could not be kept: name a folder of your own in "
+            "NUMBA_CACHE_DIR",
+            file=sys.stderr,
+        )
+        return ExitCode.NOT_WRITTEN
+    return ExitCode.DONE
