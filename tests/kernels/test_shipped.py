@@ -6,6 +6,7 @@ must be compiled in its place, runs in new processes.
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import pickle
@@ -15,12 +16,13 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from numba.core import config
 
-from standoff.kernels import entries, machine, modules, notices, shipped, shipping
+from standoff.kernels import entries, machine, modules, notices, shipped, shipping, trust
 from standoff.kernels.trust import others_can_write
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -337,3 +339,33 @@ def test_a_folder_of_ones_own_group_and_one_below_a_sticky_one_are_safe(tmp_path
     below = folder / "own"
     below.mkdir(mode=0o700)
     assert others_can_write(below) is None
+
+
+def test_where_posix_rights_are_unknown_nothing_of_posix_is_called(tmp_path, monkeypatch):
+    tmp_path.chmod(0o777)
+    monkeypatch.setattr(trust, "os", SimpleNamespace(name="nt"))
+    assert others_can_write(tmp_path) is None
+
+
+LACKING_ON_WINDOWS = {
+    *("fcntl", "grp", "posix", "pty", "pwd", "resource", "syslog", "termios", "tty"),
+    *("chown", "fchmod", "fchown", "fork", "getegid", "geteuid", "getgid", "getgrouplist"),
+    *("getgroups", "getpgid", "getuid", "killpg", "mkfifo", "nice", "sched_getaffinity"),
+    *("setsid", "statvfs", "uname", "wait4"),
+    *("SIGALRM", "SIGHUP", "SIGKILL", "SIGUSR1", "SIGUSR2", "alarm", "pause", "setitimer"),
+}
+
+
+def test_only_the_rights_of_folders_need_posix():
+    found = set()
+    for file in (ROOT / "src").rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            names = []
+            if isinstance(node, ast.Import):
+                names = [each.name for each in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                names = [str(node.module), *(each.name for each in node.names)]
+            elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+                names = [node.attr] if node.value.id in ("os", "signal") else []
+            found |= {(file.name, name) for name in names if name in LACKING_ON_WINDOWS}
+    assert found == {("trust.py", "getuid"), ("trust.py", "grp"), ("trust.py", "pwd")}
