@@ -136,7 +136,10 @@ main(["warmup"])
 
 
 def test_each_line_comes_at_once_into_a_pipe() -> None:
-    ended = subprocess.run([sys.executable, "-c", DIES], capture_output=True, text=True)
+    environment = os.environ | {"PYTHONUNBUFFERED": ""}
+    ended = subprocess.run(
+        [sys.executable, "-c", DIES], env=environment, capture_output=True, text=True
+    )
     assert ended.returncode == 9
     (line,) = ended.stdout.splitlines()
     assert line.endswith("surface_jet: the geometry of bodies")
