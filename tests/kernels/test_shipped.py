@@ -57,6 +57,10 @@ for name in sys.argv[2:]:
     getattr(entries, name).prepare()
 print(json.dumps({"answer": answer, "compiled": Count.compiled}))
 """
+NO_FOLDER = """
+from standoff.kernels import cache, entries, shipped
+cache._Modules._locator_classes = (cache._Nowhere,)
+"""
 ANSWER = [[2.0, 2.5, 1.0], [2.0, -1.0, 0.0], [0.0, 0.0, 0.0]]
 
 posix = pytest.mark.skipif(os.name != "posix", reason="rights of folders are those of POSIX")
@@ -310,6 +314,16 @@ def test_nothing_is_read_from_or_written_to_a_cache_that_others_can_write_to(fol
     assert f"other users can write to {cache}" in said
     assert {file: file.read_bytes() for file in cache.rglob("*.*")} == there
     assert told["answer"] == ANSWER
+
+
+@posix
+def test_without_any_cache_folder_each_process_compiles_and_says_so(folder):
+    shutil.rmtree(folder)
+    nowhere = USE.replace("from standoff.kernels import entries, shipped", NO_FOLDER)
+    told, said = run(nowhere, str(folder))
+    assert told["answer"] == ANSWER
+    assert told["compiled"] > 0
+    assert "the compiled kernels could not be kept (no cache folder)" in said
 
 
 @posix

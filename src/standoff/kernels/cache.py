@@ -2,8 +2,8 @@
 
 Numba unpickles what it finds in a cache, and the machine code in it is run: a folder that other
 users can write to is refused. A module is kept under a digest of all the kernels' sources, so an
-edit of any of them compiles anew. Three places are asked: the folder of modules that a wheel
-carries (`shipped`), then, for reading and writing, NUMBA_CACHE_DIR or the package's own
+edit of any of them compiles anew. Asked are the folder of modules that a wheel carries
+(`shipped`), then, for reading and writing, NUMBA_CACHE_DIR or the package's own
 ``__pycache__``, or else the user's cache folder.
 """
 
@@ -162,8 +162,9 @@ class ModuleCache(Cache):  # type: ignore[misc]
         self._begin()
         found = None
         try:
-            with self._guard_against_spurious_io_errors():
-                found = self._load_overload(signature, target_context)
+            if not isinstance(self._impl.locator, _Nowhere):
+                with self._guard_against_spurious_io_errors():
+                    found = self._load_overload(signature, target_context)
         except DAMAGED as error:
             say(f"{self._cache_path}: what was kept there is damaged ({error}); compiling anew.")
             self.flush()
