@@ -240,9 +240,9 @@ def test_a_missing_library_is_named(
         ("matplotlib", "recording_plot", lambda: recordings[0].plot(tmp_path / "run.png")),
     ):
         with monkeypatch.context() as patch:
-            patch.setitem(sys.modules, name, None)
-            patch.delitem(sys.modules, f"standoff.tracking.{module}", raising=False)
             patch.delattr(f"standoff.tracking.{module}", raising=False)
+            patch.delitem(sys.modules, f"standoff.tracking.{module}", raising=False)
+            patch.setitem(sys.modules, name, None)
             with pytest.raises(ModuleNotFoundError, match=rf"{name} .*standoff\[cli\]"):
                 use()
     assert not list(tmp_path.iterdir())
