@@ -19,13 +19,14 @@ class Work(NamedTuple):
     what: str
     seconds: int
     alone: int
-    """Where nothing was compiled before in the process: kernels below are read again then."""
+    """Where nothing but bodies was compiled before in the process: the kernels below all works are
+    read then."""
 
 
 WORK = {
     "bodies": Work("the geometry of bodies", 10, 10),
     "query": Work("queries of bodies that are apart", 20, 25),
-    "contact": Work("queries in contact and penetration", 12, 25),
+    "contact": Work("queries in contact and penetration", 12, 35),
     "frames": Work("frames of the predictor-corrector", 7, 25),
     "runs": Work("runs of many frames", 1, 2),
     "paper": Work("frames of the paper's law", 8, 25),
@@ -50,7 +51,7 @@ def compiling(work: str | None) -> None:
     """Say, once a process for each work, that its kernels are compiled now."""
     if work is None or work in _said:
         return
-    seconds = WORK[work].seconds if _said else WORK[work].alone
+    seconds = WORK[work].seconds if _said - {"bodies"} else WORK[work].alone
     hint = "" if _said else " (`standoff warmup` compiles all of them ahead)"
     _said.add(work)
     say(
