@@ -14,7 +14,7 @@ from math import inf
 
 import numpy as np
 
-from standoff.kernels.compiling import kernel
+from standoff.kernels.compiling import kernel, shared
 from standoff.kernels.tolerances import COPLANAR, EPS, MAX_PROBES, PRISM
 from standoff.kernels.vectors import cross, dot, norm, scale, sub
 
@@ -123,7 +123,7 @@ def horizon(corners, seen, n_seen, rim):
     return n if n >= 3 and rim[n - 1, 1] == rim[0, 0] else 0
 
 
-@kernel
+@shared
 def grow(hull, x, size):
     """Take a point in: GREW, NO_GAIN where no facet is below it, or BROKEN (nothing changed)."""
     sizes, points, corners, facets = hull
@@ -189,7 +189,7 @@ def farthest_from(points, n, k, a, b, c):
     return at, best
 
 
-@kernel
+@shared
 def begin_hull(hull, n, size):
     """Facets over the first n points, which stand in the hull's array already.
 

@@ -47,6 +47,9 @@ from standoff.kernels.track import (
     track,
 )
 
+# Where the rates of a frame's parameters come from.
+KNOWN, OF_LAW, IN_CONTACT = range(3)
+
 
 @kernel
 def feedforward_now(pair, options, motion, mode, q, w_ff, counts):
@@ -54,6 +57,28 @@ def feedforward_now(pair, options, motion, mode, q, w_ff, counts):
     rates, _, _, _ = rates_at(pair, options, motion, mode, q, NONE, NONE, 0.0, 1.0, counts)
     for k in range(4):
         w_ff[k] = rates[k]
+
+
+@shared
+def answer_frame(
+    pair, Ta, xi_a, has_twist, rates, motion, options, mode, q, w_ff, counts, query, status, out
+):
+    """Write the answer of a frame; query is (d, bound, upper, normal) of the cores.
+
+    `rates` says where w_ff comes from: it is KNOWN, or found here OF_LAW or IN_CONTACT.
+    """
+    R, p, _, _ = motion
+    d, _, _, normal = query
+    jets = pair_jets(pair, R, p, mode, q)
+    n_rate = ORIGIN
+    if rates == IN_CONTACT:
+        n_rate = contact_rates(pair, motion, jets, normal, d, w_ff, counts)
+    elif rates == OF_LAW:
+        feedforward_now(pair, options, motion, mode, q, w_ff, counts)
+    inside = rates == IN_CONTACT
+    write_answer(
+        pair, Ta, xi_a, has_twist, motion, mode, q, w_ff, jets, query, inside, n_rate, status, out
+    )
 
 
 @kernel
@@ -80,7 +105,7 @@ def start_frame(
     motion = (R, p, v, w)
     goal = min(options[O_TOLERANCE], START_GAP)
     outcome, d, bound, normal = UNCERTIFIED, 0.0, -1.0, (0.0, 0.0, 0.0)
-    inside, n_rate = False, ORIGIN
+    inside = False
     counts[LIMIT] = NO_LIMIT  # a start has no deadline
     if given != START_ANYWHERE:
         from_state(state, mode, q)
@@ -101,21 +126,17 @@ def start_frame(
             return NOT_KNOWN_APART
     kind = LAW_PAPER if given == START_HERE else LAW_PC
     status = judge(pair, kind, outcome, p, d, bound, upper, goal, False)
-    jets = pair_jets(pair, R, p, mode, q)
-    if inside:
-        n_rate = contact_rates(pair, motion, jets, normal, d, w_ff, counts)
-    elif has_twist and d > 0.0:
-        feedforward_now(pair, options, motion, mode, q, w_ff, counts)
+    query = (d, bound, upper, normal)
+    rates = IN_CONTACT if inside else (OF_LAW if has_twist and d > 0.0 else KNOWN)
+    answer_frame(
+        pair, Ta, xi_a, has_twist, rates, motion, options, mode, q, w_ff, counts, query, status, out
+    )
     for k in range(N_STATE):
         state[k] = 0.0
     if options[O_LAW] == LAW_PAPER:
         read_errors(pair, R, p, state, mode, q)
     counts[EVENTS] = 0
-    query = (d, bound, upper, normal)
     keep(state, motion, has_twist, options, 0.0, mode, q, w_ff, False, status, query, inside)
-    write_answer(
-        pair, Ta, xi_a, has_twist, motion, mode, q, w_ff, jets, query, inside, n_rate, status, out
-    )
     for k in range(N_COUNTS):
         out[OUT_COUNTS + k] = counts[k]
     return FINE
@@ -160,21 +181,18 @@ def step_frame(
     exhausted = counts[EVALUATIONS] >= counts[LIMIT]
     tolerance = options[O_TOLERANCE]
     status = judge(pair, options[O_LAW], outcome, p, d, bound, upper, tolerance, exhausted)
-    jets = pair_jets(pair, R, p, mode, q)
-    n_rate = ORIGIN
-    if inside and has_twist:
-        n_rate = contact_rates(pair, motion, jets, normal, d, w_ff, counts)
-    elif not inside and not fresh and has_twist and d > 0.0:
-        feedforward_now(pair, options, motion, mode, q, w_ff, counts)
+    query = (d, bound, upper, normal)
+    rates = KNOWN
+    if has_twist and (inside or (not fresh and d > 0.0)):
+        rates = IN_CONTACT if inside else OF_LAW
+    answer_frame(
+        pair, Ta, xi_a, has_twist, rates, motion, options, mode, q, w_ff, counts, query, status, out
+    )
     old_a, old_b = int(state[MODE]), int(state[MODE + 2])
     same = carry_over(pair, state, mode)
     if counts[EVENTS] > 0 or old_a != mode[0] or old_b != mode[2]:
         tidy_events(events, counts, old_a, old_b, mode[0], mode[2])
-    query = (d, bound, upper, normal)
     keep(state, motion, has_twist, options, h, mode, q, w_ff, same, status, query, inside)
-    write_answer(
-        pair, Ta, xi_a, has_twist, motion, mode, q, w_ff, jets, query, inside, n_rate, status, out
-    )
     for k in range(N_COUNTS):
         out[OUT_COUNTS + k] = counts[k]
 

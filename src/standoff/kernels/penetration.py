@@ -14,7 +14,7 @@ from standoff.kernels import layout as L
 from standoff.kernels.certificate import certify_along
 from standoff.kernels.certified import UNCERTIFIED, on_feature, weigh
 from standoff.kernels.cold_start import begin_at, global_query, support_sample
-from standoff.kernels.compiling import kernel
+from standoff.kernels.compiling import kernel, shared
 from standoff.kernels.contact import newton
 from standoff.kernels.descent import ORIGIN, pair_jets, settle
 from standoff.kernels.events import EVALUATIONS, LIMIT, RESTARTS
@@ -190,7 +190,7 @@ def newton_start(pair, R, p, n, mode, q, reach):
     return True, unit(axpy(step_1, way, axpy(step_2, other, n)))
 
 
-@kernel
+@shared
 def shifted(pair, R, p, n, d, gap, mode, q, w_ff, counts, events):
     """(apart, n', d'): one step of the descent from the direction n, where the signed distance is
     at least d; mode and q are warm and get the closest points of the pair shifted out to `gap`
@@ -219,7 +219,7 @@ def shifted(pair, R, p, n, d, gap, mode, q, w_ff, counts, events):
     return True, n, dot(n, sub(between, shift))
 
 
-@kernel
+@shared
 def stationary_along(pair, R, p, mode, q, n, d, tolerance, counts):
     """(kind, n, d, way): Newton's method from a direction, taken where it ends at a certified
     stationary direction no deeper than the start: MINIMUM, or SADDLE, which falls along `way`.
@@ -299,7 +299,7 @@ def next_start(n, start, n_new, turn, ahead):
     return unit(axpy(min(ahead, NEWTON_TURN / turn), step, n_new)), ahead
 
 
-@kernel
+@shared
 def descend(pair, R, p, n, d, mode, q, w_ff, tolerance, counts, events):
     """(found, n, d) of the local minimum of s reached from the direction n; (mode, q) are warm.
 

@@ -16,8 +16,11 @@ MODULES = (
 )
 """Where entries stand."""
 
-BODIES = ("on_face", "chart_normal", "surface_jet", "curve_jet", "pcurve_jet", "planar_edge_normal")
+BODIES = ("on_face", "chart_normal", "surface_jet", "curve_jet")
 """What places a start, and builds the half-space against which an overlap is proven."""
+
+PLANAR = ("pcurve_jet", "planar_edge_normal")
+"""What that of planar bodies needs beside it."""
 
 LOCATING = ("feature_jet", "edge_jet", "coedge_conormal", "end_direction")
 """What locates the instant of a switch in a recorded run."""
@@ -25,22 +28,25 @@ LOCATING = ("feature_jet", "edge_jet", "coedge_conormal", "end_direction")
 SCIPY = ("scipy.linalg.cython_lapack", "scipy.optimize")
 """Imported by Numba in the first frame that decomposes a matrix, and by a proof of overlap."""
 
-ready_for: set[tuple[bool, bool]] = set()
+ready_for: set[tuple[bool, bool, bool]] = set()
 
 
-def prepare(paper: bool, runs: bool = False) -> None:
+def prepare(paper: bool, planar: bool, runs: bool = False) -> None:
     """Have ready what a tracker can reach, in contact and out of it.
 
     Parameters
     ----------
     paper : bool
         Of the paper's law; else of the predictor-corrector.
+    planar : bool
+        Of planar bodies.
     runs : bool
         And the loop over many frames.
     """
-    if (paper, runs) in ready_for:
+    if (paper, planar, runs) in ready_for:
         return
-    needed = [getattr(entries, name) for name in BODIES + (LOCATING if runs else ())]
+    names = BODIES + (PLANAR if planar else ()) + (LOCATING if runs else ())
+    needed = [getattr(entries, name) for name in names]
     needed += [tracker.start, tracker.step_paper if paper else tracker.step_predicted]
     if runs:
         needed.append(tracker.run_paper if paper else tracker.run_predicted)
@@ -49,7 +55,7 @@ def prepare(paper: bool, runs: bool = False) -> None:
             each.prepare()
     for name in SCIPY:
         importlib.import_module(name)
-    ready_for.add((paper, runs))
+    ready_for.add((paper, planar, runs))
 
 
 def every_entry() -> Iterator[Entry]:

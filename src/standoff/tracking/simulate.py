@@ -190,7 +190,7 @@ def track_along(
     """
     if state is not None:
         tracker.check_state(state)
-    prepare(paper=tracker.law == "paper", runs=True)
+    prepare(paper=tracker.law == "paper", planar=tracker.planar, runs=True)
     run = _Run(tracker, path_a, path_b, times, locate)
     run.go(progress, state)
     pair = tracker.a, tracker.b

@@ -138,7 +138,7 @@ class Tracker(KeepsReadOnly):
 
     def _prepare(self) -> None:
         """Load, or compile, what the frames can reach: none of them waits for it."""
-        prepare(paper=self.law == "paper")
+        prepare(paper=self.law == "paper", planar=self.planar)
 
     def start(
         self,
