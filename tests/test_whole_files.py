@@ -26,8 +26,6 @@ STREAMS = {"file", "stream", "buffer"}
 KNOWN = {
     # the one place
     "whole_files.py",
-    # the stamp of Numba's cache, in the package's own folder
-    "kernels/__init__.py",
 }
 
 

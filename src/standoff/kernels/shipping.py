@@ -14,10 +14,11 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator
+from functools import partial
 from hashlib import sha256
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numba
 from numba.core import config
@@ -25,6 +26,7 @@ from numba.core.serialize import dumps
 
 from standoff.kernels import machine, modules, shipped
 from standoff.kernels.cache import stored_of
+from standoff.whole_files import Writer, write_whole
 
 INTEL = ("x86_64", "amd64")
 # Set by `build` in the process that it starts: the processor is named before Numba is imported.
@@ -79,6 +81,7 @@ def write(folder: Path, entries: Iterable[Any]) -> None:
         )
     folder.mkdir(parents=True, exist_ok=True)
     written: dict[str, tuple[str, str]] = {}
+    files: dict[Path, Writer] = {}
     for function, result in compiled(entries):
         key = shipped.key_of(function, tuple(result.signature.args))
         if key not in written:
@@ -86,7 +89,7 @@ def write(folder: Path, entries: Iterable[Any]) -> None:
             name = (
                 f"{function.__module__.rpartition('.')[2]}.{function.__name__}.{len(written)}.bin"
             )
-            (folder / name).write_bytes(data)
+            files[folder / name] = partial(_put, data)
             written[key] = (name, sha256(data).hexdigest())
     manifest = {
         **shipped.made_by(),
@@ -95,7 +98,14 @@ def write(folder: Path, entries: Iterable[Any]) -> None:
         "sources": machine.source_digest(),
         "modules": written,
     }
-    (folder / shipped.MANIFEST).write_text(json.dumps(manifest, indent=1) + "\n")
+    files[folder / shipped.MANIFEST] = partial(
+        _put, (json.dumps(manifest, indent=1) + "\n").encode()
+    )
+    write_whole(files)
+
+
+def _put(data: bytes, file: BinaryIO) -> None:
+    file.write(data)
 
 
 def compiled(entries: Iterable[Any]) -> Iterator[tuple[Any, Any]]:
