@@ -179,12 +179,17 @@ class PartLowering(typed_passes.NativeLowering):
         state.library = PartLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
         without_references(state)
         super().run_pass(state)
-        state.library.finalize()
-        lowered, stand_in = state["cr"], Uncallable()
-        state.targetctx.insert_user_function(stand_in, lowered.fndesc, [state.library])
-        state.reload_init.extend(state.library._reload_init)
-        state["cr"] = lowered._replace(cfunc=stand_in)
+        enter_in_tables(state)
         return True
+
+
+def enter_in_tables(state: Any) -> None:
+    """Let other kernels find what was lowered, though Python cannot call it."""
+    state.library.finalize()
+    lowered, stand_in = state["cr"], Uncallable()
+    state.targetctx.insert_user_function(stand_in, lowered.fndesc, [state.library])
+    state.reload_init.extend(state.library._reload_init)
+    state["cr"] = lowered._replace(cfunc=stand_in)
 
 
 def without_references(state: Any) -> None:
@@ -215,11 +220,7 @@ class SharedLowering(typed_passes.NativeLowering):
     def run_pass(self, state: Any) -> bool:
         begin_module(state)
         super().run_pass(state)
-        state.library.finalize()
-        lowered, stand_in = state["cr"], Uncallable()
-        state.targetctx.insert_user_function(stand_in, lowered.fndesc, [state.library])
-        state.reload_init.extend(state.library._reload_init)
-        state["cr"] = lowered._replace(cfunc=stand_in)
+        enter_in_tables(state)
         return True
 
 
