@@ -7,7 +7,7 @@ CLI := .venv/.installed-cli
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 DECLARED := pyproject.toml constraints.txt
 
-.PHONY: venv demo paper wheel test lint types layers docs clean
+.PHONY: venv demo paper wheel check test lint types layers docs clean
 
 venv: $(ALL)
 
@@ -36,12 +36,17 @@ paper: $(CLI)
 # A wheel with compiled kernels for this Python, platform and Numba (docs/wheels.md).
 wheel: $(CLI)
 	rm -rf build/compiled
-	$(BIN)/python -m standoff.kernels.shipping build/compiled
+	$(BIN)/python -m standoff.kernels.entries.shipping build/compiled
 	STANDOFF_COMPILED="$(CURDIR)/build/compiled" $(PIP) wheel -q --no-deps -w dist .
+
+# What an edit is tried with: a minute or two once the kernels are compiled (tests/tiers.py).
+check: lint types layers
+	$(BIN)/standoff warmup
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "not slow"
 
 test: $(ALL)
 	$(BIN)/standoff warmup
-	$(BIN)/python -m pytest -n auto --dist worksteal
+	$(BIN)/python -m pytest -n auto --dist loadfile
 
 lint: $(ALL)
 	$(BIN)/ruff check .
@@ -54,7 +59,7 @@ layers: $(ALL)
 	$(BIN)/lint-imports --no-logo
 
 docs: $(ALL)
-	$(BIN)/sphinx-build -q -W --keep-going -b html docs build/docs
+	$(BIN)/sphinx-build -q -j auto -W --keep-going -b html docs build/docs
 
 clean:
 	rm -rf build dist .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache

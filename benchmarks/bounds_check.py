@@ -28,7 +28,7 @@ JUMP = 3.0
 
 
 def check_every_index(python: bool) -> None:
-    """Set what `standoff.kernels.compiling` reads at import; nothing may have imported it."""
+    """Set what `kernels.compiler.decorators` reads at import; nothing may have imported it."""
     if "standoff" in sys.modules:
         raise RuntimeError("standoff is imported already: its kernels are compiled unchecked")
     digest = hashlib.sha256()
@@ -41,18 +41,21 @@ def check_every_index(python: bool) -> None:
     sys.path[:0] = [str(ROOT / "tests")]
 
 
-def laws() -> list[dict[str, Any]]:
+def laws() -> list[Any]:
     """Every predictor, integrator, feedback and variant of the paper's law, once at least."""
-    from standoff.tracking.choices import INTEGRATORS, PREDICTORS
+    import standoff as so
     from standoff.tracking.feedback import PI, FiniteTime, GainMatrix, MotionGain
+    from standoff.tracking.laws import every_option
 
-    paper: list[dict[str, Any]] = [{"integrator": name} for name in INTEGRATORS]
-    paper += [{"switching": "voronoi"}, {"switching": "voronoi", "saturation": "hold"}]
-    paper += [{"switching": "none"}, {"realisation": "integrated"}, {"solve": "plain"}]
+    found: list[Any] = []
+    for law, name in ((so.PredictorCorrector, "predictor"), (so.PaperLaw, "integrator")):
+        found += [law(**{name: word}) for word in every_option()[name].kind.names]
+    variants: list[dict[str, Any]] = [{"switching": "voronoi"}]
+    variants += [{"switching": "voronoi", "saturation": "hold"}]
+    variants += [{"switching": "none"}, {"realisation": "integrated"}, {"solve": "plain"}]
     gains = (PI(50.0, 500.0), GainMatrix([50.0, 60.0, 70.0, 80.0]), MotionGain(1e-3))
-    paper += [{"feedback": chosen} for chosen in (*gains, FiniteTime(50.0, 0.5, 1e-2))]
-    found = [{"predictor": name} for name in PREDICTORS]
-    return found + [{"law": "paper", **options} for options in paper]
+    variants += [{"feedback": chosen} for chosen in (*gains, FiniteTime(50.0, 0.5, 1e-2))]
+    return found + [so.PaperLaw(**options) for options in variants]
 
 
 class Sweep:
@@ -91,21 +94,19 @@ class Sweep:
                     label,
                     lambda g=given, s=settle: tracker.start_from(*g, settle=s),
                 )
-        for options in self.laws:
-            told = f"{label} {options}"
+        for law in self.laws:
+            told = f"{label} {law}"
             pose = poses[self.rng.integers(len(poses))]
             self.attempt(
                 "tracked",
                 told,
-                lambda o=options, p=pose: self.track(a, b, p, planar, o),
+                lambda x=law, p=pose: self.track(a, b, p, planar, x),
                 self.frames,
             )
         told = f"{label} wild"
         self.attempt("wild", told, lambda: self.wild(a, b, poses[0], planar), self.frames)
 
-    def track(
-        self, a: Any, b: Any, pose: tuple[Any, Any], planar: bool, options: dict[str, Any]
-    ) -> None:
+    def track(self, a: Any, b: Any, pose: tuple[Any, Any], planar: bool, law: Any) -> None:
         """Follow B on a slow screw from a pose, by the library's own loop."""
         import standoff as so
         from standoff.motion import ConstantTwist, Fixed, Pose
@@ -116,7 +117,12 @@ class Sweep:
             v, omega = v * [1.0, 1.0, 0.0], omega * [0.0, 0.0, 1.0]
         twist = so.Twist(v, omega)
         path = ConstantTwist(pose_b, twist)
-        so.simulate(a, b, Fixed(pose_a), path, self.frames * 1e-2, dt=1e-2, **options)
+        so.simulate(
+            so.Tracker(a, b, 1e-2, law),
+            Fixed(pose_a),
+            path,
+            self.frames * 1e-2,
+        )
 
     def wild(self, a: Any, b: Any, pose: tuple[Any, Any], planar: bool) -> None:
         """Teleports, deep penetration, twists that have nothing to do with the motion."""
@@ -186,7 +192,7 @@ def main() -> int:
     check_every_index(arguments.python)
     from families.overlaps import PAIRS
     from families.pairs import FAMILIES
-    from standoff.kernels.compiling import BOUNDS_CHECK
+    from standoff.kernels.compiler.decorators import BOUNDS_CHECK
 
     if not BOUNDS_CHECK:
         raise RuntimeError("the kernels do not check their indices")

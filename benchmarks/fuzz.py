@@ -26,7 +26,10 @@ TOLD = 100
 """Inputs between two summaries under Atheris."""
 MEMORY = 8 << 30
 """Bytes of memory a worker may take."""
-KERNELS = [f"standoff.kernels.{file.stem}" for file in (ROOT / "src/standoff/kernels").glob("*.py")]
+KERNELS = [
+    ".".join(file.relative_to(ROOT / "src").with_suffix("").parts)
+    for file in (ROOT / "src/standoff/kernels").rglob("*.py")
+]
 """Modules whose coverage Atheris cannot follow: Numba would compile its marks too."""
 
 

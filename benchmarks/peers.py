@@ -1,6 +1,6 @@
 """Other packages' answers for a pair of ellipsoids, given by their semi-axes.
 
-The packages' adaptors are `standoff.accuracy.peers`; each is imported only when it is used
+The packages' adaptors are `standoff_studies.accuracy.peers`; each is imported only when it is used
 (``pip install standoff[peers]``).
 """
 
@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from standoff.accuracy.peers.answer import Array, Peer, PeerAnswer, Pose, Query
-from standoff.accuracy.peers.coal_peer import Coal, coal_request
-from standoff.accuracy.peers.mujoco_peer import MuJoCo
-from standoff.accuracy.solids import Solid, named
+from standoff_studies.accuracy.peers.answer import Array, Peer, PeerAnswer, Pose, Query
+from standoff_studies.accuracy.peers.coal_peer import Coal, coal_request
+from standoff_studies.accuracy.peers.mujoco_peer import MuJoCo
+from standoff_studies.accuracy.solids import Solid, named
 
 __all__ = [
     "PEERS",

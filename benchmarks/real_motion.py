@@ -33,9 +33,9 @@ OBSTACLES = {
 """Bodies at rest, m, where the tool comes close from many sides and never touches."""
 
 RUNS: dict[str, dict[str, str]] = {
-    "twists, PC2": {"predictor": "feedforward-2"},
-    "twists, PC": {"predictor": "feedforward"},
-    "no twists, secant": {"predictor": "secant"},
+    "twists, PC2": so.PredictorCorrector(),
+    "twists, PC": so.PredictorCorrector(predictor="feedforward"),
+    "no twists, secant": so.PredictorCorrector(predictor="secant"),
 }
 
 
@@ -51,7 +51,9 @@ class Record:
     witness_error: float = 0.0
     certificate: float = 0.0
     same_features: int = 0
-    counts: so.Counts = field(default_factory=lambda: so.Counts(*[0] * len(so.Counts._fields)))
+    counts: so.tracking.Counts = field(
+        default_factory=lambda: so.tracking.Counts(*[0] * len(so.tracking.Counts._fields))
+    )
     corrected_again: int = 0
     features: Counter[str] = field(default_factory=Counter)
 
@@ -75,18 +77,18 @@ def compare(record: Record, answer: so.Proximity, cold: so.Proximity, size: floa
     record.certificate = max(record.certificate, (answer.distance - answer.lower_bound) / size)
     record.same_features += answer.feature_a == cold.feature_a
     record.corrected_again += answer.counts.evaluations > 1
-    record.counts = so.Counts(*map(sum, zip(record.counts, answer.counts, strict=True)))
+    record.counts = so.tracking.Counts(*map(sum, zip(record.counts, answer.counts, strict=True)))
     record.features[str(answer.feature_a)] += 1
 
 
-def track(name: str, options: dict[str, str], motion: PoseSamples) -> Record:
+def track(name: str, law: so.PredictorCorrector, motion: PoseSamples) -> Record:
     """Track the tool past one obstacle over all samples and compare each with a cold query."""
     body, rest = OBSTACLES[name]
     path = Offset(motion, TOOL_IN_HAND)
-    tracker = so.Tracker(body, TOOL, **options)
+    tracker = so.Tracker(body, TOOL, law=law)
     size = body.size + TOOL.size
     record = Record()
-    with_twists = options["predictor"] != "secant"
+    with_twists = law.predictor != "secant"
     twist = path.twist(motion.start) if with_twists else None
     state = tracker.start(rest, path.pose(motion.start), None, twist)
     for before, t in itertools.pairwise(map(float, motion.times)):
@@ -107,8 +109,8 @@ def main() -> None:
         f"steps {1e3 * steps.min():.1f} to {1e3 * steps.max():.1f} ms"
     )
     for name, (body, _) in OBSTACLES.items():
-        for run, options in RUNS.items():
-            r = track(name, options, motion)
+        for run, law in RUNS.items():
+            r = track(name, law, motion)
             print(f"\n{name} ({body.size + TOOL.size:.3f} m with the tool), {run}")
             print(f"  certified            {r.certified} of {r.frames} frames")
             print(f"  nearest              {1e3 * r.nearest:.3f} mm")

@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import standoff as so
-from standoff.kernels import events as logs
-from standoff.kernels import frame as rows
-from standoff.kernels import tracker as kernels
+from standoff.kernels.entries import tracker as kernels
+from standoff.kernels.pair import events as logs
+from standoff.kernels.state import arrays as rows
 
 Array = NDArray[np.float64]
 
@@ -96,7 +96,7 @@ HEADER = (
 def lesser_depth(slide: Any, truth: Any) -> float:
     """Return how much less than constructed the least depth is, at most, in some frames."""
     from oracles.depth import least_depth
-    from oracles.support import Placed
+    from standoff_studies.oracles import Placed
 
     worst = 0.0
     for k in np.linspace(0, len(truth.gaps) - 1, CHECKED).astype(int):
@@ -109,11 +109,11 @@ def lesser_depth(slide: Any, truth: Any) -> float:
     return worst
 
 
-def run(slide: Any, gap: Any, steps: int, options: dict[str, Any] | None = None) -> Slid:
+def run(slide: Any, gap: Any, steps: int, law: Any = None) -> Slid:
     """Track ``steps`` frames and compare each with the truth."""
     from families.sliding import STEP, frames
 
-    tracker = so.Tracker(slide.a.body, slide.b.body, dt=STEP, **(options or {}))
+    tracker = so.Tracker(slide.a.body, slide.b.body, dt=STEP, law=law or so.PredictorCorrector())
     found = Slid()
     log = np.empty(logs.MAX_EVENTS * logs.EVENT_COLUMNS)
     data = None
@@ -128,10 +128,7 @@ def run(slide: Any, gap: Any, steps: int, options: dict[str, Any] | None = None)
         begun = time.perf_counter()
         refused, why = kernels.run(
             tracker.packed,
-            truth.poses_a,
-            truth.poses_b,
-            truth.twists_a,
-            truth.twists_b,
+            np.hstack([truth.poses_a, truth.poses_b, truth.twists_a, truth.twists_b]),
             True,
             np.full(count, STEP),
             tracker.options,
@@ -168,7 +165,7 @@ def main() -> int:
         gaps += [(f"±{swing:.0e}", oscillating(swing)) for swing in SWINGS]
         slide = make(name)
         for label, gap in gaps:
-            found = run(slide, gap, arguments.steps, {"depth": arguments.depth})
+            found = run(slide, gap, arguments.steps, so.PredictorCorrector(depth=arguments.depth))
             print(found.row(name, label), flush=True)
             if found.lost:
                 print(f"    lost: frames {found.lost[:8]}")

@@ -26,11 +26,10 @@ from numpy.typing import NDArray
 
 import standoff as so
 from benchmarks.peers import coal_request
-from standoff.kernels import events as logs
-from standoff.kernels import frame as rows
-from standoff.kernels import tracker as kernels
-from standoff.paper.law_accuracy import A, B, two_ellipsoids
-from standoff.tracking.options import pack_options
+from standoff.kernels.entries import tracker as kernels
+from standoff.kernels.pair import events as logs
+from standoff.kernels.state import arrays as rows
+from standoff_studies.paper.law_accuracy import A, B, two_ellipsoids
 
 Array = NDArray[np.float64]
 
@@ -120,9 +119,8 @@ def compiled_loop(frames: Frames, a: so.Body = A, b: so.Body = B) -> Contender:
     tracker = so.Tracker(a, b, dt=STEP)
     begin = tracker.start(*frames.poses[0], *frames.twists[0]).data
     pair = (a.ints, a.reals, b.ints, b.reals)
-    options, _ = pack_options("predictor-corrector", "feedforward-2", "heun", None, STEP, 1e-10)
-    poses = np.ascontiguousarray(frames.flat_a[1:]), np.ascontiguousarray(frames.flat_b[1:])
-    twists = np.ascontiguousarray(frames.twist_a[1:]), np.ascontiguousarray(frames.twist_b[1:])
+    options = tracker.options
+    motions = np.hstack([frames.flat_a, frames.flat_b, frames.twist_a, frames.twist_b])[1:]
     steps = np.full(FRAMES, STEP)
     outs = np.empty((FRAMES, rows.N_OUT))
     events = np.empty(logs.MAX_EVENTS * logs.EVENT_COLUMNS)
@@ -130,7 +128,7 @@ def compiled_loop(frames: Frames, a: so.Body = A, b: so.Body = B) -> Contender:
     def run() -> None:
         for _ in range(LOOPS):
             state = begin.copy()
-            kernels.run(pair, *poses, *twists, True, steps, options, state, outs, events)
+            kernels.run(pair, motions, True, steps, options, state, outs, events)
 
     def witnesses(k: int) -> tuple[Array, Array]:
         row = outs[k - 1]

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 import standoff as so
 from benchmarks.touching_scenes import SCENES, Frames, Gap, Scene, gaps_of
-from standoff.kernels import events as N
-from standoff.kernels import frame as K
-from standoff.kernels import tracker as kernels
+from standoff.kernels.entries import tracker as kernels
+from standoff.kernels.pair import events as N
+from standoff.kernels.state import arrays as K
 
 Array = NDArray[np.float64]
 
@@ -84,7 +84,7 @@ def run(scene: Scene, name: str, gap: Gap, steps: int, *, twists: bool = True) -
         log = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
         rest = np.tile(AT_REST, (count, 1))
         at, _ = kernels.run(
-            tracker.packed, rest, poses, np.zeros((count, 6)), xi if twists else 0.0 * xi, twists,
+            tracker.packed, np.hstack([rest, poses, 0.0 * xi, xi if twists else 0.0 * xi]), twists,
             np.full(count, DT), tracker.options, state, outs, log,
         )  # fmt: skip
         if at >= 0:

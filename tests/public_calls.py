@@ -12,15 +12,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import standoff as so
-from standoff import control, geometry, motion
+from standoff import control, geometry, motion, simulation
 from standoff.geometry import Line
 
 MODULES: dict[str, ModuleType] = {
     "standoff": so,
     "standoff.shapes": so.shapes,
+    "standoff.bodies": so.bodies,
+    "standoff.impact": so.impact,
+    "standoff.points": so.points,
+    "standoff.voronoi": so.voronoi,
     "standoff.geometry": geometry,
     "standoff.motion": motion,
     "standoff.control": control,
+    "standoff.simulation": simulation,
 }
 NOT_CALLED = {
     **dict.fromkeys(("Surface", "Curve", "Body"), "abstract, or made by its static methods"),
@@ -42,30 +47,31 @@ MERIDIAN = Line([1.0, 0.0, -1.0], [2.0, 0.0, 1.0])
 CHART = {"linear": np.eye(3), "shift": np.zeros(3), "domain": (-1.0, 1.0, -1.0, 1.0)}
 RIGHT_ANGLES = {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}
 WINDING = {"rate": 1.0, "phase": 0.1, "orientation": "fixed"}
-AXES = {"a": 1.0, "b": 2.0, "c": 3.0}
+AXES = [1.0, 2.0, 3.0]
 LOOP = [Line([0, 0], [1, 0]), Line([1, 0], [0, 1]), Line([0, 1], [0, 0])]
 
 SHAPES: dict[str, dict[str, Any]] = {
-    "box": {"x": 1.0, "y": 2.0, "z": 3.0, "rounding": 0.1},
-    "cap": {"radius": 1.0, "offset": 0.1},
-    "capsule": {"r": 1.0, "length": 2.0},
-    "cone": {"r": 1.0, "height": 2.0},
-    "cylinder": {"r": 1.0, "length": 2.0},
-    "egg": {"radius": 1.0, "length": 3.0, "taper": 0.3},
-    "ellipsoid": AXES,
-    "gore": {"radius": 1.0, "height": 3.0, "patches": 4},
-    "halfspace": {},
-    "hull_of_revolution": {"curve": MERIDIAN},
-    "lens": {"radius": 1.0, "offset": 0.4},
-    "planar_loop": {"curves": LOOP, "radius": 0.1},
-    "point": {},
-    "polytope": RIGHT_ANGLES,
+    "box": {"size": AXES, "rounding": 0.1},
+    "cap": {"radius": 1.0, "offset": 0.1, "rounding": 0.1},
+    "capsule": {"radius": 1.0, "length": 2.0, "rounding": 0.1},
+    "cone": {"radius": 1.0, "height": 2.0, "rounding": 0.1},
+    "cylinder": {"radius": 1.0, "height": 2.0, "rounding": 0.1},
+    "egg": {"radius": 1.0, "length": 3.0, "taper": 0.3, "rounding": 0.1},
+    "ellipsoid": {"semi_axes": AXES, "rounding": 0.1},
+    "gore": {"radius": 1.0, "height": 3.0, "patches": 4, "rounding": 0.1},
+    "halfspace": {"normal": [0.0, 1.0, 1.0], "offset": 0.1, "rounding": 0.1},
+    "hull_of_revolution": {"curve": MERIDIAN, "rounding": 0.1},
+    "lens": {"radius": 1.0, "offset": 0.4, "rounding": 0.1},
+    "planar_loop": {"curves": LOOP, "rounding": 0.1},
+    "point": {"rounding": 0.1},
+    "polygon": {"vertices": RIGHT_ANGLES["vertices"][:3], "rounding": 0.1},
+    "polytope": {**RIGHT_ANGLES, "rounding": 0.1},
     "rounded_polytope": {**RIGHT_ANGLES, "rounding": 0.01},
-    "segment": {"length": 1.0},
-    "sphere": {"r": 1.0},
+    "segment": {"length": 1.0, "rounding": 0.1},
+    "sphere": {"radius": 1.0, "rounding": 0.1},
     "sphere_atlas": {"linear": np.eye(3), "centre": np.zeros(3)},
-    "spindle": {"radius": 1.0, "length": 3.0, "patches": 3},
-    "superellipsoid": {**AXES, "e1": 0.5, "e2": 0.5},
+    "spindle": {"radius": 1.0, "length": 3.0, "patches": 3, "rounding": 0.1},
+    "superellipsoid": {"semi_axes": AXES, "exponents": [0.5, 0.5], "rounding": 0.1},
 }
 
 GEOMETRY: dict[str, dict[str, Any]] = {
@@ -112,8 +118,8 @@ GEOMETRY: dict[str, dict[str, Any]] = {
     "Plane.through": {"origin": [0, 0, 0], "along_u": [1, 0, 0], "along_v": [0, 1, 0]},
     "SurfaceCurve.isoline": {"surface": geometry.BezierPatch(NET), "u": 0.5},
     "Torus": {"major": 2.0, "minor": 1.0, "u0": 0.0, "u1": 1.0, "v0": 0.0, "v1": 1.0},
-    "ellipsoid_octants": AXES,
-    "ellipsoid_patches": AXES,
+    "ellipsoid_octants": dict(zip("abc", AXES, strict=True)),
+    "ellipsoid_patches": dict(zip("abc", AXES, strict=True)),
     "pcurve_of": {"curve": DIAGONAL, "surface": PLANE},
 }
 
@@ -132,6 +138,13 @@ MOTION: dict[str, dict[str, Any]] = {
     "Helix": {"radius": 1.0, "pitch": 0.5, "centre": [0, 0, 0], "axis": [0, 0, 1], **WINDING},
     "Offset": {"path": motion.Fixed(HOME), "pose": HOME},
     "Pose": {"rotation": np.eye(3), "translation": [0.0, 0.0, 0.0]},
+    "PoseFunction": {
+        "pose": motion.Fixed(HOME).pose,
+        "twist": None,
+        "step": 1e-3,
+        "start": 0.0,
+        "end": 1.0,
+    },
     "PoseSamples": {"times": [0.0, 1.0], "poses": [HOME, AWAY]},
     "Screw": {
         "pose": HOME,
@@ -145,6 +158,7 @@ MOTION: dict[str, dict[str, Any]] = {
     "Pose.exp": {"rotation_vector": [0.0, 0.0, 1.0], "translation": [0.0, 0.0, 0.0]},
     "Pose.from_wxyz": {"quaternion": [1.0, 0, 0, 0], "translation": [0.0, 0.0, 0.0]},
     "Pose.from_xyzw": {"quaternion": [0.0, 0, 0, 1], "translation": [0.0, 0.0, 0.0]},
+    "Pose.nearest": {"value": HOME},
     "Pose.of": {"value": HOME},
     "Twist.between": {"first": HOME, "second": AWAY, "duration": 1.0},
     "Twist.of": {"value": np.zeros(6)},
@@ -157,8 +171,8 @@ BODIES: dict[str, dict[str, Any]] = {
         "vertices": [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]],
         "faces": [],
         "dimension": 3,
-        "edges": [so.Edge(Line([0, 0, -1], [0, 0, 1]), 0, 1)],
-        "radius": 0.1,
+        "edges": [so.bodies.Edge(Line([0, 0, -1], [0, 0, 1]), 0, 1)],
+        "rounding": 0.1,
         "tolerance": 1e-9,
         "convexity_tolerance": 1e-6,
     },
@@ -166,7 +180,7 @@ BODIES: dict[str, dict[str, Any]] = {
         "patches": geometry.ellipsoid_octants(1.0, 2.0, 3.0),
         "tolerance": 1e-9,
         "convexity_tolerance": 1e-6,
-        "radius": 0.1,
+        "rounding": 0.1,
     },
     "max_gain": {"integrator": "heun", "dt": 1e-3},
 }
@@ -201,6 +215,86 @@ CONTROL: dict[str, dict[str, Any]] = {
 }
 
 
+SAMPLING = {
+    "period": 1e-3,
+    "device_damping": 1.0,
+    "device_rotational_damping": 1e-3,
+    "delay": 1,
+    "velocity_time_constant": 1e-3,
+}
+MECHANISM = {
+    "mass": 0.1,
+    "damping": 1.0,
+    "rotational_inertia": 1e-4,
+    "rotational_damping": 1e-3,
+}
+ARM = {**MECHANISM, "stiffness": 100.0, "rotational_stiffness": 1.0}
+WEIGHED = {"mass": 1.0, "centre": np.zeros(3), "inertia": np.eye(3)}
+SIMULATION: dict[str, dict[str, Any]] = {
+    "DeviceLimits": {"max_force": 5.0, "max_torque": 0.1, "workspace": 0.2},
+    "Disturbances": {"script": {3: "nan"}, "drop_out": 0.1, "malformed": 0.1, "seed": 1},
+    "Encoder": {
+        "position_step": 1e-5,
+        "angle_step": 1e-3,
+        "velocities": True,
+        "velocity_time_constant": 1e-3,
+    },
+    "HumanArm": ARM,
+    "Mechanism": MECHANISM,
+    "PassivityController": {
+        "max_damping": 1.0,
+        "max_rotational_damping": 1e-3,
+        "max_tool_damping": 1.0,
+        "max_tool_rotational_damping": 1e-3,
+        "tolerance": 1e-6,
+    },
+    "Sampling": SAMPLING,
+    "ScriptedHand": {
+        "path": motion.Fixed(HOME),
+        "arm": simulation.HumanArm(**ARM),
+    },
+    "SimulatedDevice": {
+        "mechanism": simulation.Mechanism(**MECHANISM),
+        "hand": None,
+        "period": 1e-3,
+        "pose": HOME,
+        "encoder": None,
+        "delay": 1,
+        "limits": None,
+        "disturbances": None,
+    },
+    "VirtualCoupler": {
+        "stiffness": 100.0,
+        "damping": 0.1,
+        "rotational_stiffness": 0.1,
+        "rotational_damping": 1e-4,
+        "max_force": 5.0,
+        "max_torque": 0.1,
+        "max_force_rate": 1e3,
+        "max_torque_rate": 1e3,
+        "engage_time": 0.1,
+        "max_age": 0.01,
+        "sampling": simulation.Sampling(**SAMPLING),
+        "controller": None,
+    },
+    "Wrench": {"force": AXES, "torque": AXES},
+    "largest_stiffness": {
+        "damping": 0.1,
+        "device_damping": 1.0,
+        "sampling": simulation.Sampling(**SAMPLING),
+    },
+    "required_damping": {
+        "stiffness": 100.0,
+        "damping": 0.1,
+        "sampling": simulation.Sampling(**SAMPLING),
+    },
+    "required_damping_of": {"position_to_force": lambda z: 100.0 / z, "period": 1e-3, "angles": 64},
+    "mass_properties": {"body": SPHERE, "density": 2.0, "tolerance": 1e-6},
+    "MassProperties": {**WEIGHED, "volume": 1.0},
+    "MassProperties.of": WEIGHED,
+}
+
+
 class Call(NamedTuple):
     """A public name, what it names, and arguments with which it works."""
 
@@ -217,6 +311,7 @@ def calls() -> list[Call]:
         (motion, MOTION),
         (so, BODIES),
         (control, CONTROL),
+        (simulation, SIMULATION),
     )
     found = []
     for module, table in tables:
@@ -234,26 +329,29 @@ def pair_calls() -> list[Call]:
     posed = {**pair, **PLACED}
     moving = motion.ConstantTwist(AWAY, so.Twist([-1.0, 0.0, 0.0], np.zeros(3)))
     moved = {**pair, "path_a": HOME, "path_b": moving, "duration": 0.01}
-    options = {"dt": 1e-3, "law": "paper", "predictor": "none", "tolerance": 1e-9}
+    law = so.PaperLaw(tolerance=1e-9, gain=100.0, feedforward=False)
+    along = {name: moved[name] for name in ("path_a", "path_b", "duration")}
     tables: dict[str, tuple[ModuleType, dict[str, Any]]] = {
-        "Tracker": (so, {**pair, **options, "gain": 100.0, "integrator": "heun"}),
-        "PointTracker": (so, {"body": DISC, "dt": 1e-3, "law": "paper", "tolerance": 1e-9}),
-        "SpatialPointTracker": (so, {"body": BOX, "dt": 1e-3, "tolerance": 1e-9}),
+        "PaperLaw": (so, {"tolerance": 1e-9, "gain": 100.0, "deadline": 40}),
+        "PredictorCorrector": (so, {"tolerance": 1e-9, "deadline": 40}),
+        "Tracker": (so, {**pair, "dt": 1e-3, "law": law}),
+        "PointTracker": (so, {"body": DISC, "dt": 1e-3, "law": so.PaperLaw()}),
+        "SpatialPointTracker": (so.points, {"body": BOX, "dt": 1e-3, "tolerance": 1e-9}),
         "distance": (so, posed),
         "open_recording": (so, {"path": "no_such_file.parquet"}),
         "pair_system": (
-            so,
+            so.tracking,
             {**posed, "place_a": (so.Feature("vertex", 0), ()), "place_b": (("face", 0), (0, 0))},
         ),
         "record_point": (
-            so,
+            so.points,
             {
                 "tracker": so.PointTracker(DISC),
                 "path": motion.Fixed(so.Pose(np.eye(3), [2.0, 0.0, 0.0])),
                 "times": [0.0, 1e-3],
             },
         ),
-        "simulate": (so, {**moved, "dt": 1e-3}),
+        "simulate": (so, {"tracker": so.Tracker(SPHERE, BOX, 1e-3), **along}),
         "time_of_impact": (so, {**moved, "start": 0.0, "tolerance": 1e-9, "clearance": 0.0}),
         "voronoi_regions": (so, {"body": DISC, "reach": 1.0, "tolerance": 1e-6}),
         "witness_set": (

@@ -17,34 +17,33 @@ from typing import Any, NamedTuple
 import pytest
 
 import standoff as so
-from standoff import bodies, tracking
+from standoff import bodies, recording
 
 SOURCE = Path(so.__file__).parent
 ROOT = {"standoff", "standoff.on_demand", "standoff.version"}
+# The flags of the laws' options are made from their declarations.
+LAWS = {"standoff.errors", *(f"standoff.tracking{part}" for part in ("", ".laws", ".law_options"))}
 COMMANDS = (
     *("track", "distance", "impact", "check", "automaton"),
     *("paper", "soak", "accuracy", "warmup"),
 )
+STUDIES = ("paper", "soak", "accuracy")
 
 # What draws, writes, reads formulas, or serves the command line alone.
 EXTRAS = {"PIL", "flint", "jinja2", "matplotlib", "pyarrow", "rich", "sympy", "tyro"}
 # Parts of the library that a query of two ready-made shapes has no use for.
 UNUSED = (
-    "accuracy",
     "bodies.voronoi",
     "cli",
     "control",
-    "paper",
     "scene",
-    "soak",
-    "tracking.automaton",
-    "tracking.impact",
+    "automaton",
+    "impact",
+    "points",
+    "recording",
+    "simulation",
+    "tracking.contact",
     "tracking.pair_system",
-    "tracking.point_tracker",
-    "tracking.recording",
-    "tracking.simulate",
-    "tracking.spatial_point_tracker",
-    "tracking.witness_set",
 )
 # Numba imports scipy.linalg when it first runs a compiled function.
 NUMBA_NEEDS = {"scipy.linalg"}
@@ -142,8 +141,18 @@ def test_import_loads_three_modules_and_no_other_package() -> None:
 def test_help_loads_only_what_reads_the_arguments(command: str) -> None:
     given = [*command.split(), "--help"]
     modules = loaded(f"from standoff.cli import main\nmain({given})")
-    command_line = {f"standoff.cli{part}" for part in ("", ".arguments", ".entry", ".errors")}
+    parts = ("", ".added", ".arguments", ".entry", ".errors")
+    command_line = {f"standoff.cli{part}" for part in parts} | LAWS
     assert {name for name in modules if packages({name}) == {"standoff"}} == ROOT | command_line
+    shown = STUDIES if not command else [name for name in STUDIES if name == command]
+    options = {
+        f"standoff_studies.{study}{part}"
+        for study in shown
+        for part in ("", ".arguments", ".options")
+    }
+    assert {name for name in modules if packages({name}) == {"standoff_studies"}} == (
+        {"standoff_studies"} | options if shown else set()
+    )
     assert not packages(modules) & {"numpy", "scipy", "numba", "llvmlite", *EXTRAS} - {
         "tyro",
         "rich",
@@ -152,7 +161,7 @@ def test_help_loads_only_what_reads_the_arguments(command: str) -> None:
 
 def test_a_query_loads_neither_scipy_nor_what_it_has_no_use_for() -> None:
     modules = loaded(QUERY)
-    assert not packages(modules) & EXTRAS
+    assert not packages(modules) & {"standoff_studies", *EXTRAS}
     scipy = {name for name in modules if name.count(".") == 1 and name.startswith("scipy.")}
     assert {name for name in scipy if not name.startswith("scipy._")} <= {
         "scipy.version",
@@ -164,13 +173,16 @@ def test_a_query_loads_neither_scipy_nor_what_it_has_no_use_for() -> None:
 
 def test_a_tracker_imports_before_its_loop_what_frames_need() -> None:
     modules = loaded(TRACKED)
-    assert not packages(modules) & EXTRAS
+    assert not packages(modules) & {"standoff_studies", *EXTRAS}
     unused = tuple(f"standoff.{part}" for part in UNUSED)
     assert [name for name in sorted(modules) if f"{name}.".startswith(unused)] == []
 
 
 def test_every_package_that_should_imports_on_demand() -> None:
-    names = ("standoff", "bodies", "bodies.shapes", "geometry", "motion", "tracking")
+    names = (
+        *("standoff", "bodies", "bodies.shapes", "geometry", "motion", "tracking"),
+        *("automaton", "impact", "points", "recording", "simulation", "voronoi"),
+    )
     assert set(FILES) == {name if name == "standoff" else f"standoff.{name}" for name in names}
 
 
@@ -240,11 +252,14 @@ assert standoff.feedback.Linear
 
 @pytest.mark.parametrize("package", FILES)
 def test_a_module_never_takes_the_place_of_a_public_name(package: str) -> None:
-    """Importing standoff.tracking.simulate would bind it in its package, where it is a function."""
+    """Importing `recording.simulate` would bind it in its package, where it is a function."""
     same = [
         name for home, name in declared(FILES[package]).on_demand if home == f"{package}.{name}"
     ]
-    assert bool(same) == (package in ("standoff.geometry", "standoff.tracking"))
+    assert bool(same) == (
+        package
+        in ("standoff.geometry", "standoff.recording", "standoff.simulation", "standoff.tracking")
+    )
     for order in ("name then module", "module then name") if same else ():
         fresh(f"""
 import sys
@@ -261,10 +276,10 @@ for name in {same}:
 
 def test_a_name_put_in_its_place_stays(monkeypatch: pytest.MonkeyPatch) -> None:
     stand_in: Any = object()
-    monkeypatch.setattr(tracking, "simulate", stand_in)
-    assert tracking.simulate is stand_in
+    monkeypatch.setattr(recording, "simulate", stand_in)
+    assert recording.simulate is stand_in
     monkeypatch.undo()
-    assert tracking.simulate is so.simulate
+    assert recording.simulate is so.simulate
 
 
 def test_threads_may_ask_for_names_at_once() -> None:
@@ -289,3 +304,30 @@ for thread in running:
     thread.join()
 assert not errors, errors
 """)
+
+
+def test_the_front_is_small() -> None:
+    """What is asked for every day; the rest is in modules, which tab completion shows too."""
+    assert len(so.__all__) <= 28
+    shown = {name for name in dir(so) if not name.startswith("__")}
+    modules = (
+        *("automaton", "bodies", "control", "geometry", "impact", "motion"),
+        *("points", "recording", "scene", "simulation", "tracking", "voronoi"),
+    )
+    assert shown == {*so.__all__, *modules}
+    assert {name for name in dir(so.shapes) if not name.startswith("__")} == set(so.shapes.__all__)
+
+
+@pytest.mark.parametrize(
+    ("name", "home"),
+    [("Edge", "bodies"), ("record_point", "points"), ("Impact", "impact"), ("Counts", "tracking")],
+)
+def test_a_name_that_left_the_front_says_where_it_is(name: str, home: str) -> None:
+    with pytest.raises(AttributeError, match=rf"write `from standoff\.{home} import {name}`"):
+        getattr(so, name)
+    assert getattr(import_module(f"standoff.{home}"), name).__name__ == name
+
+
+def test_what_never_was_is_no_attribute() -> None:
+    for module in (so, so.points, so.shapes):
+        assert not hasattr(module, "no_such_name")

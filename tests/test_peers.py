@@ -7,7 +7,7 @@ import pytest
 from benchmarks.peers import PEERS, coal_ellipsoids, mujoco_ellipsoids
 
 from oracles.exact_pairs import exact_pair
-from oracles.support import Ellipsoid
+from standoff_studies.oracles import Ellipsoid
 
 ACCURACY = {
     "Coal, default": 2e-2,

@@ -9,7 +9,7 @@ import pytest
 
 import standoff as so
 from oracles.bounds import gap
-from oracles.support import Ellipsoid, Lens, Placed
+from standoff_studies.oracles import Ellipsoid, Lens, Placed
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -11,10 +11,11 @@ from typing import BinaryIO
 import pytest
 
 import standoff
+import standoff_studies
 from families import file_kinds
 from standoff.whole_files import UnfitTarget, file_name, write_whole
 
-SOURCE = Path(standoff.__file__).parent
+SOURCES = [Path(package.__file__).parent for package in (standoff, standoff_studies)]
 
 WRITES = {"write_text", "write_bytes", "touch", "rename", "symlink_to", "hardlink_to"}
 WRITES |= {"truncate", "tofile", "savetxt", "savez", "copyfile", "move", "NamedTemporaryFile"}
@@ -52,11 +53,11 @@ def is_text(node: ast.expr) -> bool:
 
 def test_no_other_module_writes_a_file() -> None:
     found = {}
-    for path in SOURCE.rglob("*.py"):
+    for source, path in ((s, path) for s in SOURCES for path in s.rglob("*.py")):
         calls = [n for n in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(n, ast.Call)]
         lines = [call.lineno for call in calls if writing(call)]
         if lines:
-            found[path.relative_to(SOURCE).as_posix()] = lines
+            found[path.relative_to(source).as_posix()] = lines
     assert set(found) - KNOWN == set(), found
     assert "whole_files.py" in found, "the check sees no writing at all"
 

@@ -2,8 +2,9 @@
 
 ``paper-figure`` shows a figure with its caption, ``paper-statements`` sets what the paper states
 beside what was measured, ``paper-tables`` prints its tables. Each takes the figure's key. A figure
-is made once a build; a key that no figure has, and a figure that fails, is a warning, so it fails
-the build.
+is made once a build, by the process that reads its page: the figures of a chapter stand on one page
+and share its run. A key that no figure has, and a figure that fails, is a warning, so it fails the
+build.
 """
 
 from __future__ import annotations
@@ -15,22 +16,26 @@ from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
 from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
-import standoff.paper
-from standoff.paper.catalogue import UnknownFigure, chosen, make
-from standoff.paper.figure import Artwork, Entry, Statement, shown_tables
-from standoff.paper.typesetting import pieces, stop
-from standoff.paper.verdicts import Verdict
-from standoff.paper.writers import picture_bytes, stem
+import standoff_studies.paper
+from standoff_studies.paper.catalogue import UnknownFigure, chosen, make
+from standoff_studies.paper.figure import Artwork, Entry, Statement, shown_tables
+from standoff_studies.paper.typesetting import pieces, stop
+from standoff_studies.paper.verdicts import Verdict
+from standoff_studies.paper.writers import picture_bytes, stem
 
 logger = logging.getLogger(__name__)
+
+HANDS = 4
+"""Parts in which the pages are dealt out: about as many as Sphinx makes for two processes."""
 
 HEADINGS = ("source", "the paper states", "measured", "verdict")
 
 # Figures are made of these; a page is read again when one of them changes.
-SOURCES = sorted(Path(standoff.paper.__file__).parent.glob("**/*.py"))
+SOURCES = sorted(Path(standoff_studies.paper.__file__).parent.glob("**/*.py"))
 
 
 @cache
@@ -141,9 +146,9 @@ def table_of(statements: list[Statement]) -> nodes.table:
     for s in statements:
         verdict = Verdict.of(s)
         said = f"{verdict.sign} {verdict.words}"
-        body += row_of(
-            (s.source, s.stated, s.measured, f"{said}{stop(s.why)} {s.why}" if s.why else said)
-        )
+        why = f"{said}{stop(s.why)} {s.why}" if s.why else said
+        measured = f"{s.measured}. By: {s.by}" if s.by else s.measured
+        body += row_of((s.source, s.stated, measured, why))
     group += [head, body]
     return nodes.table("", group, classes=["paper-statements"])
 
@@ -175,10 +180,18 @@ def write_text(writer: Any, node: picture) -> None:
     raise nodes.SkipNode
 
 
+def spread(_app: Sphinx, _env: BuildEnvironment, docnames: list[str]) -> None:
+    """Deal the paper's pages out, which take far longer than all others: neighbours in the list are
+    read by one process."""
+    ordered = sorted(docnames, key=lambda name: (not name.startswith("paper/"), name))
+    docnames[:] = [name for first in range(HANDS) for name in ordered[first::HANDS]]
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Register both directives. Not for parallel reading: figures of a chapter share its run."""
+    """Register the directives."""
+    app.connect("env-before-read-docs", spread)
     app.add_node(picture, html=(write_picture, None), text=(write_text, None))
     app.add_directive("paper-figure", PaperFigure)
     app.add_directive("paper-statements", PaperStatements)
     app.add_directive("paper-tables", PaperTables)
-    return {"parallel_read_safe": False, "parallel_write_safe": True}
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

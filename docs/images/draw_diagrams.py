@@ -1,4 +1,4 @@
-"""Draw the pages' diagrams: architecture.svg (a step, room by room), certificate.svg, touching.svg.
+"""Draw the pages' diagrams: architecture.svg (a frame), certificate.svg, touching.svg.
 
 Run: python docs/images/draw_diagrams.py [FOLDER]. Plain Python; the same run gives the same bytes.
 """
@@ -72,93 +72,123 @@ class Drawing:
         return "\n".join([self.head, *self.parts, "</svg>"]) + "\n"
 
 
-def room(
-    d: Drawing, y: float, fill: str, what: str, where: str, x: float = 40, w: float = 430
+def stage(
+    d: Drawing, x: float, y: float, w: float, what: str, where: str, fill: str = COMPILED
 ) -> None:
-    """One room: what happens there, and its file."""
+    """What happens to a pose, and the file in which it does."""
     d.box(x, y, w, 48, fill)
-    d.text(x + 14, y + 20, what, 14)
-    d.text(x + 14, y + 38, where, 12, mono="yes", fill=SOFT)
+    d.text(x + 12, y + 20, what, 14)
+    d.text(x + 12, y + 38, where, 12, mono="yes", fill=SOFT)
+
+
+def panel_of(d: Drawing, x: float, y: float, w: float, h: float, name: str, where: str) -> None:
+    """One of the three ways through a frame."""
+    d.box(x, y, w, h, LOOP)
+    d.text(x + 12, y + 22, name, 15, bold="yes")
+    d.text(x + 12, y + 40, where, 12, mono="yes", fill=SOFT)
+
+
+def border(d: Drawing, y: float, above: str, below: str) -> None:
+    """Where Python hands over to compiled code, or takes back."""
+    d.line([(20, y), (940, y)], SOFT, dash="5 4")
+    d.text(940, y - 7, above, 12, anchor="end", fill=SOFT)
+    d.text(940, y + 17, below, 12, anchor="end", fill=SOFT)
+
+
+def before_the_ways(d: Drawing) -> None:
+    call = "tracker.step(state, pose_a, pose_b, twist_a, twist_b)"
+    d.text(480, 26, call, 14, mono="yes", bold="yes", anchor="middle")
+    stage(
+        d, 270, 48, 420, "poses and twists become 36 numbers in a row", "tracking/inputs.py", PYTHON
+    )
+    border(d, 116, "Python", "compiled by Numba: kernels/")
+    stage(d, 270, 136, 420, "what is no pose is refused", "state/arrays.py")
+    stage(d, 270, 204, 420, "B is seen from A: one pose, one twist", "algebra/rigid.py")
+    for top, bottom in ((34, 48), (96, 136), (184, 204)):
+        d.arrow([(480, top), (480, bottom)])
+
+
+def apart(d: Drawing) -> None:
+    panel_of(d, 20, 300, 480, 460, "apart", "frame/apart.py")
+    left, right, w = 36, 268, 216
+    stage(d, left, 352, 448, "predict: q + h w_ff, up to a boundary", "frame/prediction.py")
+    d.text(156, 424, "correct, until at rest", 13, italic="yes")
+    d.text(484, 424, "pair/descent.py", 12, mono="yes", fill=SOFT, anchor="end")
+    stage(d, left, 436, w, "points and partials", "body/jets.py")
+    stage(d, left, 504, w, "pair system Ψ, g, H, b", "pair/system.py")
+    stage(d, left, 572, w, "one solve: step, w_ff", "pair/newton.py")
+    stage(d, right, 572, w, "walk to a boundary", "body/trimming.py")
+    stage(d, right, 504, w, "hold, cross or release", "pair/switching.py")
+    stage(d, left, 692, 448, "certify: a lower bound by planes", "pair/certificate.py")
+    d.text(left, 662, "where the bound is too low, once more, to roundoff", 13, italic="yes")
+    for y in (484, 552):
+        d.arrow([(144, y), (144, y + 20)])
+    d.arrow([(144, 400), (144, 436)])
+    d.arrow([(252, 596), (268, 596)])
+    d.arrow([(376, 572), (376, 552)])
+    d.arrow([(376, 504), (376, 460), (252, 460)])
+    d.text(386, 478, "again", 12, fill=SOFT)
+    d.arrow([(376, 620), (376, 692)])
+
+
+def in_contact(d: Drawing) -> None:
+    panel_of(d, 532, 300, 192, 460, "in contact", "frame/contact.py")
+    x, w = 544, 168
+    stage(d, x, 372, w, "Newton's method", "depth/penetration.py")
+    stage(d, x, 460, w, "descent of depth", "depth/descent.py")
+    stage(d, x, 548, w, "is it the least?", "depth/search.py")
+    stage(d, x, 692, w, "certify along n", "pair/certificate.py")
+    for top, bottom in ((420, 460), (508, 548), (596, 692)):
+        d.arrow([(x + 0.5 * w, top), (x + 0.5 * w, bottom)])
+    d.text(x, 362, "from the last place and n", 12, italic="yes")
+    d.text(x + 0.5 * w + 8, 444, "if it fails", 12, fill=SOFT)
+    d.text(x + 0.5 * w + 8, 630, "bounds above", 12, fill=SOFT)
+    d.text(x + 0.5 * w + 8, 646, "and below", 12, fill=SOFT)
+
+
+def anew(d: Drawing) -> None:
+    panel_of(d, 756, 300, 184, 460, "restart", "frame/restart.py")
+    x, w = 768, 160
+    stage(d, x, 372, w, "sampled starts", "pair/cold_start.py")
+    stage(d, x, 460, w, "descend, certify", "pair/certified.py")
+    stage(d, x, 548, w, "touching? depth", "frame/contact.py")
+    for top, bottom in ((420, 460), (508, 548)):
+        d.arrow([(x + 0.5 * w, top), (x + 0.5 * w, bottom)])
+    d.text(x, 362, "from nothing; counted", 12, italic="yes")
+
+
+def between_the_ways(d: Drawing) -> None:
+    """How a frame comes to each way, and what leads from one to the next."""
+    for x, why in ((260, "the last frame was apart"), (628, "in contact"), (848, "uncertified")):
+        d.arrow([(480, 252), (480, 268), (x, 268), (x, 300)])
+        d.text(x + 8, 290, why, 12, fill=SOFT)
+    d.arrow([(500, 330), (532, 330)], RED)
+    d.arrow([(724, 330), (756, 330)], RED)
+    d.text(270, 779, "red: where the witness points have passed", 12, fill=RED)
+    d.text(270, 794, "each other, or no bound holds", 12, fill=RED)
+
+
+def after_the_ways(d: Drawing) -> None:
+    for x in (260, 628, 848):
+        d.arrow([(x, 760), (x, 800)])
+    answer = "the answer in world axes, its status and rates; what the next frame needs"
+    stage(d, 20, 800, 920, answer, "frame/answer.py, prediction.py")
+    border(d, 868, "compiled by Numba: kernels/", "Python")
+    last = "still no bound? prove an overlap; then numbers become values and events"
+    stage(d, 20, 888, 720, last, "tracking/overlap_proof.py, proximity.py", PYTHON)
+    d.arrow([(380, 848), (380, 888)])
+    d.arrow([(380, 936), (380, 956)])
+    d.text(380, 976, "(TrackerState, Proximity)", 14, mono="yes", bold="yes", anchor="middle")
 
 
 def architecture() -> str:
-    d = Drawing(780, 822, "What a step goes through, from the call to the witness points")
-    d.text(
-        40, 30, "tracker.step(state, pose_a, pose_b, twist_a, twist_b)", 14, mono="yes", bold="yes"
-    )
-    down = 255.0
-    room(d, 52, PYTHON, "a pose becomes 12 numbers, a twist 6", "tracking/inputs.py")
-    d.line([(20, 116), (760, 116)], SOFT, dash="5 4")
-    d.text(760, 110, "Python", 12, anchor="end", fill=SOFT)
-    d.text(760, 132, "compiled by Numba", 12, anchor="end", fill=SOFT)
-    room(d, 132, COMPILED, "poses that are none are refused", "kernels/frame.py")
-    room(d, 196, COMPILED, "one relative pose and twist, in A's frame", "kernels/rigid.py")
-    room(
-        d,
-        260,
-        COMPILED,
-        "predict: q + h w_ff, held at a boundary",
-        "kernels/prediction.py, trimming.py",
-    )
-    d.box(28, 322, 724, 250, LOOP)
-    d.text(42, 342, "settle: at least one correction, until at rest", 14)
-    d.text(738, 342, "kernels/descent.py", 12, mono="yes", fill=SOFT, anchor="end")
-    room(
-        d,
-        356,
-        COMPILED,
-        "points, tangents, second partials",
-        "kernels/features.py, jets.py",
-        42,
-        330,
-    )
-    room(d, 424, COMPILED, "Ψ, g, H and b", "kernels/system.py", 42, 330)
-    room(d, 492, COMPILED, "one solve: p and w_ff", "kernels/feedback.py", 42, 330)
-    room(d, 492, COMPILED, "walk p to the first boundary, hold it", "kernels/trimming.py", 408, 330)
-    room(
-        d, 424, COMPILED, "resets; at rest: release the steepest", "kernels/switching.py", 408, 330
-    )
-    for y in (404, 472):
-        d.arrow([(207, y), (207, y + 20)])
-    d.arrow([(372, 516), (408, 516)])
-    d.arrow([(573, 492), (573, 472)])
-    d.arrow([(573, 424), (573, 380), (372, 380)])
-    d.text(585, 400, "again", 12, fill=SOFT)
-    room(
-        d,
-        592,
-        COMPILED,
-        "certify: the greatest lower bound of four planes",
-        "kernels/certificate.py",
-    )
-    d.arrow([(470, 608), (520, 608)], RED)
-    d.box(520, 584, 232, 66, "white", RED)
-    d.text(532, 603, "gap above the tolerance:", 12, fill=RED)
-    d.text(532, 621, "to roundoff, contact.py,", 12, mono="yes", fill=RED)
-    d.text(532, 639, "cold_start.py", 12, mono="yes", fill=RED)
-    d.arrow([(636, 584), (636, 572)], RED)
-    room(
-        d,
-        660,
-        COMPILED,
-        "the answer in world axes; what the next frame needs",
-        "kernels/answer.py, prediction.py",
-    )
-    d.line([(20, 724), (760, 724)], SOFT, dash="5 4")
-    d.text(760, 718, "compiled by Numba", 12, anchor="end", fill=SOFT)
-    d.text(760, 740, "Python", 12, anchor="end", fill=SOFT)
-    room(
-        d,
-        740,
-        PYTHON,
-        "no bound? prove the overlap; then values and events",
-        "tracking/overlap.py, proximity.py",
-    )
-    d.text(40, 812, "→ (TrackerState, Proximity)", 14, mono="yes", bold="yes")
-    for top, bottom in ((36, 52), (100, 132), (180, 196), (244, 260), (308, 322)):
-        d.arrow([(down, top), (down, bottom)])
-    for top, bottom in ((572, 592), (640, 660), (708, 740)):
-        d.arrow([(down, top), (down, bottom)])
+    d = Drawing(960, 990, "What a pose goes through, from the call to the witness points")
+    before_the_ways(d)
+    apart(d)
+    in_contact(d)
+    anew(d)
+    between_the_ways(d)
+    after_the_ways(d)
     return d.svg()
 
 

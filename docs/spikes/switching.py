@@ -39,10 +39,9 @@ from switching_rules import (
     ZEROING,
 )
 
-from standoff.kernels import layout as L
-from standoff.kernels.cold_start import gilbert, nearest_facing, sample_point, support_sample
-from standoff.kernels.events import EVALUATIONS
-from standoff.kernels.vectors import rotate_back, scale
+from standoff.kernels.body import layout as L
+from standoff.kernels.pair.cold_start import farthest_along, gilbert, nearest_facing, sample_point
+from standoff.kernels.pair.events import EVALUATIONS
 
 
 def families():
@@ -57,6 +56,7 @@ def families():
 
 # Parameters up to which the script's descent ends where the library's does: roundoff.
 SAME = 1e-12
+FEATURES, PARAMETERS = slice(4), slice(4, None)  # parts of a Place
 
 COLUMNS = (
     "starts",
@@ -76,18 +76,19 @@ def judge_family(family, starts, rng):
     row = dict.fromkeys(COLUMNS, 0)
     solves, releases, again = [], [], []
     for case in cases(*family[1:], starts, rng):
-        outcome, mode, q, tally = case.descend(OURS)
-        lib_mode, lib_q, counts = case.settle()
-        same = (mode == lib_mode).all() and np.abs(q - lib_q).max() <= SAME
+        outcome, place, tally = case.descend(OURS)
+        ours, counts = case.settle()
+        apart = np.abs(np.subtract(place[PARAMETERS], ours[PARAMETERS])).max()
+        same = place[FEATURES] == ours[FEATURES] and apart <= SAME
         row["differs"] += not (same and counts[EVALUATIONS] == tally[SOLVES])
         row["starts"] += 1
         row["exhausted"] += outcome == EXHAUSTED
         row["stalled"] += outcome == STALLED
-        accepted, d, n = case.certify(lib_mode, lib_q)
+        accepted, d, n = case.certify(ours)
         right = case.right(d, n)
         row["false proof"] += accepted and not right
         if not accepted:
-            away = faces_away(case.pair, case.R, case.p, lib_mode, lib_q)
+            away = faces_away(case.pair, case.pose, ours)
             accepted, last, n, restarts = case.restart()
             again.append(restarts)
             if d - last > RIGHT * case.size:
@@ -159,12 +160,12 @@ def judge_rule(rule, drawn):
     row = dict.fromkeys(RULE_COLUMNS[:4], 0)
     solves, releases, excesses = [], [], []
     for case, best in drawn:
-        outcome, mode, q, tally = case.descend(rule)
+        outcome, place, tally = case.descend(rule)
         row["exhausted"] += outcome == EXHAUSTED
         row["stalled"] += outcome == STALLED
-        excess = (case.certify(mode, q)[1] - best) / case.size
+        excess = (case.certify(place)[1] - best) / case.size
         if excess > RIGHT:
-            away = faces_away(case.pair, case.R, case.p, mode, q)
+            away = faces_away(case.pair, case.pose, place)
             row["far side" if away else "wrong else"] += 1
             excesses += [] if away else [excess]
         solves.append(int(tally[SOLVES]))
@@ -188,7 +189,7 @@ def rule_table(starts, rng):
     print_row(["-" * w for w in widths], widths)
     for name, members in groups.items():
         drawn = []
-        for member in members:
+        for member in members[:starts]:
             for case in cases(*member[1:], -(-starts // len(members)), rng):
                 accepted, best, n, _ = case.restart()
                 assert accepted
@@ -200,23 +201,20 @@ def rule_table(starts, rng):
             sys.stdout.flush()
 
 
-def nearest(pair, R, p):
+def nearest(pair, pose):
     """The nearest sampled pair, whatever its normals say."""
-    (ia, ra, ib, rb), turn = pair, np.reshape(R, (3, 3))
+    ia, ra, ib, rb = pair
     a = np.array([sample_point(ia, ra, i) for i in range(ia[L.N_SAMPLES])])
-    b = np.array([sample_point(ib, rb, j) for j in range(ib[L.N_SAMPLES])]) @ turn.T + p
+    b = np.array([sample_point(ib, rb, j) for j in range(ib[L.N_SAMPLES])])
+    b = b @ np.reshape(pose.R, (3, 3)).T + pose.p
     squares = ((a[:, None] - b[None]) ** 2).sum(axis=2)
     i, j = np.unravel_index(int(squares.argmin()), squares.shape)
     return int(i), int(j)
 
 
-def along_gilbert(pair, R, p):
+def along_gilbert(pair, pose):
     """The support samples along the direction of Gilbert's iteration."""
-    n = gilbert(pair, R, p)
-    return (
-        support_sample(pair[0], pair[1], n),
-        support_sample(pair[2], pair[3], scale(-1.0, rotate_back(R, n))),
-    )
+    return farthest_along(pair, pose, gilbert(pair, pose))
 
 
 def start_table(starts, rng):
@@ -239,9 +237,8 @@ def start_table(starts, rng):
         for case in cases(*family, starts, rng, starts_a_pose=1):
             failures = 0
             for way, choose in ways.items():
-                case.begin_at_samples(*choose(case.pair, case.R, case.p))
-                mode, q, _ = case.settle()
-                failed = not case.certify(mode, q)[0]
+                case.begin_at_samples(*choose(case.pair, case.pose))
+                failed = not case.certify(case.settle()[0])[0]
                 refused[way] += failed
                 failures += failed
             all_three += failures == len(ways)

@@ -7,26 +7,26 @@ import numpy as np
 from switching_rules import N_TALLY, descend
 
 import standoff as so
-from standoff.kernels import layout as L
-from standoff.kernels.certificate import certify
-from standoff.kernels.certified import CERTIFIED
-from standoff.kernels.cold_start import begin_at, global_query
-from standoff.kernels.descent import pair_jets, settle
-from standoff.kernels.events import EVENT_COLUMNS, MAX_EVENTS, RESTARTS, new_counts
-from standoff.kernels.features import chart_normal, chart_record, coedge_parameters
-from standoff.kernels.trimming import on_face
+from standoff.kernels.body import layout as L
+from standoff.kernels.body.features import chart_normal, chart_record, coedge_parameters
+from standoff.kernels.body.trimming import on_face
+from standoff.kernels.pair.certificate import certify
+from standoff.kernels.pair.certified import CERTIFIED
+from standoff.kernels.pair.cold_start import FIRST, at_samples, global_query
+from standoff.kernels.pair.descent import pair_jets, settle
+from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, RESTARTS, new_counts
+from standoff.kernels.values import ORIGIN, Pair, Pose, Side, Work, resting, together
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
-from oracles import support
 from oracles.bounds import gap
 from oracles.poses import draw_poses, size_of, tilted_pair
+from standoff_studies import oracles as support
 
 RIGHT = 1e-9  # gap to an independent bound, of the pair's size, up to which an answer is right
 GOAL = 1e-10  # gap at which the certificate accepts, of the pair's size
 STARTS_A_POSE = 5
 POSES_A_PAIR = 20  # poses before new shapes are drawn
 TILTS = (0.0, *(10.0**-k for k in range(9, 1, -1)))
-STILL = (0.0, 0.0, 0.0)
 
 
 # --- bodies, each with the support function that judges it -----------------------------------
@@ -124,16 +124,16 @@ def chart_range(body, chart):
 
 
 def random_start(body, rng):
-    """(feature, chart, p, q): a kind of feature, then one of the kind, then a point on it."""
+    """The side of a kind of feature, then one of the kind, then a point on it."""
     faces, edges, vertices = body.n_faces, body.n_edges, body.n_vertices
     kinds = [k for k, n in enumerate((faces, edges, vertices)) if n]
     kind = kinds[rng.integers(len(kinds))]
     if kind == 2:
-        return faces + edges + int(rng.integers(vertices)), -1, 0.0, 0.0
+        return Side(faces + edges + int(rng.integers(vertices)), -1, 0.0, 0.0)
     if kind == 1:
         edge = int(rng.integers(edges))
         curve = body.edge_parts[edge].curve
-        return faces + edge, -1, float(rng.uniform(curve.first, curve.last)), 0.0
+        return Side(faces + edge, -1, float(rng.uniform(curve.first, curve.last)), 0.0)
     face = int(rng.integers(faces))
     first, count = body.ints[body.ints[L.FACES] + L.FACE_STRIDE * face :][:2]
     while True:  # rejection; an atlas's chart may see little or nothing of its face
@@ -142,71 +142,75 @@ def random_start(body, rng):
         for _ in range(50):
             u, v = (float(x) for x in rng.uniform(low, high))
             if on_face(body.ints, body.reals, chart, u, v):
-                return face, chart, u, v
+                return Side(face, chart, u, v)
 
 
 # --- one descent and its judgement -----------------------------------------------------------
 
 
-def faces_away(pair, R, p, mode, q):
+def faces_away(pair, pose, place):
     """Does a face's outward normal point away from the other witness point?"""
-    jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-    across = np.subtract(jet_b[0], jet_a[0])
-    n_a = chart_normal(pair[0], pair[1], mode[1], q[0], q[1]) if mode[1] >= 0 else STILL
-    n_b = chart_normal(pair[2], pair[3], mode[3], q[2], q[3]) if mode[3] >= 0 else STILL
-    in_a = np.reshape(R, (3, 3)) @ n_b
-    return bool(across @ n_a < 0.0 or across @ in_a > 0.0)
+    jet_a, jet_b = pair_jets(pair, pose, place)
+    between = np.subtract(jet_b[0], jet_a[0])
+    n_a = n_b = ORIGIN
+    if place.chart_a >= 0:
+        n_a = chart_normal(pair.ints_a, pair.reals_a, place.chart_a, place.u, place.v)
+    if place.chart_b >= 0:
+        n_b = chart_normal(pair.ints_b, pair.reals_b, place.chart_b, place.r, place.s)
+    in_a = np.reshape(pose.R, (3, 3)) @ n_b
+    return bool(between @ n_a < 0.0 or between @ in_a > 0.0)
+
+
+def new_work():
+    return Work(new_counts(), np.empty(EVENT_COLUMNS * MAX_EVENTS))
 
 
 class Case:
     """A pair at a pose, seen from A, with the start of a descent."""
 
-    def __init__(self, body_a, body_b, pose, rng):
-        (self.rotation, origin), (turn, place) = pose.pose_a, pose.pose_b
-        self.pair = (body_a.ints, body_a.reals, body_b.ints, body_b.reals)
-        self.R = tuple(float(x) for x in (self.rotation.T @ turn).ravel())
-        self.p = tuple(float(x) for x in self.rotation.T @ (place - origin))
-        self.pose, self.size = pose, body_a.size + body_b.size
-        a, b = random_start(body_a, rng), random_start(body_b, rng)
-        self.mode = np.array([a[0], a[1], b[0], b[1]], dtype=np.int64)
-        self.q = np.array([a[2], a[3], b[2], b[3]])
+    def __init__(self, body_a, body_b, drawn, rng):
+        (self.rotation, origin), (turn, at) = drawn.pose_a, drawn.pose_b
+        self.pair = Pair(body_a.ints, body_a.reals, body_b.ints, body_b.reals)
+        self.pose = Pose(
+            tuple(float(x) for x in (self.rotation.T @ turn).ravel()),
+            tuple(float(x) for x in self.rotation.T @ (at - origin)),
+        )
+        self.drawn, self.size = drawn, body_a.size + body_b.size
+        self.start = together(random_start(body_a, rng), random_start(body_b, rng))
 
     def begin_at_samples(self, i, j):
         """Take samples i of A and j of B as the start."""
-        begin_at(self.pair[0], self.pair[1], 0, i, self.mode, self.q)
-        begin_at(self.pair[2], self.pair[3], 1, j, self.mode, self.q)
+        self.start = at_samples(self.pair, i, j)
 
     def descend(self, rule):
-        mode, q, tally = self.mode.copy(), self.q.copy(), np.zeros(N_TALLY, dtype=np.int64)
-        outcome = descend(rule, self.pair, self.R, self.p, mode, q, tally)
-        return outcome, mode, q, tally
+        """(how it ended, place, tally) under a rule."""
+        tally = np.zeros(N_TALLY, dtype=np.int64)
+        outcome, place = descend(rule, self.pair, self.pose, self.start, new_work(), tally)
+        return outcome, place, tally
 
     def settle(self):
-        """The library's own descent."""
-        mode, q = self.mode.copy(), self.q.copy()
-        counts, log = new_counts(), np.empty(EVENT_COLUMNS * MAX_EVENTS)
-        forward = np.zeros(4)
-        settle(self.pair, self.R, self.p, STILL, STILL, mode, q, forward, 0, 0.0, counts, log)
-        return mode, q, counts
+        """(place, counts) of the library's own descent."""
+        work = new_work()
+        settled = settle(self.pair, resting(self.pose), self.start, 0.0, 0.0, work)
+        return settled.place, work.counts
 
-    def certify(self, mode, q):
+    def certify(self, place):
         """(accepted, distance, normal) by the library's certificate."""
-        jet_a, jet_b = pair_jets(self.pair, self.R, self.p, mode, q)
-        d, bound, n, _ = certify(self.pair, self.R, self.p, mode, q, jet_a[0], jet_b[0], STILL)
+        jet_a, jet_b = pair_jets(self.pair, self.pose, place)
+        d, bound, n, _ = certify(self.pair, self.pose, place, jet_a[0], jet_b[0], ORIGIN)
         return bound > 0.0 and d - bound <= GOAL * (self.size + d), d, n
 
     def restart(self):
         """(accepted, distance, normal, restarts) of the library's global query."""
-        mode, q = np.zeros(4, dtype=np.int64), np.zeros(4)
-        counts, log = new_counts(), np.empty(EVENT_COLUMNS * MAX_EVENTS)
-        outcome, d, _, n = global_query(
-            self.pair, self.R, self.p, 0.0, mode, q, np.zeros(4), GOAL, counts, log
-        )
-        return outcome == CERTIFIED, d, n, int(counts[RESTARTS])
+        work = new_work()
+        found = global_query(self.pair, self.pose, FIRST, GOAL, work)
+        accepted = found.outcome == CERTIFIED
+        return accepted, found.distance, found.normal, int(work.counts[RESTARTS])
 
     def right(self, d, n):
         """The independent judge: distance d against the supports along n (A's frame)."""
-        return gap(d, self.pose.a, self.pose.b, self.rotation @ np.array(n)) <= RIGHT * self.size
+        world = self.rotation @ np.array(n)
+        return gap(d, self.drawn.a, self.drawn.b, world) <= RIGHT * self.size
 
 
 def cases(first, second, tilt, starts, rng, starts_a_pose=STARTS_A_POSE):
@@ -215,6 +219,6 @@ def cases(first, second, tilt, starts, rng, starts_a_pose=STARTS_A_POSE):
         (body_a, oracle_a), (body_b, oracle_b) = first(rng), second(rng)
         count = min(POSES_A_PAIR, -(-(starts - made) // starts_a_pose))
         for pose in poses(oracle_a, oracle_b, tilt, count, rng):
-            for _ in range(starts_a_pose):
+            for _ in range(min(starts_a_pose, starts - made)):
                 yield Case(body_a, body_b, pose, rng)
                 made += 1

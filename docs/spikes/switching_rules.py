@@ -1,25 +1,17 @@
-"""The descent of ``standoff.kernels.descent.settle`` with its switching rule to choose.
+"""The descent of ``standoff.kernels.pair.descent.settle`` with its switching rule to choose.
 
 With OURS it is that function, step by step; the script checks that both end at the same place.
 The other rules live only here.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
-from standoff.kernels import layout as L
-from standoff.kernels.descent import (
-    ORIGIN,
-    line_search,
-    pair_jets,
-    recentre,
-    release_pair,
-    set_mode,
-    take_hit,
-    walk_pair,
-)
-from standoff.kernels.events import EVENT_COLUMNS, MAX_EVENTS, new_counts
-from standoff.kernels.features import (
+from standoff.kernels.algebra.vectors import axpy, dot, norm, scale, sub
+from standoff.kernels.body import layout as L
+from standoff.kernels.body.features import (
     best_coedge,
     chart_record,
     coedge_parameters,
@@ -28,7 +20,20 @@ from standoff.kernels.features import (
     edge_jet,
     feature_jet,
 )
-from standoff.kernels.feedback import (
+from standoff.kernels.body.trimming import HIT_COEDGE, HIT_END, HIT_LIMIT, NO_HIT, walk
+from standoff.kernels.pair.descent import (
+    NO_EDGE,
+    Advance,
+    Step,
+    advance,
+    line_search,
+    pair_jets,
+    recentre,
+    release_along,
+    take_hit,
+    walk_pair,
+)
+from standoff.kernels.pair.newton import (
     gradient_norm,
     law,
     metric_inverse,
@@ -36,7 +41,7 @@ from standoff.kernels.feedback import (
     whiten_gradient,
     whiten_hessian,
 )
-from standoff.kernels.system import feedforward, gradient, hessian, projection_errors
+from standoff.kernels.pair.system import feedforward, gradient, hessian, projection_errors
 from standoff.kernels.tolerances import (
     AT_REST,
     ENERGY_NOISE,
@@ -51,8 +56,7 @@ from standoff.kernels.tolerances import (
     SLOPE_NOISE,
     TOUCHING,
 )
-from standoff.kernels.trimming import HIT_COEDGE, HIT_END, HIT_LIMIT, NO_HIT, walk
-from standoff.kernels.vectors import axpy, dot, norm, scale, sub
+from standoff.kernels.values import ORIGIN, STILL, Side, body_of, side_of, with_side
 
 # Rules.
 OURS = 0  # hold the boundary, solve the reduced pair, test multipliers only when stationary
@@ -108,55 +112,45 @@ def flat_solve(rule, jet_a, jet_b, g, H, span):
 
 
 @compiled
-def newton_step(rule, jet_a, jet_b, g, p, span, tally):
+def along(g, change):
+    """What a step changes E by, to first order."""
+    return g[0] * change[0] + g[1] * change[1] + g[2] * change[2] + g[3] * change[3]
+
+
+@compiled
+def newton_step(rule, jets, p, g, span, tally):
+    """(change of the parameters, has H a direction that is not stiff?)."""
+    jet_a, jet_b = jets
     H = hessian(jet_a, jet_b)
-    still = gradient(feedforward(jet_a, jet_b, ORIGIN, ORIGIN, ORIGIN, p, ORIGIN, ORIGIN))
-    step, _, _, flat, valley, _ = law(jet_a, jet_b, g, H, still, span)
+    still = gradient(feedforward(jet_a, jet_b, STILL, (p, ORIGIN, ORIGIN)))
+    change, _, _, flat, valley, _ = law(jet_a, jet_b, g, H, still, span)
     tally[SOLVES] += 1
     tally[FLAT] += flat
     if flat and rule in (FLOOR, DROP):
-        step = flat_solve(rule, jet_a, jet_b, g, H, span)
-    return step, valley
+        change = flat_solve(rule, jet_a, jet_b, g, H, span)
+    return change, valley
 
 
 @compiled
-def clipped(pair, mode, q, step):
-    """Each body's part cut at its own boundary: (step, hits of A, hits of B)."""
-    ia, ra, ib, rb = pair
-    sa, ha, na, ta = walk(ia, ra, mode[0], mode[1], q[0], q[1], step[0], step[1])
-    sb, hb, nb, tb = walk(ib, rb, mode[2], mode[3], q[2], q[3], step[2], step[3])
-    return (sa * step[0], sa * step[1], sb * step[2], sb * step[3]), (ha, na, ta), (hb, nb, tb)
-
-
-@compiled
-def advance(rule, pair, R, p, mode, q, step, valley, g, E, noise, counts, events, last_smooth):
-    """Walk, search and hold, as `settle` does: (moved, the smooth edge passed, hit)."""
-    descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
-    if rule == CLIP:
-        step, hit_a, hit_b = clipped(pair, mode, q, step)
-        descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
-        s, body, hit, index, t = 1.0, 0, hit_a[0], hit_a[1], hit_a[2]
-    else:
-        s, body, hit, index, t = walk_pair(pair, mode, q, step)
-        hit_b = (NO_HIT, -1, 0.0)
-    reach = s
-    s, ok, on_step, trial, _, _ = line_search(
-        pair, R, p, mode, q, step, valley, s, E, descent, noise
-    )
+def advance_clipped(pair, pose, place, step, g, last_smooth, work):
+    """`advance`, but each body's part of the step is cut at that body's own boundary."""
+    a, b, change = side_of(place, 0), side_of(place, 1), step.change
+    of_a = walk(pair.ints_a, pair.reals_a, a.feature, a.chart, a.p, a.q, change[0], change[1])
+    of_b = walk(pair.ints_b, pair.reals_b, b.feature, b.chart, b.p, b.q, change[2], change[3])
+    cut = (of_a.s * change[0], of_a.s * change[1], of_b.s * change[2], of_b.s * change[3])
+    step = Step(cut, step.energy, along(g, cut), step.noise, step.flat)
+    s, ok, on_step, trial, jets = line_search(pair, pose, place, step, 1.0)
     if not ok:
-        return False, last_smooth, False
-    q[0], q[1], q[2], q[3] = trial
-    if on_step and s == reach and (hit != NO_HIT or hit_b[0] != NO_HIT):
-        passed = -1
-        if hit != NO_HIT:
-            passed = take_hit(pair, mode, q, body, hit, index, t, last_smooth, s, counts, events)
-        if hit_b[0] != NO_HIT:
-            passed = take_hit(
-                pair, mode, q, 1, hit_b[0], hit_b[1], hit_b[2], last_smooth, s, counts, events
-            )
-        return True, passed, True
-    recentre(pair, mode, q, counts)
-    return True, -1, False
+        return Advance(False, False, False, place, jets, last_smooth)
+    if not on_step or s < 1.0 or (of_a.kind == NO_HIT and of_b.kind == NO_HIT):
+        trial, changed = recentre(pair, trial, work)
+        return Advance(True, False, changed, trial, jets, NO_EDGE)
+    passed = NO_EDGE
+    if of_a.kind != NO_HIT:
+        trial, passed = take_hit(pair, trial, 0, of_a, last_smooth, work)
+    if of_b.kind != NO_HIT:
+        trial, passed = take_hit(pair, trial, 1, of_b, last_smooth, work)
+    return Advance(True, True, True, trial, jets, passed)
 
 
 @compiled
@@ -165,173 +159,202 @@ def slope_limit(span, d, slope):
 
 
 @compiled
-def descend(rule, pair, R, p, mode, q, tally):
-    """Descend under a rule from (mode, q), changed in place. Returns how it ended."""
+def release(pair, pose, place, dR, limit, work):
+    """(released, place): `release_along` the direction of dR."""
+    d = norm(dR)
+    return release_along(pair, pose, place, scale(-1.0 / d, dR), d, limit, work)
+
+
+@compiled
+def descend(rule, pair, pose, place, work, tally):
+    """(how it ended, place): descend from a place under a rule."""
     if rule == ZEROING:
-        return descend_zeroing(pair, R, p, mode, q, tally)
-    size = pair[1][L.SIZE] + pair[3][L.SIZE]
-    counts, events = new_counts(), np.empty(EVENT_COLUMNS * MAX_EVENTS)
-    stalls, polish, last_smooth = 0, 0, -1
+        return descend_zeroing(pair, pose, place, work, tally)
+    size = pair.reals_a[L.SIZE] + pair.reals_b[L.SIZE]
+    stalls, polish, last_smooth = 0, 0, NO_EDGE
     last_slope, last_release = 1e300, 1e300
     for _ in range(MAX_ITERATIONS):
-        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+        jet_a, jet_b = jets = pair_jets(pair, pose, place)
         dR = sub(jet_a[0], jet_b[0])
         d = norm(dR)
         span = size + d
         if d <= TOUCHING * span:
-            return CONTACT
+            return CONTACT, place
         E, noise = 0.5 * d * d, ENERGY_NOISE * EPS * span * d
         g = gradient(projection_errors(jet_a, jet_b))
         slope = gradient_norm(jet_a, jet_b, g)
-        stationary = slope <= AT_REST * EPS * span
-        if not stationary:
-            step, valley = newton_step(rule, jet_a, jet_b, g, p, span, tally)
-            gain = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
-            if -0.5 * gain <= noise:
-                polish += 1
-                stationary = polish > MAX_POLISH and slope > POLISH_RATIO * last_slope
+        if slope > AT_REST * EPS * span:
+            change, valley = newton_step(rule, jets, pose.p, g, span, tally)
+            step = Step(change, E, along(g, change), noise, valley)
+            in_noise = -0.5 * step.descent <= noise
+            polish += in_noise
+            polished = in_noise and polish > MAX_POLISH and slope > POLISH_RATIO * last_slope
             last_slope = slope
-        if not stationary:
-            moved, last_smooth, hit = advance(
-                rule, pair, R, p, mode, q, step, valley, g, E, noise, counts, events, last_smooth
-            )
-            if hit:
-                polish, last_slope = 0, 1e300
-            if hit and rule == AT_ONCE:
-                jet_a, jet_b = pair_jets(pair, R, p, mode, q)
-                dR = sub(jet_a[0], jet_b[0])
-                limit = slope_limit(span, norm(dR), 0.0)
-                tally[RELEASES] += release_pair(pair, R, mode, q, dR, limit, counts, events)
-            if moved:
-                continue
+            if not polished:
+                if rule == CLIP:
+                    made = advance_clipped(pair, pose, place, step, g, last_smooth, work)
+                else:
+                    made = advance(pair, pose, place, step, last_smooth, work)
+                place, last_smooth = made.place, made.last_smooth
+                if made.held:
+                    polish, last_slope = 0, 1e300
+                if made.held and rule == AT_ONCE:
+                    jet_a, jet_b = pair_jets(pair, pose, place)
+                    dR = sub(jet_a[0], jet_b[0])
+                    limit = slope_limit(span, norm(dR), 0.0)
+                    released, place = release(pair, pose, place, dR, limit, work)
+                    tally[RELEASES] += released
+                if made.ok:
+                    continue
         if last_release - noise < E:
             stalls += 1
             if stalls > MAX_STALLS:
-                return STALLED
+                return STALLED, place
         last_release = E
         limit = slope_limit(span, d, 0.0 if rule == EAGER else slope)
-        if not release_pair(pair, R, mode, q, dR, limit, counts, events):
-            return STATIONARY
+        released, place = release(pair, pose, place, dR, limit, work)
+        if not released:
+            return STATIONARY, place
         tally[RELEASES] += 1
         polish, last_slope = 0, 1e300
-    return EXHAUSTED
+    return EXHAUSTED, place
 
 
 # --- zeroing: the boundary is held, but the pair is still solved with the whole face ---------
 
 
-@compiled
-def carried(ints, reals, k, feature, t):
-    """(coedge, u, v, du, dv) of a held boundary point on the face that carries it."""
-    k = best_coedge(ints, reals, k, t)
-    u, v, du, dv, _ = coedge_parameters(ints, reals, k, t)
-    return k, u, v, du, dv
+class Grip(NamedTuple):
+    """A body's hold on the boundary of the face that it came from."""
+
+    coedge: int  # NO_EDGE: it has none
+    t: float  # parameter of the edge
+
+
+FREE = Grip(NO_EDGE, 0.0)
 
 
 @compiled
-def zeroed(ints, reals, mode, q, body, carrier, held, a, b):
-    """One body's part (a, b) of the step, its part across a held boundary dropped.
+def face_of(ints, reals, coedge, t):
+    """(coedge, side): a boundary's point at t on the face that carries it."""
+    k = best_coedge(ints, reals, coedge, t)
+    u, v, _, _, _ = coedge_parameters(ints, reals, k, t)
+    chart = ints[coedge_record(ints, k) + L.COEDGE_CHART]
+    return k, Side(ints[chart_record(ints, chart) + L.CHART_FACE], chart, u, v)
+
+
+@compiled
+def zeroed(pair, place, body, grip, a, b):
+    """(place, grip, a, b): one body's part (a, b) of the step, that across a held boundary dropped.
 
     A part that leads inward frees the body: it is on its face again.
     """
-    k, u, v, du, dv = carried(ints, reals, carrier[body], mode[2 * body], held[body])
+    if grip.coedge < 0:
+        return place, grip, a, b
+    ints, reals = body_of(pair, body)
+    side = side_of(place, body)
+    k, inner = face_of(ints, reals, grip.coedge, grip.t)
+    _, _, du, dv, _ = coedge_parameters(ints, reals, k, grip.t)
     c = coedge_record(ints, k)
     if ints[c + L.COEDGE_SIDE] * (du * b - dv * a) > 0.0:
-        chart = ints[c + L.COEDGE_CHART]
-        set_mode(mode, q, body, ints[chart_record(ints, chart) + L.CHART_FACE], chart, u, v)
-        carrier[body] = -1
-        return a, b
+        return with_side(place, body, inner), FREE, a, b
     edge = ints[L.N_FACES] + ints[c + L.COEDGE_EDGE]
-    jet = feature_jet(ints, reals, 0, ints[c + L.COEDGE_CHART], u, v)
-    tangent = edge_jet(ints, reals, edge, held[body])[1]
-    along = dot(axpy(a, jet[1], scale(b, jet[2])), tangent) / dot(tangent, tangent)
-    if dimension(ints, mode[2 * body]) == 0:
+    jet = feature_jet(ints, reals, 0, inner.chart, inner.p, inner.q)
+    tangent = edge_jet(ints, reals, edge, grip.t)[1]
+    part = dot(axpy(a, jet[1], scale(b, jet[2])), tangent) / dot(tangent, tangent)
+    if dimension(ints, side.feature) == 0:
         o = ints[ints[L.EDGES] + L.EDGE_STRIDE * ints[c + L.COEDGE_EDGE] + L.EDGE_REALS]
-        at_first = held[body] == reals[o + L.EDGE_T0]
-        if along == 0.0 or (along > 0.0) != at_first:
-            return 0.0, 0.0
-        set_mode(mode, q, body, edge, -1, held[body], 0.0)
-    return along, 0.0
+        at_first = grip.t == reals[o + L.EDGE_T0]
+        if part == 0.0 or (part > 0.0) != at_first:
+            return place, grip, 0.0, 0.0
+        place = with_side(place, body, Side(edge, NO_EDGE, grip.t, 0.0))
+    return place, grip, part, 0.0
 
 
 @compiled
-def faces_jets(pair, R, p, mode, q, carrier, held):
-    """Jets for the solve: a held boundary point keeps the tangents of the face it came from."""
-    m, x = mode.copy(), q.copy()
-    for body in range(2):
-        if carrier[body] >= 0:
-            ints, reals = (pair[0], pair[1]) if body == 0 else (pair[2], pair[3])
-            k, u, v, _, _ = carried(ints, reals, carrier[body], mode[2 * body], held[body])
-            chart = ints[coedge_record(ints, k) + L.COEDGE_CHART]
-            set_mode(m, x, body, ints[chart_record(ints, chart) + L.CHART_FACE], chart, u, v)
-    return pair_jets(pair, R, p, m, x)
+def on_faces(pair, place, grip_a, grip_b):
+    """The place for the solve: what is held on a boundary is on the face that it came from."""
+    if grip_a.coedge >= 0:
+        place = with_side(place, 0, face_of(pair.ints_a, pair.reals_a, grip_a.coedge, grip_a.t)[1])
+    if grip_b.coedge >= 0:
+        place = with_side(place, 1, face_of(pair.ints_b, pair.reals_b, grip_b.coedge, grip_b.t)[1])
+    return place
 
 
 @compiled
-def hold(pair, mode, q, carrier, held, body, hit, index, t, counts, events):
-    """Take a hit and remember the face that was left."""
-    take_hit(pair, mode, q, body, hit, index, t, -1, 1.0, counts, events)
-    if hit == HIT_COEDGE:
-        carrier[body], held[body] = index, t
-    if hit == HIT_END:
-        held[body] = t
-    if hit == HIT_LIMIT:
-        carrier[body] = -1
+def kept(ints, side, grip):
+    """A grip moved along with the body's point on its edge."""
+    return Grip(grip.coedge, side.p) if dimension(ints, side.feature) == 1 else grip
 
 
 @compiled
-def descend_zeroing(pair, R, p, mode, q, tally):
+def gripped(grip, hit):
+    """The grip after a hit: on the face that was left."""
+    if hit.kind == HIT_COEDGE:
+        return Grip(hit.index, hit.t)
+    if hit.kind == HIT_END:
+        return Grip(grip.coedge, hit.t)
+    return FREE if hit.kind == HIT_LIMIT else grip
+
+
+@compiled
+def advance_gripped(pair, pose, place, step, grip_a, grip_b, work):
+    """(moved, place, grips): `advance`, and what is then held on a boundary."""
+    body, hit = walk_pair(pair, place, step.change)
+    s, ok, _, trial, _ = line_search(pair, pose, place, step, hit.s)
+    if not ok:
+        return False, place, grip_a, grip_b
+    grip_a = kept(pair.ints_a, side_of(trial, 0), grip_a)
+    grip_b = kept(pair.ints_b, side_of(trial, 1), grip_b)
+    if hit.kind == NO_HIT or s < hit.s:
+        trial, _ = recentre(pair, trial, work)
+        return True, trial, grip_a, grip_b
+    trial, _ = take_hit(pair, trial, body, hit, NO_EDGE, work)
+    if body == 0:
+        return True, trial, gripped(grip_a, hit), grip_b
+    return True, trial, grip_a, gripped(grip_b, hit)
+
+
+@compiled
+def descend_zeroing(pair, pose, place, work, tally):
     """The paper's rule: solve with the faces, then zero what is infeasible."""
-    size = pair[1][L.SIZE] + pair[3][L.SIZE]
-    counts, events = new_counts(), np.empty(EVENT_COLUMNS * MAX_EVENTS)
-    carrier, held = np.full(2, -1), np.zeros(2)
+    size = pair.reals_a[L.SIZE] + pair.reals_b[L.SIZE]
+    grip_a, grip_b = FREE, FREE
     stalls, last_release = 0, 1e300
-    ia, ra, ib, rb = pair
     for _ in range(MAX_ITERATIONS):
-        jet_a, jet_b = faces_jets(pair, R, p, mode, q, carrier, held)
+        jet_a, jet_b = jets = pair_jets(pair, pose, on_faces(pair, place, grip_a, grip_b))
         dR = sub(jet_a[0], jet_b[0])
         d = norm(dR)
         span = size + d
         if d <= TOUCHING * span:
-            return CONTACT
+            return CONTACT, place
         E, noise = 0.5 * d * d, ENERGY_NOISE * EPS * span * d
         g = gradient(projection_errors(jet_a, jet_b))
-        step, _ = newton_step(ZEROING, jet_a, jet_b, g, p, span, tally)
-        a = (step[0], step[1])
-        b = (step[2], step[3])
-        if carrier[0] >= 0:
-            a = zeroed(ia, ra, mode, q, 0, carrier, held, step[0], step[1])
-        if carrier[1] >= 0:
-            b = zeroed(ib, rb, mode, q, 1, carrier, held, step[2], step[3])
-        step = (a[0], a[1], b[0], b[1])
-        jet_a, jet_b = pair_jets(pair, R, p, mode, q)
+        (u, v, r, s), _ = newton_step(ZEROING, jets, pose.p, g, span, tally)
+        place, grip_a, u, v = zeroed(pair, place, 0, grip_a, u, v)
+        place, grip_b, r, s = zeroed(pair, place, 1, grip_b, r, s)
+        jet_a, jet_b = pair_jets(pair, pose, place)
         g = gradient(projection_errors(jet_a, jet_b))
-        move_a = axpy(step[0], jet_a[1], scale(step[1], jet_a[2]))
-        move_b = axpy(step[2], jet_b[1], scale(step[3], jet_b[2]))
+        move_a = axpy(u, jet_a[1], scale(v, jet_a[2]))
+        move_b = axpy(r, jet_b[1], scale(s, jet_b[2]))
         if max(norm(move_a), norm(move_b)) > SHORT * span:
-            descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
-            s, body, hit, index, t = walk_pair(pair, mode, q, step)
-            reach = s
-            s, ok, _, trial, _, _ = line_search(pair, R, p, mode, q, step, 0, s, E, descent, noise)
+            change = (u, v, r, s)
+            step = Step(change, E, along(g, change), noise, 0)
+            ok, place, grip_a, grip_b = advance_gripped(
+                pair, pose, place, step, grip_a, grip_b, work
+            )
             if ok:
-                q[0], q[1], q[2], q[3] = trial
-                for k in range(2):
-                    if dimension(ia if k == 0 else ib, mode[2 * k]) == 1:
-                        held[k] = q[2 * k]
-                if hit != NO_HIT and s == reach:
-                    hold(pair, mode, q, carrier, held, body, hit, index, t, counts, events)
-                else:
-                    recentre(pair, mode, q, counts)
                 continue
         if last_release - noise < E:
             stalls += 1
             if stalls > MAX_STALLS:
-                return STALLED
+                return STALLED, place
         last_release = E
-        old_a, old_b = mode[0], mode[2]
-        if not release_pair(pair, R, mode, q, dR, slope_limit(span, d, 0.0), counts, events):
-            return STATIONARY
-        carrier[0] = carrier[0] if mode[0] == old_a else -1
-        carrier[1] = carrier[1] if mode[2] == old_b else -1
+        limit = slope_limit(span, d, 0.0)
+        before = place
+        released, place = release(pair, pose, place, dR, limit, work)
+        if not released:
+            return STATIONARY, place
+        grip_a = grip_a if place.feature_a == before.feature_a else FREE
+        grip_b = grip_b if place.feature_b == before.feature_b else FREE
         tally[RELEASES] += 1
-    return EXHAUSTED
+    return EXHAUSTED, place

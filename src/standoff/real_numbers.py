@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.errors import MaskedNumbers, StandoffError, StandoffTypeError
+
 SHOWN_CHARACTERS = 200
 """Longest piece of an offending value that a message repeats, in characters."""
 
@@ -27,10 +29,6 @@ def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
             return f"a {type(value).__name__} with a number too long to be shown"
         text = hex(value)
     return text if len(text) <= characters else text[: characters - 1] + "…"
-
-
-class MaskedNumbers(TypeError):
-    """Some of the numbers given are masked: there is no value to compute with."""
 
 
 def check_unmasked(value: Any) -> None:
@@ -86,14 +84,14 @@ def real_array(value: Any) -> NDArray[np.float64]:
     check_unmasked(value)
     given = value if isinstance(value, np.ndarray) else np.array(value, dtype=object)
     if given.dtype.kind not in "iufO":
-        raise TypeError(f"numbers of the kind {given.dtype}")
+        raise StandoffTypeError(f"numbers of the kind {given.dtype}")
     if given.ndim > DEEPEST:
-        raise ValueError(f"lists in lists, more than {DEEPEST} deep")
+        raise StandoffError(f"lists in lists, more than {DEEPEST} deep")
     if given.dtype.kind == "O":
         for item in given.flat:
             if isinstance(item, bool | np.bool_ | str | bytes) or item is None:
-                raise TypeError(f"{shown(item)} is no number")
+                raise StandoffTypeError(f"{shown(item)} is no number")
     try:
         return np.array(given, dtype=np.float64)
     except OverflowError as error:
-        raise ValueError(f"a number beyond float64: {error}") from error
+        raise StandoffError(f"a number beyond float64: {error}") from error

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import BinaryIO
 
+from standoff.errors import StandoffError, StandoffTypeError
 from standoff.real_numbers import shown
 
 Writer = Callable[[BinaryIO], object]
@@ -43,9 +44,13 @@ def file_name(given: object) -> Path:
         If it is empty.
     """
     if not isinstance(given, str | Path):
-        raise TypeError(f"path is {shown(given)}: give the name of a file, a text or a Path.")
+        raise StandoffTypeError(
+            f"path is {shown(given)}: give the name of a file, a text or a Path.", "path", given
+        )
     if given == "":
-        raise ValueError("path is '': an empty text names no file; give a name, or leave it out.")
+        raise StandoffError(
+            "path is '': an empty text names no file; give a name, or leave it out.", "path", given
+        )
     return Path(given)
 
 

@@ -1,15 +1,17 @@
 """Pairs of the accuracy report for its tests."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
-from standoff.accuracy.cases import Case, catalogue, draw_cases
-from standoff.accuracy.solids import KINDS, named
+from standoff_studies.accuracy.cases import Case, catalogue, draw_cases
+from standoff_studies.accuracy.solids import KINDS, named
 
 
 @pytest.fixture(scope="session")
-def seed() -> int:
-    return int(np.random.default_rng().integers(2**31))
+def seed(rng_of: Callable[[str], np.random.Generator]) -> int:
+    return int(rng_of("solids of the accuracy report").integers(2**31))
 
 
 @pytest.fixture(scope="session")

@@ -6,8 +6,9 @@ from math import isnan, nan
 import numpy as np
 import pytest
 
-from standoff.accuracy.cases import Case, pairs
-from standoff.accuracy.measuring import (
+from standoff.tracking import Status
+from standoff_studies.accuracy.cases import Case, pairs
+from standoff_studies.accuracy.measuring import (
     OwnAnswer,
     Verdict,
     errors,
@@ -16,11 +17,10 @@ from standoff.accuracy.measuring import (
     measure_case,
     own_answer,
 )
-from standoff.accuracy.peers.answer import PeerAnswer
-from standoff.accuracy.solids import KINDS, Solid, named
-from standoff.accuracy.summary import TARGETS, misses, summary, three_errors
-from standoff.accuracy.truth import Truth
-from standoff.tracking import Status
+from standoff_studies.accuracy.peers.answer import PeerAnswer
+from standoff_studies.accuracy.solids import KINDS, Solid, named
+from standoff_studies.accuracy.summary import TARGETS, misses, summary, three_errors
+from standoff_studies.accuracy.truth import Truth
 
 ROUNDOFF = 1e-12
 """A normal's error (rad), times the stiffness over the size: what turns it is the roundoff of a
@@ -130,7 +130,7 @@ def test_a_lower_bound_above_the_truth_is_wrong(cases_of) -> None:
 
 
 def test_rows_of_other_minima_have_no_errors() -> None:
-    from standoff.accuracy.measuring import _row
+    from standoff_studies.accuracy.measuring import _row
 
     case = point_in_box(0.7)
     row = _row(case, "peer", answer(0.3, [0, 0, -1]))
@@ -176,17 +176,17 @@ def test_summary_counts_and_leaves_out_what_is_missing(cases_of) -> None:
     assert misses([good, off, silent]) == [off]
 
 
-def some_cases(cases_of) -> list[Case]:
+def some_cases(cases_of, rng: np.random.Generator) -> list[Case]:
     """One case at every gap and depth of twenty pairs."""
-    drawn = np.random.default_rng().choice(len(pairs(KINDS)), 20, replace=False)
+    drawn = rng.choice(len(pairs(KINDS)), 20, replace=False)
     chosen = [pairs(KINDS)[number] for number in drawn]
     return [case for pair in chosen for case in cases_of(pair[0].name, pair[1].name)]
 
 
 @pytest.mark.parametrize("part", range(4))
-def test_gaps_reach_the_targets(part, cases_of) -> None:
+def test_gaps_reach_the_targets(part, cases_of, rng: np.random.Generator) -> None:
     """Distance 1e-12 and witness points 1e-9; the normal 1e-9 but where roundoff turns it."""
-    for case in some_cases(cases_of):
+    for case in some_cases(cases_of, rng):
         if case.level < 0:
             continue
         found = own_answer(case)
@@ -201,9 +201,9 @@ def test_gaps_reach_the_targets(part, cases_of) -> None:
 
 
 @pytest.mark.parametrize("part", range(4))
-def test_depths_reach_the_targets(part, cases_of) -> None:
+def test_depths_reach_the_targets(part, cases_of, rng: np.random.Generator) -> None:
     """Up to half the focal depth: the least depth, as accurate as gaps, and no false bound."""
-    for case in some_cases(cases_of):
+    for case in some_cases(cases_of, rng):
         found = own_answer(case)
         if case.level > 0 or case.truth.stiffness < -case.truth.distance:
             continue

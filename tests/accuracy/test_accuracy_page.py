@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from standoff.accuracy.cases import DEPTHS, GAPS, pairs
-from standoff.accuracy.measuring import Row
-from standoff.accuracy.peers.all_peers import all_peers
-from standoff.accuracy.report import ENGINE_HEADER, LEVEL_HEADER, PAIR_HEADER, level_name
-from standoff.accuracy.solids import KINDS
+from standoff_studies.accuracy.cases import DEPTHS, GAPS, pairs
+from standoff_studies.accuracy.measuring import Row
+from standoff_studies.accuracy.peers.all_peers import all_peers
+from standoff_studies.accuracy.report import ENGINE_HEADER, LEVEL_HEADER, PAIR_HEADER, level_name
+from standoff_studies.accuracy.solids import KINDS
 
 DOCS = Path(__file__).parents[2] / "docs"
 REPORT = DOCS / "accuracy-report"

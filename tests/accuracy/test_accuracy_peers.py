@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from standoff.accuracy.measuring import errors
-from standoff.accuracy.peers.all_peers import all_peers
-from standoff.accuracy.peers.coal_peer import Coal
-from standoff.accuracy.peers.fcl_peer import Fcl, _outward_triangles
-from standoff.accuracy.peers.mujoco_peer import MuJoCo
-from standoff.accuracy.peers.opencascade_peer import OpenCascade
-from standoff.accuracy.solids import KINDS
+from standoff_studies.accuracy.measuring import errors
+from standoff_studies.accuracy.peers.all_peers import all_peers
+from standoff_studies.accuracy.peers.coal_peer import Coal
+from standoff_studies.accuracy.peers.fcl_peer import Fcl, _outward_triangles
+from standoff_studies.accuracy.peers.mujoco_peer import MuJoCo
+from standoff_studies.accuracy.peers.opencascade_peer import OpenCascade
+from standoff_studies.accuracy.solids import KINDS
 
 ACCURACY = (1e-3, 5e-2, 0.2)
 """What every peer reaches of distance, witness points and normal: conventions show, not digits."""

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import standoff as so
-from standoff import Edge, Face
+from standoff.bodies import Edge, Face
 from standoff.bodies.assembly import _stations
 from standoff.geometry import (
     Cone,
@@ -25,16 +25,16 @@ SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))
 TETRAHEDRON = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
 
 SIZES = {
-    "sphere": ("r",),
+    "sphere": ("radius",),
     "segment": ("length",),
-    "ellipsoid": ("a", "b", "c"),
-    "capsule": ("r", "length"),
-    "cylinder": ("r", "length"),
-    "cone": ("r", "height"),
-    "box": ("x", "y", "z"),
+    "capsule": ("radius", "length"),
+    "cylinder": ("radius", "height"),
+    "cone": ("radius", "height"),
     "lens": ("radius", "offset"),
 }
-"""Shapes and the names of their sizes, all positive."""
+"""Shapes and the names of their sizes, all positive, or zero for the first three."""
+TRIPLES = {"ellipsoid": "semi_axes", "box": "size"}
+MAY_BE_ZERO = ("sphere", "segment", "capsule")
 
 
 @pytest.mark.parametrize(("shape", "name"), [(s, n) for s, names in SIZES.items() for n in names])
@@ -42,7 +42,7 @@ SIZES = {
     ("value", "words"),
     [
         (0, "= 0.0: must be positive"),
-        (-1.5, "= -1.5: must be positive"),
+        (-1.5, "= -1.5: must be (zero or )?positive"),
         (NAN, "has a NaN or infinite number: nan"),
         (INF, "has a NaN or infinite number: inf"),
         ("long", "is not numeric: 'long'"),
@@ -54,9 +54,33 @@ def test_sizes(shape, name, value, words):
     sizes = dict.fromkeys(SIZES[shape], 1.0)
     if shape == "lens":
         sizes["offset"] = 0.5
-    getattr(so.shapes, shape)(**sizes)
-    with pytest.raises(ValueError, match=f"^{name} {words}"):
-        getattr(so.shapes, shape)(**{**sizes, name: value})
+    make = getattr(so.shapes, shape)
+    make(**sizes)
+    if value == 0 and shape in MAY_BE_ZERO:
+        make(**{**sizes, name: value})
+        return
+    with pytest.raises(ValueError, match=f"^{name} {words}") as caught:
+        make(**{**sizes, name: value})
+    assert caught.value.argument == name
+
+
+@pytest.mark.parametrize(("shape", "name"), TRIPLES.items())
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (0, r"\[1\] = 0.0: must be positive"),
+        (-1.5, r"\[1\] = -1.5: must be positive"),
+        (NAN, r" has a NaN or infinite number: \[1.0, nan, 1.0\]"),
+        ("long", r" is not numeric: \[1.0, 'long', 1.0\]"),
+        (1j, " is not numeric"),
+        ([1, 2], " is not numeric"),
+    ],
+)
+def test_sizes_of_three_numbers(shape, name, value, words):
+    make = getattr(so.shapes, shape)
+    for call in (lambda: make(1.0, value, 1.0), lambda: make(**{name: [1.0, value, 1.0]})):
+        with pytest.raises(ValueError, match=f"^{name}{words}"):
+            call()
 
 
 @pytest.mark.parametrize("offset", [1.0, 2.0])
@@ -84,9 +108,9 @@ def test_flat_box(flat):
         so.shapes.box(2.0, 2.0, 1.0, rounding=np.nextafter(0.5, 0.0))
 
 
-def test_a_box_is_the_polytope_of_its_corners_to_the_last_bit():
+def test_a_box_is_the_polytope_of_its_corners_to_the_last_bit(rng):
     """Its vertices, edges and faces have the numbers that a hull gives them."""
-    for lengths in (np.ones(3), *10.0 ** np.random.default_rng().uniform(-3.0, 3.0, (20, 3))):
+    for lengths in (np.ones(3), *10.0 ** rng.uniform(-3.0, 3.0, (20, 3))):
         box, hull = so.shapes.box(*lengths), so.shapes.polytope(corners(*lengths))
         assert box.ints.tobytes() == hull.ints.tobytes()
         assert box.reals.tobytes() == hull.reals.tobytes()
@@ -213,8 +237,9 @@ def test_surfaces(kind):
     ],
 )
 def test_affine_maps(affine, words):
-    with pytest.raises(ValueError, match=words):
+    with pytest.raises(so.StandoffError, match=words) as refused:
         so.shapes.lens(1, 0.45).transformed(affine)
+    assert refused.value.argument == "affine"
 
 
 def test_maps_that_a_body_does_not_survive():
@@ -346,8 +371,8 @@ def test_parts_that_do_not_fit(name):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"radius": -1}, "radius = -1.0: must be zero or positive"),
-        ({"radius": NAN}, "radius has a NaN"),
+        ({"rounding": -1}, "rounding = -1.0: must be zero or positive"),
+        ({"rounding": NAN}, "rounding has a NaN"),
         ({"dimension": 2}, "edges and vertices only, no faces"),
         ({"dimension": 4}, "dimension.*4"),
     ],

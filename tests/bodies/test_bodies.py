@@ -7,15 +7,15 @@ import standoff as so
 from families import shapes, smooth_bodies
 from families.starts import random_face_parameters
 from oracles.membership import outside
-from oracles.shape import Affine, unit
-from standoff.kernels import layout as L
-from standoff.kernels.features import (
+from standoff.kernels.body import layout as L
+from standoff.kernels.body.features import (
     chart_jet,
     chart_normal,
     coedge_parameters,
     planar_edge_normal,
 )
-from standoff.kernels.trimming import on_face
+from standoff.kernels.body.trimming import on_face
+from standoff_studies.oracles import Affine, unit
 
 MAKERS = {maker.__name__: maker for maker in (*shapes.SOLIDS, shapes.half_space, shapes.loop)}
 DRAWS = 12
@@ -249,11 +249,11 @@ def assert_same(found, known, error=1e-12):
 
 
 @pytest.mark.parametrize("name", SMOOTH)
-def test_smooth_patches_answer_like_swept_cores(name):
+def test_smooth_patches_answer_like_swept_cores(name, rng):
     patches, swept = SMOOTH[name]()
     report = patches.check()
     assert report.smooth_edges == report.edges
-    seed = int(np.random.default_rng().integers(1 << 31))
+    seed = int(rng.integers(1 << 31))
     rng = np.random.default_rng(seed)
     for number in range(SMOOTH_POSES):
         other = tuple(PARTNERS.values())[number % len(PARTNERS)]
@@ -308,7 +308,7 @@ def test_a_panel_over_its_charts_seam_is_trimmed_alike():
 def test_inward_loops_of_smooth_faces_are_turned_and_reported(wrong):
     good = smooth_bodies.capsule(0.4, 1.2)
     faces = [
-        so.Face(face.charts, tuple((edge, -sense) for edge, sense in face.loop))
+        so.bodies.Face(face.charts, tuple((edge, -sense) for edge, sense in face.loop))
         if number in wrong
         else face
         for number, face in enumerate(good.face_parts)

@@ -194,8 +194,7 @@ def test_bounds_scale_with_the_body():
     assert rise(points, normals) <= flat.defect
 
 
-def test_bounds_hold_for_random_patches():
-    rng = np.random.default_rng()
+def test_bounds_hold_for_random_patches(rng):
     for trial in range(4):
         a, b, c, d, e, f = rng.normal(size=6) * [0.3, 0.3, 0.1, 0.1, 0.2, 0.2]
         height = f"-(u**2 + v**2)/2 + {a}*u**3 + {b}*u*v + {c}*sin(2*u + v) + {d}*exp(u*v)"

@@ -84,8 +84,7 @@ def assert_proven(patch, sense=None, hemisphere=True, far=1.0):
 
 
 @pytest.mark.parametrize("degree", range(4, 10))
-def test_tiles_of_ellipsoids_are_convex(degree):
-    rng = np.random.default_rng()
+def test_tiles_of_ellipsoids_are_convex(degree, rng):
     axes = 10.0 ** rng.uniform(-1.5, 0.0, 3)
     for patch in ellipsoid_patches(*axes)[::2]:
         elevated = patch.elevated(degree, max(4, 13 - degree))
@@ -95,8 +94,7 @@ def test_tiles_of_ellipsoids_are_convex(degree):
 
 
 @pytest.mark.parametrize("degree", [2, 3, 5, 9])
-def test_octants_with_a_pole_are_convex(degree):
-    rng = np.random.default_rng()
+def test_octants_with_a_pole_are_convex(degree, rng):
     axes = 10.0 ** rng.uniform(-1.5, 0.0, 3)
     for patch in ellipsoid_octants(*axes)[:2]:
         elevated = patch.elevated(degree, degree)
@@ -125,8 +123,7 @@ def test_a_gore_between_two_poles_is_convex():
     assert_proven(gore.restricted(0.0, 1.0, 1.0, 2.0), 1)
 
 
-def test_random_bumps_are_convex():
-    rng = np.random.default_rng()
+def test_random_bumps_are_convex(rng):
     for _ in range(12):
         degrees = tuple(int(k) for k in rng.integers(2, 10, 2))
         patch = moved(bump(rng, degrees), rng)
@@ -134,7 +131,7 @@ def test_random_bumps_are_convex():
         assert rise(patch, 1, 15) <= proof.defect + roundoff(patch)
 
 
-def test_developable_patches_are_convex():
+def test_developable_patches_are_convex(rng):
     """Cylinder, cone frustum, cone to its apex: one curvature is zero everywhere."""
     ring = np.array([(1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)])
     w = np.repeat(QUARTER[:, None], 2, axis=1)
@@ -142,11 +139,10 @@ def test_developable_patches_are_convex():
         upper = ring * shrink + [0.0, 0.0, top]
         patch = BezierPatch(np.stack([ring, upper], axis=1), w)
         assert_proven(patch, 1)
-        assert_proven(moved(patch.elevated(4, 3), np.random.default_rng()), 1)
+        assert_proven(moved(patch.elevated(4, 3), rng), 1)
 
 
-def test_flat_patches_are_convex_both_ways():
-    rng = np.random.default_rng()
+def test_flat_patches_are_convex_both_ways(rng):
     flat = graph(lambda x, y: 0.0 * x, (3, 4))
     for patch in (flat, moved(flat, rng)):
         assert_proven(patch, 0)
@@ -216,9 +212,8 @@ def test_a_bowl_is_convex_to_the_other_side_only():
 
 @pytest.mark.parametrize("depth", [1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2])
 @pytest.mark.parametrize("rational", [False, True])
-def test_dents_are_graded_and_never_bounded_too_low(depth, rational):
+def test_dents_are_graded_and_never_bounded_too_low(depth, rational, rng):
     """A control point of a flat patch pushed in: the dent's depth is known at its middle."""
-    rng = np.random.default_rng()
     p, q = (int(k) for k in rng.integers(2, 10, 2))
     flat = graph(lambda x, y: 0.0 * x, (p, q))
     i, j = rng.integers(1, p), rng.integers(1, q)
@@ -238,8 +233,7 @@ def test_dents_are_graded_and_never_bounded_too_low(depth, rational):
     assert proof.curvature < 0.0
 
 
-def test_random_patches_are_never_called_convex_when_they_are_dented():
-    rng = np.random.default_rng()
+def test_random_patches_are_never_called_convex_when_they_are_dented(rng):
     outcomes = set()
     for _ in range(60):
         degrees = tuple(int(k) for k in rng.integers(2, 8, 2))
@@ -268,8 +262,7 @@ def test_dents_beside_a_pole_are_bounded():
         assert proof.defect >= depth * np.linalg.norm(points[1, 3]) / 64.0
 
 
-def test_points_of_a_pole_need_not_agree_to_the_last_digit():
-    rng = np.random.default_rng()
+def test_points_of_a_pole_need_not_agree_to_the_last_digit(rng):
     octant = ellipsoid_octants(1.0, 1.3, 0.7)[0]
     for miss in (1e-15, 1e-12):
         points = octant.control_points.copy()

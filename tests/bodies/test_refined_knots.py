@@ -11,8 +11,8 @@ from families import patch_shells as shells
 from families import refined_shells as family
 from families.refined_shells import SHELLS, SPACINGS, refined
 from oracles.exact_pairs import random_rotation
-from standoff.bodies.finishing import ROUNDOFF
 from standoff.bodies.proofs import prove_patch
+from standoff.bodies.tolerances import ROUNDOFF
 from standoff.geometry import (
     BezierPatch,
     Extrusion,
@@ -59,9 +59,8 @@ def test_knots_on_one_patch_alone_change_no_feature(name, way, count, spacing):
 
 @pytest.mark.parametrize("name", ["lens prism", "fillet box", "octants"])
 @pytest.mark.parametrize("spacing", [1e-3, 1e-5])
-def test_turned_and_moved_bodies_have_no_slack_either(name, spacing):
+def test_turned_and_moved_bodies_have_no_slack_either(name, spacing, rng):
     """Numbers with all their digits, and knots at collapsed sides and knife edges."""
-    rng = np.random.default_rng()
     turn, shift = random_rotation(rng), rng.uniform(-1.0, 1.0, 3)
     plain = [patch.transformed(turn, shift) for patch in SHELLS[name]()]
     fine = [refined(patch, spacing, "uv", 3) for patch in plain]
@@ -69,8 +68,7 @@ def test_turned_and_moved_bodies_have_no_slack_either(name, spacing):
 
 
 @pytest.mark.parametrize("name", ["lens prism", "fillet box", "ellipsoid", "spline", "cone"])
-def test_distances_stay_the_same(name):
-    rng = np.random.default_rng()
+def test_distances_stay_the_same(name, rng):
     plain, other, home = coarse(name), so.shapes.lens(0.5, 0.2), so.Pose.identity()
     spacing = SPACINGS[rng.integers(len(SPACINGS))]
     body = so.Body.from_patches([refined(patch, spacing, "uv", 3) for patch in SHELLS[name]()])
@@ -88,10 +86,10 @@ def test_profiles_and_planar_loops_with_inserted_knots(spacing):
     top = NurbsCurve([(-1, 0), (-0.5, 1), (0.5, 1), (1, 0)], [0] * 4 + [1] * 4)
     low = NurbsCurve([(1, 0), (0, -1.5), (-1, 0)], [0] * 3 + [1] * 3)
     meridian = NurbsCurve([(0, 0, -1), (0.8, 0, -1), (0.9, 0, 1), (0, 0, 1.2)], [0] * 4 + [1] * 4)
-    ends = [so.Edge(top, 0, 1), so.Edge(low, 1, 0)]
+    ends = [so.bodies.Edge(top, 0, 1), so.bodies.Edge(low, 1, 0)]
 
     def bodies(change):
-        loop = [so.Edge(change(edge.curve), edge.first, edge.last) for edge in ends]
+        loop = [so.bodies.Edge(change(edge.curve), edge.first, edge.last) for edge in ends]
         corners = [(-1, 0, 0), (1, 0, 0)]
         yield so.Body.from_brep(corners, loop, dimension=2)
         sides = [Extrusion(change(curve), [0.0, 0.2, 1.0]) for curve in (top, low)]

@@ -18,7 +18,7 @@ from standoff.geometry import (
 )
 from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.torus import Torus
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 
 AXES = (0.7, 1.1, 0.5)
 PARTNERS = (
@@ -163,12 +163,12 @@ def test_a_rational_cylinder_is_cut_at_knots_and_seams():
     assert_same_answers(body, so.shapes.cylinder(0.6, 1.4))
 
 
-def test_closed_quadrics_are_halved_at_their_seams():
+def test_closed_quadrics_are_halved_at_their_seams(rng):
     body = so.Body.from_patches(shells.spindle(0.6, 1.2))
     assert_closed(body)
     notes = body.check().notes
     assert any(n.startswith("patch 0: halved") and "closes on itself along u" in n for n in notes)
-    rng, home, point = np.random.default_rng(), so.Pose.identity(), so.shapes.point()
+    home, point = so.Pose.identity(), so.shapes.point()
     for _ in range(60):
         at = 2.0 * rng.normal(size=3)
         r, z = np.hypot(at[0], at[1]), abs(at[2])
@@ -257,7 +257,7 @@ def test_all_kinds_of_surfaces_are_sewn(name):
     assert_same_answers(body, known())
 
 
-def test_a_rounded_puck_is_smooth_all_over():
+def test_a_rounded_puck_is_smooth_all_over(rng):
     """A torus between two discs: points about it are as far as from its disc swept by a ball."""
     tori = [
         Torus(1.0, 0.3, a, a + 0.5 * np.pi, *half)
@@ -267,7 +267,7 @@ def test_a_rounded_puck_is_smooth_all_over():
     lids = [shells.turned(((1.0, 0.3), (0.0, 0.3))), shells.turned(((0.0, -0.3), (1.0, -0.3)))]
     body = so.Body.from_patches([*tori, *lids])
     assert body.check().smooth_edges == body.n_edges
-    rng, home = np.random.default_rng(), so.Pose.identity()
+    home = so.Pose.identity()
     for _ in range(100):
         x = 1.5 * rng.normal(size=3)
         known = np.hypot(max(np.hypot(x[0], x[1]) - 1.0, 0.0), x[2]) - 0.3
@@ -289,8 +289,7 @@ def test_flipped_patches_are_turned_and_reported(wrong):
     assert_same_answers(body, ELLIPSOID)
 
 
-def test_order_and_place_of_patches_do_not_matter():
-    rng = np.random.default_rng()
+def test_order_and_place_of_patches_do_not_matter(rng):
     for _ in range(6):
         turn = Rotation.random(random_state=rng).as_matrix()
         linear = 10.0 ** rng.uniform(-2, 2) * turn @ np.diag(rng.uniform(0.4, 1.5, 3))
@@ -325,7 +324,7 @@ def test_the_affine_image_of_a_sewn_body_is_sewn():
 
 
 def test_a_swept_body_of_patches_is_a_rounded_box():
-    body = so.Body.from_patches(shells.box((1.0, 1.4, 0.8)), radius=0.2)
+    body = so.Body.from_patches(shells.box((1.0, 1.4, 0.8)), rounding=0.2)
     assert_same_answers(body, so.shapes.box(1.4, 1.8, 1.2, rounding=0.2))
 
 

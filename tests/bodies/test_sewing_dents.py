@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from families import patch_shells as shells
 from standoff.geometry import BezierPatch
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 
 SIZE = 2.0 * np.sqrt(3.0)
 """Diagonal of the block."""
@@ -110,11 +110,10 @@ def test_both_sides_of_the_threshold_were_met():
 
 
 @pytest.mark.parametrize("depth", [1e-9, 1e-6, 1e-3, 1e-2])
-def test_the_bound_holds_over_a_dent(depth):
+def test_the_bound_holds_over_a_dent(depth, rng):
     """Points above the dent and beside it: never farther than the bound says they are."""
     body = so.Body.from_patches(dented_block(depth), convexity_tolerance=ACCEPT)
     top, slack, home = dented_top(depth), body.check().slack, so.Pose.identity()
-    rng = np.random.default_rng()
     for _ in range(25):
         x = np.append(rng.uniform(-0.9, 0.9, 2), 1.0 + 10.0 ** rng.uniform(-2, 0.3))
         found = so.distance(body, so.shapes.point(), home, so.Pose(np.eye(3), x))
@@ -126,7 +125,7 @@ def test_the_bound_holds_over_a_dent(depth):
 
 @pytest.mark.parametrize("make", [dented_block, valley_block])
 @pytest.mark.parametrize("depth", [1e-6, 1e-3, 1e-2])
-def test_a_tracker_over_a_dent_bounds_the_distance(make, depth):
+def test_a_tracker_over_a_dent_bounds_the_distance(make, depth, rng):
     """A floor under the dent tilts from one rim to the other; a tracker may keep to the first.
 
     The true distance is that of the lowest corner; without slack some bounds would exceed it.
@@ -135,7 +134,7 @@ def test_a_tracker_over_a_dent_bounds_the_distance(make, depth):
     tracker = so.Tracker(body, so.shapes.halfspace(), dt=1e-3)
     over = Rotation.from_euler("x", np.pi).as_matrix()
     corners = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
-    rng, home, height = np.random.default_rng(), so.Pose.identity(), np.array([0.0, 0.0, 1.5])
+    home, height = so.Pose.identity(), np.array([0.0, 0.0, 1.5])
     for axis in (*np.eye(3)[:2], *(np.append(q, 0.0) for q in rng.normal(size=(6, 2)))):
         state = None
         for tilt in np.linspace(-0.3, 0.3, 12) * depth:
@@ -165,7 +164,7 @@ def test_a_concave_edge_is_measured_and_feeds_the_slack(depth):
             so.Body.from_patches(valley_block(depth))
 
 
-def test_a_gap_is_slack_at_the_edges():
+def test_a_gap_is_slack_at_the_edges(rng):
     """Patches apart by less than the tolerance: sewn, and the bound gives way by the gap."""
     gap = 1e-5
     patches = shells.box((2.0, 2.0, 2.0))
@@ -174,7 +173,7 @@ def test_a_gap_is_slack_at_the_edges():
     report = body.check()
     assert report.sewing_residual == pytest.approx(gap)
     assert gap <= report.slack <= 4.0 * gap
-    other, home, rng = so.shapes.point(), so.Pose.identity(), np.random.default_rng()
+    other, home = so.shapes.point(), so.Pose.identity()
     block = so.shapes.box(2.0, 2.0, 2.0 + 2.0 * gap)  # holds all patches
     for _ in range(100):
         at = so.Pose(np.eye(3), 2.0 * rng.normal(size=3))

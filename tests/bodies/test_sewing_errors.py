@@ -1,5 +1,6 @@
 """What cannot be sewn is refused, with the patches, their sides and by how much."""
 
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -23,20 +24,20 @@ def box_with(number, shift):
     return patches
 
 
-def fails(patches, words, **options):
-    with pytest.raises(so.BodyError, match=words):
+def refusal(patches, **options):
+    """What is said when no body is made of patches."""
+    with pytest.raises(so.BodyError) as error:
         so.Body.from_patches(patches, **options)
+    return str(error.value)
 
 
 def test_a_side_that_matches_nothing_names_its_nearest_and_the_distance():
-    fails(
-        box_with(5, (0, 0, 3.2e-3)),
+    assert re.search(
         r"The shell is open: patch 0 side \w\w matches nothing: nearest open side is patch 5 side "
         r"\w\w, 0\.0032 away; .*tolerance 1\.73e-09",
+        refusal(box_with(5, (0, 0, 3.2e-3))),
     )
-    with pytest.raises(so.BodyError) as error:
-        so.Body.from_patches(box_with(5, (0, 0, 3.2e-3)))
-    text = str(error.value)
+    text = refusal(box_with(5, (0, 0, 3.2e-3)))
     assert text.count("matches nothing") == 6
     assert "(2 more sides are open)" in text  # four of patch 5 and its four neighbours'
     assert "patch 4" not in text  # which lies on the other side
@@ -44,7 +45,7 @@ def test_a_side_that_matches_nothing_names_its_nearest_and_the_distance():
 
 def test_the_tolerance_decides():
     patches = box_with(5, (0, 0, 1e-7))
-    fails(patches, r"1e-07 away.*tolerance 9e-08", tolerance=9e-8)
+    assert re.search(r"1e-07 away.*tolerance 9e-08", refusal(patches, tolerance=9e-8))
     report = so.Body.from_patches(patches, tolerance=2e-7).check()
     assert report.sewing_residual == pytest.approx(1e-7, rel=1e-6)
     assert report.slack >= report.sewing_residual
@@ -55,32 +56,38 @@ def test_the_tolerance_decides():
 def test_an_open_shell(missing):
     patches = list(ellipsoid_patches(1.0, 0.8, 0.6))
     del patches[missing]
-    fails(patches, r"The shell is open: patch \d side .* matches nothing: nearest open side is")
+    assert re.search(
+        r"The shell is open: patch \d side .* matches nothing: nearest open side is",
+        refusal(patches),
+    )
 
 
 def test_one_patch_alone_is_open():
-    fails(ellipsoid_patches(1, 1, 1)[:1], "The shell is open: patch 0 side v0 matches nothing")
+    assert re.search(
+        "The shell is open: patch 0 side v0 matches nothing",
+        refusal(ellipsoid_patches(1, 1, 1)[:1]),
+    )
 
 
 def test_a_patch_given_twice():
     patches = shells.box((1, 2, 3))
-    fails(
-        [*patches, patches[4]],
+    assert re.search(
         r"patch \d side \w\w, patch \d side \w\w, patch 6 side \w\w lie along one curve.*twice",
+        refusal([*patches, patches[4]]),
     )
 
 
 def test_two_shells():
     near, far = shells.box((1, 1, 1)), [moved(p, (5, 0, 0)) for p in shells.box((1, 1, 1))]
-    fails(
-        near + far,
+    assert re.search(
         r"2 shells that share no side: patches 0, 1, 2, 3, 4, 5 \| patches 6, 7, 8, 9, 10, 11",
+        refusal(near + far),
     )
 
 
 def test_boxes_that_touch_in_a_corner():
     near, far = shells.box((1, 1, 1)), [moved(p, (1, 1, 1)) for p in shells.box((1, 1, 1))]
-    fails(near + far, "2 shells")
+    assert re.search("2 shells", refusal(near + far))
 
 
 def sections_of_a_bent_bar():
@@ -107,9 +114,9 @@ def test_a_bar_whose_ends_touch_in_a_point():
         for section in (sections[0], sections[-1])
         for k in range(3)
     ]
-    fails(
-        [*bar(sections), *ends],
+    assert re.search(
         r"Patches touch only in the point \[3\. 0\. 0\.\]: 2 fans meet there \(patch 15 side",
+        refusal([*bar(sections), *ends]),
     )
 
 
@@ -119,25 +126,30 @@ def test_a_closed_shell_of_one_side():
     squares = [BezierPatch([[a, b], [-b, -a]]) for a, b in ((x, y), (y, z), (z, x))]
     corners = [(x, y, z), (x, -y, -z), (-x, y, -z), (-x, -y, z)]
     triangles = [BezierPatch([[a, c], [b, c]]) for a, b, c in corners]
-    fails([*squares, *triangles], r"one side only.*patch \d and patch \d cannot both face outward")
+    assert re.search(
+        r"one side only.*patch \d and patch \d cannot both face outward",
+        refusal([*squares, *triangles]),
+    )
 
 
 def test_a_sheet_encloses_nothing():
     plane = Plane(IDENTITY, np.zeros(3)).restricted(0, 1, 0, 1)
     back = Plane(np.diag([1.0, 1.0, -1.0]), np.zeros(3)).restricted(0, 1, 0, 1)
-    fails([plane, back], "enclose no volume")
+    assert re.search("enclose no volume", refusal([plane, back]))
 
 
 def test_patches_without_extent():
     dot = BezierPatch([[(0, 0, 0), (1e-12, 0, 0)], [(0, 1e-12, 0), (1e-12, 1e-12, 0)]])
-    fails([*shells.box((1, 1, 1)), dot], "patch 6 has no extent: .* tolerance 1.73e-09")
-    fails([dot], "size|open|extent")
+    assert re.search(
+        "patch 6 has no extent: .* tolerance 1.73e-09", refusal([*shells.box((1, 1, 1)), dot])
+    )
+    assert re.search("size|open|extent", refusal([dot]))
 
 
 def test_two_neighbouring_sides_collapsed():
     tip = (0.0, 0.0, 1.0)
     bent = BezierPatch([[tip, tip, tip], [tip, (1, 0, 0), (1, 1, 0)], [tip, (0, 1, 0), (0, 0, 0)]])
-    fails([bent], r"patch 0: its sides v0, u0 have collapsed; only one side")
+    assert re.search(r"patch 0: its sides v0, u0 have collapsed; only one side", refusal([bent]))
 
 
 @pytest.mark.parametrize(
@@ -150,10 +162,10 @@ def test_two_neighbouring_sides_collapsed():
     ],
 )
 def test_what_is_no_patch(patches, words):
-    fails(patches, words)
+    assert re.search(words, refusal(patches))
 
 
-@pytest.mark.parametrize("name", ["tolerance", "convexity_tolerance", "radius"])
+@pytest.mark.parametrize("name", ["tolerance", "convexity_tolerance", "rounding"])
 @pytest.mark.parametrize("value", [-1.0, np.nan, np.inf, "wide"])
 def test_bad_numbers(name, value):
     with pytest.raises(ValueError, match=f"^{name} "):
@@ -161,12 +173,15 @@ def test_bad_numbers(name, value):
 
 
 def test_a_tolerance_beyond_reason():
-    fails(shells.box((1, 1, 1)), "tolerance = 1 is no small part of the patches' size", tolerance=1)
+    assert re.search(
+        "tolerance = 1 is no small part of the patches' size",
+        refusal(shells.box((1, 1, 1)), tolerance=1),
+    )
 
 
 def test_corners_chained_by_a_wide_tolerance():
     slim = shells.cube_sphere(8)
-    fails(slim, "chained|same vertex|extent|collapsed", tolerance=0.2)
+    assert re.search("chained|same vertex|extent|collapsed", refusal(slim, tolerance=0.2))
 
 
 def test_hollow_and_dented_shells():
@@ -178,7 +193,7 @@ def test_hollow_and_dented_shells():
         BezierPatch([[top[i], sunk], [top[j], sunk]]) for i, j in ((0, 1), (1, 3), (3, 2), (2, 0))
     ]
     words = r"edge \d+ between patch \d and patch \d is concave by [\d.]+ degrees at \["
-    fails([*patches[:5], *funnel], words)
+    assert re.search(words, refusal([*patches[:5], *funnel]))
 
 
 def test_a_bowl_is_hollow():
@@ -191,7 +206,10 @@ def test_a_bowl_is_hollow():
     walls = [(top[0], floor[0]), (top[-1], floor[-1]), (top[:, 0], floor[:, 0])]
     walls.append((top[:, -1], floor[:, -1]))
     patches = [top, floor, *(np.stack(wall, axis=1) for wall in walls)]
-    fails([BezierPatch(points) for points in patches], r"patch 0 \(BezierPatch\) is hollow near")
+    assert re.search(
+        r"patch 0 \(BezierPatch\) is hollow near",
+        refusal([BezierPatch(points) for points in patches]),
+    )
 
 
 def test_a_shell_that_winds_twice_round_its_tips():
@@ -204,10 +222,10 @@ def test_a_shell_that_winds_twice_round_its_tips():
         for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)
         for tip in tips
     ]
-    fails(triangles, r"vertex \d+ .* wind round it 2 times")
+    assert re.search(r"vertex \d+ .* wind round it 2 times", refusal(triangles))
 
 
 def test_octants_that_do_not_fit_name_the_octant():
     patches = list(ellipsoid_octants(1, 1, 1))
     patches[3] = ellipsoid_octants(1, 1, 0.9)[3]
-    fails(patches, "patch 3 side .* matches nothing")
+    assert re.search("patch 3 side .* matches nothing", refusal(patches))

@@ -8,7 +8,7 @@ import pytest
 import standoff as so
 from standoff.bodies.proofs.formulas.forms import curvature_forms
 from standoff.bodies.proofs.interval import prove
-from standoff.bodies.topology import BodyError
+from standoff.errors import BodyError
 from standoff.geometry.formulas import FormulaSurface
 
 PI = np.pi
@@ -110,6 +110,6 @@ def test_dented_poles_are_refused(name):
 
 
 def test_a_body_with_a_dented_pole_is_refused():
-    formulas = (*POLAR[:2], DENTED["pole pressed in"])
+    formulas = (*POLAR[:2], DENTED["shallow dimple"])
     with pytest.raises(BodyError):
         so.Body.from_patches(shell(formulas, AXES, (0, PI), 3))

@@ -90,8 +90,7 @@ def size_of(patch):
 
 @pytest.mark.parametrize("make", [trapezoid, wall, curved_net, cylinder, frustum, cone])
 @pytest.mark.parametrize("far", [0.0, 1.0, 1e3])
-def test_planes_and_ruled_patches_have_defects_of_rounding(make, far):
-    rng = np.random.default_rng()
+def test_planes_and_ruled_patches_have_defects_of_rounding(make, far, rng):
     for k in range(4):
         patch = varied(make(rng), rng, far)
         proof = prove_patch(patch)

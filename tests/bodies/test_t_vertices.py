@@ -34,8 +34,7 @@ def box():
     return so.Body.from_patches(sides)
 
 
-def test_a_start_at_such_a_vertex_gets_away(box):
-    rng = np.random.default_rng()
+def test_a_start_at_such_a_vertex_gets_away(box, rng):
     amid = [
         k
         for k, v in enumerate(box.vertex_points)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import standoff as so
+from draws import draws
 from families.convex_loops import random_loop
 from standoff.bodies.voronoi import discs, medial_axis
 
@@ -50,7 +51,7 @@ def corners(body: so.Body) -> list[int]:
     return found
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=draws(3), deadline=None)
 @given(st.integers(0, 10**6))
 def test_random_loops_have_two_nearest_edges_along_a_tree(seed: int) -> None:
     """Every point of a branch is nearest to its two edges; the branches are one tree, and it has
@@ -81,7 +82,7 @@ def test_random_loops_have_two_nearest_edges_along_a_tree(seed: int) -> None:
     check_nearest_edges(regions, seed)
 
 
-def check_nearest_edges(regions: so.VoronoiRegions, seed: int) -> None:
+def check_nearest_edges(regions: so.voronoi.VoronoiRegions, seed: int) -> None:
     """At random points inside, the feature is the edge nearest by dense samples."""
     body, rng = regions.body, np.random.default_rng(seed)
     edges = np.concatenate(sampled(body))
@@ -103,7 +104,7 @@ def test_a_branch_with_the_wrong_edges_is_refused(monkeypatch: pytest.MonkeyPatc
         return touch._replace(radius=touch.radius + 1e-6 * body.size)
 
     monkeypatch.setattr(medial_axis, "greatest_disc", wrong)
-    with pytest.raises(so.VoronoiError, match=r"fails its check|No junction"):
+    with pytest.raises(so.voronoi.VoronoiError, match=r"fails its check|No junction"):
         so.voronoi_regions(body)
 
 
@@ -112,5 +113,5 @@ def test_a_branch_that_is_left_out_is_missed(monkeypatch: pytest.MonkeyPatch) ->
     assert body is not None
     right = medial_axis.leaves_of
     monkeypatch.setattr(medial_axis, "leaves_of", lambda outline: right(outline)[:-1])
-    with pytest.raises(so.VoronoiError):
+    with pytest.raises(so.voronoi.VoronoiError):
         so.voronoi_regions(body)

@@ -26,7 +26,7 @@ def polygon(corners: list[tuple[float, float]]) -> so.Body:
     return so.shapes.planar_loop([Line(p, q) for p, q in zip(corners, ends, strict=True)])
 
 
-def junctions(regions: so.VoronoiRegions) -> Array:
+def junctions(regions: so.voronoi.VoronoiRegions) -> Array:
     found = [
         branch.points[k]
         for branch in regions.medial_axis
@@ -185,7 +185,7 @@ def test_edges_may_run_either_way() -> None:
     """A triangle of clockwise edges in any order has the same incentre and rays."""
     corners = np.array([(0, 0, 0), (3, 0, 0), (0, 4, 0)])
     pairs = [(0, 2), (1, 0), (2, 1)]
-    edges = [so.Edge(Line(corners[a], corners[b]), a, b) for a, b in pairs]
+    edges = [so.bodies.Edge(Line(corners[a], corners[b]), a, b) for a, b in pairs]
     regions = so.voronoi_regions(so.Body.from_brep(corners, edges, dimension=2))
     assert np.allclose(junctions(regions), [[1, 1, 0]], atol=1e-14)
     rays = {
@@ -204,7 +204,7 @@ def test_a_flat_corner_has_its_branch_or_counts_as_smooth(turn: float) -> None:
     regions = so.voronoi_regions(body)
     ends = [end for branch in regions.medial_axis for end in branch.ends]
     kind = "corner" if turn > 1e-5 else "passage"
-    assert so.BranchEnd(kind, (so.Feature("vertex", 1),)) in ends
+    assert so.voronoi.BranchEnd(kind, (so.Feature("vertex", 1),)) in ends
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1e6])

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 import standoff as so
 from standoff.geometry import RationalBezier, ellipsoid_octants
-from standoff.paper.bodies import lens_of_patches
+from standoff_studies.paper.bodies import lens_of_patches
 
 Array = NDArray[np.float64]
 POINT = so.shapes.point()

@@ -14,8 +14,8 @@ import pytest
 from pyarrow import parquet
 
 import standoff as so
-from standoff.accuracy import measuring
-from standoff.accuracy.measuring import Row
+from standoff_studies.accuracy import measuring
+from standoff_studies.accuracy.measuring import Row
 
 Standoff = Callable[..., Any]
 PAIRS = 3

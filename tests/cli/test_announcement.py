@@ -10,7 +10,7 @@ import pytest
 
 from standoff.cli.announcement import announce
 from standoff.cli.arguments import parse
-from standoff.kernels.notices import QUIET
+from standoff.kernels.compiler.notices import QUIET
 
 SAID = {
     "track s.toml": "tracking the pairs of s.toml ...",

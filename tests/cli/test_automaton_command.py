@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
+from standoff.automaton.graph import automaton
+from standoff.automaton.text import automaton_mermaid, automaton_text
 from standoff.scene import load_scene, record
-from standoff.tracking.automaton import automaton
-from standoff.tracking.automaton_text import automaton_mermaid, automaton_text
 
 Standoff = Callable[..., Any]
 

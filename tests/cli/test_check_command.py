@@ -102,9 +102,9 @@ def test_the_bodies_of_a_scene(standoff: Standoff, passing: Path) -> None:
         (["no.json"], "no file 'no.json'"),
         (["passing.toml", "--body", "tol"], "--body: unknown body 'tol'; did you mean 'tool'?"),
         (['shape = "bxo"'], "body.shape: unknown shape 'bxo'; did you mean 'box'?"),
-        (['shape = "sphere", radius = -1'], "body.radius: must be above zero, got -1"),
+        (['shape = "sphere", radius = -1'], "body.radius: must be zero or above, got -1"),
         (["shape = box"], "is no shape as a scene writes it"),
-        (['shape = "lens", radius = 1, offset = 2'], "body: Empty lens"),
+        (['shape = "lens", radius = 1, offset = 2'], "body.offset: Empty lens"),
     ],
 )
 def test_refused(

@@ -183,9 +183,9 @@ def test_impact_needs_no_frames(standoff: Standoff, tmp_path: Path) -> None:
 def test_options_take_the_place_of_the_scene_s(standoff: Standoff, passing: Path) -> None:
     ended = standoff(
         *("track", passing, "--law", "paper", "--integrator", "rk4", "--gain", 20),
-        *("--predictor", "none", "--start", 0.5, "--duration", 0.1),
+        *("--feedforward", "false", "--start", 0.5, "--duration", 0.1),
     )
-    assert "law           paper, rk4, gain 20 1/s, no feedforward" in ended.out
+    assert "law           paper, integrator rk4, gain 20 1/s, feedforward false" in ended.out
     assert "frames        6 from 0.5 s to 0.6 s, 20 ms apart" in ended.out
     # Without the feedforward the paper's law lags, and says so.
     assert ended.code == 3
@@ -197,10 +197,15 @@ def test_options_take_the_place_of_the_scene_s(standoff: Standoff, passing: Path
     [
         (["--law", "papper"], "--law: unknown law 'papper'; did you mean 'paper'?"),
         (["--predictor", "x"], "--predictor: unknown predictor 'x'; known here:"),
-        (["--integrator", "huen"], "did you mean 'heun'?"),
-        (["--gain", "0"], "--gain: must be above zero, got 0"),
-        (["--gain", "-1"], "--gain: must be above zero, got -1"),
-        (["--gain", "nan"], "--gain: must be a finite number, got nan"),
+        (["--law", "paper", "--integrator", "huen"], "did you mean 'heun'?"),
+        (["--law", "paper", "--gain", "0"], "--gain: must be above zero, got 0"),
+        (["--law", "paper", "--gain", "-1"], "--gain: must be above zero, got -1"),
+        (["--law", "paper", "--gain", "nan"], "--gain: must be a finite number, got nan"),
+        (["--law", "paper", "--gain", "much"], "--gain: must be a number, got 'much'"),
+        (["--gain", "30"], "--gain: is an option of the law 'paper', and law is 'predictor-c"),
+        (["--law", "paper", "--predictor", "none"], ": write feedforward = false"),
+        (["--deadline", "2.5"], "--deadline: must be a whole number above zero, got 2.5"),
+        (["--law", "paper", "--feedforward", "no"], "must be true or false, got 'no'"),
         (["--step", "0"], "--step: must be above zero, got 0"),
         (["--step", "inf"], "--step: must be a finite number"),
         (["--step", "often"], "--step: must be a number or 'samples', got 'often'"),
@@ -250,7 +255,8 @@ def test_a_bad_scene_is_one_message(standoff: Standoff, passing: Path, command: 
 
 
 @pytest.mark.parametrize(
-    "arguments", [["trak"], ["track"], ["track", "x.toml", "--bogus"], ["track", "--gain", "much"]]
+    "arguments",
+    [["trak"], ["track"], ["track", "x.toml", "--bogus"], ["track", "x.toml", "--gain"]],
 )
 def test_bad_usage(standoff: Standoff, arguments: list[str]) -> None:
     ended = standoff(*arguments)

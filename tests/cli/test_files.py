@@ -68,7 +68,7 @@ def test_metadata_tells_how_the_file_came_about(standoff: Standoff, tmp_path: Pa
     standoff("track", scene, "-o", target, "--step", "0.1")
     raw = pq.read_schema(target).metadata[b"standoff"]
     metadata = json.loads(raw)
-    assert (metadata["format"], metadata["format_version"]) == ("standoff-recording", 3)
+    assert (metadata["format"], metadata["format_version"]) == ("standoff-recording", 4)
     assert metadata["source"]["scene_text"] == scene.read_text()
     assert metadata["source"]["settings"]["step"] == 0.1
     assert metadata["source"]["samples_sha256"] == {
@@ -132,7 +132,7 @@ def test_plot_marks_penetration(standoff: Standoff, crossing: Path) -> None:
     assert "<!-- in penetration -->" in target.read_text()
     standoff(
         *("track", crossing, "--plot", target, "--duration", 0.2),
-        *("--law", "paper", "--gain", 5, "--predictor", "none"),
+        *("--law", "paper", "--gain", 5, "--feedforward", "false"),
     )
     assert "<!-- the same, not certified -->" in target.read_text()
 

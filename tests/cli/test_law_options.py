@@ -33,24 +33,24 @@ def law(out: str) -> str:
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        ([], "paper, heun, feedback pi (gain 20, integral 50)"),
-        (["--gain", "30"], "paper, heun, gain 30 1/s"),
+        ([], "paper, integrator heun, feedback pi (gain 20, integral 50)"),
+        (["--gain", "30"], "paper, integrator heun, gain 30 1/s"),
         (
-            ["--realisation", "integrated", "--predictor", "none"],
-            "paper, heun, feedback pi (gain 20, integral 50), no feedforward, "
+            ["--realisation", "integrated", "--feedforward", "false"],
+            "paper, integrator heun, feedback pi (gain 20, integral 50), feedforward false, "
             "realisation integrated",
         ),
         (
             ["--switching", "voronoi", "--gain", "30"],
-            "paper, heun, gain 30 1/s, saturation zero, switching voronoi",
+            "paper, integrator heun, gain 30 1/s, saturation zero, switching voronoi",
         ),
         (
             ["--switching", "voronoi", "--saturation", "hold", "--gain", "30"],
-            "paper, heun, gain 30 1/s, switching voronoi",
+            "paper, integrator heun, gain 30 1/s, switching voronoi",
         ),
         (
             ["--solve", "plain", "--switching", "multipliers", "--gain", "30"],
-            "paper, heun, gain 30 1/s, solve plain",
+            "paper, integrator heun, gain 30 1/s, solve plain",
         ),
     ],
 )
@@ -60,6 +60,16 @@ def test_the_summary_names_what_is_not_the_default(
     ended = standoff("track", fed, *options)
     assert (ended.code, ended.err) == (3, "")  # the law lags behind a corner by more than 1e-10
     assert law(ended.out) == told
+
+
+def test_another_law_leaves_what_it_has_not(standoff: Standoff, fed: Path) -> None:
+    ended = standoff("track", fed, "--law", "predictor-corrector", "--deadline", 30)
+    assert law(ended.out) == "predictor-corrector, deadline 30, predictor feedforward-2"
+
+
+def test_a_feedback_in_a_line(standoff: Standoff, fed: Path) -> None:
+    ended = standoff("track", fed, "--feedback", '{ kind = "motion", error = 1e-3 }')
+    assert law(ended.out).startswith("paper, integrator heun, feedback motion (error 0.001")
 
 
 def test_options_reach_the_run_and_its_files(standoff: Standoff, fed: Path) -> None:
@@ -92,14 +102,11 @@ def test_options_reach_the_run_and_its_files(standoff: Standoff, fed: Path) -> N
             "--saturation: saturation='hold' enters the edge it meets",
         ),
         (
-            ["--law", "predictor-corrector"],
-            "--law: feedback = 'pi (gain 20, integral 50)' is of the paper's law",
+            ["--law", "predictor-corrector", "--solve", "plain"],
+            "--solve: is an option of the law 'paper', and law is 'predictor-corrector': leave it "
+            "out, or take law = 'paper'",
         ),
-        (
-            ["--law", "predictor-corrector", "--gain", "9", "--solve", "plain"],
-            "--solve: solve = 'plain' is of the paper's law, and law is 'predictor-corrector': "
-            'take law = "paper", or leave solve out',
-        ),
+        (["--feedback", '{ kind = "pi" }'], "--feedback: 'gain' is missing"),
         (["--integrator", "euler", "--step", "0.2"], "feedback = PI(gain=20.0, integral=50.0) is"),
     ],
 )
@@ -118,7 +125,7 @@ def test_a_scene_with_options_of_another_law(standoff: Standoff, passing: Path) 
     for command in ("track", "distance"):
         ended = standoff(command, passing)
         assert (ended.code, ended.out) == (2, "")
-        assert ended.err.startswith(f"standoff: {passing}: track.feedback: feedback = 'pi (gain")
+        assert ended.err.startswith(f"standoff: {passing}: track.feedback: is an option of the")
 
 
 def test_the_automaton_of_a_scene_with_options(standoff: Standoff, fed: Path) -> None:

@@ -10,14 +10,14 @@ import pytest
 
 from families import file_kinds
 from families import paper_figures as fakes
-from standoff.cli import paper
 from standoff.cli.errors import WriteError
-from standoff.cli.soak import _write_failure
-from standoff.paper import catalogue
 from standoff.scene import load_scene, record
-from standoff.soak.ledger import Ledger
-from standoff.soak.processes import Done
-from standoff.soak.tally import Tally
+from standoff_studies.paper import catalogue
+from standoff_studies.paper import command as paper
+from standoff_studies.soak.command import _write_failure
+from standoff_studies.soak.ledger import Ledger
+from standoff_studies.soak.processes import Done
+from standoff_studies.soak.tally import Tally
 
 Standoff = Callable[..., Any]
 KINDS = [kind for kind in file_kinds.MAKERS if kind != "folder"]

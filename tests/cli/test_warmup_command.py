@@ -14,10 +14,10 @@ import numba
 import pytest
 
 from standoff.cli import warmup
-from standoff.kernels import cache
-from standoff.kernels.compiling import entry
-from standoff.kernels.entry import READ, REAL
-from standoff.kernels.preparing import every_entry, name_of
+from standoff.kernels.compiler import cache
+from standoff.kernels.compiler.decorators import entry
+from standoff.kernels.compiler.entry import READ, REAL
+from standoff.kernels.entries.preparing import every_entry, name_of
 
 Standoff = Callable[..., Any]
 
@@ -125,7 +125,7 @@ def test_nothing_is_compiled_where_numba_is_off() -> None:
 DIES = """
 import os
 from standoff.cli import main, warmup
-from standoff.kernels.preparing import every_entry
+from standoff.kernels.entries.preparing import every_entry
 
 first, second, *_ = every_entry()
 first.prepare = lambda: None

@@ -14,10 +14,10 @@ from typing import Any
 import pytest
 
 from families import paper_figures as fakes
-from standoff.kernels.notices import QUIET
-from standoff.paper import processes as paper
-from standoff.soak import processes as soak
-from standoff.soak.ledger import Ledger
+from standoff.kernels.compiler.notices import QUIET
+from standoff_studies.paper import processes as paper
+from standoff_studies.soak import processes as soak
+from standoff_studies.soak.ledger import Ledger
 
 ORDER = paper.Order(Path(), False)
 

@@ -8,7 +8,7 @@ import pytest
 import standoff as so
 from standoff import control
 from standoff.geometry import ConicArc, Line
-from standoff.paper.bodies import lens_of_patches, planar_body
+from standoff_studies.paper.bodies import lens_of_patches, planar_body
 
 HALF_DISC = [ConicArc((0, 0), (0.6, 0), (0, 0.6), 0.0, math.pi), Line((-0.6, 0.0), (0.6, 0.0))]
 OVAL = [

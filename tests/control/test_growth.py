@@ -48,7 +48,7 @@ def test_steady_errors_of_the_design(method: str, stated) -> None:
 @pytest.mark.parametrize("method", METHODS)
 def test_steady_error_of_a_simulated_law(method: str) -> None:
     """The same from stepping q' = -K (q - q*) + q*' with q* = a t²/2 by the tableau."""
-    from standoff.kernels import integrators as I
+    from standoff.kernels.paper import integrators as I
 
     gain, h, a = 400.0, 2e-3, 1.7
     number, q = I.NAMES.index(method), 0.0

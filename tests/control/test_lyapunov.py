@@ -46,7 +46,9 @@ def test_levels_against_a_grid() -> None:
     for i, du in enumerate(side):
         for j, dv in enumerate(side):
             q = levels.optimum + np.array([du, dv])
-            system = so.pair_system(CAP, POINT, HOME, ABOVE, (("face", 0), q), (("vertex", 0), ()))
+            system = so.tracking.pair_system(
+                CAP, POINT, HOME, ABOVE, (("face", 0), q), (("vertex", 0), ())
+            )
             least = np.linalg.eigvalsh(inverse @ system.H @ inverse.T)[0]
             slope = inverse @ system.g
             rows[i, j] = 0.5 * slope @ slope, 0.5 * system.dR @ system.dR, least
@@ -82,7 +84,9 @@ def test_errors_run_straight_along_the_curves() -> None:
     inverse = np.linalg.inv(np.linalg.cholesky(levels.metric))
     for curve, slopes, way in zip(levels.curves, levels.slopes, levels.directions, strict=True):
         for q, s in zip(curve[1::6], slopes[1::6], strict=True):
-            system = so.pair_system(CAP, POINT, HOME, ABOVE, (("face", 0), q), (("vertex", 0), ()))
+            system = so.tracking.pair_system(
+                CAP, POINT, HOME, ABOVE, (("face", 0), q), (("vertex", 0), ())
+            )
             np.testing.assert_allclose(inverse @ system.g, s * way, atol=1e-6)
 
 

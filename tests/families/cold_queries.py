@@ -20,7 +20,7 @@ from oracles.bounds import separation
 from oracles.loops import PlanarLoop
 from oracles.membership import outside
 from oracles.poses import DrawnPose, size_of
-from oracles.support import HalfSpace, Shape
+from standoff_studies.oracles import HalfSpace, Shape
 
 Array = NDArray[np.float64]
 

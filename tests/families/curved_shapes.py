@@ -6,14 +6,12 @@ import numpy as np
 
 import standoff as so
 from families.shapes import Rng, Twin, random_lengths
-from oracles.between_poles import Gore, Spindle
 from oracles.loops import BezierCurve, Curve
 from oracles.loops import ConicArc as PlanarArc
-from oracles.revolved import Egg, RevolvedHull
-from oracles.rounded_polytopes import RoundedPolytope
-from oracles.superellipsoids import Superellipsoid
+from oracles.revolved import RevolvedHull
 from standoff.geometry import ConicArc, RationalBezier
 from standoff.geometry import Curve as SpaceCurve
+from standoff_studies.oracles import Egg, Gore, RoundedPolytope, Spindle, Superellipsoid
 
 SAME_CORNER = 4e-15
 """How far apart (over the size) corners of body and oracle may be: a few roundings."""

@@ -16,14 +16,12 @@ from numpy.typing import NDArray
 import standoff as so
 from families import curved_shapes, nurbs_bodies, shapes
 from families.shapes import Rng, Twin
-from oracles import support as oracle
-from oracles.between_poles import Gore, Spindle
 from oracles.exact_pairs import random_rotation
 from oracles.loops import BezierCurve
-from oracles.revolved import Egg, RevolvedHull
-from oracles.shape import Affine
-from oracles.superellipsoids import Superellipsoid
+from oracles.revolved import RevolvedHull
 from standoff.geometry import BezierPatch, RationalBezier, ellipsoid_octants, ellipsoid_patches
+from standoff_studies import oracles as oracle
+from standoff_studies.oracles import Affine, Egg, Gore, Spindle, Superellipsoid
 
 Array = NDArray[np.float64]
 Maker = Callable[[Rng, float], Twin]

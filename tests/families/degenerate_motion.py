@@ -13,8 +13,7 @@ from oracles.exact_pairs import ExactPair, exact_pair, random_normal
 from oracles.membership import outside
 from oracles.poses import rotation_about, size_of
 from oracles.revolved import RevolvedHull
-from oracles.shape import Affine
-from oracles.support import HalfSpace, Placed
+from standoff_studies.oracles import Affine, HalfSpace, Placed
 
 STEP = 1e-2
 """Frame time, s, of bodies that turn by about 2 rad/s: twenty degrees in as many frames."""

@@ -14,7 +14,7 @@ from families.shapes import Rng, Twin
 from oracles.bounds import maximise_separation, separation
 from oracles.exact_pairs import exact_pair, random_normal, random_rotation
 from oracles.poses import size_of
-from oracles.support import HalfSpace, Placed
+from standoff_studies.oracles import HalfSpace, Placed
 
 Array = NDArray[np.float64]
 

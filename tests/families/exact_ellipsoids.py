@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from oracles.exact_pairs import ExactPair, exact_pair
-from oracles.support import Ellipsoid, Placed
+from standoff_studies.oracles import Ellipsoid, Placed
 
 Array = NDArray[np.float64]
 

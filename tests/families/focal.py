@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 import standoff as so
 from families import curved_shapes, nurbs_bodies, penetrating, shapes
 from families.shapes import Maker, Rng, Twin
-from oracles import support as oracle
 from oracles.bounds import pair_size
 from oracles.depth import least_depth
 from oracles.depth_inertia import side
 from oracles.exact_pairs import exact_pair, random_normal, random_rotation
-from oracles.support import Placed
+from standoff_studies import oracles as oracle
+from standoff_studies.oracles import Placed
 
 Array = NDArray[np.float64]
 

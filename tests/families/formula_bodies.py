@@ -9,9 +9,8 @@ import standoff as so
 from families.shapes import Rng, Twin, random_lengths
 from oracles.exact_pairs import random_rotation
 from oracles.formulas import FormulaShape, sum_of_ellipsoids
-from oracles.revolved import Egg
-from oracles.superellipsoids import Superellipsoid
 from standoff.geometry import FormulaSurface
+from standoff_studies.oracles import Egg, Superellipsoid
 
 Array = NDArray[np.float64]
 

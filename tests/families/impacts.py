@@ -26,9 +26,8 @@ import standoff as so
 from families.shapes import SOLIDS, Maker, Twin, half_space, loop
 from oracles.exact_pairs import ExactPair, exact_pair
 from oracles.poses import size_of
-from oracles.shape import unit
-from oracles.support import HalfSpace
 from standoff.motion import ConstantTwist, Frame, Helix, Offset, Path
+from standoff_studies.oracles import HalfSpace, unit
 
 Array = NDArray[Any]
 Rng = np.random.Generator
@@ -246,7 +245,7 @@ def apart_before(case: ImpactCase, count: int = 24) -> bool:
     return bool((separations(case, times) > case.clearance).all())
 
 
-def judge(case: ImpactCase, found: so.Impact) -> str:
+def judge(case: ImpactCase, found: so.impact.Impact) -> str:
     """Say what is wrong with an answer, "" if nothing is."""
     reached = case.beyond <= 0.0
     status = found.status
@@ -254,6 +253,9 @@ def judge(case: ImpactCase, found: so.Impact) -> str:
     slack = case.slack if math.isfinite(case.slack) else GRAZING_SLACK * case.duration
     if reached and found.time > case.time + slack:
         return f"late: {found!r}"
-    if case.beyond > 0.0 and status in (so.ImpactStatus.IMPACT, so.ImpactStatus.AT_START):
+    if case.beyond > 0.0 and status in (
+        so.impact.ImpactStatus.IMPACT,
+        so.impact.ImpactStatus.AT_START,
+    ):
         return f"no impact exists: {found!r}"
     return ""

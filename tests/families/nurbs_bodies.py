@@ -16,10 +16,9 @@ import standoff as so
 from families.shapes import Rng, Twin, random_lengths
 from oracles.exact_pairs import random_normal, random_rotation
 from oracles.patches import BezierBody
-from oracles.shape import Affine
-from oracles.support import Ellipsoid, Lens
 from standoff.geometry import BezierPatch, NurbsSurface, ellipsoid_octants, ellipsoid_patches
 from standoff.geometry.bernstein import elevate, product
+from standoff_studies.oracles import Affine, Ellipsoid, Lens
 
 Array = NDArray[np.float64]
 Net = Array

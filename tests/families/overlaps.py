@@ -12,7 +12,7 @@ from families.shapes import Maker, Twin
 from oracles.bounds import overlap
 from oracles.exact_pairs import exact_pair, random_normal, random_rotation
 from oracles.poses import size_of
-from oracles.support import HalfSpace, Placed
+from standoff_studies.oracles import HalfSpace, Placed
 
 DEPTHS = (1e-6, 0.5)
 """Range of the depths by which pairs are pushed together along a normal, over the pair's size."""

@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 from matplotlib.figure import Figure
 
-from standoff.paper import style
-from standoff.paper.figure import Animation, Artwork, Entry, Statement
+from standoff_studies.paper import style
+from standoff_studies.paper.figure import Animation, Artwork, Entry, Statement
 
 entry = partial(Entry, module="families.paper_figures")
 

@@ -17,12 +17,12 @@ import standoff as so
 from families import curved_shapes, nurbs_bodies, shapes
 from families.shapes import Maker, Rng, Twin, random_lengths
 from families.tracked_motions import twist
-from oracles import support as oracle
 from oracles.bounds import pair_size, separation
 from oracles.depth import least_depth
 from oracles.exact_pairs import exact_pair, random_normal, random_rotation
 from oracles.poses import feature_normal, rotation_about
-from oracles.support import Placed
+from standoff_studies import oracles as oracle
+from standoff_studies.oracles import Placed
 
 Array = NDArray[np.float64]
 
@@ -229,7 +229,7 @@ def track_into(case: Case, depth: str, blind: bool = False) -> list[so.Proximity
     if case.motion is None:
         raise ValueError(f"{case.label} has no motion")
     poses = case.motion
-    tracker = so.Tracker(case.a.body, case.b.body, dt=DT, depth=depth)
+    tracker = so.Tracker(case.a.body, case.b.body, dt=DT, law=so.PredictorCorrector(depth=depth))
 
     def flat(placed: Placed) -> tuple[Array, Array]:
         return placed.rotation, placed.position

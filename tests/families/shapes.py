@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 import standoff as so
-from oracles import support as oracle
 from oracles.loops import BezierCurve, PlanarLoop
-from oracles.shape import Shape
 from standoff.geometry import RationalBezier
+from standoff_studies import oracles as oracle
+from standoff_studies.oracles import Shape
 
 Rng = np.random.Generator
 

@@ -16,12 +16,10 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from families.shapes import Twin
-from oracles import support as oracle
 from oracles.bounds import pair_size
-from oracles.shape import Affine, Shape, unit
-from oracles.superellipsoids import Superellipsoid
-from oracles.support import Placed
 from standoff.geometry import ellipsoid_patches
+from standoff_studies import oracles as oracle
+from standoff_studies.oracles import Affine, Placed, Shape, Superellipsoid, unit
 
 Array = NDArray[np.float64]
 Path = Callable[[Array], tuple[Array, Array]]

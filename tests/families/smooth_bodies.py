@@ -23,8 +23,8 @@ class PatchBuilder:
 
     def __init__(self) -> None:
         self.vertices: list[Array] = []
-        self.edges: list[so.Edge] = []
-        self.faces: list[so.Face] = []
+        self.edges: list[so.bodies.Edge] = []
+        self.faces: list[so.bodies.Face] = []
         self._numbers: dict[tuple[int, int], int] = {}
 
     def vertex(self, point: Array) -> int:
@@ -44,7 +44,7 @@ class PatchBuilder:
             if centre is not None:
                 curve = ConicArc(centre, p - centre, q - centre, 0.0, np.pi / 2)
             self._numbers[key] = len(self.edges)
-            self.edges.append(so.Edge(curve, start, end, smooth=True))
+            self.edges.append(so.bodies.Edge(curve, start, end, smooth=True))
         number = self._numbers[key]
         return number, 1 if self.edges[number].first == start else -1
 
@@ -72,7 +72,7 @@ class PatchBuilder:
             self.edge(start, end, centre)
             for start, end, centre in zip(numbers, numbers[1:] + numbers[:1], rows, strict=True)
         )
-        self.faces.append(so.Face((surface,), loop))
+        self.faces.append(so.bodies.Face((surface,), loop))
 
     def body(self, name: str) -> so.Body:
         return so.Body.from_brep(self.vertices, self.edges, self.faces, name=name)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 import standoff as so
-from standoff.kernels import layout as L
-from standoff.kernels.features import coedge_parameters
-from standoff.kernels.trimming import on_face
+from standoff.kernels.body import layout as L
+from standoff.kernels.body.features import coedge_parameters
+from standoff.kernels.body.trimming import on_face
 
 TRIES = 1000
 """Draws in a chart's box before giving up: slender faces fill little of it."""

@@ -12,18 +12,19 @@ from oracles.exact_pairs import random_rotation
 from oracles.loops import ConicArc as PlanarArc
 from oracles.patches import BezierBody
 from oracles.revolved import RevolvedHull
-from oracles.shape import Affine
-from oracles.support import Cylinder
 from standoff.geometry import BezierPatch, ConicArc, Extrusion, Plane, RationalBezier, Torus
+from standoff_studies.oracles import Affine, Cylinder
 
 Array = NDArray[np.float64]
 
 
-def _disc(height: float, radius: float, up: int) -> tuple[so.Edge, Plane]:
+def _disc(height: float, radius: float, up: int) -> tuple[so.bodies.Edge, Plane]:
     """Return a level circle and the plane of its disc, which faces up (1) or down (-1)."""
     centre = np.array([0, 0, height])
     circle = ConicArc(centre, (radius, 0, 0), (0, radius, 0))
-    return so.Edge(circle), Plane.through(centre, np.array([1.0, 0, 0]), np.array([0, up, 0.0]))
+    return so.bodies.Edge(circle), Plane.through(
+        centre, np.array([1.0, 0, 0]), np.array([0, up, 0.0])
+    )
 
 
 def puck(rng: Rng) -> Twin:
@@ -34,9 +35,9 @@ def puck(rng: Rng) -> Twin:
     torus = Torus(major, minor)
     isolines = [so.geometry.SurfaceCurve.isoline(torus, v=v).pcurve for v in torus.domain[2:]]
     faces = [
-        so.Face((torus,), ((0, 1), (1, -1)), (), tuple(isolines)),
-        so.Face((floor,), ((0, -1),)),
-        so.Face((lid,), ((1, 1),)),
+        so.bodies.Face((torus,), ((0, 1), (1, -1)), (), tuple(isolines)),
+        so.bodies.Face((floor,), ((0, -1),)),
+        so.bodies.Face((lid,), ((1, 1),)),
     ]
     arc = PlanarArc((major, 0), (minor, 0), (0, minor), -np.pi / 2, np.pi / 2)
     return Twin(RevolvedHull([arc]), so.Body.from_brep(edges=[low, high], faces=faces, name="puck"))
@@ -51,11 +52,11 @@ def elliptic_cylinder(rng: Rng) -> Twin:
     isolines = [so.geometry.SurfaceCurve.isoline(wall, v=v).pcurve for v in wall.domain[2:]]
     x, y = np.array([1.0, 0, 0]), np.array([0, 1.0, 0])
     faces = [
-        so.Face((wall,), ((0, 1), (1, -1)), (), tuple(isolines)),
-        so.Face((Plane.through(-direction / 2, x, -y),), ((0, -1),)),
-        so.Face((Plane.through(direction / 2, x, y),), ((1, 1),)),
+        so.bodies.Face((wall,), ((0, 1), (1, -1)), (), tuple(isolines)),
+        so.bodies.Face((Plane.through(-direction / 2, x, -y),), ((0, -1),)),
+        so.bodies.Face((Plane.through(direction / 2, x, y),), ((1, 1),)),
     ]
-    edges = [so.Edge(arc) for arc in arcs]
+    edges = [so.bodies.Edge(arc) for arc in arcs]
     matrix = np.column_stack([a * x, b * y, direction])
     body = so.Body.from_brep(edges=edges, faces=faces, name="elliptic cylinder")
     return Twin(Affine(Cylinder(1, 1), matrix), body)

@@ -17,7 +17,7 @@ from families.cold_queries import PER_INSTANCE, Report, judge
 from families.pairs import FAMILIES, GAPS, Instance, draw
 from oracles.exact_pairs import random_normal, random_rotation
 from oracles.poses import DrawnPose, rotation_about, size_of
-from oracles.support import HalfSpace, Placed, Shape
+from standoff_studies.oracles import HalfSpace, Placed, Shape
 
 Array = NDArray[np.float64]
 Motion = Callable[[float], DrawnPose]

@@ -1,6 +1,6 @@
 """Geometry written as data: a table with ``make`` is a call, its other keys the arguments.
 
-``{"make": "shapes.box", "x": 1.0, "y": 2.0, "z": NaN}``; arguments may be such tables themselves.
+``{"make": "shapes.box", "size": [1.0, 2.0, NaN]}``; arguments may be such tables themselves.
 So an input that once failed is a small file that anyone can read.
 """
 
@@ -20,7 +20,7 @@ class BadProgram(Exception):
 
 def _face(charts: Any, loop: Any = (), apexes: Any = ()) -> Any:
     entries = tuple(map(_tuple, loop)) if isinstance(loop, list) else loop
-    return so.Face(_tuple(charts), entries, _tuple(apexes))
+    return so.bodies.Face(_tuple(charts), entries, _tuple(apexes))
 
 
 def _tuple(value: Any) -> Any:
@@ -45,7 +45,7 @@ CALLS: dict[str, Callable[..., Any]] = {
             *(g.Revolution, g.Extrusion, g.SuperellipsoidPole, g.FormulaSurface),
             *(g.SurfaceCurve, g.NurbsPcurve, g.pcurve_of),
             *(m.Pose, m.Twist, m.Fixed, m.ConstantTwist, m.Screw, m.Helix, m.Spiral),
-            *(m.Offset, m.Carried, m.PoseSamples, so.Edge, so.Apex),
+            *(m.Offset, m.Carried, m.PoseSamples, so.bodies.Edge, so.bodies.Apex),
         )
     },
     "Plane.through": g.Plane.through,

@@ -10,8 +10,7 @@ MAKERS = (ellipsoid_patches, ellipsoid_octants)
 
 
 @pytest.mark.parametrize("maker", MAKERS)
-def test_patches_lie_on_the_ellipsoid_and_face_outward(maker):
-    rng = np.random.default_rng()
+def test_patches_lie_on_the_ellipsoid_and_face_outward(maker, rng):
     for patch in maker(*AXES):
         for u, v in rng.uniform(0.0, 0.999, (20, 2)):
             x, xu, xv, *_ = patch.jet(u, v)

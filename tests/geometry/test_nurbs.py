@@ -24,8 +24,7 @@ def assert_same_points(one, other, rng, where=lambda u, v: (u, v)):
 
 
 @pytest.mark.parametrize("p", DEGREES)
-def test_surface_jets_are_scipys(p):
-    rng = np.random.default_rng()
+def test_surface_jets_are_scipys(p, rng):
     for q in rng.choice(np.arange(1, 10), 3):
         surface = splines.random_surface(rng, p, int(q), clamped=bool(rng.integers(2)))
         for u, v in points_inside(rng, surface, 6):
@@ -37,8 +36,7 @@ def test_surface_jets_are_scipys(p):
 
 
 @pytest.mark.parametrize("degree", DEGREES)
-def test_curve_jets_are_scipys(degree):
-    rng = np.random.default_rng()
+def test_curve_jets_are_scipys(degree, rng):
     for clamped in (True, False):
         curve = splines.random_curve(rng, degree, clamped)
         breaks = curve.vector.breaks
@@ -50,8 +48,7 @@ def test_curve_jets_are_scipys(degree):
                 assert np.abs(found - want).max() <= limit
 
 
-def test_bezier_patch_is_its_bernstein_sum():
-    rng = np.random.default_rng()
+def test_bezier_patch_is_its_bernstein_sum(rng):
     patch = BezierPatch(rng.normal(size=(3, 4, 3)), rng.uniform(0.5, 2.0, (3, 4)))
     assert patch.domain == (0.0, 1.0, 0.0, 1.0)
     assert patch.degrees == (2, 3)
@@ -64,8 +61,7 @@ def test_bezier_patch_is_its_bernstein_sum():
 
 
 @pytest.mark.parametrize("clamped", [True, False])
-def test_elevated_and_refined_surfaces_are_the_same(clamped):
-    rng = np.random.default_rng()
+def test_elevated_and_refined_surfaces_are_the_same(clamped, rng):
     for p, q in ((1, 3), (2, 8), (5, 4)):
         surface = splines.random_surface(rng, p, q, clamped)
         elevated = surface.elevated(p + 2, 9)
@@ -80,16 +76,14 @@ def test_elevated_and_refined_surfaces_are_the_same(clamped):
         assert_same_points(surface, refined, rng)
 
 
-def test_turned_surfaces_have_the_same_points():
-    rng = np.random.default_rng()
+def test_turned_surfaces_have_the_same_points(rng):
     surface = splines.random_surface(rng, 3, 2, clamped=False)
     assert_same_points(surface, surface.reversed_u(), rng, lambda u, v: (-u, v))
     assert_same_points(surface, surface.reversed_v(), rng, lambda u, v: (u, -v))
     assert_same_points(surface, surface.swapped(), rng, lambda u, v: (v, u))
 
 
-def test_curves_elevated_refined_and_reversed_are_the_same():
-    rng = np.random.default_rng()
+def test_curves_elevated_refined_and_reversed_are_the_same(rng):
     curve = splines.random_curve(rng, 4, clamped=False)
     t = rng.uniform(curve.first, curve.last)
     for other, s in (
@@ -100,8 +94,7 @@ def test_curves_elevated_refined_and_reversed_are_the_same():
         np.testing.assert_allclose(other.point(s), curve.point(t), atol=1e-13)
 
 
-def test_maps_go_into_the_control_points():
-    rng = np.random.default_rng()
+def test_maps_go_into_the_control_points(rng):
     linear, shift = rng.normal(size=(3, 3)), rng.normal(size=3)
     for shape, at in (
         (splines.random_surface(rng, 3, 4), (0.7, 0.4)),
@@ -115,8 +108,7 @@ def test_maps_go_into_the_control_points():
             np.testing.assert_allclose(found, want, rtol=1e-11, atol=1e-11)
 
 
-def test_box_holds_the_surface_and_follows_its_domain():
-    rng = np.random.default_rng()
+def test_box_holds_the_surface_and_follows_its_domain(rng):
     surface = splines.random_surface(rng, 3, 3)
     u0, u1, v0, v1 = surface.domain
     small = surface.restricted(0.6 * u0 + 0.4 * u1, u1, v0, 0.5 * (v0 + v1))
@@ -134,14 +126,12 @@ def test_box_holds_the_surface_and_follows_its_domain():
         small.restricted(u0, u1, v0, v1)
 
 
-def test_breaks_are_the_knots_below_c2():
+def test_breaks_are_the_knots_below_c2(rng):
     knots = [0, 0, 0, 0, 1, 2, 2, 3, 3, 3, 4, 4, 4, 4]
-    surface = NurbsSurface(
-        np.random.default_rng().normal(size=(10, 3, 3)), knots, [0, 0, 0, 1, 1, 1]
-    )
+    surface = NurbsSurface(rng.normal(size=(10, 3, 3)), knots, [0, 0, 0, 1, 1, 1])
     assert surface.breaks() == ((2.0, 3.0), ())
     assert surface.restricted(0.0, 2.5, 0.0, 1.0).breaks() == ((2.0,), ())
-    curve = NurbsCurve(np.random.default_rng().normal(size=(10, 3)), knots)
+    curve = NurbsCurve(rng.normal(size=(10, 3)), knots)
     assert curve.breaks() == (2.0, 3.0)
 
 
@@ -215,11 +205,11 @@ def test_bad_curves_are_refused(arguments, message):
         NurbsCurve(*arguments)
 
 
-def test_bad_bezier_patches_and_changes_are_refused():
+def test_bad_bezier_patches_and_changes_are_refused(rng):
     with pytest.raises(ValueError, match=r"1 control points along u, so degree 0: give 2 to 10"):
         BezierPatch(NET[:1])
     with pytest.raises(ValueError, match=r"11 control points along v, so degree 10"):
-        BezierPatch(np.random.default_rng().normal(size=(3, 11, 3)))
+        BezierPatch(rng.normal(size=(3, 11, 3)))
     patch = BezierPatch(NET)
     with pytest.raises(ValueError, match=r"Degree 10 asked of a spline of degree 2.*2 to 9"):
         patch.elevated(2, 10)

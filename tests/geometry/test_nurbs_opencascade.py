@@ -48,8 +48,7 @@ def jet(surface, u, v):
 
 
 @pytest.mark.parametrize("p", range(1, 10))
-def test_surface_jets_are_open_cascades(p):
-    rng = np.random.default_rng()
+def test_surface_jets_are_open_cascades(p, rng):
     for q in rng.choice(np.arange(1, 10), 3):
         surface = splines.random_surface(rng, p, int(q), lengths=LENGTHS)
         other = open_cascade(surface)

@@ -45,8 +45,7 @@ def assert_tight(box, points):
     assert too_large <= SEEN * np.linalg.norm(high - low)
 
 
-def test_boxes_of_surfaces_are_tight():
-    rng = np.random.default_rng()
+def test_boxes_of_surfaces_are_tight(rng):
     for _ in range(12):
         surface = splines.random_surface(rng, *rng.integers(1, 10, 2))
         far = surface.transformed(np.eye(3), 100.0 * rng.normal(size=3))
@@ -56,8 +55,7 @@ def test_boxes_of_surfaces_are_tight():
             assert_tight(one.box(), cloud(one))
 
 
-def test_boxes_of_curves_are_tight():
-    rng = np.random.default_rng()
+def test_boxes_of_curves_are_tight(rng):
     for _ in range(12):
         curve = splines.random_curve(rng, int(rng.integers(1, 10)))
         h = bernstein.basis(curve.degree, np.linspace(0.0, 1.0, 801)) @ curve.blocks

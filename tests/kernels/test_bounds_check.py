@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 AT_FAULT = """
 import numpy as np
-from standoff.kernels.compiling import kernel, pointer, stack_reals
+from standoff.kernels.compiler.decorators import kernel, pointer, stack_reals
 
 @kernel
 def get(array, offset, index):

@@ -7,8 +7,8 @@ import pytest
 from numpy.typing import NDArray
 
 import standoff as so
-from standoff.kernels import layout as L
-from standoff.paper.bodies import lens_of_patches
+from standoff.kernels.body import layout as L
+from standoff_studies.paper.bodies import lens_of_patches
 
 LENS = lens_of_patches()
 TURN = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
@@ -35,7 +35,7 @@ def around(body: so.Body, n: int) -> NDArray[np.float64]:
 
 def held(body: so.Body, pose: so.Pose, kind: str, index: int, place: tuple[float, ...]) -> float:
     """lower_bound of an answer whose witness point is held at a place, right or wrong."""
-    tracker = so.Tracker(body, POINT, law="paper")
+    tracker = so.Tracker(body, POINT, law=so.PaperLaw())
     state = tracker.start_from(REST, pose, (kind, index), place, ("vertex", 0), (), settle=False)
     return state.proximity.lower_bound
 

@@ -5,9 +5,9 @@ import pytest
 from numba import njit
 
 from standoff.geometry import NurbsPcurve
-from standoff.kernels import layout as L
-from standoff.kernels import line_roots
-from standoff.kernels.compiling import pointer
+from standoff.kernels.body import layout as L
+from standoff.kernels.body import line_roots
+from standoff.kernels.compiler.decorators import pointer
 
 NOISE = 1e-14
 
@@ -27,8 +27,7 @@ def convex_pieces(degree, rng):
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 5, 9])
-def test_roots_lie_on_the_line_and_none_is_missed(degree):
-    rng = np.random.default_rng()
+def test_roots_lie_on_the_line_and_none_is_missed(degree, rng):
     met = 0
     for _ in range(12):
         for piece, first, last in convex_pieces(degree, rng):

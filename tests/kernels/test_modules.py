@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 from numba import config, njit
 
 import standoff as so
-from standoff.kernels import entries, features, modules, trimming
-from standoff.kernels.compiling import pointer
-from standoff.kernels.preparing import every_entry
+from standoff.kernels.body import features, trimming
+from standoff.kernels.compiler import modules
+from standoff.kernels.compiler.decorators import pointer
+from standoff.kernels.entries import queries
+from standoff.kernels.entries.preparing import every_entry
 
 pytestmark = pytest.mark.skipif(
     bool(config.DISABLE_JIT) or not modules.AVAILABLE,
@@ -25,18 +30,19 @@ import sys
 import numba
 numba.__version__ = {version!r}
 import numpy as np
-from standoff.kernels import entries, modules
+from standoff.kernels.entries import queries
+from standoff.kernels.compiler import modules
 data = np.arange(1.0, 40.0)
 data.flags.writeable = False
-jets = entries.curve_jet(data, 0, 0, 0.3), entries.surface_jet(data, 1, 0, 0.3, 0.2)
+jets = queries.curve_jet(data, 0, 0, 0.3), queries.surface_jet(data, 1, 0, 0.3, 0.2)
 print(modules.AVAILABLE, *jets)
 """
 
 
-def jets(tmp_path, version: str, stock: str) -> tuple[str, str]:
-    """(were modules made, two jets) of a process with an empty cache."""
-    tmp_path.chmod(0o700)
-    settings = {"NUMBA_CACHE_DIR": str(tmp_path), "STANDOFF_STOCK_COMPILER": stock}
+def jets(cache: Path, version: str = numba.__version__, stock: str = "0") -> tuple[str, str]:
+    """(were modules made, two jets) of a process that keeps its code in a folder."""
+    cache.chmod(0o700)
+    settings = {"NUMBA_CACHE_DIR": str(cache), "STANDOFF_STOCK_COMPILER": stock}
     run = subprocess.run(
         [sys.executable, "-c", JETS.format(version=version)],
         capture_output=True,
@@ -49,31 +55,35 @@ def jets(tmp_path, version: str, stock: str) -> tuple[str, str]:
     return made, values
 
 
-def test_stock_compilation_gives_the_same_bits(tmp_path) -> None:
-    import numba
-
-    usual, forced, other = (tmp_path / name for name in ("usual", "forced", "other"))
-    for folder in (usual, forced, other):
-        folder.mkdir()
-    made, values = jets(usual, numba.__version__, "0")
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """A folder with what a first process compiled, and its two jets."""
+    cache = tmp_path_factory.mktemp("usual")
+    made, values = jets(cache)
     assert made == "True"
-    assert jets(forced, numba.__version__, "1") == ("False", values)
-    assert jets(other, "0.69.0", "0") == ("False", values)
+    return cache, values
 
 
-def test_both_kinds_of_code_keep_apart_in_one_cache(tmp_path) -> None:
-    import numba
-
-    tmp_path.chmod(0o700)
-    _, values = jets(tmp_path, numba.__version__, "0")
-    assert jets(tmp_path, numba.__version__, "1") == ("False", values)
-    assert jets(tmp_path, numba.__version__, "0") == ("True", values)
+@pytest.fixture
+def copied(compiled: tuple[Path, str], tmp_path: Path) -> Path:
+    """A copy of the folder that a test may add to or spoil."""
+    return Path(shutil.copytree(compiled[0], tmp_path / "copied"))
 
 
-def test_only_entries_and_shared_kernels_are_emitted_and_kept(tmp_path) -> None:
-    jets(tmp_path, __import__("numba").__version__, "0")
-    kept = {file.name.split("-")[0] for file in tmp_path.rglob("*.nbi")}
-    assert kept == {"entries.curve_jet", "entries.surface_jet"}
+def test_stock_compilation_gives_the_same_bits_and_keeps_apart_in_one_cache(
+    compiled: tuple[Path, str], copied: Path
+) -> None:
+    values = compiled[1]
+    before = set(copied.rglob("*.nbc"))
+    assert jets(copied, stock="1") == ("False", values)
+    assert set(copied.rglob("*.nbc")) > before
+    assert jets(copied, version="0.69.0") == ("False", values)
+    assert jets(copied) == ("True", values)
+
+
+def test_only_entries_and_shared_kernels_are_emitted_and_kept(compiled: tuple[Path, str]) -> None:
+    kept = {file.name.split("-")[0] for file in compiled[0].rglob("*.nbi")}
+    assert kept == {"queries.curve_jet", "queries.surface_jet"}
 
 
 def test_every_entry_has_one_signature() -> None:
@@ -83,7 +93,7 @@ def test_every_entry_has_one_signature() -> None:
 
 
 def test_a_symbol_that_no_module_defines_is_told() -> None:
-    library = modules.ModuleLibrary(entries.curve_jet.targetctx.codegen(), "lonely")
+    library = modules.ModuleLibrary(queries.curve_jet.targetctx.codegen(), "lonely")
     code = modules.llvm.parse_assembly(
         "declare void @_ZN8standoff7missing()\ndefine void @caller() {\n"
         "call void @_ZN8standoff7missing()\nret void }"
@@ -104,10 +114,10 @@ def test_a_stock_function_calls_kernels_and_modules() -> None:
 
     body = so.shapes.box(2.0, 2.0, 2.0)
     walked, point = both(body.ints, body.reals, 0.1, 0.2)
-    assert point == entries.feature_jet(body.ints, body.reals, 0, 0, 0.1, 0.2)[0]
+    assert point == queries.feature_jet(body.ints, body.reals, 0, 0, 0.1, 0.2)[0]
     edge = np.array([0.1, 0.2]) + walked[0] * np.array([3.0, 0.1])
-    assert entries.on_face(body.ints, body.reals, 0, *edge)
-    assert not entries.on_face(body.ints, body.reals, 0, edge[0] + 1e-6, edge[1])
+    assert queries.on_face(body.ints, body.reals, 0, *edge)
+    assert not queries.on_face(body.ints, body.reals, 0, edge[0] + 1e-6, edge[1])
 
 
 def test_a_kernel_called_from_python_answers_as_in_a_module() -> None:
@@ -116,14 +126,14 @@ def test_a_kernel_called_from_python_answers_as_in_a_module() -> None:
     assert features.dimension(a, 0) == 2
     for u in (-0.3, 0.2):
         jet = features.feature_jet(a, b, 0, 0, u, 0.1)
-        assert jet == entries.feature_jet(a, b, 0, 0, u, 0.1)
+        assert jet == queries.feature_jet(a, b, 0, 0, u, 0.1)
 
 
-def test_a_damaged_file_of_the_cache_is_told_and_compiled_anew(tmp_path) -> None:
-    version = __import__("numba").__version__
-    made, values = jets(tmp_path, version, "0")
-    for file in tmp_path.rglob("entries.curve_jet*.nbc"):
+def test_a_damaged_file_of_the_cache_is_told_and_compiled_anew(
+    compiled: tuple[Path, str], copied: Path
+) -> None:
+    for file in copied.rglob("queries.curve_jet*.nbc"):
         file.write_bytes(file.read_bytes()[:100])
-    for file in tmp_path.rglob("entries.surface_jet*.nbi"):
+    for file in copied.rglob("queries.pcurve_jet*.nbi"):
         file.write_bytes(b"nothing of use")
-    assert jets(tmp_path, version, "0") == (made, values)
+    assert jets(copied) == ("True", compiled[1])

@@ -7,10 +7,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff as so
-from standoff.kernels import layout as L
-from standoff.kernels.entries import surface_jet
-from standoff.kernels.features import chart_record
-from standoff.kernels.normals_system import (
+from standoff.kernels.body import layout as L
+from standoff.kernels.body.features import chart_record
+from standoff.kernels.entries.queries import surface_jet
+from standoff.kernels.pair.normals_system import (
     evaluate_contact,
     evaluate_normals,
     evaluate_projection_errors,

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from standoff.kernels import notices
-from standoff.kernels.preparing import every_entry
+from standoff.kernels.compiler import notices
+from standoff.kernels.entries.preparing import every_entry
 
 SEGMENT = "import standoff as so; so.shapes.segment(1.0); so.shapes.segment(2.0)"
 

@@ -22,16 +22,18 @@ from typing import Any
 import pytest
 from numba.core import config
 
-from standoff.kernels import entries, machine, modules, notices, shipped, shipping, trust
-from standoff.kernels.trust import others_can_write
+from standoff.kernels.compiler import machine, modules, notices, shipped, trust
+from standoff.kernels.compiler.trust import others_can_write
+from standoff.kernels.entries import queries, shipping
 
 ROOT = Path(__file__).resolve().parents[2]
 
 WRITE = """
 import sys
 from pathlib import Path
-from standoff.kernels import entries, shipping
-shipping.write(Path(sys.argv[1]), [entries.pcurve_jet, entries.edge_jet])
+from standoff.kernels.entries import queries
+from standoff.kernels.entries import shipping
+shipping.write(Path(sys.argv[1]), [queries.pcurve_jet, queries.edge_jet])
 """
 
 # The line (u, v) = (1 + 2 t, 3 - t) at t = 0.5, its data after the two ends of its range.
@@ -39,7 +41,8 @@ USE = """
 import json, sys
 from pathlib import Path
 from numba.core import event
-from standoff.kernels import entries, shipped
+from standoff.kernels.entries import queries
+from standoff.kernels.compiler import shipped
 import numpy as np
 
 class Count(event.Listener):
@@ -52,13 +55,15 @@ class Count(event.Listener):
 event.register("numba:compile", Count())
 shipped.FOLDER = Path(sys.argv[1])
 line = np.array([0.0, 1.0, 2.0, 0.0, 1.0, -1.0, 0.0, 3.0, 0.0, 0.0, 1.0])
-answer = entries.pcurve_jet(line, 0, 2, 0.5)
+answer = queries.pcurve_jet(line, 0, 2, 0.5)
 for name in sys.argv[2:]:
-    getattr(entries, name).prepare()
+    getattr(queries, name).prepare()
 print(json.dumps({"answer": answer, "compiled": Count.compiled}))
 """
 NO_FOLDER = """
-from standoff.kernels import cache, entries, shipped
+from standoff.kernels.compiler import cache
+from standoff.kernels.entries import queries
+from standoff.kernels.compiler import shipped
 cache._Modules._locator_classes = (cache._Nowhere,)
 """
 ANSWER = [[2.0, 2.5, 1.0], [2.0, -1.0, 0.0], [0.0, 0.0, 0.0]]
@@ -139,7 +144,7 @@ def ask(
 
     def said() -> str:
         for _ in range(2):
-            found = shipped.load(entries.pcurve_jet.py_func, entries.pcurve_jet.signature)
+            found = shipped.load(queries.pcurve_jet.py_func, queries.pcurve_jet.signature)
             assert found is None
         return capsys.readouterr().err
 
@@ -258,19 +263,19 @@ def test_kernels_that_stock_numba_shall_compile_are(ask, monkeypatch):
 
 
 def test_a_truncated_file_is_refused_and_the_kernel_compiled(use, folder):
-    (file,) = folder.glob("entries.pcurve_jet.*")
+    (file,) = folder.glob("queries.pcurve_jet.*")
     file.write_bytes(file.read_bytes()[:-100])
     is_refused(use(), f"{file} is damaged")
 
 
 def test_a_file_that_was_changed_is_not_unpickled(ask, folder):
-    (file,) = folder.glob("entries.pcurve_jet.*")
+    (file,) = folder.glob("queries.pcurve_jet.*")
     file.write_bytes(pickle.dumps("something else"))
     is_said_once(ask(), f"{file} is damaged (not what was written)")
 
 
 def test_a_missing_file_is_refused(ask, folder):
-    (file,) = folder.glob("entries.pcurve_jet.*")
+    (file,) = folder.glob("queries.pcurve_jet.*")
     file.unlink()
     is_said_once(ask(), f"{file} is damaged")
 

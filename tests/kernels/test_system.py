@@ -14,8 +14,8 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from families.shapes import PLANAR
 from standoff.geometry import ConicArc, Line, RationalBezier
-from standoff.kernels.features import feature_jet, moved_jet
-from standoff.kernels.system import (
+from standoff.kernels.body.features import feature_jet, moved_jet
+from standoff.kernels.pair.system import (
     contact_feedforward,
     contact_jacobian,
     contact_residual,
@@ -23,6 +23,7 @@ from standoff.kernels.system import (
     hessian,
     projection_errors,
 )
+from standoff.kernels.values import Pose
 
 TOLERANCE = 1e-7
 """Error of an entry, relative to the greatest of its matrix or vector."""
@@ -53,7 +54,7 @@ class Spot:
     def jet(self, parameters, rotation, position):
         """The world jet at a pose, as the kernels take it."""
         jet = feature_jet(self.body.ints, self.body.reals, self.number, self.chart, *parameters)
-        return moved_jet(tuple(rotation.ravel()), tuple(position), jet)
+        return moved_jet(Pose(tuple(rotation.ravel()), tuple(position)), jet)
 
 
 def face(body, number, chart, u, v):
@@ -116,11 +117,10 @@ class Placed:
         return [moved(pose, twist, time) for pose, twist in zip(self.poses, twists, strict=True)]
 
     def motion(self, twists):
-        """p_A, v_A, omega_A, p_B, v_B, omega_B, as the kernels take them."""
+        """(p, v, omega) of A and of B, as the kernels take them."""
         return [
-            tuple(x)
+            (tuple(position), tuple(twist[:3]), tuple(twist[3:]))
             for (_, position), twist in zip(self.poses, twists, strict=True)
-            for x in (position, twist[:3], twist[3:])
         ]
 
     @property

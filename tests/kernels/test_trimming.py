@@ -5,11 +5,11 @@ import pytest
 from numba import njit
 
 import standoff as so
-from standoff.kernels import layout as L
-from standoff.kernels import trimming
-from standoff.kernels.compiling import pointer
-from standoff.kernels.entries import on_face
-from standoff.kernels.trimming import HIT_COEDGE
+from standoff.kernels.body import layout as L
+from standoff.kernels.body import trimming
+from standoff.kernels.body.trimming import HIT_COEDGE
+from standoff.kernels.compiler.decorators import pointer
+from standoff.kernels.entries.queries import on_face
 
 NEAR = 3e-14
 """How far outside (parameter units) a walk may end: the noise of its start."""
@@ -60,9 +60,8 @@ def boundary_point(body, coedge, rng):
 
 
 @pytest.mark.parametrize("name", BODIES)
-def test_no_grazing_step_leaves_the_face(name):
+def test_no_grazing_step_leaves_the_face(name, rng):
     body = BODIES[name]
-    rng = np.random.default_rng()
     stopped = 0
     for _ in range(4000):
         charts = list(single_charts(body))

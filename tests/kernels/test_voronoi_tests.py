@@ -9,14 +9,15 @@ import pytest
 from numba import njit
 
 import standoff as so
-from standoff.kernels import events as N
-from standoff.kernels import frame as K
-from standoff.kernels.compiling import pointer
-from standoff.kernels.entries import chart_normal, feature_jet
-from standoff.kernels.voronoi import voronoi_switch
-from standoff.paper.bodies import lens_of_patches, planar_body
+from standoff.bodies.features import feature_of
+from standoff.kernels.compiler.decorators import pointer
+from standoff.kernels.entries.queries import chart_normal, feature_jet
+from standoff.kernels.pair import events as N
+from standoff.kernels.paper.voronoi import voronoi_switch
+from standoff.kernels.values import Pair, Place, Work
 from standoff.tracking.inputs import place
-from standoff.tracking.proximity import feature_of
+from standoff.tracking.rows import StateRow
+from standoff_studies.paper.bodies import lens_of_patches, planar_body
 
 BODIES = {
     "lens": so.shapes.lens(1.0, 0.45),
@@ -39,17 +40,13 @@ MOST = 12
 def switch(
     ints: Any, reals: Any, x: Any, span: float, mode: Any, q: Any, counts: Any, log: Any
 ) -> bool:
-    return voronoi_switch(
-        pointer(ints, 0),
-        pointer(reals, 0),
-        0,
-        (x[0], x[1], x[2]),
-        span,
-        pointer(mode, 0),
-        pointer(q, 0),
-        pointer(counts, 0),
-        pointer(log, 0),
-    )
+    body = pointer(ints, 0), pointer(reals, 0)
+    place = Place(mode[0], mode[1], mode[2], mode[3], q[0], q[1], q[2], q[3])
+    work = Work(pointer(counts, 0), pointer(log, 0))
+    pair = Pair(body[0], body[1], body[0], body[1])
+    switched, place = voronoi_switch(pair, 0, (x[0], x[1], x[2]), span, place, work)
+    mode[0], mode[1], q[0], q[1] = place.feature_a, place.chart_a, place.u, place.v
+    return switched
 
 
 def starts(body: so.Body) -> list[tuple[so.Feature, tuple[float, ...]]]:
@@ -85,9 +82,9 @@ def test_voronoi_tests_lead_to_the_nearest_feature(name: str) -> None:
         pose = so.Pose(np.eye(3), x)
         truth = so.distance(body, POINT, REST, pose)
         for feature, parameters in begins:
-            state = np.zeros(K.N_STATE)
+            state = StateRow()
             place(state, 0, body, feature, parameters)
-            mode, q = state[K.MODE : K.MODE + 4].astype(np.int64), state[K.Q : K.Q + 4].copy()
+            mode, q = state.mode.astype(np.int64), state.q.copy()
             counts[:] = 0
             apart = [distance_at(body, mode, q, pose)]
             while switch(body.ints, body.reals, x, 4.0 * body.size, mode, q, counts, log):
@@ -115,5 +112,5 @@ def distance_at(body: so.Body, mode: np.ndarray, q: np.ndarray, pose: so.Pose) -
     feature = feature_of(body, int(mode[0]))
     n = {"face": 2, "edge": 1, "vertex": 0}[feature.kind]
     here = (feature, tuple(float(t) for t in q[:n]))
-    system = so.pair_system(body, POINT, REST, pose, here, (("vertex", 0), ()))
+    system = so.tracking.pair_system(body, POINT, REST, pose, here, (("vertex", 0), ()))
     return float(np.linalg.norm(system.dR))

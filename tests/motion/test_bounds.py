@@ -21,8 +21,7 @@ def pieces(path: Path, first: float, last: float) -> list[tuple[float, float]]:
 
 
 @pytest.mark.parametrize("path", PATHS.values(), ids=PATHS.keys())
-def test_no_instant_is_faster_than_the_bounds(path: Path) -> None:
-    rng = np.random.default_rng()
+def test_no_instant_is_faster_than_the_bounds(path: Path, rng: np.random.Generator) -> None:
     for begin, end in pieces(path, 0.0, 3.5):
         point = rng.normal(size=3) * 2.0
         bounds = bounds_of(path, begin, end, point)
@@ -106,7 +105,7 @@ def test_a_bound_path_answers_for_every_point_and_keeps_its_breaks() -> None:
 def test_bad_bounds_are_refused() -> None:
     good = {"speed": 1.0, "acceleration": 1.0, "angular_speed": 1.0, "angular_acceleration": 1.0}
     with pytest.raises(TypeError, match="pose\\(t\\) and twist\\(t\\)"):
-        Bounded(lambda t: t, **good)
+        Bounded(3.0, **good)
     with pytest.raises(ValueError, match="acceleration is -1"):
         Bounded(Fixed(Pose.identity()), **{**good, "acceleration": -1.0})
     with pytest.raises(TypeError, match="wrap it in standoff"):

@@ -7,6 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from standoff.impact.moment import EPS, POSE_ROUNDINGS, TIME_ROUNDINGS
 from standoff.motion import (
     Bounded,
     Carried,
@@ -21,7 +22,6 @@ from standoff.motion import (
     Twist,
 )
 from standoff.motion.bounds import bounds_of
-from standoff.tracking.impact.moment import EPS, POSE_ROUNDINGS, TIME_ROUNDINGS
 
 CASES = 25
 Exact = tuple[Any, ...]
@@ -162,8 +162,7 @@ KINDS = {
 
 
 @pytest.mark.parametrize("draw", KINDS.values(), ids=KINDS.keys())
-def test_no_pose_is_farther_off_than_its_roundings(draw: Any) -> None:
-    rng = np.random.default_rng()
+def test_no_pose_is_farther_off_than_its_roundings(draw: Any, rng: np.random.Generator) -> None:
     with mpmath.workdps(50):
         for _ in range(CASES):
             arm, t = float(10.0 ** rng.uniform(3, 8)), float(rng.uniform(-50.0, 50.0))

@@ -46,7 +46,7 @@ def test_both_formats_read_alike(tmp_path: Path, name: str, content: str) -> Non
     np.testing.assert_array_equal(samples.poses[0].matrix[:3, 3], [0.1, 0.2, 0.3])
     expected = Pose.from_xyzw((0.6, 0.0, 0.0, 0.8), (1.0, 2.0, 3.0))
     np.testing.assert_array_equal(samples.pose(1.5).matrix, expected.matrix)
-    assert samples.normalised == (0 if name.lower().endswith("csv") else 1)
+    assert samples.repaired == (0 if name.lower().endswith("csv") else 1)
 
 
 def test_the_real_recording() -> None:
@@ -58,7 +58,7 @@ def test_the_real_recording() -> None:
     assert 0.009 < np.median(steps) < 0.011
     assert steps.max() > 1.05 * np.median(steps)
     # Four decimals a component: nearly every quaternion is off unit norm by more than rounding.
-    assert samples.normalised > 0.9 * len(samples.poses)
+    assert samples.repaired > 0.9 * len(samples.poses)
     np.testing.assert_array_equal(samples.pose(samples.start).translation, [1.3563, 0.6305, 1.6380])
     middle = 0.5 * (samples.times[100] + samples.times[101])
     step = 1e-3

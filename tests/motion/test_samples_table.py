@@ -57,7 +57,7 @@ def test_a_table_is_read(tmp_path: Path, columns: dict[str, Any]) -> None:
     np.testing.assert_array_equal(samples.poses[0].matrix[:3, 3], [0.1, 0.2, 0.3])
     expected = Pose.from_xyzw((0.6, 0.0, 0.0, 0.8), (1.0, 2.0, 3.0))
     np.testing.assert_array_equal(samples.pose(1.5).matrix, expected.matrix)
-    assert samples.normalised == 1
+    assert samples.repaired == 1
 
 
 def test_far_instants_keep_their_digits(tmp_path: Path) -> None:

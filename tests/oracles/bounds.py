@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize, nnls
 
-from .support import HalfSpace, Placed, directions, unit
+from standoff_studies.oracles import HalfSpace, Placed, directions, unit
 
 Array = NDArray[Any]
 

@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
+from standoff_studies.oracles import Placed, Polytope, Swept
+
 from .bounds import maximise_separation, pair_size
 from .closed_forms import segments
 from .features import Feature, feature_in_world
-from .support import Placed, Polytope, Swept
 from .surfaces import Quadrics, placed_quadrics, sweep_of
 
 Array = NDArray[Any]

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
+from standoff_studies.oracles import Box, Cap, Cone, Cylinder, Ellipsoid, Lens, Placed
+
 from .loops import SAMPLES, Curve, PlanarLoop
-from .support import Box, Cap, Cone, Cylinder, Ellipsoid, Lens, Placed
 
 Array = NDArray[Any]
 
@@ -151,15 +152,15 @@ def point_cap(point: ArrayLike, cap: Cap) -> tuple[float, Array]:
     p = _array(point)
     radial = float(np.hypot(p[0], p[1]))
     length = float(np.linalg.norm(p))
-    if p[2] <= cap.height:
+    if p[2] <= cap.offset:
         shrink = min(1.0, cap.rim / radial) if radial > 0 else 1.0
-        return _result(p, np.array([p[0] * shrink, p[1] * shrink, cap.height]))
+        return _result(p, np.array([p[0] * shrink, p[1] * shrink, cap.offset]))
     if length <= cap.radius:
         raise ValueError(f"point {p} is inside the cap")
     ball = cap.radius * p / length
-    if ball[2] >= cap.height:
+    if ball[2] >= cap.offset:
         return _result(p, ball)
-    return _result(p, np.array([*(cap.rim * p[:2] / radial), cap.height]))
+    return _result(p, np.array([*(cap.rim * p[:2] / radial), cap.offset]))
 
 
 def point_lens(point: ArrayLike, lens: Lens) -> tuple[float, Array]:

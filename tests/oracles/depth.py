@@ -18,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from standoff_studies.oracles import HalfSpace, Placed, unit
+
 from .bounds import pair_size, separation
 from .depth_inertia import Contact, contact, tangents
 from .depth_polytopes import polytope_minima
-from .shape import unit
-from .support import HalfSpace, Placed
 
 Array = NDArray[Any]
 

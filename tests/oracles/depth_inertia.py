@@ -23,9 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
+from standoff_studies.oracles import Placed, unit
+
 from .bounds import pair_size
-from .shape import unit
-from .support import Placed
 
 Array = NDArray[Any]
 

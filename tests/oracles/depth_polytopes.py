@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .shape import unit
-from .support import Placed, Polytope, Swept
+from standoff_studies.oracles import Placed, Polytope, Swept, unit
 
 Array = NDArray[Any]
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .support import HalfSpace, Placed, Shape
+from standoff_studies.oracles import HalfSpace, Placed, Shape
 
 Array = NDArray[Any]
 Pose = tuple[Array, Array]

@@ -8,9 +8,21 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from standoff_studies.oracles import (
+    Affine,
+    Box,
+    Capsule,
+    Cone,
+    Placed,
+    Point,
+    Segment,
+    Shape,
+    Sphere,
+    Swept,
+)
+
 from .closed_forms import point_curve
 from .loops import PlanarLoop
-from .support import Affine, Box, Capsule, Cone, Placed, Point, Segment, Shape, Sphere, Swept
 from .surfaces import quadrics
 
 Array = NDArray[Any]

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from standoff_studies.oracles import Placed, Point, Shape
+
 from .bounds import cut
-from .shape import Placed, Shape
-from .support import Point
 
 Array = NDArray[Any]
 
@@ -25,9 +25,11 @@ class FormulaShape(Shape):
     def points(self, normals: Array) -> Array:
         return self.formula(normals)
 
-    def outside(self, point: ArrayLike) -> float:
-        """How far a point lies outside; 0 inside, and within the bracket of cutting planes."""
-        p = np.asarray(point, dtype=float)
+    def outside(self, points: Array) -> Array:
+        """How far points lie outside; 0 inside, and within the bracket of cutting planes."""
+        return np.array([self._outside(point) for point in points])
+
+    def _outside(self, p: Array) -> float:
         found = cut(Placed(self, np.eye(3), np.zeros(3)), Placed(Point(), np.eye(3), p), p)
         return 0.0 if found is None else max(found.value, 0.0)
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from math import comb
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .shape import Shape
+from standoff_studies.oracles import Shape
 
 Array = NDArray[Any]
 
@@ -19,6 +20,27 @@ REFINEMENTS = 80
 """Safeguarded Newton steps; bisection alone reaches 2**-80 of a sample's width."""
 JOIN = 1e-9
 """Greatest gap between consecutive curves, over the loop's size."""
+
+
+@cache
+def _terms(degree: int) -> tuple[Array, Array, Array]:
+    rising = np.arange(degree + 1.0)
+    return np.array([float(comb(degree, i)) for i in range(degree + 1)]), rising, rising[::-1]
+
+
+def bernstein(degree: int, t: Array) -> Array:
+    """Return the Bernstein polynomials of a degree at parameters (k,): (k, degree + 1)."""
+    binomials, rising, falling = _terms(degree)
+    return binomials * t[:, None] ** rising * (1 - t)[:, None] ** falling
+
+
+def elevated(rows: Array, count: int) -> Array:
+    """Return the ``count`` Bezier coefficients of the same curve in a higher degree."""
+    while len(rows) < count:
+        share = np.arange(1, len(rows))[:, None] / len(rows)
+        inner = share * rows[:-1] + (1 - share) * rows[1:]
+        rows = np.vstack([rows[:1], inner, rows[-1:]])
+    return rows
 
 
 class Curve(Protocol):
@@ -43,16 +65,12 @@ class BezierCurve:
         rows = np.column_stack([self.control * self.weights[:, None], self.weights])
         first = (count - 1) * np.diff(rows, axis=0)
         second = (count - 2) * np.diff(first, axis=0) if count > 2 else np.zeros((1, 3))
-        self._levels = (rows, first, second)
-
-    @staticmethod
-    def _evaluate(rows: Array, t: Array) -> Array:
-        degree = len(rows) - 1
-        terms = [comb(degree, i) * t**i * (1 - t) ** (degree - i) for i in range(degree + 1)]
-        return np.stack(terms, axis=1) @ rows
+        # of one degree, so that all are evaluated at once
+        self._levels = np.hstack([rows, elevated(first, count), elevated(second, count)])
 
     def jet(self, parameters: Array) -> tuple[Array, Array, Array]:
-        top, first, second = (self._evaluate(rows, parameters) for rows in self._levels)
+        levels = bernstein(len(self._levels) - 1, np.asarray(parameters)) @ self._levels
+        top, first, second = levels[:, :3], levels[:, 3:6], levels[:, 6:]
         weight = top[:, 2:]
         point = top[:, :2] / weight
         velocity = (first[:, :2] - point * first[:, 2:]) / weight

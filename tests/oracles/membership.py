@@ -7,15 +7,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .between_poles import Gore, Spindle
+from standoff_studies.oracles import (
+    Affine,
+    Box,
+    Capsule,
+    Cone,
+    Egg,
+    Gore,
+    RoundedPolytope,
+    Shape,
+    Sphere,
+    Spindle,
+    Superellipsoid,
+)
+
 from .features import core_point
 from .formulas import FormulaShape
 from .patches import BezierBody
-from .revolved import Egg, RevolvedHull
-from .rounded_polytopes import RoundedPolytope
-from .shape import Affine, Shape
-from .superellipsoids import Superellipsoid
-from .support import Box, Capsule, Cone, Sphere
+from .revolved import RevolvedHull
 from .surfaces import quadrics
 
 Curved = Superellipsoid | RoundedPolytope | Spindle | Gore | Egg | RevolvedHull
@@ -37,7 +46,7 @@ def outside(shape: Shape, point: ArrayLike) -> float:
     """
     p = np.asarray(point, dtype=float)
     if isinstance(shape, Curved):
-        return shape.outside(p)
+        return float(shape.outside(p[None])[0])
     if isinstance(shape, Affine) and isinstance(shape.shape, Cone | Curved):
         back = np.linalg.solve(shape.matrix, p - shape.shift)
         return outside(shape.shape, back) * float(np.linalg.norm(shape.matrix, 2))

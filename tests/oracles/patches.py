@@ -1,7 +1,7 @@
 """Convex bodies given as rational Bezier patches: support by sampling and projected Newton steps.
 
-A patch is a grid of homogeneous control points (w x, w y, w z, w), (p + 1, q + 1, 4), evaluated
-by de Casteljau's algorithm. Every value found is that of a point of the body, so a search that
+A patch is a grid of homogeneous control points (w x, w y, w z, w), (p + 1, q + 1, 4), weighed by
+Bernstein's polynomials. Every value found is that of a point of the body, so a search that
 went wrong would show as a separation greater than the distance, never as a false proof.
 """
 
@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from standoff_studies.oracles import Placed, Point, Shape
+
 from .bounds import cut
-from .shape import Placed, Shape
-from .support import Point
+from .loops import bernstein
 
 Array = NDArray[Any]
 Jet = tuple[Array, Array, Array, Array, Array, Array]
@@ -40,15 +41,6 @@ HALVINGS = 40
 """Halvings of a step that does not climb."""
 
 
-def casteljau(control: Array, t: Array) -> Array:
-    """Return the curve points (k, ...) of control points (k, n + 1, ...) at parameters (k,)."""
-    points = control
-    t = t.reshape(-1, *[1] * (control.ndim - 1))
-    while points.shape[1] > 1:
-        points = (1 - t) * points[:, :-1] + t * points[:, 1:]
-    return points[:, 0]
-
-
 class BezierPatch:
     """One patch and the nets of its homogeneous partial derivatives, u along the first axis."""
 
@@ -70,8 +62,9 @@ class BezierPatch:
 
     def _homogeneous(self, which: int, u: Array, v: Array) -> Array:
         net = self.nets[u.dtype.type][which]
-        rows = casteljau(np.broadcast_to(net, (len(u), *net.shape)), u)
-        return casteljau(rows, v)
+        rows = bernstein(len(net) - 1, u) @ net.reshape(len(net), -1)
+        across = bernstein(net.shape[1] - 1, v)[:, :, None]
+        return (rows.reshape(len(u), *net.shape[1:]) * across).sum(axis=1)
 
     def point(self, u: Array, v: Array) -> Array:
         """Return points (k, 3)."""
@@ -224,12 +217,14 @@ class BezierBody(Shape):
                 break
         return best
 
-    def outside(self, point: ArrayLike) -> float:
-        """How far a point lies outside, or off the boundary where that is hardly anything.
+    def outside(self, points: Array) -> Array:
+        """How far points lie outside, or off the boundary where that is hardly anything.
 
         0 inside, and within the bracket of cutting planes.
         """
-        p = np.asarray(point, dtype=float)
+        return np.array([self._outside(point) for point in points])
+
+    def _outside(self, p: Array) -> float:
         if (off := self.nearest(p)) <= CLOSE * self.bounding_radius:
             return off
         found = cut(Placed(self, np.eye(3), np.zeros(3)), Placed(Point(), np.eye(3), p), p)

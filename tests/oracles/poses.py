@@ -9,9 +9,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff_studies.oracles import HalfSpace, Placed, Shape
+
 from .bounds import overlap, pair_size
 from .exact_pairs import exact_pair, random_normal, random_rotation
-from .support import HalfSpace, Placed, Shape
 
 Array = NDArray[Any]
 Kind = Literal["exact", "feature", "free", "close"]

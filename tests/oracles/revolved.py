@@ -1,4 +1,4 @@
-"""Bodies of revolution about z: the egg, and hulls of revolved planar curves."""
+"""Bodies of revolution about z: hulls of revolved planar curves."""
 
 from __future__ import annotations
 
@@ -9,13 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from standoff_studies.oracles import Shape, directions, unit
+from standoff_studies.oracles.revolved import turned
+
 from .loops import Curve
-from .shape import Shape, directions, unit
 
 Array = NDArray[Any]
 
 BISECTIONS = 70
-"""Halvings of a bracket of angles: enough for extended precision."""
+"""Halvings of a bracket of angles."""
 ANGLES = 240
 """Directions of half a turn that are looked through for jumps of the support point."""
 JUMP = 1e-6
@@ -34,54 +36,6 @@ ZOOM = 40
 """Directions of one round of the search for the direction along which a point is farthest."""
 
 
-def revolve(normals: Array, r: Array, z: Array) -> Array:
-    """Return the points at radius r and height z whose radial direction is that of a normal."""
-    point = r[:, None] * unit(normals * np.array([1.0, 1.0, 0.0]))
-    point[:, 2] = z
-    return point
-
-
-class Egg(Shape):
-    """``r = b sqrt(1 - t²)/(1 + k t)``, ``z = half t``: a circle seen in a partial perspective.
-
-    ``radius`` is the greatest r, at t = -k; b = radius sqrt(1 - k²). Convex for |k| <= sqrt(1/2).
-    """
-
-    def __init__(self, radius: float, length: float, taper: float) -> None:
-        self.half, self.taper = length / 2, float(taper)
-        self.width = radius * float(np.sqrt(1 - taper * taper))
-        self.bounding_radius = float(np.hypot(radius, length / 2))
-
-    def points(self, normals: Array) -> Array:
-        """Bisect the slope of ``n.x`` over the polar angle, which falls through one zero."""
-        across = np.sqrt((normals[:, :2] ** 2).sum(axis=1))
-        pi = np.arctan2(np.zeros_like(across), -np.ones_like(across))
-        low, high = np.zeros_like(across), pi
-        for _ in range(BISECTIONS):
-            angle = (low + high) / 2
-            cos, sin = np.cos(angle), np.sin(angle)
-            wide = self.width * (cos + self.taper) / (1 + self.taper * cos) ** 2
-            rising = across * wide - normals[:, 2] * self.half * sin > 0
-            low, high = np.where(rising, angle, low), np.where(rising, high, angle)
-        angle = (low + high) / 2
-        cos = np.cos(angle)
-        return revolve(
-            normals, self.width * np.sin(angle) / (1 + self.taper * cos), self.half * cos
-        )
-
-    def outside(self, point: ArrayLike) -> float:
-        """How far a point lies outside: first-order, from the quartic."""
-        x, y, z = np.asarray(point, dtype=float)
-        t = z / self.half
-        wide, r2 = 1 + self.taper * t, x * x + y * y
-        if wide <= 0:
-            return float(abs(z) - self.half)
-        value = r2 * wide**2 - self.width**2 * (1 - t * t)
-        across = 2 * np.sqrt(r2) * wide**2
-        along = (2 * r2 * wide * self.taper + 2 * self.width**2 * t) / self.half
-        return float(value / np.hypot(across, along))
-
-
 class Stretch:
     """A part of a curve, short enough for ``n.c(t)`` to have two maxima on it at most."""
 
@@ -94,8 +48,9 @@ class Stretch:
         values = self.samples @ flat.T
         padded = np.pad(values, ((1, 1), (0, 0)), constant_values=-np.inf)
         peaks = (values >= padded[:-2]) & (values >= padded[2:])
-        first, second = np.argsort(np.where(peaks, values, -np.inf), axis=0)[[-1, -2]]
-        options = np.stack([self._climb(flat, first), self._climb(flat, second)], axis=1)
+        highest = np.argsort(np.where(peaks, values, -np.inf), axis=0)[[-1, -2]]
+        found = self._climb(np.vstack([flat, flat]), highest.ravel())
+        options = found.reshape(2, -1, 2).swapaxes(0, 1)
         chosen = (options * flat[:, None]).sum(axis=2).argmax(axis=1)
         return np.asarray(options[np.arange(len(flat)), chosen])
 
@@ -149,7 +104,7 @@ class RevolvedHull(Shape):
     def points(self, normals: Array) -> Array:
         across = np.sqrt((normals[:, :2] ** 2).sum(axis=1))
         found = self.profile(np.column_stack([across, normals[:, 2]]).astype(float))
-        return revolve(normals, found[:, 0], found[:, 1]).astype(normals.dtype)
+        return turned(normals, found[:, 0], found[:, 1]).astype(normals.dtype)
 
     def _straight(self) -> list[tuple[float, Array]]:
         """Return (angle, two end points) of the profile's straight pieces, discs excluded."""
@@ -202,9 +157,12 @@ class RevolvedHull(Shape):
             )
         return np.array(rows)
 
-    def outside(self, point: ArrayLike) -> float:
-        """How far a point lies outside: greatest height over a supporting line, by zooming in."""
-        x, y, z = np.asarray(point, dtype=float)
+    def outside(self, points: Array) -> Array:
+        """How far points lie outside: greatest height over a supporting line, by zooming in."""
+        return np.array([self._outside(point) for point in points])
+
+    def _outside(self, point: Array) -> float:
+        x, y, z = point
         spot = np.array([np.hypot(x, y), z])
         low, high = -np.pi / 2, np.pi / 2
         best = -np.inf

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .support import (
+from standoff_studies.oracles import (
     Affine,
     Cap,
     Cylinder,
@@ -168,7 +168,7 @@ def _(shape: Cylinder) -> Quadrics:
 @quadrics.register
 def _(shape: Cap) -> Quadrics:
     ball = _round("sphere", np.zeros(3), np.full(3, shape.radius))
-    return _join(ball, _planes(["plane"], np.array([[0, 0, -1]]), np.array([-shape.height])))
+    return _join(ball, _planes(["plane"], np.array([[0, 0, -1]]), np.array([-shape.offset])))
 
 
 @quadrics.register

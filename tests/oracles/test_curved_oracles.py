@@ -4,17 +4,21 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from oracles.between_poles import Gore, Spindle
 from oracles.exact_pairs import exact_pair, random_normal
 from oracles.formulas import sum_of_ellipsoids
 from oracles.loops import BezierCurve
 from oracles.membership import outside
 from oracles.patches import BezierBody, BezierPatch
-from oracles.revolved import Egg, RevolvedHull
-from oracles.rounded_polytopes import RoundedPolytope
-from oracles.shape import Affine
-from oracles.superellipsoids import Superellipsoid
-from oracles.support import Ellipsoid
+from oracles.revolved import RevolvedHull
+from standoff_studies.oracles import (
+    Affine,
+    Egg,
+    Ellipsoid,
+    Gore,
+    RoundedPolytope,
+    Spindle,
+    Superellipsoid,
+)
 
 ROCK = np.random.default_rng(5).normal(size=(12, 3))
 PROFILE = (

@@ -11,7 +11,7 @@ from oracles.depth_inertia import contact, jacobian, tangents
 from oracles.depth_polytopes import difference_faces, polytope_minima
 from oracles.exact_pairs import exact_pair, random_normal, random_rotation
 from oracles.loops import ConicArc, PlanarLoop, line
-from oracles.support import (
+from standoff_studies.oracles import (
     Box,
     Capsule,
     Cone,
@@ -114,8 +114,7 @@ def test_half_space():
 
 
 @pytest.mark.parametrize("rounding", [0.0, 0.1])
-def test_polytopes_by_enumeration(rounding):
-    rng = np.random.default_rng()
+def test_polytopes_by_enumeration(rounding, rng):
     known = seen = 0
     for _ in range(5):
         second = Box(*rng.uniform(0.5, 2, 3), rounding) if rounding else rock(rng)
@@ -135,9 +134,8 @@ def test_polytopes_by_enumeration(rounding):
     assert seen > 0.3 * known
 
 
-def test_enumeration_finds_the_hull_of_the_differences():
+def test_enumeration_finds_the_hull_of_the_differences(rng):
     """The faces of A - B against Qhull on the differences of all vertices."""
-    rng = np.random.default_rng()
     for _ in range(5):
         a, b = mingled(rock(rng), rock(rng), rng)
         corners = [p.shape.vertices @ p.rotation.T + p.position for p in (a, b)]
@@ -159,9 +157,8 @@ SHAPES = {
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_against_a_dense_sample(name):
+def test_against_a_dense_sample(name, rng):
     """No direction of a dense sample has a lesser s, and the points are the bodies' own."""
-    rng = np.random.default_rng()
     dense, _ = sphere(6)
     for other in SHAPES.values():
         pair = exact_pair(SHAPES[name], other, -float(rng.uniform(0.01, 0.3)), rng)
@@ -175,8 +172,7 @@ def test_against_a_dense_sample(name):
             assert one.negative in (3, 5), one  # 5: parallel faces, beyond the generic pairs
 
 
-def test_separated_bodies_give_minus_their_distance():
-    rng = np.random.default_rng()
+def test_separated_bodies_give_minus_their_distance(rng):
     for gap in (1e-3, 0.3):
         pair = exact_pair(SHAPES["lens"], SHAPES["cone"], gap, rng)
         n, depth, lower = least_depth(pair.a, pair.b)
@@ -185,9 +181,8 @@ def test_separated_bodies_give_minus_their_distance():
         assert n == pytest.approx(pair.normal, abs=1e-5)
 
 
-def test_exactly_constructed_ellipsoids():
+def test_exactly_constructed_ellipsoids(rng):
     """Less deep than the least radii of curvature, the constructed direction is a minimum."""
-    rng = np.random.default_rng()
     for _ in range(10):
         axes = rng.uniform(0.2, 1, (2, 3))
         least = min((row.min() ** 2) / row.max() for row in axes)
@@ -199,9 +194,8 @@ def test_exactly_constructed_ellipsoids():
         assert min(np.linalg.norm(m.normal - pair.normal) for m in found.minima) < 1e-6
 
 
-def test_inertia_is_that_of_the_reduced_hessian():
+def test_inertia_is_that_of_the_reduced_hessian(rng):
     """J against rho - s I, for random radii of curvature on both sides."""
-    rng = np.random.default_rng()
     for _ in range(50):
         n = random_normal(rng)
         frame = np.stack(tangents(n))
@@ -237,8 +231,7 @@ def test_planar_bodies():
     assert least_depth(placed(SQUARE), turned)[1] == pytest.approx(0.5 + np.sqrt(2), abs=1e-9)
 
 
-def test_motions_change_nothing():
-    rng = np.random.default_rng()
+def test_motions_change_nothing(rng):
     pair = exact_pair(SHAPES["lens"], SHAPES["box"], -0.1, rng)
     depth = least_depth(pair.a, pair.b)[1]
     turn, shift = random_rotation(rng), rng.normal(size=3)

@@ -6,13 +6,13 @@ import pytest
 import standoff as so
 from standoff import control
 from standoff.motion import Pose, Twist
-from standoff.paper.catalogue import chosen, make
-from standoff.paper.control.basins import LAWS, beside_a_point, of_two, place_of, weighted
-from standoff.paper.control.decay import arrival, decays, loops
-from standoff.paper.control.feedbacks import BIAS, DRIFT, FRAMES, GAIN, bodies, pose, run
-from standoff.paper.control.gains import lags
-from standoff.paper.control.levels import case, runs, watched
-from standoff.paper.control.roots import loci
+from standoff_studies.paper.catalogue import chosen, make
+from standoff_studies.paper.control.basins import LAWS, beside_a_point, of_two, place_of, weighted
+from standoff_studies.paper.control.decay import arrival, decays, loops
+from standoff_studies.paper.control.feedbacks import BIAS, DRIFT, FRAMES, GAIN, bodies, pose, run
+from standoff_studies.paper.control.gains import lags
+from standoff_studies.paper.control.levels import case, runs, watched
+from standoff_studies.paper.control.roots import loci
 
 KEYS = ("gains", "stability", "feedback", "basin", "lyapunov")
 
@@ -80,7 +80,7 @@ def test_linear_law_keeps_bias_over_gain() -> None:
     a, b = bodies()
     found = so.distance(a, b, Pose.identity(), pose(FRAMES))
     places = (found.feature_a, found.parameters_a), (found.feature_b, found.parameters_b)
-    system = so.pair_system(
+    system = so.tracking.pair_system(
         a, b, Pose.identity(), pose(FRAMES), *places, None, Twist(BIAS, np.zeros(3))
     )
     lengths = [np.linalg.cholesky(t.T @ t) for t in (system.F, system.G)]

@@ -5,8 +5,8 @@ import pytest
 
 import standoff as so
 from standoff.geometry import Line
-from standoff.paper import drawing, style
-from standoff.paper.bodies import leaf, planar_body
+from standoff_studies.paper import drawing, style
+from standoff_studies.paper.bodies import leaf, planar_body
 
 QUARTER = so.Pose([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], (2.0, 1.0, 0.0))
 
@@ -24,7 +24,7 @@ def test_features_in_the_order_of_the_loop():
 def test_a_loop_in_another_order_is_refused():
     corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], dtype=float)
     ends = [(0, 1), (2, 0), (1, 2)]
-    edges = [so.Edge(Line(corners[i], corners[j]), i, j) for i, j in ends]
+    edges = [so.bodies.Edge(Line(corners[i], corners[j]), i, j) for i, j in ends]
     body = so.Body.from_brep(corners, edges, dimension=2)
     with pytest.raises(ValueError, match="edge 1 does not begin at vertex 1"):
         drawing.planar_features(body)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import standoff as so
-from standoff.paper import style
-from standoff.paper.bodies import lens_of_patches
-from standoff.paper.drawing_3d import PALE, View, edge_points, patch_points, rgb_of
+from standoff_studies.paper import style
+from standoff_studies.paper.bodies import lens_of_patches
+from standoff_studies.paper.drawing_3d import PALE, View, edge_points, patch_points, rgb_of
 
 RED = (1.0, 0.0, 0.0)
 

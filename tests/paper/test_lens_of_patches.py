@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import standoff as so
-from oracles import closed_forms, support
-from standoff.paper.bodies import lens_of_patches
+from oracles import closed_forms
+from standoff_studies import oracles as support
+from standoff_studies.paper.bodies import lens_of_patches
 
 RADIUS, OFFSET = 1.0, 0.45
 LENS = lens_of_patches(RADIUS, OFFSET)

@@ -7,9 +7,9 @@ support functions and implicit equations, which the study does not use.
 import numpy as np
 import pytest
 
-from standoff.paper import normals
-from standoff.paper.normals_contact import passing
-from standoff.paper.normals_study import (
+from standoff_studies.paper import normals
+from standoff_studies.paper.normals_contact import passing
+from standoff_studies.paper.normals_study import (
     FORMS,
     NORMAL,
     Points,

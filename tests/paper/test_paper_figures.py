@@ -15,12 +15,12 @@ import pytest
 from PIL import Image
 
 from families import paper_figures as fakes
-from standoff.paper import catalogue, writers
-from standoff.paper.catalogue import UnknownFigure, chosen, make
-from standoff.paper.making import Made, make_and_write
-from standoff.paper.processes import Order, make_all
-from standoff.paper.verdicts import Verdict, counted
-from standoff.paper.writers import animation_bytes, picture_bytes, stem, table_bytes
+from standoff_studies.paper import catalogue, writers
+from standoff_studies.paper.catalogue import UnknownFigure, chosen, make
+from standoff_studies.paper.making import Made, make_and_write
+from standoff_studies.paper.processes import Order, make_all
+from standoff_studies.paper.verdicts import Verdict, counted
+from standoff_studies.paper.writers import animation_bytes, picture_bytes, stem, table_bytes
 
 PAGES = Path(__file__).parents[2] / "docs" / "paper"
 
@@ -141,7 +141,7 @@ def test_tables_must_be_flat_and_of_one_length(columns: dict[str, object]) -> No
         (fakes.FAILING, r"ZeroDivisionError: no reason \(paper_figures.py, line \d+\)"),
         (fakes.WRONG, "TypeError: .* gave no Artwork but 'no artwork'"),
         (fakes.GOOD._replace(function="absent"), "AttributeError"),
-        (fakes.GOOD._replace(module="standoff.paper.absent"), "ModuleNotFoundError"),
+        (fakes.GOOD._replace(module="standoff_studies.paper.absent"), "ModuleNotFoundError"),
     ],
 )
 def test_a_figure_that_fails_says_why_and_writes_nothing(
@@ -212,9 +212,21 @@ def test_only_what_the_paper_states_can_hold_or_fail() -> None:
         Verdict.HOLDS: 1,
         Verdict.FAILS: 1,
         Verdict.OPEN: 1,
+        Verdict.CONSTRUCTED: 0,
         Verdict.OWN: 1,
     }
-    assert len({verdict.sign for verdict in Verdict}) == 4
+    assert len({verdict.sign for verdict in Verdict}) == 5
+
+
+def test_what_is_true_by_construction_is_counted_apart_unless_it_fails() -> None:
+    built = [statement._replace(constructed=True) for statement in fakes.STATEMENTS]
+    assert counted(built) == {
+        Verdict.HOLDS: 0,
+        Verdict.FAILS: 1,
+        Verdict.OPEN: 1,
+        Verdict.CONSTRUCTED: 1,
+        Verdict.OWN: 1,
+    }
 
 
 def test_every_figure_has_its_function_and_a_page() -> None:

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from families import paper_figures as fakes
-from standoff.paper.making import Made, make_and_write
-from standoff.paper.report import report_html, typeset
-from standoff.paper.typesetting import stop
+from standoff_studies.paper.making import Made, make_and_write
+from standoff_studies.paper.report import report_html, typeset
+from standoff_studies.paper.typesetting import stop
 
 ENTRIES = (fakes.GOOD, fakes.MOVING, fakes.FAILING, fakes.LAST)
 VOID = {"meta", "img", "input", "br"}

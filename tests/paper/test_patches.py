@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from standoff.paper.patches import (
+from standoff_studies.paper.patches import (
     POINT,
     cosines,
     curved_face,
@@ -15,7 +15,7 @@ from standoff.paper.patches import (
     tangents_patch,
     witness_pair,
 )
-from standoff.paper.verdicts import Verdict
+from standoff_studies.paper.verdicts import Verdict
 
 
 def test_tangents_are_the_patches_slopes() -> None:

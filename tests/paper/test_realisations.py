@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 import standoff as so
-from standoff.paper import style
-from standoff.paper.catalogue import chosen, make
-from standoff.paper.realisations import comparison, run
+from standoff_studies.paper import style
+from standoff_studies.paper.catalogue import chosen, make
+from standoff_studies.paper.realisations import comparison, run
 
 
 def system(q, time):
     poses = run.PATH_A.pose(time), run.PATH_B.pose(time)
     twists = run.PATH_A.twist(time), run.PATH_B.twist(time)
-    return so.pair_system(
+    return so.tracking.pair_system(
         run.body(), run.body(), *poses, (run.FACE, q[:2]), (run.FACE, q[2:]), *twists
     )
 

@@ -12,13 +12,13 @@ from scipy.optimize import brentq
 
 from oracles.closed_forms import point_curve, point_loop
 from oracles.loops import BezierCurve, PlanarLoop
-from standoff.paper import style
-from standoff.paper.drawing import short_name
-from standoff.paper.simulation_b import figure_8, figure_9, figure_10, figure_11
-from standoff.paper.simulation_b import run as chapter
-from standoff.paper.simulation_b.automaton import growths, switches
-from standoff.paper.simulation_b.parameters import heavy
-from standoff.paper.simulation_b.snapshots import distance_error
+from standoff_studies.paper import style
+from standoff_studies.paper.drawing import short_name
+from standoff_studies.paper.simulation_b import figure_8, figure_9, figure_10, figure_11
+from standoff_studies.paper.simulation_b import run as chapter
+from standoff_studies.paper.simulation_b.automaton import growths, switches
+from standoff_studies.paper.simulation_b.parameters import heavy
+from standoff_studies.paper.simulation_b.snapshots import distance_error
 
 CURVES = [
     BezierCurve([(1, 0), (0.775, 0.645), (0.175, 1.005), (-0.5, 0.9)]),

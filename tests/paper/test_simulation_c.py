@@ -12,16 +12,16 @@ from oracles.bounds import maximise_separation
 from oracles.closed_forms import point_curve
 from oracles.loops import BezierCurve, PlanarLoop
 from oracles.planar_pairs import PlanarPair
-from oracles.shape import Placed
-from standoff.paper import style
-from standoff.paper.held_features import CONTINUOUS, greatest_growth, growth
-from standoff.paper.simulation_c import figure_12, figure_13, figure_14, figure_15
-from standoff.paper.simulation_c import run as chapter
-from standoff.paper.simulation_c.automaton import ways
-from standoff.paper.simulation_c.kinds import kind_of, mode_name
-from standoff.paper.simulation_c.parameters import LEAST_APART, after_switches, spread
-from standoff.paper.simulation_c.regions import off_line
 from standoff.tracking import Status
+from standoff_studies.oracles import Placed
+from standoff_studies.paper import style
+from standoff_studies.paper.held_features import CONTINUOUS, greatest_growth, growth
+from standoff_studies.paper.simulation_c import figure_12, figure_13, figure_14, figure_15
+from standoff_studies.paper.simulation_c import run as chapter
+from standoff_studies.paper.simulation_c.automaton import ways
+from standoff_studies.paper.simulation_c.kinds import kind_of, mode_name
+from standoff_studies.paper.simulation_c.parameters import LEAST_APART, after_switches, spread
+from standoff_studies.paper.simulation_c.regions import off_line
 
 A = [
     BezierCurve([(1, 0), (0.775, 0.645), (0.175, 1.005), (-0.5, 0.9)]),

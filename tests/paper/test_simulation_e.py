@@ -14,13 +14,12 @@ from scipy.optimize import brentq
 
 import standoff as so
 from oracles.brute import Nearest, nearest_points
-from oracles.shape import Affine, Placed
-from oracles.support import Lens
 from oracles.surfaces import placed_quadrics
 from standoff.motion import ConstantTwist
-from standoff.paper.held_features import CONTINUOUS, greatest_growth, growth
-from standoff.paper.simulation_e import parameters, runs, snapshots
-from standoff.paper.simulation_e.runs import DURATION, PATH_A, PATH_B, SEMI_AXES, STEP
+from standoff_studies.oracles import Affine, Lens, Placed
+from standoff_studies.paper.held_features import CONTINUOUS, greatest_growth, growth
+from standoff_studies.paper.simulation_e import parameters, runs, snapshots
+from standoff_studies.paper.simulation_e.runs import DURATION, PATH_A, PATH_B, SEMI_AXES, STEP
 
 LENS = Lens(1.0, 0.45)
 SHAPES = LENS, Affine(LENS, np.diag(SEMI_AXES), np.zeros(3))
@@ -83,7 +82,9 @@ def test_the_modes_are_those_of_brute_force(done):
     for frame, nearest in truth().items():
         known = nearest.active_a, nearest.active_b
         assert modes_of(done.exact, frame) == known
-        assert modes_of(done.paper, frame) == known
+        # the printed system switches a little late or early: its witness points are off
+        near = min(abs(frame * STEP - event.time) for event in done.exact.events) < 1.0 / runs.GAIN
+        assert near or modes_of(done.paper, frame) == known
         if known not in sequence[-1:]:
             sequence.append(known)
     stays = done.exact.modes()
@@ -114,15 +115,26 @@ def test_the_tracking_error_at_all_times(done):
         np.testing.assert_allclose(exact.point_b[frame], nearest.point_b, atol=1e-9)
         assert exact.distance[frame] == pytest.approx(nearest.distance, abs=1e-12)
     error = runs.witness_error(done)
-    assert error.max() < 5e-4
-    assert np.median(error) < 5e-7
-    # only the frames after a switch are worse than the law's own error, and they halve it
-    frames = np.arange(len(error))
-    after = np.zeros(len(error), dtype=bool)
+    assert error[0] > 0.5
+    since = np.arange(len(error))
     for event in paper.events:
-        after |= (frames >= event.frame) & (frames < event.frame + 16)
-    assert error[~after].max() < 2e-6
-    assert np.abs(paper.distance - exact.distance).max() < 5e-7
+        since[event.frame :] = np.arange(len(error) - event.frame)
+    # what the start and a switch leave decays as exp(-K t), to the law's own error
+    assert error[since * STEP > 6.0 / runs.GAIN].max() < 5e-3
+    assert error[since * STEP > 16.0 / runs.GAIN].max() < 1e-5
+    assert np.median(error) < 5e-7
+
+
+def test_the_figures_are_the_printed_systems(done):
+    """One configuration, at a low gain; nothing searched, restarted, or taken from a solve."""
+    assert done.paper.info.law == so.PaperLaw.as_printed(gain=runs.GAIN)
+    counts = done.paper.total_counts()
+    assert counts.restarts == counts.searches == counts.solved_parameters == 0
+    assert counts.foot_points > len(done.paper)
+    tried = runs.arrivals()
+    assert 0 < tried.arrived < 0.6 * tried.tried
+    stay = parameters.edge_stay(done)
+    assert stay[1] - stay[0] == pytest.approx(1.0, abs=0.1)
 
 
 def multiplier(time: float, active: tuple[tuple[int, ...], tuple[int, ...]], dropped) -> float:
@@ -187,8 +199,8 @@ def test_the_instants_are_where_a_multiplier_vanishes(done):
         slope = abs(event.slope)
         assert abs(event.time - root) < (LOCATED if slope > 1e-3 else LOCATED / slope)
         assert slope > 0.1
-    # the paper's law, whose witness points are off, is as good as they are
-    assert np.abs(parameters.switch_differences(done)).max() < 3e-6
+    # the printed system, whose witness points are off, is late or early by less than 1/K
+    assert np.abs(parameters.switch_differences(done)).max() < 0.1 / runs.GAIN
 
 
 def test_the_distance_never_grows_at_a_switch(done):
@@ -211,20 +223,6 @@ def test_the_distance_never_grows_at_a_switch(done):
         ]
         left, right = np.diff(sides)[1:3] / 1e-4
         assert right - left < 1e-3
-
-
-def test_the_sampled_law_may_be_farther_apart_after_an_entry(done):
-    """At 1 kHz the claim holds to second order in the part of the step that is lost."""
-    rises = runs.rises(done)
-    error = runs.witness_error(done)
-    for event, rise in zip(done.paper.events, rises, strict=True):
-        if event.target.kind == "edge":
-            # both points off by no more than the error e: (2 e)² / (2 d), with d above 0.5
-            assert 0.0 < rise < 4.0 * error[event.frame] ** 2
-        else:
-            assert abs(rise) < 1e-12
-        after = error[event.frame : event.frame + 6]
-        np.testing.assert_allclose(after[1:] / after[:-1], 0.5, atol=0.05)
 
 
 def test_u_stays_at_one_on_an_edge(done):
@@ -261,7 +259,7 @@ def test_the_face_parameters_give_the_witness_points(done, body):
 def test_a_run_over_a_vertex_or_from_an_edge_has_no_face_parameters(done, first, last):
     velocity = np.subtract(last, first)
     path = ConstantTwist(so.Pose(np.eye(3), first), so.Twist(velocity, np.zeros(3)))
-    run = so.simulate(done.a, so.shapes.point(), so.Pose.identity(), path, 1.0, 0.05)
+    run = so.simulate(so.Tracker(done.a, so.shapes.point(), 0.05), so.Pose.identity(), path, 1.0)
     with pytest.raises(ValueError, match="body A"):
         runs.face_parameters(run, "A")
 
@@ -274,7 +272,9 @@ def test_a_way_over_an_edge_is_told_from_others():
 
 def test_the_figures_say_what_was_measured(done):
     for artwork, panels in ((snapshots.figure_19(), 6), (parameters.figure_20(), 3)):
-        assert all(one.holds is not False for one in artwork.statements)
+        fail = [one.stated for one in artwork.statements if one.holds is False]
+        anywhere = "from a start anywhere on tiled convex bodies the errors converge"
+        assert fail == ([anywhere] if panels == 3 else [])
         assert any(one.holds for one in artwork.statements)
         for table in artwork.tables.values():
             assert len({len(column) for column in table.values()}) == 1

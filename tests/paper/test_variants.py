@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from standoff.paper import variants, verdict
-from standoff.paper.law_accuracy import STEPS
+from standoff_studies.paper import variants, verdict
+from standoff_studies.paper.law_accuracy import STEPS
 
 DEFAULT, PRINTED = list(variants.VARIANTS)[:2]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import standoff as so
-from standoff.paper import catalogue, voronoi_figure
+from standoff_studies.paper import catalogue, voronoi_figure
 
 
 @pytest.fixture(scope="module")

@@ -26,9 +26,15 @@ def recordings() -> list[so.Recording]:
     a, b, path_a, path_b = random_pairs(1)[0]
     egg = so.shapes.ellipsoid(0.3, 0.2, 0.1)
     return [
-        so.simulate(a, b, path_a, path_b, 1.0, 1e-2),
-        so.simulate(egg, b, path_a, path_b, 0.5, 1e-2, tolerance=math.inf, start=3.0),
-        so.simulate(SMALL, BOX, THROUGH, REST, 2.0, 1e-2),
+        so.simulate(so.Tracker(a, b, 1e-2), path_a, path_b, 1.0),
+        so.simulate(
+            so.Tracker(egg, b, 1e-2, law=so.PredictorCorrector(tolerance=math.inf)),
+            path_a,
+            path_b,
+            0.5,
+            start=3.0,
+        ),
+        so.simulate(so.Tracker(SMALL, BOX, 1e-2), THROUGH, REST, 2.0),
     ]
 
 
@@ -69,7 +75,7 @@ def test_another_reader_needs_nothing_of_ours(
     assert [event["time"] for event in events] == [event.time for event in recording.events]
     assert all(event["located"] for event in events)
     told = json.loads(table.schema.metadata[b"standoff"])
-    assert (told["format"], told["format_version"]) == ("standoff-recording", 3)
+    assert (told["format"], told["format_version"]) == ("standoff-recording", 4)
     assert told["standoff"] == so.__version__
     assert (told["a"], told["b"]) == recording.info.bodies
     assert (told["a_sha256"], told["b_sha256"]) == tuple(x.digest for x in recording.pair)
@@ -95,7 +101,7 @@ def test_the_metadata_is_strict_json(recordings: list[so.Recording], tmp_path: P
 
 
 def test_the_same_run_gives_the_same_bytes(recordings: list[so.Recording], tmp_path: Path) -> None:
-    again = so.simulate(SMALL, BOX, THROUGH, REST, 2.0, 1e-2)
+    again = so.simulate(so.Tracker(SMALL, BOX, 1e-2), THROUGH, REST, 2.0)
     again.save(tmp_path / "1.parquet")
     recordings[2].save(tmp_path / "2.parquet")
     assert (tmp_path / "1.parquet").read_bytes() == (tmp_path / "2.parquet").read_bytes()
@@ -156,7 +162,7 @@ def test_what_is_no_recording(recordings: list[so.Recording], tmp_path: Path) ->
 
 @pytest.mark.parametrize(
     ("version", "fix"),
-    [(1, "record again"), (4, "install the Standoff"), ("two", "install"), (True, "record again")],
+    [(1, "record again"), (5, "install the Standoff"), ("two", "install"), (True, "record again")],
 )
 def test_another_format_version(
     recordings: list[so.Recording], tmp_path: Path, version: object, fix: str
@@ -164,7 +170,7 @@ def test_another_format_version(
     file = tmp_path / "run.parquet"
     recordings[0].save(file)
     rewritten(file, {"format_version": version})
-    with pytest.raises(ValueError, match=f"version {version!r}.*reads versions 2 and 3: {fix}"):
+    with pytest.raises(ValueError, match=f"version {version!r}.*reads versions 2, 3 and 4: {fix}"):
         so.open_recording(file)
 
 
@@ -206,6 +212,68 @@ def test_a_file_of_version_2_opens_with_what_it_holds(tmp_path: Path) -> None:
     assert again.info.options == recording.info.options
 
 
+OF_VERSION_3 = {
+    "predictor": "none",
+    "integrator": "rk4",
+    "gain": 40.0,
+    "tolerance": 1e-9,
+    "dt": 1e-2,
+    "depth": "local",
+    "deadline": 40,
+    "locate": True,
+}
+OF_THE_PAPER = {
+    "law": "paper",
+    "realisation": "integrated",
+    "saturation": "hold",
+    "switching": "multipliers",
+    "solve": "plain",
+}
+
+
+@pytest.mark.parametrize(
+    ("written", "law"),
+    [
+        (
+            {"law": "predictor-corrector"},
+            so.PredictorCorrector(predictor="none", tolerance=1e-9, depth="local", deadline=40),
+        ),
+        (
+            {**OF_THE_PAPER, "feedback": "Linear(gain=40.0)"},
+            so.PaperLaw(
+                integrator="rk4",
+                gain=40.0,
+                feedforward=False,
+                realisation="integrated",
+                saturation="hold",
+                solve="plain",
+                tolerance=1e-9,
+                depth="local",
+                deadline=40,
+            ),
+        ),
+    ],
+    ids=["predictor-corrector", "paper"],
+)
+def test_a_file_of_version_3_has_its_law(
+    recordings: list[so.Recording], tmp_path: Path, written: dict[str, str], law: object
+) -> None:
+    """It held every law's options, and no feedforward of the paper's."""
+    file = tmp_path / "run.parquet"
+    recordings[0].save(file)
+    rewritten(file, {"format_version": 3, "options": {**OF_VERSION_3, **written}})
+    info = so.open_recording(file).info
+    assert info.law == law
+    assert info.options["locate"] is True
+    if written["law"] == "paper":
+        changed = {**OF_VERSION_3, **written, "feedback": "PI(gain=40.0, integral=300.0)"}
+        rewritten(file, {"format_version": 3, "options": changed})
+        info = so.open_recording(file).info
+        assert info.options["feedback"] == "PI(gain=40.0, integral=300.0)"
+        with pytest.raises(ValueError, match=r"PI\(gain=40.*is none of standoff's"):
+            _ = info.law
+
+
 def test_a_file_of_today_without_upper_bounds_was_changed(
     recordings: list[so.Recording], tmp_path: Path
 ) -> None:
@@ -235,13 +303,13 @@ def test_a_missing_library_is_named(
     import sys
 
     for name, module, use in (
-        ("pyarrow", "recording_file", lambda: recordings[0].save(tmp_path / "run.parquet")),
-        ("pyarrow", "recording_file", lambda: so.open_recording(tmp_path / "run.parquet")),
-        ("matplotlib", "recording_plot", lambda: recordings[0].plot(tmp_path / "run.png")),
+        ("pyarrow", "file", lambda: recordings[0].save(tmp_path / "run.parquet")),
+        ("pyarrow", "file", lambda: so.open_recording(tmp_path / "run.parquet")),
+        ("matplotlib", "plot", lambda: recordings[0].plot(tmp_path / "run.png")),
     ):
         with monkeypatch.context() as patch:
-            patch.delattr(f"standoff.tracking.{module}", raising=False)
-            patch.delitem(sys.modules, f"standoff.tracking.{module}", raising=False)
+            patch.delattr(f"standoff.recording.{module}", raising=False)
+            patch.delitem(sys.modules, f"standoff.recording.{module}", raising=False)
             patch.setitem(sys.modules, name, None)
             with pytest.raises(ModuleNotFoundError, match=rf"{name} .*standoff\[cli\]"):
                 use()

@@ -19,8 +19,8 @@ import standoff as so
 from oracles.bounds import maximise_separation
 from oracles.loops import ConicArc, PlanarLoop, line
 from oracles.patches import BezierBody
-from oracles.support import Affine, Box, Ellipsoid, Lens, Placed, Point, Polytope, Shape
 from standoff.scene import Scene, load_scene, record
+from standoff_studies.oracles import Affine, Box, Ellipsoid, Lens, Placed, Point, Polytope, Shape
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ import pytest
 import standoff as so
 from standoff.motion import ConstantTwist
 from standoff.scene import Scene, SceneError, TrackSettings, record
-from standoff.scene.feedbacks import KINDS, feedback_facts, feedback_text
+from standoff.tracking.feedback_facts import KINDS, feedback_facts, feedback_text
 
 LoadText = Callable[[str], Scene]
 
@@ -91,22 +90,24 @@ def test_each_feedback(
     load_text: LoadText, text: str, feedback: so.feedback.Feedback, words: str
 ) -> None:
     scene = load_text(f"{BODIES}{PAIR}{TRACK}feedback = {{ {text} }}\n")
-    assert scene.settings.feedback == feedback
-    assert type(scene.settings.feedback) is type(feedback)
-    assert feedback_text(feedback) == words
+    assert scene.settings.law.feedback == feedback
+    assert type(scene.settings.law.feedback) is type(feedback)
+    assert feedback_text(feedback_facts(feedback)) == words
     # What a recording keeps of it is again a table of a scene.
     kept = json.loads(json.dumps(feedback_facts(feedback)))
-    assert TrackSettings(law="paper").overridden({"feedback": kept}).feedback == feedback
-    assert record(scene).info.options["feedback"].startswith(type(feedback).__name__)
+    assert TrackSettings(so.PaperLaw()).overridden({"feedback": kept}).law.feedback == feedback
+    recording = record(scene)
+    dt = recording.info.options["dt"]
+    assert recording.info.law == so.PaperLaw(feedback=feedback).resolved(dt)
 
 
 def test_every_feedback_of_the_library_has_a_kind() -> None:
-    assert {kind.construct for kind in KINDS.values()} == {type(f) for _, f, _ in FEEDBACKS}
+    assert set(KINDS.values()) == {type(f) for _, f, _ in FEEDBACKS}
 
 
 def test_a_table_of_its_own(load_text: LoadText) -> None:
     text = f'{TRACK}[track.feedback]\nkind = "pi"\ngain = 20\nintegral = 50\n'
-    assert load_text(BODIES + PAIR + text).settings.feedback == so.feedback.PI(20.0, 50.0)
+    assert load_text(BODIES + PAIR + text).settings.law.feedback == so.feedback.PI(20.0, 50.0)
 
 
 @pytest.mark.parametrize(("text", "options"), OPTIONS)
@@ -120,15 +121,15 @@ def test_the_tracker_gets_what_the_scene_says(
         so.Pose(np.eye(3), (-1.0, 0.2, 1.2)), so.Twist((1.0, 0.0, 0.0), (0.0, 0.5, 1.0))
     )
     direct = so.simulate(
-        so.shapes.ellipsoid(0.3, 0.1, 0.1),
-        so.shapes.lens(1.0, 0.45),
+        so.Tracker(
+            so.shapes.ellipsoid(0.3, 0.1, 0.1),
+            so.shapes.lens(1.0, 0.45),
+            0.02,
+            law=so.PaperLaw(gain=20.0 if gain else None, **options),
+        ),
         path,
         so.Pose.identity(),
         2.0,
-        0.02,
-        law="paper",
-        gain=20.0 if gain else None,
-        **options,
     )
     np.testing.assert_array_equal(recording.distance, direct.distance)
     told = dict(recording.info.options) | {"dt": direct.info.options["dt"]}
@@ -140,16 +141,32 @@ def test_a_pair_s_own_options(load_text: LoadText) -> None:
     second_own = f'{OWN}name = "second"\nrealisation = "integrated"\n'
     scene = load_text(f'{BODIES}{OWN}gain = 30\n{second_own}{TRACK}{PI}solve = "plain"\n')
     first, second = (pair.settings for pair in scene.pairs)
-    common = TrackSettings(law="paper", step=0.02, duration=2.0, solve="plain")
-    assert first == replace(common, gain=30.0)  # in place of the common feedback
-    assert second == replace(common, feedback=so.feedback.PI(20.0, 50.0), realisation="integrated")
+    times = {"step": 0.02, "duration": 2.0}
+    # in place of the common feedback
+    assert first == TrackSettings(so.PaperLaw(gain=30.0, solve="plain"), **times)
+    pi = so.feedback.PI(20.0, 50.0)
+    law = so.PaperLaw(feedback=pi, solve="plain", realisation="integrated")
+    assert second == TrackSettings(law, **times)
     scene = load_text(f"{BODIES}{OWN}{PI}{TRACK}gain = 30\n")
-    assert (scene.settings.gain, scene.settings.feedback) == (None, so.feedback.PI(20.0, 50.0))
+    assert scene.settings.law == so.PaperLaw(feedback=pi)
 
 
 def test_options_of_the_paper_s_law_under_another_common_law(load_text: LoadText) -> None:
     common = '[track]\nswitching = "voronoi"\nduration = 1\n'
-    assert load_text(f'{BODIES}{OWN}law = "paper"\n{common}').settings.switching == "voronoi"
+    law = load_text(f'{BODIES}{OWN}law = "paper"\n{common}').settings.law
+    assert law == so.PaperLaw(switching="voronoi")
+
+
+def test_a_pair_s_own_law_takes_what_it_has_of_the_common_one(load_text: LoadText) -> None:
+    own = f'{OWN}law = "predictor-corrector"\npredictor = "secant"\n'
+    text = f"{BODIES}{own}{TRACK}{PI}tolerance = 1e-8\ndeadline = 40\n"
+    law = so.PredictorCorrector(predictor="secant", tolerance=1e-8, deadline=40)
+    assert load_text(text).settings == TrackSettings(law, step=0.02, duration=2.0)
+
+
+def test_an_infinite_tolerance_and_no_feedforward(load_text: LoadText) -> None:
+    law = load_text(BODIES + tracked("tolerance = inf\nfeedforward = false\n")).settings.law
+    assert law == so.PaperLaw(tolerance=np.inf, feedforward=False)
 
 
 def tracked(text: str) -> str:
@@ -225,19 +242,25 @@ REFUSED = [
     (
         predicted(PI),
         "track.feedback",
-        ["'pi (gain 20, integral 50)'", "of the paper's law", 'take law = "paper"'],
+        ["is an option of the law 'paper', and law is 'predictor-corrector'", "take law = 'paper'"],
     ),
     (
-        predicted('realisation = "integrated"'),
+        predicted('realisation = "evaluated"'),
         "track.realisation",
-        ["'integrated' is of the paper's law", "leave realisation out"],
+        ["option of the law 'paper'", "leave it out"],
     ),
-    (predicted('switching = "voronoi"'), "track.switching", ["'voronoi'", "paper's law"]),
-    (predicted('solve = "plain"'), "track.solve", ["'plain'", 'take law = "paper"']),
+    (predicted('switching = "voronoi"'), "track.switching", ["option of the law 'paper'"]),
+    (predicted('solve = "plain"'), "track.solve", ["take law = 'paper'"]),
+    (predicted("gain = 30"), "track.gain", ["option of the law 'paper'"]),
+    (tracked('predictor = "none"'), "track.predictor", ["write feedforward = false"]),
+    (tracked('predictor = "secant"'), "track.predictor", ["leave it out"]),
+    (tracked("feedforward = 0"), "track.feedforward", ["must be true or false, got 0"]),
+    (tracked("tolerance = -inf"), "track.tolerance", ["must be a finite number"]),
+    (tracked("deadline = 0"), "track.deadline", ["whole number above zero"]),
     (
-        f'{OWN}law = "predictor-corrector"\n{TRACK}solve = "plain"\n',
-        "pairs[0].law",
-        ["solve = 'plain'", "leave solve out"],
+        f'{OWN}law = "predictor-corrector"\nsolve = "plain"\n{TRACK}',
+        "pairs[0].solve",
+        ["option of the law 'paper'"],
     ),
     (
         f'{OWN}saturation = "zero"\n{TRACK}',
@@ -247,7 +270,7 @@ REFUSED = [
     (
         f'{OWN}law = "predictor-corrector"\n{OWN}name = "2"\nsolve = "plain"\n[track]\nstep = 1\n',
         "pairs[1].solve",
-        ["of the paper's law"],
+        ["of the law 'paper'"],
     ),
     (
         f'{OWN}switching = "multipliers"\n{TRACK}switching = "none"\nsaturation = "zero"\n',
@@ -265,14 +288,6 @@ def test_refused(load_text: LoadText, text: str, key: str, pieces: list[str]) ->
     assert caught.value.file is not None
     for piece in pieces:
         assert piece in caught.value.problem
-
-
-def test_defaults_that_are_written_down_go_with_either_law(load_text: LoadText) -> None:
-    text = predicted(
-        'realisation = "evaluated"\nsaturation = "hold"\nswitching = "multipliers"\n'
-        'solve = "ranked"\n'
-    )
-    assert record(load_text(BODIES + text)).certified.all()
 
 
 @pytest.mark.parametrize(
@@ -295,13 +310,16 @@ def test_overridden(load_text: LoadText) -> None:
     settings = load_text(BODIES + tracked(f'{PI}switching = "voronoi"\n')).settings
     assert settings.overridden({}) == settings
     changed = settings.overridden({"switching": "none", "solve": "plain", "saturation": None})
-    assert (changed.switching, changed.solve, changed.saturation) == ("none", "plain", None)
-    assert changed.feedback == settings.feedback
-    assert changed.overridden({"gain": 9.0}).feedback is None
+    pi = settings.law.feedback
+    assert changed.law == so.PaperLaw(feedback=pi, switching="none", solve="plain")
+    assert changed.overridden({"gain": 9.0}).law.feedback is None
     again = changed.overridden({"gain": 9.0}).overridden(
         {"feedback": {"kind": "linear", "gain": 8}}
     )
-    assert (again.gain, again.feedback) == (None, so.feedback.Linear(8.0))
+    assert (again.law.gain, again.law.feedback) == (None, so.feedback.Linear(8.0))
+    # another law takes what it has too
+    other = changed.overridden({"deadline": 40}).overridden({"law": "predictor-corrector"})
+    assert other.law == so.PredictorCorrector(deadline=40)
 
 
 @pytest.mark.parametrize(
@@ -310,8 +328,8 @@ def test_overridden(load_text: LoadText) -> None:
         ({"solve": "plane"}, "solve", "did you mean 'plain'?"),
         ({"switching": "multipliers", "saturation": "zero"}, "saturation", "saturation='zero'"),
         ({"saturation": "hold", "switching": "none"}, "saturation", "take saturation='zero'"),
-        ({"law": "predictor-corrector"}, "law", "feedback = 'pi (gain 20, integral 50)'"),
-        ({"law": "predictor-corrector", "gain": 1.0}, "law", "switching = 'voronoi'"),
+        ({"predictor": "none"}, "predictor", "write feedforward = false"),
+        ({"law": "predictor-corrector", "gain": 1.0}, "gain", "is an option of the law 'paper'"),
         ({"feedback": {"kind": "linear"}}, "feedback", "'gain' is missing"),
     ],
 )

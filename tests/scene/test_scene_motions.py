@@ -168,7 +168,7 @@ def test_samples_keep_the_file_s_times(load_text: LoadText, samples: Path, file:
     np.testing.assert_array_equal(motion.sample_times, STAMPS)
     assert_same_path(motion.path, PoseSamples(STAMPS, POSES), (100.0, 100.1, 100.9, 101.0))
     assert motion.file == samples / file
-    assert motion.rounded == 0
+    assert motion.repaired == 0
 
 
 def test_samples_begin_at_zero_or_where_told(load_text: LoadText, samples: Path) -> None:
@@ -187,14 +187,18 @@ def test_samples_with_an_offset(load_text: LoadText, samples: Path) -> None:
     assert scene.times().size == 3
 
 
-def test_rounded_quaternions_are_reported(load_text: LoadText, samples: Path) -> None:
+def test_rounded_rotations_are_reported(load_text: LoadText, samples: Path) -> None:
     (samples / "rounded.tum").write_text("0 0 0 0 0 0 0.7071 0.7071\n1 0 0 0 0 0 0.6 0.8\n")
     scene = load_text(
         f'{HEAD}[motions.a]\nkind = "samples"\nfile = "rounded.tum"\n'
         "[placements.b]\nquaternion_wxyz = [0.7071, 0.7071, 0, 0]\n"
     )
-    assert [note[:16] for note in scene.notes] == ["1 quaternions of"] * 2
+    rounded = "rotations of {} were rounded; brought to the nearest ones"
+    assert scene.notes == [f"1 {rounded.format(name)}" for name in "ab"]
     assert not load_text(HEAD).notes
+    matrix = "[[0.866025, -0.5, 0.0], [0.5, 0.866025, 0.0], [0.0, 0.0, 1.0]]"
+    scene = load_text(f"{HEAD}[placements.a]\nmatrix = {matrix}\n")
+    assert scene.notes == [f"1 {rounded.format('a')}"]
 
 
 def test_file_is_relative_to_the_scene(

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+import standoff as so
 from standoff.scene import Scene, SceneError, TrackSettings, query, record
 
 LoadText = Callable[[str], Scene]
@@ -18,7 +19,7 @@ radius = 0.01
 [bodies.cup]
 shape = "cylinder"
 radius = 0.04
-length = 0.1
+height = 0.1
 [bodies.table]
 shape = "halfspace"
 [placements.table]
@@ -40,11 +41,10 @@ def test_each_pair_has_its_bodies_and_settings(load_text: LoadText) -> None:
     assert scene.selected.name == "grasp"
     first, second = scene.each()
     assert (first.pair, second.pair) == (("finger", "cup"), ("finger", "table"))
-    common = TrackSettings(step=0.05, duration=0.5, predictor="feedforward")
+    common = TrackSettings(so.PredictorCorrector(predictor="feedforward"), 0.05, duration=0.5)
     assert first.settings == common
-    assert second.settings == TrackSettings(
-        step=0.05, duration=0.2, predictor="feedforward", tolerance=1e-9
-    )
+    law = so.PredictorCorrector(predictor="feedforward", tolerance=1e-9)
+    assert second.settings == TrackSettings(law, 0.05, duration=0.2)
     assert scene.select("finger-table").pair_bodies[1] is scene.bodies["table"]
     assert (len(first.times()), len(second.times())) == (11, 5)
 

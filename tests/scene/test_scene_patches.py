@@ -107,7 +107,9 @@ def test_a_body_from_a_file(load_text: LoadText, tmp_path: Path) -> None:
     body = load_text(f"version = 1\n{table}{OTHER}").bodies["a"]
     assert body.digest == Body.from_patches(patches, name="patches").digest
     assert (body.name, body.n_faces, body.check().smooth_edges) == ("patches", 6, 12)
-    rounded = load_text(f"version = 1\n{table}radius = 0.1\ntolerance = 1e-6\n{OTHER}").bodies["a"]
+    rounded = load_text(f"version = 1\n{table}rounding = 0.1\ntolerance = 1e-6\n{OTHER}").bodies[
+        "a"
+    ]
     assert rounded.radius == 0.1
 
 
@@ -198,7 +200,7 @@ BAD_PATCHES = [
     (FORMULA | {"z": "1/(v - 0.25)"}, "", ["pole", "v = 0.25", "cut the domain"]),
     (FORMULA | {"y": "sin(u"}, "y", ["syntax error"]),
     (FORMULA | {"y": True}, "y", ["must be a number", "True"]),
-    (FORMULA | {"domain": [0.0, 0.0, 0.0, 1.0]}, "", ["empty", "u0 < u1"]),
+    (FORMULA | {"domain": [0.0, 0.0, 0.0, 1.0]}, "domain", ["empty", "u0 < u1"]),
     (FORMULA | {"domain": [0.0, 1.0]}, "domain", ["4 numbers"]),
     (FORMULA | {"parameters": {"a": "2"}}, "parameters.a", ["must be a number", "'2'"]),
     (FORMULA | {"parameters": 2}, "parameters", ["must be"]),
@@ -281,7 +283,7 @@ def test_patches_or_a_file(load_text: LoadText, tmp_path: Path) -> None:
         (f"file = 'pebble.json'\npatches = {inline([NURBS])}", "bodies.a", "keep one of them"),
         (f"patches = {inline([NURBS])}", "bodies.a", "patch 0"),
         ("file = 'pebble.json'\ntolerance = 0", "bodies.a.tolerance", "above zero"),
-        ("file = 'pebble.json'\nradius = -1", "bodies.a.radius", "zero or above"),
+        ("file = 'pebble.json'\nrounding = -1", "bodies.a.rounding", "zero or above"),
     ):
         with pytest.raises(SceneError) as caught:
             load_text(f'version = 1\n[bodies.a]\nshape = "patches"\n{table}\n')

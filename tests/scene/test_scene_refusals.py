@@ -71,8 +71,7 @@ SHAPES = [
     (body('shape = "elipsoid"'), "bodies.a.shape", ["did you mean 'ellipsoid'?"]),
     (body('shape = "qqq"'), "bodies.a.shape", ["unknown shape 'qqq'", "'lens'"]),
     (body('shape = "sphere"'), "bodies.a", ["'radius' is missing", "radius = "]),
-    (body('shape = "sphere"\nradius = 0'), "bodies.a.radius", ["above zero", "got 0"]),
-    (body('shape = "sphere"\nradius = -1.5'), "bodies.a.radius", ["above zero", "got -1.5"]),
+    (body('shape = "sphere"\nradius = -1.5'), "bodies.a.radius", ["zero or above", "got -1.5"]),
     (body('shape = "sphere"\nradius = nan'), "bodies.a.radius", ["finite", "got nan"]),
     (body('shape = "sphere"\nradius = inf'), "bodies.a.radius", ["finite", "got inf"]),
     (body(f'shape = "sphere"\nradius = 1{"0" * 400}'), "bodies.a.radius", ["finite"]),
@@ -91,9 +90,9 @@ SHAPES = [
         "bodies.a.rounding",
         ["zero or above"],
     ),
-    (body('shape = "box"\nsize = [1, 1, 1]\nrounding = 2'), "bodies.a", ["rounding = 2", "core"]),
-    (body('shape = "lens"\nradius = 1\noffset = 1.5'), "bodies.a", ["mpty lens", "1.5"]),
-    (body('shape = "cap"\nradius = 1\noffset = 1.5'), "bodies.a", ["offset = 1.5"]),
+    (body('shape = "box"\nsize = [1, 1, 1]\nrounding = 2'), "bodies.a.rounding", ["2.0", "core"]),
+    (body('shape = "lens"\nradius = 1\noffset = 1.5'), "bodies.a.offset", ["mpty lens", "1.5"]),
+    (body('shape = "cap"\nradius = 1\noffset = 1.5'), "bodies.a.offset", ["offset = 1.5"]),
     (
         body('shape = "polytope"\nvertices = [[0,0,0],[1,0,0],[0,1,0],[1,1,0]]'),
         "bodies.a",
@@ -146,7 +145,7 @@ SHAPES = [
             'shape = "planar_loop"\n'
             'curves = [{kind = "bezier", control_points = [[0, 0], [1, 0]], weights = [1, -1]}]'
         ),
-        "bodies.a.curves[0]",
+        "bodies.a.curves[0].weights",
         ["positive"],
     ),
 ]
@@ -214,8 +213,8 @@ CURVES = [
     ),
     (
         body('shape = "superellipsoid"\nsemi_axes = [1, 1, 1]\nexponents = [0.5, 2.5]'),
-        "bodies.a",
-        ["e2", "2.5"],
+        "bodies.a.exponents[1]",
+        ["2.5", "from 0.1 to 1.8"],
     ),
 ]
 
@@ -265,7 +264,7 @@ MOTIONS = [
         "motions.a.frame",
         ["unknown frame 'tool'", "'body' or 'world'"],
     ),
-    (moved('kind = "screw"\naxis = [0, 0, 0]\nangular_rate = 1'), "motions.a", ["axis"]),
+    (moved('kind = "screw"\naxis = [0, 0, 0]\nangular_rate = 1'), "motions.a.axis", ["axis"]),
     (moved('kind = "helix"\nradius = 0\npitch = 1\nrate = 1'), "motions.a.radius", ["above zero"]),
     (moved('kind = "spiral"\nradius = -1\ngrowth = 1\nrate = 1'), "motions.a.radius", ["got -1"]),
     (
@@ -306,9 +305,9 @@ MOTIONS = [
 TRACK = [
     (tracked('law = "papr"'), "track.law", ["did you mean 'paper'?"]),
     (tracked('predictor = "seccant"'), "track.predictor", ["did you mean 'secant'?"]),
-    (tracked('integrator = "rk5"'), "track.integrator", ["did you mean 'rk4'?"]),
-    (tracked("gain = 0"), "track.gain", ["above zero"]),
-    (tracked("gain = -3"), "track.gain", ["above zero", "got -3"]),
+    (tracked('law = "paper"\nintegrator = "rk5"'), "track.integrator", ["did you mean 'rk4'?"]),
+    (tracked('law = "paper"\ngain = 0'), "track.gain", ["above zero"]),
+    (tracked('law = "paper"\ngain = -3'), "track.gain", ["above zero", "got -3"]),
     (tracked("step = 0"), "track.step", ["above zero"]),
     (tracked('step = "sampels"'), "track.step", ["a number or 'samples'", "'sampels'"]),
     (tracked("tolerance = 0"), "track.tolerance", ["above zero"]),

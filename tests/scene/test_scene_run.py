@@ -119,7 +119,9 @@ def test_a_run_is_the_tracker_s_own_answers(load_text: LoadText) -> None:
     path = ConstantTwist(so.Pose(np.eye(3), (-1.0, 0.2, 0.9)), twist)
     rest, still = so.Pose.identity(), so.Twist.zero()
     steps = np.diff(recording.time)
-    tracker = so.Tracker(a, b, dt=float(steps.max()), predictor="feedforward")
+    tracker = so.Tracker(
+        a, b, dt=float(steps.max()), law=so.PredictorCorrector(predictor="feedforward")
+    )
     state = tracker.start(path.pose(0.0), rest, path.twist(0.0), still)
     answers = [state.proximity]
     for time, step in zip(recording.time[1:].tolist(), steps.tolist(), strict=True):
@@ -216,7 +218,7 @@ def test_an_instant_outside_the_scene_s_times_is_refused(load_text: LoadText, na
 def test_settings_given_in_place_of_the_scene_s(load_text: LoadText) -> None:
     scene = load_text(f'{HEAD}{TWIST}[track]\nlaw = "paper"\nstep = 0.1\nduration = 1\n')
     settings = scene.settings.overridden({"step": 0.05, "law": None})
-    assert settings == TrackSettings(law="paper", step=0.05, duration=1.0)
+    assert settings == TrackSettings(so.PaperLaw(), step=0.05, duration=1.0)
     with pytest.raises(SceneError, match=r"^step: must be above zero, got -1$"):
         scene.settings.overridden({"step": -1.0})
 

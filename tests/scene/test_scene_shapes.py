@@ -23,7 +23,7 @@ TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 # A bottom of one straight line, a right side of one conic arc, and a Bézier curve back.
 LOOP = """
 shape = "planar_loop"
-radius = 0.1
+rounding = 0.1
 [[bodies.a.curves]]
 kind = "line"
 start = [0.0, 0.0]
@@ -48,7 +48,7 @@ def loop() -> Body:
             ConicArc((1.0, 0.0), (1.0, 0.0), (0.0, 0.5), 0.0, 0.5 * np.pi),
             RationalBezier([[1.0, 0.5], [0.2, 0.5], [0.0, 0.0]], [1.0, 0.8, 1.0]),
         ],
-        radius=0.1,
+        rounding=0.1,
     )
 
 
@@ -88,10 +88,11 @@ CASES: list[tuple[str, Callable[[], Body]]] = [
     ('shape = "sphere"\nradius = 2', lambda: shapes.sphere(2.0)),
     ('shape = "ellipsoid"\nsemi_axes = [0.3, 0.2, 0.1]', lambda: shapes.ellipsoid(0.3, 0.2, 0.1)),
     ('shape = "capsule"\nradius = 0.1\nlength = 0.4', lambda: shapes.capsule(0.1, 0.4)),
-    ('shape = "cylinder"\nradius = 0.1\nlength = 0.4', lambda: shapes.cylinder(0.1, 0.4)),
+    ('shape = "cylinder"\nradius = 0.1\nheight = 0.4', lambda: shapes.cylinder(0.1, 0.4)),
     ('shape = "cone"\nradius = 0.1\nheight = 0.4', lambda: shapes.cone(0.1, 0.4)),
     ('shape = "box"\nsize = [1, 2, 3]', lambda: shapes.box(1.0, 2.0, 3.0)),
     ('shape = "box"\nsize = [1, 2, 3]\nrounding = 0.2', lambda: shapes.box(1.0, 2.0, 3.0, 0.2)),
+    (f'shape = "polygon"\nvertices = {TETRAHEDRON[1:]}', lambda: shapes.polygon(TETRAHEDRON[1:])),
     (f'shape = "polytope"\nvertices = {TETRAHEDRON}', lambda: shapes.polytope(TETRAHEDRON)),
     ('shape = "lens"\nradius = 1.0\noffset = 0.45', lambda: shapes.lens(1.0, 0.45)),
     ('shape = "cap"\nradius = 1.0\noffset = -0.2', lambda: shapes.cap(1.0, -0.2)),

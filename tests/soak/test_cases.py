@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 
-from standoff.soak import cases
-from standoff.soak.cases import Case, draw_case
-from standoff.soak.directions import depths, spread
-from standoff.soak.ledger import Ledger
-from standoff.soak.motions import Motion, Turn, draw_path
-from standoff.soak.tally import Tally
+from standoff_studies.soak import cases
+from standoff_studies.soak.cases import Case, draw_case
+from standoff_studies.soak.directions import depths, spread
+from standoff_studies.soak.ledger import Ledger
+from standoff_studies.soak.motions import Motion, Turn, draw_path
+from standoff_studies.soak.tally import Tally
 
 SEED = 7
 
@@ -26,8 +26,7 @@ def test_a_case_is_the_same_drawn_twice_and_from_its_file():
         assert np.array_equal(drawn, from_file)
 
 
-def test_twists_are_the_derivatives_of_the_poses():
-    rng = np.random.default_rng()
+def test_twists_are_the_derivatives_of_the_poses(rng):
     path = draw_path(rng, 2.0, 1.5)
     turns = [Turn([0.0, 0.6, 0.8], 1.3, 0.4, 2.0, 0.3), Turn([1.0, 0.0, 0.0], -0.7)]
     path = type(path)(path.start, [1.0, 2.0, 3.0], [0.1, -0.2, 0.3], turns, path.waves)
@@ -42,8 +41,7 @@ def test_twists_are_the_derivatives_of_the_poses():
     np.testing.assert_allclose(rotation @ np.swapaxes(rotation, 1, 2), [np.eye(3)] * 20, atol=1e-14)
 
 
-def test_teleports_uneven_steps_and_wrong_twists():
-    rng = np.random.default_rng()
+def test_teleports_uneven_steps_and_wrong_twists(rng):
     path = draw_path(rng, 1.0, 1.0)
     shown = {"uneven": 0.8, "jumps": [[5.0, 3.0]]}
     motion = Motion(path, path, 0.01, **shown, twist_factor=2.0, twist_error=[1.0] * 6)

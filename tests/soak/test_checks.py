@@ -3,14 +3,15 @@
 import numpy as np
 import pytest
 
-from standoff.kernels import frame as K
-from standoff.kernels import layout as L
-from standoff.soak.cases import draw_case
-from standoff.soak.checks import BLURRED, GLOBAL, LOCAL, judge, search
-from standoff.soak.motions import Frames
-from standoff.soak.running import track
-from standoff.soak.shapes import Shape, made
+from standoff.kernels.body import layout as L
+from standoff.kernels.state import arrays as K
+from standoff.tracking.laws import PaperLaw, PredictorCorrector
 from standoff.tracking.tracker import Tracker
+from standoff_studies.soak.cases import draw_case
+from standoff_studies.soak.checks import BLURRED, GLOBAL, LOCAL, judge, search
+from standoff_studies.soak.motions import Frames
+from standoff_studies.soak.running import track
+from standoff_studies.soak.shapes import Shape, made
 
 TOLERANCE = 1e-10
 
@@ -20,7 +21,9 @@ def apart():
     for number in range(100):
         case, a, b, frames = draw_case(5, number, 10)
         if case.family == "apart" and a.body.bounded and b.body.bounded:
-            tracker = Tracker(a.body, b.body, case.motion.step, tolerance=TOLERANCE)
+            tracker = Tracker(
+                a.body, b.body, case.motion.step, PredictorCorrector(tolerance=TOLERANCE)
+            )
             return a, b, frames, track(tracker, frames, True).rows
     raise AssertionError("no such pair")
 
@@ -84,11 +87,11 @@ def test_doubled_rates_are_seen(columns, what):
     seen = 0
     for number in range(40):
         case, a, b, frames = draw_case(5, number, 10)
-        if case.options.get("law") == "paper" or {a.shape.kind, b.shape.kind} & BLURRED:
+        if isinstance(case.law, PaperLaw) or {a.shape.kind, b.shape.kind} & BLURRED:
             continue  # their points need not be at rest to roundoff
-        tracker = Tracker(a.body, b.body, case.motion.step, **case.options)
+        tracker = Tracker(a.body, b.body, case.motion.step, case.law)
         rows = track(tracker, frames, True).rows
-        tolerance = float(tracker.options[K.O_TOLERANCE])
+        tolerance = tracker.law.tolerance
         assert judge(a, b, frames, rows, tolerance, True).faults == []
         rows[5, columns] *= 2.0
         doubled = rows[5, columns]

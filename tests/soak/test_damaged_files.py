@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from standoff.cli import main
-from standoff.soak.cases import draw_case
-from standoff.soak.checks import Fault
-from standoff.soak.failures import exception_facts, failure_facts
-from standoff.soak.running import Failure
+from standoff_studies.soak.cases import draw_case
+from standoff_studies.soak.checks import Fault
+from standoff_studies.soak.failures import exception_facts, failure_facts
+from standoff_studies.soak.running import Failure
 
 SEED, FRAMES, PAIRS = 5, 30, 3
 MISSING = object()

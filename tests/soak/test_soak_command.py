@@ -10,11 +10,12 @@ from pathlib import Path
 import pytest
 
 from standoff.cli import main
-from standoff.soak import processes, supports
-from standoff.soak.cases import Case
-from standoff.soak.checks import Fault
-from standoff.soak.failures import failure_facts, replay
-from standoff.soak.running import Failure
+from standoff_studies import oracles
+from standoff_studies.soak import processes
+from standoff_studies.soak.cases import Case
+from standoff_studies.soak.checks import Fault
+from standoff_studies.soak.failures import failure_facts, replay
+from standoff_studies.soak.running import Failure
 
 SEED = 5
 COMMON = ["--seed", SEED, "--frames", 30]
@@ -37,8 +38,8 @@ def ledger(folder: Path) -> dict:
 @pytest.fixture
 def planted(monkeypatch):
     """The judge takes ellipsoids for a little larger than they are."""
-    true = supports.Ellipsoid.points
-    monkeypatch.setattr(supports.Ellipsoid, "points", lambda self, n: 1.000001 * true(self, n))
+    true = oracles.Ellipsoid.points
+    monkeypatch.setattr(oracles.Ellipsoid, "points", lambda self, n: 1.000001 * true(self, n))
 
 
 def test_a_planted_fault_is_found_and_replayed(run, tmp_path, planted, monkeypatch):
@@ -151,8 +152,8 @@ def test_the_clock_of_a_pair_begins_when_the_kernels_are_there(monkeypatch):
 PREPARED = f"""
 import gc
 from numba.core.dispatcher import Dispatcher
-from standoff.soak.preparing import compile_kernels
-from standoff.soak.processes import run_part
+from standoff_studies.soak.preparing import compile_kernels
+from standoff_studies.soak.processes import run_part
 
 def entered():
     kernels = [one for one in gc.get_objects() if isinstance(one, Dispatcher)]
@@ -176,7 +177,7 @@ def test_no_pair_compiles_a_kernel():
 
 ORPHAN = f"""
 import time
-from standoff.soak.processes import _Worker
+from standoff_studies.soak.processes import _Worker
 
 worker = _Worker({SEED}, 2000)
 worker.give((0, 10**9))
@@ -202,17 +203,17 @@ def test_a_folder_that_cannot_be_written_is_refused_first(run, tmp_path, monkeyp
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("tempfile.TemporaryFile", refuse)
-    monkeypatch.setattr("standoff.cli.soak.soak", lambda *_: pytest.fail("it began"))
+    monkeypatch.setattr("standoff_studies.soak.command.soak", lambda *_: pytest.fail("it began"))
     code, _, err = run("--pairs", 1, *COMMON, "-o", tmp_path)
     assert code == 2
     assert f"{tmp_path} cannot be written (Permission denied)" in err
 
 
 def test_an_exception_is_a_failure(run, tmp_path, monkeypatch):
-    def broken(self, x):
+    def broken(made, poses, points, n):
         raise ZeroDivisionError("planted")
 
-    monkeypatch.setattr(supports.Box, "outside", broken)
+    monkeypatch.setattr("standoff_studies.soak.checks.outside", broken)
     code, _, err = run("--pairs", 64, *COMMON, "--jobs", 1, "-o", tmp_path)
     assert code == 3
     assert "ZeroDivisionError: planted" in err

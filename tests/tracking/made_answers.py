@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import standoff as so
 from oracles.exact_pairs import random_rotation
-from standoff.kernels import frame as K
+from standoff.kernels.state import arrays as K
 
 Array = NDArray[np.float64]
 

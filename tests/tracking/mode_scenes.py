@@ -16,10 +16,9 @@ from oracles import closed_forms
 from oracles.brute import Nearest, nearest_points, nearest_polytopes
 from oracles.features import ON_SURFACE, Feature, feature_at
 from oracles.loops import BezierCurve, PlanarLoop
-from oracles.shape import Placed, Shape
-from oracles.support import Box, Ellipsoid, Lens, Point, Polytope
 from standoff.geometry import RationalBezier
 from standoff.motion import ConstantTwist, Fixed, Helix, Path, Spiral
+from standoff_studies.oracles import Box, Ellipsoid, Lens, Placed, Point, Polytope, Shape
 
 Array = NDArray[np.float64]
 Name = tuple[Any, ...]

@@ -10,17 +10,17 @@ import pytest
 from matplotlib.image import imread
 
 import standoff as so
-from standoff.bodies.shapes import sphere_atlas
-from standoff.geometry import ConicArc
-from standoff.motion import ConstantTwist, Fixed
-from standoff.tracking.automaton import Automaton, automaton, body_transitions
-from standoff.tracking.automaton_picture import write_automaton
-from standoff.tracking.automaton_text import (
+from standoff.automaton.graph import Automaton, automaton, body_transitions
+from standoff.automaton.picture import write_automaton
+from standoff.automaton.text import (
     automaton_mermaid,
     automaton_text,
     moves,
     product_switches,
 )
+from standoff.bodies.shapes import sphere_atlas
+from standoff.geometry import ConicArc
+from standoff.motion import ConstantTwist, Fixed
 
 BOX = so.shapes.box(1.0, 0.8, 0.6)
 LENS = so.shapes.lens(1.0, 0.45)
@@ -72,7 +72,7 @@ def test_switching_functions_and_resets_say_where() -> None:
 
 def tumbling(a: so.Body, b: so.Body) -> so.Recording:
     path = ConstantTwist(so.Pose(np.eye(3), (1.6, 0.1, 0.2)), ((0.0, 0.0, 0.0), (3.0, 2.0, 1.0)))
-    return so.simulate(a, b, path, Fixed(np.eye(4)), 3.0, dt=0.01)
+    return so.simulate(so.Tracker(a, b, 0.01), path, Fixed(np.eye(4)), 3.0)
 
 
 @pytest.fixture(scope="module")
@@ -113,12 +113,12 @@ def test_a_change_that_is_no_transition_is_a_restart(recording: so.Recording) ->
 def test_smooth_edges_are_passed() -> None:
     # A ball of two halves: smooth along the cut.
     half = np.eye(3)
-    rim = so.Edge(ConicArc((0, 0, 0), (1, 0, 0), (0, 1, 0)))
+    rim = so.bodies.Edge(ConicArc((0, 0, 0), (1, 0, 0), (0, 1, 0)))
     body = so.Body.from_brep(
         edges=[rim],
         faces=[
-            so.Face(sphere_atlas(half, np.zeros(3)), ((0, 1),)),
-            so.Face(sphere_atlas(np.diag([1.0, -1.0, -1.0]), np.zeros(3)), ((0, -1),)),
+            so.bodies.Face(sphere_atlas(half, np.zeros(3)), ((0, 1),)),
+            so.bodies.Face(sphere_atlas(np.diag([1.0, -1.0, -1.0]), np.zeros(3)), ((0, -1),)),
         ],
     )
     found = body_transitions(body, "A")

@@ -49,8 +49,7 @@ def crossing_pose(rng, offset, depth):
 
 @pytest.mark.parametrize("depth", [1e-6, 1e-5, 1e-4])
 @pytest.mark.parametrize("offset", [1e-5, 1e-3])
-def test_the_depth_is_that_of_the_least_axis(offset, depth):
-    rng = np.random.default_rng()
+def test_the_depth_is_that_of_the_least_axis(offset, depth, rng):
     a, b = box(HALF_A), box(HALF_B)
     for _ in range(POSES):
         rotation, place = crossing_pose(rng, offset, depth)
@@ -63,8 +62,7 @@ def test_the_depth_is_that_of_the_least_axis(offset, depth):
         np.testing.assert_allclose(between, answer.distance * answer.normal, atol=1e-12)
 
 
-def test_most_are_exact():
-    rng = np.random.default_rng()
+def test_most_are_exact(rng):
     a, b = box(HALF_A), box(HALF_B)
     errors = []
     for _ in range(POSES):

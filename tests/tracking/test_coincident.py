@@ -71,9 +71,8 @@ def assert_deep(answer, depth):
 
 @pytest.mark.parametrize("name", WIDTHS)
 @pytest.mark.parametrize("turned", [False, True])
-def test_a_body_in_itself(name, turned):
+def test_a_body_in_itself(name, turned, rng):
     body, width = WIDTHS[name]
-    rng = np.random.default_rng()
     pose = (random_rotation(rng), rng.normal(size=3) * body.size) if turned else HOME
     assert_deep(so.distance(body, body, pose, pose), width)
 
@@ -146,10 +145,10 @@ def test_a_planar_body_in_itself():
 
 
 @pytest.mark.parametrize("offset", [1e-6, 1e-4, 1e-2, 0.3])
-def test_nearly_concentric_balls_of_patches(offset):
+def test_nearly_concentric_balls_of_patches(offset, rng):
     """The depth hardly varies with the direction: all but the exact way differ by the offset."""
     ball = so.shapes.ellipsoid(1, 1, 1)
-    way = random_rotation(np.random.default_rng())[0]
+    way = random_rotation(rng)[0]
     answer = so.distance(ball, ball, so.Pose.identity(), so.Pose.exp([0, 0, 0], offset * way))
     assert answer.distance == pytest.approx(offset - 2.0, abs=1e-13)
     assert np.linalg.norm(answer.normal - way) <= 4e-12 / offset + 1e-12

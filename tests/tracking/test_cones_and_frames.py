@@ -6,8 +6,8 @@ from numba import njit
 from scipy.optimize import nnls
 
 import standoff as so
-from standoff.kernels.certificate import vertex_cone
-from standoff.kernels.compiling import pointer
+from standoff.kernels.compiler.decorators import pointer
+from standoff.kernels.pair.certificate import vertex_cone
 
 AT_REST = so.Pose(np.eye(3))
 
@@ -31,8 +31,7 @@ def pyramid(sides, rng):
 
 
 @pytest.mark.parametrize("sides", [4, 5, 7, 12])
-def test_a_vertex_of_many_faces_certifies_its_whole_cone(sides):
-    rng = np.random.default_rng()
+def test_a_vertex_of_many_faces_certifies_its_whole_cone(sides, rng):
     body, apex, normals = pyramid(sides, rng)
     for _ in range(60):
         n = rng.dirichlet(np.ones(sides)) @ normals
@@ -45,8 +44,7 @@ def test_a_vertex_of_many_faces_certifies_its_whole_cone(sides):
 
 
 @pytest.mark.parametrize("sides", [4, 5, 7, 12])
-def test_outside_a_cone_the_nearest_normal_is_found(sides):
-    rng = np.random.default_rng()
+def test_outside_a_cone_the_nearest_normal_is_found(sides, rng):
     body, apex, normals = pyramid(sides, rng)
     k = int(np.abs(body.vertex_points - apex).sum(axis=1).argmin())
     feature = body.n_faces + body.n_edges + k
@@ -72,8 +70,7 @@ FAR = np.array([3e5, -2e5, 4e5])
     [so.shapes.ellipsoid(1, 0.5, 0.3), so.shapes.lens(1, 0.4), so.shapes.box(1, 2, 0.5)],
     ids=lambda body: body.name,
 )
-def test_a_body_far_from_its_origin_answers_as_near_it(body):
-    rng = np.random.default_rng()
+def test_a_body_far_from_its_origin_answers_as_near_it(body, rng):
     other = so.shapes.ellipsoid(0.4, 0.9, 0.6)
     moved = body.transformed((np.eye(3), FAR))
     for _ in range(40):

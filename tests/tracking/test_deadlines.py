@@ -16,7 +16,7 @@ DEPTHS = (so.Status.LOCAL, so.Status.GLOBAL)
 
 def teleported(b, deadline, pose, frames, a=BOX):
     """Answers at one pose, after a start far away."""
-    tracker = so.Tracker(a, b, deadline=deadline)
+    tracker = so.Tracker(a, b, law=so.PredictorCorrector(deadline=deadline))
     state = tracker.start(HOME, so.Pose.exp([0.1, 0.2, 0.3], [3.0, 0.2, 0.1]))
     answers = []
     for _ in range(frames):
@@ -57,8 +57,7 @@ MIXED = {
 
 @pytest.mark.parametrize("deadline", [3, 5, 20])
 @pytest.mark.parametrize("name", MIXED)
-def test_a_depth_is_reached_in_turns(name, deadline):
-    rng = np.random.default_rng()
+def test_a_depth_is_reached_in_turns(name, deadline, rng):
     for _ in range(4):
         pose = so.Pose(random_rotation(rng), 0.3 * random_rotation(rng)[0])
         truth = so.distance(BOX, MIXED[name], HOME, pose)
@@ -73,8 +72,7 @@ def test_a_depth_is_reached_in_turns(name, deadline):
 
 
 @pytest.mark.parametrize("name", MIXED)
-def test_apart_one_evaluation_a_step_arrives(name):
-    rng = np.random.default_rng()
+def test_apart_one_evaluation_a_step_arrives(name, rng):
     for _ in range(4):
         pose = so.Pose(random_rotation(rng), 2.0 * random_rotation(rng)[0])
         truth = so.distance(BOX, MIXED[name], HOME, pose)
@@ -84,15 +82,14 @@ def test_apart_one_evaluation_a_step_arrives(name):
 
 
 @pytest.mark.parametrize("dt", [1e-3, 4e-3])
-def test_the_papers_law_enters_an_overlap(dt):
+def test_the_papers_law_enters_an_overlap(dt, rng):
     """It lags behind as the bodies meet: the depth is followed all the same, not only proven."""
-    rng = np.random.default_rng()
     for name in MIXED:
         turn, way = random_rotation(rng), random_rotation(rng)[0]
         far = so.distance(BOX, MIXED[name], HOME, so.Pose(turn, 3.0 * way))
         v = -2.0 * far.normal
         start = 3.0 * way - far.normal * (far.distance - 0.1)
-        tracker = so.Tracker(BOX, MIXED[name], law="paper", dt=dt)
+        tracker = so.Tracker(BOX, MIXED[name], dt=dt, law=so.PaperLaw())
         state = tracker.start(HOME, so.Pose(turn, start), twist_b=(v, np.zeros(3)))
         for k in range(1, int(0.1 / dt)):
             pose = so.Pose(turn, start + v * k * dt)

@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 
 import standoff as so
+from draws import draws
 from families.degenerate import KINDS, scaled
 from families.degenerate_motion import track
 from families.degenerate_queries import GLOBAL, Pose, Tally, deep, faults, judge, run, sunk
 from families.shapes import Twin
-from oracles import support as oracle
 from oracles.exact_pairs import exact_pair
+from standoff_studies import oracles as oracle
 
 HOME = np.eye(4)
 LEVELS = [(name, level) for name, kind in KINDS.items() for level in kind.levels]
@@ -26,7 +27,7 @@ OPEN = {
     ("thin NURBS ellipsoid", 1e4): 0.2,
 }
 """Share of answers that may be uncertified (a status says so): the limits measured."""
-POSES = 12
+POSES = draws(6)
 MOST_EVALUATIONS = 500
 """Second-order evaluations of a teleported frame; about 60 were seen."""
 
@@ -42,8 +43,7 @@ def spoilt(answer, **changes):
     return SimpleNamespace(**{**numbers, "upper_bound": answer.distance, **changes})
 
 
-def test_the_judge_sees_what_is_wrong():
-    rng = np.random.default_rng()
+def test_the_judge_sees_what_is_wrong(rng):
     body = KINDS["thin ellipsoid"].make(rng, 1e2)
     pair = exact_pair(body.shape, body.shape, 0.1, rng)
     pose = Pose(body, body, pair.a, pair.b, pair.distance, pair.distance)
@@ -61,25 +61,24 @@ def test_the_judge_sees_what_is_wrong():
 
 
 @pytest.mark.parametrize(("name", "level"), LEVELS)
-def test_apart(name, level):
-    tally = run(name, level, POSES, np.random.default_rng())
+def test_apart(name, level, rng):
+    tally = run(name, level, POSES, rng)
     assert not tally.failures
     assert tally.uncertified <= OPEN.get((name, level), 0.05) * POSES + 1
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1e6])
 @pytest.mark.parametrize("name", sorted(KINDS))
-def test_sizes(name, scale):
+def test_sizes(name, scale, rng):
     """No length is compared with 1: bodies of a micrometre and of 1,000 km."""
     kind = KINDS[name]
-    tally = run(name, kind.levels[0], 6, np.random.default_rng(), scale=scale)
+    tally = run(name, kind.levels[0], draws(3), rng, scale=scale)
     assert not tally.failures
     assert tally.uncertified <= 1
 
 
-def test_sizes_do_not_change_the_answer():
+def test_sizes_do_not_change_the_answer(rng):
     """By a power of two the very same digits; the certificate too."""
-    rng = np.random.default_rng()
     a, b = so.shapes.cylinder(1.0, 0.3), so.shapes.ellipsoid(0.5, 1.0, 0.2)
     pair = exact_pair(oracle.Cylinder(1.0, 0.3), oracle.Ellipsoid(0.5, 1.0, 0.2), 0.1, rng)
     plain = so.distance(a, b, pair.pose_a, pair.pose_b)
@@ -93,9 +92,8 @@ def test_sizes_do_not_change_the_answer():
 
 
 @pytest.mark.parametrize("ratio", [1e-6, 1e-3, 1e3, 1e6])
-def test_bodies_of_unlike_size(ratio):
+def test_bodies_of_unlike_size(ratio, rng):
     """A grain beside a planet, both ways round."""
-    rng = np.random.default_rng()
     tally = Tally("unlike sizes", ratio)
     small = Twin(oracle.Box(1.0, 0.7, 0.4), so.shapes.box(1.0, 0.7, 0.4))
     large = Twin(oracle.Ellipsoid(1.0, 0.8, 0.5), so.shapes.ellipsoid(1.0, 0.8, 0.5))
@@ -110,9 +108,8 @@ def test_bodies_of_unlike_size(ratio):
 
 
 @pytest.mark.parametrize("far", [1e3, 1e6, 1e9])
-def test_far_from_the_origin(far):
+def test_far_from_the_origin(far, rng):
     """Only the poses' own rounding is lost: eps times the coordinates."""
-    rng = np.random.default_rng()
     tally = Tally("far away", far)
     shape = oracle.Ellipsoid(1.0, 0.6, 0.8)
     twin = Twin(shape, so.shapes.ellipsoid(1.0, 0.6, 0.8))
@@ -144,9 +141,9 @@ def assert_true(answer, pose):
 
 
 @pytest.mark.parametrize("predictor", ["feedforward-2", "feedforward", "secant", "none"])
-def test_teleports(predictor):
-    (a, b), poses = crossing(np.random.default_rng(), 25)
-    tracker = so.Tracker(a.body, b.body, predictor=predictor)
+def test_teleports(predictor, rng):
+    (a, b), poses = crossing(rng, 25)
+    tracker = so.Tracker(a.body, b.body, law=so.PredictorCorrector(predictor=predictor))
     state = tracker.start(*poses[0].poses)
     for pose in poses[1:]:
         state, answer = tracker.step(state, *pose.poses)
@@ -173,7 +170,7 @@ def moving_pair(t):
 def test_wrong_twists(factor, predictor):
     """Twists are only a prediction: whatever they say, the answer is corrected and certified."""
     a, b = so.shapes.lens(1.0, 0.45), so.shapes.ellipsoid(0.6, 0.4, 0.5)
-    tracker = so.Tracker(a, b, dt=1e-2, predictor=predictor)
+    tracker = so.Tracker(a, b, dt=1e-2, law=so.PredictorCorrector(predictor=predictor))
     pose, twist = moving_pair(0.0)
     state = tracker.start(HOME, pose, (np.zeros(3), np.zeros(3)), twist)
     for frame in range(1, 40):
@@ -197,9 +194,8 @@ def test_twists_that_are_no_numbers_are_refused(bad):
     assert tracker.step(state, HOME, at(3.0))[1].certified
 
 
-def test_missing_twists():
+def test_missing_twists(rng):
     """Given now and then, for one body only, or never."""
-    rng = np.random.default_rng()
     a, b = so.shapes.lens(1.0, 0.45), so.shapes.ellipsoid(0.6, 0.4, 0.5)
     tracker = so.Tracker(a, b, dt=1e-2)
     state = tracker.start(HOME, moving_pair(0.0)[0])
@@ -217,9 +213,9 @@ def test_missing_twists():
 
 
 @pytest.mark.parametrize(("name", "level"), LEVELS)
-def test_overlapping(name, level):
+def test_overlapping(name, level, rng):
     """Sunk along a normal by 1e-9 to 1e-1 of the thickness there: never deeper than that."""
-    tally = run(name, level, POSES, np.random.default_rng(), how="sunk")
+    tally = run(name, level, POSES, rng, how="sunk")
     assert not tally.failures
 
 
@@ -228,12 +224,11 @@ MOST_IN_PENETRATION = 6000
 
 
 @pytest.mark.parametrize("predictor", ["feedforward-2", "secant"])
-def test_teleports_into_each_other(predictor):
+def test_teleports_into_each_other(predictor, rng):
     """Apart, sunk and deep by turns, jumping by many sizes between frames."""
-    rng = np.random.default_rng()
     (a, b), apart = crossing(rng, 10)
     poses = [pose for far in apart for pose in (far, _sunk(far, rng), deep(a, b, rng))]
-    tracker = so.Tracker(a.body, b.body, predictor=predictor)
+    tracker = so.Tracker(a.body, b.body, law=so.PredictorCorrector(predictor=predictor))
     state = tracker.start(*poses[0].poses)
     for pose in poses[1:]:
         state, answer = tracker.step(state, *pose.poses)
@@ -273,9 +268,9 @@ def test_wrong_twists_in_penetration(factor):
 
 @pytest.mark.parametrize("twists", [True, False])
 @pytest.mark.parametrize("name", sorted(KINDS))
-def test_motion(name, twists):
+def test_motion(name, twists, rng):
     """Past edges, seams, poles and through contact, with twists and without."""
     level = KINDS[name].levels[-1]
-    tally = track(name, level, 50, np.random.default_rng(), twists=twists)
+    tally = track(name, level, 50, rng, twists=twists)
     assert not tally.failures
     assert max(tally.evaluations) <= MOST_IN_PENETRATION

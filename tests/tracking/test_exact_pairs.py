@@ -1,14 +1,13 @@
 """Ellipsoid pairs whose answer is known by construction: distance, witness points and normal."""
 
-import os
-
 import numpy as np
 import pytest
 
 import standoff as so
+from draws import draws
 from families.exact_ellipsoids import RATIOS, SIZE, condition, draw_pairs
 
-POSES = int(os.environ.get("STANDOFF_POSES", "3000"))
+POSES = draws(300)
 DISTANCE = 1e-12
 """Greatest error of a distance, over the pair's size."""
 TO_RATIO_TEN = 1e-10
@@ -20,8 +19,8 @@ greater, as the roundings of two points turn the direction between them by eps s
 
 
 @pytest.mark.parametrize("ratio", RATIOS)
-def test_answers_are_exact(ratio):
-    seed = int(np.random.default_rng().integers(1 << 31))
+def test_answers_are_exact(ratio, rng):
+    seed = int(rng.integers(1 << 31))
     for pair in draw_pairs(ratio, POSES, np.random.default_rng(seed)):
         a, b = so.shapes.ellipsoid(*pair.axes_a), so.shapes.ellipsoid(*pair.axes_b)
         for truth in pair.poses:

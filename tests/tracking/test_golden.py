@@ -111,7 +111,7 @@ def test_steps_of_the_papers_law(gain, expected, start):
     """Steps until max |Psi_i| is 1e-3 of its value at the start."""
     settled = so.distance(*ELLIPSOIDS, *ELLIPSOID_POSES)
     shift = np.array([*start, 0.0])
-    tracker = so.Tracker(*ELLIPSOIDS, dt=1e-3, law="paper", integrator="heun", gain=gain)
+    tracker = so.Tracker(*ELLIPSOIDS, dt=1e-3, law=so.PaperLaw(integrator="heun", gain=gain))
     state = tracker.start_from(
         *ELLIPSOID_POSES,
         settled.feature_a,

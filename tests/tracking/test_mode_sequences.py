@@ -28,7 +28,9 @@ def stride(frame_time):
 
 def track(name, frame_time, predictor="feedforward-2"):
     scene = SCENES[name]
-    tracker = so.Tracker(scene.body_a, scene.body_b, dt=frame_time, predictor=predictor)
+    tracker = so.Tracker(
+        scene.body_a, scene.body_b, dt=frame_time, law=so.PredictorCorrector(predictor=predictor)
+    )
 
     def twists(t):
         blind = predictor == "secant"
@@ -161,7 +163,9 @@ def test_a_crossing_that_is_taken_back_is_no_event(predictor):
             twist = None if predictor == "secant" else so.Twist([v, 0, 0], np.zeros(3))
             return so.Pose(np.eye(3), [x, 0.1, 0.9]), twist
 
-        tracker = so.Tracker(box, so.shapes.point(), dt=step, predictor=predictor)
+        tracker = so.Tracker(
+            box, so.shapes.point(), dt=step, law=so.PredictorCorrector(predictor=predictor)
+        )
         pose, twist = motion(-20)
         state = tracker.start(np.eye(4), pose, None, twist)
         for k in range(-19, 20):

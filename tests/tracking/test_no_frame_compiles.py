@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import standoff as so
-from standoff.kernels import entries
-from standoff.kernels import tracker as kernels
+from standoff.kernels.entries import queries
+from standoff.kernels.entries import tracker as kernels
 
 JITTED = os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
 pytestmark = pytest.mark.skipif(not JITTED, reason="nothing is compiled under NUMBA_DISABLE_JIT")
@@ -22,7 +22,7 @@ import json, pickle, sys
 import numpy as np
 import standoff as so
 from numba.core import event
-from standoff.kernels.cache import ModuleCache
+from standoff.kernels.compiler.cache import ModuleCache
 
 asked = []
 load = ModuleCache.load_overload
@@ -79,7 +79,7 @@ def test_a_first_switch_overlap_and_search_compile_nothing():
         buffer = tracker.buffer(state)
         tracker.step_into(buffer)
         # from a start deep inside, with a deadline, and where nothing proves an answer
-        hasty = so.Tracker(a, b, 1e-2, deadline=3)
+        hasty = so.Tracker(a, b, 1e-2, so.PredictorCorrector(deadline=3))
         _, more = loop(hasty, hasty.start(pose(0.0), pose(0.05)), path)
         tell(seen | more)
     """)
@@ -127,7 +127,7 @@ def test_unpickled_bodies_trackers_and_states_compile_nothing():
 def test_the_papers_law_and_recorded_runs_compile_nothing_in_a_frame():
     told = watched("""
         a, b = so.shapes.lens(1.0, 0.45), so.shapes.box(0.4, 0.5, 0.3)
-        tracker = so.Tracker(a, b, 1e-2, law="paper", switching="voronoi")
+        tracker = so.Tracker(a, b, 1e-2, so.PaperLaw(switching="voronoi"))
         asked.clear()
         state = tracker.start(pose(0.0), pose(2.0, 0.4, 0.1))
         twist = so.Twist([-2.0, -1.0, 0.0], [0.0, 0.0, 0.0])
@@ -137,9 +137,10 @@ def test_the_papers_law_and_recorded_runs_compile_nothing_in_a_frame():
         from standoff.motion import Helix
         way = Helix(radius=1.2, pitch=0.4, rate=2.0)
         # the second run asks for nothing that the first did not prepare
-        so.simulate(a, b, so.Pose.identity(), so.Pose(np.eye(3), [3.0, 0.0, 0.0]), 0.01)
+        still = so.Pose(np.eye(3), [3.0, 0.0, 0.0])
+        so.simulate(so.Tracker(a, b), so.Pose.identity(), still, 0.01)
         asked.clear()
-        found = so.simulate(a, b, so.Pose.identity(), way, 2.0, dt=1e-3)
+        found = so.simulate(so.Tracker(a, b), so.Pose.identity(), way, 2.0)
         assert found.events
         asked[:0] = frames
         tell(seen)
@@ -173,9 +174,8 @@ def test_an_array_of_the_wrong_kind_is_refused_and_compiles_nothing():
     out, events = np.empty(100), np.empty(1000)
     with pytest.raises(TypeError, match="state is readonly array"):
         kernels.step(
-            tracker.packed, flat, flat, np.zeros(6), np.zeros(6), True, 1e-2, tracker.options,
-            frozen, out, events,
+            tracker.packed, np.tile(flat, 3), True, 1e-2, tracker.options, frozen, out, events,
         )  # fmt: skip
     with pytest.raises(TypeError, match="reals is array\\(float32"):
-        entries.curve_jet(np.zeros(3, dtype=np.float32), 0, 0, 0.5)
+        queries.curve_jet(np.zeros(3, dtype=np.float32), 0, 0, 0.5)
     assert len(kernels.step_predicted.signatures) == before

@@ -3,7 +3,7 @@
 import numpy as np
 
 import standoff as so
-from standoff.kernels import tracker as kernels
+from standoff.kernels.entries import tracker as kernels
 
 TWIST = so.Twist([1.0, 0.0, 0.0], [0.0, 0.0, 0.1])
 

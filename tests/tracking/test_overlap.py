@@ -1,15 +1,14 @@
 """Overlapping pairs: the depth is achieved, and proven the least, however deep or shallow."""
 
-import os
-
 import numpy as np
 import pytest
 
 import standoff as so
+from draws import draws
 from families.overlaps import PAIRS, draw_overlapping
 from oracles.bounds import separation
 
-POSES = int(os.environ.get("STANDOFF_POSES", "3000"))
+POSES = draws(300)
 SHARE = 6
 """Each kind of pair gets a sixth of the poses; planar loops, whose oracle is slow, half of that."""
 SHOWN = 5
@@ -17,8 +16,8 @@ SHOWN = 5
 
 
 @pytest.mark.parametrize("kind", PAIRS)
-def test_an_overlapping_pair_has_a_proven_depth(kind):
-    seed = int(np.random.default_rng().integers(1 << 31))
+def test_an_overlapping_pair_has_a_proven_depth(kind, rng):
+    seed = int(rng.integers(1 << 31))
     count = POSES // (2 * SHARE if "planar" in kind else SHARE)
     failures, asked = [], 0
     for pair in draw_overlapping(kind, count, np.random.default_rng(seed)):

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff as so
-from standoff.paper.bodies import planar_body
+from standoff_studies.paper.bodies import planar_body
 
 LENS = so.shapes.lens(1.0, 0.45)
 BOX = so.shapes.box(0.6, 0.8, 1.0)
@@ -40,14 +40,14 @@ def psi(place_a: tuple, place_b: tuple, dq: np.ndarray, h: float) -> np.ndarray:
     a = (place_a[0], tuple(np.asarray(place_a[1]) + dq[:n]))
     b = (place_b[0], tuple(np.asarray(place_b[1]) + dq[n:]))
     poses = moved(POSE_A, TWIST_A, h), moved(POSE_B, TWIST_B, h)
-    return so.pair_system(LENS, BOX, *poses, a, b).Psi
+    return so.tracking.pair_system(LENS, BOX, *poses, a, b).Psi
 
 
 @pytest.mark.parametrize("name", PLACES)
 def test_errors_change_by_m_and_b(name: str) -> None:
     """Psi' = M w + b, Eqs. (9), (10), by central differences in parameters and in time."""
     a, b = places(name)
-    system = so.pair_system(LENS, BOX, POSE_A, POSE_B, a, b, TWIST_A, TWIST_B)
+    system = so.tracking.pair_system(LENS, BOX, POSE_A, POSE_B, a, b, TWIST_A, TWIST_B)
     n = len(system.Psi)
     assert n == len(a[1]) + len(b[1])
     zero, h = np.zeros(n), 1e-6
@@ -63,7 +63,7 @@ def test_errors_change_by_m_and_b(name: str) -> None:
 def test_parts_fit_together(name: str) -> None:
     """Psi from the tangents, Eqs. (1)-(4); g, H, g_t are S Psi, S M, S b and H is symmetric."""
     a, b = places(name)
-    system = so.pair_system(LENS, BOX, POSE_A, POSE_B, a, b, TWIST_A, TWIST_B)
+    system = so.tracking.pair_system(LENS, BOX, POSE_A, POSE_B, a, b, TWIST_A, TWIST_B)
     tangents = np.hstack([system.F, system.G])
     np.testing.assert_allclose(system.Psi, tangents.T @ system.dR, atol=1e-14)
     sign = np.r_[np.ones(system.F.shape[1]), -np.ones(system.G.shape[1])]
@@ -75,7 +75,7 @@ def test_parts_fit_together(name: str) -> None:
 
 def test_errors_vanish_at_the_witness_points() -> None:
     found = so.distance(LENS, BOX, POSE_A, POSE_B)
-    system = so.pair_system(
+    system = so.tracking.pair_system(
         LENS,
         BOX,
         POSE_A,
@@ -89,7 +89,7 @@ def test_errors_vanish_at_the_witness_points() -> None:
 
 def test_a_place_outside_its_feature_is_refused() -> None:
     with pytest.raises(ValueError, match="outside face 0"):
-        so.pair_system(
+        so.tracking.pair_system(
             LENS, BOX, POSE_A, POSE_B, (("face", 0), (9.0, 9.0)), (("face", 0), (0.0, 0.0))
         )
 
@@ -97,17 +97,21 @@ def test_a_place_outside_its_feature_is_refused() -> None:
 def test_what_is_no_pose_or_twist_is_refused() -> None:
     places = (("face", 0), (0.0, 0.0)), (("vertex", 0), ())
     with pytest.raises(ValueError, match="rotation"):
-        so.pair_system(LENS, BOX, np.diag([2.0, 2.0, 2.0, 1.0]), POSE_B, *places)
+        so.tracking.pair_system(LENS, BOX, np.diag([2.0, 2.0, 2.0, 1.0]), POSE_B, *places)
     holed = np.eye(4)
     holed[0, 3] = np.nan
     with pytest.raises(ValueError, match="nan"):
-        so.pair_system(LENS, BOX, POSE_A, holed, *places)
+        so.tracking.pair_system(LENS, BOX, POSE_A, holed, *places)
     with pytest.raises(ValueError, match="six finite"):
-        so.pair_system(LENS, BOX, POSE_A, POSE_B, *places, (np.full(3, np.nan), np.zeros(3)))
+        so.tracking.pair_system(
+            LENS, BOX, POSE_A, POSE_B, *places, (np.full(3, np.nan), np.zeros(3))
+        )
 
 
 def test_a_planar_pair_stays_in_its_plane() -> None:
     loop = planar_body()
     above = so.Pose(np.eye(3), [2.0, 0.0, 0.1])
     with pytest.raises(ValueError, match="out of z = 0"):
-        so.pair_system(loop, loop, np.eye(4), above, (("edge", 0), (0.3,)), (("edge", 1), (0.3,)))
+        so.tracking.pair_system(
+            loop, loop, np.eye(4), above, (("edge", 0), (0.3,)), (("edge", 1), (0.3,))
+        )

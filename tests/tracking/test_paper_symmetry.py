@@ -10,7 +10,7 @@ from scipy.linalg import block_diag
 from scipy.spatial.transform import Rotation
 
 import standoff as so
-from standoff.paper.bodies import lens_of_patches
+from standoff_studies.paper.bodies import lens_of_patches
 
 LENS = so.shapes.lens(1.0, 0.45)
 PATCHED = lens_of_patches()
@@ -38,8 +38,8 @@ def both_ways(
     steps: int, other: so.Body, there: dict[str, Any], back: dict[str, Any]
 ) -> tuple[so.TrackerState, so.TrackerState]:
     """The states of (lens, other) and of (other, lens), from the same wrong start."""
-    forth = so.Tracker(LENS, other, dt=H, law="paper", **there)
-    turned = so.Tracker(other, LENS, dt=H, law="paper", **back)
+    forth = so.Tracker(LENS, other, dt=H, law=so.PaperLaw(**there))
+    turned = so.Tracker(other, LENS, dt=H, law=so.PaperLaw(**back))
     pose, twist = orbit(0)
     wrong = so.distance(LENS, other, REST, so.Pose(pose.rotation, [1.9, 0.25, 0.2]))
     places = (
@@ -61,7 +61,7 @@ VARIANTS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
         "integrated": {"realisation": "integrated", "gain": 300.0},
         "PI": {"feedback": so.feedback.PI(300.0, 3e4)},
         "finite time": {"feedback": so.feedback.FiniteTime(80.0, 0.5, 0.05)},
-        "motion": {"feedback": so.feedback.MotionGain(5e-3), "predictor": "none"},
+        "motion": {"feedback": so.feedback.MotionGain(5e-3), "feedforward": False},
         "voronoi": {"switching": "voronoi", "gain": 300.0},
         "none": {"switching": "none", "gain": 300.0},
         "plain": {"solve": "plain", "gain": 300.0},
@@ -93,7 +93,10 @@ def test_a_matrix_acts_on_the_errors_of_b() -> None:
     """Each error of the second body decays by its own gain, the first body a point."""
     gains = [1.0, 1.0, 300.0, 900.0]
     tracker = so.Tracker(
-        POINT, LENS, dt=H, law="paper", feedback=so.feedback.GainMatrix(gains), integrator="heun"
+        POINT,
+        LENS,
+        dt=H,
+        law=so.PaperLaw(feedback=so.feedback.GainMatrix(gains), integrator="heun"),
     )
     at = so.Pose(np.eye(3), [1.2, 0.3, 0.4])
     best = so.distance(POINT, LENS, at, REST)
@@ -107,7 +110,7 @@ def test_a_matrix_acts_on_the_errors_of_b() -> None:
 
 def psi(body: so.Body, pose: so.Pose, answer: so.Proximity) -> np.ndarray:
     place = answer.feature_a, answer.parameters_a
-    return so.pair_system(body, POINT, REST, pose, place, (("vertex", 0), ())).Psi
+    return so.tracking.pair_system(body, POINT, REST, pose, place, (("vertex", 0), ())).Psi
 
 
 def circle(k: int, radius: float) -> tuple[so.Pose, so.Twist]:
@@ -118,7 +121,9 @@ def circle(k: int, radius: float) -> tuple[so.Pose, so.Twist]:
 
 def test_errors_start_anew_in_another_chart() -> None:
     """Their units are a chart's own."""
-    tracker = so.Tracker(ELLIPSOID, POINT, dt=H, law="paper", realisation="integrated", gain=300.0)
+    tracker = so.Tracker(
+        ELLIPSOID, POINT, dt=H, law=so.PaperLaw(realisation="integrated", gain=300.0)
+    )
     pose, twist = circle(0, 1.0)
     state, changes = tracker.start(REST, pose, STILL, twist), 0
     for k in range(1, 1600):
@@ -135,7 +140,10 @@ def test_errors_start_anew_in_another_chart() -> None:
 def test_errors_start_anew_at_a_saturation() -> None:
     """A zeroed component has not done what the integral says."""
     tracker = so.Tracker(
-        PATCHED, POINT, dt=H, law="paper", realisation="integrated", switching="none", gain=300.0
+        PATCHED,
+        POINT,
+        dt=H,
+        law=so.PaperLaw(realisation="integrated", switching="none", gain=300.0),
     )
     pose, twist = circle(0, 1.6)
     state = tracker.start_from(
@@ -152,7 +160,7 @@ def test_errors_start_anew_at_a_saturation() -> None:
 
 
 def test_the_integral_starts_anew_at_a_switch() -> None:
-    tracker = so.Tracker(LENS, POINT, dt=H, law="paper", feedback=so.feedback.PI(300.0, 3e4))
+    tracker = so.Tracker(LENS, POINT, dt=H, law=so.PaperLaw(feedback=so.feedback.PI(300.0, 3e4)))
     pose, twist = circle(0, 1.6)
     half = so.Twist(0.5 * twist.v, twist.omega)  # wrong, so that there is an integral
     state, switched = tracker.start(REST, pose, STILL, half), 0
@@ -169,7 +177,7 @@ def test_the_integral_starts_anew_at_a_switch() -> None:
 
 
 def test_errors_and_integral_start_anew_after_an_overlap() -> None:
-    tracker = so.Tracker(LENS, POINT, dt=H, law="paper", feedback=so.feedback.PI(300.0, 3e4))
+    tracker = so.Tracker(LENS, POINT, dt=H, law=so.PaperLaw(feedback=so.feedback.PI(300.0, 3e4)))
     away, inside = so.Pose(np.eye(3), [1.4, 0.2, 0.1]), so.Pose(np.eye(3), [0.05, 0.0, 0.0])
     best = so.distance(LENS, POINT, REST, away)
     wrong = (best.parameters_a[0] + 0.05, best.parameters_a[1])
@@ -192,7 +200,7 @@ def test_velocities_are_those_of_the_feedforward_alone() -> None:
     pose, twist = circle(3, 1.6)
     found = []
     for gain in (1.0, 900.0):
-        tracker = so.Tracker(LENS, POINT, dt=H, law="paper", gain=gain)
+        tracker = so.Tracker(LENS, POINT, dt=H, law=so.PaperLaw(gain=gain))
         state = tracker.start_from(
             REST, pose, ("face", 0), (0.35, 0.2), ("vertex", 0), (), STILL, twist, settle=False
         )
@@ -205,7 +213,7 @@ def test_a_swept_partner_that_reaches_a_feature_is_tracked_on_it() -> None:
     ball = so.shapes.sphere(0.2)
     near = so.Pose(np.eye(3), [0.65, 0.0, 0.0])
     at = ("face", 0), (0.0, 0.0), ("vertex", 0), ()
-    tracker = so.Tracker(LENS, ball, dt=H, law="paper", switching="none")
+    tracker = so.Tracker(LENS, ball, dt=H, law=so.PaperLaw(switching="none"))
     state = tracker.start_from(REST, near, *at, settle=False)
     _, answer = tracker.step(state, REST, near, STILL, STILL)
     for found in (state.proximity, answer):
@@ -220,7 +228,7 @@ def test_the_raw_law_makes_no_step_where_it_has_none() -> None:
     box = so.shapes.box(1.0, 1.0, 1.0)
     above = so.Pose(np.eye(3), [0.0, 0.0, 1.5])
     top, bottom = so.distance(box, box, REST, above), so.distance(box, box, above, REST)
-    tracker = so.Tracker(box, box, dt=H, law="paper", solve="plain")
+    tracker = so.Tracker(box, box, dt=H, law=so.PaperLaw(solve="plain"))
     state = tracker.start_from(
         REST, above, top.feature_a, (0.5, 0.5), bottom.feature_a, (0.4, 0.4), settle=False
     )

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 import standoff as so
 from standoff.motion import ConstantTwist, Pose, Spiral, Twist
-from standoff.paper.bodies import planar_body
+from standoff_studies.paper.bodies import planar_body
 
 Array = NDArray[np.float64]
 
@@ -22,10 +22,10 @@ WRONG = ((0.95, 0.05, 0.05), (0.05, 0.95, 0.95), (1.0, 1.0, 0.0))
 
 
 @cache
-def reference() -> so.PointRecording:
+def reference() -> so.points.PointRecording:
     """The predictor-corrector on a spiral of three turns through the planar body."""
     times = np.linspace(0.0, 3.0, 1201)
-    return so.record_point(so.PointTracker(planar_body(), 2.5e-3), SPIRAL, times)
+    return so.points.record_point(so.PointTracker(planar_body(), 2.5e-3), SPIRAL, times)
 
 
 def test_features_against_brute_force_over_all() -> None:
@@ -50,7 +50,7 @@ def test_instants_are_roots_of_independent_functions() -> None:
         assert event.located
         assert abs(event.slope) > 1e-3
 
-        def value(t: float, event: so.PointEvent = event) -> float:
+        def value(t: float, event: so.points.PointEvent = event) -> float:
             x = SPIRAL.pose(t).translation
             if event.kind == "medial":
                 source, target = (to_curve(run.body, f.index, x)[0] for f in event[2:4])
@@ -86,7 +86,7 @@ def test_slow_switches_are_located_as_well(kind: str) -> None:
     }
     path = slow(*places[kind])
     tracker = so.PointTracker(body, 0.05)
-    run = so.record_point(tracker, path, np.arange(0.0, 2.0, 0.05))
+    run = so.points.record_point(tracker, path, np.arange(0.0, 2.0, 0.05))
     (event,) = run.events
     assert event.kind == kind
     assert 1e-3 < abs(event.slope) < 1e-2
@@ -109,7 +109,7 @@ def beside(body: so.Body, edge: int, x: Array) -> float:
     return float(normal @ (x - foot))
 
 
-def along_the_end(body: so.Body, event: so.PointEvent, x: Array) -> float:
+def along_the_end(body: so.Body, event: so.points.PointEvent, x: Array) -> float:
     """Cosine between a curve's end tangent and the way from the vertex to the point."""
     edge, vertex = sorted((event.source, event.target), key=lambda f: f.kind)
     curve, corner = body.edge_parts[edge.index].curve, body.vertex_points[vertex.index]
@@ -123,7 +123,9 @@ def along_the_end(body: so.Body, event: so.PointEvent, x: Array) -> float:
 def test_distance_never_grows_at_a_switch() -> None:
     """Dated to the frame, the winner is less than what it replaces; located, they are equal."""
     times = np.linspace(0.0, 3.0, 301)
-    dated = so.record_point(so.PointTracker(planar_body(), 1e-2), SPIRAL, times, locate=False)
+    dated = so.points.record_point(
+        so.PointTracker(planar_body(), 1e-2), SPIRAL, times, locate=False
+    )
     jumps = [event for event in dated.events if event.kind == "medial"]
     assert jumps
     assert all(event.value < 0.0 for event in jumps)
@@ -133,11 +135,11 @@ def test_distance_never_grows_at_a_switch() -> None:
 
 
 @cache
-def from_wrong(start: int, gain: float = 40.0) -> so.PointRecording:
-    tracker = so.PointTracker(planar_body(), 2.5e-3, law="paper", gain=gain)
+def from_wrong(start: int, gain: float = 40.0) -> so.points.PointRecording:
+    tracker = so.PointTracker(planar_body(), 2.5e-3, law=so.PaperLaw(gain=gain))
     x, v = SPIRAL.pose(0.0).translation, SPIRAL.twist(0.0).v
     state = tracker.start_from(x, WRONG[start], v)
-    return so.record_point(tracker, SPIRAL, np.linspace(0.0, 3.0, 1201), state)
+    return so.points.record_point(tracker, SPIRAL, np.linspace(0.0, 3.0, 1201), state)
 
 
 def test_wrong_start_converges_as_the_gain_says() -> None:
@@ -171,13 +173,15 @@ def test_printed_switching_does_not_depend_on_the_parameters_at_all() -> None:
     """Voronoi tests outside: not converged by far, and yet the exact instants."""
     path = Spiral(1.3, 0.02, 4.0)
     times = np.linspace(0.0, 2.0, 801)
-    exact = so.record_point(so.PointTracker(planar_body(), 2.5e-3), path, times)
+    exact = so.points.record_point(so.PointTracker(planar_body(), 2.5e-3), path, times)
     assert len(exact.events) >= 4
     for wrong in (0.6, 1.0):
-        tracker = so.PointTracker(planar_body(), 2.5e-3, law="paper", gain=2.0, switching="voronoi")
+        tracker = so.PointTracker(
+            planar_body(), 2.5e-3, law=so.PaperLaw(gain=2.0, switching="voronoi")
+        )
         x, v = path.pose(0.0).translation, path.twist(0.0).v
         state = tracker.start_from(x, (wrong,) * 3, v, feature=("edge", 0))
-        run = so.record_point(tracker, path, times, state)
+        run = so.points.record_point(tracker, path, times, state)
         assert np.abs(run.distance - exact.distance).max() > 1e-2
         own = [e for e in run.events if e.time > times[1]]
         kept = [e for e in exact.events if e.time > times[1]]
@@ -188,7 +192,7 @@ def test_printed_switching_does_not_depend_on_the_parameters_at_all() -> None:
 def test_ellipse_jumps_on_its_major_axis() -> None:
     """One curve with two minima: its medial axis is the axis between the centres of curvature."""
     path = Spiral(0.1, 0.03, 5.0)
-    run = so.record_point(so.PointTracker(ellipse(), 4e-3), path, np.arange(0.0, 2.4, 4e-3))
+    run = so.points.record_point(so.PointTracker(ellipse(), 4e-3), path, np.arange(0.0, 2.4, 4e-3))
     jumps = [event for event in run.events if event.kind == "medial"]
     assert len(jumps) == 3
     for event in jumps:
@@ -208,11 +212,11 @@ def test_out_of_the_body_and_on_to_a_vertex_within_a_frame(switching: str) -> No
         Pose.from_wxyz((1, 0, 0, 0), foot - 0.02 * way), Twist(way, (0.0, 0.0, 0.0))
     )
     times = np.array([0.0, 0.036])
-    exact = so.record_point(so.PointTracker(body, 0.05), path, times)
+    exact = so.points.record_point(so.PointTracker(body, 0.05), path, times)
     assert [event.kind for event in exact.events] == ["crossing", "voronoi"]
     assert exact.events[0].time == pytest.approx(0.02, abs=1e-9)
-    tracker = so.PointTracker(body, 0.05, law="paper", gain=20.0, switching=switching)
-    paper = so.record_point(tracker, path, times)
+    tracker = so.PointTracker(body, 0.05, law=so.PaperLaw(gain=20.0, switching=switching))
+    paper = so.points.record_point(tracker, path, times)
     assert paper.feature[1] == exact.feature[1] == so.Feature("vertex", 0)
     if switching == "voronoi":
         assert [event.time for event in paper.events] == pytest.approx(

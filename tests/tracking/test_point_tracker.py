@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,8 +13,8 @@ from point_oracle import clockwise, ellipse, stadium, to_boundary, to_curve, win
 import standoff as so
 from standoff.geometry import ConicArc, Line
 from standoff.motion import Spiral
-from standoff.paper.bodies import leaf, planar_body
-from standoff.tracking.planar_boundary import PlanarBoundary
+from standoff.points.planar_boundary import PlanarBoundary
+from standoff_studies.paper.bodies import leaf, planar_body
 
 Array = NDArray[np.float64]
 
@@ -44,7 +45,7 @@ def test_against_brute_force_from_inside_to_outside(make: object) -> None:
     """Distance, side and bounds at every tenth frame, whatever the kinds of the curves."""
     body: so.Body = make()  # type: ignore[operator]
     path = Spiral(0.05, 0.08, 6.0, centre=(0.03, -0.02))
-    run = so.record_point(so.PointTracker(body, 5e-3), path, np.arange(0.0, 3.0, 5e-3))
+    run = so.points.record_point(so.PointTracker(body, 5e-3), path, np.arange(0.0, 3.0, 5e-3))
     assert all(answer.certified for answer in run.answers)
     assert {False, True} == set(run.inside.tolist())
     for k in range(0, len(run), 10):
@@ -61,14 +62,13 @@ def half_disc(height: float) -> so.Body:
     return so.shapes.planar_loop([arc, Line((-1, 0), (1, 0))])
 
 
-@pytest.mark.parametrize("law", ["predictor-corrector", "paper"])
+@pytest.mark.parametrize("law", [so.PredictorCorrector(), so.PaperLaw(gain=60.0)], ids=repr)
 @pytest.mark.parametrize("height", [0.05, 0.6, 2.0])
-def test_wild_motion_is_never_wrong_in_silence(height: float, law: str) -> None:
+def test_wild_motion_is_never_wrong_in_silence(height: float, law: Any) -> None:
     """Jumps of any size, thin bodies: certified answers are right, bounds hold in any case."""
     rng = np.random.default_rng(round(100 * height))
     body = half_disc(height)
-    gain = None if law == "predictor-corrector" else 60.0
-    tracker = so.PointTracker(body, 1e-2, law=law, gain=gain)
+    tracker = so.PointTracker(body, 1e-2, law)
     x = np.zeros(2)
     state = tracker.start(x)
     for k in range(60):
@@ -78,7 +78,7 @@ def test_wild_motion_is_never_wrong_in_silence(height: float, law: str) -> None:
         exact = to_boundary(body, x) * (-1.0 if answer.inside else 1.0)
         assert answer.inside == winding(body, x)
         assert answer.lower_bound - 1e-9 <= exact <= answer.upper_bound + 1e-9
-        if law == "predictor-corrector":
+        if isinstance(law, so.PredictorCorrector):
             assert answer.certified
         if answer.certified:
             assert answer.distance == pytest.approx(exact, abs=1e-9)
@@ -145,7 +145,7 @@ def test_no_bound_without_a_proof() -> None:
 
 
 def test_swept_radius_moves_boundary_and_witness() -> None:
-    body = so.shapes.planar_loop([part.curve for part in planar_body().edge_parts], radius=0.2)
+    body = so.shapes.planar_loop([part.curve for part in planar_body().edge_parts], rounding=0.2)
     plain, swept = so.PointTracker(planar_body()), so.PointTracker(body)
     for point in ((0.1, 0.05), (1.5, 0.4), (1.6, 0.05), (0.95, 0.3)):
         a, b = plain.start(point).proximity, swept.start(point).proximity
@@ -174,9 +174,12 @@ def test_without_velocities_the_rates_are_unknown() -> None:
         (lambda t: t.start_from((0.0, 0.0), (0.5, 1.5, 0.5)), "outside curve 1"),
         (lambda t: t.step(t.start((0.0, 0.0)), (0.0, 0.0), dt=-1.0), "dt = -1"),
         (lambda t: so.PointTracker(so.shapes.sphere(1.0)), "not planar"),
-        (lambda t: so.PointTracker(planar_body(), law="paper", switching="none"), "multipliers"),
-        (lambda t: so.PointTracker(planar_body(), law="newton"), "law"),
-        (lambda t: so.record_point(t, Spiral(0, 1, 1), [1.0, 0.0]), "increasing"),
+        (
+            lambda t: so.PointTracker(planar_body(), law=so.PaperLaw(switching="none")),
+            "multipliers",
+        ),
+        (lambda t: so.PointTracker(planar_body(), law=so.shapes), "is no law"),
+        (lambda t: so.points.record_point(t, Spiral(0, 1, 1), [1.0, 0.0]), "increasing"),
     ],
 )
 def test_bad_input(call: object, message: str) -> None:
@@ -186,7 +189,7 @@ def test_bad_input(call: object, message: str) -> None:
 
 def test_a_state_is_a_value() -> None:
     """The same step from the same state gives the same answer, also after others."""
-    tracker = so.PointTracker(planar_body(), law="paper", gain=100.0)
+    tracker = so.PointTracker(planar_body(), law=so.PaperLaw(gain=100.0))
     state = tracker.start_from((0.1, 0.05), (0.9, 0.1, 0.1), (1.0, 0.0))
     one = tracker.step(state, (0.101, 0.05), (1.0, 0.0))[1]
     tracker.step(state, (0.5, 0.5), (0.0, 3.0))

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from random_pairs import APART, pairs
 
 import standoff as so
+from draws import draws
 from standoff.motion import ConstantTwist
 
 STEP = 1e-3
@@ -85,7 +86,7 @@ def moving(name):
 
 def answer_at(a, b, path_a, path_b, t):
     """The answer at time t, with its rates, from a start there."""
-    tracker = so.Tracker(a, b, tolerance=1e-13)
+    tracker = so.Tracker(a, b, law=so.PredictorCorrector(tolerance=1e-13))
     return tracker.start(path_a.pose(t), path_b.pose(t), path_a.twist(t), path_b.twist(t)).proximity
 
 
@@ -126,11 +127,11 @@ def test_rate_is_the_normal_part_of_the_witness_velocities(name):
 
 
 TRACKED_RATES = {
-    "PC": ({"predictor": "feedforward"}, 1e-10, 1e-5, 1e-5),
-    "PC2": ({}, 1e-10, 1e-5, 5e-8),
-    "paper": ({"law": "paper"}, 1e-5, 1e-5, 1e-5),
+    "PC": (so.PredictorCorrector(predictor="feedforward"), 1e-10, 1e-5, 1e-5),
+    "PC2": (so.PredictorCorrector(), 1e-10, 1e-5, 5e-8),
+    "paper": (so.PaperLaw(), 1e-5, 1e-5, 1e-5),
 }
-"""Options; errors allowed of the rate, of the velocities, and of these after three frames."""
+"""Errors allowed of the rate, of the velocities, and of these after three frames."""
 
 
 @pytest.mark.parametrize("law", TRACKED_RATES)
@@ -141,9 +142,9 @@ def test_tracked_rates(name, law):
     The velocities come from the frame's one evaluation, which is at the predicted point: they
     miss by the prediction's error, 1e-6. The rate does not, but the paper's law lags.
     """
-    options, rate_error, first_error, later_error = TRACKED_RATES[law]
+    tracked, rate_error, first_error, later_error = TRACKED_RATES[law]
     a, b, path_a, path_b = moving(name)
-    tracker = so.Tracker(a, b, dt=1e-3, **options)
+    tracker = so.Tracker(a, b, dt=1e-3, law=tracked)
     state = tracker.start(path_a.pose(0), path_b.pose(0), path_a.twist(0), path_b.twist(0))
     for k in range(1, 21):
         t = 1e-3 * k
@@ -157,7 +158,7 @@ def test_tracked_rates(name, law):
         np.testing.assert_allclose(answer.velocity_b, known.velocity_b, atol=allowed)
 
 
-@settings(max_examples=60)
+@settings(max_examples=draws(30))
 @given(pairs(APART, unbounded=False))
 def test_rate_of_any_pair(pair):
     """Also at a switch: the second derivative jumps there, the first does not."""
@@ -202,7 +203,7 @@ def test_twists_in_body_axes():
 @pytest.mark.parametrize("predictor", ["secant", "feedforward-2", "none"])
 def test_without_twists_there_are_no_rates(predictor):
     a, b, path_a, path_b = moving("ellipsoid, ellipsoid")
-    tracker = so.Tracker(a, b, predictor=predictor)
+    tracker = so.Tracker(a, b, law=so.PredictorCorrector(predictor=predictor))
     state = tracker.start(path_a.pose(0.0), path_b.pose(0.0))
     answers = [state.proximity]
     for k in range(1, 4):
@@ -217,12 +218,11 @@ def test_without_twists_there_are_no_rates(predictor):
 
 @pytest.mark.parametrize("spin", [0.5, 1.0, 3.0])
 @pytest.mark.parametrize("gap", [0.3, 0.1, 1e-3])
-def test_parallel_faces_that_slide_have_no_wild_rates(gap, spin):
+def test_parallel_faces_that_slide_have_no_wild_rates(gap, spin, rng):
     """An edge over a face whose chart turns: a pivot of H that vanishes keeps roundings."""
     a, b = so.shapes.box(0.9, 0.8, 0.6), so.shapes.cylinder(0.4, 0.6)
     home = so.Pose.identity()
     v, w = np.array([-0.25, 0.3, 0.0]), np.array([0.0, 0.0, spin])
-    rng = np.random.default_rng()
     for _ in range(5):
         start = np.array([*rng.uniform(0.2, 0.35, 2), 0.6 + gap])
         tracker = so.Tracker(a, b, dt=1e-3)

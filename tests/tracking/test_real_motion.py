@@ -13,8 +13,8 @@ from benchmarks.real_motion import (
 
 import standoff as so
 from oracles.brute import nearest_points
-from oracles.support import Box, Ellipsoid, Lens, Placed
 from standoff.motion import Offset
+from standoff_studies.oracles import Box, Ellipsoid, Lens, Placed
 
 pytestmark = pytest.mark.skipif(
     not RECORDING.exists(), reason="the recorded motion is not part of the project"

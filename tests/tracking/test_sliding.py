@@ -7,7 +7,7 @@ from benchmarks.sliding import run
 from families.sliding import GAPS, PAIRS, constant, frames, make, oscillating
 from oracles.bounds import separation_many
 from oracles.depth import least_depth
-from oracles.support import Placed
+from standoff_studies.oracles import Placed
 
 ROUND, ROLLING = 8000, 2000
 """Frames of 1 ms: once round boxes and cylinders, over all their features; two seconds else."""

@@ -4,7 +4,7 @@ import pytest
 from benchmarks import speed
 
 import standoff as so
-from standoff.paper.law_accuracy import A, B
+from standoff_studies.paper.law_accuracy import A, B
 
 ALLOWED = {"Coal, default": 1e-2, "Coal, tight": 1e-4}
 """Witness errors (length) of the peers; ours are at 1e-12."""

@@ -11,15 +11,14 @@ from hypothesis import strategies as st
 from random_pairs import APART, pairs
 
 import standoff as so
-from standoff.kernels import frame as K
+from draws import draws
+from standoff.kernels.state import arrays as K
 
 STEP = 1e-2
-OPTIONS = (
-    {},
-    {"predictor": "feedforward"},
-    {"predictor": "secant"},
-    {"predictor": "none"},
-    {"law": "paper"},
+LAWS = (
+    *(so.PredictorCorrector(predictor=x) for x in ("feedforward-2", "feedforward", "secant")),
+    so.PredictorCorrector(predictor="none"),
+    so.PaperLaw(),
 )
 FIELDS = (
     "distance",
@@ -59,10 +58,10 @@ def assert_identical(one, two):
 class Run:
     """A tracker on a pair's motion, some frames on its way."""
 
-    def __init__(self, pair, options, frames=3):
+    def __init__(self, pair, law, frames=3):
         self.paths = pair.paths()[:2]
-        self.blind = options.get("predictor") == "secant"
-        self.tracker = so.Tracker(pair.a, pair.b, dt=STEP, **options)
+        self.blind = getattr(law, "predictor", "") == "secant"
+        self.tracker = so.Tracker(pair.a, pair.b, dt=STEP, law=law)
         self.state = self.tracker.start(*self.inputs(0))
         for k in range(1, frames + 1):
             self.state, _ = self.tracker.step(self.state, *self.inputs(k))
@@ -78,10 +77,10 @@ class Run:
         return (tracker or self.tracker).step(state, *self.inputs(self.next))
 
 
-@settings(max_examples=60)
-@given(pairs(APART), st.sampled_from(OPTIONS))
-def test_a_state_stepped_twice_answers_twice_the_same(pair, options):
-    run = Run(pair, options)
+@settings(max_examples=draws(30))
+@given(pairs(APART), st.sampled_from(LAWS))
+def test_a_state_stepped_twice_answers_twice_the_same(pair, law):
+    run = Run(pair, law)
     before = run.state.data.tobytes()
     shown = copy.deepcopy(run.state.proximity)
     first_state, first = run.step(run.state)
@@ -94,13 +93,13 @@ def test_a_state_stepped_twice_answers_twice_the_same(pair, options):
     assert_identical(run.state.proximity, shown)
 
 
-@settings(max_examples=40)
-@given(pairs(APART), st.sampled_from(OPTIONS))
-def test_a_state_survives_storage(pair, options):
+@settings(max_examples=draws(20))
+@given(pairs(APART), st.sampled_from(LAWS))
+def test_a_state_survives_storage(pair, law):
     """By pickle and by copy, also into the hands of another tracker."""
-    run = Run(pair, options)
+    run = Run(pair, law)
     expected_state, expected = run.step(run.state)
-    other = so.Tracker(pair.a, pair.b, dt=STEP, **options)
+    other = so.Tracker(pair.a, pair.b, dt=STEP, law=law)
     for stored in (pickle.loads(pickle.dumps(run.state)), copy.deepcopy(run.state)):
         assert stored.data.tobytes() == run.state.data.tobytes()
         assert stored.time == run.state.time
@@ -146,11 +145,11 @@ def test_inputs_are_not_changed():
         assert (one == two).all()
 
 
-@settings(max_examples=40)
-@given(pairs(APART), st.sampled_from(OPTIONS))
-def test_steps_in_place_answer_the_same(pair, options):
+@settings(max_examples=draws(20))
+@given(pairs(APART), st.sampled_from(LAWS))
+def test_steps_in_place_answer_the_same(pair, law):
     """``step_into`` writes over its buffer what ``step`` returns as values."""
-    run = Run(pair, options)
+    run = Run(pair, law)
     state, expected = run.step(run.state)
     buffer = run.tracker.buffer(run.state)
     pose_a, pose_b, twist_a, twist_b = run.inputs(run.next)

@@ -9,7 +9,8 @@ from scipy.optimize import brentq
 
 import standoff as so
 from families import impacts
-from oracles import support as oracle
+from standoff.impact.chord import Chords
+from standoff.impact.moment import Box, Moment
 from standoff.motion import (
     Bounded,
     Carried,
@@ -21,8 +22,7 @@ from standoff.motion import (
     Screw,
     Spiral,
 )
-from standoff.tracking.impact.chord import Chords
-from standoff.tracking.impact.moment import Box, Moment
+from standoff_studies import oracles as oracle
 
 REST = so.Pose.identity()
 LATE = 1e-12
@@ -33,9 +33,9 @@ def at(*position: float) -> so.Pose:
     return so.Pose.exp([0.0, 0.0, 0.0], position)
 
 
-def check(found: so.Impact, truth: float, error: float, late: float = LATE) -> None:
+def check(found: so.impact.Impact, truth: float, error: float, late: float = LATE) -> None:
     """The bracket holds the truth, and is no wider than `error` before it."""
-    assert found.status is so.ImpactStatus.IMPACT, found
+    assert found.status is so.impact.ImpactStatus.IMPACT, found
     assert found.time <= truth + late, found
     assert truth <= found.latest + late, found
     assert truth - found.time <= error, found
@@ -51,8 +51,7 @@ def first_meeting(offset: Any, velocity: Any, reach: float) -> float | None:
     return float((offset @ offset - reach * reach) / (-b + math.sqrt(inside)))
 
 
-def test_spheres_on_straight_lines_at_any_clearance() -> None:
-    rng = np.random.default_rng()
+def test_spheres_on_straight_lines_at_any_clearance(rng: np.random.Generator) -> None:
     for _ in range(30):
         radii, size = rng.uniform(0.1, 1.0, 2), 10.0 ** rng.uniform(-3, 3)
         a, b = (so.shapes.sphere(float(r * size)) for r in radii)
@@ -69,7 +68,7 @@ def test_spheres_on_straight_lines_at_any_clearance() -> None:
             nearest = np.linalg.norm(
                 offset + (v_b - v_a) * np.linspace(0, 5, 2001)[:, None], axis=1
             ).min()
-            assert found.status is so.ImpactStatus.NO_IMPACT or nearest - reach < 1e-6 * size
+            assert found.status is so.impact.ImpactStatus.NO_IMPACT or nearest - reach < 1e-6 * size
             continue
         closing = -(offset + (v_b - v_a) * truth) @ (v_b - v_a) / reach
         if closing > 1e-3 * size:
@@ -77,8 +76,9 @@ def test_spheres_on_straight_lines_at_any_clearance() -> None:
 
 
 @pytest.mark.parametrize("swapped", [False, True])
-def test_an_ellipsoid_that_falls_and_turns_meets_the_ground(swapped: bool) -> None:
-    rng = np.random.default_rng()
+def test_an_ellipsoid_that_falls_and_turns_meets_the_ground(
+    swapped: bool, rng: np.random.Generator
+) -> None:
     axes = np.array([0.3, 0.2, 0.1])
     body, ground = so.shapes.ellipsoid(*axes), so.shapes.halfspace()
     for _ in range(10):
@@ -121,7 +121,7 @@ def test_a_half_space_may_turn_too() -> None:
     )
     first = so.time_of_impact(box, ground, path, REST, 8.0)
     second = so.time_of_impact(box, ground, REST, wall, 8.0)
-    assert first.status is second.status is so.ImpactStatus.IMPACT
+    assert first.status is second.status is so.impact.ImpactStatus.IMPACT
     assert max(first.time, second.time) <= min(first.latest, second.latest)
     assert first.time == pytest.approx(second.time, abs=1e-7)
 
@@ -131,7 +131,7 @@ def test_the_corner_of_a_box_meets_the_ground() -> None:
     path = Screw(at(0.0, 0.0, 0.8), [1.0, 0.0, 0.0], (0.0, 0.0, 0.8), angular_rate=0.5)
     # its lowest edge is at 0.8 - sin(45° + angle) / sqrt(2): it never reaches down to 0.05
     found = so.time_of_impact(box, ground, path, REST, 10.0, clearance=0.05)
-    assert found.status is so.ImpactStatus.NO_IMPACT
+    assert found.status is so.impact.ImpactStatus.NO_IMPACT
     assert found.evaluations < 200
     found = so.time_of_impact(box, ground, path, REST, 10.0, clearance=0.15)
     truth = 2.0 * (math.asin(0.65 * math.sqrt(2.0)) - math.pi / 4)
@@ -149,22 +149,21 @@ def test_spheres_that_pass_each_other_closely(beyond: float) -> None:
             truth = 5.0 - math.sqrt(1.5**2 - offset**2)
             check(found, truth, 2e-9 / math.sqrt(beyond))
         else:
-            assert found.status is so.ImpactStatus.NO_IMPACT, found
+            assert found.status is so.impact.ImpactStatus.NO_IMPACT, found
 
 
 def test_spheres_that_only_touch() -> None:
     a, b = so.shapes.sphere(1.0), so.shapes.sphere(0.5)
     path = ConstantTwist(at(5.0, 1.5, 0.0), ([-1.0, 0.0, 0.0], [0.0, 3.0, 0.0]))
     found = so.time_of_impact(a, b, REST, path, 10.0)
-    assert found.status in (so.ImpactStatus.GRAZING, so.ImpactStatus.IMPACT)
+    assert found.status in (so.impact.ImpactStatus.GRAZING, so.impact.ImpactStatus.IMPACT)
     assert 5.0 - 2e-4 < found.time <= 5.0
     assert found.time <= found.latest
     assert found.evaluations < 60
 
 
 @pytest.mark.parametrize("kind", ["closing", "passing", "swinging", "free"])
-def test_never_late_where_the_contact_is_known(kind: str) -> None:
-    rng = np.random.default_rng()
+def test_never_late_where_the_contact_is_known(kind: str, rng: np.random.Generator) -> None:
     sharp = 0
     for _ in range(6):
         a, b = impacts.draw_twins(rng)
@@ -178,16 +177,17 @@ def test_never_late_where_the_contact_is_known(kind: str) -> None:
     assert sharp > 0 or kind == "passing"
 
 
-def test_the_separation_along_the_normal_is_no_less_than_the_lower_bound() -> None:
+def test_the_separation_along_the_normal_is_no_less_than_the_lower_bound(
+    rng: np.random.Generator,
+) -> None:
     """What the proof of an interval rests on, at its ends; also where the answer is off."""
-    rng = np.random.default_rng()
     for _ in range(40):
         a, b = impacts.draw_twins(rng)
         if any(isinstance(twin.shape, oracle.HalfSpace) for twin in (a, b)):
             continue
         pair = impacts.exact_pair(a.shape, b.shape, float(10.0 ** rng.uniform(-6, 0)), rng)
         size = a.shape.bounding_radius + b.shape.bounding_radius
-        rough = so.Tracker(a.body, b.body, tolerance=math.inf)
+        rough = so.Tracker(a.body, b.body, law=so.PredictorCorrector(tolerance=math.inf))
         state = rough.start(pair.pose_a, pair.pose_b)
         turn = so.Pose.exp([0.0, 0.0, 0.2]).rotation @ pair.b.rotation
         moved = oracle.Placed(b.shape, turn, pair.b.position + 0.3 * size * pair.normal)
@@ -199,9 +199,8 @@ def test_the_separation_along_the_normal_is_no_less_than_the_lower_bound() -> No
 
 
 @pytest.mark.parametrize("wall", [False, True])
-def test_no_separation_sags_below_the_bound(wall: bool) -> None:
+def test_no_separation_sags_below_the_bound(wall: bool, rng: np.random.Generator) -> None:
     """The inequality that proves an interval, against support functions inside of it."""
-    rng = np.random.default_rng()
     blade, bar = oracle.SharpBox(2.0, 0.1, 0.1), so.shapes.box(2.0, 0.1, 0.1)
     shapes = blade, oracle.HalfSpace() if wall else blade
     tracker = so.Tracker(bar, so.shapes.halfspace() if wall else bar)
@@ -251,7 +250,7 @@ def test_a_fast_spinning_blade() -> None:
     spin = ConstantTwist(REST, ([0.0, 0.0, 0.0], [0.0, 0.0, 1000.0]))
     # out of its reach: proven by the bounding balls, whatever the spin
     found = so.time_of_impact(blade, ball, spin, at(1.5, 0.0, 0.0), 100.0)
-    assert found.status is so.ImpactStatus.NO_IMPACT
+    assert found.status is so.impact.ImpactStatus.NO_IMPACT
     assert found.evaluations < 5
     # within it: the blade's leading face reaches the ball in less than a turn
     found = so.time_of_impact(blade, ball, spin, at(0.0, -0.8, 0.0), 100.0)
@@ -262,7 +261,7 @@ def test_a_fast_spinning_blade() -> None:
 def test_bodies_that_do_not_move() -> None:
     a, b = so.shapes.sphere(1.0), so.shapes.box(1.0, 1.0, 1.0)
     found = so.time_of_impact(a, b, REST, at(3.0, 0.0, 0.0), 1e6)
-    assert found.status is so.ImpactStatus.NO_IMPACT
+    assert found.status is so.impact.ImpactStatus.NO_IMPACT
     assert (found.time, found.evaluations) == (1e6, 2)
     assert math.isnan(found.latest)
     assert math.isnan(found.error)
@@ -272,21 +271,20 @@ def test_in_contact_at_the_start() -> None:
     a, b = so.shapes.sphere(1.0), so.shapes.box(1.0, 1.0, 1.0)
     away = ConstantTwist(at(1.2, 0.0, 0.0), ([1.0, 0.0, 0.0], [0.0, 0.0, 0.0]))
     found = so.time_of_impact(a, b, REST, away, 1.0)
-    assert (found.status, found.time, found.latest) == (so.ImpactStatus.AT_START, 0.0, 0.0)
+    assert (found.status, found.time, found.latest) == (so.impact.ImpactStatus.AT_START, 0.0, 0.0)
     found = so.time_of_impact(a, b, REST, away, 1.0, start=0.5)
-    assert (found.status, found.time) == (so.ImpactStatus.NO_IMPACT, 1.5)
+    assert (found.status, found.time) == (so.impact.ImpactStatus.NO_IMPACT, 1.5)
     found = so.time_of_impact(a, b, REST, away, 1.0, start=0.5, clearance=0.3)
-    assert found.status is so.ImpactStatus.AT_START
+    assert found.status is so.impact.ImpactStatus.AT_START
 
 
-def test_planar_bodies() -> None:
+def test_planar_bodies(rng: np.random.Generator) -> None:
     from families.shapes import loop
 
-    rng = np.random.default_rng()
     twin = loop(rng)
     path = ConstantTwist(at(8.0, 0.5, 0.0), ([-1.0, 0.0, 0.0], [0.0, 0.0, 0.3]))
     found = so.time_of_impact(twin.body, twin.body, REST, path, 20.0)
-    assert found.status is so.ImpactStatus.IMPACT
+    assert found.status is so.impact.ImpactStatus.IMPACT
     assert found.normal[2] == 0.0
     assert found.error < 1e-6
 
@@ -313,12 +311,12 @@ def test_every_kind_of_path() -> None:
         times = np.append(np.linspace(0.0, found.time, 60), found.time)
         apart = [so.distance(a, b, REST, path.pose(t)).lower_bound for t in times]
         assert min(apart) > 0.0
-        if found.status is so.ImpactStatus.IMPACT:
+        if found.status is so.impact.ImpactStatus.IMPACT:
             assert apart[-1] < 2.0 * found.tolerance
             touching = so.distance(a, b, REST, path.pose(found.latest))
             assert not touching.lower_bound > 0.0
         else:
-            assert (found.status, found.time) == (so.ImpactStatus.NO_IMPACT, 4.0)
+            assert (found.status, found.time) == (so.impact.ImpactStatus.NO_IMPACT, 4.0)
 
 
 def test_a_path_of_ones_own_needs_a_bound() -> None:
@@ -343,14 +341,14 @@ def test_a_small_budget_proves_what_it_can() -> None:
     spin = ConstantTwist(REST, ([0.0, 0.0, 0.0], [0.0, 0.0, 100.0]))
     above = at(0.9, 0.0, 0.12)
     found = so.time_of_impact(blade, ball, spin, above, 100.0, max_evaluations=50)
-    assert found.status is so.ImpactStatus.UNDECIDED
+    assert found.status is so.impact.ImpactStatus.UNDECIDED
     assert 0.0 < found.time < 100.0
     assert found.evaluations == 50
     assert "max_evaluations" in found.status.advice
 
 
 def test_the_status_says_what_to_do() -> None:
-    assert all(status.advice.endswith(".") for status in so.ImpactStatus)
+    assert all(status.advice.endswith(".") for status in so.impact.ImpactStatus)
 
 
 @pytest.mark.parametrize(

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import os
-
 import numpy as np
 import pytest
 from benchmarks.touching import DT, RIGHT, run
 from benchmarks.touching_scenes import SCENES, SWING, gaps_of, oscillating
 
 import standoff as so
+from draws import draws
 from tracking.contact_cases import CASES, OVERLAPS
 
-STEPS = int(os.environ.get("STANDOFF_TOUCHING_STEPS", "4000"))
+STEPS = draws(2000)
 DISTANCE = 1e-12
 """Error over the size; tilts through parallel may cost the certificate's tolerance."""
 WITNESS = 1e-9
@@ -80,9 +79,8 @@ DIMENSIONS = {
 
 
 @pytest.mark.parametrize("scene", [s for s in SCENES if not s.jumps], ids=lambda s: s.name)
-def test_the_flag_tells_the_scene(scene):
+def test_the_flag_tells_the_scene(scene, rng):
     """Witness points are unique where the scene says so, and their set holds the answer."""
-    rng = np.random.default_rng()
     for _, gap in gaps_of(scene):
         times = np.sort(rng.uniform(0.0, 20.0, 3))
         frames, _ = scene.motion(times, gap)

@@ -13,8 +13,7 @@ from tracking.made_answers import convex_mix, made_answer, random_pose
 Array = NDArray[np.float64]
 
 
-def test_polytopes_against_linear_programs():
-    rng = np.random.default_rng()
+def test_polytopes_against_linear_programs(rng):
     seen = set()
     for trial in range(24):
         kinds = rng.choice(["face", "edge", "vertex"], 2)

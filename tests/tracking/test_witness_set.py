@@ -30,8 +30,7 @@ ARC = 5e-4
     [pytest.param(c, gap, id=f"{c}, {gap:g}") for c in CASES for gap in c.gaps],
 )
 @pytest.mark.parametrize("swapped", [False, True], ids=["AB", "BA"])
-def test_closed_forms(case, gap, swapped):
-    rng = np.random.default_rng()
+def test_closed_forms(case, gap, swapped, rng):
     planar = case.a.dimension == 2
     world = random_pose(rng, 3.0, planar)
     n = np.array(case.normal)
@@ -80,9 +79,8 @@ def test_sizes_and_places(scale, place):
 
 
 @pytest.mark.parametrize("tilt", [0.0, 1e-12, 1e-10, 1e-8, 1e-5, 1e-3])
-def test_tilts(tilt):
+def test_tilts(tilt, rng):
     """Parallel to 1e-9 rad is parallel; a greater tilt leaves an edge or a point."""
-    rng = np.random.default_rng()
     for turn, parallel, tilted in (((tilt, 0, 0), 2, 1), ((tilt, tilt, 0), 2, 0)):
         pose = so.Pose.exp(turn, [0.1, 0.2, 2.0])
         found = so.witness_set(so.distance(PLATE, BOX, HOME, pose), HOME, pose)
@@ -155,8 +153,8 @@ def test_patches_by_cold_queries():
 
 
 @pytest.mark.parametrize("case", OVERLAPS, ids=str)
-def test_overlaps_with_several_normals(case):
-    world = random_pose(np.random.default_rng(), 2.0)
+def test_overlaps_with_several_normals(case, rng):
+    world = random_pose(rng, 2.0)
     n, x, y = (np.array(v, dtype=float) for v in (case.normal, case.x, case.y))
     answer = made_answer(case.a, case.b, world.apply(x), world.rotation @ n, float((y - x) @ n))
     found = so.witness_set(answer, world, world @ so.Pose.exp(case.turn, case.position))
@@ -172,9 +170,9 @@ def test_refused():
         so.witness_set(nothing, HOME, HOME)
 
 
-def test_turned_about_its_normal():
+def test_turned_about_its_normal(rng):
     """Corners come in order around the normal, which is a right-handed turn seen from B."""
-    at = so.Pose(random_rotation(np.random.default_rng()), np.zeros(3))
+    at = so.Pose(random_rotation(rng), np.zeros(3))
     pose = at @ so.Pose.exp([0, 0, 0.4], [0.1, 0.2, 2.0])
     found = so.witness_set(so.distance(BOX, BOX, at, pose), at, pose)
     sides = np.roll(found.points_a, -1, axis=0) - found.points_a

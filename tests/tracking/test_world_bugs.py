@@ -9,10 +9,10 @@ import pytest
 
 import standoff as so
 from families.shapes import SOLIDS, point
-from oracles import support as oracle
 from oracles.bounds import maximise_separation
 from oracles.exact_pairs import exact_pair, random_normal, random_rotation
-from oracles.support import Placed
+from standoff_studies import oracles as oracle
+from standoff_studies.oracles import Placed
 from tracking.world_cases import HOME, about, assert_consistent, at, sink
 
 EPS = float(np.finfo(float).eps)
@@ -39,9 +39,8 @@ def swapped_alike(a, b, pose_a, pose_b, size):
 
 
 @pytest.mark.parametrize("number", range(len(SOLIDS)))
-def test_swapped_solids(number):
+def test_swapped_solids(number, rng):
     """Random normals meet one point each, so the nearest points are unique."""
-    rng = np.random.default_rng()
     for _ in range(3):
         first = SOLIDS[number](rng)
         second = SOLIDS[rng.integers(len(SOLIDS))](rng)
@@ -51,8 +50,7 @@ def test_swapped_solids(number):
 
 
 @pytest.mark.parametrize("number", range(len(SOLIDS)))
-def test_swapped_solids_that_overlap(number):
-    rng = np.random.default_rng()
+def test_swapped_solids_that_overlap(number, rng):
     for _ in range(3):
         first, second = SOLIDS[number](rng), SOLIDS[rng.integers(len(SOLIDS))](rng)
         while first.body.size == 0.0 == second.body.size or second is point:
@@ -145,8 +143,7 @@ def test_thin_disc_and_small_ball(where, side, height):
 @pytest.mark.parametrize("gap", [1e-15, -1e-15, 0.0])
 @pytest.mark.parametrize("size_a", [0.01, 1.0, 1000.0])
 @pytest.mark.parametrize("size_b", [0.01, 1.0, 1000.0])
-def test_kissing_boxes(size_a, size_b, gap):
-    rng = np.random.default_rng()
+def test_kissing_boxes(size_a, size_b, gap, rng):
     lengths_a, lengths_b = (
         (size_a, 0.7 * size_a, 0.9 * size_a),
         (size_b, 0.8 * size_b, 0.6 * size_b),
@@ -186,8 +183,7 @@ def test_kissing_boxes_of_the_report():
 
 
 # Exactly 0 between separated hulls: google-deepmind/mujoco #3383 (103 of 3,000 poses).
-def test_separated_hulls_are_never_zero_apart():
-    rng = np.random.default_rng()
+def test_separated_hulls_are_never_zero_apart(rng):
     for _ in range(40):
         sides = [rng.normal(size=(int(rng.integers(4, 30)), 3)) * 0.1 for _ in range(2)]
         shapes = [oracle.Polytope(side) for side in sides]

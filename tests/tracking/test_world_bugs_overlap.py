@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import standoff as so
-from oracles import support as oracle
 from oracles.exact_pairs import exact_pair, random_rotation
 from standoff.geometry import ellipsoid_patches
+from standoff_studies import oracles as oracle
 from tracking.world_cases import HOME, about, assert_consistent, at, sink
 
 
@@ -27,9 +27,8 @@ def test_witnesses_of_a_ball_half_inside_a_box(ball):
 
 
 @pytest.mark.parametrize("depth", [1e-9, 1e-6, 1e-3, 0.05])
-def test_witnesses_of_overlapping_ellipsoids(depth):
+def test_witnesses_of_overlapping_ellipsoids(depth, rng):
     """Points and normal are those of the construction, at any depth below the focal one."""
-    rng = np.random.default_rng()
     first, second = (1.0, 0.7, 0.5), (0.6, 0.9, 0.8)
     for _ in range(5):
         pair = exact_pair(oracle.Ellipsoid(*first), oracle.Ellipsoid(*second), 0.1, rng)
@@ -46,8 +45,7 @@ def test_witnesses_of_overlapping_ellipsoids(depth):
 # Ellipsoids that barely overlap are missed: BerkeleyAutomation/python-fcl #36. For strictly convex
 # bodies the constructed normal is the least depth's as long as the depth is small.
 @pytest.mark.parametrize("depth", [1e-3, 1e-6, 1e-9, 1e-12])
-def test_ellipsoids_that_barely_overlap(depth):
-    rng = np.random.default_rng()
+def test_ellipsoids_that_barely_overlap(depth, rng):
     for _ in range(6):
         first, second = rng.uniform(0.3, 1.5, 3), rng.uniform(0.3, 1.5, 3)
         pair = exact_pair(oracle.Ellipsoid(*first), oracle.Ellipsoid(*second), 0.1, rng)
@@ -90,9 +88,8 @@ CROSSINGS = {
 
 @pytest.mark.parametrize("tracked", [True, False])
 @pytest.mark.parametrize("name", CROSSINGS)
-def test_the_normal_does_not_flip_on_the_way_in(name, tracked):
+def test_the_normal_does_not_flip_on_the_way_in(name, tracked, rng):
     """Down to contact by 1e-3 to 1e-9 of the size and through it: one sign change, no turn."""
-    rng = np.random.default_rng()
     shape_a, a, shape_b, b = CROSSINGS[name]
     turn = random_rotation(rng)
     normal = turn[:, 2] if "box" in name else None  # else the answer is a vertex's, or an edge's
@@ -216,8 +213,7 @@ def test_mujoco_answers_its_keyframe_to_its_tolerance():
 # MuJoCo's slow convergence at a depth of 1.15e-8: its model is not published with the number, so
 # flat ellipsoids stand for it, on which the polytopes of GJK and EPA gain little in a step.
 @pytest.mark.parametrize("flat", [0.3, 0.02])
-def test_a_depth_of_1e_8_between_flat_ellipsoids(flat):
-    rng = np.random.default_rng()
+def test_a_depth_of_1e_8_between_flat_ellipsoids(flat, rng):
     axes = (1.0, 0.9, flat)
     body = so.shapes.ellipsoid(*axes)
     for _ in range(4):

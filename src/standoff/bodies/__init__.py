@@ -7,14 +7,16 @@ from standoff.on_demand import on_demand
 if TYPE_CHECKING:
     from standoff.bodies.body import Body
     from standoff.bodies.report import BodyReport, DihedralAngle, PatchCheck
-    from standoff.bodies.topology import Apex, BodyError, Edge, Face
+    from standoff.bodies.topology import Apex, Edge, Face
+    from standoff.errors import BodyError
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
         {
             "standoff.bodies.body": ("Body",),
             "standoff.bodies.report": ("BodyReport", "DihedralAngle", "PatchCheck"),
-            "standoff.bodies.topology": ("Apex", "BodyError", "Edge", "Face"),
+            "standoff.bodies.topology": ("Apex", "Edge", "Face"),
+            "standoff.errors": ("BodyError",),
         },
     )
 

@@ -18,7 +18,9 @@ from standoff.bodies.charts import normal_noise, surface_normal
 from standoff.bodies.orientation import chart_at
 from standoff.bodies.packing import Assembled
 from standoff.bodies.report import DihedralAngle
-from standoff.bodies.topology import Apex, BodyError
+from standoff.bodies.tolerances import TURN_NOISE
+from standoff.bodies.topology import Apex
+from standoff.errors import BodyError
 from standoff.geometry.surfaces import Plane, Surface
 from standoff.geometry.validation import Array
 
@@ -26,8 +28,6 @@ from standoff.geometry.validation import Array
 SHARES = np.linspace(0.0, 1.0, 17)
 # The true extreme of a smooth turn is within a few rises between samples of the sampled one.
 DOUBT = 4.0
-# A turn (radians) is refined where it may change what is found by more than its roundoff.
-TURN_NOISE = 1e-13
 # Faces wind round a vertex once, 2 pi, or at least twice: the threshold between (radians).
 MOST_WINDING = 3.0 * np.pi
 # Directions sampled along a collapsed side.
@@ -156,7 +156,8 @@ def check_vertices(body: Assembled) -> None:
     for k in np.flatnonzero(total > MOST_WINDING):
         raise BodyError(
             f"The faces around vertex {k} {body.vertices[k]} wind round it "
-            f"{total[k] / (2.0 * np.pi):.2g} times: the boundary crosses itself."
+            f"{total[k] / (2.0 * np.pi):.2g} times: the boundary crosses itself.",
+            part=("vertex", int(k)),
         )
 
 

@@ -9,20 +9,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from standoff.bodies.charts import interior_point, make_charts, surface_normal
+from standoff.bodies.charts import edge_points, interior_point, make_charts, surface_normal
 from standoff.bodies.orientation import chart_at, orient
 from standoff.bodies.packing import Assembled, Chart, Sector
-from standoff.bodies.topology import SIDES, Apex, BodyError, Edge, Face
+from standoff.bodies.tolerances import JOIN_TOLERANCE, SINGULAR, WIDE_ANGLE, coordinate_roundoff
+from standoff.bodies.topology import SIDES, Apex, Edge, Face
+from standoff.errors import BodyError
 from standoff.geometry.curves import Curve
 from standoff.geometry.validation import Array
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 
-# Endpoints of curves and their vertices must agree to this fraction of the body's size.
-JOIN_TOLERANCE = 1e-9
-# A face's angle at a vertex of 180 degrees less this (radians) counts as wide.
-WIDE_ANGLE = 1e-6
-# Tangents at a corner whose sine is below this are one direction: the chart is singular there.
-SINGULAR = 1e-12
 # Points of an edge's span that are compared with the surface beside it.
 SPAN_POINTS = 9
 # Generators that a collapsed side gives to its vertex's normal cone.
@@ -51,19 +47,23 @@ def _check_joins(vertices: Array, edges: Sequence[Edge], size: float, tolerance:
         if curve.closed != (edge.first is None and edge.last is None):
             raise BodyError(
                 f"Edge {j} is {'closed and has vertices' if curve.closed else 'open'}: an open "
-                "edge needs a first and a last vertex, a closed one none."
+                "edge needs a first and a last vertex, a closed one none.",
+                part=("edge", j),
             )
         for vertex, t in ((edge.first, curve.first), (edge.last, curve.last)):
             if vertex is None:
                 continue
             if not 0 <= vertex < len(vertices):
-                raise BodyError(f"Edge {j} names vertex {vertex}; there are {len(vertices)}.")
+                raise BodyError(
+                    f"Edge {j} names vertex {vertex}; there are {len(vertices)}.", part=("edge", j)
+                )
             miss = float(np.linalg.norm(curve.point(t) - vertices[vertex]))
             worst = max(worst, miss)
             if miss > tolerance:
                 raise BodyError(
                     f"Edge {j} misses its vertex {vertex} by {miss:.3g} (size {size:.3g}): move "
-                    "the vertex or trim the curve."
+                    "the vertex or trim the curve.",
+                    part=("edge", j),
                 )
     return worst
 
@@ -80,7 +80,7 @@ def _check_loops(faces: Sequence[Face], edges: Sequence[Edge]) -> None:
             ends[b] = ends.get(b, 0) + 1
         loose = [vertex for vertex, balance in ends.items() if balance != 0]
         if loose:
-            raise BodyError(f"Face {i}: its loop is open at vertices {loose}.")
+            raise BodyError(f"Face {i}: its loop is open at vertices {loose}.", part=("face", i))
 
 
 def _check_on_surface(
@@ -102,7 +102,8 @@ def _check_on_surface(
                 if miss > tolerance:
                     raise BodyError(
                         f"Edge {c.edge} leaves the surface of face {chart.face} by {miss:.3g} "
-                        f"(size {size:.3g}) at its parameter {t:.6g}."
+                        f"(size {size:.3g}) at its parameter {t:.6g}.",
+                        part=("edge", c.edge),
                     )
     return worst
 
@@ -218,10 +219,14 @@ def assemble(
 ) -> Joined:
     """Orient and check a boundary; its parts may miss each other by `tolerance`, length.
 
+    By the roundoff of their coordinates they always may, whatever the tolerance.
+
     senses : for every face +1 where f_u x f_v points outward, else -1, where it is known and the
         loops follow it.
     """
     tolerance = JOIN_TOLERANCE * size if tolerance is None else tolerance
+    roundoff = coordinate_roundoff(np.concatenate([vertices, *(edge_points(e) for e in edges)]))
+    tolerance = max(tolerance, roundoff)
     miss = _check_joins(vertices, edges, size, tolerance)
     inside = interior_point(vertices, edges, faces)
     charts = make_charts(faces, edges, inside, bounded)
@@ -229,6 +234,11 @@ def assemble(
         for chart in charts:
             chart.outward = float(senses[chart.face])
     smooth, notes = orient(charts, faces, edges, known=senses is not None)
+    if roundoff > JOIN_TOLERANCE * size > 0.0:
+        notes.append(
+            f"far from the origin: parts may miss each other by {roundoff:.3g}, the roundoff of "
+            "their coordinates"
+        )
     _check_loops(faces, edges)
     miss = max(miss, _check_on_surface(charts, edges, size, tolerance))
     sectors, cones = _vertex_geometry(vertices, edges, faces, charts)

@@ -17,7 +17,9 @@ from standoff.bodies.finishing import Packed, finish
 from standoff.bodies.packing import Ints
 from standoff.bodies.report import BodyReport
 from standoff.bodies.sewing import MAX_SPREAD, sew
-from standoff.bodies.topology import BodyError, Edge, Face, check_parts, parts_of
+from standoff.bodies.tolerances import SIMILARITY_TOLERANCE, SINGULAR_MAP
+from standoff.bodies.topology import Edge, Face, check_parts, parts_of
+from standoff.errors import BodyError, StandoffError
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import (
@@ -31,9 +33,7 @@ from standoff.geometry.validation import (
 )
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of
-
-# A linear map is a similarity (keeps spheres) when its singular values agree to this ratio.
-SIMILARITY_TOLERANCE = 1e-12
+from standoff.spellings import renamed
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +49,11 @@ class Body(KeepsReadOnly):
     edge_parts : tuple of Edge
     face_parts : tuple of Face
     radius : float
-        Swept-sphere radius added to the core, length.
+        Of the ball swept over the core, length: a sphere's own radius, another shape's rounding.
     dimension : int
         2 for a planar body (a closed loop of curves in z = 0), 3 for a spatial one.
     ints, reals : array
-        The packed body that the kernels read, as ``standoff.kernels.layout`` says.
+        The packed body that the kernels read, as ``standoff.kernels.body.layout`` says.
     report : BodyReport
     size : float
         Diagonal of the box around the body with its radius, length; inf for a half-space.
@@ -71,12 +71,13 @@ class Body(KeepsReadOnly):
     size: float
 
     @staticmethod
+    @renamed(radius="rounding=...")
     def from_brep(
         vertices: Any = (),
         edges: Sequence[Edge] = (),
         faces: Sequence[Face] = (),
         *,
-        radius: float = 0.0,
+        rounding: float = 0.0,
         dimension: int = 3,
         name: str = "body",
         tolerance: float | None = None,
@@ -93,8 +94,8 @@ class Body(KeepsReadOnly):
         faces : sequence of Face
             Surfaces with loops, counterclockwise seen from outside; a loop given the other way
             round is turned and reported in ``body.check().notes``.
-        radius : float
-            Swept-sphere radius, length.
+        rounding : float
+            Radius of a ball swept over it, length: the body grows by it all round.
         dimension : int
             2 for a closed planar loop of edges in z = 0.
         tolerance : float, optional
@@ -115,7 +116,7 @@ class Body(KeepsReadOnly):
         points = np.zeros((0, 3))
         if shape_of(vertices) not in ((0,), (0, 3)):
             points = finite(vertices, "vertices", (-1, 3))
-        radius = not_negative(radius, "radius")
+        radius = not_negative(rounding, "rounding")
         edges, faces = parts_of(edges, "edges"), parts_of(faces, "faces")
         check_parts(points, edges, faces, dimension)
         spots = [points] + [edge_points(e) for e in edges]
@@ -133,12 +134,13 @@ class Body(KeepsReadOnly):
         return _body(name, radius, finish(joined, radius, convexity_tolerance))
 
     @staticmethod
+    @renamed(radius="rounding=...")
     def from_patches(
         patches: Sequence[Surface],
         *,
         tolerance: float | None = None,
         convexity_tolerance: float | None = None,
-        radius: float = 0.0,
+        rounding: float = 0.0,
         name: str = "body",
     ) -> Body:
         """A body from surface patches that close a convex shell: their sides are sewn together.
@@ -158,8 +160,8 @@ class Body(KeepsReadOnly):
         convexity_tolerance : float, optional
             Greatest convexity defect, length; 1e-6 of the size by default. The bound proven for
             the patches and sampled for the edges goes into the certificate's slack too.
-        radius : float
-            Swept-sphere radius, length.
+        rounding : float
+            Radius of a ball swept over it, length: the body grows by it all round.
 
         Raises
         ------
@@ -169,7 +171,7 @@ class Body(KeepsReadOnly):
         ValueError
             NaN, infinite or negative numbers.
         """
-        radius = not_negative(radius, "radius")
+        radius = not_negative(rounding, "rounding")
         if convexity_tolerance is not None:
             convexity_tolerance = not_negative(convexity_tolerance, "convexity_tolerance")
         sewn = sew(patches, tolerance)
@@ -194,20 +196,27 @@ class Body(KeepsReadOnly):
         ValueError
             Singular map; or a map that is no similarity on a body with a swept radius.
         """
-        linear, shift = _affine(affine)
+        try:
+            linear, shift = _affine(affine)
+        except StandoffError as error:
+            raise StandoffError(str(error), "affine", affine) from error
         stretch = np.linalg.svd(linear, compute_uv=False)
-        if stretch[2] <= 1e-14 * stretch[0]:
-            raise ValueError(f"The affine map is singular (singular values {stretch}).")
+        if stretch[2] <= SINGULAR_MAP * stretch[0]:
+            raise StandoffError(
+                f"The affine map is singular (singular values {stretch}).", "affine", affine
+            )
         radius = self.radius
         if radius > 0.0:
             if stretch[0] - stretch[2] > SIMILARITY_TOLERANCE * stretch[0]:
-                raise ValueError(
+                raise StandoffError(
                     f"A body with radius {radius} would not keep a round skin under this map "
-                    f"(singular values {stretch}): use so.shapes.ellipsoid or a body of patches."
+                    f"(singular values {stretch}): use so.shapes.ellipsoid or a body of patches.",
+                    "affine",
+                    affine,
                 )
             radius *= float(stretch[0])
         if self.dimension == 2 and (np.abs(linear[2, :2]).max() > 0.0 or shift[2] != 0.0):
-            raise ValueError("The map takes a planar body out of z = 0.")
+            raise StandoffError("The map takes a planar body out of z = 0.", "affine", affine)
         edges = [replace(e, curve=e.curve.transformed(linear, shift)) for e in self.edge_parts]
         flip = 1 if np.linalg.det(linear) > 0.0 else -1
         faces = [
@@ -223,7 +232,7 @@ class Body(KeepsReadOnly):
             self.vertex_points @ linear.T + shift,
             edges,
             faces,
-            radius=radius,
+            rounding=radius,
             dimension=self.dimension,
             name=self.name,
             tolerance=self._stretched(MAX_SPREAD * self.report.sewing_tolerance, float(stretch[0])),
@@ -326,6 +335,8 @@ def _affine(value: Any) -> tuple[Array, Array]:
     if shape_of(value) == (4, 4):
         array = finite(value, "affine map", (4, 4))
         if not np.array_equal(array[3], [0.0, 0.0, 0.0, 1.0]):
-            raise ValueError(f"The affine map's last row is {array[3]}; it must be 0 0 0 1.")
+            raise StandoffError(
+                f"The affine map's last row is {array[3]}; it must be 0 0 0 1.", "affine", value
+            )
         return array[:3, :3], array[:3, 3]
     return matrix3(value, "affine map"), np.zeros(3)

@@ -7,24 +7,21 @@ from collections.abc import Sequence
 import numpy as np
 
 from standoff.bodies.packing import Chart, Coedge
-from standoff.bodies.topology import Apex, BodyError, Edge, Face
+from standoff.bodies.tolerances import CHART_RIM, COLLAPSED_TANGENT, FLAT_ROUNDINGS, INWARD_STEP
+from standoff.bodies.topology import Apex, Edge, Face
+from standoff.errors import BodyError
+from standoff.geometry.exact_pcurves import pcurve_of
 from standoff.geometry.formulas import FormulaSurface
 from standoff.geometry.nurbs import NurbsSurface
-from standoff.geometry.pcurves import Pcurve, pcurve_of
+from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.validation import Array
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 from standoff.kernels.tolerances import EPS, NORMAL_NOISE
 
 # |u|, |v| of an atlas's gnomonic charts: they overlap from RECHART (1.2) to here.
 ATLAS_LIMIT = 2.0
-# A chart sees a point whose depth (cosine from its centre) is above this.
-CHART_RIM = 1e-3
-# A tangent shorter than this part of the other has collapsed: its direction is roundoff.
-COLLAPSED_TANGENT = 1e-11
-# How far towards the middle of the domain the sign of a collapsed side's normal is taken.
-INWARD_STEP = 1e-3
 EDGE_POINTS = np.linspace(0.05, 0.95, 7)
 
 
@@ -121,7 +118,9 @@ def make_charts(
                 chart.coedges.append(_collapsed_side(a))
             for k, (j, orientation) in enumerate(face.loop):
                 if not 0 <= j < len(edges):
-                    raise BodyError(f"Face {i} names edge {j}; there are {len(edges)} edges.")
+                    raise BodyError(
+                        f"Face {i} names edge {j}; there are {len(edges)} edges.", part=("face", i)
+                    )
                 curve = edges[j].curve
                 pcurve = loop_pcurve(face, k, edges, surface)
                 # the weight of a pcurve that was given is no depth, only positive where it is seen
@@ -131,7 +130,8 @@ def make_charts(
                 if len(face.charts) == 1 and spans != [(curve.first, curve.last)]:
                     raise BodyError(
                         f"Face {i} does not see the whole of edge {j} in its one gnomonic chart: "
-                        "the face reaches past a hemisphere; give it an atlas of charts."
+                        "the face reaches past a hemisphere; give it an atlas of charts.",
+                        part=("face", i),
                     )
                 chart.coedges += [
                     Coedge(j, piece, first, last, orientation)
@@ -142,10 +142,36 @@ def make_charts(
                 _join_angles(chart, edges)
             u, v = _somewhere(chart, edges)
             x = surface.jet(u, v)[0]
-            facing = surface_normal(surface, u, v) @ (x - inside) if bounded else 1.0
+            facing = float(surface_normal(surface, u, v) @ (x - inside)) if bounded else 1.0
+            if abs(facing) <= FLAT_ROUNDINGS * EPS * float(np.abs([x, inside]).max()):
+                facing = encircled(chart)  # of a flat body: its loop says it
             chart.outward = 1.0 if facing > 0.0 else -1.0
             charts.append(chart)
     return charts
+
+
+def encircled(chart: Chart) -> float:
+    """Area in (u, v) that a chart's loop runs round counterclockwise, as it was given.
+
+    The integral of -v du, which also serves a band whose two rims go once round. Collapsed sides
+    have no edge, so it is taken where they add nothing: of u dv where v is constant along them,
+    and in a band with v counted from theirs.
+    """
+    level = None
+    for c in chart.coedges:
+        if c.edge < 0:
+            (u0, v0, _), (u1, v1, _) = c.pcurve.point(c.first), c.pcurve.point(c.last)
+            level = v0 if abs(v1 - v0) < abs(u1 - u0) else level
+    area = 0.0
+    for c in chart.coedges:
+        if c.edge >= 0:
+            points = np.array([c.pcurve.point(t)[:2] for t in np.linspace(c.first, c.last, 33)])
+            middle, step = 0.5 * (points[1:] + points[:-1]), np.diff(points, axis=0)
+            if level is None or chart.surface.periodic:
+                area -= c.side * float((middle[:, 1] - (level or 0.0)) @ step[:, 0])
+            else:
+                area += c.side * float(middle[:, 0] @ step[:, 1])
+    return area
 
 
 def _collapsed_side(apex: Apex) -> Coedge:

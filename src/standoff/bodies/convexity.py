@@ -24,16 +24,9 @@ from standoff.bodies.angles import EdgeTurns
 from standoff.bodies.packing import Assembled, Chart
 from standoff.bodies.proofs import PatchProof, prove_patch
 from standoff.bodies.report import PatchCheck
-from standoff.bodies.topology import BodyError
+from standoff.bodies.tolerances import LEAST_AXIS, TURN_ROUNDOFF
+from standoff.errors import BodyError
 from standoff.geometry.validation import Array
-
-# Convexity defect accepted, as a part of the body's size, when nothing else is said: distances
-# of such a body are certified to a millionth of it.
-CONVEXITY_TOLERANCE = 1e-6
-# A turn (radians) below this is the roundoff of two normals that are the same.
-TURN_ROUNDOFF = 3e-14
-# Normals of one vertex or edge that come nearer to a half-space's rim (cosine) bound nothing.
-LEAST_AXIS = 1e-6
 
 
 @dataclass(frozen=True)
@@ -85,7 +78,8 @@ def convexity(
             raise BodyError(
                 f"Not convex: edge {e.edge} between {one} and {other} is concave by "
                 f"{np.degrees(concave):.3g} degrees at {where} (its parameter {e.at_least:.6g}): "
-                "split the body there, or give convexity_tolerance."
+                "split the body there, or give convexity_tolerance.",
+                part=("edge", e.edge),
             )
         total += concave if concave > TURN_ROUNDOFF else 0.0
     # a path that turns by T in all is longer than its chord by less than a factor 1 + T

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from standoff.bodies.body import Body
+from standoff.kernels.body import layout as L
 
 
 @dataclass(frozen=True, order=True)
@@ -38,3 +39,9 @@ def feature_of(body: Body, number: int) -> Feature:
     if number < body.n_edges:
         return Feature("edge", number)
     return Feature("vertex", number - body.n_edges)
+
+
+def charts_of(body: Body, face: int) -> tuple[int, int]:
+    """(first packed chart, number of charts) of a face."""
+    row = int(body.ints[L.FACES]) + L.FACE_STRIDE * face
+    return int(body.ints[row]), int(body.ints[row + 1])

@@ -8,24 +8,25 @@ import numpy as np
 
 from standoff.bodies.angles import EdgeTurns, check_vertices, dihedral, edge_turns, refined
 from standoff.bodies.assembly import Joined
-from standoff.bodies.convexity import CONVEXITY_TOLERANCE, Convexity, Known, convexity
-from standoff.bodies.orientation import SMOOTH_ANGLE
+from standoff.bodies.convexity import Convexity, Known, convexity
 from standoff.bodies.packing import Assembled, Ints, pack, without_charts
 from standoff.bodies.planar_convexity import planar_convexity
 from standoff.bodies.report import BodyReport
 from standoff.bodies.sampling import (
-    SAMPLED_DEFECT,
     blind_charts,
     body_box,
     boundary_samples,
     check_convex,
 )
-from standoff.bodies.topology import BodyError
+from standoff.bodies.tolerances import (
+    CONVEXITY_TOLERANCE,
+    ROUNDOFF,
+    SAMPLED_DEFECT,
+    SMOOTH_ANGLE,
+    coordinate_roundoff,
+)
+from standoff.errors import BodyError
 from standoff.geometry.validation import Array
-
-# A residual or defect below this part of the size is the roundoff of evaluating the same point
-# twice: the certificate's own allowance covers it.
-ROUNDOFF = 1e-14
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,13 +74,14 @@ def finish(
         found = convexity(parts, turns, size, share, known)
     else:
         found = planar_convexity(parts, size, share)
+    roundoff = 0.0 if box is None else coordinate_roundoff(np.array(box))
     if box is not None:
-        allowed = found.defect + 2.0 * joined.residual + SAMPLED_DEFECT * size
+        allowed = found.defect + 2.0 * joined.residual + max(SAMPLED_DEFECT * size, roundoff)
         seen = check_convex(samples, size, allowed)
         found = replace(found, defect=max(found.defect, seen, 0.0))
-    slack = _slack(found, joined.residual, _moved(parts), size)
+    slack = _slack(found, joined.residual, _moved(parts), max(ROUNDOFF * size, roundoff))
     ints, reals = pack(parts, samples, box, radius, slack)
-    report = _report(parts, joined, turns, found, size + 2.0 * radius, share, slack)
+    report = _report(parts, joined, turns, found, size + 2.0 * radius, share, slack, roundoff)
     return Packed(parts, ints, reals, report)
 
 
@@ -97,15 +99,17 @@ def _moved(parts: Assembled) -> float:
     return max([0.0, *surfaces, *(edge.curve.moved for edge in parts.edges)])
 
 
-def _slack(found: Convexity, residual: float, moved: float, size: float) -> float:
+def _slack(found: Convexity, residual: float, moved: float, roundoff: float) -> float:
     """What the certificate subtracts: 0 where all three are roundoff."""
-    total = sum(x for x in (found.defect, residual, moved) if x > ROUNDOFF * size)
+    total = sum(x for x in (found.defect, residual, moved) if x > roundoff)
     if total == 0.0:
         return 0.0
     if not np.isfinite(found.widen):
         raise BodyError(
             f"A knife edge (faces back to back) with a defect of {found.defect:.3g} and a sewing "
-            f"residual of {residual:.3g}: no lower bound holds there. Sew it exactly."
+            f"residual of {residual:.3g}: no lower bound holds there. Sew it exactly.",
+            "residual",
+            residual,
         )
     return total * found.widen
 
@@ -118,6 +122,7 @@ def _report(
     size: float,
     convexity_tolerance: float,
     slack: float,
+    roundoff: float,
 ) -> BodyReport:
     sharpest = max(turns, key=lambda e: e.greatest, default=None)
     flattest = min(turns, key=lambda e: e.least, default=None)
@@ -144,4 +149,5 @@ def _report(
         sewing_residual=joined.residual,
         sewing_tolerance=joined.tolerance,
         slack=slack,
+        coordinate_roundoff=roundoff,
     )

@@ -7,38 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from standoff.bodies.charts import surface_normal
+from standoff.bodies.charts import encircled, surface_normal
 from standoff.bodies.packing import Chart
-from standoff.bodies.topology import BodyError, Edge, Face
+from standoff.bodies.tolerances import SMOOTH_ANGLE
+from standoff.bodies.topology import Edge, Face
+from standoff.errors import BodyError
 from standoff.geometry.validation import Array
-from standoff.kernels import layout as L
-
-# Dihedral angles below this (sine) make an edge smooth (G1).
-SMOOTH_ANGLE = 1e-7
-
-
-def _encircled(chart: Chart) -> float:
-    """Area in (u, v) that a chart's loop runs round counterclockwise, as it was given.
-
-    The integral of -v du, which also serves a band whose two rims go once round. Collapsed sides
-    have no edge, so it is taken where they add nothing: of u dv where v is constant along them,
-    and in a band with v counted from theirs.
-    """
-    level = None
-    for c in chart.coedges:
-        if c.edge < 0:
-            (u0, v0, _), (u1, v1, _) = c.pcurve.point(c.first), c.pcurve.point(c.last)
-            level = v0 if abs(v1 - v0) < abs(u1 - u0) else level
-    area = 0.0
-    for c in chart.coedges:
-        if c.edge >= 0:
-            points = np.array([c.pcurve.point(t)[:2] for t in np.linspace(c.first, c.last, 33)])
-            middle, step = 0.5 * (points[1:] + points[:-1]), np.diff(points, axis=0)
-            if level is None or chart.surface.periodic:
-                area -= c.side * float((middle[:, 1] - (level or 0.0)) @ step[:, 0])
-            else:
-                area += c.side * float(middle[:, 0] @ step[:, 1])
-    return area
+from standoff.kernels.body import layout as L
 
 
 def _edge_users(faces: Sequence[Face], edges: Sequence[Edge]) -> dict[int, list[tuple[int, int]]]:
@@ -47,13 +22,16 @@ def _edge_users(faces: Sequence[Face], edges: Sequence[Edge]) -> dict[int, list[
     for i, face in enumerate(faces):
         for j, sense in face.loop:
             if sense not in (-1, 1):
-                raise BodyError(f"Face {i}, edge {j}: orientation {sense}; give +1 or -1.")
+                raise BodyError(
+                    f"Face {i}, edge {j}: orientation {sense}; give +1 or -1.", part=("face", i)
+                )
             users[j].append((i, sense))
     for j, used in users.items():
         if faces and len(used) != 2:
             word = "open" if len(used) < 2 else "used too often"
             raise BodyError(
-                f"Edge {j} is {word}: it bounds {len(used)} faces; every edge must bound two."
+                f"Edge {j} is {word}: it bounds {len(used)} faces; every edge must bound two.",
+                part=("edge", j),
             )
     return users
 
@@ -80,7 +58,8 @@ def _compare_faces(
         if edges[j].smooth and not smooth[j]:
             raise BodyError(
                 f"Edge {j} is said to be smooth, but its faces' normals differ by {angle:.3g} "
-                "(sine)."
+                "(sine).",
+                part=("edge", j),
             )
         seam = smooth[j]
         smooth[j] = seam and edges[j].smooth is not False
@@ -106,14 +85,15 @@ def orient(
             continue
         first = bisect_left(charts, i, key=lambda chart: chart.face)
         if len(face.charts) == 1 and face.loop:
-            inward = _encircled(charts[first]) * charts[first].outward < 0.0
+            inward = encircled(charts[first]) * charts[first].outward < 0.0
         else:
             inward = bool(wrong[i]) and all(wrong[i].values())
         bad = [j for j, given_wrong in wrong[i].items() if given_wrong != inward]
         if bad:
             raise BodyError(
                 f"Face {i}: its loop runs both ways round (edges {bad} against the others), or "
-                "the body is not convex there."
+                "the body is not convex there.",
+                part=("face", i),
             )
         signs[i] = -1 if inward else 1
         if inward:
@@ -150,5 +130,7 @@ def chart_at(charts: list[Chart], face: int, edge: int, t: float) -> tuple[Chart
                 if depth > 0.0 and (best is None or reach < best[0]):
                     best = (reach, chart, u, v)
     if best is None:
-        raise BodyError(f"Face {face}: no chart sees edge {edge} at parameter {t}.")
+        raise BodyError(
+            f"Face {face}: no chart sees edge {edge} at parameter {t}.", part=("face", face)
+        )
     return best[1], best[2], best[3]

@@ -1,4 +1,4 @@
-"""Packing: the only writer of the two flat arrays that ``standoff.kernels.layout`` describes."""
+"""Packing: the only writer of the two flat arrays that ``kernels.body.layout`` describes."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.topology import Apex, BodyError, Edge, Face
+from standoff.bodies.topology import Apex, Edge, Face
+from standoff.errors import BodyError
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 
 Ints = NDArray[np.int64]
 
@@ -194,7 +195,8 @@ def _coedges_of_edges(body: Assembled) -> list[list[int]]:
     for j, edge in enumerate(body.edges):
         if isinstance(edge.curve, SurfaceCurve) and not own[j]:
             raise BodyError(
-                f"Edge {j} is a curve on a surface that none of its faces has as a chart."
+                f"Edge {j} is a curve on a surface that none of its faces has as a chart.",
+                part=("edge", j),
             )
     return [
         [faces[f] for f in sorted(faces, key=lambda f: f not in own[j])]

@@ -11,11 +11,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from standoff.bodies.convexity import TURN_ROUNDOFF, Convexity, widening
+from standoff.bodies.convexity import Convexity, widening
 from standoff.bodies.packing import Assembled
 from standoff.bodies.proofs import PatchProof, prove_patch
 from standoff.bodies.report import PatchCheck
-from standoff.bodies.topology import BodyError
+from standoff.bodies.tolerances import CORNER_ROUNDOFF, TURN_ROUNDOFF
+from standoff.errors import BodyError
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.swept import Extrusion
@@ -25,8 +26,6 @@ from standoff.geometry.validation import Array
 TURN_POINTS = 65
 # A loop turns by 2 pi, or at least twice as much: the threshold between (radians).
 MOST_TURNING = 3.0 * np.pi
-# A corner (radians) more hollow than this is roundoff no more, below it a smooth joint.
-CORNER_ROUNDOFF = 1e-12
 
 
 @dataclass(frozen=True)
@@ -136,7 +135,8 @@ def _joints(curve: Curve, number: int) -> list[float]:
         before, after = (block[:, :2] / block[:, 3:] for block in curve.blocks[k : k + 2])
         if abs(_angle(before[-1] - before[-2], after[1] - after[0])) > CORNER_ROUNDOFF:
             raise BodyError(
-                f"Curve {number} (NurbsCurve) has a corner at its knot {knot:.6g}: split it there."
+                f"Curve {number} (NurbsCurve) has a corner at its knot {knot:.6g}: split it there.",
+                part=("curve", number),
             )
         inside.append(knot)
     return [curve.first, *inside, curve.last]

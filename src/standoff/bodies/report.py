@@ -7,11 +7,23 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class PatchCheck:
-    """Convexity of one chart of a face; of a planar body, of one curve (face: the edge's number).
+    """Convexity of one chart of a face; of a planar body, of one curve.
 
-    surface : name of its class; method : "theorem" (planes and quadrics), "bernstein" or
-    "interval"; defect : how far the patch may dent inward, length, proven over the whole patch;
-    hemisphere : its normals fit an open hemisphere; place : (u, v) of the worst.
+    Attributes
+    ----------
+    face : int
+        Number of the face; of a planar body, of the edge.
+    surface : str
+        Name of its class.
+    method : str
+        "theorem" (planes and quadrics), "bernstein" or "interval".
+    convex : bool
+    defect : float
+        How far the patch may dent inward, length, proven over the whole patch.
+    hemisphere : bool
+        Its normals fit an open hemisphere.
+    place : (float, float)
+        (u, v) of the worst.
     """
 
     face: int
@@ -25,9 +37,18 @@ class PatchCheck:
 
 @dataclass(frozen=True)
 class DihedralAngle:
-    """The angle inside the body between the two faces of an edge, radians, and where it is.
+    """The angle inside the body between the two faces of an edge, and where it is.
 
-    Below pi the edge is sharp and convex, pi is smooth, above pi is concave.
+    Attributes
+    ----------
+    angle : float
+        Radians: below pi the edge is sharp and convex, pi is smooth, above pi is concave.
+    edge : int
+        Number of the edge.
+    parameter : float
+        On its curve.
+    point : (3,) tuple
+        Body frame, length.
     """
 
     angle: float
@@ -42,6 +63,11 @@ class BodyReport:
 
     Attributes
     ----------
+    dimension : 2 for a planar body, 3 for a spatial one.
+    faces, edges, vertices : how many there are.
+    smooth_edges : how many edges share the normals of their faces.
+    charts : how many surfaces the faces have, those of atlases counted one by one.
+    size : diagonal of the box around the body with its radius, length; inf for a half-space.
     closed : every edge bounds two faces (a planar body: two curves meet at every vertex).
     outward : all normals point out of the body.
     patches : convexity of every chart.
@@ -54,7 +80,10 @@ class BodyReport:
     sewing_tolerance : within which parts were joined, length.
     slack : what the certificate subtracts for both, and for spare knots of a spline that were left
         out, length; 0 where that is roundoff.
-    notes : what was turned, split or merged.
+    coordinate_roundoff : 16 roundings of the greatest coordinate, length: parts may always miss
+        each other by it, and it is in no slack, as the certificate's own allowance covers it. It
+        is below the tolerances but for bodies far from their own origin. 0 for a half-space.
+    notes : what was turned, split, merged or recentred.
     """
 
     dimension: int
@@ -75,3 +104,4 @@ class BodyReport:
     sewing_residual: float
     sewing_tolerance: float
     slack: float
+    coordinate_roundoff: float

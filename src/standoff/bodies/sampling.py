@@ -7,11 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from standoff.bodies.packing import Assembled, Chart, Ints, Sample
-from standoff.bodies.topology import BodyError, Edge
+from standoff.bodies.topology import Edge
+from standoff.errors import BodyError
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
 from standoff.geometry.hulls import tight_box
 from standoff.geometry.validation import Array
-from standoff.kernels.entries import chart_normal, on_face, planar_edge_normal
+from standoff.kernels.entries.queries import chart_normal, on_face, planar_edge_normal
 
 # How many samples a body gets: all pairs of two bodies are compared at a cold start.
 FACE_BUDGET = 120
@@ -19,9 +20,6 @@ EDGE_BUDGET = 60
 VERTEX_BUDGET = 120
 # Samples that bound a curve whose kind has no box.
 CURVE_SAMPLES = 65
-# A sampled point may rise above a sampled tangent plane by this fraction of the body's size more
-# than was proven: the roundoff of building it.
-SAMPLED_DEFECT = 1e-9
 
 
 def _parameter_box(chart: Chart) -> tuple[float, float, float, float]:
@@ -211,7 +209,7 @@ def check_convex(samples: Sequence[Sample], size: float, allowed: float) -> floa
         raise BodyError(
             f"Not convex: the point {points[j]} (feature {samples[j].feature}) lies {worst:.3g} "
             f"above the tangent plane at {faces[i].point} (feature {faces[i].feature}); size "
-            f"{size:.3g}. Split the body into convex parts."
+            f"{size:.3g}. Split the body into convex parts.",
         )
     return worst
 

@@ -21,8 +21,8 @@ from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.validation import Array
-from standoff.kernels import layout as L
-from standoff.kernels.entries import on_face
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import on_face
 
 # Radians: a point is level with another if the line between them is tilted by no more. The normal
 # of an answer is good to it, and two faces whose normals agree to it count as parallel.
@@ -128,7 +128,7 @@ def _edge_pieces(curve: Curve, direction: Array, lowest: float) -> Iterator[Piec
         if c + np.hypot(a, b) >= lowest:
             yield Piece(_curve_jet(curve), curve.first, curve.last, basis)
         return
-    for first, last in pairwise(_curve_breaks(curve)):
+    for first, last in pairwise(curve_breaks(curve)):
         line = _isoline_of(curve, float(first), float(last))
         if line is None:
             yield Piece(_curve_jet(curve), float(first), float(last))
@@ -156,12 +156,12 @@ def _curve_jet(curve: Curve) -> Callable[[float], tuple[Array, Array]]:
     return jet
 
 
-def _curve_breaks(curve: Curve) -> Array:
+def curve_breaks(curve: Curve) -> Array:
     """Ends of the pieces on which a curve is analytic."""
     if not isinstance(curve, SurfaceCurve):
         return curve.spans()
     spots = [curve.first, curve.last]
-    for axis, knots in enumerate(_surface_breaks(curve.surface)):
+    for axis, knots in enumerate(surface_breaks(curve.surface)):
         ends = [curve.pcurve.point(t)[axis] for t in (curve.first, curve.last)]
         rate = (ends[1] - ends[0]) / (curve.last - curve.first)
         if curve.pcurve.kind == L.LINE and rate != 0.0:
@@ -170,7 +170,7 @@ def _curve_breaks(curve: Curve) -> Array:
     return np.unique(spots)
 
 
-def _surface_breaks(surface: Surface) -> tuple[Array, Array]:
+def surface_breaks(surface: Surface) -> tuple[Array, Array]:
     """(us, vs) inside the domain between which a surface is analytic."""
     u0, u1, v0, v1 = surface.domain
     us, vs = np.zeros(0), np.zeros(0)
@@ -202,7 +202,7 @@ class _Isoline:
 
 
 def _inner_lines(surface: Surface) -> Iterator[_Isoline]:
-    breaks, domain = _surface_breaks(surface), surface.domain
+    breaks, domain = surface_breaks(surface), surface.domain
     for axis in (0, 1):
         along = 1 - axis
         ends = np.array([domain[2 * along], *breaks[along], domain[2 * along + 1]])
@@ -264,4 +264,4 @@ def _arc_parameters(piece: Piece, witness: Array) -> Array:
     return np.unique(np.clip(np.concatenate([even, near + steps]), piece.first, piece.last))
 
 
-__all__ = ["LEVEL", "ROUNDINGS", "support_set"]
+__all__ = ["LEVEL", "ROUNDINGS", "curve_breaks", "support_set", "surface_breaks"]

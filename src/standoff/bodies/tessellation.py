@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
-from standoff.kernels import layout as L
-from standoff.kernels.entries import (
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import (
     chart_normal,
     coedge_parameters,
     on_face,

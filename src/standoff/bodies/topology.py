@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve, Line
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.superellipsoids import SuperellipsoidPole
@@ -86,10 +87,6 @@ class Face:
     pcurves: tuple[Pcurve | None, ...] = ()
 
 
-class BodyError(ValueError):
-    """The parts given do not bound a convex body; the message names the part and the fix."""
-
-
 def check_parts(
     vertices: Array, edges: Sequence[Any], faces: Sequence[Any], dimension: int
 ) -> None:
@@ -100,11 +97,16 @@ def check_parts(
         or not isinstance(given, int | np.integer)
         or dimension not in (2, 3)
     ):
-        raise BodyError(f"dimension = {shown(dimension)}: give 2 (planar loop) or 3.")
+        raise BodyError(
+            f"dimension = {shown(dimension)}: give 2 (planar loop) or 3.", "dimension", dimension
+        )
     for name, parts, kind in (("Edge", edges, Edge), ("Face", faces, Face)):
         for k, part in enumerate(parts):
             if not isinstance(part, kind):
-                raise BodyError(f"{name} {k} is {shown(part)}: make one with so.{name}.")
+                raise BodyError(
+                    f"{name} {k} is {shown(part)}: make one with so.bodies.{name}.",
+                    part=(name.lower(), k),
+                )
     for k, edge in enumerate(edges):
         _check_edge(k, edge, len(vertices))
     for k, face in enumerate(faces):
@@ -131,7 +133,7 @@ def parts_of(parts: Any, name: str) -> tuple[Any, ...]:
     """`parts` as a tuple; TypeError where they are no sequence."""
     no_list = isinstance(parts, np.ndarray) and parts.ndim == 0  # which says it were iterable
     if no_list or isinstance(parts, str | bytes | dict) or not isinstance(parts, Iterable):
-        raise TypeError(f"{name} = {shown(parts)}: give a list.")
+        raise StandoffTypeError(f"{name} = {shown(parts)}: give a list.", name, parts)
     return tuple(parts)
 
 
@@ -149,12 +151,15 @@ def _is_pair_of_integers(value: Any) -> bool:
 
 def _check_edge(k: int, edge: Edge, vertices: int) -> None:
     if not isinstance(edge.curve, Curve):
-        raise BodyError(f"Edge {k} has the curve {shown(edge.curve)}: give a Curve.")
+        raise BodyError(
+            f"Edge {k} has the curve {shown(edge.curve)}: give a Curve.", part=("edge", k)
+        )
     for vertex in (edge.first, edge.last):
         if vertex is not None and not _is_number_of(vertex, vertices):
             raise BodyError(
                 f"Edge {k} names vertex {shown(vertex)}; there are {vertices}, numbered from 0: "
-                "give one of them, or None at both ends of a closed curve."
+                "give one of them, or None at both ends of a closed curve.",
+                part=("edge", k),
             )
 
 
@@ -162,20 +167,26 @@ def _check_face(k: int, face: Face, vertices: int) -> None:
     charts: Any = face.charts  # whatever a caller gave
     listed = isinstance(charts, tuple | list) and len(charts) > 0
     if not listed or not all(isinstance(s, Surface) for s in charts):
-        raise BodyError(f"Face {k} has the charts {shown(charts)}: give at least one Surface.")
+        raise BodyError(
+            f"Face {k} has the charts {shown(charts)}: give at least one Surface.", part=("face", k)
+        )
     for name, parts in (("loop", face.loop), ("apexes", face.apexes), ("pcurves", face.pcurves)):
         if not isinstance(parts, tuple | list):
-            raise BodyError(f"Face {k} has {name} = {shown(parts)}: give a tuple.")
+            raise BodyError(
+                f"Face {k} has {name} = {shown(parts)}: give a tuple.", part=("face", k)
+            )
     for entry in face.loop:
         if not _is_pair_of_integers(entry):
             raise BodyError(
                 f"Face {k} has {shown(entry)} in its loop: give pairs of the number of an edge and "
-                "+1 or -1."
+                "+1 or -1.",
+                part=("face", k),
             )
     if face.pcurves and (len(face.pcurves) != len(face.loop) or len(face.charts) != 1):
         raise BodyError(
             f"Face {k} has {len(face.pcurves)} pcurves, {len(face.loop)} edges and "
-            f"{len(face.charts)} charts: give a pcurve (or None) an edge, and one chart."
+            f"{len(face.charts)} charts: give a pcurve (or None) an edge, and one chart.",
+            part=("face", k),
         )
     for apex in face.apexes:
         _check_apex(k, apex, vertices)
@@ -191,23 +202,30 @@ def _check_bounded(k: int, face: Face, alone: bool) -> None:
     if not (alone and len(face.charts) == 1 and isinstance(face.charts[0], Plane)):
         raise BodyError(
             f"Face {k}, a {type(face.charts[0]).__name__}, has no loop of edges: give its edges, "
-            "or all charts of a closed surface; only one plane alone is a body, a half-space."
+            "or all charts of a closed surface; only one plane alone is a body, a half-space.",
+            part=("face", k),
         )
 
 
 def _check_apex(k: int, apex: Any, vertices: int) -> None:
     if not isinstance(apex, Apex):
-        raise BodyError(f"Face {k} has the apex {shown(apex)}: make one with so.Apex.")
+        raise BodyError(
+            f"Face {k} has the apex {shown(apex)}: make one with so.bodies.Apex.", part=("face", k)
+        )
     if apex.side not in SIDES:
-        raise BodyError(f"Face {k} has an apex on side {shown(apex.side)}: give one of {SIDES}.")
+        raise BodyError(
+            f"Face {k} has an apex on side {shown(apex.side)}: give one of {SIDES}.",
+            part=("face", k),
+        )
     if not _is_number_of(apex.vertex, vertices):
         raise BodyError(
             f"Face {k} has an apex at vertex {shown(apex.vertex)}: give a whole number below "
-            f"{vertices}, the number of vertices."
+            f"{vertices}, the number of vertices.",
+            part=("face", k),
         )
     _, lo, hi = finite((apex.level, apex.lo, apex.hi), f"Face {k}: apex level, lo, hi", (3,))
     if not lo < hi:
-        raise BodyError(f"Face {k} has an apex from {lo} to {hi}: give lo < hi.")
+        raise BodyError(f"Face {k} has an apex from {lo} to {hi}: give lo < hi.", part=("face", k))
 
 
 def _check_planar(vertices: Array, edges: Sequence[Edge], faces: Sequence[Face]) -> None:

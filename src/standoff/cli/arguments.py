@@ -1,14 +1,40 @@
-"""The commands and their options, as tyro reads them."""
+"""The library's own commands and their options, as tyro reads them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, make_dataclass
+from functools import reduce
+from operator import or_
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 from tyro.conf import FlagCreatePairsOff, Positional, arg, subcommand
+
+from standoff.cli.added import AddedCommand, added
+from standoff.tracking.law_options import Option
+from standoff.tracking.laws import every_option, laws_with
+
+
+def _flag(option: Option) -> tuple[str, Any, None]:
+    """The field of a law's option: a text that is read as a scene's value is."""
+    laws = laws_with(option.name)
+    whose = "" if len(laws) > 1 else f", for the law {laws[0].name}"
+    told = f"In place of the scene's{whose}: {option.kind.words()}. {option.help}"
+    name = option.metavar or option.name.upper()
+    hint = Annotated[str | None, arg(metavar=name, help=told, help_behavior_hint="")]
+    return option.name, hint, None
+
+
+if TYPE_CHECKING:
+
+    class LawFlags:
+        """Of the laws' options, by name, the texts that were given, or None."""
+else:
+    LawFlags = make_dataclass("LawFlags", map(_flag, every_option().values()), frozen=True)
+
+NO_FLAGS = LawFlags()
 
 SceneFile = Annotated[Positional[Path], arg(metavar="SCENE.toml")]
 
@@ -35,25 +61,9 @@ class TrackCommand:
     pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """Only this one of the scene's [[pairs]]."""
     law: Annotated[str | None, arg(metavar="LAW", help_behavior_hint="")] = None
-    """In place of the scene's: predictor-corrector or paper."""
-    predictor: Annotated[str | None, arg(metavar="PREDICTOR", help_behavior_hint="")] = None
-    """In place of the scene's: feedforward-2, feedforward, secant or none."""
-    integrator: Annotated[str | None, arg(metavar="INTEGRATOR", help_behavior_hint="")] = None
-    """In place of the scene's: heun, euler, midpoint or rk4."""
-    gain: Annotated[float | None, arg(metavar="K", help_behavior_hint="")] = None
-    """In place of the scene's, and of its feedback: feedback gain, 1/s."""
-    realisation: Annotated[str | None, arg(metavar="REALISATION", help_behavior_hint="")] = None
-    """In place of the scene's, for the paper's law: evaluated or integrated."""
-    saturation: Annotated[str | None, arg(metavar="SATURATION", help_behavior_hint="")] = None
-    """In place of the scene's, for the paper's law: hold or zero."""
-    switching: Annotated[str | None, arg(metavar="SWITCHING", help_behavior_hint="")] = None
-    """In place of the scene's, for the paper's law: multipliers, voronoi or none."""
-    solve: Annotated[str | None, arg(metavar="SOLVE", help_behavior_hint="")] = None
-    """In place of the scene's, for the paper's law: ranked or plain."""
-    depth: Annotated[str | None, arg(metavar="DEPTH", help_behavior_hint="")] = None
-    """In place of the scene's, in penetration: global (proven the least) or local."""
-    deadline: Annotated[int | None, arg(metavar="N", help_behavior_hint="")] = None
-    """In place of the scene's: most evaluations a step."""
+    """In place of the scene's: predictor-corrector or paper. Options of the scene that this law
+    has not are dropped."""
+    options: Annotated[LawFlags, arg(name="")] = NO_FLAGS
     step: Annotated[str | None, arg(metavar="SECONDS|samples", help_behavior_hint="")] = None
     """In place of the scene's: time from frame to frame in s, or 'samples'."""
     start: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
@@ -144,88 +154,6 @@ class AutomatonCommand:
 
 
 @dataclass(frozen=True)
-class PaperCommand:
-    """Make the figures of the paper, their data, and a report that sets it beside the measured.
-
-    Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 finished, but a figure failed.
-    """
-
-    keys: Annotated[
-        Positional[tuple[str, ...]], arg(metavar="[KEY ...|all]", help_behavior_hint="")
-    ] = ("all",)
-    """Figures by number (7, 8-11) or word (voronoi); --list shows them. If none is given, all."""
-    output: Annotated[Path, arg(aliases=["-o"], metavar="DIR", help_behavior_hint="")] = Path(
-        "standoff-paper"
-    )
-    """Folder of the pictures, tables, animations and report.html; made if it does not exist. If
-    not given, standoff-paper."""
-    list: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Only list the figures."""
-    json: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Print what was made and every statement as JSON."""
-    no_animations: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Leave the moving pictures out, which take most of the time."""
-    jobs: Annotated[int | None, arg(metavar="N", help_behavior_hint="")] = None
-    """Most processes at once; 2 if not given."""
-
-
-@dataclass(frozen=True)
-class SoakCommand:
-    """Track random pairs, check every answer by support functions, and stop at the first failure.
-
-    Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 a check failed.
-    """
-
-    pairs: Annotated[int, arg(metavar="N", help_behavior_hint="")] = 1000
-    """Pairs in all; 1000 if not given."""
-    seed: Annotated[int, arg(metavar="S", help_behavior_hint="")] = 0
-    """Seed of the pairs, 0 or more; 0 if not given."""
-    frames: Annotated[int, arg(metavar="M", help_behavior_hint="")] = 2000
-    """Frames of each pair; 2000 if not given."""
-    jobs: Annotated[int | None, arg(metavar="J", help_behavior_hint="")] = None
-    """Processes; 2 if not given. With 1 in this process, where a pair that hangs is not noticed."""
-    output: Annotated[Path, arg(aliases=["-o"], metavar="DIR", help_behavior_hint="")] = Path(
-        "standoff-soak"
-    )
-    """Folder of the ledger soak.json and of a failure's file; made if it does not exist. If not
-    given, standoff-soak."""
-    resume: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Go on with the soak in DIR, of the same seed and frames."""
-    replay: Annotated[Path | None, arg(metavar="FILE", help_behavior_hint="")] = None
-    """Only run the pair of a failure's file again."""
-    json: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Print the ledger as JSON."""
-
-
-@dataclass(frozen=True)
-class AccuracyCommand:
-    """Measure the errors of distance, witness points and normal by pair of shapes.
-
-    The pairs are exact by construction, at gaps of 1e-6, 1e-3 and 1 and depths of 1e-6, 1e-3 and
-    1e-1 of their size.
-
-    Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 finished, but an answer is
-    wrong or missing.
-    """
-
-    shapes: Annotated[
-        Positional[tuple[str, ...]], arg(metavar="[SHAPE ...]", help_behavior_hint="")
-    ] = ()
-    """Only pairs of these, such as sphere 'rounded box'; all if none is given."""
-    output: Annotated[Path | None, arg(aliases=["-o"], metavar="DIR", help_behavior_hint="")] = None
-    """Write accuracy.parquet (a row a case and engine), accuracy.md, gaps.md and depths.md (tables)
-    and accuracy.png to this folder; made if it does not exist."""
-    cases: Annotated[int, arg(metavar="N", help_behavior_hint="")] = 10
-    """Cases of each pair at each gap and depth; 10 if not given."""
-    seed: Annotated[int, arg(metavar="S", help_behavior_hint="")] = 0
-    """Seed of all draws; 0 if not given. A pair's cases do not depend on the other pairs."""
-    peers: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Ask Coal, MuJoCo, python-fcl and OpenCASCADE too: the extra 'peers'."""
-    json: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Print the summary as JSON."""
-
-
-@dataclass(frozen=True)
 class WarmupCommand:
     """Compile all kernels ahead, once for this installation, so that no later use waits for it.
 
@@ -246,11 +174,19 @@ Command = (
     | ImpactCommand
     | CheckCommand
     | AutomatonCommand
-    | PaperCommand
-    | SoakCommand
-    | AccuracyCommand
     | WarmupCommand
+    | AddedCommand
 )
+
+OWN: dict[str, type] = {
+    "track": TrackCommand,
+    "distance": DistanceCommand,
+    "impact": ImpactCommand,
+    "check": CheckCommand,
+    "automaton": AutomatonCommand,
+    "warmup": WarmupCommand,
+}
+"""The library's own commands, by name."""
 
 DESCRIPTION = """Exact, certified minimum distance of curved convex bodies in motion.
 
@@ -264,19 +200,19 @@ def parse(arguments: Sequence[str]) -> Command:
     ------
     SystemExit
         With code 0 after help was printed, 2 after a complaint on stderr.
+    CommandError
+        If they name a command of another package that is not installed or cannot be loaded.
     """
-    return tyro.cli(
-        Annotated[TrackCommand, subcommand("track")]
-        | Annotated[DistanceCommand, subcommand("distance")]
-        | Annotated[ImpactCommand, subcommand("impact")]
-        | Annotated[CheckCommand, subcommand("check")]
-        | Annotated[AutomatonCommand, subcommand("automaton")]
-        | Annotated[PaperCommand, subcommand("paper")]
-        | Annotated[SoakCommand, subcommand("soak")]
-        | Annotated[AccuracyCommand, subcommand("accuracy")]
-        | Annotated[WarmupCommand, subcommand("warmup")],
+    first = arguments[0] if arguments else ""
+    # The library's own commands wait for nobody else's, and nobody replaces them.
+    commands = OWN if first in OWN else OWN | added(first) | OWN
+    each = [Annotated[command, subcommand(name)] for name, command in commands.items()]
+    any_of_them: Any = reduce(or_, each)
+    found: Command = tyro.cli(
+        any_of_them,
         prog="standoff",
         description=DESCRIPTION,
         args=arguments,
         config=(FlagCreatePairsOff,),
     )
+    return found

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from standoff.automaton.graph import Automaton, automaton
+from standoff.automaton.text import automaton_mermaid, automaton_text
 from standoff.cli.arguments import AutomatonCommand
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.output import Writer, check_named, check_target, write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.selection import chosen, target_of
+from standoff.recording import Recording
 from standoff.scene import Scene, load_scene, prepare, record
 from standoff.scene.reader import unknown_name
-from standoff.tracking import Recording
-from standoff.tracking.automaton import Automaton, automaton
-from standoff.tracking.automaton_text import automaton_mermaid, automaton_text
 
 ENDINGS = {"text": ".txt", "mermaid": ".mmd", "svg": ".svg"}
 """Each format, and the ending of its files."""
@@ -83,7 +83,7 @@ def _format(command: AutomatonCommand) -> str:
 def _check_plotting() -> None:
     """Tell a missing library before the run."""
     try:
-        import standoff.tracking.automaton_picture  # noqa: F401
+        import standoff.automaton.picture  # noqa: F401
     except ModuleNotFoundError as error:
         raise MissingExtra(str(error.name)) from error
 
@@ -104,7 +104,7 @@ def _automata(scenes: tuple[Scene, ...], runs: list[Recording]) -> list[Automato
 
 def _writer(form: str, scene: Scene, found: Automaton) -> Writer:
     if form == "svg":
-        from standoff.tracking.automaton_picture import write_automaton
+        from standoff.automaton.picture import write_automaton
 
         title = f"{scene.title}: modes of {scene.pair[0]} and {scene.pair[1]}"
         return lambda file: write_automaton(file, "svg", found, scene.pair, title)

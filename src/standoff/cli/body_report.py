@@ -88,4 +88,5 @@ def _slack_rows(body: Body, report: BodyReport, unit: str) -> Rows:
             f"{report.sewing_tolerance:.3g} {unit}",
         ),
         ("slack", f"{report.slack:.3g} {unit}, taken off the certified lower bound"),
+        ("coordinates' roundoff", f"{report.coordinate_roundoff:.3g} {unit}, always accepted"),
     ]

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from standoff.cli.arguments import (
-    AccuracyCommand,
     AutomatonCommand,
     CheckCommand,
     Command,
     DistanceCommand,
     ImpactCommand,
-    PaperCommand,
-    SoakCommand,
     TrackCommand,
     WarmupCommand,
 )
@@ -26,7 +23,7 @@ def run(command: Command) -> int:
     WriteError
         If results could not be written.
     """
-    # Each command imports its own module: tracking needs none of the studies.
+    # Each command imports its own module: tracking needs none of the others.
     match command:
         case TrackCommand():
             from standoff.cli.track import run_track
@@ -48,19 +45,9 @@ def run(command: Command) -> int:
             from standoff.cli.automaton import run_automaton
 
             return run_automaton(command)
-        case PaperCommand():
-            from standoff.cli.paper import run_paper
-
-            return run_paper(command)
-        case SoakCommand():
-            from standoff.cli.soak import run_soak
-
-            return run_soak(command)
-        case AccuracyCommand():
-            from standoff.cli.accuracy import run_accuracy
-
-            return run_accuracy(command)
         case WarmupCommand():
             from standoff.cli.warmup import run_warmup
 
             return run_warmup(command)
+        case _:
+            return command.run()

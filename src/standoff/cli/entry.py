@@ -49,7 +49,10 @@ def _run(given: list[str]) -> int:
         return _complain(str(MissingExtra(str(error.name))), ExitCode.BAD_INPUT)
     from standoff.cli.arguments import parse
 
-    command = parse(given or ["--help"])
+    try:
+        command = parse(given or ["--help"])
+    except CommandError as error:
+        return _complain(str(error), ExitCode.BAD_INPUT)
 
     # The library comes after the parse, so that help and typing errors need not wait for it, and
     # after a word to those who do.

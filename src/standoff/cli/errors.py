@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from standoff.errors import StandoffError
+
 
 class ExitCode(IntEnum):
     """What the shell gets back."""
@@ -12,13 +14,12 @@ class ExitCode(IntEnum):
     NOT_WRITTEN = 1  # the results could not be written, as on a full disk
     BAD_INPUT = 2
     NOT_CERTIFIED = 3
-    FIGURE_FAILED = 3  # the same for `paper`: finished, but not all is as it should be
-    CHECK_FAILED = 3  # the same for `soak`: an answer failed a check
     NOT_COMPILED = 3  # the same for `warmup`: a kernel is refused by the compiler
+    FAILED = 3  # the same for an added command: finished, but not all is as it should be
     INTERRUPTED = 130  # 128 + SIGINT, the shells' convention
 
 
-class CommandError(ValueError):
+class CommandError(StandoffError):
     """A command that cannot run as it was given; the message names the value and the fix."""
 
 

@@ -11,9 +11,11 @@ from typing import Any
 import numpy as np
 
 from standoff import __version__
+from standoff.impact import Impact
+from standoff.recording import RecordedEvent, Recording
 from standoff.scene import Scene, TrackSettings
 from standoff.scene.reader import Array
-from standoff.tracking import Impact, Proximity, RecordedEvent, Recording
+from standoff.tracking import Proximity
 
 
 def json_text(facts: Mapping[str, Any]) -> str:

@@ -9,8 +9,8 @@ from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import impact_facts, pairs_text
 from standoff.cli.selection import chosen
 from standoff.cli.summary import impact_lines
+from standoff.impact import Impact, ImpactStatus
 from standoff.scene import Scene, SceneError, first_impact, load_scene
-from standoff.tracking import Impact, ImpactStatus
 
 
 def run_impact(command: ImpactCommand) -> int:

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from standoff.scene import Scene, TrackSettings
-from standoff.scene.feedbacks import feedback_text
+from standoff.impact import Impact
+from standoff.recording import RecordedEvent, Recording
+from standoff.scene import Scene
 from standoff.scene.reader import Array
-from standoff.tracking import Counts, Impact, Proximity, RecordedEvent, Recording, Status
-from standoff.tracking.options import Variants
+from standoff.tracking import Counts, Proximity, Status
+from standoff.tracking.feedback_facts import feedback_text
+from standoff.tracking.law_options import OfFeedback, Option, options_of
+from standoff.tracking.laws import LAWS
 
 FIRST_EVENTS = 8
 """How many switching events the summary lists: they fit on a screen with the rest. All of them are
 in the Parquet file and in ``--json``."""
+
+ALWAYS_TOLD = ("predictor", "integrator", "gain")
+"""Options of a law that the summary tells also where they are the default."""
 
 MARGIN = 14
 """Width of the column of names, in characters."""
@@ -66,15 +72,13 @@ def impact_lines(scene: Scene, found: Impact) -> list[str]:
     return lines
 
 
-def recording_lines(
-    scene: Scene, settings: TrackSettings, recording: Recording, written: Sequence[Path]
-) -> list[str]:
+def recording_lines(scene: Scene, recording: Recording, written: Sequence[Path]) -> list[str]:
     """Return the lines that sum up a run."""
     frames, certified = len(recording.time), int(np.count_nonzero(recording.certified))
     return [
         *_scene_lines(scene),
         *(line("", note) for note in scene.notes),
-        line("law", _law_text(settings, recording)),
+        line("law", _law_text(recording)),
         line("frames", _frames_text(recording)),
         line("closest", _closest_text(scene, recording)),
         line("certified", f"{certified} of {frames} frames, {_share(certified, frames)}"),
@@ -94,20 +98,26 @@ def _scene_lines(scene: Scene) -> list[str]:
     return [line("scene", scene.title), line("pair", f"{scene.selected.name}: {bodies}")]
 
 
-def _law_text(settings: TrackSettings, recording: Recording) -> str:
-    if settings.law != "paper":
-        return f"{settings.law}, predictor {settings.predictor}"
-    if settings.feedback is None:
-        gain = settings.gain or 1.0 / float(np.diff(recording.time).max())
-        feedback = f"gain {gain:.6g} 1/s"
-    else:
-        feedback = f"feedback {feedback_text(settings.feedback)}"
-    told = [settings.law, settings.integrator, feedback]
-    if settings.predictor == "none":
-        told.append("no feedforward")
-    used = recording.info.options
-    told += [f"{k} {used[k]}" for k, usual in asdict(Variants()).items() if used[k] != usual]
+def _law_text(recording: Recording) -> str:
+    """The law with its way of going on, its gain, and what else is not the default."""
+    options = recording.info.options
+    law = LAWS[options["law"]]
+    usual = law().resolved(float(options["dt"])).facts()
+    told = [law.name]
+    for name, each in options_of(law).items():
+        value = options[name]
+        if value is not None and (name in ALWAYS_TOLD or value != usual[name]):
+            told.append(f"{name} {_option_text(each, value)}")
     return ", ".join(told)
+
+
+def _option_text(option: Option, value: Any) -> str:
+    if isinstance(option.kind, OfFeedback):
+        return feedback_text(value)
+    if isinstance(value, bool):
+        return str(value).lower()
+    unit = f" {option.unit}" if option.unit else ""
+    return f"{value:.6g}{unit}" if isinstance(value, float) else f"{value}{unit}"
 
 
 def _frames_text(recording: Recording) -> str:
@@ -154,7 +164,7 @@ def _advice(statuses: dict[Status, int], frames: int) -> list[str]:
     return [
         line("", f"{status.name} in {count} of {frames}: {status.advice}")
         for status, count in statuses.items()
-        if status not in (Status.CONVERGED, Status.GLOBAL)
+        if not status.certified
     ]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,6 +12,7 @@ from standoff.cli.output import Writer, check_target, write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.selection import chosen, target_of
 from standoff.cli.summary import recording_lines
+from standoff.recording import Recording
 from standoff.scene import (
     Scene,
     SceneError,
@@ -21,9 +21,7 @@ from standoff.scene import (
     prepare,
     record,
 )
-from standoff.scene.settings import SAMPLES
-from standoff.tracking import Recording
-from standoff.tracking.options import Variants
+from standoff.scene.files import toml_tables
 
 TABLE_ENDINGS = (".parquet",)
 PLOT_ENDINGS = (".png", ".svg", ".pdf")
@@ -53,9 +51,17 @@ def run_track(command: TrackCommand) -> int:
     done = list(zip(runs, recordings, strict=True))
     write_whole({path: write for run, told in done for path, write in run.files(told).items()})
     if command.json:
-        print(pairs_text(whole, [recording_facts(*run.shown(told)) for run, told in done]))
+        print(
+            pairs_text(
+                whole,
+                [
+                    recording_facts(run.scene, run.settings, told, run.written())
+                    for run, told in done
+                ],
+            )
+        )
     else:
-        texts = ["\n".join(recording_lines(*run.shown(told))) for run, told in done]
+        texts = ["\n".join(recording_lines(run.scene, told, run.written())) for run, told in done]
         print("\n\n".join(texts))
     certified = all(recording.certified.all() for recording in recordings)
     return ExitCode.DONE if certified else ExitCode.NOT_CERTIFIED
@@ -73,7 +79,7 @@ class _Run(NamedTuple):
     def of(cls, scene: Scene, command: TrackCommand, scenes: tuple[Scene, ...]) -> _Run:
         output = target_of(command.output, "-o", scene, scenes)
         plot = target_of(command.plot, "--plot", scene, scenes)
-        return cls(scene, _settings(scene, command), output, plot)
+        return cls(scene, settings_of(scene, command), output, plot)
 
     def check_files(self) -> None:
         if self.output is not None:
@@ -83,41 +89,53 @@ class _Run(NamedTuple):
         try:
             # Imported now, so that a missing library is told before the run.
             if self.output is not None:
-                import standoff.tracking.recording_file
+                import standoff.recording.file
             if self.plot is not None:
-                import standoff.tracking.recording_plot  # noqa: F401
+                import standoff.recording.plot  # noqa: F401
         except ModuleNotFoundError as error:
             raise MissingExtra(str(error.name)) from error
 
     def files(self, recording: Recording) -> dict[Path, Writer]:
         files: dict[Path, Writer] = {}
         if self.output is not None:
-            from standoff.tracking.recording_file import write_table
+            from standoff.recording.file import write_table
 
             files[self.output] = lambda file: write_table(recording, file)
         if self.plot is not None:
-            from standoff.tracking.recording_plot import write_plot
+            from standoff.recording.plot import write_plot
 
             ending = self.plot.suffix.lower().removeprefix(".")
             files[self.plot] = lambda file: write_plot(recording, file, ending)
         return files
 
-    def shown(self, recording: Recording) -> tuple[Scene, TrackSettings, Recording, list[Path]]:
-        written = [path for path in (self.output, self.plot) if path is not None]
-        return self.scene, self.settings, recording, written
+    def written(self) -> list[Path]:
+        return [path for path in (self.output, self.plot) if path is not None]
 
 
-def _settings(scene: Scene, command: TrackCommand) -> TrackSettings:
-    step: object = command.step
-    if command.step is not None and command.step != SAMPLES:
-        try:
-            step = float(command.step)
-        except ValueError:
-            step = command.step  # refused with the other settings, in the same words
-    names = ("law", "predictor", "integrator", "gain", *asdict(Variants()), "depth", "deadline")
-    given = {name: getattr(command, name) for name in (*names, "start", "duration")}
-    given |= {"step": step}
+def settings_of(scene: Scene, command: TrackCommand) -> TrackSettings:
+    """Return the scene's settings with the command's in their place.
+
+    Raises
+    ------
+    CommandError
+        If an option is not one that a scene could have.
+    """
+    texts = vars(command.options) | {"step": command.step}
+    given = {name: None if text is None else _value(text) for name, text in texts.items()}
+    given |= {name: getattr(command, name) for name in ("law", "start", "duration")}
     try:
         return scene.settings.overridden(given)
     except SceneError as error:
         raise CommandError(f"--{error.key}: {error.problem}") from error
+
+
+def _value(text: str) -> object:
+    """What a scene would read there: a number, a truth value, an inline table, else the text."""
+    try:
+        return float(text) if not text.lstrip("+-").isdigit() else int(text)
+    except ValueError:
+        pass
+    try:
+        return toml_tables(f"value = {text}")["value"]
+    except SceneError:
+        return text

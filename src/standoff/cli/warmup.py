@@ -16,9 +16,9 @@ from standoff import __version__
 from standoff.cli.arguments import WarmupCommand
 from standoff.cli.errors import ExitCode
 from standoff.cli.facts import json_text
-from standoff.kernels.entry import Entry
-from standoff.kernels.notices import WORK, told_elsewhere
-from standoff.kernels.preparing import every_entry, kept_in, name_of, was_compiled
+from standoff.kernels.compiler.entry import Entry
+from standoff.kernels.compiler.notices import WORK, told_elsewhere
+from standoff.kernels.entries.preparing import every_entry, kept_in, name_of, was_compiled
 
 
 class Ready(NamedTuple):

@@ -9,15 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.validation import Array
-from standoff.kernels import events as N
-from standoff.kernels import frame as K
-from standoff.kernels import tracker as kernels
+from standoff.kernels.entries import tracker as kernels
+from standoff.kernels.pair import events as N
 from standoff.motion import PoseLike
 from standoff.real_numbers import shown
 from standoff.tracking import Tracker, distance
+from standoff.tracking.calls import DESCEND, HERE
 from standoff.tracking.choices import whole_number
 from standoff.tracking.inputs import flat_pose, place
+from standoff.tracking.laws import PaperLaw
+from standoff.tracking.rows import AnswerRows, StateRow, motion_row
 
 # A run has found the minimum where its distance and witness points are within this part of the
 # pair's size of the true ones: far above roundoff, far below the way to any other stationary point.
@@ -42,12 +45,16 @@ class Basin(NamedTuple):
         At the end, length.
     steps : int
         Frames that each start was given.
+    repaired : int
+        How many of the two poses were given with a rounded rotation, and were brought to the
+        nearest one.
     """
 
     found: NDArray[np.bool_]
     elsewhere: NDArray[np.bool_]
     distance: Array
     steps: int
+    repaired: int
 
     @property
     def fraction(self) -> float:
@@ -87,31 +94,37 @@ def basin(
         No frames or starts, a start outside its feature, or a pair without a certified distance.
     """
     if not isinstance(tracker, Tracker):
-        raise TypeError(f"{shown(tracker)} is not a Tracker: make one by so.Tracker(a, b).")
+        raise StandoffTypeError(
+            f"{shown(tracker)} is not a Tracker: make one by so.Tracker(a, b).", "tracker", tracker
+        )
     steps = whole_number(steps, "steps")
     given: Any = starts
     if not isinstance(given, Sequence) or isinstance(given, str | bytes) or not given:
-        raise ValueError(f"starts = {shown(given)} of {steps} steps: give one or more.")
+        raise StandoffError(
+            f"starts = {shown(given)} of {steps} steps: give one or more.", "starts", starts
+        )
     for k, start in enumerate(given):
         pair = isinstance(start, tuple | list) and len(start) == 2
         if not pair or not all(isinstance(x, tuple | list) and len(x) == 2 for x in start):
-            raise ValueError(
-                f"starts[{k}] = {shown(start)}: give a pair of (feature, parameters) for A and B."
+            raise StandoffError(
+                f"starts[{k}] = {shown(start)}: give a pair of (feature, parameters) for A and B.",
+                "starts",
+                start,
             )
     true = distance(tracker.a, tracker.b, pose_a, pose_b)
     if not true.certified or true.distance <= 0.0:
-        raise ValueError(f"The pair has no certified distance to compare with: {true!r}.")
+        raise StandoffError(f"The pair has no certified distance to compare with: {true!r}.")
     frames = _Frames(tracker, flat_pose(pose_a), flat_pose(pose_b), steps)
-    last = np.array([frames.after(*start) for start in starts])
+    last = AnswerRows(np.array([frames.after(*start) for start in starts]))
     size = max(_size(tracker.a), _size(tracker.b), true.distance)
     off = np.maximum(
-        np.linalg.norm(last[:, K.POINT_A : K.POINT_A + 3] - true.point_a, axis=1),
-        np.linalg.norm(last[:, K.POINT_B : K.POINT_B + 3] - true.point_b, axis=1),
+        np.linalg.norm(last.point_a - true.point_a, axis=1),
+        np.linalg.norm(last.point_b - true.point_b, axis=1),
     )
-    reached = last[:, K.DISTANCE]
+    reached = np.asarray(last.distance)
     found = (off <= FOUND * size) & (np.abs(reached - true.distance) <= FOUND * size)
-    settled = last[:, K.RESIDUAL] <= SETTLED * reached
-    return Basin(found, settled & ~found, reached, steps)
+    settled = last.residual <= SETTLED * reached
+    return Basin(found, settled & ~found, reached, steps, true.repaired)
 
 
 def _size(body: Body) -> float:
@@ -126,28 +139,25 @@ class _Frames:
 
     def __init__(self, tracker: Tracker, flat_a: Array, flat_b: Array, steps: int) -> None:
         self.tracker = tracker
-        self.poses = np.tile(flat_a, (steps, 1)), np.tile(flat_b, (steps, 1))
-        self.twists = np.zeros((steps, 6))
+        still = motion_row(flat_a, flat_b)
+        self.motions = np.tile(still, (steps, 1))
         self.times = np.full(steps, tracker.dt)
-        self.outs = np.empty((steps, K.N_OUT))
+        self.outs = AnswerRows.empty(steps).data
         self.events = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
-        self.given = K.START_HERE if tracker.law == "paper" else K.START_DESCEND
+        self.given = HERE if isinstance(tracker.law, PaperLaw) else DESCEND
 
     def after(self, place_a: Place, place_b: Place) -> Array:
         """The answer's numbers after all frames from a start."""
-        t, still = self.tracker, self.twists[0]
-        state = np.zeros(K.N_STATE)
-        place(state, 0, t.a, *place_a)
-        place(state, 2, t.b, *place_b)
-        flat = self.poses[0][0], self.poses[1][0]
-        kernels.start(
-            t.packed, *flat, still, still, True, t.options, state, self.given, self.outs[0]
-        )
+        t = self.tracker
+        begun = StateRow()
+        place(begun, 0, t.a, *place_a)
+        place(begun, 1, t.b, *place_b)
+        state = begun.data
+        first = self.motions[0]
+        kernels.start(t.packed, first, True, t.options, state, self.given, self.outs[0])
         kernels.run(
             t.packed,
-            *self.poses,
-            self.twists,
-            self.twists,
+            self.motions,
             True,
             self.times,
             t.options,

@@ -10,15 +10,16 @@ import numpy as np
 import scipy
 
 from standoff.bodies.body import Body
+from standoff.bodies.features import charts_of
+from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
 from standoff.geometry.swept import Extrusion
 from standoff.geometry.validation import Array, finite
-from standoff.kernels import layout as L
-from standoff.kernels.entries import coedge_parameters, on_face
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import coedge_parameters, on_face
 from standoff.real_numbers import shown
 from standoff.tracking.inputs import check_body
-from standoff.tracking.proximity import charts_of
 
 # Tangents whose area falls below this part of their lengths' product, or of which one (over the
 # domain) is this much shorter than the other, are a pole's: curvature there is roundoff, which
@@ -101,7 +102,7 @@ def principal_curvatures(surface: Surface, u: float, v: float) -> tuple[float, f
         Not a surface, or a parameter that is no finite number.
     """
     if not isinstance(surface, Surface):
-        raise ValueError(f"surface is {shown(surface)}: give a Surface.")
+        raise StandoffError(f"surface is {shown(surface)}: give a Surface.", "surface", surface)
     return _curvatures(surface, float(finite(u, "u", ())), float(finite(v, "v", ())))
 
 

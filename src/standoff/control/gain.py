@@ -10,9 +10,10 @@ from numpy.polynomial import Polynomial
 
 from standoff.bodies.body import Body
 from standoff.control.curvature import least_curvature
+from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Plane, Sphere
 from standoff.geometry.validation import finite, not_negative, positive
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 from standoff.real_numbers import real_array, shape_of, shown
 from standoff.tracking.inputs import check_body, check_pair
 
@@ -272,10 +273,14 @@ def _ends(distance: Any) -> tuple[float, float]:
     try:
         least, most = (float(x) for x in real_array(distance).reshape(2))
     except (TypeError, ValueError) as error:
-        raise ValueError(f"distance = {shown(distance)}: give (least, most).") from error
+        raise StandoffError(
+            f"distance = {shown(distance)}: give (least, most).", "distance", distance
+        ) from error
     if not (0.0 <= least <= most and least < math.inf):
-        raise ValueError(
-            f"distance = {shown(distance)}: give (least, most) with 0 <= least <= most."
+        raise StandoffError(
+            f"distance = {shown(distance)}: give (least, most) with 0 <= least <= most.",
+            "distance",
+            distance,
         )
     return least, most
 
@@ -285,9 +290,15 @@ def _curvature(value: Any) -> float:
     try:
         curvature = float(real_array(value).reshape(()))
     except (TypeError, ValueError) as error:
-        raise ValueError(f"A least curvature of {shown(value)} is not a number.") from error
+        raise StandoffError(
+            f"A least curvature of {shown(value)} is not a number.", "curvature", value
+        ) from error
     if not curvature >= 0.0:
-        raise ValueError(f"A least curvature of {curvature}: give 0 or more, inf for a point.")
+        raise StandoffError(
+            f"A least curvature of {curvature}: give 0 or more, inf for a point.",
+            "curvature",
+            value,
+        )
     return curvature
 
 

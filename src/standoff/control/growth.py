@@ -9,8 +9,9 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
+from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.validation import not_negative, positive
-from standoff.kernels import integrators as I
+from standoff.kernels.paper import integrators as I
 from standoff.real_numbers import shown
 from standoff.tracking.choices import INTEGRATORS, choice
 from standoff.tracking.feedback import Feedback, growth_factor
@@ -98,7 +99,9 @@ def sampled_roots(integrator: str, feedback: Feedback, dt: float) -> Complex:
     choice(integrator, "integrator", INTEGRATORS)
     given: Any = feedback
     if isinstance(given, type) or not isinstance(given, Feedback):
-        raise TypeError(f"feedback is {shown(feedback)}: give one of so.feedback.")
+        raise StandoffTypeError(
+            f"feedback is {shown(feedback)}: give one of so.feedback.", "feedback", feedback
+        )
     rates = np.asarray(feedback.resolved(integrator, step).rates(), dtype=np.complex128)
     return np.atleast_1d(np.asarray(growth_factor(integrator, rates * step), dtype=np.complex128))
 
@@ -132,8 +135,10 @@ def steady_error(integrator: str, gain: float, dt: float, acceleration: float) -
     gain, dt = positive(gain, "gain"), positive(dt, "dt")
     z, number = gain * dt, choice(integrator, "integrator", INTEGRATORS)
     if z >= stability_limit(integrator):
-        raise ValueError(
-            f"gain = {gain} is not stable for {integrator} at dt = {dt}: there is no steady error."
+        raise StandoffError(
+            f"gain = {gain} is not stable for {integrator} at dt = {dt}: there is no steady error.",
+            "gain",
+            gain,
         )
     rate, moved = 0.0, 0.0
     for i in range(int(I.STAGES[number])):

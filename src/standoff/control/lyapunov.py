@@ -21,10 +21,11 @@ import scipy
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.bodies.features import charts_of
+from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
-from standoff.kernels import frame as K
-from standoff.kernels.entries import on_face
-from standoff.kernels.entries import pair_system as evaluate
+from standoff.kernels.entries import queries
+from standoff.kernels.entries.queries import on_face
 from standoff.kernels.tolerances import RECHART
 from standoff.motion import PoseLike
 from standoff.real_numbers import shown
@@ -32,7 +33,7 @@ from standoff.tracking import Feature, distance
 from standoff.tracking.choices import whole_number
 from standoff.tracking.inputs import flat_pose, place
 from standoff.tracking.pair_system import UPPER
-from standoff.tracking.proximity import charts_of
+from standoff.tracking.rows import StateRow, motion_row
 
 # Relative error of the curves outwards; their ends are found to this as well.
 CURVE_TOLERANCE = 1e-8
@@ -43,7 +44,6 @@ KEPT = 25
 # The search for the least end: first simplex, and curves followed per parameter.
 SPREAD = 0.1
 SEARCH = 20
-STILL = np.zeros(6)
 
 
 class LyapunovLevels(NamedTuple):
@@ -68,6 +68,9 @@ class LyapunovLevels(NamedTuple):
         sqrt(2 V), length, and E - E*, length², there.
     singular : (m,) bool array
         H is singular at the curve's end; else a feature ends there.
+    repaired : int
+        How many of the two poses were given with a rounded rotation, and were brought to the
+        nearest one.
     """
 
     feature_a: Feature
@@ -81,6 +84,7 @@ class LyapunovLevels(NamedTuple):
     slopes: Array
     energies: Array
     singular: NDArray[np.bool_]
+    repaired: int
 
     def inside(self, part: float = 1.0) -> tuple[Array, Array]:
         """Points of the curves within `part` of the level of V, and of that of E: (., n) each.
@@ -124,18 +128,20 @@ def lyapunov_level(
     directions = whole_number(directions, "directions")
     given: Any = seed
     if isinstance(given, bool) or not isinstance(given, int | np.integer) or given < 0:
-        raise ValueError(f"seed = {shown(seed)}: give a whole number, zero or above.")
+        raise StandoffError(
+            f"seed = {shown(seed)}: give a whole number, zero or above.", "seed", seed
+        )
     best = distance(a, b, pose_a, pose_b)
     if not best.certified or best.distance <= 0.0:
-        raise ValueError(f"The pair has no certified minimum: {best!r}.")
+        raise StandoffError(f"The pair has no certified minimum: {best!r}.")
     system = _System(a, b, pose_a, pose_b)
     q0 = system.place((best.feature_a, best.parameters_a), (best.feature_b, best.parameters_b))
     if not len(q0):
-        raise ValueError("Both witness points are vertices: there are no parameters to err.")
+        raise StandoffError("Both witness points are vertices: there are no parameters to err.")
     _, H, metric, energy = system.at(q0)
     L = np.array(np.linalg.cholesky(metric), dtype=np.float64)
     if system.definiteness(H, L) <= CURVE_TOLERANCE:
-        raise ValueError(
+        raise StandoffError(
             f"H is not positive definite at the optimum, {best.feature_a} - {best.feature_b}: "
             "the faces are parallel, or the bodies touch."
         )
@@ -162,6 +168,7 @@ def lyapunov_level(
         slopes=slopes,
         energies=energies,
         singular=singular,
+        repaired=best.repaired,
     )
 
 
@@ -248,39 +255,39 @@ class _System:
     def __init__(self, a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> None:
         self.bodies = a, b
         self.packed = (a.ints, a.reals, b.ints, b.reals)
-        self.poses = flat_pose(pose_a), flat_pose(pose_b)
+        self.motion = motion_row(flat_pose(pose_a), flat_pose(pose_b))
         self.mode = np.zeros(4, dtype=np.int64)
         self.kept = np.zeros(0, dtype=np.int64)
         self.size = max(body.size for body in self.bodies if body.bounded)
-        self.out = np.empty(54)
+        self.state = StateRow()
+        self.out = np.empty(queries.N_SYSTEM)
 
     def place(self, place_a: tuple[object, object], place_b: tuple[object, object]) -> Array:
         """Set the mode; its parameters, (n,)."""
-        state = np.zeros(K.N_STATE)
+        state = self.state = StateRow()
         place(state, 0, self.bodies[0], *place_a)
-        place(state, 2, self.bodies[1], *place_b)
-        self.mode = state[K.MODE : K.MODE + 4].astype(np.int64)
+        place(state, 1, self.bodies[1], *place_b)
+        self.mode = state.mode.astype(np.int64)
         counts = [
             2 - int(number >= body.n_faces) - int(number >= body.n_faces + body.n_edges)
             for number, body in zip(self.mode[::2], self.bodies, strict=True)
         ]
         self.kept = np.array([0, 1, 2, 3])[np.r_[: counts[0], 2 : 2 + counts[1]]]
-        return np.asarray(state[K.Q : K.Q + 4][self.kept])
+        return np.asarray(state.q[self.kept])
 
     def at(self, q: Array) -> tuple[Array, Array, Array, float]:
         """(g, H, D, E) at parameters q."""
-        full = np.zeros(4)
-        full[self.kept] = q
-        evaluate(self.packed, *self.poses, STILL, STILL, self.mode, full, self.out)
-        jets = self.out[:36].reshape(2, 6, 3)
+        self.state.q[self.kept] = q
+        queries.pair_system(self.packed, self.motion, self.state.data, self.out)
+        jets = self.out[queries.JETS : queries.ERRORS].reshape(2, 6, 3)
         tangents = np.zeros((6, 4))
         tangents[:3, :2], tangents[3:, 2:] = jets[0, 1:3].T, jets[1, 1:3].T
         tangents = tangents[:, self.kept]
         H = np.empty((4, 4))
-        H[UPPER] = H.T[UPPER] = self.out[44:]
+        H[UPPER] = H.T[UPPER] = self.out[queries.HESSIAN :]
         sign = np.array([1.0, 1.0, -1.0, -1.0])
         dR = jets[0, 0] - jets[1, 0]
-        g = (sign * self.out[36:40])[self.kept]
+        g = (sign * self.out[queries.ERRORS : queries.FEEDFORWARD])[self.kept]
         return g, H[np.ix_(self.kept, self.kept)], tangents.T @ tangents, 0.5 * float(dR @ dR)
 
     def definiteness(self, H: Array, L: Array) -> float:

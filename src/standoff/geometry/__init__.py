@@ -7,11 +7,12 @@ from standoff.on_demand import on_demand
 if TYPE_CHECKING:
     from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
     from standoff.geometry.ellipsoid_patches import ellipsoid_octants, ellipsoid_patches
+    from standoff.geometry.exact_pcurves import pcurve_of
     from standoff.geometry.formulas import FormulaCurve, FormulaError, FormulaSurface
     from standoff.geometry.nurbs import BezierPatch, NurbsSurface
     from standoff.geometry.nurbs_curves import NurbsCurve
     from standoff.geometry.nurbs_pcurves import NurbsPcurve
-    from standoff.geometry.pcurves import Pcurve, pcurve_of
+    from standoff.geometry.pcurves import Pcurve
     from standoff.geometry.superellipsoids import SuperellipsoidPole, SuperellipsoidSide
     from standoff.geometry.surface_curves import SurfaceCurve
     from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
@@ -23,11 +24,12 @@ else:
         {
             "standoff.geometry.curves": ("ConicArc", "Curve", "Line", "RationalBezier"),
             "standoff.geometry.ellipsoid_patches": ("ellipsoid_octants", "ellipsoid_patches"),
+            "standoff.geometry.exact_pcurves": ("pcurve_of",),
             "standoff.geometry.formulas": ("FormulaCurve", "FormulaError", "FormulaSurface"),
             "standoff.geometry.nurbs": ("BezierPatch", "NurbsSurface"),
             "standoff.geometry.nurbs_curves": ("NurbsCurve",),
             "standoff.geometry.nurbs_pcurves": ("NurbsPcurve",),
-            "standoff.geometry.pcurves": ("Pcurve", "pcurve_of"),
+            "standoff.geometry.pcurves": ("Pcurve",),
             "standoff.geometry.superellipsoids": ("SuperellipsoidPole", "SuperellipsoidSide"),
             "standoff.geometry.surface_curves": ("SurfaceCurve",),
             "standoff.geometry.surfaces": ("Cone", "Cylinder", "Plane", "Sphere", "Surface"),

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from standoff.errors import StandoffError
 from standoff.geometry.bernstein import segment
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
 from standoff.geometry.hulls import tight_box
@@ -40,7 +41,9 @@ def curve_reach(curve: Curve, direction: Array, first: float, last: float) -> fl
     box = curve.box()
     if box is not None:
         return float(np.where(direction > 0.0, box[1], box[0]) @ direction)
-    raise ValueError(f"{type(curve).__name__} has no bounds: it cannot be a profile.")
+    raise StandoffError(
+        f"{type(curve).__name__} has no bounds: it cannot be a profile.", "profile", curve
+    )
 
 
 def _reading(direction: Array) -> Array:

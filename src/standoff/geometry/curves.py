@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from standoff.errors import StandoffError
 from standoff.geometry.validation import Array, affine_map, check_alike, finite, vector3
-from standoff.kernels import layout as L
-from standoff.kernels.entries import curve_jet
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import curve_jet
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of
 
@@ -114,7 +115,7 @@ class Line(Curve):
     def __init__(self, p: Any, q: Any) -> None:
         p, q = vector3(_planar(p), "p"), vector3(_planar(q), "q")
         if np.array_equal(p, q):
-            raise ValueError(f"Line from {p} to itself: give two different points.")
+            raise StandoffError(f"Line from {p} to itself: give two different points.", "p", p)
         linear = np.zeros((3, 3))
         linear[:, 0] = q - p
         fill_curve(self, _affine(linear, p), 0.0, 1.0)
@@ -147,10 +148,12 @@ class ConicArc(Curve):
         a, b = vector3(_planar(a), "a"), vector3(_planar(b), "b")
         first, last = float(finite(first, "first", ())), float(finite(last, "last", ()))
         if np.linalg.norm(np.cross(a, b)) <= 1e-14 * np.linalg.norm(a) * np.linalg.norm(b):
-            raise ValueError(f"Conic arc with parallel or zero axes a = {a}, b = {b}.")
+            raise StandoffError(f"Conic arc with parallel or zero axes a = {a}, b = {b}.")
         if not 0.0 < last - first <= FULL_TURN * (1.0 + 1e-15):
-            raise ValueError(
-                f"Conic arc from t = {first} to {last}: give 0 < last - first <= 2 pi."
+            raise StandoffError(
+                f"Conic arc from t = {first} to {last}: give 0 < last - first <= 2 pi.",
+                "last",
+                last,
             )
         linear = np.zeros((3, 3))
         linear[:, 0], linear[:, 1] = a, b
@@ -186,18 +189,28 @@ class RationalBezier(Curve):
             control_points = np.column_stack([flat, np.zeros(len(flat))])
         points = finite(control_points, "control_points", (-1, 3))
         if len(points) < 2:
-            raise ValueError(f"Bezier curve with {len(points)} control point: give at least two.")
+            raise StandoffError(
+                f"Bezier curve with {len(points)} control point: give at least two.",
+                "control_points",
+                control_points,
+            )
         w = finite(np.ones(len(points)) if weights is None else weights, "weights", (len(points),))
         if (w <= 0.0).any():
-            raise ValueError(f"Bezier weights must be positive: {w}")
+            raise StandoffError(f"Bezier weights must be positive: {w}", "weights", weights)
         check_alike(w)
         if np.ptp(points, axis=0).max() == 0.0:
-            raise ValueError(f"Bezier curve of a single point {points[0]}: spread its points.")
+            raise StandoffError(
+                f"Bezier curve of a single point {points[0]}: spread its points.",
+                "control_points",
+                control_points,
+            )
         for a, b, end in ((points[0], points[1], "first"), (points[-1], points[-2], "last")):
             if np.array_equal(a, b):
-                raise ValueError(
+                raise StandoffError(
                     f"Bezier curve whose {end} two control points are the same, {a}: it has no "
-                    "tangent there; leave one out."
+                    "tangent there; leave one out.",
+                    "control_points",
+                    control_points,
                 )
         homogeneous = np.column_stack([points * w[:, None], w])
         fill_curve(self, np.concatenate([[float(len(points) - 1)], homogeneous.ravel()]), 0.0, 1.0)

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from standoff.errors import StandoffError
 from standoff.geometry.validation import Array, finite
 from standoff.read_only import KeepsReadOnly
 
@@ -73,36 +74,46 @@ def knot_vector(knots: Any, count: int, name: str, points: str) -> KnotVector:
     t = finite(knots, name, (-1,))
     degree = len(t) - count - 1
     if not 1 <= degree <= GREATEST_DEGREE:
-        raise ValueError(
+        raise StandoffError(
             f"{name} has {len(t)} knots for {count} {points}, so degree {degree} (knots - points "
             f"- 1): give {count + 2} to {count + GREATEST_DEGREE + 1} knots, for a degree of 1 to "
-            f"{GREATEST_DEGREE}."
+            f"{GREATEST_DEGREE}.",
+            name,
+            knots,
         )
     if count < degree + 1:
-        raise ValueError(
+        raise StandoffError(
             f"{name} has {len(t)} knots for {count} {points}, so degree {degree}: a degree-{degree}"
-            f" spline needs at least {degree + 1} {points}; give fewer knots or more points."
+            f" spline needs at least {degree + 1} {points}; give fewer knots or more points.",
+            name,
+            knots,
         )
     falling = np.flatnonzero(np.diff(t) < 0.0)
     if falling.size:
         i = int(falling[0])
-        raise ValueError(
+        raise StandoffError(
             f"{name} is not sorted: knot {i} = {t[i]} is above knot {i + 1} = {t[i + 1]}; sort "
-            "the knots in ascending order."
+            "the knots in ascending order.",
+            name,
+            knots,
         )
     if t[degree] == t[count]:
-        raise ValueError(
+        raise StandoffError(
             f"{name} has an empty domain: knots {degree} and {count} are both {t[degree]}; spread "
-            "the knots."
+            "the knots.",
+            name,
+            knots,
         )
     values, counts = np.unique(t, return_counts=True)
     for knot, times in zip(values, counts, strict=True):
         most = degree if t[degree] < knot < t[count] else degree + 1
         if times > most:
             where = "inside the domain (the spline would tear)" if most == degree else "at an end"
-            raise ValueError(
+            raise StandoffError(
                 f"{name}: knot {knot} stands {times} times; at most {most} times {where} for "
-                f"degree {degree}."
+                f"degree {degree}.",
+                name,
+                knots,
             )
     return KnotVector(t, degree)
 
@@ -150,7 +161,11 @@ def refine(vector: KnotVector, new: Sequence[float], name: str) -> tuple[KnotVec
     first, last = vector.domain
     outside = extra[(extra <= first) | (extra >= last)]
     if outside.size:
-        raise ValueError(f"{name}: knot {outside[0]} is not inside the domain ({first}, {last}).")
+        raise StandoffError(
+            f"{name}: knot {outside[0]} is not inside the domain ({first}, {last}).",
+            name,
+            new,
+        )
     knots = np.sort(np.concatenate([vector.knots, extra]))
     knot_vector(knots, vector.count + len(extra), name, "control points")
     return insertion(vector, extra.tolist())
@@ -179,7 +194,7 @@ def elevate_knots(vector: KnotVector, times: int) -> tuple[KnotVector, Array]:
     """Raise the degree: the new vector and the matrix (n', n) of coefficients."""
     degree = vector.degree + times
     if times < 0 or degree > GREATEST_DEGREE:
-        raise ValueError(
+        raise StandoffError(
             f"Degree {degree} asked of a spline of degree {vector.degree}: give a degree from "
             f"{vector.degree} to {GREATEST_DEGREE}."
         )

@@ -14,6 +14,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from standoff.errors import StandoffError
 from standoff.geometry.bernstein import segment
 from standoff.geometry.hulls import tight_box
 from standoff.geometry.knot_removal import essential_net
@@ -27,7 +28,7 @@ from standoff.geometry.knots import (
 )
 from standoff.geometry.surfaces import Domain, Surface, checked_domain
 from standoff.geometry.validation import Array, affine_map, check_alike, finite
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +160,7 @@ class NurbsSurface(Surface):
         smaller = checked_domain((u0, u1, v0, v1), type(self).__name__)
         a, b, c, d = self.domain
         if not (a <= smaller[0] and smaller[1] <= b and c <= smaller[2] and smaller[3] <= d):
-            raise ValueError(f"The domain {smaller} leaves the surface's own, {self.domain}.")
+            raise StandoffError(f"The domain {smaller} leaves the surface's own, {self.domain}.")
         surface = object.__new__(type(self))
         for name, value in vars(self).items():
             object.__setattr__(surface, name, value)
@@ -264,9 +265,11 @@ class BezierPatch(NurbsSurface):
         points = finite(control_points, "control_points", (-1, -1, 3))
         for count, axis in zip(points.shape[:2], "uv", strict=True):
             if not 2 <= count <= GREATEST_DEGREE + 1:
-                raise ValueError(
+                raise StandoffError(
                     f"Bezier patch with {count} control points along {axis}, so degree "
-                    f"{count - 1}: give 2 to {GREATEST_DEGREE + 1}."
+                    f"{count - 1}: give 2 to {GREATEST_DEGREE + 1}.",
+                    "control_points",
+                    points,
                 )
         ends_u, ends_v = (np.repeat([0.0, 1.0], count) for count in points.shape[:2])
         super().__init__(points, ends_u, ends_v, weights)
@@ -288,12 +291,16 @@ def checked_weights(weights: Any, points: Array) -> Array:
     if (w <= 0.0).any():
         at = tuple(int(i) for i in np.argwhere(w <= 0.0)[0])
         place = at[0] if len(at) == 1 else at
-        raise ValueError(f"weights[{place}] = {w[at]}: every weight must be positive.")
+        raise StandoffError(
+            f"weights[{place}] = {w[at]}: every weight must be positive.", "weights", weights
+        )
     check_alike(w)
     if np.ptp(points.reshape(-1, points.shape[-1]), axis=0).max() == 0.0:
-        raise ValueError(
+        raise StandoffError(
             f"All control points are {points.reshape(-1, points.shape[-1])[0]}: spread them; a "
-            "point has no surface or curve."
+            "point has no surface or curve.",
+            "control_points",
+            points,
         )
     return w
 

@@ -13,7 +13,7 @@ from standoff.geometry.knot_removal import essential_row
 from standoff.geometry.knots import KnotVector, bezier_spans, elevate_knots, knot_vector, refine
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.validation import Array, affine_map, finite
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 from standoff.real_numbers import shape_of
 
 # Ends closer than this fraction of the curve's extent, with tangents parallel to this sine, are

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import scipy
 
+from standoff.errors import StandoffError
 from standoff.geometry.knots import bezier_spans, knot_vector
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.validation import Array, finite
-from standoff.kernels import layout as L
-from standoff.kernels.entries import pcurve_jet
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import pcurve_jet
 
 # A piece of a NURBS pcurve turns by less than this (radians): 180 degrees with a margin.
 MOST_TURN = 0.9 * np.pi
@@ -144,7 +145,7 @@ def _halved(piece: BezierPcurve, halvings: int = 0) -> list[BezierPcurve]:
         return [piece]
     middle = 0.5 * (first + last)
     if halvings == MAX_HALVINGS:
-        raise ValueError(
+        raise StandoffError(
             f"The trimming curve turns back on itself at its parameter {middle:.9g}: give one "
             "that runs on."
         )

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array, finite
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 
 # Exponents that random poses found sound: beyond them roundings are edges to float64 (a box, an
 # octahedron), and descents near 2 end uncertified in some of a thousand poses.
@@ -20,10 +21,12 @@ def checked_exponent(value: object, name: str) -> float:
     """A convex superellipsoid's exponent; raises ValueError with the range."""
     e = float(finite(value, name, ()))
     if not LEAST_EXPONENT <= e <= GREATEST_EXPONENT:
-        raise ValueError(
+        raise StandoffError(
             f"{name} = {e}: a superellipsoid's exponents must be from {LEAST_EXPONENT} to "
             f"{GREATEST_EXPONENT}; towards 0 it is a box or a cylinder, at 2 an octahedron, above "
-            "2 not convex."
+            "2 not convex.",
+            name,
+            value,
         )
     return e
 
@@ -53,6 +56,7 @@ class SuperellipsoidPole(Surface):
     e1: float = 1.0
     e2: float = 1.0
     kind = L.SUPERELLIPSOID_POLE
+    bulge = 1
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "e1", checked_exponent(self.e1, "e1"))

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from standoff.errors import StandoffError
 from standoff.geometry.curves import Curve, fill_curve
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array, finite
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 from standoff.real_numbers import shown
 
 
@@ -54,11 +55,13 @@ class SurfaceCurve(Curve):
     ) -> None:
         first, last = float(finite(first, "first", ())), float(finite(last, "last", ()))
         if not first < last:
-            raise ValueError(f"SurfaceCurve from t = {first} to {last}: give first < last.")
+            raise StandoffError(f"SurfaceCurve from t = {first} to {last}: give first < last.")
         _check_chart((surface, pcurve), "SurfaceCurve")
         listed: Any = others
         if not isinstance(listed, Sequence) or isinstance(listed, str | bytes):
-            raise ValueError(f"others = {shown(listed)}: give a list of (surface, pcurve).")
+            raise StandoffError(
+                f"others = {shown(listed)}: give a list of (surface, pcurve).", "others", others
+            )
         for number, one in enumerate(listed):
             _check_chart(one, f"others[{number}]")
         object.__setattr__(self, "surface", surface)
@@ -87,9 +90,9 @@ class SurfaceCurve(Curve):
             No surface, both parameters or none, a number that is not finite, an endless domain.
         """
         if not isinstance(surface, Surface):
-            raise ValueError(f"surface is {shown(surface)}: give a Surface.")
+            raise StandoffError(f"surface is {shown(surface)}: give a Surface.", "surface", surface)
         if (u is None) == (v is None):
-            raise ValueError(f"isoline at u = {shown(u)}, v = {shown(v)}: give one of them.")
+            raise StandoffError(f"isoline at u = {shown(u)}, v = {shown(v)}: give one of them.")
         u0, u1, v0, v1 = surface.domain
         if u is not None:
             u = float(finite(u, "u", ()))
@@ -144,6 +147,10 @@ def _check_chart(one: Any, name: str) -> None:
     """Raise ValueError where something given is no pair of a surface and a pcurve."""
     surface, pcurve = one if isinstance(one, tuple | list) and len(one) == 2 else (one, None)
     if not isinstance(surface, Surface):
-        raise ValueError(f"{name}: the surface is {shown(surface)}: give a Surface.")
+        raise StandoffError(
+            f"{name}: the surface is {shown(surface)}: give a Surface.", "surface", surface
+        )
     if not isinstance(pcurve, Pcurve):
-        raise ValueError(f"{name}: the pcurve is {shown(pcurve)}: give a Pcurve.")
+        raise StandoffError(
+            f"{name}: the pcurve is {shown(pcurve)}: give a Pcurve.", "pcurve", pcurve
+        )

@@ -1,6 +1,6 @@
 """Surfaces: a canonical form behind an affine map x = A y + shift.
 
-Every kind is one jet function in ``standoff.kernels.jets`` and one validated, immutable class
+Every kind is one jet function in ``standoff.kernels.body.jets`` and one validated, immutable class
 here. Lengths in the body's frame.
 """
 
@@ -12,9 +12,10 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from standoff.errors import StandoffError
 from standoff.geometry.validation import Array, affine_map, finite, matrix3, vector3
-from standoff.kernels import layout as L
-from standoff.kernels.entries import surface_jet
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import surface_jet
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import real_array, shape_of, shown
 
@@ -27,13 +28,21 @@ UNBOUNDED: Domain = (-np.inf, np.inf, -np.inf, np.inf)
 def checked_domain(domain: Any, name: str) -> Domain:
     """(u0, u1, v0, v1) as floats; raises ValueError where it is empty or not a number."""
     if shape_of(domain) != (4,):
-        raise ValueError(f"{name}.domain = {shown(domain)}: give (u0, u1, v0, v1).")
+        raise StandoffError(
+            f"{name}.domain = {shown(domain)}: give (u0, u1, v0, v1).", "domain", domain
+        )
     try:
         u0, u1, v0, v1 = (float(x) for x in real_array(domain))
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name}.domain = {shown(domain)} is not numeric: {error}.") from error
+        raise StandoffError(
+            f"{name}.domain = {shown(domain)} is not numeric: {error}.", "domain", domain
+        ) from error
     if not (u0 < u1 and v0 < v1):
-        raise ValueError(f"{name}.domain = {(u0, u1, v0, v1)} is empty: give u0 < u1, v0 < v1.")
+        raise StandoffError(
+            f"{name}.domain = {(u0, u1, v0, v1)} is empty: give u0 < u1, v0 < v1.",
+            "domain",
+            domain,
+        )
     return u0, u1, v0, v1
 
 
@@ -61,6 +70,10 @@ class Surface(KeepsReadOnly, ABC):
     domain: Domain = UNBOUNDED
     kind: ClassVar[int]
     periodic: ClassVar[bool] = False  # u is an angle
+    over_plane: ClassVar[bool] = False  # (u, v) are two of the canonical coordinates
+    bulge: ClassVar[int | None] = None
+    """By theorem: 0 flat, +1 convex and bulging along x_u × x_v of the canonical form, -1 against
+    it; None where a patch must be proven convex."""
     reals: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -70,9 +83,11 @@ class Surface(KeepsReadOnly, ABC):
         # by columns, which may have different units: a cylinder's are its radius and a length
         lengths = np.abs(linear).max(axis=0)
         if lengths.min() == 0.0 or abs(np.linalg.det(linear / lengths)) < SINGULAR:
-            raise ValueError(
+            raise StandoffError(
                 f"{type(self).__name__}.linear is singular:\n{linear}\n"
-                "Give three independent columns."
+                "Give three independent columns.",
+                "linear",
+                linear,
             )
         object.__setattr__(self, "linear", linear)
         object.__setattr__(self, "shift", shift)
@@ -101,7 +116,7 @@ class Surface(KeepsReadOnly, ABC):
 
     @property
     def data(self) -> Array:
-        """What the kind's kernel reads behind the affine map (see ``standoff.kernels.layout``)."""
+        """What the kind's kernel reads behind the affine map (see ``kernels.body.layout``)."""
         return self.reals[L.SURFACE_DATA :]
 
     def jet(self, u: float, v: float) -> tuple[Array, ...]:
@@ -128,7 +143,7 @@ class Surface(KeepsReadOnly, ABC):
         smaller = checked_domain((u0, u1, v0, v1), type(self).__name__)
         a, b, c, d = self.domain
         if not (a <= smaller[0] and smaller[1] <= b and c <= smaller[2] and smaller[3] <= d):
-            raise ValueError(f"The domain {smaller} leaves the surface's own, {self.domain}.")
+            raise StandoffError(f"The domain {smaller} leaves the surface's own, {self.domain}.")
         return smaller
 
     def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -181,6 +196,8 @@ class Plane(Surface):
     """
 
     kind = L.PLANE
+    over_plane = True
+    bulge = 0
 
     @staticmethod
     def through(origin: Array, along_u: Array, along_v: Array) -> Plane:
@@ -204,7 +221,7 @@ class Plane(Surface):
         normal = np.cross(along_u, along_v)
         length = np.linalg.norm(normal)
         if length == 0.0:
-            raise ValueError(f"along_u {along_u} and along_v {along_v} are parallel: no plane.")
+            raise StandoffError(f"along_u {along_u} and along_v {along_v} are parallel: no plane.")
         # the third column plays no part in the jet; unit size keeps the inverse well scaled
         third = normal / length * np.sqrt(length)
         return Plane(np.column_stack([along_u, along_v, third]), vector3(origin, "origin"))
@@ -236,6 +253,7 @@ class Sphere(Surface):
     """
 
     kind = L.SPHERE
+    bulge = 1
 
     def highest(self, direction: Array) -> tuple[float, float] | None:
         y = self.linear.T @ direction
@@ -262,6 +280,7 @@ class Cylinder(Surface):
 
     kind = L.CYLINDER
     periodic = True
+    bulge = 1
 
     def highest(self, direction: Array) -> None:
         return None
@@ -288,6 +307,7 @@ class Cone(Surface):
 
     kind = L.CONE
     periodic = True
+    bulge = 1
 
     def highest(self, direction: Array) -> None:
         return None

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from standoff.errors import StandoffError
 from standoff.geometry.curve_bounds import box_of, curve_breaks, curve_reach
 from standoff.geometry.curves import FULL_TURN, Curve
 from standoff.geometry.surfaces import Domain, Surface
 from standoff.geometry.torus import checked_turn, full_turn
 from standoff.geometry.validation import LEAST, Array, affine_map, finite, vector3
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 from standoff.real_numbers import shown
 
 # Points of a profile that are looked at.
@@ -53,15 +54,19 @@ class Revolution(Surface):
         size = float(np.ptp(points, axis=0).max())
         worst = int(np.abs(points[:, 1]).argmax())
         if abs(points[worst, 1]) > PROFILE_ROUNDOFF * size:
-            raise ValueError(
+            raise StandoffError(
                 f"Revolution: the profile leaves the plane y = 0 at {points[worst]}: give radii as "
-                "x and heights as z."
+                "x and heights as z.",
+                "profile",
+                profile,
             )
         inner = 1 + int(points[1:-1, 0].argmin())
         if min(points[0, 0], points[-1, 0]) < -PROFILE_ROUNDOFF * size or points[inner, 0] <= 0.0:
-            raise ValueError(
+            raise StandoffError(
                 f"Revolution: the profile meets or passes the axis at {points[inner]}; only its "
-                "ends may touch the axis: keep x > 0 between them."
+                "ends may touch the axis: keep x > 0 between them.",
+                "profile",
+                profile,
             )
         domain = (first, last, profile.first, profile.last)
         self._set(profile, domain, np.eye(3), np.zeros(3))
@@ -144,18 +149,24 @@ class Extrusion(Surface):
         direction = vector3(direction, "direction")
         first, last = float(finite(first, "first", ())), float(finite(last, "last", ()))
         if not first < last:
-            raise ValueError(f"Extrusion from v = {first} to {last}: give first < last.")
+            raise StandoffError(f"Extrusion from v = {first} to {last}: give first < last.")
         length = float(np.linalg.norm(direction))
         if length == 0.0:
-            raise ValueError("Extrusion along the direction (0, 0, 0): give a vector of length.")
+            raise StandoffError(
+                "Extrusion along the direction (0, 0, 0): give a vector of length.",
+                "direction",
+                direction,
+            )
         _profile_points(profile, "Extrusion")
         for t in np.linspace(profile.first, profile.last, PROFILE_SAMPLES):
             tangent = profile.jet(float(t))[1]
             across = float(np.linalg.norm(np.cross(tangent, direction)))
             if across <= ALONG_PROFILE * length * float(np.linalg.norm(tangent)):
-                raise ValueError(
+                raise StandoffError(
                     f"Extrusion: the direction {direction} runs along the profile at its "
-                    f"parameter {t:.6g}; there is no surface."
+                    f"parameter {t:.6g}; there is no surface.",
+                    "direction",
+                    direction,
                 )
         domain = (profile.first, profile.last, first, last)
         self._set(profile, direction, domain, np.eye(3), np.zeros(3))
@@ -214,12 +225,17 @@ class Extrusion(Surface):
 
 def _profile_points(profile: Any, name: str) -> Array:
     if not isinstance(profile, Curve):
-        raise ValueError(f"{name} of {shown(profile)}: give a Curve as its profile.")
+        raise StandoffError(
+            f"{name} of {shown(profile)}: give a Curve as its profile.", "profile", profile
+        )
     spots = np.linspace(profile.first, profile.last, PROFILE_SAMPLES)
     points = np.array([profile.point(float(t)) for t in spots])
     extent = float(np.ptp(points, axis=0).max())
     if extent < LEAST:
-        raise ValueError(
-            f"{name}: the profile's extent is {extent:.3g}, below {LEAST:g}; choose a smaller unit."
+        raise StandoffError(
+            f"{name}: the profile's extent is {extent:.3g}, below {LEAST:g}; choose a "
+            "smaller unit.",
+            "profile",
+            profile,
         )
     return points

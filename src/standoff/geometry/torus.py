@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from standoff.errors import StandoffError
 from standoff.geometry.curves import FULL_TURN
 from standoff.geometry.surfaces import Domain, Surface
 from standoff.geometry.validation import Array, affine_map, finite, positive
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 
 # Angles may pass a whole turn, or the ends of the convex part, by this (radians): roundoff of
 # computing them.
@@ -25,7 +26,9 @@ def checked_turn(first: Any, last: Any, name: str) -> tuple[float, float]:
     """Two finite angles, radians, less than or just a turn apart."""
     a, b = float(finite(first, "first", ())), float(finite(last, "last", ()))
     if not 0.0 < b - a <= FULL_TURN * (1.0 + ANGLE_ROUNDOFF):
-        raise ValueError(f"{name} from angle {a} to {b}: give 0 < last - first <= 2 pi (radians).")
+        raise StandoffError(
+            f"{name} from angle {a} to {b}: give 0 < last - first <= 2 pi (radians).", "last", b
+        )
     return a, b
 
 
@@ -45,6 +48,7 @@ class Torus(Surface):
     """
 
     kind = L.TORUS
+    bulge = 1
 
     major: float
     minor: float
@@ -62,7 +66,7 @@ class Torus(Surface):
         v0, v1 = float(finite(v0, "v0", ())), float(finite(v1, "v1", ()))
         top = 0.5 * np.pi + ANGLE_ROUNDOFF
         if not -top <= v0 < v1 <= top:
-            raise ValueError(f"Torus from v = {v0} to {v1}: give -pi/2 <= v0 < v1 <= pi/2.")
+            raise StandoffError(f"Torus from v = {v0} to {v1}: give -pi/2 <= v0 < v1 <= pi/2.")
         domain = (u0, u1, v0, v1)
         self._set(
             positive(major, "major"), positive(minor, "minor"), domain, np.eye(3), np.zeros(3)

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.real_numbers import MaskedNumbers, real_array, shown
+from standoff.errors import MaskedNumbers, StandoffError
+from standoff.real_numbers import real_array, shown
 
 Array = NDArray[np.float64]
 
@@ -31,20 +32,22 @@ def finite(value: Any, name: str, shape: tuple[int, ...]) -> Array:
     try:
         array = real_array(value)
     except MaskedNumbers as error:
-        raise ValueError(f"{name} {error}: {shown(value)}") from error
+        raise StandoffError(f"{name} {error}: {shown(value)}", name, value) from error
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} is not numeric: {shown(value)}") from error
+        raise StandoffError(f"{name} is not numeric: {shown(value)}", name, value) from error
     fits = array.ndim == len(shape) and all(
         want in (-1, have) for want, have in zip(shape, array.shape, strict=True)
     )
     if not fits:
         wanted = tuple("n" if want == -1 else want for want in shape)
-        raise ValueError(f"{name} has shape {array.shape}; give shape {wanted}.")
+        raise StandoffError(f"{name} has shape {array.shape}; give shape {wanted}.", name, value)
     if not np.isfinite(array).all():
-        raise ValueError(f"{name} has a NaN or infinite number: {shown(value)}")
+        raise StandoffError(f"{name} has a NaN or infinite number: {shown(value)}", name, value)
     if array.size and np.abs(array).max() > GREATEST:
-        raise ValueError(
-            f"{name} has a number beyond {GREATEST:g}: {shown(value)}; choose a larger unit."
+        raise StandoffError(
+            f"{name} has a number beyond {GREATEST:g}: {shown(value)}; choose a larger unit.",
+            name,
+            value,
         )
     array.flags.writeable = False
     return array
@@ -67,9 +70,11 @@ def positive(value: Any, name: str) -> float:
     """A finite number above zero, not below `LEAST`."""
     number = float(finite(value, name, ()))
     if number <= 0.0:
-        raise ValueError(f"{name} = {number}: must be positive.")
+        raise StandoffError(f"{name} = {number}: must be positive.", name, value)
     if number < LEAST:
-        raise ValueError(f"{name} = {number}: below {LEAST:g}; choose a smaller unit.")
+        raise StandoffError(
+            f"{name} = {number}: below {LEAST:g}; choose a smaller unit.", name, value
+        )
     return number
 
 
@@ -77,9 +82,11 @@ def not_negative(value: Any, name: str) -> float:
     """A finite number, zero or above, not between zero and `LEAST`."""
     number = float(finite(value, name, ()))
     if number < 0.0:
-        raise ValueError(f"{name} = {number}: must be zero or positive.")
+        raise StandoffError(f"{name} = {number}: must be zero or positive.", name, value)
     if 0.0 < number < LEAST:
-        raise ValueError(f"{name} = {number}: below {LEAST:g}; choose a smaller unit, or give 0.")
+        raise StandoffError(
+            f"{name} = {number}: below {LEAST:g}; choose a smaller unit, or give 0.", name, value
+        )
     return number
 
 
@@ -87,7 +94,9 @@ def check_alike(weights: Array) -> None:
     """Raise ValueError where positive weights differ by more than `WEIGHT_RATIO`."""
     least, most = float(weights.min()), float(weights.max())
     if most > WEIGHT_RATIO * least:
-        raise ValueError(
+        raise StandoffError(
             f"weights from {least:g} to {most:g}: the lighter points are lost in roundoff; give "
-            f"weights within a factor of {WEIGHT_RATIO:g}."
+            f"weights within a factor of {WEIGHT_RATIO:g}.",
+            "weights",
+            weights,
         )

@@ -166,9 +166,12 @@ PRISM = 2.0
 # Evaluations that steps with a deadline may spend on a start before another one is tried.
 PATIENCE = 48.0
 # Frames that were cut off in contact before the other method has its turn.
-TURN = 8.0
+CUT_TURN = 8
 
 # The integral part of a PI feedback commands at most the error of WOUND_UP spans (dimensionless:
 # a cosine times the pair's span over it): of an error of one span, the greatest that there can be,
 # it has then seen ten times what the gains make of it. More comes of a loop that diverges.
 WOUND_UP = 10.0
+# A frame whose parameters change by less, relative to patches of [0, 1], has gone out to a boundary
+# and back: an edge's parameter and its pcurve give the point back but for a few roundings.
+STANDSTILL = 1e-12

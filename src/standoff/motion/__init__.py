@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from standoff.motion.bounds import Bounded, BoundedPath, MotionBounds
     from standoff.motion.paths import Carried, ConstantTwist, Fixed, Offset, Path, Screw
     from standoff.motion.pose import Pose, PoseLike
+    from standoff.motion.pose_function import PoseFunction
     from standoff.motion.samples import PoseSamples
     from standoff.motion.samples_file import read_pose_samples
     from standoff.motion.twist import Frame, Twist, TwistLike
@@ -26,6 +27,7 @@ else:
                 "Screw",
             ),
             "standoff.motion.pose": ("Pose", "PoseLike"),
+            "standoff.motion.pose_function": ("PoseFunction",),
             "standoff.motion.samples": ("PoseSamples",),
             "standoff.motion.samples_file": ("read_pose_samples",),
             "standoff.motion.twist": ("Frame", "Twist", "TwistLike"),
@@ -46,6 +48,7 @@ __all__ = [
     "Orientation",
     "Path",
     "Pose",
+    "PoseFunction",
     "PoseLike",
     "PoseSamples",
     "Screw",

@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol, cast
+from typing import Protocol, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
+from standoff.motion.pose_function import path_of
 from standoff.motion.twist import TwistLike
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of, shown
@@ -79,7 +81,8 @@ class Bounded(KeepsReadOnly):
     Parameters
     ----------
     path
-        Anything with ``pose(t)`` and ``twist(t)``, t in s.
+        Anything with ``pose(t)`` and ``twist(t)``, t in s, or a function of the time that returns
+        a pose, which is read as `PoseFunction` reads it.
     speed : float
         No less than the speed of the body's origin at any time [length/s].
     acceleration : float
@@ -98,7 +101,7 @@ class Bounded(KeepsReadOnly):
     Raises
     ------
     TypeError
-        If the path has no ``pose`` and ``twist``.
+        If the path has no ``pose`` and ``twist``, and is no function.
     ValueError
         If a bound is negative or not finite, or the breaks are no sequence of finite numbers.
     """
@@ -114,11 +117,10 @@ class Bounded(KeepsReadOnly):
         breaks: ArrayLike = (),
         lengths: float | None = None,
     ) -> None:
-        check_path(path)
-        given: Any = path
+        given = path_of(path)
         self._pose, self._twist = given.pose, given.twist
-        self.start = float(getattr(path, "start", -math.inf))
-        self.end = float(getattr(path, "end", math.inf))
+        self.start = float(getattr(given, "start", -math.inf))
+        self.end = float(getattr(given, "end", math.inf))
         self._origin = MotionBounds(
             _bound(speed, "speed"),
             _bound(acceleration, "acceleration"),
@@ -152,16 +154,10 @@ class Bounded(KeepsReadOnly):
         return [float(t) for t in within]
 
 
-def check_path(path: object) -> None:
-    """Raise TypeError where something given is no path."""
-    if not all(callable(getattr(path, name, None)) for name in ("pose", "twist")):
-        raise TypeError(f"{shown(path)} is no path: it needs pose(t) and twist(t)")
-
-
 def _bound(value: float, name: str) -> float:
     read = inputs.number(value, name)
     if read < 0.0:
-        raise ValueError(f"{name} is {read}: a bound is zero or above")
+        raise StandoffError(f"{name} is {read}: a bound is zero or above", name, value)
     return read
 
 
@@ -169,7 +165,9 @@ def _times(value: ArrayLike, name: str) -> FloatArray:
     """Read a sequence of times, as many as there are."""
     shape = shape_of(value)
     if shape is None or len(shape) != 1:
-        raise ValueError(f"{name} is {shown(value)}: give a sequence of times, such as [1.0, 2.5]")
+        raise StandoffError(
+            f"{name} is {shown(value)}: give a sequence of times, such as [1.0, 2.5]", name, value
+        )
     return inputs.array(value, name, (shape[0],))
 
 
@@ -236,10 +234,12 @@ def known(path: object) -> BoundedPath:
         If it does not.
     """
     if not callable(getattr(path, "bounds", None)) or not callable(getattr(path, "breaks", None)):
-        raise TypeError(
+        raise StandoffTypeError(
             f"nothing is known of how fast {shown(path)} moves between two times: wrap it in "
             "standoff.motion.Bounded(path, speed=..., acceleration=..., angular_speed=..., "
-            "angular_acceleration=...)"
+            "angular_acceleration=...)",
+            "path",
+            path,
         )
     return cast(BoundedPath, path)
 

@@ -8,7 +8,8 @@ from typing import SupportsFloat
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from standoff.real_numbers import MaskedNumbers, check_unmasked, real_array, shown
+from standoff.errors import MaskedNumbers, StandoffError, StandoffTypeError
+from standoff.real_numbers import check_unmasked, real_array, shown
 
 FloatArray = NDArray[np.float64]
 
@@ -34,23 +35,35 @@ def array(
     value: ArrayLike, name: str, shape: tuple[int, ...], most: float = GREATEST
 ) -> FloatArray:
     """Copy `value` to a read-only float64 array of the given shape, no component beyond `most`."""
+    copied = numbers(value, name, shape)
+    if not np.isfinite(copied).all():
+        raise StandoffError(
+            f"{name} is {text(copied)}: every component must be finite", name, value
+        )
+    if copied.size and np.abs(copied).max() > most:
+        raise StandoffError(
+            f"{name} is {text(copied)}: no component may be beyond {most:g}", name, value
+        )
+    copied.setflags(write=False)
+    return copied
+
+
+def numbers(value: ArrayLike, name: str, shape: tuple[int, ...]) -> FloatArray:
+    """Copy `value` to a float64 array of the given shape, whose components may be of any size."""
     try:
         copied = real_array(value)
     except MaskedNumbers as error:
-        raise ValueError(f"{name} {error}: {shown(value)}") from error
+        raise StandoffError(f"{name} {error}: {shown(value)}", name, value) from error
     except (TypeError, ValueError) as error:
-        raise ValueError(
-            f"{name} is {shown(value)}: give {_numbers(shape)}, all of them real"
+        raise StandoffError(
+            f"{name} is {shown(value)}: give {_numbers(shape)}, all of them real", name, value
         ) from error
     if copied.shape != shape:
-        raise ValueError(
-            f"{name} has shape {copied.shape}, value {text(copied)}: give {_numbers(shape)}"
+        raise StandoffError(
+            f"{name} has shape {copied.shape}, value {text(copied)}: give {_numbers(shape)}",
+            name,
+            value,
         )
-    if not np.isfinite(copied).all():
-        raise ValueError(f"{name} is {text(copied)}: every component must be finite")
-    if copied.size and np.abs(copied).max() > most:
-        raise ValueError(f"{name} is {text(copied)}: no component may be beyond {most:g}")
-    copied.setflags(write=False)
     return copied
 
 
@@ -59,19 +72,21 @@ def unmasked(value: object, name: str) -> None:
     try:
         check_unmasked(value)
     except MaskedNumbers as error:
-        raise ValueError(f"{name} {error}: {shown(value)}") from error
+        raise StandoffError(f"{name} {error}: {shown(value)}", name, value) from error
 
 
 def number(value: SupportsFloat, name: str) -> float:
     """Read one finite number."""
     try:
         if isinstance(value, bool | np.bool_ | str | bytes | np.ma.MaskedArray):
-            raise TypeError("no number")
+            raise StandoffTypeError("no number")
         read = float(value)
     except (TypeError, ValueError, OverflowError) as error:
-        raise ValueError(f"{name} is {shown(value)}: give one real number") from error
+        raise StandoffError(
+            f"{name} is {shown(value)}: give one real number", name, value
+        ) from error
     if not math.isfinite(read):
-        raise ValueError(f"{name} is {read}: give a finite number")
+        raise StandoffError(f"{name} is {read}: give a finite number", name, value)
     return read
 
 
@@ -79,7 +94,7 @@ def word(value: object, name: str, known: tuple[str, ...]) -> None:
     """Refuse everything but the words of `known`; an array would only be compared by element."""
     if not isinstance(value, str) or value not in known:
         choices = " or ".join(f'"{choice}"' for choice in known)
-        raise ValueError(f"{name} is {shown(value)}: give {choices}")
+        raise StandoffError(f"{name} is {shown(value)}: give {choices}", name, value)
 
 
 def direction(value: ArrayLike, name: str) -> FloatArray:
@@ -88,7 +103,9 @@ def direction(value: ArrayLike, name: str) -> FloatArray:
     # Scaled first: the square of a very short or long vector would underflow or overflow.
     largest = np.abs(vector).max()
     if largest == 0.0:
-        raise ValueError(f"{name} is {text(vector)}: a direction needs a length above zero")
+        raise StandoffError(
+            f"{name} is {text(vector)}: a direction needs a length above zero", name, value
+        )
     unit: FloatArray = vector / largest
     unit /= np.linalg.norm(unit)
     unit.setflags(write=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Protocol, runtime_checkable
 
@@ -16,13 +16,13 @@ from standoff.motion.bounds import (
     MotionBounds,
     bounds_of,
     breaks_of,
-    check_path,
     cross,
     length,
     turning,
 )
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
+from standoff.motion.pose_function import path_of
 from standoff.motion.twist import Twist, TwistLike
 from standoff.read_only import KeepsReadOnly
 
@@ -218,7 +218,7 @@ class Offset(KeepsReadOnly):
 
     Parameters
     ----------
-    path : Path
+    path : Path or function of the time
         Of the body that carries.
     pose : Pose or what `Pose.of` reads
         Of the carried body in the axes of the carrying one.
@@ -226,14 +226,13 @@ class Offset(KeepsReadOnly):
     Raises
     ------
     TypeError
-        If the path has no ``pose`` and ``twist``.
+        If the path has no ``pose`` and ``twist``, and is no function.
     ValueError
         If that is no pose.
     """
 
-    def __init__(self, path: Path, pose: PoseLike) -> None:
-        check_path(path)
-        self._path = path
+    def __init__(self, path: Path | Callable[[float], PoseLike], pose: PoseLike) -> None:
+        self._path: Path = path_of(path)
         self._offset = Pose.of(pose)
 
     @property
@@ -274,22 +273,24 @@ class Carried(KeepsReadOnly):
 
     Parameters
     ----------
-    carrier : Path
+    carrier : Path or function of the time
         Of the body that carries, in the world.
-    within : Path
+    within : Path or function of the time
         Of the carried body in the axes of the carrying one.
 
     Raises
     ------
     TypeError
-        If a path has no ``pose`` and ``twist``.
+        If a path has no ``pose`` and ``twist``, and is no function.
     """
 
-    def __init__(self, carrier: Path, within: Path) -> None:
-        check_path(carrier)
-        check_path(within)
-        self._carrier = carrier
-        self._within = within
+    def __init__(
+        self,
+        carrier: Path | Callable[[float], PoseLike],
+        within: Path | Callable[[float], PoseLike],
+    ) -> None:
+        self._carrier: Path = path_of(carrier)
+        self._within: Path = path_of(within)
 
     @property
     def start(self) -> float:

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias, TypeGuard
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeGuard
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from standoff.errors import StandoffError
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray, text
+from standoff.motion.rotations import as_rotation, nearest_rotation
 from standoff.motion.tolerances import ORTHONORMALITY, QUATERNION_ROUNDING, UNIT_QUATERNION
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of, shown
+from standoff.spellings import no_attribute
+
+LAST_ROW = (0.0, 0.0, 0.0, 1.0)
+"""Of every homogeneous matrix."""
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -25,8 +31,10 @@ class Pose(KeepsReadOnly):
 
     Parameters
     ----------
-    rotation : array_like, shape (3, 3)
-        Rotation matrix; its columns are the body's axes in world coordinates.
+    rotation : array_like, shape (3, 3), or SciPy's ``Rotation``
+        Rotation matrix; its columns are the body's axes in world coordinates. One that is
+        orthonormal to 1e-9 is kept bit for bit; one that is off by no more than 1e-5, as in single
+        precision or in text with six decimals, is replaced by the nearest rotation.
     translation : array_like, shape (3,)
         The body's origin in world coordinates [length].
 
@@ -36,39 +44,45 @@ class Pose(KeepsReadOnly):
         Read-only, float64.
     translation : ndarray, shape (3,)
         Read-only, float64.
-    normalised : bool
-        True where this pose was made from a quaternion that was not of unit norm and was
-        normalised. Poses computed from it do not carry the mark.
+    repaired : bool
+        True where the rotation given was not one to 1e-9 and the nearest was taken: a rounded
+        matrix, a quaternion brought to unit norm, or a matrix given to `nearest`. Poses computed
+        from this one do not carry the mark.
 
     Raises
     ------
     ValueError
         If a component is not finite, a shape is wrong, or the matrix is no rotation
-        (orthonormal to 1e-9 with determinant +1).
+        (``RᵀR`` is the identity to 1e-5, with determinant +1).
     """
 
     rotation: FloatArray
     translation: FloatArray
-    normalised: bool
+    repaired: bool
 
     # Without this NumPy would take a pose for an object array in ``pose @ array``.
     __array_ufunc__ = None
 
-    def __init__(self, rotation: ArrayLike, translation: ArrayLike = (0.0, 0.0, 0.0)) -> None:
-        matrix = inputs.array(rotation, "rotation", (3, 3))
-        _check_rotation(matrix)
-        self._set(matrix, inputs.array(translation, "translation", (3,)), normalised=False)
+    def __init__(self, rotation: RotationLike, translation: ArrayLike = (0.0, 0.0, 0.0)) -> None:
+        matrix, shift = _numbers(rotation, translation)
+        matrix, repaired = as_rotation(matrix)
+        self._set(matrix, shift, repaired=repaired)
 
-    def _set(self, rotation: FloatArray, translation: FloatArray, *, normalised: bool) -> None:
+    def _set(self, rotation: FloatArray, translation: FloatArray, *, repaired: bool) -> None:
         rotation.setflags(write=False)
         translation.setflags(write=False)
         object.__setattr__(self, "rotation", rotation)
         object.__setattr__(self, "translation", translation)
-        object.__setattr__(self, "normalised", normalised)
+        object.__setattr__(self, "repaired", repaired)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            raise no_attribute(self, name, {"normalised": "repaired"})
 
     @classmethod
     def from_checked(
-        cls, rotation: FloatArray, translation: FloatArray, *, normalised: bool = False
+        cls, rotation: FloatArray, translation: FloatArray, *, repaired: bool = False
     ) -> Pose:
         """Wrap float64 arrays known to be a pose, unchecked and uncopied; they become read-only.
 
@@ -76,7 +90,7 @@ class Pose(KeepsReadOnly):
         through ``Pose(...)`` or `Pose.of`.
         """
         pose = cls.__new__(cls)
-        pose._set(rotation, translation, normalised=normalised)
+        pose._set(rotation, translation, repaired=repaired)
         return pose
 
     @classmethod
@@ -85,8 +99,10 @@ class Pose(KeepsReadOnly):
 
         Parameters
         ----------
-        value : Pose, array_like of shape (4, 4), or pair (R, p)
-            A homogeneous matrix, or a rotation matrix with a translation.
+        value : Pose, array_like of shape (4, 4), pair (R, p), or SciPy's ``RigidTransform``
+            A homogeneous matrix, or a rotation with a translation. In a pair, R is a matrix or
+            SciPy's ``Rotation``. Any object whose ``as_matrix()`` returns such a matrix will do,
+            as those of jaxlie and mink. Rounded rotations are repaired as by ``Pose(R, p)``.
 
         Raises
         ------
@@ -94,29 +110,38 @@ class Pose(KeepsReadOnly):
             If it is none of these; a four-vector is refused, since nothing tells the order of a
             quaternion.
         """
+        return value if isinstance(value, Pose) else cls(*_parts(value))
+
+    @classmethod
+    def nearest(cls, value: PoseLike) -> Pose:
+        """Make a pose of the rotation nearest to a matrix that is none.
+
+        For matrices that are farther off than what `of` repairs, such as those of text with few
+        digits, of half precision, or summed up from small turns. A scale and a shear are lost:
+        those of a body belong to ``Body.transformed``.
+
+        Parameters
+        ----------
+        value : Pose or what `of` reads
+            R may be any matrix with a determinant above 0; the nearest rotation is the one with
+            the least sum of squared differences.
+
+        Returns
+        -------
+        Pose
+            With `repaired` set, unless R was orthonormal to 1e-9: then R is kept bit for bit.
+
+        Raises
+        ------
+        ValueError
+            If a component is not finite, a shape is wrong, or R is mirrored or flat (zero, or with
+            one principal stretch below 1e-6 of another).
+        """
         if isinstance(value, Pose):
             return value
-        if _is_pair(value):
-            rotation, translation = value
-            if shape_of(rotation) == (4,):
-                raise ValueError(_unnamed_quaternion(rotation))
-            return cls(rotation, translation)
-        inputs.unmasked(value, "pose")
-        try:
-            given = np.asarray(value)
-        except (ValueError, RecursionError) as error:
-            raise ValueError(f"no pose: {shown(value)}; {_ACCEPTED}") from error
-        if given.shape == (4,):
-            raise ValueError(_unnamed_quaternion(given))
-        if given.shape != (4, 4):
-            raise ValueError(f"no pose: shape {given.shape}, value {text(given)}; {_ACCEPTED}")
-        matrix = inputs.array(given, "pose", (4, 4))
-        if np.abs(matrix[3] - (0.0, 0.0, 0.0, 1.0)).max() > ORTHONORMALITY:
-            raise ValueError(
-                f"the last row of a homogeneous matrix is (0, 0, 0, 1), not {text(matrix[3])}; "
-                "if the translation stands there, transpose the matrix"
-            )
-        return cls(matrix[:3, :3], matrix[:3, 3])
+        matrix, shift = _numbers(*_parts(value))
+        rotation, repaired = nearest_rotation(matrix)
+        return cls.from_checked(rotation, shift, repaired=repaired)
 
     @classmethod
     def identity(cls) -> Pose:
@@ -130,7 +155,7 @@ class Pose(KeepsReadOnly):
         Parameters
         ----------
         quaternion : array_like, shape (4,)
-            (w, x, y, z), of unit norm to 1e-3; normalised, which `normalised` tells.
+            (w, x, y, z), of unit norm to 1e-3; brought to it, which `repaired` tells.
         translation : array_like, shape (3,)
             The body's origin in world coordinates [length].
 
@@ -149,7 +174,7 @@ class Pose(KeepsReadOnly):
         Parameters
         ----------
         quaternion : array_like, shape (4,)
-            (x, y, z, w), of unit norm to 1e-3; normalised, which `normalised` tells.
+            (x, y, z, w), of unit norm to 1e-3; brought to it, which `repaired` tells.
         translation : array_like, shape (3,)
             The body's origin in world coordinates [length].
 
@@ -166,14 +191,16 @@ class Pose(KeepsReadOnly):
         norm = float(np.linalg.norm(xyzw))
         defect = abs(norm - 1.0)
         if defect > UNIT_QUATERNION:
-            raise ValueError(
+            raise StandoffError(
                 f"quaternion with norm {norm:.9g}, off 1 by more than {UNIT_QUATERNION:g}; "
-                "give four components of unit norm, in the order that the name says"
+                "give four components of unit norm, in the order that the name says",
+                "quaternion",
+                xyzw,
             )
         return cls.from_checked(
             scipy.spatial.transform.Rotation.from_quat(xyzw).as_matrix(),
             inputs.array(translation, "translation", (3,)),
-            normalised=defect > QUATERNION_ROUNDING,
+            repaired=defect > QUATERNION_ROUNDING,
         )
 
     @classmethod
@@ -239,17 +266,80 @@ class Pose(KeepsReadOnly):
         inputs.unmasked(points, "points")
         array = np.asarray(points, dtype=np.float64)
         if array.ndim == 0 or array.shape[-1] != 3:
-            raise ValueError(f"points have shape {array.shape}: give an array of shape (..., 3)")
+            raise StandoffError(
+                f"points have shape {array.shape}: give an array of shape (..., 3)",
+                "points",
+                points,
+            )
         mapped: FloatArray = array @ self.rotation.T + self.translation
         return mapped
 
 
-PoseLike: TypeAlias = Pose | ArrayLike | tuple[ArrayLike, ArrayLike]
-"""What `Pose.of` reads: a pose, a homogeneous 4×4 matrix, or a pair (R, p)."""
+class HasMatrix(Protocol):
+    """A rotation or a rigid motion as SciPy, jaxlie and mink have them."""
+
+    def as_matrix(self) -> Any:
+        """Return the matrix, of shape (3, 3) or (4, 4)."""
+        ...
+
+
+RotationLike: TypeAlias = ArrayLike | HasMatrix
+"""A rotation: a matrix of shape (3, 3), or SciPy's ``Rotation``."""
+
+PoseLike: TypeAlias = Pose | ArrayLike | HasMatrix | tuple[RotationLike, ArrayLike]
+"""What `Pose.of` reads: a pose, a homogeneous 4×4 matrix or SciPy's ``RigidTransform``, or a pair
+(R, p)."""
 
 _ACCEPTED = (
-    "give a Pose, a homogeneous matrix of shape (4, 4), or a pair (R, p) of shapes (3, 3) and (3,)"
+    "give a Pose, a homogeneous matrix of shape (4, 4), a pair (R, p) of shapes (3, 3) and (3,), "
+    "or SciPy's RigidTransform; R may be SciPy's Rotation"
 )
+
+
+def matrix_of(value: Any) -> Any:
+    """Return the matrix of what has one; anything else as it is."""
+    # Asked by name, so that SciPy's classes are read without their import.
+    has_one = callable(getattr(value, "as_matrix", None)) and not isinstance(value, type)
+    return value.as_matrix() if has_one else value
+
+
+def _numbers(rotation: RotationLike, translation: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    return (
+        inputs.array(matrix_of(rotation), "rotation", (3, 3)),
+        inputs.array(translation, "translation", (3,)),
+    )
+
+
+def _parts(value: PoseLike) -> tuple[RotationLike, ArrayLike]:
+    """Part what should be a pose into rotation and translation, which are still to be checked."""
+    if isinstance(value, Pose):
+        return value.rotation, value.translation
+    if _is_pair(value):
+        rotation, translation = value
+        if shape_of(rotation) == (4,):
+            raise StandoffError(_unnamed_quaternion(rotation), "rotation", rotation)
+        return rotation, translation
+    given = matrix_of(value)
+    inputs.unmasked(given, "pose")
+    try:
+        given = np.asarray(given)
+    except (ValueError, RecursionError) as error:
+        raise StandoffError(f"no pose: {shown(value)}; {_ACCEPTED}", "value", value) from error
+    if given.shape == (4,):
+        raise StandoffError(_unnamed_quaternion(given), "value", value)
+    if given.shape != (4, 4):
+        raise StandoffError(
+            f"no pose: shape {given.shape}, value {text(given)}; {_ACCEPTED}", "value", value
+        )
+    matrix = inputs.array(given, "pose", (4, 4))
+    if np.abs(matrix[3] - LAST_ROW).max() > ORTHONORMALITY:
+        raise StandoffError(
+            f"the last row of a homogeneous matrix is (0, 0, 0, 1), not {text(matrix[3])}; "
+            "if the translation stands there, transpose the matrix",
+            "value",
+            value,
+        )
+    return matrix[:3, :3], matrix[:3, 3]
 
 
 def _is_pair(value: object) -> TypeGuard[Sequence[ArrayLike]]:
@@ -262,18 +352,3 @@ def _unnamed_quaternion(value: ArrayLike) -> str:
         f"four numbers {text(value)} are no pose: the order of a quaternion must be named; "
         "use Pose.from_wxyz(q, p) or Pose.from_xyzw(q, p)"
     )
-
-
-def _check_rotation(matrix: FloatArray) -> None:
-    defect = float(np.abs(matrix.T @ matrix - np.eye(3)).max())
-    if defect > ORTHONORMALITY:
-        raise ValueError(
-            f"rotation {text(matrix)} is not orthonormal: RᵀR differs from the identity by "
-            f"{defect:.3g}, allowed is {ORTHONORMALITY:g}; a scale or shear belongs to the body "
-            "(Body.transformed), and rounded matrices need orthonormalising"
-        )
-    if np.linalg.det(matrix) < 0.0:
-        raise ValueError(
-            f"rotation {text(matrix)} is mirrored: its determinant is −1; "
-            "mirror the body instead (Body.transformed), or flip one axis"
-        )

@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
+from standoff.errors import StandoffError
 from standoff.motion import inputs
 from standoff.motion.bounds import MotionBounds, cross, length, turning
 from standoff.motion.inputs import FloatArray
-from standoff.motion.pose import Pose, PoseLike
+from standoff.motion.pose import HasMatrix, Pose, PoseLike
+from standoff.motion.pose_stack import PoseStack
 from standoff.motion.tolerances import HALF_TURN
-from standoff.motion.twist import Twist
+from standoff.motion.twist import Twist, screws
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
+from standoff.spellings import no_attribute
+
+NEAR_HALF_TURN = -1.0 + 1e-6
+"""Trace of a turn that may be a half one, whose trace is −1 and whose rotations have a defect."""
+
+FASTER = 10.0
+"""A screw is no more than this faster than its ends' distances from the origin in its time."""
 
 
 class PoseSamples(KeepsReadOnly):
@@ -28,46 +38,95 @@ class PoseSamples(KeepsReadOnly):
     ----------
     times : array_like, shape (n,)
         Times of the samples [s], strictly increasing, at least two; uneven steps are welcome.
-    poses : sequence of n poses
-        Each a Pose or what `Pose.of` reads.
+    poses : sequence of n poses, ndarray of shape (n, 4, 4), or SciPy's ``RigidTransform`` of n
+        Of a sequence each is a Pose or what `Pose.of` reads; an array holds homogeneous matrices,
+        and is read some hundred times as fast. Rounded rotations are repaired as by `Pose.of`.
 
     Attributes
     ----------
     times : ndarray, shape (n,)
         Read-only, float64.
-    poses : tuple of Pose
-    normalised : int
-        How many poses came from a quaternion that was not of unit norm and was normalised.
+    repaired : int
+        How many poses had a rounded rotation, and were brought to the nearest one: their
+        `Pose.repaired`.
 
     Raises
     ------
     TypeError
-        If the poses are no sequence.
+        If the poses are no sequence and no array.
     ValueError
         If there are fewer than two samples, as many times as poses are not given, times do not
-        increase strictly or are not finite, a pose is none, or two samples differ by a half turn,
-        which has two shortest screws.
+        increase strictly or are not finite, a pose is none (the first such is named), or two
+        samples differ by a half turn, which has two shortest screws.
     """
 
-    def __init__(self, times: ArrayLike, poses: Sequence[PoseLike]) -> None:
-        if not isinstance(poses, Sequence):
-            raise TypeError(f"poses is {shown(poses)}: give a list of poses")
-        self.poses = tuple(_read(index, pose) for index, pose in enumerate(poses))
-        self.times = inputs.array(times, "times", (len(self.poses),))
-        self.normalised = sum(pose.normalised for pose in self.poses)
-        _check_times(self.times)
-        self._twists = tuple(self._between(index) for index in range(len(self.poses) - 1))
+    def __init__(
+        self, times: ArrayLike, poses: Sequence[PoseLike] | NDArray[Any] | HasMatrix
+    ) -> None:
+        self._set(times, PoseStack.of(poses))
 
-    def _between(self, index: int) -> Twist:
-        first, second = float(self.times[index]), float(self.times[index + 1])
-        twist = Twist.between(self.poses[index], self.poses[index + 1], second - first)
-        turn = float(np.linalg.norm(twist.omega)) * (second - first)
-        if turn > np.pi - HALF_TURN:
-            raise ValueError(
-                f"poses {index} and {index + 1} (t = {first!r} and {second!r}) differ by a half "
-                "turn, so that the way from one to the other is open: add a sample between them"
+    def _set(self, times: ArrayLike, stack: PoseStack) -> None:
+        self._stack = stack
+        self.times = inputs.array(times, "times", (len(stack.rotations),))
+        self.repaired = int(np.count_nonzero(stack.repaired))
+        _check_times(self.times)
+        self._check_ways()
+
+    def _check_ways(self) -> None:
+        """Refuse half turns and velocities beyond float64, looking closely only where needed."""
+        rotations, translations = self._stack.rotations, self._stack.translations
+        # 1 + 2 cos of the angle between two samples.
+        traces = np.einsum("nij,nij->n", rotations[:-1], rotations[1:])
+        lengths = np.abs(translations).max(axis=1) + 1.0
+        with np.errstate(over="ignore"):
+            speeds = (lengths[:-1] + lengths[1:]) / np.diff(self.times)
+        if traces.min() < NEAR_HALF_TURN or speeds.max() > inputs.GREATEST / FASTER:
+            _ = self._screws
+
+    @cached_property
+    def _screws(self) -> tuple[FloatArray, FloatArray]:
+        """The twists (v, ω) from each sample to the next, (n − 1, 3), in body axes."""
+        steps = np.diff(self.times)
+        v, omega = screws(self._stack.rotations, self._stack.translations, steps)
+        fast = ~((np.abs(v) <= inputs.GREATEST) & (np.abs(omega) <= inputs.GREATEST)).all(axis=1)
+        if fast.any():
+            raise StandoffError(
+                f"{self._between(fast)} are too far apart for the time between them: no velocity "
+                f"may be beyond {inputs.GREATEST:g}",
+                "poses",
             )
-        return twist
+        turns = np.linalg.norm(omega, axis=1) * steps
+        half = turns > np.pi - HALF_TURN
+        if half.any():
+            raise StandoffError(
+                f"{self._between(half)} differ by a half turn, so that the way from one to the "
+                "other is open: add a sample between them",
+                "poses",
+            )
+        v.setflags(write=False)
+        omega.setflags(write=False)
+        return v, omega
+
+    def _between(self, marked: ArrayLike) -> str:
+        """Name the two samples about the first of the ways between samples that is marked."""
+        index = int(np.argmax(marked))
+        first, second = self.times[index : index + 2].tolist()
+        return f"poses {index} and {index + 1} (t = {first!r} and {second!r})"
+
+    def _twist(self, index: int) -> Twist:
+        """Return the twist from a sample to the next, in body axes."""
+        v, omega = self._screws
+        return Twist.from_checked(v[index], omega[index], "body")
+
+    @cached_property
+    def poses(self) -> tuple[Pose, ...]:
+        """The poses of the samples, n of them."""
+        return tuple(self._stack.pose(index) for index in range(len(self.times)))
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            raise no_attribute(self, name, {"normalised": "repaired"})
 
     @property
     def start(self) -> float:
@@ -86,17 +145,21 @@ class PoseSamples(KeepsReadOnly):
         little better than a microsecond.
         """
         first = inputs.number(start, "start")
-        return PoseSamples((self.times - self.times[0]) + first, self.poses)
+        shifted = PoseSamples.__new__(PoseSamples)
+        shifted._set((self.times - self.times[0]) + first, self._stack)
+        return shifted
 
     def _interval(self, t: float) -> tuple[int, float]:
         seconds = inputs.number(t, "t")
         if not self.start <= seconds <= self.end:
-            raise ValueError(
+            raise StandoffError(
                 f"t is {seconds!r}, outside the samples: they reach from {self.start!r} to "
-                f"{self.end!r}"
+                f"{self.end!r}",
+                "t",
+                t,
             )
         index = int(np.searchsorted(self.times, seconds, side="right")) - 1
-        return min(index, len(self._twists) - 1), seconds
+        return min(index, len(self.times) - 2), seconds
 
     def pose(self, t: float) -> Pose:
         """Return where the body is at time `t` [s].
@@ -109,9 +172,9 @@ class PoseSamples(KeepsReadOnly):
         index, seconds = self._interval(t)
         if seconds == self.end:
             # Not by the last screw, so that every sample is met without rounding.
-            return self.poses[-1]
+            return self._stack.pose(-1)
         elapsed = seconds - float(self.times[index])
-        return self._twists[index].carry(self.poses[index], elapsed)
+        return self._twist(index).carry(self._stack.pose(index), elapsed)
 
     def twist(self, t: float) -> Twist:
         """Return how the body moves at time `t` [s], in world axes.
@@ -122,7 +185,7 @@ class PoseSamples(KeepsReadOnly):
             If `t` is outside the samples.
         """
         index, seconds = self._interval(t)
-        return self._twists[index].in_world(self.pose(seconds))
+        return self._twist(index).in_world(self.pose(seconds))
 
     def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
         """Return bounds from time `first` to `last` [s], within one interval of the samples.
@@ -134,22 +197,24 @@ class PoseSamples(KeepsReadOnly):
         """
         index, _ = self._interval(first)
         if not first <= last <= float(self.times[index + 1]):
-            raise ValueError(
+            raise StandoffError(
                 f"{first!r} to {last!r} is no time within one interval of the samples: "
-                f"the next one is at {float(self.times[index + 1])!r}"
+                f"the next one is at {float(self.times[index + 1])!r}",
+                "last",
+                last,
             )
-        twist = self._twists[index]
+        twist = self._twist(index)
         velocity = twist.v + cross(twist.omega, point)
         lengths = self._lengths(index, first, last)
-        return turning(twist.omega, velocity, self.poses[index].rotation, lengths)
+        return turning(twist.omega, velocity, self._stack.rotations[index], lengths)
 
     def _lengths(self, index: int, first: float, last: float) -> float:
         """Return what `MotionBounds` calls lengths; at a sample alone the pose is the given one."""
         begin = float(self.times[index])
         if first == last and first in (begin, self.end):
             return 0.0
-        ends = (length(self.poses[k].translation) for k in (index, index + 1))
-        return sum(ends) + length(self._twists[index].v) * (last - begin)
+        ends = (length(self._stack.translations[k]) for k in (index, index + 1))
+        return sum(ends) + length(self._twist(index).v) * (last - begin)
 
     def breaks(self, first: float, last: float) -> Sequence[float]:
         """Return the times of the samples strictly between `first` and `last` [s]."""
@@ -158,21 +223,18 @@ class PoseSamples(KeepsReadOnly):
         return [float(t) for t in self.times[begin:stop]]
 
 
-def _read(index: int, pose: PoseLike) -> Pose:
-    try:
-        return Pose.of(pose)
-    except ValueError as error:
-        raise ValueError(f"pose {index}: {error}") from error
-
-
 def _check_times(times: FloatArray) -> None:
     if len(times) < 2:
-        raise ValueError(f"{len(times)} samples make no motion: give at least two, or use Fixed")
+        raise StandoffError(
+            f"{len(times)} samples make no motion: give at least two, or use Fixed", "times", times
+        )
     steps = np.diff(times)
     if (steps <= 0.0).any():
         index = int(np.argmax(steps <= 0.0)) + 1
-        raise ValueError(
+        raise StandoffError(
             f"times must increase strictly: times[{index}] = {times[index].item()!r} follows "
             f"times[{index - 1}] = {times[index - 1].item()!r}; sort the samples, and keep one of "
-            "each time"
+            "each time",
+            "times",
+            times,
         )

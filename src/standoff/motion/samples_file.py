@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion.pose import Pose
 from standoff.motion.samples import PoseSamples
 from standoff.motion.samples_table import COLUMNS as _COLUMNS
@@ -40,8 +41,8 @@ def read_pose_samples(file: str | os.PathLike[str]) -> PoseSamples:
     Returns
     -------
     PoseSamples
-        Its `normalised` counts the quaternions that were not of unit norm, to 1e-3, and were
-        normalised.
+        Its `repaired` counts the quaternions that were not of unit norm, but to 1e-3, and were
+        brought to it.
 
     Raises
     ------
@@ -57,7 +58,9 @@ def read_pose_samples(file: str | os.PathLike[str]) -> PoseSamples:
     """
     given: object = file
     if not isinstance(given, str | os.PathLike):
-        raise TypeError(f"file is {shown(given)}: give the name of a file, a text or a path")
+        raise StandoffTypeError(
+            f"file is {shown(given)}: give the name of a file, a text or a path", "file", file
+        )
     path = Path(file)
     noun, rows = _rows_of(path)
     times: list[float] = []
@@ -81,17 +84,19 @@ def read_pose_samples(file: str | os.PathLike[str]) -> PoseSamples:
     try:
         return PoseSamples(times, poses)
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from error
+        raise StandoffError(f"{path}: {error}", "file", path) from error
 
 
 def _rows_of(path: Path) -> tuple[str, Iterator[tuple[int, list[float]]]]:
     """Return what a sample's place is called, and the samples: place, numbers by `_COLUMNS`."""
     ending = path.suffix.lower()
     if ending not in (".tum", ".txt", ".csv", ".parquet"):
-        raise ValueError(
+        raise StandoffError(
             f"{_told(path)}: the ending {shown(ending)} names no format of pose samples; "
             "use .tum (or .txt) for a TUM trajectory, .csv for a text table with a header, "
-            ".parquet for a Parquet one"
+            ".parquet for a Parquet one",
+            "file",
+            path,
         )
     _check_file(path)
     if ending == ".parquet":
@@ -117,7 +122,9 @@ def _content_lines(path: Path) -> list[tuple[int, str]]:
     except OSError as error:
         raise OSError(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise ValueError(f"{path}: not a text file in UTF-8 ({error.reason})") from error
+        raise StandoffError(
+            f"{path}: not a text file in UTF-8 ({error.reason})", "file", path
+        ) from error
     numbered = enumerate(content.splitlines(), 1)
     return [(n, text) for n, text in numbered if text.strip() and not text.lstrip().startswith("#")]
 
@@ -176,5 +183,5 @@ def _told(path: Path) -> str:
     return text if len(text) <= SHOWN_CHARACTERS else text[: SHOWN_CHARACTERS - 1] + "…"
 
 
-def _fault(path: Path, line: int, problem: str, noun: str = "line") -> ValueError:
-    return ValueError(f"{path}, {noun} {line}: {problem}")
+def _fault(path: Path, line: int, problem: str, noun: str = "line") -> StandoffError:
+    return StandoffError(f"{path}, {noun} {line}: {problem}", "file", path)

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from standoff.errors import StandoffError
+
 if TYPE_CHECKING:
     import pyarrow as pa
 
@@ -49,7 +51,9 @@ def parquet_rows(path: Path) -> Iterator[tuple[int, list[float]]]:
         table = pq.read_table(path, columns=chosen)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         # Damaged pages are an OSError too; nothing tells them from a disk's failure.
-        raise ValueError(f"{path}: is no readable Parquet file ({error})") from error
+        raise StandoffError(
+            f"{path}: is no readable Parquet file ({error})", "file", path
+        ) from error
     seconds = _seconds(path, chosen[0], table.column(chosen[0]))
     numbers = [_numbers(path, name, table.column(name)) for name in chosen[1:]]
     return _rows(path, chosen, [seconds, *numbers])
@@ -61,9 +65,11 @@ def _column_of(path: Path, column: str, names: list[str]) -> str:
     found = [name for name in names if name in known]
     if len(found) != 1:
         trouble = f"has {' and '.join(found)}" if found else f"has no column {' or '.join(known)}"
-        raise ValueError(
+        raise StandoffError(
             f"{path}: {trouble}; its columns are {', '.join(names)}: name one time, x y z or "
-            "tx ty tz, and qx qy qz qw"
+            "tx ty tz, and qx qy qz qw",
+            "file",
+            path,
         )
     return found[0]
 
@@ -73,9 +79,11 @@ def _seconds(path: Path, name: str, column: pa.ChunkedArray) -> list[Any]:
 
     kind = column.type
     if pa.types.is_integer(kind):
-        raise ValueError(
+        raise StandoffError(
             f"{path}, column {name}: whole numbers ({kind}) do not say whether they count seconds "
-            "or parts of them; store seconds as double, or instants as a timestamp"
+            "or parts of them; store seconds as double, or instants as a timestamp",
+            "file",
+            path,
         )
     if pa.types.is_timestamp(kind) or pa.types.is_duration(kind):
         unit = {"s": 1, "ms": 10**3, "us": 10**6, "ns": 10**9}[kind.unit]
@@ -89,7 +97,9 @@ def _numbers(path: Path, name: str, column: pa.ChunkedArray) -> list[Any]:
     import pyarrow as pa
 
     if not (pa.types.is_floating(column.type) or pa.types.is_integer(column.type)):
-        raise ValueError(f"{path}, column {name}: holds {column.type}: give double")
+        raise StandoffError(
+            f"{path}, column {name}: holds {column.type}: give double", "file", path
+        )
     values: list[Any] = column.to_pylist()
     return values
 
@@ -101,7 +111,9 @@ def _rows(
         for name, value in zip(names, values, strict=True):
             if value is None or not math.isfinite(value):
                 told = "empty" if value is None else str(value)
-                raise ValueError(
-                    f"{path}, row {row}: {name} is {told}; leave out samples without a pose"
+                raise StandoffError(
+                    f"{path}, row {row}: {name} is {told}; leave out samples without a pose",
+                    "file",
+                    path,
                 )
         yield row, [float(value) for value in values]

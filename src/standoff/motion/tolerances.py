@@ -8,12 +8,22 @@ from typing import Final
 #: in distances at the level that the library certifies.
 ORTHONORMALITY: Final = 1e-9
 
+#: No unit. Greatest component of ``RᵀR − I`` in a matrix that counts as a rotation rounded when it
+#: was stored: the nearest rotation is taken in its place, and told. Single precision leaves 2e-7,
+#: and 1e-6 after long products of rotations; text with six decimals leaves 2e-6. Beyond five times
+#: that, a scale or a shear may be meant. No axis moves by more than 1.5 times this.
+ROUNDED: Final = 1e-5
+
+#: No unit. Least over greatest singular value of a matrix that has a nearest rotation. Below it
+#: single precision does not tell the sign of the determinant, on which a whole half turn depends.
+FLAT: Final = 1e-6
+
 #: No unit. Greatest ``| |q| − 1 |`` of an accepted quaternion. Trajectory files keep four decimals,
 #: which leaves up to 1e-4; beyond ten times that the four numbers are something else, most often in
 #: another order or not a quaternion.
 UNIT_QUATERNION: Final = 1e-3
 
-#: No unit. Below this ``| |q| − 1 |`` normalising is rounding and is not reported. The same size as
+#: No unit. Below this ``| |q| − 1 |`` bringing it to unit norm is not reported. The same size as
 #: `ORTHONORMALITY`: a rotation matrix that far off is accepted without a word too.
 QUATERNION_ROUNDING: Final = 1e-9
 

@@ -10,6 +10,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from standoff.errors import StandoffError
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray, text
 from standoff.motion.pose import Pose, PoseLike
@@ -78,9 +79,11 @@ class Twist(KeepsReadOnly):
         try:
             given = np.asarray(value)
         except (ValueError, RecursionError) as error:
-            raise ValueError(f"no twist: {shown(value)}; {_ACCEPTED}") from error
+            raise StandoffError(f"no twist: {shown(value)}; {_ACCEPTED}", "value", value) from error
         if given.shape not in ((6,), (2, 3)):
-            raise ValueError(f"no twist: shape {given.shape}, value {text(given)}; {_ACCEPTED}")
+            raise StandoffError(
+                f"no twist: shape {given.shape}, value {text(given)}; {_ACCEPTED}", "value", value
+            )
         v, omega = given.reshape(2, 3)
         return cls(v, omega)
 
@@ -108,14 +111,27 @@ class Twist(KeepsReadOnly):
         """
         seconds = inputs.number(duration, "duration")
         if seconds <= 0.0:
-            raise ValueError(f"duration is {seconds}: give a time above zero")
-        relative = Pose.of(first).inverse() @ Pose.of(second)
-        turn: FloatArray = scipy.spatial.transform.Rotation.from_matrix(
-            relative.rotation
-        ).as_rotvec()
-        with np.errstate(over="ignore"):  # a velocity beyond float64 is refused as infinite
-            v, omega = _unshear(turn, relative.translation) / seconds, turn / seconds
-        return cls(v, omega, "body")
+            raise StandoffError(
+                f"duration is {seconds}: give a time above zero", "duration", duration
+            )
+        poses = Pose.of(first), Pose.of(second)
+        rotations = np.array([pose.rotation for pose in poses])
+        translations = np.array([pose.translation for pose in poses])
+        v, omega = screws(rotations, translations, np.array([seconds]))
+        return cls(v[0], omega[0], "body")
+
+    @classmethod
+    def from_checked(cls, v: FloatArray, omega: FloatArray, frame: Frame = "world") -> Twist:
+        """Wrap float64 arrays known to be a twist, unchecked and uncopied; they become read-only.
+
+        As `Pose.from_checked`.
+        """
+        twist = cls.__new__(cls)
+        for name, value in (("v", v), ("omega", omega)):
+            value.setflags(write=False)
+            object.__setattr__(twist, name, value)
+        object.__setattr__(twist, "frame", frame)
+        return twist
 
     def in_world(self, pose: PoseLike) -> Twist:
         """Return the same twist in world axes, for a body at `pose`."""
@@ -171,15 +187,40 @@ def _shear(turn: FloatArray, shift: FloatArray) -> FloatArray:
     return sheared
 
 
-def _unshear(turn: FloatArray, translation: FloatArray) -> FloatArray:
-    angle = math.hypot(*turn)
-    if angle == 0.0:
-        return translation
-    axis = turn / angle
-    real = 0.5 * angle / math.tan(0.5 * angle)
+def _unshear(turns: FloatArray, translations: FloatArray) -> FloatArray:
+    """V⁻¹ of stacks (n, 3)."""
+    # The library of C, by element: NumPy's own vary by a rounding with the processor.
+    angles = np.array(list(map(math.hypot, *turns.T.tolist())))
+    still = angles == 0.0
+    angles[still] = 1.0
+    axes = turns / angles[:, None]
+    real = 0.5 * angles / np.array(list(map(math.tan, (0.5 * angles).tolist())))
+    along = (1.0 - real) * (axes[:, None, :] @ translations[:, :, None])[:, 0, 0]
     unsheared: FloatArray = (
-        real * translation
-        - 0.5 * np.cross(turn, translation)
-        + (1.0 - real) * (axis @ translation) * axis
+        real[:, None] * translations - 0.5 * np.cross(turns, translations) + along[:, None] * axes
     )
+    unsheared[still] = translations[still]
     return unsheared
+
+
+def screws(
+    rotations: FloatArray, translations: FloatArray, durations: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the twists (v, ω), body axes, of the screws from each of n poses to the next.
+
+    Parameters
+    ----------
+    rotations, translations : ndarray, shape (n, 3, 3) and (n, 3)
+    durations : ndarray, shape (n - 1,)
+        From each pose to the next [s], above zero.
+
+    Returns
+    -------
+    v, omega : ndarray, shape (n - 1, 3)
+    """
+    back = np.swapaxes(rotations[:-1], 1, 2).copy()
+    origins = -(back @ translations[:-1, :, None])[:, :, 0]
+    ways = (translations[1:, None, :] @ np.swapaxes(back, 1, 2))[:, 0] + origins
+    turns = scipy.spatial.transform.Rotation.from_matrix(back @ rotations[1:]).as_rotvec()
+    with np.errstate(over="ignore"):  # a velocity beyond float64 is refused as infinite
+        return _unshear(turns, ways) / durations[:, None], turns / durations[:, None]

@@ -9,6 +9,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
+from standoff.errors import StandoffError
 from standoff.motion import inputs
 from standoff.motion.bounds import MotionBounds, length
 from standoff.motion.inputs import FloatArray
@@ -64,7 +65,9 @@ class Helix(KeepsReadOnly):
     ) -> None:
         self._radius = inputs.number(radius, "radius")
         if self._radius <= 0.0:
-            raise ValueError(f"radius is {self._radius}: give a length above zero")
+            raise StandoffError(
+                f"radius is {self._radius}: give a length above zero", "radius", radius
+            )
         self._rate = inputs.number(rate, "rate")
         self._climb = inputs.number(pitch, "pitch") / math.tau * self._rate
         self._centre = inputs.array(centre, "centre", (3,))
@@ -155,7 +158,9 @@ class Spiral(KeepsReadOnly):
     ) -> None:
         self._radius = inputs.number(radius, "radius")
         if self._radius < 0.0:
-            raise ValueError(f"radius is {self._radius}: give a length of zero or above")
+            raise StandoffError(
+                f"radius is {self._radius}: give a length of zero or above", "radius", radius
+            )
         self._growth = inputs.number(growth, "growth")
         self._rate = inputs.number(rate, "rate")
         self._centre = np.append(inputs.array(centre, "centre", (2,)), 0.0)

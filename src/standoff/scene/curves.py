@@ -44,14 +44,14 @@ def _nurbs(table: Table) -> Curve:
     points = table.points("control_points", 2, at_least=2)
     knots = table.numbers("knots")
     weights = table.numbers("weights") if "weights" in table else None
-    return table.build_named(lambda: NurbsCurve(points, knots, weights))
+    return table.build(lambda: NurbsCurve(points, knots, weights))
 
 
 def _formula(table: Table) -> Curve:
     x, y = table.formula("x"), table.formula("y")
     first, last = table.number("start"), table.number("end")
     parameters = table.named_numbers("parameters")
-    return table.build_named(lambda: FormulaCurve(x, y, "0", first, last, parameters))
+    return table.build(lambda: FormulaCurve(x, y, "0", first, last, parameters))
 
 
 CURVES: Mapping[str, CurveKind] = {

@@ -7,11 +7,11 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from standoff.recording.times import MOST_FRAMES, WHOLE_STEPS
 from standoff.scene.errors import SceneError
 from standoff.scene.motions import Motion
 from standoff.scene.reader import Array
 from standoff.scene.settings import DEFAULT_STEP, SAMPLES, TrackSettings
-from standoff.tracking.times import MOST_FRAMES, WHOLE_STEPS
 
 
 def time_span(motions: Iterable[Motion]) -> tuple[float, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
-from typing import NamedTuple, cast, get_args
+from typing import TYPE_CHECKING, Any, NamedTuple, cast, get_args
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from standoff.motion import (
 from standoff.scene.files import existing_file
 from standoff.scene.placements import in_space, read_pose
 from standoff.scene.reader import Array, Table
+from standoff.spellings import no_attribute
 
 FILE_START = "file"
 """Value of ``start`` that keeps the time stamps as the file gives them."""
@@ -47,15 +48,21 @@ class Motion:
         Scene times [s] of the pose samples; empty for a path given by a formula.
     file : Path or None
         The file of the pose samples.
-    rounded : int
-        How many of its quaternions were not of unit norm, to 1e-3, and were normalised.
+    repaired : int
+        How many of its poses had a rounded quaternion or matrix, and were brought to the nearest
+        rotation.
     """
 
     path: Path
     kind: str
     sample_times: Array = field(repr=False)
     file: FilePath | None = None
-    rounded: int = 0
+    repaired: int = 0
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            raise no_attribute(self, name, {"rounded": "repaired"})
 
 
 class MotionKind(NamedTuple):
@@ -116,10 +123,10 @@ def _samples(table: Table, _: Pose) -> Motion:
     samples: PoseSamples = table.build(lambda: read_pose_samples(file), "file")
     start = table.number_or_word("start", FILE_START, 0.0)
     if start is None:
-        return Motion(samples, "samples", samples.times, file, samples.normalised)
+        return Motion(samples, "samples", samples.times, file, samples.repaired)
     # A shift to a far start can round two close stamps to one, which the samples refuse.
     shifted = table.build(lambda: samples.starting_at(start), "start")
-    return Motion(shifted, "samples", shifted.times, file, samples.normalised)
+    return Motion(shifted, "samples", shifted.times, file, samples.repaired)
 
 
 def _orientation(table: Table) -> Orientation:
@@ -165,8 +172,8 @@ def read_motion(table: Table, placement: Pose | None) -> Motion:
     motion = kind.read(table, placement or Pose.identity())
     if "offset" in table:
         offset = read_pose(table.table("offset"))
-        rounded = motion.rounded + offset.normalised
-        motion = replace(motion, path=Offset(motion.path, offset), rounded=rounded)
+        repaired = motion.repaired + offset.repaired
+        motion = replace(motion, path=Offset(motion.path, offset), repaired=repaired)
     if "spin" in table:
         spin = table.vector("spin", 3)
         turning = table.build(lambda: Twist(np.zeros(3), spin, "body"), "spin")

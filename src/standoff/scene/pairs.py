@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from standoff.scene.reader import Table, shown
-from standoff.scene.settings import TrackSettings, check_together, read_settings
+from standoff.scene.settings import TrackSettings, read_settings
 
 PLAIN = "-_"
 """What a pair's name may have beside letters and digits: it becomes part of file names."""
@@ -32,17 +32,15 @@ class Pair:
     settings: TrackSettings
 
 
-def read_pairs(top: Table, bodies: Sequence[str], common: TrackSettings) -> tuple[Pair, ...]:
+def read_pairs(top: Table, bodies: Sequence[str]) -> tuple[Pair, ...]:
     """Return the pairs of a scene, at least one.
 
     Parameters
     ----------
     top : Table
-        The scene's top table, with ``pair`` or ``pairs``.
+        The scene's top table, with ``pair`` or ``pairs``, and ``track``.
     bodies : sequence of str
         Names of the bodies.
-    common : TrackSettings
-        The ``[track]`` table.
 
     Raises
     ------
@@ -55,14 +53,12 @@ def read_pairs(top: Table, bodies: Sequence[str], common: TrackSettings) -> tupl
         table = top.table("pair")
         table.expect("a", "b")
         a, b = _bodies(table, bodies)
-        check_together(common, *track)
-        return (Pair("pair", a, b, common),)
+        return (Pair("pair", a, b, read_settings(*track)),)
     if "pair" in top:
         raise top.error("is given beside [[pairs]]; write it as one more [[pairs]]", "pair")
     pairs: list[Pair] = []
     for table in top.tables("pairs"):
-        settings = read_settings(table, common, beside=("name", "a", "b"))
-        check_together(settings, table, *track)
+        settings = read_settings(table, *track, beside=("name", "a", "b"))
         a, b = _bodies(table, bodies)
         name = _name(table, f"{a}-{b}", pairs)
         pairs.append(Pair(name, a, b, settings))

@@ -29,12 +29,12 @@ class PatchKind(NamedTuple):
 def _nurbs(table: Table) -> Surface:
     points, weights = _points(table), _weights(table)
     knots_u, knots_v = table.numbers("knots_u"), table.numbers("knots_v")
-    return table.build_named(lambda: NurbsSurface(points, knots_u, knots_v, weights))
+    return table.build(lambda: NurbsSurface(points, knots_u, knots_v, weights))
 
 
 def _bezier(table: Table) -> Surface:
     points, weights = _points(table), _weights(table)
-    return table.build_named(lambda: BezierPatch(points, weights))
+    return table.build(lambda: BezierPatch(points, weights))
 
 
 def _points(table: Table) -> Array:
@@ -49,7 +49,7 @@ def _formula(table: Table) -> Surface:
     x, y, z = (table.formula(key) for key in ("x", "y", "z"))
     domain = table.vector("domain", 4, example="domain = [0.0, 1.0, 0.0, 1.0]")
     parameters = table.named_numbers("parameters")
-    return table.build_named(lambda: FormulaSurface(x, y, z, domain.tolist(), parameters))
+    return table.build(lambda: FormulaSurface(x, y, z, domain.tolist(), parameters))
 
 
 PATCHES: Mapping[str, PatchKind] = {

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import difflib
 import math
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
@@ -16,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from standoff import real_numbers
+from standoff.errors import StandoffError
 from standoff.scene.errors import SceneError
 
 Array = npt.NDArray[np.float64]
@@ -98,7 +98,8 @@ class Table:
     def error(self, problem: str, key: str | None = None) -> SceneError:
         """Return the error about `key` of this table, or about the table itself."""
         parts = [part for part in (self.path, key) if part]
-        return SceneError(problem, key=".".join(parts), file=self.file)
+        value = None if key is None else self._content.get(key)
+        return SceneError(problem, key=".".join(parts), file=self.file, value=value)
 
     def expect(self, *keys: str) -> None:
         """Refuse every key but these.
@@ -114,26 +115,20 @@ class Table:
                 raise self.error(unknown_name(key, keys, "key"), key)
 
     def build(self, construct: Callable[[], Value], key: str | None = None) -> Value:
-        """Return ``construct()``, its errors told with this place; a missing extra is one too."""
+        """Return ``construct()``, its errors told with this place; a missing extra is one too.
+
+        Without a `key` the place is the argument at fault, where this table has a key of its name.
+        """
         try:
             return construct()
         except SceneError:
             raise
+        except StandoffError as error:
+            if key is None and error.argument.partition("[")[0] in self:
+                key = error.argument
+            raise self.error(str(error), key) from error
         except (ValueError, TypeError, OSError, ImportError) as error:
             raise self.error(str(error), key) from error
-
-    def build_named(self, construct: Callable[[], Value]) -> Value:
-        """Return ``construct()``; an error that begins with a key of this table names that key."""
-        try:
-            return construct()
-        except (ValueError, TypeError, ImportError) as error:
-            message = str(error)
-            named = re.match(r"(?:Unknown symbol .* in )?(\w+)", message)
-            key = named[1] if named and named[1] in self else None
-            # A message that begins with several, as of all coordinates, is about the whole table.
-            if sum(f"{name} = " in message for name in self._content) > 1:
-                key = None
-            raise self.error(message, key) from error
 
     def formula(self, key: str) -> str | float:
         """Return a formula in quotes, or a number."""
@@ -163,8 +158,17 @@ class Table:
             return default
         return self._finite(self.required(key, example or f"{key} = 1.0"), key)
 
-    def positive(self, key: str, default: float | None = None, *, example: str = "") -> float:
-        """Return a finite number above zero."""
+    def positive(
+        self,
+        key: str,
+        default: float | None = None,
+        *,
+        example: str = "",
+        infinite: bool = False,
+    ) -> float:
+        """Return a number above zero, finite but where `infinite` says that it need not be."""
+        if infinite and self._content.get(key) == math.inf:
+            return math.inf
         value = self.number(key, default, example=example)
         if value <= 0.0:
             raise self.error(f"must be above zero, got {value:g}", key)
@@ -175,6 +179,13 @@ class Table:
         value = self._content.get(key, default)
         if isinstance(value, bool) or not isinstance(value, int) or value < 1:
             raise self.error(f"must be a whole number above zero, got {shown(value)}", key)
+        return value
+
+    def true_or_false(self, key: str) -> bool:
+        """Return true or false."""
+        value = self.required(key, f"{key} = true")
+        if not isinstance(value, bool):
+            raise self.error(f"must be true or false, got {shown(value)}", key)
         return value
 
     def not_negative(self, key: str, default: float | None = None) -> float:

@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from standoff.impact import Impact, time_of_impact
+from standoff.recording import Recording
+from standoff.recording.simulate import Progress, track_along
 from standoff.scene.errors import SceneError
 from standoff.scene.reader import Array
 from standoff.scene.scene import Scene
 from standoff.scene.settings import TrackSettings
-from standoff.tracking import Impact, Proximity, Recording, Tracker, distance, time_of_impact
-from standoff.tracking.simulate import Progress, track_along
+from standoff.tracking import Proximity, Tracker, distance
 
 
 def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity]:
@@ -89,24 +91,8 @@ def prepare(scene: Scene, settings: TrackSettings) -> tuple[Tracker, Array]:
     times = scene.times(settings)
     a, b = scene.pair_bodies
     try:
-        tracker = Tracker(
-            a,
-            b,
-            # The longest step: the default gain, and the check of a given one, hold for all.
-            dt=float(np.diff(times).max()),
-            law=settings.law,
-            predictor=settings.predictor,
-            integrator=settings.integrator,
-            gain=settings.gain,
-            tolerance=settings.tolerance,
-            feedback=settings.feedback,
-            realisation=settings.realisation,
-            saturation=settings.saturation,
-            switching=settings.switching,
-            solve=settings.solve,
-            depth=settings.depth,
-            deadline=settings.deadline,
-        )
+        # The longest step: the default gain, and the check of a given one, hold for all.
+        tracker = Tracker(a, b, float(np.diff(times).max()), settings.law)
     except (ValueError, TypeError) as error:
         raise SceneError(str(error), key="track", file=scene.file) from error
     return tracker, times

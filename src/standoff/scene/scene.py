@@ -16,7 +16,7 @@ from standoff.scene.motions import Motion, at_rest, read_motion
 from standoff.scene.pairs import Pair, read_pairs
 from standoff.scene.placements import read_pose
 from standoff.scene.reader import Array, Table, Value, shown, unknown_name
-from standoff.scene.settings import TrackSettings, read_settings
+from standoff.scene.settings import TrackSettings
 from standoff.scene.shapes import read_body
 
 VERSION = 1
@@ -104,9 +104,9 @@ class Scene:
     def notes(self) -> list[str]:
         """What was mended in the pair's input, a sentence each."""
         return [
-            f"{motion.rounded} quaternions of {name} were rounded; brought to unit norm"
+            f"{motion.repaired} rotations of {name} were rounded; brought to the nearest ones"
             for name, motion in zip(self.pair, self.pair_motions, strict=True)
-            if motion.rounded
+            if motion.repaired
         ]
 
     @property
@@ -177,8 +177,7 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
         raise top.error("no bodies; add a table such as [bodies.tool]", "bodies")
     placements = _named(top, "placements", read_pose, bodies)
     motions = _named(top, "motions", lambda table: table, bodies)
-    common = read_settings(top.table("track")) if "track" in top else TrackSettings()
-    pairs = read_pairs(top, list(bodies), common)
+    pairs = read_pairs(top, list(bodies))
     return Scene(
         file=path,
         text=text,
@@ -238,6 +237,6 @@ def _motion(name: str, motions: Mapping[str, Table], placements: Mapping[str, Po
         motion = read_motion(motions[name], placement)
     else:
         motion = at_rest(placement or Pose.identity())
-    if placement is not None and placement.normalised:
-        motion = replace(motion, rounded=motion.rounded + 1)
+    if placement is not None and placement.repaired:
+        motion = replace(motion, repaired=motion.repaired + 1)
     return motion

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -12,71 +13,95 @@ from standoff.bodies.body import Body
 from standoff.scene.curves import read_curve
 from standoff.scene.patches import read_patches
 from standoff.scene.reader import Array, Table
+from standoff.spellings import old_spelling
 
 UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """Turns the plane of scene curves, x and y, to that of profiles, x and z."""
 
 
 class ShapeKind(NamedTuple):
-    """One shape: its keys, and what reads them."""
+    """One shape: its keys beside `rounding`, what reads them, and new names of old keys."""
 
     keys: tuple[str, ...]
     read: Callable[[Table], Body]
+    renamed: Mapping[str, str] = MappingProxyType({})
+
+
+def _rounding(table: Table) -> float:
+    return table.not_negative("rounding", 0.0)
 
 
 def _point(table: Table) -> Body:
-    return shapes.point()
+    return shapes.point(rounding=_rounding(table))
 
 
 def _segment(table: Table) -> Body:
-    return shapes.segment(table.positive("length"))
+    rounding = _rounding(table)
+    if "length" in table:
+        table.only_one(("length", "start"))
+        return shapes.segment(table.not_negative("length"), rounding=rounding)
+    if "start" not in table and "end" not in table:
+        table.required("length", "length = 1.0 (or start = [...] and end = [...])")
+    start, end = table.vector("start", 3), table.vector("end", 3)
+    return shapes.segment(start=start, end=end, rounding=rounding)
 
 
 def _sphere(table: Table) -> Body:
-    return shapes.sphere(table.positive("radius"))
+    return shapes.sphere(table.not_negative("radius"), rounding=_rounding(table))
 
 
 def _ellipsoid(table: Table) -> Body:
-    a, b, c = table.positive_vector("semi_axes", 3)
-    return shapes.ellipsoid(a, b, c)
+    semi_axes = table.positive_vector("semi_axes", 3)
+    return shapes.ellipsoid(semi_axes=semi_axes, rounding=_rounding(table))
 
 
 def _capsule(table: Table) -> Body:
-    return shapes.capsule(table.positive("radius"), table.positive("length"))
+    radius, length = table.not_negative("radius"), table.not_negative("length")
+    return shapes.capsule(radius, length, rounding=_rounding(table))
 
 
 def _cylinder(table: Table) -> Body:
-    return shapes.cylinder(table.positive("radius"), table.positive("length"))
+    radius, height = table.positive("radius"), table.positive("height")
+    return shapes.cylinder(radius, height, rounding=_rounding(table))
 
 
 def _cone(table: Table) -> Body:
-    return shapes.cone(table.positive("radius"), table.positive("height"))
+    radius, height = table.positive("radius"), table.positive("height")
+    return shapes.cone(radius, height, rounding=_rounding(table))
 
 
 def _box(table: Table) -> Body:
-    x, y, z = table.positive_vector("size", 3)
-    return shapes.box(x, y, z, rounding=table.not_negative("rounding", 0.0))
+    return shapes.box(size=table.positive_vector("size", 3), rounding=_rounding(table))
+
+
+def _polygon(table: Table) -> Body:
+    vertices = table.points("vertices", 3, at_least=3)
+    return shapes.polygon(vertices, rounding=_rounding(table))
 
 
 def _polytope(table: Table) -> Body:
-    return shapes.polytope(table.points("vertices", 3, at_least=4))
+    vertices = table.points("vertices", 3, at_least=4)
+    return shapes.polytope(vertices, rounding=_rounding(table))
 
 
 def _lens(table: Table) -> Body:
-    return shapes.lens(table.positive("radius"), table.positive("offset"))
+    radius, offset = table.positive("radius"), table.positive("offset")
+    return shapes.lens(radius, offset, rounding=_rounding(table))
 
 
 def _cap(table: Table) -> Body:
-    return shapes.cap(table.positive("radius"), table.number("offset"))
+    radius, offset = table.positive("radius"), table.number("offset")
+    return shapes.cap(radius, offset, rounding=_rounding(table))
 
 
 def _halfspace(table: Table) -> Body:
-    return shapes.halfspace()
+    normal = table.vector("normal", 3) if "normal" in table else (0.0, 0.0, 1.0)
+    return shapes.halfspace(normal, table.number("offset", 0.0), rounding=_rounding(table))
 
 
 def _planar_loop(table: Table) -> Body:
-    radius = table.not_negative("radius", 0.0)
-    return shapes.planar_loop([read_curve(entry) for entry in table.tables("curves")], radius)
+    curves = [read_curve(entry) for entry in table.tables("curves")]
+    return shapes.planar_loop(curves, _rounding(table))
 
 
 def _rounded_polytope(table: Table) -> Body:
@@ -86,28 +111,30 @@ def _rounded_polytope(table: Table) -> Body:
 
 def _spindle(table: Table) -> Body:
     radius, length = table.positive("radius"), table.positive("length")
-    return shapes.spindle(radius, length, table.count("patches", 3))
+    return shapes.spindle(radius, length, table.count("patches", 3), rounding=_rounding(table))
 
 
 def _gore(table: Table) -> Body:
     radius, height = table.positive("radius"), table.positive("height")
-    return shapes.gore(radius, height, table.count("patches", 4))
+    return shapes.gore(radius, height, table.count("patches", 4), rounding=_rounding(table))
 
 
 def _egg(table: Table) -> Body:
     radius, length = table.positive("radius"), table.positive("length")
-    return shapes.egg(radius, length, table.number("taper", 0.4))
+    return shapes.egg(radius, length, table.number("taper", 0.4), rounding=_rounding(table))
 
 
 def _hull_of_revolution(table: Table) -> Body:
-    profile = read_curve(table.table("curve"))
-    return shapes.hull_of_revolution(profile.transformed(UPRIGHT, np.zeros(3)))
+    profile = read_curve(table.table("curve")).transformed(UPRIGHT, np.zeros(3))
+    return shapes.hull_of_revolution(profile, rounding=_rounding(table))
 
 
 def _superellipsoid(table: Table) -> Body:
-    a, b, c = table.positive_vector("semi_axes", 3)
-    e1, e2 = table.positive_vector("exponents", 2)
-    return shapes.superellipsoid(a, b, c, e1, e2)
+    return shapes.superellipsoid(
+        semi_axes=table.positive_vector("semi_axes", 3),
+        exponents=table.positive_vector("exponents", 2),
+        rounding=_rounding(table),
+    )
 
 
 def _patches(table: Table) -> Body:
@@ -118,33 +145,36 @@ def _patches(table: Table) -> Body:
         patches,
         tolerance=tolerance,
         convexity_tolerance=table.not_negative(dent) if dent in table else None,
-        radius=table.not_negative("radius", 0.0),
+        rounding=_rounding(table),
         name="patches",
     )
 
 
 SHAPES: Mapping[str, ShapeKind] = {
     "point": ShapeKind((), _point),
-    "segment": ShapeKind(("length",), _segment),
+    "segment": ShapeKind(("length", "start", "end"), _segment),
     "sphere": ShapeKind(("radius",), _sphere),
     "ellipsoid": ShapeKind(("semi_axes",), _ellipsoid),
     "capsule": ShapeKind(("radius", "length"), _capsule),
-    "cylinder": ShapeKind(("radius", "length"), _cylinder),
+    "cylinder": ShapeKind(("radius", "height"), _cylinder, {"length": "height"}),
     "cone": ShapeKind(("radius", "height"), _cone),
-    "box": ShapeKind(("size", "rounding"), _box),
+    "box": ShapeKind(("size",), _box),
+    "polygon": ShapeKind(("vertices",), _polygon),
     "polytope": ShapeKind(("vertices",), _polytope),
     "lens": ShapeKind(("radius", "offset"), _lens),
     "cap": ShapeKind(("radius", "offset"), _cap),
-    "halfspace": ShapeKind((), _halfspace),
-    "planar_loop": ShapeKind(("curves", "radius"), _planar_loop),
-    "rounded_polytope": ShapeKind(("vertices", "rounding"), _rounded_polytope),
+    "halfspace": ShapeKind(("normal", "offset"), _halfspace),
+    "planar_loop": ShapeKind(("curves",), _planar_loop, {"radius": "rounding"}),
+    "rounded_polytope": ShapeKind(("vertices",), _rounded_polytope),
     "spindle": ShapeKind(("radius", "length", "patches"), _spindle),
     "gore": ShapeKind(("radius", "height", "patches"), _gore),
     "egg": ShapeKind(("radius", "length", "taper"), _egg),
     "hull_of_revolution": ShapeKind(("curve",), _hull_of_revolution),
     "superellipsoid": ShapeKind(("semi_axes", "exponents"), _superellipsoid),
     "patches": ShapeKind(
-        ("patches", "file", "tolerance", "convexity_tolerance", "radius"), _patches
+        ("patches", "file", "tolerance", "convexity_tolerance"),
+        _patches,
+        {"radius": "rounding"},
     ),
 }
 """Every shape that a scene may name."""
@@ -169,7 +199,10 @@ def read_body(table: Table) -> Body:
         At an unknown shape or key, or a value that the shape refuses.
     """
     kind = SHAPES[table.choice("shape", list(SHAPES))]
-    table.expect("shape", "affine", "scale", *kind.keys)
+    for old, new in kind.renamed.items():
+        if old in table:
+            raise table.error(old_spelling(f"'{old}'", f"'{new}'"), old)
+    table.expect("shape", "affine", "scale", "rounding", *kind.keys)
     affine = _affine(table)
     body = table.build(lambda: kind.read(table))
     if affine is None:

@@ -8,27 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from standoff.kernels import frame as K
-from standoff.kernels import integrators as I
+from standoff.errors import StandoffError
+from standoff.kernels.paper import integrators as I
 from standoff.real_numbers import shown
 
-LAWS = {"predictor-corrector": K.LAW_PC, "paper": K.LAW_PAPER}
-PREDICTORS = {
-    "none": K.PREDICT_NONE,
-    "secant": K.PREDICT_SECANT,
-    "feedforward": K.PREDICT_FEEDFORWARD,
-    "feedforward-2": K.PREDICT_FEEDFORWARD_2,
-}
 INTEGRATORS = {name: k for k, name in enumerate(I.NAMES)}
-REALISATIONS = {"evaluated": K.EVALUATED, "integrated": K.INTEGRATED}
-SATURATIONS = {"hold": K.SATURATE_HOLD, "zero": K.SATURATE_ZERO}
-SWITCHINGS = {
-    "multipliers": K.SWITCH_MULTIPLIERS,
-    "voronoi": K.SWITCH_VORONOI,
-    "none": K.SWITCH_NONE,
-}
-DEPTHS = {"global": K.DEPTH_GLOBAL, "local": K.DEPTH_LOCAL}
-SOLVES = {"ranked": K.SOLVE_RANKED, "plain": K.SOLVE_PLAIN}
 
 
 def choice(value: Any, name: str, table: dict[str, int]) -> int:
@@ -37,7 +21,9 @@ def choice(value: Any, name: str, table: dict[str, int]) -> int:
         return table[value]
     near = difflib.get_close_matches(value, list(table), 1) if isinstance(value, str) else ()
     hint = f" Did you mean {near[0]!r}?" if near else ""
-    raise ValueError(f"Unknown {name} {shown(value)}: choose one of {sorted(table)}.{hint}")
+    raise StandoffError(
+        f"Unknown {name} {shown(value)}: choose one of {sorted(table)}.{hint}", name, value
+    )
 
 
 def positive_number(value: Any, name: str, allow_infinite: bool = False) -> float:
@@ -47,9 +33,9 @@ def positive_number(value: Any, name: str, allow_infinite: bool = False) -> floa
             raise TypeError("no number")
         number = float(value)
     except (TypeError, ValueError, OverflowError) as error:
-        raise ValueError(f"{name} = {shown(value)} is not a number.") from error
+        raise StandoffError(f"{name} = {shown(value)} is not a number.", name, value) from error
     if not number > 0.0 or (math.isinf(number) and not allow_infinite):
-        raise ValueError(f"{name} = {number}: must be positive and finite.")
+        raise StandoffError(f"{name} = {number}: must be positive and finite.", name, value)
     return number
 
 
@@ -57,5 +43,14 @@ def whole_number(value: Any, name: str) -> int:
     """A positive whole number; text, True and fractions are none."""
     whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
     if not whole or value < 1:
-        raise ValueError(f"{name} = {shown(value)}: must be a whole number of at least 1.")
+        raise StandoffError(
+            f"{name} = {shown(value)}: must be a whole number of at least 1.", name, value
+        )
     return int(value)
+
+
+def yes_or_no(value: Any, name: str) -> bool:
+    """True or False; 0, 1 and text are neither."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise StandoffError(f"{name} = {shown(value)}: must be True or False.", name, value)
+    return bool(value)

@@ -1,14 +1,15 @@
 """Feedback for the paper's law: w = -M⁻¹(v(Psi) + b), with v to be chosen.
 
 The errors then obey dPsi/dt = -v(Psi). The paper takes the full-state linear v = K Psi and says
-that others can be synthesised; each here is a small immutable object for ``so.Tracker``::
+that others can be synthesised; each here is a small immutable object for ``so.PaperLaw``::
 
-    so.Tracker(a, b, law="paper", feedback=so.feedback.PI(500.0, 2e4))
+    so.Tracker(a, b, law=so.PaperLaw(feedback=so.feedback.PI(500.0, 2e4)))
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import product
 from numbers import Complex, Real
 from typing import Any, Protocol, runtime_checkable
@@ -16,10 +17,11 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from standoff.kernels import frame as K
-from standoff.kernels import integrators as I
+from standoff.errors import MaskedNumbers, StandoffError, StandoffTypeError
+from standoff.kernels.paper import integrators as I
+from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import DEEPEST, MaskedNumbers, real_array, shown
+from standoff.real_numbers import DEEPEST, real_array, shown
 from standoff.tracking.choices import INTEGRATORS, choice, positive_number
 
 Array = NDArray[np.float64]
@@ -55,7 +57,7 @@ def growth_factor(integrator: str, z: Any) -> Any:
 
     Notes
     -----
-    From the tableaux of ``standoff.kernels.integrators``, stage by stage.
+    From the tableaux of ``standoff.kernels.paper.integrators``, stage by stage.
     """
     number = choice(integrator, "integrator", INTEGRATORS)
     z = _complex(z)
@@ -79,8 +81,8 @@ def _complex(z: Any) -> Any:
         if all(isinstance(x, Complex) and not isinstance(x, bool) for x in entries):
             return given.astype(np.complex128)
     except (TypeError, ValueError, OverflowError, RecursionError) as error:
-        raise ValueError(f"z = {shown(z)} is not numeric.") from error
-    raise ValueError(f"z = {shown(z)} is not numeric.")
+        raise StandoffError(f"z = {shown(z)} is not numeric.", "z", z) from error
+    raise StandoffError(f"z = {shown(z)} is not numeric.", "z", z)
 
 
 def max_gain(integrator: str, dt: float) -> float:
@@ -111,7 +113,7 @@ def max_gain(integrator: str, dt: float) -> float:
 
 @runtime_checkable
 class Feedback(Protocol):
-    """What `so.Tracker` asks of a feedback."""
+    """What `so.PaperLaw` asks of a feedback."""
 
     def resolved(self, integrator: str, dt: float) -> Feedback:
         """Return the feedback with the defaults that hang on integrator and step filled in."""
@@ -123,19 +125,27 @@ class Feedback(Protocol):
         """Return the rates [1/s] of the error loop's modes, complex: -K for the linear law."""
 
 
+@lru_cache(maxsize=64)
+def _growth(integrator: str, z: tuple[complex, ...]) -> Array:
+    """|R(z)|, kept: from frame to frame the gain and the time are mostly the same."""
+    with np.errstate(over="ignore", invalid="ignore"):  # beyond float64 it is no less unstable
+        return np.asarray(np.abs(growth_factor(integrator, np.array(z))))
+
+
 def check_stable(feedback: Feedback, integrator: str, dt: float) -> None:
     """Raise ValueError where the sampled error loop would grow."""
     rates = np.asarray(feedback.rates(), dtype=complex)
-    with np.errstate(over="ignore", invalid="ignore"):  # beyond float64 it is no less unstable
-        growth = np.abs(growth_factor(integrator, rates * dt))
+    growth = _growth(integrator, tuple((rates * dt).tolist()))
     if not (growth < STABLE).all():
-        subject = f"feedback = {feedback}"
-        if isinstance(feedback, Linear):
-            subject = f"gain = {feedback.gain}"
-        raise ValueError(
-            f"{subject} is not stable for {integrator} at dt = {dt}: a step would multiply its "
-            f"errors by {growth.max():.6g}. A linear gain must stay below "
-            f"{max_gain(integrator, dt):.6g} (so.max_gain)."
+        name, value = (
+            ("gain", feedback.gain) if isinstance(feedback, Linear) else ("feedback", feedback)
+        )
+        raise StandoffError(
+            f"{name} = {value} is not stable for {integrator} at dt = {dt}: a step would multiply "
+            f"its errors by {growth.max():.6g}. A linear gain must stay below "
+            f"{max_gain(integrator, dt):.6g} (so.max_gain).",
+            name,
+            value,
         )
 
 
@@ -183,23 +193,27 @@ class GainMatrix(KeepsReadOnly):
         try:
             matrix = real_array(gains)
         except MaskedNumbers as error:
-            raise ValueError(f"gains {error}: {shown(gains)}") from error
+            raise StandoffError(f"gains {error}: {shown(gains)}", "gains", gains) from error
         except TypeError as error:
-            raise ValueError(f"gains = {shown(gains)}: {error}") from error
+            raise StandoffError(f"gains = {shown(gains)}: {error}", "gains", gains) from error
         if matrix.shape == (4,):
             matrix = np.diag(matrix)
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
-            raise ValueError(
+            raise StandoffError(
                 f"gains = {np.asarray(gains).tolist()}: give four finite gains, 1/s, or a 4 x 4 "
-                "matrix of them."
+                "matrix of them.",
+                "gains",
+                gains,
             )
         matrix.flags.writeable = False
         self.matrix = matrix
         if not (self.rates().real < 0.0).all():
-            raise ValueError(
+            raise StandoffError(
                 f"gains = {matrix.tolist()}: some pair of features has errors that do not decay; "
                 "every matrix left when an edge's or a vertex's rows and columns are deleted must "
-                "have eigenvalues with positive real parts."
+                "have eigenvalues with positive real parts.",
+                "gains",
+                gains,
             )
 
     def __repr__(self) -> str:
@@ -288,9 +302,11 @@ class FiniteTime:
         positive_number(self.gain, "gain")
         positive_number(self.reference, "reference")
         if not 0.0 < positive_number(self.power, "power") < 1.0:
-            raise ValueError(f"power = {self.power}: must be above 0 and below 1.")
+            raise StandoffError(
+                f"power = {self.power}: must be above 0 and below 1.", "power", self.power
+            )
         if self.most is not None and positive_number(self.most, "most") < self.gain:
-            raise ValueError(f"most = {self.most} is less than gain = {self.gain}.")
+            raise StandoffError(f"most = {self.most} is less than gain = {self.gain}.")
 
     def resolved(self, integrator: str, dt: float) -> FiniteTime:
         if self.most is not None:
@@ -304,7 +320,7 @@ class FiniteTime:
     def rates(self) -> Array:
         """That of the layer around zero, the greatest."""
         if self.most is None:
-            raise ValueError(f"{self}: its greatest gain hangs on the step; use resolved().")
+            raise StandoffError(f"{self}: its greatest gain hangs on the step; use resolved().")
         return np.array([-float(self.most)])
 
 
@@ -337,7 +353,7 @@ class MotionGain:
         least = DEFAULT_LEAST / dt if self.least is None else float(self.least)
         most = DEFAULT_MOST * max_gain(integrator, dt) if self.most is None else float(self.most)
         if least > most:
-            raise ValueError(
+            raise StandoffError(
                 f"{self}: its least gain {least:.6g} is above its greatest {most:.6g}."
             )
         return replace(self, least=least, most=most)
@@ -349,21 +365,17 @@ class MotionGain:
     def rates(self) -> Array:
         """Those of the least and of the greatest gain."""
         if self.least is None or self.most is None:
-            raise ValueError(f"{self}: its bounds hang on the step; use resolved().")
+            raise StandoffError(f"{self}: its bounds hang on the step; use resolved().")
         return np.array([-float(self.least), -float(self.most)])
 
 
-def feedback_of(feedback: Any, gain: float | None, dt: float) -> Feedback:
-    """Return the feedback that is meant; by default linear with K dt = 1, Euler's deadbeat."""
-    if feedback is None:
-        return Linear(1.0 / dt if gain is None else gain)
-    if gain is not None:
-        raise ValueError(
-            f"gain = {gain} and feedback = {feedback} both name the gain: give one of them."
-        )
+def checked_feedback(feedback: Any) -> Feedback:
+    """Return a feedback, or raise TypeError where it is none."""
     if isinstance(feedback, type) or not isinstance(feedback, Feedback):
-        raise TypeError(
+        raise StandoffTypeError(
             f"feedback = {feedback!r} is none: give one of so.feedback's, such as "
-            "so.feedback.PI(500.0, 2e4)."
+            "so.feedback.PI(500.0, 2e4).",
+            "feedback",
+            feedback,
         )
     return feedback

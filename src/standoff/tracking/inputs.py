@@ -9,34 +9,81 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.kernels import frame as K
-from standoff.kernels.entries import on_face
+from standoff.bodies.features import charts_of
+from standoff.errors import MaskedNumbers, StandoffError, StandoffTypeError
+from standoff.kernels.entries.queries import on_face
+from standoff.kernels.tolerances import FARTHEST
 from standoff.motion import Pose, PoseLike, Twist, TwistLike
-from standoff.real_numbers import MaskedNumbers, check_unmasked, shown
-from standoff.tracking.proximity import charts_of
+from standoff.motion.inputs import text
+from standoff.motion.rotations import defect, mirrored, without_rounding
+from standoff.motion.tolerances import ORTHONORMALITY, ROUNDED
+from standoff.real_numbers import check_unmasked, shown
+from standoff.tracking.rows import NO_TWIST, StateRow
 
 Array = NDArray[np.float64]
 # A planar body's pose may be tilted by this (entries of R): roundoff of composing rotations.
 PLANE_TILT = 1e-12
 LAST_ROW = [0.0, 0.0, 0.0, 1.0]
+PLAIN = (np.float64, np.float32)
 # Where R (row-major) and p stand in a 4x4 matrix.
 ROTATION_THEN_POSITION = np.array([0, 1, 2, 4, 5, 6, 8, 9, 10, 3, 7, 11])
-# Left writable, as given twists are: for a read-only one Numba would compile the kernels anew, in
-# the middle of a run. Nothing writes to it.
-NO_TWIST = np.zeros(6)
 
 
 def flat_pose(pose: PoseLike) -> Array:
-    """12 numbers (R row-major, p) of a pose; checked by the kernel, or here by Pose."""
-    if type(pose) is np.ndarray and pose.shape == (4, 4) and pose.dtype == np.float64:
+    """12 numbers (R row-major, p) of a pose, checked and, where it is rounded, repaired by Pose."""
+    return flat_and_mark(Pose.of(pose))[0]
+
+
+def flat_and_mark(pose: PoseLike) -> tuple[Array, bool]:
+    """12 numbers of a pose, and whether its rotation was repaired.
+
+    A plain matrix is left to the kernel to check, which costs nothing; what the kernel refuses goes
+    to `repair`.
+    """
+    if type(pose) is np.ndarray and pose.shape == (4, 4) and pose.dtype in PLAIN:
         if pose[3].tolist() != LAST_ROW:
             Pose.of(pose)  # says what is wrong with it
-        return np.asarray(pose.take(ROTATION_THEN_POSITION))
+        return pose.take(ROTATION_THEN_POSITION).astype(np.float64, copy=False), False
     pose = Pose.of(pose)
     flat = np.empty(12)
     flat[:9] = pose.rotation.ravel()
     flat[9:] = pose.translation
-    return flat
+    return flat, pose.repaired
+
+
+def repair(flat: Array, name: str) -> None:
+    """Make the nearest rotation of a flat pose that the kernel has refused, in place.
+
+    Raises
+    ------
+    StandoffError
+        If more than rounding is wrong with it.
+    """
+    rotation = flat[:9].reshape(3, 3)
+    far = not np.abs(flat[9:]).sum() < FARTHEST
+    if far or not defect(rotation) <= ROUNDED or mirrored(rotation):
+        try:
+            Pose(rotation, flat[9:])  # says what is wrong with it
+        except StandoffError as error:
+            raise StandoffError(f"{name}: {error}", name, error.value) from error
+        raise StandoffError(
+            f"{name}: its position {text(flat[9:])} is no length below {FARTHEST:g}.",
+            name,
+            flat[9:].copy(),
+        )
+    # Also of one whose columns pass: the kernel asks of the rows.
+    flat[:9] = without_rounding(rotation).ravel()
+
+
+def repair_rows(flats: Array) -> int:
+    """Repair the rounded ones of many flat poses (n, 12), in place; how many there were."""
+    rotations = flats[:, :9].reshape(-1, 3, 3)
+    with np.errstate(invalid="ignore", over="ignore"):  # of numbers that the kernel refuses
+        off = defect(rotations)
+        rounded = (off > ORTHONORMALITY) & (off <= ROUNDED)
+    if rounded.any():
+        flats[rounded, :9] = without_rounding(rotations[rounded]).reshape(-1, 9)
+    return int(np.count_nonzero(rounded))
 
 
 def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
@@ -63,7 +110,9 @@ def same_body(a: Body, b: Body) -> bool:
 def check_body(body: object) -> None:
     """Raise TypeError where something given is no body."""
     if not isinstance(body, Body):
-        raise TypeError(f"{shown(body)} is not a Body: make one with so.shapes or Body.from_brep.")
+        raise StandoffTypeError(
+            f"{shown(body)} is not a Body: make one with so.shapes or Body.from_brep.", "body", body
+        )
 
 
 def check_pair(a: Body, b: Body) -> None:
@@ -71,11 +120,11 @@ def check_pair(a: Body, b: Body) -> None:
     check_body(a)
     check_body(b)
     if not a.bounded and not b.bounded:
-        raise ValueError("Two half-spaces have no pair of witness points: one must be bounded.")
+        raise StandoffError("Two half-spaces have no pair of witness points: one must be bounded.")
     if a.dimension != b.dimension:
         other = b if a.dimension == 2 else a
         if not other.flat:
-            raise ValueError(
+            raise StandoffError(
                 f"A planar body needs a planar partner (or a point or segment in z = 0), not "
                 f"{other!r}."
             )
@@ -86,9 +135,11 @@ def check_in_plane(flat_a: Array, flat_b: Array) -> None:
     for name, flat in (("pose_a", flat_a), ("pose_b", flat_b)):
         tilt = float(np.abs(flat[[2, 5, 6, 7]]).max())
         if not tilt <= PLANE_TILT or flat[11] != 0.0 or flat[8] < 0.0:
-            raise ValueError(
+            raise StandoffError(
                 f"{name} takes a planar body out of z = 0 (tilt {tilt:.3g}, z = {flat[11]}): "
-                "planar pairs turn about z and move in x and y."
+                "planar pairs turn about z and move in x and y.",
+                name,
+                flat,
             )
 
 
@@ -99,42 +150,56 @@ def _chart_of(body: Body, face: int, values: Array) -> int:
     numbers = range(count)
     if len(values) == 3:
         if values[2] not in numbers:
-            raise ValueError(f"Face {face} has charts 0 to {count - 1}, not {values[2]}.")
+            raise StandoffError(
+                f"Face {face} has charts 0 to {count - 1}, not {values[2]}.", "parameters", values
+            )
         numbers = range(int(values[2]), int(values[2]) + 1)
     for number in numbers:
         if on_face(body.ints, body.reals, first + number, u, v):
             return first + number
-    raise ValueError(f"Parameters {tuple(values)} lie outside face {face}.")
+    raise StandoffError(
+        f"Parameters {tuple(values)} lie outside face {face}.", "parameters", values
+    )
 
 
-def place(state: Array, at: int, body: Body, feature: Any, parameters: Any) -> None:
-    """Write a feature and its parameters into a state, checked."""
+def place(state: StateRow, side: int, body: Body, feature: Any, parameters: Any) -> None:
+    """Write a feature and its parameters into a state, for A (0) or B (1), checked."""
     try:
         kind, index = feature
         check_unmasked(index)
         index = operator.index(index)
     except (TypeError, ValueError) as error:
-        raise ValueError(
-            f"{shown(feature)} is no feature: give so.Feature('face', 0) or ('face', 0)."
+        raise StandoffError(
+            f"{shown(feature)} is no feature: give so.Feature('face', 0) or ('face', 0).",
+            "feature",
+            feature,
         ) from error
     sizes = {"face": body.n_faces, "edge": body.n_edges, "vertex": body.n_vertices}
     if kind not in sizes or not 0 <= index < sizes[kind]:
-        raise ValueError(
-            f"{body!r} has no {kind} {index}: faces, edges and vertices are numbered from 0."
+        raise StandoffError(
+            f"{body!r} has no {kind} {index}: faces, edges and vertices are numbered from 0.",
+            "feature",
+            feature,
         )
     try:
         check_unmasked(parameters)
         values = np.atleast_1d(np.asarray(parameters, dtype=np.float64)).ravel()
     except MaskedNumbers as error:
-        raise ValueError(f"The parameter list {error}: {shown(parameters)}") from error
+        raise StandoffError(
+            f"The parameter list {error}: {shown(parameters)}", "parameters", parameters
+        ) from error
     except (TypeError, ValueError) as error:
-        raise ValueError(f"Parameters {shown(parameters)} are not numbers.") from error
+        raise StandoffError(
+            f"Parameters {shown(parameters)} are not numbers.", "parameters", parameters
+        ) from error
     wanted = {"face": 2, "edge": 1, "vertex": 0}[kind]
     atlas = kind == "face" and charts_of(body, index)[1] > 1
     if len(values) not in (wanted, wanted + atlas) or not np.isfinite(values).all():
         also = " (and the number of its chart)" if atlas else ""
-        raise ValueError(
-            f"A {kind} takes {wanted} finite parameters{also}, not {shown(parameters)}."
+        raise StandoffError(
+            f"A {kind} takes {wanted} finite parameters{also}, not {shown(parameters)}.",
+            "parameters",
+            parameters,
         )
     offset = {"face": 0, "edge": body.n_faces, "vertex": body.n_faces + body.n_edges}[kind]
     chart = -1
@@ -143,9 +208,9 @@ def place(state: Array, at: int, body: Body, feature: Any, parameters: Any) -> N
     if kind == "edge":
         curve = body.edge_parts[index].curve
         if not curve.closed and not curve.first <= values[0] <= curve.last:
-            raise ValueError(
-                f"Parameter {values[0]} lies outside edge {index}: [{curve.first}, {curve.last}]."
+            raise StandoffError(
+                f"Parameter {values[0]} lies outside edge {index}: [{curve.first}, {curve.last}].",
+                "parameters",
+                parameters,
             )
-    state[K.MODE + at] = offset + index
-    state[K.MODE + at + 1] = chart
-    state[K.Q + at : K.Q + at + wanted] = values[:wanted]
+    state.place(side, offset + index, chart, values[:wanted])

@@ -8,9 +8,6 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
-from standoff.kernels import layout as L
-
 Array = NDArray[np.float64]
 Support = Callable[[Array], Array]
 
@@ -20,14 +17,6 @@ SHRINK = 1e-8
 # Rounds of the search: each adds the support points along the last separating direction. Smooth
 # bodies 1e-6 of their size deep took 20 at most.
 ROUNDS = 60
-
-
-def sample_points(body: Body) -> Array:
-    """The body's boundary samples, (n, 3), body frame."""
-    n = int(body.ints[L.N_SAMPLES])
-    start = int(body.ints[L.SAMPLE_REALS])
-    rows = body.reals[start : start + L.SAMPLE_STRIDE * n].reshape(n, L.SAMPLE_STRIDE)
-    return np.asarray(rows[:, :3])
 
 
 def separating_direction(a: Array, b: Array) -> Array | None:

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.kernels import frame as K
-from standoff.kernels.entries import pair_system as evaluate
+from standoff.errors import StandoffError
+from standoff.kernels.entries import queries
 from standoff.motion import Pose, PoseLike, TwistLike
 from standoff.real_numbers import shown
 from standoff.tracking.inputs import check_in_plane, check_pair, flat_pose, flat_twist, place
+from standoff.tracking.rows import StateRow, motion_row
 
 Array = NDArray[np.float64]
 UPPER = np.triu_indices(4)
@@ -40,6 +41,9 @@ class PairSystem(NamedTuple):
     g, H, g_t : (n,), (n, n), (n,) arrays
         S Psi, S M, S b with S = diag(1, 1, -1, -1): gradient and Hessian of E = |dR|^2 / 2 and
         the gradient's rate by the motion.
+    repaired : int
+        How many of the two poses were given with a rounded rotation, and were brought to the
+        nearest one.
     """
 
     dR: Array
@@ -51,6 +55,7 @@ class PairSystem(NamedTuple):
     g: Array
     H: Array
     g_t: Array
+    repaired: int = 0
 
 
 def pair_system(
@@ -91,15 +96,16 @@ def pair_system(
     flat_a, flat_b = flat_pose(pose_a), flat_pose(pose_b)
     xi_a, xi_b = flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
     if not np.isfinite([xi_a, xi_b]).all():
-        raise ValueError("A twist has a NaN or infinite number: give six finite ones.")
+        raise StandoffError("A twist has a NaN or infinite number: give six finite ones.")
     if a.dimension == 2 or b.dimension == 2:
         check_in_plane(flat_a, flat_b)
-    return systems.at(systems.q, flat_a, flat_b, xi_a, xi_b)
+    system = systems.at(systems.q, flat_a, flat_b, xi_a, xi_b)
+    return system._replace(repaired=pose_a.repaired + pose_b.repaired)
 
 
 def _two(given: Any, name: str) -> Sequence[Any]:
     if not isinstance(given, tuple | list) or len(given) != 2:
-        raise ValueError(f"{name} = {shown(given)}: give (feature, parameters).")
+        raise StandoffError(f"{name} = {shown(given)}: give (feature, parameters).", name, given)
     return given
 
 
@@ -124,30 +130,31 @@ class PairSystems:
         self, a: Body, b: Body, place_a: tuple[Any, Any], place_b: tuple[Any, Any]
     ) -> None:
         check_pair(a, b)
-        state = np.zeros(K.N_STATE)
+        state = StateRow()
         place(state, 0, a, *_two(place_a, "place_a"))
-        place(state, 2, b, *_two(place_b, "place_b"))
+        place(state, 1, b, *_two(place_b, "place_b"))
         self.packed = (a.ints, a.reals, b.ints, b.reals)
-        self.mode = state[K.MODE : K.MODE + 4].astype(np.int64)
+        mode = state.mode.astype(np.int64)
         self.counts = [
             2 - int(number >= body.n_faces) - int(number >= body.n_faces + body.n_edges)
-            for number, body in zip(self.mode[::2], (a, b), strict=True)
+            for number, body in zip(mode[::2], (a, b), strict=True)
         ]
         self.kept = np.array([0, 1, 2, 3])[np.r_[: self.counts[0], 2 : 2 + self.counts[1]]]
-        self.q = np.asarray(state[K.Q : K.Q + 4][self.kept])
-        self._full, self._out = np.zeros(4), np.empty(54)
+        self.q = np.asarray(state.q[self.kept])
+        self._state, self._out = state, np.empty(queries.N_SYSTEM)
 
     def at(
         self, q: Array, flat_a: Array, flat_b: Array, xi_a: Array = STILL, xi_b: Array = STILL
     ) -> PairSystem:
         """The system at parameters (n,), for poses (12,) and twists (6,) as ``step_into`` reads."""
         out = self._evaluated(q, flat_a, flat_b, xi_a, xi_b)
-        jets = out[:36].reshape(2, 6, 3) @ flat_a[:9].reshape(3, 3).T
+        jets = out[queries.JETS : queries.ERRORS].reshape(2, 6, 3) @ flat_a[:9].reshape(3, 3).T
         H = np.empty((4, 4))
-        H[UPPER] = H.T[UPPER] = out[44:]
+        H[UPPER] = H.T[UPPER] = out[queries.HESSIAN :]
         H = H[np.ix_(self.kept, self.kept)]
         sign = SIGNS[self.kept]
-        psi, b_vector = out[36:40][self.kept], out[40:44][self.kept]
+        psi = out[queries.ERRORS : queries.FEEDFORWARD][self.kept]
+        b_vector = out[queries.FEEDFORWARD : queries.HESSIAN][self.kept]
         return PairSystem(
             dR=jets[0, 0] - jets[1, 0],
             F=jets[0, 1 : 1 + self.counts[0]].T,
@@ -162,9 +169,11 @@ class PairSystems:
 
     def psi(self, q: Array, flat_a: Array, flat_b: Array) -> Array:
         """The projection errors alone, (n,).  Eqs. (1)-(4)"""
-        return np.asarray(self._evaluated(q, flat_a, flat_b, STILL, STILL)[36:40][self.kept])
+        out = self._evaluated(q, flat_a, flat_b, STILL, STILL)
+        return np.asarray(out[queries.ERRORS : queries.FEEDFORWARD][self.kept])
 
     def _evaluated(self, q: Array, flat_a: Array, flat_b: Array, xi_a: Array, xi_b: Array) -> Array:
-        self._full[self.kept] = q
-        evaluate(self.packed, flat_a, flat_b, xi_a, xi_b, self.mode, self._full, self._out)
+        self._state.q[self.kept] = q
+        motion = motion_row(flat_a, flat_b, xi_a, xi_b)
+        queries.pair_system(self.packed, motion, self._state.data, self._out)
         return self._out

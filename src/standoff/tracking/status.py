@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Status(Enum):
-    """The numbers are those of ``standoff.kernels.frame``."""
+    """The numbers are those of ``standoff.kernels.state.arrays``."""
 
     CONVERGED = 0
     TRACKING = 1
@@ -17,11 +17,23 @@ class Status(Enum):
     DEADLINE = 6
 
     @property
+    def certified(self) -> bool:
+        """Is the signed distance proven: CONVERGED while apart, GLOBAL in penetration?"""
+        return self in _CERTIFIED
+
+    @property
+    def penetrating(self) -> bool:
+        """Do the bodies touch or overlap?"""
+        return self in _PENETRATING
+
+    @property
     def advice(self) -> str:
         """What it means and what to do."""
         return _ADVICE[self]
 
 
+_CERTIFIED = (Status.CONVERGED, Status.GLOBAL)
+_PENETRATING = (Status.LOCAL, Status.GLOBAL, Status.OVERLAPPING)
 _ADVICE = {
     Status.CONVERGED: (
         "The gap between distance and lower bound, less the bodies' own slack, is within the "

@@ -10,7 +10,8 @@ from standoff.bodies.proofs import interval
 from standoff.bodies.proofs.bernstein import prove
 from standoff.bodies.proofs.profiles import prove_swept
 from standoff.bodies.proofs.proof import PatchProof
-from standoff.bodies.proofs.theorems import Theorem, prove_by_kind
+from standoff.bodies.proofs.theorems import prove_by_kind
+from standoff.errors import StandoffTypeError
 from standoff.geometry.formulas import FormulaSurface
 from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.surfaces import Surface
@@ -41,12 +42,13 @@ def prove_patch(surface: Surface, outward: int | None = None) -> PatchProof:
         return interval.prove(surface, outward)
     if isinstance(surface, Revolution | Extrusion):
         return prove_swept(surface, outward)
-    if isinstance(surface, Theorem):
-        proof = prove_by_kind(surface)
+    bulge = getattr(surface, "bulge", None)  # what is no surface has none, and is named below
+    if bulge is not None:
+        proof = prove_by_kind(surface, bulge)
         if outward is not None and proof.sense == -outward:
             # hollow: no bound is sought, such a face is no part of a convex body
             return replace(
                 proof, convex=False, defect=np.inf, sense=outward, tilt=np.pi, curvature=-np.inf
             )
         return proof
-    raise TypeError(f"No convexity proof for a {type(surface).__name__}.")
+    raise StandoffTypeError(f"No convexity proof for a {type(surface).__name__}.")

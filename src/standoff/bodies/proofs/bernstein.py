@@ -33,6 +33,7 @@ from standoff.bodies.proofs.straight import (
     ruled_along,
     turn_to,
 )
+from standoff.errors import StandoffError
 from standoff.geometry import bernstein
 from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.surfaces import Domain
@@ -151,7 +152,7 @@ def _refuse_creases(surface: NurbsSurface) -> None:
     for name, vector, knots in zip("uv", vectors, surface.breaks(), strict=True):
         for knot in knots:
             if vector.multiplicity(knot) >= vector.degree:
-                raise ValueError(
+                raise StandoffError(
                     f"The surface may be creased at {name} = {knot}, a knot of multiplicity "
                     f"{vector.multiplicity(knot)} with degree {vector.degree}: split it there "
                     "(surface.restricted) and prove its parts."

@@ -16,6 +16,7 @@ from standoff.bodies.proofs import bernstein, interval
 from standoff.bodies.proofs.forms import forms_of, with_poles
 from standoff.bodies.proofs.normals import in_hemisphere
 from standoff.bodies.proofs.proof import PatchProof
+from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.bernstein import segment
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
 from standoff.geometry.formulas import FormulaCurve, FormulaSurface
@@ -183,12 +184,12 @@ def rational_pieces(
         breaks, blocks = curve.essential.breaks, curve.blocks
         for knot in curve.breaks():
             if first < knot < last and curve.essential.multiplicity(knot) >= curve.degree:
-                raise ValueError(
+                raise StandoffError(
                     f"The profile may be creased at its knot {knot}: split the surface there "
                     "(surface.restricted) and prove its parts."
                 )
     else:
-        raise TypeError(f"No convexity proof for a profile of {type(curve).__name__}.")
+        raise StandoffTypeError(f"No convexity proof for a profile of {type(curve).__name__}.")
     extra = curve.spare_knots() if spare and isinstance(curve, NurbsCurve) else np.zeros(0)
     pieces = []
     for (a, b), block in zip(pairwise(breaks.tolist()), blocks, strict=True):

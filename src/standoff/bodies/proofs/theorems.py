@@ -5,15 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.bodies.proofs.proof import PatchProof
-from standoff.geometry.superellipsoids import SuperellipsoidPole
-from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere
+from standoff.geometry.surfaces import Cylinder, Surface
 from standoff.geometry.torus import Torus
 
-Theorem = Plane | Sphere | Cylinder | Cone | Torus | SuperellipsoidPole
 
-
-def prove_by_kind(surface: Theorem) -> PatchProof:
-    """An affine image of a plane, quadric, torus's outer half or superellipsoid.
+def prove_by_kind(surface: Surface, bulge: int) -> PatchProof:
+    """An affine image of a plane, quadric, torus's outer half or superellipsoid: `Surface.bulge`.
 
     They never bend inward: a superellipsoid with exponents up to 2 is the unit ball of a norm, and
     its charts look at it from its centre.
@@ -25,11 +22,11 @@ def prove_by_kind(surface: Theorem) -> PatchProof:
         method="theorem",
         hemisphere=_within_half(surface),
         place=_middle(surface),
-        sense=0 if isinstance(surface, Plane) else side,
+        sense=bulge * side,
     )
 
 
-def _within_half(surface: Theorem) -> bool:
+def _within_half(surface: Surface) -> bool:
     """A gnomonic chart shows less than half a sphere, a cone's normals lean away from its axis;
     superellipsoids are symmetric: their normals lean to the side of the middle plane they are on.
     """
@@ -41,7 +38,7 @@ def _within_half(surface: Theorem) -> bool:
     return True
 
 
-def _middle(surface: Theorem) -> tuple[float, float]:
+def _middle(surface: Surface) -> tuple[float, float]:
     """The middle of the domain, or a finite point of it."""
     middle = []
     for low, high in (surface.domain[:2], surface.domain[2:]):

@@ -6,6 +6,7 @@ that they are one closed shell and which way out is, sew.py makes the parts of t
 """
 
 from standoff.bodies.sewing.corners import MAX_SPREAD
-from standoff.bodies.sewing.sew import SEWING_TOLERANCE, Sewn, sew
+from standoff.bodies.sewing.sew import Sewn, sew
+from standoff.bodies.tolerances import SEWING_TOLERANCE
 
 __all__ = ["MAX_SPREAD", "SEWING_TOLERANCE", "Sewn", "sew"]

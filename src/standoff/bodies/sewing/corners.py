@@ -11,7 +11,7 @@ import scipy
 
 from standoff.bodies.sewing.patches import Patch
 from standoff.bodies.sewing.sides import SIDE_NAMES, Side
-from standoff.bodies.topology import BodyError
+from standoff.errors import BodyError
 from standoff.geometry.validation import Array
 
 # Corners of a patch in the order of SIDE_NAMES: side k runs from corner k to corner k + 1.
@@ -106,7 +106,9 @@ def _merge(
         raise BodyError(
             f"{patches[worst // 4].label}: its corner {corners[worst]} is chained to a vertex "
             f"{misses[worst]:.3g} away by corners within the tolerance {tolerance:.3g} of each "
-            "other: give a smaller tolerance."
+            "other: give a smaller tolerance.",
+            "tolerance",
+            tolerance,
         )
     return number, vertices, float(misses[worst])
 
@@ -125,7 +127,9 @@ def _cut(
     if start == stop:
         raise BodyError(
             f"{side.label} begins and ends at the same vertex {vertices[start]} (tolerance "
-            f"{tolerance:.3g}): split the patch or give a smaller tolerance."
+            f"{tolerance:.3g}): split the patch or give a smaller tolerance.",
+            "tolerance",
+            tolerance,
         )
     centre = side.polyline.mean(axis=0)
     # a polyline's links bulge less than they are long

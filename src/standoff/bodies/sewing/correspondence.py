@@ -15,11 +15,11 @@ import scipy
 
 from standoff.bodies.sewing.corners import Stretch
 from standoff.bodies.sewing.sides import Side, in_spans
-from standoff.bodies.topology import BodyError
+from standoff.errors import BodyError
 from standoff.geometry.nurbs_pcurves import NurbsPcurve
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.validation import Array
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 
 # Shares of an edge where the correspondence is read, and (between them) where it is checked.
 NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 12) / 12)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.sewing.corners import Stretch
 from standoff.bodies.sewing.sides import gap
-from standoff.bodies.topology import BodyError
+from standoff.errors import BodyError
 
 # Unmatched sides that one message names.
 MAX_NAMED = 6
@@ -38,7 +38,9 @@ def match(stretches: Sequence[Stretch], tolerance: float) -> list[tuple[Stretch,
             names = ", ".join(stretches[m].label for m in (k, *found))
             raise BodyError(
                 f"{names} lie along one curve: an edge joins two patches. Leave out patches "
-                f"given twice, or give a smaller tolerance than {tolerance:.3g}."
+                f"given twice, or give a smaller tolerance than {tolerance:.3g}.",
+                "tolerance",
+                tolerance,
             )
     loose = [k for k, found in enumerate(partners) if not found]
     if loose:

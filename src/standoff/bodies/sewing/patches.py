@@ -12,7 +12,7 @@ import numpy as np
 
 from standoff.bodies.proofs import PatchProof, prove_patch
 from standoff.bodies.sewing.sides import SIDE_NAMES, Side, gap
-from standoff.bodies.topology import BodyError
+from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.real_numbers import shown
@@ -76,14 +76,18 @@ def grid_points(surface: Surface, count: int = GRID) -> Array:
 def check_patches(patches: Sequence[Any]) -> None:
     """Raise BodyError where something given is no patch."""
     if not len(patches):
-        raise BodyError("No patches: a body needs a closed shell of them.")
+        raise BodyError("No patches: a body needs a closed shell of them.", "patches", patches)
     for k, surface in enumerate(patches):
         if not isinstance(surface, Surface):
-            raise BodyError(f"patch {k} is {shown(surface)}: give a Surface with a finite domain.")
+            raise BodyError(
+                f"patch {k} is {shown(surface)}: give a Surface with a finite domain.",
+                part=("patch", k),
+            )
         if not np.isfinite(surface.domain).all():
             raise BodyError(
                 f"patch {k} is a {type(surface).__name__} without limits (domain "
-                f"{surface.domain}): cut a patch from it with .restricted(u0, u1, v0, v1)."
+                f"{surface.domain}): cut a patch from it with .restricted(u0, u1, v0, v1).",
+                part=("patch", k),
             )
 
 
@@ -105,7 +109,10 @@ def cut_patches(patches: Sequence[Surface], tolerance: float) -> tuple[list[Patc
                 continue
             along, reason = way
             if depth == MAX_HALVINGS:
-                raise BodyError(f"{piece.label}: {reason}, even after {depth} halvings.")
+                raise BodyError(
+                    f"{piece.label}: {reason}, even after {depth} halvings.",
+                    part=("patch", piece.given),
+                )
             reasons[reason] = reasons.get(reason, 0) + 1
             waiting = [(half, depth + 1) for half in piece.halves(along)] + waiting
         notes += [f"patch {k}: halved {n} times, as {why}" for why, n in reasons.items()]
@@ -145,14 +152,20 @@ def _check_extent(patch: Patch, sides: dict[str, Side], tolerance: float) -> Non
     points = grid_points(patch.surface)
     extent = float(np.linalg.norm(np.ptp(points.reshape(-1, 3), axis=0)))
     if not np.isfinite(points).all():
-        raise BodyError(f"{patch.label} has points that are not finite.")
+        raise BodyError(
+            f"{patch.label} has points that are not finite.", part=("patch", patch.given)
+        )
     if extent <= tolerance:
         raise BodyError(
-            f"{patch.label} has no extent: {extent:.3g} across, tolerance {tolerance:.3g}."
+            f"{patch.label} has no extent: {extent:.3g} across, tolerance {tolerance:.3g}.",
+            "tolerance",
+            tolerance,
+            part=("patch", patch.given),
         )
     collapsed = [name for name in SIDE_NAMES if sides[name].collapsed(tolerance)]
     if len(collapsed) > 2 or (len(collapsed) == 2 and collapsed[0][0] != collapsed[1][0]):
         raise BodyError(
             f"{patch.label}: its sides {', '.join(collapsed)} have collapsed; only one side, or "
-            "two that face each other, may."
+            "two that face each other, may.",
+            part=("patch", patch.given),
         )

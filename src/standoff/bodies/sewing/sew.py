@@ -15,15 +15,14 @@ from standoff.bodies.sewing.matching import match
 from standoff.bodies.sewing.patches import Patch, check_patches, cut_patches, grid_points
 from standoff.bodies.sewing.shell import check_shell, outward_senses
 from standoff.bodies.sewing.sides import SENSES
-from standoff.bodies.topology import Apex, BodyError, Edge, Face
+from standoff.bodies.tolerances import SEWING_TOLERANCE
+from standoff.bodies.topology import Apex, Edge, Face
+from standoff.errors import BodyError
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array, positive
 from standoff.real_numbers import shown
-
-# Sides closer than this part of the body's size are one edge: the roundoff of making patches.
-SEWING_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +65,9 @@ def sew(patches: Sequence[Any], tolerance: float | None = None) -> Sewn:
     no_list = isinstance(given, np.ndarray) and given.ndim == 0
     if no_list or isinstance(patches, Surface) or not isinstance(patches, Iterable):
         raise BodyError(
-            f"patches = {shown(patches)}: give a sequence of surfaces that close a shell."
+            f"patches = {shown(patches)}: give a sequence of surfaces that close a shell.",
+            "patches",
+            patches,
         )
     patches = list(patches)
     check_patches(patches)
@@ -74,7 +75,9 @@ def sew(patches: Sequence[Any], tolerance: float | None = None) -> Sewn:
     tolerance = SEWING_TOLERANCE * size if tolerance is None else positive(tolerance, "tolerance")
     if tolerance >= 0.1 * size:
         raise BodyError(
-            f"tolerance = {tolerance:.3g} is no small part of the patches' size {size:.3g}."
+            f"tolerance = {tolerance:.3g} is no small part of the patches' size {size:.3g}.",
+            "tolerance",
+            tolerance,
         )
     cut, notes = cut_patches(patches, tolerance)
     shape = outline(cut, tolerance)
@@ -111,7 +114,9 @@ def _joined(one: Stretch, other: Stretch, size: float, tolerance: float) -> Corr
     if found.residual > MAX_SPREAD * tolerance:
         raise BodyError(
             f"{one.label} and {other.label} part by {found.residual:.3g} between their ends, "
-            f"tolerance {tolerance:.3g}: make them the same curve, or give a greater tolerance."
+            f"tolerance {tolerance:.3g}: make them the same curve, or give a greater tolerance.",
+            "tolerance",
+            tolerance,
         )
     return found
 
@@ -120,7 +125,11 @@ def _size(patches: Sequence[Surface]) -> float:
     points = np.concatenate([grid_points(surface).reshape(-1, 3) for surface in patches])
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
     if not (np.isfinite(size) and size > 0.0):
-        raise BodyError(f"The patches' size is {size}: they have no extent or no finite points.")
+        raise BodyError(
+            f"The patches' size is {size}: they have no extent or no finite points.",
+            "patches",
+            patches,
+        )
     return size
 
 

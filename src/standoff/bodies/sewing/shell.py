@@ -10,7 +10,7 @@ import scipy
 from standoff.bodies.sewing.corners import Outline, Stretch
 from standoff.bodies.sewing.patches import Patch
 from standoff.bodies.sewing.sides import SENSES
-from standoff.bodies.topology import BodyError
+from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 
@@ -113,7 +113,9 @@ def outward_senses(
     if abs(volume) <= LEAST_THICKNESS * tolerance * area:
         raise BodyError(
             f"The patches enclose no volume: {abs(volume):.3g} at an area of {area:.3g}, "
-            f"tolerance {tolerance:.3g}."
+            f"tolerance {tolerance:.3g}.",
+            "tolerance",
+            tolerance,
         )
     if volume < 0.0:
         sign = [-s for s in sign]

@@ -1,7 +1,9 @@
 """Ready-made shapes, all from the same parts: ``so.shapes``.
 
 Semi-axes for ellipsoids; full lengths for box, cylinder, capsule (its cylindrical part) and
-cone; all centred, axis z. A cone's apex is at +height/2, its base at -height/2.
+cone; all centred, axis z. A cone's apex is at +height/2, its base at -height/2. `rounding` is the
+radius of a ball that is swept over a shape, which grows by it; only `box` and `rounded_polytope`
+keep their size.
 """
 
 from typing import TYPE_CHECKING
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     from standoff.bodies.shapes.lenses import lens
     from standoff.bodies.shapes.planar import planar_loop
     from standoff.bodies.shapes.points_and_sweeps import capsule, point, segment, sphere
+    from standoff.bodies.shapes.polygons import polygon
     from standoff.bodies.shapes.polyhedra import box, polytope, rounded_polytope
     from standoff.bodies.shapes.quadrics import (
         cap,
@@ -34,6 +37,7 @@ else:
             "standoff.bodies.shapes.lenses": ("lens",),
             "standoff.bodies.shapes.planar": ("planar_loop",),
             "standoff.bodies.shapes.points_and_sweeps": ("capsule", "point", "segment", "sphere"),
+            "standoff.bodies.shapes.polygons": ("polygon",),
             "standoff.bodies.shapes.polyhedra": ("box", "polytope", "rounded_polytope"),
             "standoff.bodies.shapes.quadrics": (
                 "cap",
@@ -62,6 +66,7 @@ __all__ = [
     "lens",
     "planar_loop",
     "point",
+    "polygon",
     "polytope",
     "rounded_polytope",
     "segment",

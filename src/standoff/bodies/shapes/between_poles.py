@@ -10,11 +10,12 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.bodies.shapes.isolines import along_v
-from standoff.bodies.topology import Apex, BodyError, Edge, Face
+from standoff.bodies.topology import Apex, Edge, Face
+from standoff.errors import BodyError
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, RationalBezier
 from standoff.geometry.nurbs import BezierPatch
 from standoff.geometry.swept import Revolution
-from standoff.geometry.validation import Array, positive
+from standoff.geometry.validation import Array, not_negative, positive
 from standoff.real_numbers import shown
 
 # Fewer patches than this would not keep their normals within a hemisphere.
@@ -26,7 +27,7 @@ MOST_PATCHES = 1000
 SLENDER = 0.1
 
 
-def spindle(radius: float, length: float, patches: int = 3) -> Body:
+def spindle(radius: float, length: float, patches: int = 3, *, rounding: float = 0.0) -> Body:
     """A circular arc turned about its chord: smooth but for its two pointed poles.
 
     Parameters
@@ -37,6 +38,8 @@ def spindle(radius: float, length: float, patches: int = 3) -> Body:
         From pole to pole, length, positive.
     patches : int
         How many equal patches run from pole to pole, 3 to 1000; their seams are smooth.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
     Returns
     -------
@@ -47,10 +50,11 @@ def spindle(radius: float, length: float, patches: int = 3) -> Body:
     BodyError
         The arc is a semicircle or more; `patches` is no whole number from 3 to 1000.
     ValueError
-        A length that is not finite or not positive.
+        A length that is not finite or not positive, a negative rounding.
     """
     bulge, half = _bulge(radius, length, "spindle")
     n = _patches(patches, "spindle")
+    rounding = not_negative(rounding, "rounding")
     angles = FULL_TURN / n * np.arange(n + 1)
     edges = []
     for angle in angles[:-1]:
@@ -61,10 +65,10 @@ def spindle(radius: float, length: float, patches: int = 3) -> Body:
         _gore_face(Revolution(profile, low, high), j, n)
         for j, (low, high) in enumerate(pairwise(angles))
     ]
-    return Body.from_brep(_poles(half), edges, faces, name="spindle")
+    return Body.from_brep(_poles(half), edges, faces, rounding=rounding, name="spindle")
 
 
-def gore(radius: float, height: float, patches: int = 4) -> Body:
+def gore(radius: float, height: float, patches: int = 4, *, rounding: float = 0.0) -> Body:
     """A cloister vault and its mirror image: at every height a regular polygon.
 
     Its sharp edges are circular arcs from pole to pole, and between them lie cylindrical patches
@@ -78,6 +82,8 @@ def gore(radius: float, height: float, patches: int = 4) -> Body:
         From pole to pole, length, positive.
     patches : int
         Sides of the polygon, 3 to 1000.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
     Returns
     -------
@@ -88,10 +94,11 @@ def gore(radius: float, height: float, patches: int = 4) -> Body:
     BodyError
         The arcs are semicircles or more; `patches` is no whole number from 3 to 1000.
     ValueError
-        A length that is not finite or not positive.
+        A length that is not finite or not positive, a negative rounding.
     """
     bulge, half = _bulge(radius, height, "gore")
     n = _patches(patches, "gore")
+    rounding = not_negative(rounding, "rounding")
     arcs = []
     for angle in FULL_TURN / n * np.arange(n):
         points, weights = _rational_arc(bulge, half, np.array([np.cos(angle), np.sin(angle), 0.0]))
@@ -102,7 +109,7 @@ def gore(radius: float, height: float, patches: int = 4) -> Body:
         control = np.array([arcs[j], arcs[(j + 1) % n]])
         patch = BezierPatch(control, np.array([weights, weights]))
         faces.append(_gore_face(patch, j, n))
-    return Body.from_brep(_poles(half), edges, faces, name="gore")
+    return Body.from_brep(_poles(half), edges, faces, rounding=rounding, name="gore")
 
 
 def _gore_face(surface: Any, j: int, n: int) -> Face:

@@ -6,14 +6,15 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.bodies.shapes.isolines import along_u
-from standoff.bodies.topology import BodyError, Edge, Face
+from standoff.bodies.topology import Edge, Face
+from standoff.errors import BodyError
 from standoff.geometry.bernstein import product
 from standoff.geometry.curves import ConicArc, RationalBezier
 from standoff.geometry.nurbs import BezierPatch
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.swept import Revolution
-from standoff.geometry.validation import Array, finite, positive
-from standoff.kernels import layout as L
+from standoff.geometry.validation import Array, finite, not_negative, positive
+from standoff.kernels.body import layout as L
 
 # Greatest |taper|: at sqrt(1/2) an egg's flank is straight, beyond it is hollow.
 GREATEST_TAPER = 0.7
@@ -24,7 +25,7 @@ CAP_REACH = float(np.sqrt(1.0 / 3.0))
 CAP_MARGIN = 1.1
 
 
-def egg(radius: float, length: float, taper: float = 0.4) -> Body:
+def egg(radius: float, length: float, taper: float = 0.4, *, rounding: float = 0.0) -> Body:
     """An egg about the axis z, pointed towards +z for taper > 0; exact, smooth everywhere.
 
     A projective image of a sphere in space is a quadric again, so an ellipsoid. An egg is the
@@ -41,6 +42,8 @@ def egg(radius: float, length: float, taper: float = 0.4) -> Body:
         From pole to pole, centred; length, positive.
     taper : float
         Dimensionless, -0.7 to 0.7; 0 is an ellipsoid.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
     Returns
     -------
@@ -51,7 +54,7 @@ def egg(radius: float, length: float, taper: float = 0.4) -> Body:
     BodyError
         |taper| above 0.7.
     ValueError
-        A number that is not finite, a length that is not positive.
+        A number that is not finite, a length that is not positive, a negative rounding.
 
     Notes
     -----
@@ -59,7 +62,7 @@ def egg(radius: float, length: float, taper: float = 0.4) -> Body:
     negative on [-1, 1] as long as k² < 1/2. r is greatest at z = -k, 1/sqrt(1 - k²).
     """
     radius, half = positive(radius, "radius"), 0.5 * positive(length, "length")
-    k = float(finite(taper, "taper", ()))
+    k, rounding = float(finite(taper, "taper", ())), not_negative(rounding, "rounding")
     if abs(k) > GREATEST_TAPER:
         raise BodyError(
             f"egg with taper = {k}: give -{GREATEST_TAPER} to {GREATEST_TAPER}; from sqrt(1/2) on "
@@ -78,7 +81,7 @@ def egg(radius: float, length: float, taper: float = 0.4) -> Body:
         Face((_cap(scale, k, -1.0),), ((0, -1),), (), (_rim(),)),
         Face((_cap(scale, k, 1.0),), ((1, 1),), (), (_rim(),)),
     ]
-    return Body.from_brep(edges=edges, faces=faces, name="egg")
+    return Body.from_brep(edges=edges, faces=faces, rounding=rounding, name="egg")
 
 
 def _cap_reach(k: float, side: float) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.geometry.pcurves import Pcurve
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 
 
 def along_u(v: float) -> Pcurve:

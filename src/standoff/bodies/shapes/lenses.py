@@ -7,16 +7,17 @@ import numpy as np
 from standoff.bodies.body import Body
 from standoff.bodies.shapes.quadrics import SINGLE_CHART_REACH, sphere_atlas
 from standoff.bodies.topology import Edge, Face
+from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.surfaces import Sphere
-from standoff.geometry.validation import positive
+from standoff.geometry.validation import not_negative, positive
 
 # A lens's offset, and its radius less the offset, are at least this part of its radius: what
 # float64 can still tell from a ball and from nothing.
 THIN_LENS = 1e-9
 
 
-def lens(radius: float, offset: float) -> Body:
+def lens(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
     """The paper's body: the intersection of three balls centred `offset` from the origin.
 
     The centres are -offset (cos 120°i, sin 120°i, 0), i = 0, 1, 2. Three spherical faces, three
@@ -29,6 +30,8 @@ def lens(radius: float, offset: float) -> Body:
     offset : float
         Of their centres, length, positive and below `radius`; offset / radius from 1e-9 to
         1 - 1e-9.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
     Returns
     -------
@@ -38,15 +41,18 @@ def lens(radius: float, offset: float) -> Body:
     ------
     ValueError
         A number that is not finite or not positive; an offset that leaves nothing, or a body too
-        near to a ball or too thin.
+        near to a ball or too thin; a rounding that is negative.
     """
     r, c = positive(radius, "radius"), positive(offset, "offset")
+    rounding = not_negative(rounding, "rounding")
     if c >= r:
-        raise ValueError(
-            f"Empty lens: offset = {c} is not below radius = {r}, so the balls share no interior."
+        raise StandoffError(
+            f"Empty lens: offset = {c} is not below radius = {r}, so the balls share no interior.",
+            "offset",
+            c,
         )
     if c < THIN_LENS * r or r - c < THIN_LENS * r:
-        raise ValueError(
+        raise StandoffError(
             f"lens({r}, {c}): offset / radius must be from {THIN_LENS:g} to 1 - {THIN_LENS:g}; "
             "below it is a ball (so.shapes.sphere), above it is thinner than roundoff."
         )
@@ -74,4 +80,4 @@ def lens(radius: float, offset: float) -> Body:
             charts = sphere_atlas(frame, centres[i])
         # seen from outside, edge i lies at greater angle about z, edge i - 1 at lesser
         faces.append(Face(charts, ((i, 1), ((i + 2) % 3, -1))))
-    return Body.from_brep([-top, top], edges, faces, name="lens")
+    return Body.from_brep([-top, top], edges, faces, rounding=rounding, name="lens")

@@ -7,12 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from standoff.bodies.body import Body
-from standoff.bodies.topology import BodyError, Edge, parts_of
+from standoff.bodies.topology import Edge, parts_of
+from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve
 from standoff.real_numbers import shown
+from standoff.spellings import renamed
 
 
-def planar_loop(curves: Sequence[Curve], radius: float = 0.0) -> Body:
+@renamed(radius="rounding=...")
+def planar_loop(curves: Sequence[Curve], rounding: float = 0.0) -> Body:
     """A planar convex body: curves in z = 0, each beginning where the one before ends.
 
     One closed conic (an ellipse) is a loop by itself.
@@ -21,8 +24,9 @@ def planar_loop(curves: Sequence[Curve], radius: float = 0.0) -> Body:
     ----------
     curves : sequence of Curve
         Counterclockwise or clockwise, lengths. Ends may miss each other by 1e-9 of the size.
-    radius : float
-        Swept radius, length, zero or above: the loop grows by it all around, its corners rounded.
+    rounding : float
+        Radius of a disc swept over it, length, zero or above: the loop grows by it all around, its
+        corners rounded.
 
     Returns
     -------
@@ -37,18 +41,20 @@ def planar_loop(curves: Sequence[Curve], radius: float = 0.0) -> Body:
     TypeError
         No sequence, or something in it that is no `Curve`.
     ValueError
-        A radius that is negative or not finite.
+        A rounding that is negative or not finite.
     """
     curves = parts_of(curves, "curves")
     for k, curve in enumerate(curves):
         if not isinstance(curve, Curve):
-            raise TypeError(f"Curve {k} of a planar loop is {shown(curve)}: give a Curve.")
+            raise StandoffTypeError(
+                f"Curve {k} of a planar loop is {shown(curve)}: give a Curve.", "curves", curve
+            )
     if len(curves) == 1 and curves[0].closed:
         edges = [Edge(curves[0])]
-        return Body.from_brep(edges=edges, dimension=2, radius=radius, name="planar loop")
+        return Body.from_brep(edges=edges, dimension=2, rounding=rounding, name="planar loop")
     if len(curves) < 2:
         raise BodyError(f"A planar loop of {len(curves)} open curves: give at least two.")
     vertices = np.array([c.point(c.first) for c in curves])
     n = len(curves)
     edges = [Edge(c, i, (i + 1) % n) for i, c in enumerate(curves)]
-    return Body.from_brep(vertices, edges, dimension=2, radius=radius, name="planar loop")
+    return Body.from_brep(vertices, edges, dimension=2, rounding=rounding, name="planar loop")

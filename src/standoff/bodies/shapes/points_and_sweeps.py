@@ -2,31 +2,25 @@
 
 from __future__ import annotations
 
+from typing import Any, overload
+
 import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.bodies.topology import Edge
+from standoff.errors import StandoffTypeError
 from standoff.geometry.curves import Line
-from standoff.geometry.validation import positive
+from standoff.geometry.validation import Array, not_negative, vector3
+from standoff.spellings import renamed
 
 
-def point() -> Body:
+def point(*, rounding: float = 0.0) -> Body:
     """The origin, a body of one vertex.
-
-    Returns
-    -------
-    Body
-    """
-    return Body.from_brep([np.zeros(3)], name="point")
-
-
-def segment(length: float) -> Body:
-    """A segment of the z axis, centred.
 
     Parameters
     ----------
-    length : float
-        From end to end, length, positive.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: a sphere.
 
     Returns
     -------
@@ -35,20 +29,68 @@ def segment(length: float) -> Body:
     Raises
     ------
     ValueError
-        A number that is not finite, not positive, beyond 1e50 or below 1e-50.
+        A rounding that is negative or not finite.
     """
-    half = 0.5 * positive(length, "length")
-    ends = np.array([[0.0, 0.0, -half], [0.0, 0.0, half]])
-    return Body.from_brep(ends, [Edge(Line(ends[0], ends[1]), 0, 1)], name="segment")
+    radius = not_negative(rounding, "rounding")
+    return Body.from_brep([np.zeros(3)], rounding=radius, name="sphere" if radius else "point")
 
 
-def sphere(r: float) -> Body:
+@overload
+def segment(length: float, *, rounding: float = ...) -> Body: ...
+
+
+@overload
+def segment(*, start: Any, end: Any, rounding: float = ...) -> Body: ...
+
+
+def segment(
+    length: float | None = None, *, start: Any = None, end: Any = None, rounding: float = 0.0
+) -> Body:
+    """A segment of the z axis, centred; or the one from `start` to `end`.
+
+    Parameters
+    ----------
+    length : float
+        From end to end, length, zero or above; 0 is a point.
+    start, end : (3,) array_like
+        Its ends, body frame, lengths; given together, in place of `length`.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: a capsule.
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    TypeError
+        Neither a length nor both ends, or all of them.
+    ValueError
+        A number that is not finite, a length or rounding that is negative, or beyond 1e50, or
+        between 0 and 1e-50.
+    """
+    if (length is None) == (start is None) or (start is None) != (end is None):
+        raise StandoffTypeError(
+            "so.shapes.segment takes length=..., or start=(x, y, z) and end=(x, y, z)."
+        )
+    radius = not_negative(rounding, "rounding")
+    if length is not None:
+        ends = _upright(not_negative(length, "length"))
+    else:
+        ends = np.array([vector3(start, "start"), vector3(end, "end")])
+    return _swept(ends, radius, "capsule" if radius else "segment")
+
+
+@renamed(r="radius=...")
+def sphere(radius: float, *, rounding: float = 0.0) -> Body:
     """A ball about the origin: a point with a swept radius.
 
     Parameters
     ----------
-    r : float
-        Radius, length, positive.
+    radius : float
+        Length, zero or above; 0 is a point.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: it adds to the radius.
 
     Returns
     -------
@@ -57,20 +99,23 @@ def sphere(r: float) -> Body:
     Raises
     ------
     ValueError
-        A number that is not finite, not positive, beyond 1e50 or below 1e-50.
+        A number that is not finite, negative, beyond 1e50, or between 0 and 1e-50.
     """
-    return Body.from_brep([np.zeros(3)], radius=positive(r, "r"), name="sphere")
+    return point(rounding=not_negative(radius, "radius") + not_negative(rounding, "rounding"))
 
 
-def capsule(r: float, length: float) -> Body:
+@renamed(r="radius=...")
+def capsule(radius: float, length: float, *, rounding: float = 0.0) -> Body:
     """A segment of the z axis with a swept radius, centred.
 
     Parameters
     ----------
-    r : float
-        Radius, length, positive.
+    radius : float
+        Length, zero or above; 0 is a segment.
     length : float
-        Of the segment, so of the cylindrical part, length, positive.
+        Of the segment, so of the cylindrical part, length, zero or above; 0 is a sphere.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: it adds to the radius.
 
     Returns
     -------
@@ -79,8 +124,21 @@ def capsule(r: float, length: float) -> Body:
     Raises
     ------
     ValueError
-        A number that is not finite, not positive, beyond 1e50 or below 1e-50.
+        A number that is not finite, negative, beyond 1e50, or between 0 and 1e-50.
     """
-    r, half = positive(r, "r"), 0.5 * positive(length, "length")
-    ends = np.array([[0.0, 0.0, -half], [0.0, 0.0, half]])
-    return Body.from_brep(ends, [Edge(Line(ends[0], ends[1]), 0, 1)], radius=r, name="capsule")
+    swept = not_negative(radius, "radius") + not_negative(rounding, "rounding")
+    return segment(length, rounding=swept)
+
+
+def _upright(length: float) -> Array:
+    return np.array([[0.0, 0.0, -0.5 * length], [0.0, 0.0, 0.5 * length]])
+
+
+def _swept(ends: Array, radius: float, name: str) -> Body:
+    """The segment between two ends, a point where they are one."""
+    if np.array_equal(ends[0], ends[1]):
+        name = "sphere" if radius else "point"
+        # no zero keeps a minus: the digest is that of a point
+        return Body.from_brep(ends[:1] + 0.0, rounding=radius, name=name)
+    edge = Edge(Line(ends[0], ends[1]), 0, 1)
+    return Body.from_brep(ends, [edge], rounding=radius, name=name)

@@ -2,30 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
+from typing import Any, overload
 
 import numpy as np
 import scipy
 
 from standoff.bodies.body import Body
-from standoff.bodies.topology import BodyError, Edge, Face
+from standoff.bodies.shapes.arguments import by_position, positive_numbers
+from standoff.bodies.tolerances import COPLANAR, FAR_OFF, FLATTEST, LEAST_CORE, SAME_VERTEX, THIN
+from standoff.bodies.topology import Edge, Face
+from standoff.errors import BodyError, StandoffError
 from standoff.geometry.curves import Line
 from standoff.geometry.surfaces import Plane
-from standoff.geometry.validation import LEAST, Array, finite, not_negative, positive
+from standoff.geometry.validation import LEAST, Array, finite, not_negative
+from standoff.spellings import renamed
 
 # A face's vertices, counterclockwise seen from outside, and its outward normal.
 Loop = tuple[list[int], Array]
 
-# Facets of a polytope whose normals differ by less (sine) are one face; hull facets of one
-# plane differ by the roundoff of their vertices.
-COPLANAR = 1e-9
-# The core of a rounded polytope holds at least a ball of this fraction of the inscribed ball of
-# the sharp one: below it is not told from a point.
-LEAST_CORE = 1e-6
-# Vertices of the core nearer than this (fraction of its size) are one: more than three planes meet.
-SAME_VERTEX = 1e-10
-# A box whose core is thinner than this fraction of its length is flat: roundoff of its corners.
-FLATTEST = 5e-15
 # The corners and outward normals of a box. Its vertices, edges and faces are numbered by them, and
 # its digest holds the signs of the zeros.
 CORNERS = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
@@ -39,20 +34,28 @@ NORMALS = np.array(
         [-0.0, -0.0, 1.0],
     ]
 )
-# Thickness over extent below which a polytope that cannot be built is told to be too thin: its
-# facets' planes are then one to roundoff, or to COPLANAR where there are many. It refuses nothing.
-THIN = 1e-6
 
 
-def box(x: float, y: float, z: float, rounding: float = 0.0) -> Body:
+@overload
+def box(x: float, y: float, z: float, /, rounding: float = ...) -> Body: ...
+
+
+@overload
+def box(size: Any, rounding: float = ...) -> Body: ...
+
+
+@renamed(x="size=(x, y, z)", y="size=(x, y, z)", z="size=(x, y, z)")
+def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
     """A box about the origin, its edges along x, y, z, sharp or rounded.
 
-    The core is the box of x - 2 rounding, ..., swept by a ball.
+    It keeps its size when it is rounded: the core, less by 2 rounding each way, is swept by a ball.
 
     Parameters
     ----------
-    x, y, z : float
-        Outer lengths, positive.
+    *lengths : float
+        The size, number by number, and the rounding: ``box(x, y, z, rounding)``.
+    size : (3,) array_like
+        Outer lengths along x, y, z, positive.
     rounding : float
         Radius of its edges and corners, length, zero or above; below half of the least length.
 
@@ -64,17 +67,23 @@ def box(x: float, y: float, z: float, rounding: float = 0.0) -> Body:
     ------
     BodyError
         A core that is flat, thinner than 5e-15 of its length.
+    TypeError
+        A size that is missing, or given twice.
     ValueError
         A number that is not finite, a length that is not positive, a rounding that is negative or
         leaves no core.
     """
-    lengths = np.array([positive(x, "x"), positive(y, "y"), positive(z, "z")])
-    rounding = not_negative(rounding, "rounding")
-    core = lengths - 2.0 * rounding
+    named = {"size": size, "rounding": rounding}
+    given = by_position("box", lengths, {"size": 3, "rounding": 0}, named)
+    outer = positive_numbers(given["size"], "size", 3)
+    rounding = not_negative(given.get("rounding", 0.0), "rounding")
+    core = outer - 2.0 * rounding
     if core.min() <= 0.0:
-        raise ValueError(
-            f"rounding = {rounding} leaves no core in a box {lengths}: give less than half the "
-            "least length, or use a capsule or a sphere."
+        raise StandoffError(
+            f"rounding = {rounding} leaves no core in a box {outer}: give less than half the "
+            "least length, or use a capsule or a sphere.",
+            "rounding",
+            rounding,
         )
     if core.min() < FLATTEST * core.max():
         raise BodyError(
@@ -86,13 +95,21 @@ def box(x: float, y: float, z: float, rounding: float = 0.0) -> Body:
     return _solid(points, _loops(points, planes), rounding, "box")
 
 
-def polytope(vertices: Any) -> Body:
+def polytope(vertices: Any, *, rounding: float = 0.0) -> Body:
     """The convex hull of points.
+
+    With a rounding it grows; ``rounded_polytope`` rounds it within its planes.
+
+    Vertices may lie far from the origin, as a mesh in a map's coordinates does: the hull is then
+    taken about their middle, which ``body.check().notes`` tells, and answers are as good as the
+    vertices' own digits.
 
     Parameters
     ----------
     vertices : (n, 3) array_like
         At least four points that are not in one plane, length. Those inside the hull are left out.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
     Returns
     -------
@@ -103,10 +120,11 @@ def polytope(vertices: Any) -> Body:
     BodyError
         The points span no volume, are too thin for their extent, or extend over less than 1e-50.
     ValueError
-        A wrong shape, a number that is not finite or beyond 1e50.
+        A wrong shape, a number that is not finite or beyond 1e50, a negative rounding.
     """
     points = finite(vertices, "vertices", (-1, 3))
-    return _polyhedron(points, points, name="polytope")
+    radius = not_negative(rounding, "rounding")
+    return _polyhedron(points, points, _middle(points), radius, "polytope")
 
 
 def rounded_polytope(vertices: Any, rounding: float) -> Body:
@@ -136,17 +154,19 @@ def rounded_polytope(vertices: Any, rounding: float) -> Body:
     """
     points = finite(vertices, "vertices", (-1, 3))
     rounding = not_negative(rounding, "rounding")
+    middle = _middle(points)
+    local = points - middle
     if rounding == 0.0:
-        return _polyhedron(points, points, name="rounded polytope")
-    unit = _unit(points)
-    facets = _facets(points)
+        return _polyhedron(points, points, middle, 0.0, "rounded polytope")
+    unit = _unit(local)
+    facets = _facets(local)
     normals = np.array([normal for _, normal in facets])
-    offsets = np.array([max(points[loop] @ normal) for loop, normal in facets])
+    offsets = np.array([max(local[loop] @ normal) for loop, normal in facets])
     try:
         core = unit * _inner_vertices(normals, offsets / unit, rounding / unit, unit)
     except scipy.spatial.QhullError as error:
         raise _thin(points) or BodyError(f"The core was not found: {_line(error)}") from error
-    return _polyhedron(core, points, radius=rounding, name="rounded polytope")
+    return _polyhedron(points, middle + core, middle, rounding, "rounded polytope")
 
 
 def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float) -> Array:
@@ -169,7 +189,9 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
     if rounding > inscribed * (1.0 - LEAST_CORE):
         raise BodyError(
             f"rounding = {rounding * unit} leaves no core: the polytope's inscribed ball has "
-            f"radius {inscribed * unit:.6g}. Give less."
+            f"radius {inscribed * unit:.6g}. Give less.",
+            "rounding",
+            rounding * unit,
         )
     planes = np.column_stack([normals, rounding - offsets])
     meeting = scipy.spatial.HalfspaceIntersection(planes, ball[:3])
@@ -184,10 +206,10 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
     return np.array(vertices)
 
 
-def _polyhedron(points: Array, given: Array, radius: float = 0.0, name: str = "polytope") -> Body:
-    """The hull of points; a message about its thickness is of the points that were given."""
+def _polyhedron(given: Array, points: Array, middle: Array, radius: float, name: str) -> Body:
+    """The hull of points, taken about their middle; messages and notes are of those given."""
     try:
-        return _solid(points, _facets(points), radius, name)
+        body = _solid(points, _facets(points - middle), radius, name)
     except BodyError as error:
         # Points that Qhull finds in one plane are told as such.
         flat = points is given and isinstance(
@@ -197,6 +219,19 @@ def _polyhedron(points: Array, given: Array, radius: float = 0.0, name: str = "p
         if thin is None:
             raise
         raise thin from error
+    if not middle.any():
+        return body
+    away = float(np.abs(given).max()) / float(np.ptp(given, axis=0).max())
+    note = f"recentred: the hull is taken about {middle}, as the origin is {away:.3g} extents away"
+    return replace(body, report=replace(body.report, notes=(note, *body.report.notes)))
+
+
+def _middle(points: Array) -> Array:
+    """About which the hull is taken: the middle of points that are far off, else the origin."""
+    extent = float(np.ptp(points, axis=0).max(initial=0.0)) if len(points) else 0.0
+    if extent == 0.0 or float(np.abs(points).max()) <= FAR_OFF * extent:
+        return np.zeros(3)
+    return np.asarray(0.5 * (points.min(axis=0) + points.max(axis=0)))
 
 
 def _thin(points: Array) -> BodyError | None:
@@ -236,7 +271,7 @@ def _solid(points: Array, loops: list[Loop], radius: float, name: str) -> Body:
         along = points[loop[1]] - points[loop[0]]
         along = along / np.linalg.norm(along)
         faces.append(Face((Plane.through(centre, along, np.cross(normal, along)),), tuple(coedges)))
-    return Body.from_brep(points[used], edges, faces, radius=radius, name=name)
+    return Body.from_brep(points[used], edges, faces, rounding=radius, name=name)
 
 
 def _unit(points: Array) -> float:

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 import scipy
 
-from standoff.bodies.topology import BodyError
+from standoff.errors import BodyError
 from standoff.geometry.curves import ConicArc, Curve
 from standoff.geometry.validation import Array
 

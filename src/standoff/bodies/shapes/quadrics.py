@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any, overload
+
 import numpy as np
 
 from standoff.bodies.body import Body
+from standoff.bodies.shapes.arguments import by_position, positive_numbers
 from standoff.bodies.topology import Apex, Edge, Face
+from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere
-from standoff.geometry.validation import Array, finite, matrix3, positive
+from standoff.geometry.validation import Array, finite, matrix3, not_negative, positive, vector3
+from standoff.spellings import renamed
 
+# Cosine up to which an axis is square enough to a normal for a plane's first direction.
+SQUARE_ENOUGH = 0.8
 # A gnomonic chart alone serves a face up to this tangent of the angle from its centre.
 SINGLE_CHART_REACH = 3.0
 
@@ -51,13 +58,26 @@ def sphere_atlas(linear: Array, centre: Array) -> tuple[Sphere, ...]:
     return tuple(Sphere(axes @ turn, centre) for turn in _AXES)
 
 
-def ellipsoid(a: float, b: float, c: float) -> Body:
+@overload
+def ellipsoid(a: float, b: float, c: float, /, *, rounding: float = ...) -> Body: ...
+
+
+@overload
+def ellipsoid(semi_axes: Any, *, rounding: float = ...) -> Body: ...
+
+
+@renamed(a="semi_axes=(a, b, c)", b="semi_axes=(a, b, c)", c="semi_axes=(a, b, c)")
+def ellipsoid(*axes: Any, semi_axes: Any = None, rounding: float = 0.0) -> Body:
     """An ellipsoid about the origin: one smooth face with an atlas of six charts.
 
     Parameters
     ----------
-    a, b, c : float
-        Semi-axes along x, y, z, length, positive.
+    *axes : float
+        The semi-axes, one by one: ``ellipsoid(a, b, c)``.
+    semi_axes : (3,) array_like
+        Along x, y, z, length, positive.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
     Returns
     -------
@@ -65,24 +85,35 @@ def ellipsoid(a: float, b: float, c: float) -> Body:
 
     Raises
     ------
+    TypeError
+        Semi-axes that are missing, or given twice.
     ValueError
-        A number that is not finite, not positive, beyond 1e50 or below 1e-50.
+        A number that is not finite, a semi-axis that is not positive, a rounding that is
+        negative; a length beyond 1e50 or below 1e-50.
     """
-    axes = np.diag([positive(a, "a"), positive(b, "b"), positive(c, "c")])
-    return Body.from_brep(faces=[Face(sphere_atlas(axes, np.zeros(3)))], name="ellipsoid")
+    given = by_position("ellipsoid", axes, {"semi_axes": 3}, {"semi_axes": semi_axes})
+    linear = np.diag(positive_numbers(given["semi_axes"], "semi_axes", 3))
+    return Body.from_brep(
+        faces=[Face(sphere_atlas(linear, np.zeros(3)))],
+        rounding=not_negative(rounding, "rounding"),
+        name="ellipsoid",
+    )
 
 
-def cylinder(r: float, length: float) -> Body:
+@renamed(r="radius=...", length="height=...")
+def cylinder(radius: float, height: float, *, rounding: float = 0.0) -> Body:
     """A cylinder about the axis z, centred.
 
     Two discs and a side without a seam; the rims are closed edges.
 
     Parameters
     ----------
-    r : float
-        Radius, length, positive.
-    length : float
+    radius : float
+        Length, positive.
+    height : float
         From disc to disc, length, positive.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
     Returns
     -------
@@ -91,9 +122,11 @@ def cylinder(r: float, length: float) -> Body:
     Raises
     ------
     ValueError
-        A number that is not finite, not positive, beyond 1e50 or below 1e-50.
+        A number that is not finite, a length that is not positive, a rounding that is negative;
+        a length beyond 1e50 or below 1e-50.
     """
-    r, half = positive(r, "r"), 0.5 * positive(length, "length")
+    r, half = positive(radius, "radius"), 0.5 * positive(height, "height")
+    rounding = not_negative(rounding, "rounding")
     x, y = np.array([r, 0.0, 0.0]), np.array([0.0, r, 0.0])
     low, high = np.array([0.0, 0.0, -half]), np.array([0.0, 0.0, half])
     edges = [Edge(ConicArc(low, x, y)), Edge(ConicArc(high, x, y))]
@@ -102,18 +135,21 @@ def cylinder(r: float, length: float) -> Body:
         Face((Plane.through(low, y / r, x / r),), ((0, -1),)),
         Face((Plane.through(high, x / r, y / r),), ((1, 1),)),
     ]
-    return Body.from_brep(edges=edges, faces=faces, name="cylinder")
+    return Body.from_brep(edges=edges, faces=faces, rounding=rounding, name="cylinder")
 
 
-def cone(r: float, height: float) -> Body:
+@renamed(r="radius=...")
+def cone(radius: float, height: float, *, rounding: float = 0.0) -> Body:
     """A cone about the axis z: its base at -height/2, its apex at +height/2.
 
     Parameters
     ----------
-    r : float
-        Radius of the base, length, positive.
+    radius : float
+        Of the base, length, positive.
     height : float
         From base to apex, length, positive.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
     Returns
     -------
@@ -122,9 +158,11 @@ def cone(r: float, height: float) -> Body:
     Raises
     ------
     ValueError
-        A number that is not finite, not positive, beyond 1e50 or below 1e-50.
+        A number that is not finite, a length that is not positive, a rounding that is negative;
+        a length beyond 1e50 or below 1e-50.
     """
-    r, height = positive(r, "r"), positive(height, "height")
+    r, height = positive(radius, "radius"), positive(height, "height")
+    rounding = not_negative(rounding, "rounding")
     x, y = np.array([r, 0.0, 0.0]), np.array([0.0, r, 0.0])
     base, apex = np.array([0.0, 0.0, -0.5 * height]), np.array([0.0, 0.0, 0.5 * height])
     side = Cone(np.diag([r, r, -height]), apex)
@@ -135,11 +173,12 @@ def cone(r: float, height: float) -> Body:
             Face((side,), ((0, 1),), (Apex(0, 0.0, 0.0, 2.0 * np.pi),)),
             Face((Plane.through(base, y / r, x / r),), ((0, -1),)),
         ],
+        rounding=rounding,
         name="cone",
     )
 
 
-def cap(radius: float, offset: float) -> Body:
+def cap(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
     """The part z >= offset of a ball about the origin: a disc and a spherical face.
 
     Parameters
@@ -148,6 +187,8 @@ def cap(radius: float, offset: float) -> Body:
         Of the ball, length, positive.
     offset : float
         Height z of the disc, length; above -radius and below radius.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
     Returns
     -------
@@ -157,12 +198,15 @@ def cap(radius: float, offset: float) -> Body:
     ------
     ValueError
         A number that is not finite, a radius that is not positive, an offset that leaves nothing
-        or the whole ball.
+        or the whole ball, a rounding that is negative.
     """
     r = positive(radius, "radius")
+    rounding = not_negative(rounding, "rounding")
     h = float(finite(offset, "offset", ()))
     if not -r < h < r:
-        raise ValueError(f"Cap with offset = {h} outside (-{r}, {r}): nothing or a ball is left.")
+        raise StandoffError(
+            f"Cap with offset = {h} outside (-{r}, {r}): nothing or a ball is left.", "offset", h
+        )
     rim = float(np.sqrt((r - h) * (r + h)))
     x, y = np.array([rim, 0.0, 0.0]), np.array([0.0, rim, 0.0])
     base = np.array([0.0, 0.0, h])
@@ -176,17 +220,52 @@ def cap(radius: float, offset: float) -> Body:
             Face(charts, ((0, 1),)),
             Face((Plane.through(base, y / rim, x / rim),), ((0, -1),)),
         ],
+        rounding=rounding,
         name="cap",
     )
 
 
-def halfspace() -> Body:
-    """The half-space z <= 0: one plane without a boundary.
+def halfspace(normal: Any = (0.0, 0.0, 1.0), offset: float = 0.0, *, rounding: float = 0.0) -> Body:
+    """The half-space normal · x <= offset, z <= 0 if nothing is said: one plane without a boundary.
+
+    Parameters
+    ----------
+    normal : (3,) array_like
+        Outward, of any length but zero: only its direction counts.
+    offset : float
+        Of the plane from the origin along the unit normal, length; negative on the other side.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: the plane moves out by it.
 
     Returns
     -------
     Body
         Unbounded: its partner must be bounded.
+
+    Raises
+    ------
+    ValueError
+        A normal of no length; a number that is not finite; a rounding that is negative.
     """
-    plane = Plane.through(np.zeros(3), np.array([1.0, 0, 0]), np.array([0, 1.0, 0]))
-    return Body.from_brep(faces=[Face((plane,))], name="halfspace")
+    axes, shift = _plane_of(vector3(normal, "normal"), float(finite(offset, "offset", ())))
+    plane = Plane.through(shift, axes[0], axes[1])
+    return Body.from_brep(
+        faces=[Face((plane,))], rounding=not_negative(rounding, "rounding"), name="halfspace"
+    )
+
+
+def _plane_of(normal: Array, offset: float) -> tuple[Array, Array]:
+    """Two unit vectors square to a normal, right-handed with it, and the plane's point nearest to
+    the origin."""
+    largest = float(np.abs(normal).max())
+    if largest == 0.0:
+        raise StandoffError(
+            f"normal = {normal} has no direction: give the plane's outward normal.",
+            "normal",
+            normal,
+        )
+    n = normal / largest
+    n = n / np.linalg.norm(n)
+    x = np.cross(np.eye(3)[1 if abs(n[1]) < SQUARE_ENOUGH else 2], n)
+    x = x / np.linalg.norm(x)
+    return np.array([x, np.cross(n, x)]), offset * n

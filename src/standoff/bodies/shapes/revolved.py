@@ -11,13 +11,13 @@ from standoff.bodies.topology import Apex, Edge, Face
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
 from standoff.geometry.surfaces import Cone, Cylinder, Plane
 from standoff.geometry.swept import Revolution
-from standoff.geometry.validation import Array
+from standoff.geometry.validation import Array, not_negative
 
 # Rings whose radii differ by less (relative) are joined by a cylinder.
 SAME_RADIUS = 1e-14
 
 
-def hull_of_revolution(curve: Curve) -> Body:
+def hull_of_revolution(curve: Curve, *, rounding: float = 0.0) -> Body:
     """The convex hull of a planar curve turned about the axis z.
 
     Arcs of the curve that are on the hull stay exact, what they hollow out is bridged by cones and
@@ -28,6 +28,8 @@ def hull_of_revolution(curve: Curve) -> Body:
     curve : Curve
         In the half-plane y = 0, x >= 0: x is the radius, z the height, lengths; open, or a closed
         `ConicArc`. It may touch the axis at its ends only.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
     Returns
     -------
@@ -39,8 +41,9 @@ def hull_of_revolution(curve: Curve) -> Body:
         The curve spans no volume; its hull is finer than 2048 samples; a closed curve of another
         kind.
     ValueError
-        It is no `Curve`, leaves the plane y = 0 or passes the axis.
+        It is no `Curve`, leaves the plane y = 0 or passes the axis; a negative rounding.
     """
+    rounding = not_negative(rounding, "rounding")
     whole = Revolution(curve)
     chain = hull_chain(curve)
     vertices: list[Array] = []
@@ -61,7 +64,7 @@ def hull_of_revolution(curve: Curve) -> Body:
             disc = Plane.through(np.array([0.0, 0.0, z]), np.array([1.0, 0.0, 0.0]), across)
             faces.append(Face((disc,), ((ring[end], sense),)))
     points = np.array(vertices).reshape(-1, 3)
-    return Body.from_brep(points, edges, faces, name="hull of revolution")
+    return Body.from_brep(points, edges, faces, rounding=rounding, name="hull of revolution")
 
 
 def _piece(whole: Revolution, chain: Chain, ring: list[int], k: int) -> Face:

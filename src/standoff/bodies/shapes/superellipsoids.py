@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from itertools import product
+from typing import Any, overload
 
 import numpy as np
 
 from standoff.bodies.body import Body
+from standoff.bodies.shapes.arguments import by_position, positive_numbers
 from standoff.bodies.topology import Edge, Face
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.superellipsoids import (
@@ -15,13 +17,30 @@ from standoff.geometry.superellipsoids import (
     checked_exponent,
 )
 from standoff.geometry.surface_curves import SurfaceCurve
-from standoff.geometry.validation import Array, positive
-from standoff.kernels import layout as L
+from standoff.geometry.validation import Array, finite, not_negative
+from standoff.kernels.body import layout as L
+from standoff.spellings import renamed
 
 Signs = tuple[int, int, int]
 
 
-def superellipsoid(a: float, b: float, c: float, e1: float, e2: float) -> Body:
+@overload
+def superellipsoid(
+    a: float, b: float, c: float, e1: float, e2: float, /, *, rounding: float = ...
+) -> Body: ...
+
+
+@overload
+def superellipsoid(semi_axes: Any, exponents: Any, *, rounding: float = ...) -> Body: ...
+
+
+@renamed(
+    **dict.fromkeys(("a", "b", "c"), "semi_axes=(a, b, c)"),
+    **dict.fromkeys(("e1", "e2"), "exponents=(e1, e2)"),
+)
+def superellipsoid(
+    *numbers: Any, semi_axes: Any = None, exponents: Any = None, rounding: float = 0.0
+) -> Body:
     """A superellipsoid about the origin, with exponents e1 (along z) and e2 (about z).
 
     ``(|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) = 1``: an ellipsoid at e1 = e2 = 1,
@@ -31,10 +50,14 @@ def superellipsoid(a: float, b: float, c: float, e1: float, e2: float) -> Body:
 
     Parameters
     ----------
-    a, b, c : float
-        Semi-axes along x, y, z, length, positive.
-    e1, e2 : float
-        Exponents, dimensionless, 0.1 to 1.8.
+    *numbers : float
+        Semi-axes and exponents, one by one: ``superellipsoid(a, b, c, e1, e2)``.
+    semi_axes : (3,) array_like
+        Along x, y, z, length, positive.
+    exponents : (2,) array_like
+        e1 and e2, dimensionless, 0.1 to 1.8.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
     Returns
     -------
@@ -42,14 +65,26 @@ def superellipsoid(a: float, b: float, c: float, e1: float, e2: float) -> Body:
 
     Raises
     ------
+    TypeError
+        Semi-axes or exponents that are missing, or given twice.
     ValueError
-        A number that is not finite, a semi-axis that is not positive, an exponent out of range.
+        A number that is not finite, a semi-axis that is not positive, an exponent out of range, a
+        rounding that is negative.
     """
-    axes = np.array([positive(a, "a"), positive(b, "b"), positive(c, "c")])
-    e1, e2 = checked_exponent(e1, "e1"), checked_exponent(e2, "e2")
+    counts = {"semi_axes": 3, "exponents": 2}
+    named = {"semi_axes": semi_axes, "exponents": exponents}
+    given = by_position("superellipsoid", numbers, counts, named)
+    axes = positive_numbers(given["semi_axes"], "semi_axes", 3)
+    powers = finite(given["exponents"], "exponents", (2,))
+    e1, e2 = (checked_exponent(e, f"exponents[{k}]") for k, e in enumerate(powers))
+    return _of_charts(axes, e1, e2, not_negative(rounding, "rounding"))
+
+
+def _of_charts(axes: Array, e1: float, e2: float, rounding: float) -> Body:
+    """One face of six charts; or eight octants with creases between them."""
     if max(e1, e2) <= 1.0:
         charts = [chart for sign in (1, -1) for chart in _charts(axes, (sign, sign, sign), e1, e2)]
-        return Body.from_brep(faces=[Face(tuple(charts))], name="superellipsoid")
+        return Body.from_brep(faces=[Face(tuple(charts))], rounding=rounding, name="superellipsoid")
     octants: list[Signs] = [(i, j, k) for i, j, k in product((1, -1), repeat=3)]
     charts_of = {signs: _charts(axes, signs, e1, e2) for signs in octants}
     vertices = [sign * axes[k] * np.eye(3)[k] for sign in (1, -1) for k in range(3)]
@@ -72,7 +107,9 @@ def superellipsoid(a: float, b: float, c: float, e1: float, e2: float) -> Body:
                 edges.append(Edge(curve, first, middle, smooth=False, creased=True))
             vertices.append(edges[-1].curve.point(1.0))
     faces = [Face(charts_of[signs], tuple(loops[signs])) for signs in octants]
-    return Body.from_brep(np.array(vertices), edges, faces, name="superellipsoid")
+    return Body.from_brep(
+        np.array(vertices), edges, faces, rounding=rounding, name="superellipsoid"
+    )
 
 
 def _signs(by_axis: dict[int, int]) -> Signs:

@@ -1,7 +1,6 @@
 """Voronoi regions: which feature of a body is nearest where, drawn before any motion."""
 
 from standoff.bodies.voronoi.compute import voronoi_regions
-from standoff.bodies.voronoi.medial_axis import VoronoiError
 from standoff.bodies.voronoi.regions import (
     BranchEnd,
     MedialBranch,
@@ -9,6 +8,7 @@ from standoff.bodies.voronoi.regions import (
     RegionBoundary,
     VoronoiRegions,
 )
+from standoff.errors import VoronoiError
 
 __all__ = [
     "BranchEnd",

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from standoff.bodies.voronoi.discs import edge_distances, greatest_disc
-from standoff.bodies.voronoi.medial_axis import VoronoiError
 from standoff.bodies.voronoi.outline import Outline
 from standoff.bodies.voronoi.regions import MedialBranch
 from standoff.bodies.voronoi.tolerances import CHECK_SAMPLES, SAME_DEPTH
+from standoff.errors import VoronoiError
 from standoff.geometry.validation import Array
 
 # The drawn axis may miss the true one by its tolerance between two points, which is judged at

@@ -6,6 +6,7 @@ from standoff.bodies.body import Body
 from standoff.bodies.voronoi.planar import planar_regions
 from standoff.bodies.voronoi.regions import VoronoiRegions
 from standoff.bodies.voronoi.spatial import spatial_regions
+from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.validation import positive
 from standoff.real_numbers import shown
 
@@ -53,12 +54,16 @@ def voronoi_regions(
     must have its centre on the axis.
     """
     if not isinstance(body, Body):
-        raise TypeError(f"body = {shown(body)}: give a standoff.Body.")
+        raise StandoffTypeError(f"body = {shown(body)}: give a standoff.Body.", "body", body)
     if reach is None:
         reach = body.size if body.bounded and body.size > 0.0 else REACH_WITHOUT_SIZE
     reach = positive(reach, "reach")
     if body.dimension == 2:
         return planar_regions(body, reach, tolerance)
     if tolerance is not None:
-        raise ValueError(f"tolerance = {tolerance!r} is for planar bodies; {body!r} is spatial.")
+        raise StandoffError(
+            f"tolerance = {tolerance!r} is for planar bodies; {body!r} is spatial.",
+            "tolerance",
+            tolerance,
+        )
     return spatial_regions(body, reach)

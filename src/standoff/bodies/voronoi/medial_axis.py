@@ -25,16 +25,13 @@ from standoff.bodies.voronoi.tolerances import (
     SAME_DEPTH,
     SAME_PLACE,
 )
+from standoff.errors import VoronoiError
 from standoff.geometry.validation import Array
 
 # Bisections of a branch that are always made, so that symmetry hides no bend; and the most.
 LEAST_DEPTH, MOST_DEPTH = 3, 14
 # How far Newton's junction may lie outside its bracket: the roundoff of the bracket's ends.
 BRACKET_SLACK = 1e-6
-
-
-class VoronoiError(RuntimeError):
-    """The regions could not be computed, or did not pass their own checks."""
 
 
 @dataclass(eq=False)

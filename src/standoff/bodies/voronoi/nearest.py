@@ -12,6 +12,7 @@ from standoff.bodies.features import Feature
 from standoff.bodies.voronoi.discs import edge_distances
 from standoff.bodies.voronoi.outline import Outline, outline_of
 from standoff.bodies.voronoi.search import Boundary
+from standoff.errors import StandoffError
 from standoff.geometry.validation import Array, finite
 from standoff.real_numbers import shape_of
 
@@ -27,7 +28,7 @@ def nearest_feature(body: Body, point: ArrayLike) -> Feature:
     if body.dimension == 3:
         return _boundary(body).nearest(x)
     if x[2] != 0.0:
-        raise ValueError(f"point = {x} lies off the plane z = 0 of {body!r}.")
+        raise StandoffError(f"point = {x} lies off the plane z = 0 of {body!r}.", "point", point)
     return _nearest_in_plane(body, x[:2])
 
 

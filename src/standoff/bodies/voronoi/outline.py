@@ -15,11 +15,11 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from standoff.bodies.body import Body
-from standoff.bodies.topology import BodyError
 from standoff.bodies.voronoi.tolerances import CORNER_TURN, OUTLINE_SAMPLES
+from standoff.errors import BodyError
 from standoff.geometry.curves import Curve
 from standoff.geometry.validation import Array
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 from standoff.read_only import KeepsReadOnly
 
 Place: TypeAlias = tuple[int, float]
@@ -128,7 +128,9 @@ def outline_of(body: Body) -> Outline:
         The body is not planar.
     """
     if body.dimension != 2:
-        raise BodyError(f"{body!r} is not planar: an outline is of one with dimension 2.")
+        raise BodyError(
+            f"{body!r} is not planar: an outline is of one with dimension 2.", "body", body
+        )
     runs = [_arcs_of(body, j) for j in range(body.n_edges)]
     order, joints = _in_order(body, [run[0].sign > 0.0 for run in runs])
     arcs: list[Arc] = []
@@ -165,7 +167,9 @@ def _in_order(body: Body, forward: Sequence[bool]) -> tuple[list[int], list[int]
     vertex: int | None = next(iter(starts))
     for _ in range(body.n_edges):
         if vertex is None or vertex not in starts:
-            raise BodyError(f"{body!r}: no single loop of curves leads on from vertex {vertex}.")
+            raise BodyError(
+                f"{body!r}: no single loop of curves leads on from vertex {vertex}.", "body", body
+            )
         j = starts[vertex]
         order.append(j)
         joints.append(vertex)

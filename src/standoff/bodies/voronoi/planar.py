@@ -18,6 +18,7 @@ from standoff.bodies.voronoi.regions import (
     VoronoiRegions,
 )
 from standoff.bodies.voronoi.tolerances import FINEST_POLYLINE, POLYLINE, SAME_PLACE
+from standoff.errors import StandoffError
 from standoff.geometry.validation import Array, positive
 
 
@@ -27,9 +28,11 @@ def planar_regions(body: Body, reach: float, tolerance: float | None) -> Voronoi
     if tolerance is None:
         tolerance = POLYLINE * outline.size
     elif positive(tolerance, "tolerance") < FINEST_POLYLINE * outline.size:
-        raise ValueError(
+        raise StandoffError(
             f"tolerance = {tolerance:g} is too fine for the size {outline.size:.3g}: give at least "
-            f"{FINEST_POLYLINE * outline.size:.3g}."
+            f"{FINEST_POLYLINE * outline.size:.3g}.",
+            "tolerance",
+            tolerance,
         )
     traces, nodes = trace_axis(outline, tolerance)
     branches = _branches(outline, traces, nodes)

@@ -11,10 +11,11 @@ import scipy
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.bodies.tessellation import chart_box, chart_outline, chart_row
+from standoff.errors import StandoffError
 from standoff.geometry.curves import Curve
 from standoff.geometry.validation import Array
-from standoff.kernels import layout as L
-from standoff.kernels.entries import chart_normal, feature_jet, on_face
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import chart_normal, feature_jet, on_face
 from standoff.read_only import KeepsReadOnly
 
 # Samples along an edge, and along each side of a chart.
@@ -74,9 +75,11 @@ class Boundary(KeepsReadOnly):
         found = [*self._vertices(x), *self._edges(x), *self._faces(x)]
         best = min(found, key=lambda c: c.distance)
         if best.inside and best.distance > ROUNDOFF * self.scale:
-            raise ValueError(
+            raise StandoffError(
                 f"point = {x} lies {best.distance:.6g} inside {self.body!r}: regions of a spatial "
-                "body are found outside."
+                "body are found outside.",
+                "point",
+                x,
             )
         return best.feature
 

@@ -18,8 +18,8 @@ from standoff.bodies.voronoi.tolerances import CORNER_TURN
 from standoff.geometry.curves import Line
 from standoff.geometry.surfaces import Plane
 from standoff.geometry.validation import Array
-from standoff.kernels import layout as L
-from standoff.kernels.entries import coedge_parameters
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import coedge_parameters
 
 # Rays along an edge and in a fan: a drawn surface shows no corners.
 ALONG_EDGE = 49

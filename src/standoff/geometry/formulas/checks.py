@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from standoff.errors import FormulaError
 from standoff.geometry.formulas.compiled import Formula, compiled
 from standoff.geometry.formulas.enclosures import (
     CHUNK,
@@ -18,11 +19,7 @@ from standoff.geometry.formulas.enclosures import (
     grid,
     without_bounds,
 )
-from standoff.geometry.formulas.expressions import (
-    FormulaError,
-    parameter_values,
-    read_expression,
-)
+from standoff.geometry.formulas.expressions import parameter_values, read_expression
 from standoff.geometry.intervals import Interval
 from standoff.geometry.validation import GREATEST, Array
 from standoff.real_numbers import real_array, shape_of, shown
@@ -49,17 +46,22 @@ def limits(domain: Any, names: tuple[str, ...], what: str) -> tuple[float, ...]:
         Not finite, or empty.
     """
     wanted = "(" + ", ".join(names) + ")"
+    name = "domain" if what.endswith(".domain") else ""
     if shape_of(domain) != (len(names),):
-        raise FormulaError(f"{what} = {shown(domain)}: give {wanted}.")
+        raise FormulaError(f"{what} = {shown(domain)}: give {wanted}.", name, domain)
     try:
         values = tuple(float(x) for x in real_array(domain))
     except (TypeError, ValueError) as error:
-        raise FormulaError(f"{what} = {shown(domain)} is not numeric: give {wanted}.") from error
+        raise FormulaError(
+            f"{what} = {shown(domain)} is not numeric: give {wanted}.", name, domain
+        ) from error
     if not np.isfinite(values).all():
-        raise FormulaError(f"{what} = {values} is not finite: give finite {wanted}.")
+        raise FormulaError(f"{what} = {values} is not finite: give finite {wanted}.", name, values)
     for k in range(0, len(values), 2):
         if not values[k] < values[k + 1]:
-            raise FormulaError(f"{what} = {values} is empty: give {names[k]} < {names[k + 1]}.")
+            raise FormulaError(
+                f"{what} = {values} is empty: give {names[k]} < {names[k + 1]}.", name, values
+            )
     return values
 
 

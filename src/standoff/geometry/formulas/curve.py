@@ -18,7 +18,7 @@ from standoff.geometry.formulas.checks import (
 from standoff.geometry.formulas.compiled import Formula, compiled
 from standoff.geometry.formulas.enclosures import Enclosure, grid, hull
 from standoff.geometry.validation import Array, affine_map
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 
 # Boxes whose hull is the box of a curve: its excess falls with the square.
 BOX_GRID = 256

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from standoff.errors import FormulaError
 from standoff.real_numbers import real_array, shown
 
 FUNCTIONS = {
@@ -34,10 +35,6 @@ MOST_PARTS = 2000
 GREATEST_POWER = 1000
 # A power with a whole exponent is compiled to products.
 GREATEST_EXPONENT = 64
-
-
-class FormulaError(ValueError):
-    """A formula that cannot serve: the message names the place and the fix."""
 
 
 def sympy_module() -> Any:
@@ -84,20 +81,30 @@ def parameter_values(
     taken = {*variables, *FUNCTIONS, *CONSTANTS}
     values = {}
     if not isinstance(parameters, Mapping | None):
-        raise FormulaError(f"parameters = {shown(parameters)}: give a mapping of names to numbers.")
+        raise FormulaError(
+            f"parameters = {shown(parameters)}: give a mapping of names to numbers.",
+            "parameters",
+            parameters,
+        )
     for name, value in dict(parameters or {}).items():
         if not str(name).isidentifier() or name in taken:
             raise FormulaError(
                 f"Parameter {shown(name)}: give a name that is an identifier and is not one of "
-                f"{', '.join(sorted(taken))}."
+                f"{', '.join(sorted(taken))}.",
+                "parameters",
+                parameters,
             )
         try:
             # SymPy's own numbers are taken too.
             number = float(real_array(float(value) if hasattr(value, "free_symbols") else value))
         except (TypeError, ValueError) as error:
-            raise FormulaError(f"Parameter {name} = {shown(value)} is not a number.") from error
+            raise FormulaError(
+                f"Parameter {name} = {shown(value)} is not a number.", "parameters", parameters
+            ) from error
         if not np.isfinite(number):
-            raise FormulaError(f"Parameter {name} = {number}: give a finite number.")
+            raise FormulaError(
+                f"Parameter {name} = {number}: give a finite number.", "parameters", parameters
+            )
         values[name] = _fraction(repr(number))
     return values
 
@@ -106,9 +113,9 @@ def _number(given: Any, name: str) -> float:
     try:
         number = float(real_array(given))
     except (TypeError, ValueError) as error:
-        raise FormulaError(f"{name} = {shown(given)} is not a number.") from error
+        raise FormulaError(f"{name} = {shown(given)} is not a number.", name, given) from error
     if not np.isfinite(number):
-        raise FormulaError(f"{name} = {number}: give a finite number.")
+        raise FormulaError(f"{name} = {number}: give a finite number.", name, given)
     return number
 
 
@@ -141,14 +148,18 @@ def read_expression(
     else:
         raise FormulaError(
             f"{name} is {shown(given)}: give text such as 'a*cos(u)', a SymPy expression or a "
-            "number."
+            "number.",
+            name,
+            given,
         )
     if not result.is_number and result.free_symbols <= set(symbols.values()):
         if result.has(sympy.zoo, sympy.nan, sympy.oo, sympy.I):
-            raise FormulaError(f"{name} = {given} divides by zero or is not real everywhere.")
+            raise FormulaError(
+                f"{name} = {given} divides by zero or is not real everywhere.", name, given
+            )
         return result
     if result.is_finite is False or result.is_real is False or result is sympy.nan:
-        raise FormulaError(f"{name} = {given} is not a finite real number: {result}.")
+        raise FormulaError(f"{name} = {given} is not a finite real number: {result}.", name, given)
     return result
 
 
@@ -161,7 +172,9 @@ def _unknown(symbol: str, name: str, given: Any, at: str, allowed: Iterable[str]
     near = difflib.get_close_matches(symbol, names, 1, 0.5)
     hint = f" Did you mean {near[0]}?" if near else ""
     return FormulaError(
-        f"Unknown symbol {symbol!r} in {name} = {given}{at}.{hint} Known: {', '.join(names)}."
+        f"Unknown symbol {symbol!r} in {name} = {given}{at}.{hint} Known: {', '.join(names)}.",
+        name,
+        given,
     )
 
 
@@ -184,7 +197,9 @@ class _Text:
     def fail(self, node: ast.AST, why: str) -> FormulaError:
         part = ast.get_source_segment(self.text, node) or ""
         return FormulaError(
-            f"{self.name} = {self.text}: {why} at position {self.place(node)} ({part[:40]!r})."
+            f"{self.name} = {self.text}: {why} at position {self.place(node)} ({part[:40]!r}).",
+            self.name,
+            self.text,
         )
 
     def place(self, node: ast.AST) -> int:
@@ -193,26 +208,36 @@ class _Text:
 
     def expression(self) -> Any:
         if not self.text:
-            raise FormulaError(f"{self.name} is empty: give a formula such as 'a*cos(u)'.")
+            raise FormulaError(
+                f"{self.name} is empty: give a formula such as 'a*cos(u)'.", self.name, None
+            )
         if len(self.text) > LONGEST:
             raise FormulaError(
-                f"{self.name} has {len(self.text)} characters: at most {LONGEST} are read."
+                f"{self.name} has {len(self.text)} characters: at most {LONGEST} are read.",
+                self.name,
+                self.text,
             )
         if "\n" in self.text or "\r" in self.text:
-            raise FormulaError(f"{self.name} = {self.text!r}: give one line.")
+            raise FormulaError(f"{self.name} = {self.text!r}: give one line.", self.name, self.text)
         try:
             tree = ast.parse(self.text, mode="eval")
         except SyntaxError as error:
             place = f" at position {error.offset}" if error.offset else ""
             raise FormulaError(
-                f"{self.name} = {self.text}: syntax error{place}: {error.msg}."
+                f"{self.name} = {self.text}: syntax error{place}: {error.msg}.",
+                self.name,
+                self.text,
             ) from error
         except (ValueError, MemoryError, RecursionError) as error:
-            raise FormulaError(f"{self.name}: cannot be read: {error}") from error
+            raise FormulaError(
+                f"{self.name}: cannot be read: {error}", self.name, self.text
+            ) from error
         try:
             return self.build(tree.body)
         except RecursionError as error:
-            raise FormulaError(f"{self.name} is nested too deeply: write it flatter.") from error
+            raise FormulaError(
+                f"{self.name} is nested too deeply: write it flatter.", self.name, None
+            ) from error
 
     def build(self, node: ast.expr) -> Any:
         if isinstance(node, ast.Constant):
@@ -299,6 +324,16 @@ def applied(function: str, arguments: list[Any]) -> Any:
     return getattr(sympy, function)(*arguments)
 
 
+def _check_parts(given: Any, name: str) -> None:
+    """Refuse a user's SymPy expression of too many parts."""
+    every = sympy_module().preorder_traversal(given)
+    parts = sum(1 for _, _ in zip(every, range(MOST_PARTS), strict=False))
+    if parts >= MOST_PARTS:
+        raise FormulaError(
+            f"{name} has more than {MOST_PARTS} parts: give a simpler expression.", name, given
+        )
+
+
 def _rebuilt(
     given: Any,
     name: str,
@@ -308,13 +343,11 @@ def _rebuilt(
 ) -> Any:
     """A user's SymPy expression, checked part by part, in plain symbols without assumptions."""
     sympy = sympy_module()
-    parts = sum(1 for _, _ in zip(sympy.preorder_traversal(given), range(MOST_PARTS), strict=False))
-    if parts >= MOST_PARTS:
-        raise FormulaError(f"{name} has more than {MOST_PARTS} parts: give a simpler expression.")
+    _check_parts(given, name)
     names = [*variables, *sorted(parameters), *CONSTANTS]
 
     def error(why: str) -> FormulaError:
-        return FormulaError(f"{name} = {given}: {why}.")
+        return FormulaError(f"{name} = {given}: {why}.", name, given)
 
     def build(e: Any) -> Any:
         if e.is_Symbol:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from standoff.errors import StandoffTypeError
 from standoff.geometry.formulas.expressions import sympy_module
 
 # Common subexpressions are named r0, r1, ...
@@ -67,7 +68,7 @@ class Writer:
             return self.power(e.base, e.exp)
         if e.is_Function:
             return f"{e.func.__name__}({', '.join(self.code(a) for a in e.args)})"
-        raise TypeError(f"No code for {type(e).__name__}: {e}")
+        raise StandoffTypeError(f"No code for {type(e).__name__}: {e}")
 
     def number(self, e: Any) -> str:
         text = repr(float(e))

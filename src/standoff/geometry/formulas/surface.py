@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from standoff.errors import FormulaError
 from standoff.geometry.formulas.checks import (
     SURFACE_VARIABLES,
     check_finite,
@@ -16,10 +17,9 @@ from standoff.geometry.formulas.checks import (
 )
 from standoff.geometry.formulas.compiled import Formula, compiled
 from standoff.geometry.formulas.enclosures import Enclosure, grid, hull
-from standoff.geometry.formulas.expressions import FormulaError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array, affine_map
-from standoff.kernels import layout as L
+from standoff.kernels.body import layout as L
 
 # Boxes a side whose hull is the box of a patch: its excess falls with the square.
 BOX_GRID = 24

@@ -1,0 +1,63 @@
+"""Numbers of a shape: one by one, several in a list, or by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from standoff.errors import StandoffTypeError
+from standoff.geometry.validation import Array, finite, positive
+from standoff.real_numbers import shape_of
+
+
+def by_position(
+    shape: str, given: tuple[Any, ...], counts: Mapping[str, int], named: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the arguments of a shape by name.
+
+    Parameters
+    ----------
+    shape : str
+        Its name, for messages.
+    given : tuple
+        What came by position: ``(a, b, c)`` for one argument of three numbers, or ``([a, b, c],)``.
+    counts : mapping
+        By name, in the order of positions, how many numbers an argument has; 0 for one that is
+        given whole.
+    named : mapping
+        What came by name; None stands for nothing.
+
+    Raises
+    ------
+    StandoffTypeError
+        An argument that is missing or given twice, or too many by position.
+    """
+    found = {name: value for name, value in named.items() if value is not None}
+    rest = list(given)
+    for name, count in counts.items():
+        if not rest or name in found:
+            continue
+        if count and shape_of(rest[0]) == ():
+            found[name], rest = rest[:count], rest[count:]
+        else:
+            found[name] = rest.pop(0)
+    if rest:
+        call = ", ".join(f"{name}=..." for name in counts)
+        twice = next((name for name in counts if named.get(name) is not None), None)
+        problem = f"{twice} by position and by name" if twice else "too many numbers"
+        raise StandoffTypeError(f"so.shapes.{shape} got {problem}: write {call}.", twice or "")
+    for name, count in counts.items():
+        if name not in found and count:
+            numbers = ", ".join(["1.0"] * count)
+            raise StandoffTypeError(
+                f"so.shapes.{shape} misses {name}: give {name}=({numbers}).", name
+            )
+    return found
+
+
+def positive_numbers(value: Any, name: str, count: int) -> Array:
+    """Return `count` finite numbers above zero."""
+    numbers = finite(value, name, (count,))
+    for k, number in enumerate(numbers):
+        positive(number, f"{name}[{k}]")
+    return numbers

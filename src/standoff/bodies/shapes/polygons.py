@@ -1,0 +1,120 @@
+"""Convex polygons in space: bodies without volume."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import scipy
+
+from standoff.bodies.body import Body
+from standoff.bodies.tolerances import NARROWEST, OFF_PLANE, PLANE_ROUNDINGS
+from standoff.bodies.topology import Edge, Face
+from standoff.errors import BodyError
+from standoff.geometry.curves import Line
+from standoff.geometry.surfaces import Plane
+from standoff.geometry.validation import Array, finite, not_negative
+
+
+def polygon(vertices: Any, *, rounding: float = 0.0) -> Body:
+    """The convex hull of points in one plane, such as a triangle: flat, without volume.
+
+    Face 0 is the side from which the vertices run counterclockwise, face 1 the other; n faces
+    without width are the rim, whose edges are there twice, as the border of either side.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array_like
+        At least three points of one plane, of any orientation, not in one line, length. Those
+        inside the hull are left out; points off the plane by up to 1e-9 of the extent are moved
+        into it, which ``body.check().notes`` tells, with how far.
+    rounding : float
+        Radius of a ball swept over it, length, zero or above: a plate with round edges.
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    BodyError
+        The points are in one line, or not in one plane.
+    ValueError
+        A wrong shape, a number that is not finite or beyond 1e50, a negative rounding.
+    """
+    points = finite(vertices, "vertices", (-1, 3))
+    radius = not_negative(rounding, "rounding")
+    given = points
+    points, loop, normal = _outline(given)
+    corners = points[loop]
+    n = len(corners)
+    sides = [corners[(k + 1) % n] - corners[k] for k in range(n)]
+    curves = [Line(corners[k], corners[(k + 1) % n]) for k in range(n)]
+    # edges 0 to n - 1 border the upper side, n to 2 n - 1 the lower one
+    edges = [Edge(curve, k, (k + 1) % n) for _ in range(2) for k, curve in enumerate(curves)]
+    along = sides[0] / np.linalg.norm(sides[0])
+    across = np.cross(normal, along)
+    middle = corners.mean(axis=0)
+    upper = Face((Plane.through(middle, along, across),), tuple((k, 1) for k in range(n)))
+    lower = Face(
+        (Plane.through(middle, across, along),), tuple((n + k, -1) for k in reversed(range(n)))
+    )
+    rim = [Face((_beside(corners[k], sides[k], normal),), ((k, -1), (n + k, 1))) for k in range(n)]
+    body = Body.from_brep(corners, edges, [upper, lower, *rim], rounding=radius, name="polygon")
+    if points is given:
+        return body
+    away = np.linalg.norm(points - given, axis=1)
+    note = f"{len(given)} vertices off their common plane by up to {away.max():.3g}: moved into it"
+    return replace(body, report=replace(body.report, notes=(note, *body.report.notes)))
+
+
+def _beside(corner: Array, side: Array, normal: Array) -> Plane:
+    """The plane of a side that is square to the polygon's."""
+    return Plane.through(corner, side / np.linalg.norm(side), normal)
+
+
+def _outline(points: Array) -> tuple[Array, list[int], Array]:
+    """Points in one plane, the extreme ones in order, and the normal about which they run
+    counterclockwise."""
+    if len(points) < 3:
+        raise BodyError(
+            f"A polygon of {len(points)} vertices: give at least three, or take so.shapes.segment.",
+            "vertices",
+            points,
+        )
+    middle = points.mean(axis=0)
+    away = points - middle
+    axes = np.linalg.svd(away, full_matrices=False)[2]
+    axes[2] = np.cross(axes[0], axes[1])
+    length, width, thickness = (float(x) for x in np.ptp(away @ axes.T, axis=0))
+    greatest = float(np.abs(points).max())
+    eps = float(np.finfo(np.float64).eps)
+    if width <= NARROWEST * length + PLANE_ROUNDINGS * eps * greatest:
+        raise BodyError(
+            f"The {len(points)} vertices of a polygon are in one line ({width:.3g} wide, "
+            f"{length:.3g} long): take so.shapes.segment(start=..., end=...).",
+            "vertices",
+            points,
+        )
+    rounding = PLANE_ROUNDINGS * eps * greatest
+    if thickness > OFF_PLANE * length + rounding:
+        raise BodyError(
+            f"The {len(points)} vertices of a polygon are not in one plane: {thickness:.3g} apart "
+            f"across it, on an extent of {length:.3g}. Take so.shapes.polytope, or triangles.",
+            "vertices",
+            points,
+        )
+    if thickness > rounding:
+        points = points - np.outer(away @ axes[2], axes[2])
+    flat = away @ axes[:2].T / length
+    loop = [int(k) for k in scipy.spatial.ConvexHull(flat).vertices]
+    normal = axes[2]
+    # from the first vertex on, in the order that was given where it is one round
+    loop = loop[(at := loop.index(min(loop))) :] + loop[:at]
+    if loop[1] > loop[-1]:
+        loop, normal = [loop[0], *reversed(loop[1:])], -normal
+    if len(loop) == 3:  # exactly their own plane's
+        normal = np.cross(points[loop[1]] - points[loop[0]], points[loop[2]] - points[loop[0]])
+        normal = normal / np.linalg.norm(normal)
+    return points, loop, normal

@@ -1,0 +1,99 @@
+"""The errors that this library raises, as one tree: each names what is at fault in fields.
+
+A `StandoffError` is a ValueError. Where another kind is customary (TypeError, RuntimeError), it is
+that one too.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class StandoffError(ValueError):
+    """What was given cannot serve; the message names it, the offending value and the fix.
+
+    Parameters
+    ----------
+    message : str
+    argument : str
+        The argument at fault, by the name that it has in the function or class that was called;
+        empty where it is not one alone.
+    value : object
+        What was given for it; None where there is no one value.
+    """
+
+    def __init__(self, message: str, argument: str = "", value: Any = None) -> None:
+        super().__init__(message)
+        self.argument = argument
+        self.value = value
+
+
+class StandoffTypeError(StandoffError, TypeError):
+    """An argument of a kind that cannot serve, such as a text for a body."""
+
+
+class BodyError(StandoffError):
+    """The parts given do not bound a convex body; the message names the part and the fix.
+
+    Parameters
+    ----------
+    message, argument, value
+        As of a `StandoffError`.
+    part : (str, int), optional
+        The part at fault: "face", "edge", "vertex", "patch" or "curve", and its number as given;
+        None where it is not one alone.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        argument: str = "",
+        value: Any = None,
+        *,
+        part: tuple[str, int] | None = None,
+    ) -> None:
+        super().__init__(message, argument, value)
+        self.part = part
+
+
+class FormulaError(StandoffError):
+    """A formula that cannot serve: the message names the place and the fix."""
+
+
+class VoronoiError(StandoffError, RuntimeError):
+    """The regions could not be computed, or did not pass their own checks."""
+
+
+class PassivityError(StandoffError):
+    """A spring and damper that the device would not show passively.
+
+    Parameters
+    ----------
+    message, argument, value
+        As of a `StandoffError`.
+    required : float
+        The device's damping that would be needed.
+    largest : float
+        The largest stiffness that is passive beside the damping given; 0 where none is.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        argument: str = "",
+        value: Any = None,
+        *,
+        required: float = 0.0,
+        largest: float = 0.0,
+    ) -> None:
+        super().__init__(message, argument, value)
+        self.required = required
+        self.largest = largest
+
+
+class DeviceError(StandoffError, RuntimeError):
+    """A haptic device that is not open, or no longer there."""
+
+
+class MaskedNumbers(StandoffTypeError):
+    """Some of the numbers given are masked: there is no value to compute with."""

@@ -1,0 +1,26 @@
+"""The first time at which two moving bodies meet."""
+
+from typing import TYPE_CHECKING
+
+from standoff.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from standoff.impact.answer import Impact, ImpactStatus
+    from standoff.impact.search import time_of_impact
+else:
+    __getattr__, __dir__ = on_demand(
+        __name__,
+        {
+            "standoff.impact.answer": (
+                "Impact",
+                "ImpactStatus",
+            ),
+            "standoff.impact.search": ("time_of_impact",),
+        },
+    )
+
+__all__ = [
+    "Impact",
+    "ImpactStatus",
+    "time_of_impact",
+]

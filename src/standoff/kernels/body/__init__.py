@@ -1,0 +1,1 @@
+"""One body: where its numbers stand, jets of its surfaces and curves, features, boundaries."""

@@ -1,0 +1,249 @@
+"""Reading a packed body: the jet, normal and neighbours of a feature.
+
+A body in the kernels is the pair (ints, reals) of ``layout``. A *mode* of one body is
+(feature, chart); the chart matters for faces only and is an absolute chart number.
+"""
+
+from math import sqrt
+
+from standoff.kernels.algebra.vectors import add, axpy, cross, dot, norm, rotate, scale, unit
+from standoff.kernels.body import layout as L
+from standoff.kernels.body.jets import chart_parameters, curve_jet, pcurve_jet, surface_jet
+from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.tolerances import COLLAPSED, EPS, NORMAL_NOISE
+
+ZERO = (0.0, 0.0, 0.0)
+
+
+@kernel
+def pair_span(pair, p, d):
+    """The length that roundoff and tolerances are measured by: both cores' sizes, the distance,
+    and how far their boxes' centres stand from their own origins, whose digits are lost.
+
+    p is B's origin in A's frame. A half-space has no size: how far off its origin the other body
+    stands counts instead.
+    """
+    ra, rb = pair.reals_a, pair.reals_b
+    span = ra[L.SIZE] + rb[L.SIZE] + d + offset(ra) + offset(rb)
+    if pair.ints_a[L.UNBOUNDED] or pair.ints_b[L.UNBOUNDED]:
+        span += norm(p)
+    return span
+
+
+@kernel
+def pair_slack(pair):
+    """What the certificate subtracts for both bodies, wherever the witness points are: length."""
+    return pair.reals_a[L.SLACK] + pair.reals_b[L.SLACK]
+
+
+@kernel
+def offset(reals):
+    """Distance of a body's box centre from its origin."""
+    return norm((reals[L.BOX_CENTRE], reals[L.BOX_CENTRE + 1], reals[L.BOX_CENTRE + 2]))
+
+
+# Where the records of features stand is plain Python in `layout`, for the layers above too.
+dimension = kernel(L.dimension)
+chart_record = kernel(L.chart_record)
+edge_record = kernel(L.edge_record)
+vertex_record = kernel(L.vertex_record)
+coedge_record = kernel(L.coedge_record)
+
+
+@shared
+def chart_jet(ints, reals, chart, u, v):
+    c = chart_record(ints, chart)
+    return surface_jet(reals, ints[c + L.CHART_KIND], ints[c + L.CHART_REALS], u, v)
+
+
+@kernel
+def edge_jet(ints, reals, feature, t):
+    e = edge_record(ints, feature)
+    if ints[e + L.EDGE_KIND] == L.ON_SURFACE:
+        return coedge_jet(ints, reals, ints[e + L.EDGE_COEDGE_0], t)
+    return curve_jet(reals, ints[e + L.EDGE_KIND], ints[e + L.EDGE_REALS] + L.CURVE_DATA, t)
+
+
+@kernel
+def coedge_jet(ints, reals, coedge, t):
+    """Jet of the pcurve's image on its surface, by the chain rule."""
+    k = best_coedge(ints, reals, coedge, t)
+    c = coedge_record(ints, k)
+    o = ints[c + L.COEDGE_REALS] + L.PCURVE_DATA
+    h, ht, htt = pcurve_jet(reals, ints[c + L.COEDGE_KIND], o, t)
+    u, v = h[0] / h[2], h[1] / h[2]
+    ut, vt = (ht[0] - u * ht[2]) / h[2], (ht[1] - v * ht[2]) / h[2]
+    utt = (htt[0] - 2.0 * ut * ht[2] - u * htt[2]) / h[2]
+    vtt = (htt[1] - 2.0 * vt * ht[2] - v * htt[2]) / h[2]
+    x, xu, xv, xuu, xuv, xvv = chart_jet(ints, reals, ints[c + L.COEDGE_CHART], u, v)
+    xtt = axpy(ut * ut, xuu, axpy(2.0 * ut * vt, xuv, scale(vt * vt, xvv)))
+    return x, axpy(ut, xu, scale(vt, xv)), add(xtt, axpy(utt, xu, scale(vtt, xv)))
+
+
+@kernel
+def is_creased(ints, feature):
+    """Has the curvature across an edge no bound?"""
+    return (
+        dimension(ints, feature) == 1
+        and ints[edge_record(ints, feature) + L.EDGE_FLAGS] & L.CREASED != 0
+    )
+
+
+@kernel
+def vertex_point(ints, reals, feature):
+    o = ints[vertex_record(ints, feature) + L.VERTEX_REALS]
+    return (reals[o], reals[o + 1], reals[o + 2])
+
+
+@kernel
+def feature_jet(ints, reals, feature, chart, p, q):
+    """Jet of any feature at its parameters (p, q); columns that it lacks are zero."""
+    dim = dimension(ints, feature)
+    if dim == 2:
+        x, xu, xv, xuu, xuv, xvv = chart_jet(ints, reals, chart, p, q)
+        tiny = COLLAPSED * reals[L.SIZE]
+        if dot(xu, xu) <= tiny * tiny:
+            return x, ZERO, xv, ZERO, ZERO, xvv
+        if dot(xv, xv) <= tiny * tiny:
+            return x, xu, ZERO, xuu, ZERO, ZERO
+        return x, xu, xv, xuu, xuv, xvv
+    if dim == 1:
+        x, xt, xtt = edge_jet(ints, reals, feature, p)
+        return x, xt, ZERO, xtt, ZERO, ZERO
+    return vertex_point(ints, reals, feature), ZERO, ZERO, ZERO, ZERO, ZERO
+
+
+@kernel
+def moved_jet(pose, jet):
+    """The jet seen in another frame: x -> R x + p."""
+    R = pose.R
+    return (
+        add(rotate(R, jet[0]), pose.p),
+        rotate(R, jet[1]),
+        rotate(R, jet[2]),
+        rotate(R, jet[3]),
+        rotate(R, jet[4]),
+        rotate(R, jet[5]),
+    )
+
+
+@kernel
+def chart_normal(ints, reals, chart, u, v):
+    """Outward unit normal; zero where the chart has collapsed."""
+    jet = chart_jet(ints, reals, chart, u, v)
+    o = ints[chart_record(ints, chart) + L.CHART_REALS]
+    return scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
+
+
+@kernel
+def normal_noise(ints, reals, chart, jet):
+    """A bound on how far (chord of the unit sphere, at most 2) roundoff turns the chart's normal.
+
+    Beside a collapsed side one tangent is a small difference of greater numbers: its direction
+    loses its digits, and its roundoff is that of the mixed derivative times a parameter's. The
+    quadrics' tangents are products and keep theirs.
+    """
+    kind = ints[chart_record(ints, chart) + L.CHART_KIND]
+    if kind != L.NURBS and kind != L.REVOLUTION and kind != L.EXTRUSION and kind != L.FORMULA:
+        return 0.0
+    product = sqrt(dot(jet[1], jet[1]) * dot(jet[2], jet[2]))
+    lost = NORMAL_NOISE * EPS * (reals[L.SIZE] + norm(jet[0])) * norm(jet[4])
+    return lost / product if lost < 2.0 * product else 2.0
+
+
+@kernel
+def noisy_normal(ints, reals, chart, u, v):
+    """(outward unit normal, bound on its roundoff) of a chart."""
+    jet = chart_jet(ints, reals, chart, u, v)
+    o = ints[chart_record(ints, chart) + L.CHART_REALS]
+    normal = scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
+    return normal, normal_noise(ints, reals, chart, jet)
+
+
+@kernel
+def planar_edge_normal(ints, reals, feature, t):
+    """Outward in-plane unit normal of a planar body's edge."""
+    flags = ints[edge_record(ints, feature) + L.EDGE_FLAGS]
+    tangent = unit(edge_jet(ints, reals, feature, t)[1])
+    if flags & L.OUTWARD_RIGHT:
+        return (tangent[1], -tangent[0], 0.0)
+    return (-tangent[1], tangent[0], 0.0)
+
+
+@kernel
+def coedge_parameters(ints, reals, coedge, t):
+    """(u, v, du, dv, depth) of the pcurve at t; depth <= 0 where its chart does not see it."""
+    c = coedge_record(ints, coedge)
+    o = ints[c + L.COEDGE_REALS] + L.PCURVE_DATA
+    h, ht, _ = pcurve_jet(reals, ints[c + L.COEDGE_KIND], o, t)
+    if h[2] <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, h[2]
+    u, v = h[0] / h[2], h[1] / h[2]
+    return u, v, (ht[0] - u * ht[2]) / h[2], (ht[1] - v * ht[2]) / h[2], h[2]
+
+
+@kernel
+def best_coedge(ints, reals, coedge, t):
+    """The coedge of the same edge and face that sees the point at t most centrally.
+
+    A face with one chart and a plain pcurve has one coedge; in an atlas every chart that meets
+    the edge has its own, and a NURBS pcurve has one for each piece.
+    """
+    c = coedge_record(ints, coedge)
+    edge = ints[c + L.COEDGE_EDGE]
+    face = ints[chart_record(ints, ints[c + L.COEDGE_CHART]) + L.CHART_FACE]
+    f = ints[L.FACES] + L.FACE_STRIDE * face
+    if ints[f + 1] == 1 and ints[c + L.COEDGE_KIND] != L.BEZIER:
+        return coedge
+    best = coedge
+    best_miss, best_reach = 1e300, 1e300
+    for chart in range(ints[f], ints[f] + ints[f + 1]):
+        r = chart_record(ints, chart)
+        first = ints[r + L.CHART_COEDGE]
+        for k in range(first, first + ints[r + L.CHART_N_COEDGES]):
+            row = coedge_record(ints, k)
+            if ints[row + L.COEDGE_EDGE] != edge:
+                continue
+            miss = 0.0
+            if ints[row + L.COEDGE_KIND] == L.BEZIER:
+                o = ints[row + L.COEDGE_REALS]
+                miss = max(max(reals[o] - t, t - reals[o + 1]), 0.0)
+            u, v, _, _, depth = coedge_parameters(ints, reals, k, t)
+            reach = max(abs(u), abs(v)) if ints[f + 1] > 1 else 0.0
+            if depth > 0.0 and (miss < best_miss or (miss == best_miss and reach < best_reach)):
+                best_miss, best_reach, best = miss, reach, k
+    return best
+
+
+@kernel
+def best_chart(ints, reals, chart, x):
+    """(chart, u, v) of the atlas's chart that sees the surface point x most centrally."""
+    face = ints[chart_record(ints, chart) + L.CHART_FACE]
+    f = ints[L.FACES] + L.FACE_STRIDE * face
+    best, best_u, best_v, best_reach = chart, 0.0, 0.0, 1e300
+    for k in range(ints[f], ints[f] + ints[f + 1]):
+        r = chart_record(ints, k)
+        u, v, depth = chart_parameters(reals, ints[r + L.CHART_REALS], x)
+        if depth > 0.0 and max(abs(u), abs(v)) < best_reach:
+            best, best_u, best_v, best_reach = k, u, v, max(abs(u), abs(v))
+    return best, best_u, best_v
+
+
+@kernel
+def coedge_conormal(ints, reals, coedge, tangent, t):
+    """(conormal, normal, noise) at edge parameter t: the inward unit conormal of the coedge's face,
+    its normal there, and a bound on the roundoff of both.
+
+    tangent is the edge's unit tangent, in the body's frame.
+    """
+    k = best_coedge(ints, reals, coedge, t)
+    c = coedge_record(ints, k)
+    u, v, _, _, _ = coedge_parameters(ints, reals, k, t)
+    chart = ints[c + L.COEDGE_CHART]
+    jet = chart_jet(ints, reals, chart, u, v)
+    o = ints[chart_record(ints, chart) + L.CHART_REALS]
+    normal = scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
+    inward = cross(normal, tangent)
+    # left in (u, v) is left on the surface where f_u x f_v points outward
+    side = ints[c + L.COEDGE_SIDE] * reals[o + L.OUTWARD]
+    return scale(side, inward), normal, normal_noise(ints, reals, chart, jet)

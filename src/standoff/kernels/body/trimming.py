@@ -1,0 +1,201 @@
+"""Walking on a feature until its boundary: trimming loops, ends of edges, limits of charts."""
+
+from math import hypot, inf, pi, sqrt
+
+from standoff.kernels.body import layout as L
+from standoff.kernels.body.features import (
+    chart_record,
+    coedge_parameters,
+    coedge_record,
+    dimension,
+    edge_record,
+    is_creased,
+)
+from standoff.kernels.body.line_roots import TOUCHING_LINE, line_roots
+from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.tolerances import PCURVE_OVERLAP
+from standoff.kernels.values import Hit
+
+NO_HIT = 0
+HIT_COEDGE = 1  # index: the coedge; t: its parameter
+HIT_END = 2  # index: 0 or 1, the end of the edge
+HIT_LIMIT = 3  # the chart's limit: change charts
+
+TURN = 2.0 * pi
+# A point known no better than this (parameter units, relative) may lie outside by roundoff.
+PARAMETER_NOISE = 1e-14
+# How far (parameter units) along a tangent a curve stays within PARAMETER_NOISE of it: a line that
+# starts on a curve and touches it this near touches it at its start.
+TOUCH_WIDTH = 1e-6
+# Rays tried to tell inside from outside: one suffices but where it grazes a corner.
+RAYS = 6
+
+
+@kernel
+def wrapped(t, t0):
+    return t0 + (t - t0) % TURN
+
+
+@kernel
+def in_range(ints, reals, coedge, t):
+    """(inside, t) with t brought into the pcurve's range, periods included."""
+    c = coedge_record(ints, coedge)
+    o = ints[c + L.COEDGE_REALS]
+    t0, t1 = reals[o + L.PCURVE_FIRST], reals[o + L.PCURVE_LAST]
+    kind = ints[c + L.COEDGE_KIND]
+    periodic = ints[chart_record(ints, ints[c + L.COEDGE_CHART]) + L.CHART_PERIODIC] != 0
+    around = periodic and kind == L.LINE and reals[o + L.PCURVE_DATA] != 0.0
+    if kind == L.CONIC or around:
+        t = wrapped(t, t0)
+        if t > t1 and t - TURN >= t0 - PCURVE_OVERLAP:
+            t -= TURN
+    if t < t0 - PCURVE_OVERLAP or t > t1 + PCURVE_OVERLAP:
+        return False, t
+    return True, min(max(t, t0), t1)
+
+
+@kernel
+def crossings(ints, reals, coedge, u, v, du, dv, noise):
+    """Both crossings of a step with a coedge: (count, s, outward, t, s, outward, t).
+
+    s counts steps from (u, v), and is 0 where (u, v) is on the coedge but for noise (parameter
+    units); outward is +1 where the step leaves the face, -1 where it enters.
+    """
+    c = coedge_record(ints, coedge)
+    o = ints[c + L.COEDGE_REALS] + L.PCURVE_DATA
+    kind = ints[c + L.COEDGE_KIND]
+    n, ta, tb = line_roots(reals, kind, o, u, v, du, dv, noise)
+    count = 0
+    s1 = s2 = t1 = t2 = 0.0
+    out1 = out2 = 0
+    length2 = du * du + dv * dv
+    for k in range(2 if n == TOUCHING_LINE else n):
+        t = ta if k == 0 else tb
+        x, y, tx, ty, depth = coedge_parameters(ints, reals, coedge, t)
+        inside, t = in_range(ints, reals, coedge, t)
+        if depth <= 0.0 or not inside:
+            continue
+        across = tx * dv - ty * du
+        inward = ints[c + L.COEDGE_SIDE] * across
+        if kind == L.LINE and across != 0.0:
+            # free of t's roundoff along the line, which swamps a small step
+            s = ((y - v) * tx - (x - u) * ty) / across
+        else:
+            s = ((x - u) * du + (y - v) * dv) / length2
+        if n == TOUCHING_LINE:
+            # the line only touches the curve: outside all along, if the face is on its side
+            along = ints[c + L.COEDGE_SIDE] * (tx * du + ty * dv)
+            if (along > 0.0) != (tb < 0.0):
+                break
+            inward = -1.0
+            s = min(s, 0.0) if abs(s) * sqrt(length2) < TOUCH_WIDTH else s
+        if inward == 0.0:
+            continue
+        out = 1 if inward < 0.0 else -1
+        if n != TOUCHING_LINE and abs(s) * abs(inward) <= noise * hypot(tx, ty):
+            if abs(s) * sqrt(length2) > TOUCH_WIDTH:
+                # along the coedge: crossed here, if it is left at all
+                t += ((u - x) * tx + (v - y) * ty) / (tx * tx + ty * ty)
+                inside, t = in_range(ints, reals, coedge, t)
+                if not inside or abs(inward) <= noise * hypot(tx, ty):
+                    continue
+            s = 0.0
+        if count == 0:
+            s1, out1, t1 = s, out, t
+        else:
+            s2, out2, t2 = s, out, t
+        count += 1
+        if n == TOUCHING_LINE:
+            break
+    return count, s1, out1, t1, s2, out2, t2
+
+
+@kernel
+def walk_face(ints, reals, chart, u, v, du, dv):
+    """(s, hit, index, t): how much of the step fits on the face, s <= 1, and what it hits."""
+    r = chart_record(ints, chart)
+    first = ints[r + L.CHART_COEDGE]
+    best, hit, index, where = 1.0, NO_HIT, -1, 0.0
+    if du == 0.0 and dv == 0.0:
+        return best, hit, index, where
+    limit = reals[ints[r + L.CHART_REALS] + L.LIMIT]
+    if limit < inf:
+        for k in range(2):
+            a, da = (u, du) if k == 0 else (v, dv)
+            if da != 0.0:
+                s = max(((limit if da > 0.0 else -limit) - a) / da, 0.0)
+                if s < best:
+                    best, hit = s, HIT_LIMIT
+    # the nearest crossings behind: the last one inward where the start is on the face
+    left, entered, left_at, left_t = -inf, -inf, -1, 0.0
+    for k in range(first, first + ints[r + L.CHART_N_COEDGES]):
+        # beside a crease parameters of any order of magnitude differ
+        creased = is_creased(ints, ints[L.N_FACES] + ints[coedge_record(ints, k) + L.COEDGE_EDGE])
+        noise = 0.0 if creased else PARAMETER_NOISE * (1.0 + abs(u) + abs(v))
+        count, s1, out1, t1, s2, out2, t2 = crossings(ints, reals, k, u, v, du, dv, noise)
+        for m in range(count):
+            s, out, t = (s1, out1, t1) if m == 0 else (s2, out2, t2)
+            if out > 0 and 0.0 <= s <= best:
+                best, hit, index, where = s, HIT_COEDGE, k, t
+            elif out > 0 and left < s < 0.0:
+                left, left_at, left_t = s, k, t
+            elif out < 0 and entered < s <= 0.0:
+                entered = s
+    if left > entered and -left * hypot(du, dv) <= TOUCH_WIDTH:
+        # roundoff has carried the start outside: back to where it left
+        return 0.0, HIT_COEDGE, left_at, left_t
+    return best, hit, index, where
+
+
+@shared
+def walk(ints, reals, feature, chart, p, q, dp, dq):
+    """How much of a step from parameters (p, q) of any feature fits, and what stops it."""
+    dim = dimension(ints, feature)
+    if dim == 2:
+        s, kind, index, t = walk_face(ints, reals, chart, p, q, dp, dq)
+        return Hit(s, kind, index, t)
+    if dim == 1 and dp != 0.0:
+        e = edge_record(ints, feature)
+        if not ints[e + L.EDGE_FLAGS] & L.CLOSED:
+            o = ints[e + L.EDGE_REALS]
+            end = 1 if dp > 0.0 else 0
+            s = max((reals[o + L.EDGE_T0 + end] - p) / dp, 0.0)
+            if s <= 1.0:
+                return Hit(s, HIT_END, end, reals[o + L.EDGE_T0 + end])
+    return Hit(1.0, NO_HIT, -1, 0.0)
+
+
+@kernel
+def on_face(ints, reals, chart, u, v):
+    """Is (u, v) on the face? From inside a ray leaves at the first boundary it meets."""
+    r = chart_record(ints, chart)
+    first = ints[r + L.CHART_COEDGE]
+    n = ints[r + L.CHART_N_COEDGES]
+    noise = PARAMETER_NOISE * (1.0 + abs(u) + abs(v))
+    limit = reals[ints[r + L.CHART_REALS] + L.LIMIT]
+    if abs(u) > limit or abs(v) > limit:
+        return False
+    # Rays are aimed at points of the boundary, so that they meet it.
+    for k in range(RAYS):
+        if n == 0:
+            break
+        aim = coedge_record(ints, first + k % n)
+        o = ints[aim + L.COEDGE_REALS]
+        t = reals[o] + (0.2371 + 0.1113 * k) * (reals[o + 1] - reals[o])
+        x, y, _, _, depth = coedge_parameters(ints, reals, first + k % n, t)
+        if depth <= 0.0:
+            continue
+        if hypot(x - u, y - v) <= noise:
+            return True
+        nearest, side = inf, 0
+        for j in range(first, first + n):
+            count, s1, out1, _, s2, out2, _ = crossings(ints, reals, j, u, v, x - u, y - v, noise)
+            if (count > 0 and s1 == 0.0) or (count > 1 and s2 == 0.0):
+                return True  # on the boundary
+            if count > 0 and 0.0 < s1 < nearest:
+                nearest, side = s1, out1
+            if count > 1 and 0.0 < s2 < nearest:
+                nearest, side = s2, out2
+        if side != 0:
+            return side > 0
+    return True

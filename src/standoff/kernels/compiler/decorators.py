@@ -1,0 +1,152 @@
+"""How kernels are compiled: one place for the options of Numba.
+
+`error_model="numpy"` lets a division by zero give inf or nan as in NumPy instead of raising in
+the middle of a step. `small` asks LLVM to inline: measured in docs/spikes/dispatch.md, without
+it a step takes 1.6 times as long.
+
+With STANDOFF_BOUNDS_CHECK=1 in the environment every index of an array or a pointer is checked, at
+several times the cost; see `bounds`. Checked and unchecked code are kept apart in the cache.
+"""
+
+import os
+
+import numpy as np
+from llvmlite import ir
+from numba import config, njit, types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from standoff.kernels.compiler import modules
+from standoff.kernels.compiler.cache import ModuleCache
+from standoff.kernels.compiler.entry import Entry
+
+BOUNDS_CHECK = os.environ.get("STANDOFF_BOUNDS_CHECK", "0") not in ("", "0")
+
+OPTIONS = {"nopython": True, "error_model": "numpy", "boundscheck": BOUNDS_CHECK or None}
+
+
+def kernel(function):
+    """Compile what other kernels call."""
+    return _part(function)
+
+
+def small(function):
+    """Compile a kernel and inline it wherever it is called."""
+    # Inlining is for speed alone; checked code would grow out of proportion by it.
+    return _part(function, forceinline=not BOUNDS_CHECK)
+
+
+def _part(function, **options):
+    if config.DISABLE_JIT:
+        return function
+    options = {**OPTIONS, **options}
+    if not modules.AVAILABLE:
+        return njit(**options)(function)
+    made = modules.Part(function, targetoptions=options, pipeline_class=modules.PartCompiler)
+    made.cache_of_calls = ModuleCache(function, called=True)
+    return made
+
+
+def shared(function):
+    """Compile a large kernel, which several entries call, as a module of its own."""
+    if config.DISABLE_JIT or not modules.AVAILABLE:
+        return _part(function)
+    made = modules.Part(function, targetoptions=OPTIONS, pipeline_class=modules.SharedCompiler)
+    made._cache = ModuleCache(function)
+    made.cache_of_calls = ModuleCache(function, called=True)
+    return made
+
+
+def entry(*signature, work):
+    """Compile what Python calls, with all below it as one module, for the types of `signature`.
+
+    `work` names, for who waits, what it is needed for: a key of `notices.WORK`.
+    """
+
+    def decorate(function):
+        if config.DISABLE_JIT:
+            return function
+        return Entry(function, OPTIONS, signature, work)
+
+    return decorate
+
+
+@intrinsic
+def _pointer(typingctx, array, offset):  # type: ignore[no-untyped-def]
+    def codegen(context, builder, signature, args):  # type: ignore[no-untyped-def]
+        view = context.make_array(signature.args[0])(context, builder, args[0])
+        return builder.gep(view.data, [args[1]])
+
+    return types.CPointer(array.dtype)(array, types.intp), codegen
+
+
+# Three rows of ten Bernstein polynomials: NURBS have degrees up to 9.
+STACK_REALS = 32
+# The contact-regular form is 8 x 8.
+MATRIX_REALS = 64
+
+
+if BOUNDS_CHECK:
+    from standoff.kernels.compiler.checked_pointers import (
+        CheckedArray,
+        checked_pointer,
+        checked_stack,
+    )
+
+if config.DISABLE_JIT:
+
+    def stack_reals():  # type: ignore[no-untyped-def]
+        return pointer(np.full(STACK_REALS, np.nan), 0)
+
+    def stack_matrix():  # type: ignore[no-untyped-def]
+        return pointer(np.full(MATRIX_REALS, np.nan), 0)
+
+    def pointer(array, offset):  # type: ignore[no-untyped-def]
+        rest = array.view(np.ndarray)[offset:]
+        return rest.view(CheckedArray) if BOUNDS_CHECK else rest
+
+elif BOUNDS_CHECK:
+
+    @intrinsic
+    def stack_reals(typingctx):  # type: ignore[no-untyped-def]
+        """STACK_REALS numbers of the caller's stack, NaN until they are set."""
+        return checked_stack(STACK_REALS)
+
+    @intrinsic
+    def stack_matrix(typingctx):  # type: ignore[no-untyped-def]
+        """MATRIX_REALS numbers of the caller's stack, NaN until they are set."""
+        return checked_stack(MATRIX_REALS)
+
+    @kernel
+    def pointer(array, offset):  # type: ignore[no-untyped-def]
+        return checked_pointer(array, offset)
+
+else:
+
+    def _stack(count):  # type: ignore[no-untyped-def]
+        def codegen(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            block = cgutils.alloca_once(builder, ir.ArrayType(ir.DoubleType(), count))
+            zero = ir.IntType(64)(0)
+            return builder.gep(block, [zero, zero], inbounds=True)
+
+        return types.CPointer(types.float64)(), codegen
+
+    @intrinsic
+    def stack_reals(typingctx):  # type: ignore[no-untyped-def]
+        """STACK_REALS numbers of the caller's stack, not yet set: no allocation, gone with it."""
+        return _stack(STACK_REALS)
+
+    @intrinsic
+    def stack_matrix(typingctx):  # type: ignore[no-untyped-def]
+        """MATRIX_REALS numbers of the caller's stack, not yet set."""
+        return _stack(MATRIX_REALS)
+
+    @small
+    def pointer(array, offset):
+        """The address of array[offset], to be indexed like the array itself.
+
+        A compiled function takes an array as seven numbers and counts a reference to it at every
+        call; a pointer is one number. Kernels below an entry get pointers: measured, a step takes
+        half the time. The entry must keep the array alive until the last use.
+        """
+        return _pointer(array, offset)

@@ -1,0 +1,68 @@
+"""Entries: compiled for one signature each, before the first call or by `prepare`, never again."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba import types
+from numba.core.registry import CPUDispatcher
+from numba.core.typing.typeof import Purpose, typeof
+
+from standoff.kernels.compiler import modules, notices
+from standoff.kernels.compiler.cache import ModuleCache
+
+INT, REAL, BOOL = types.int64, types.float64, types.boolean
+# What bodies and options hold is read-only; everything else that Python hands over is not.
+INTS = types.Array(INT, 1, "C", readonly=True)
+READ = types.Array(REAL, 1, "C", readonly=True)
+WRITE = types.Array(REAL, 1, "C")
+ROWS = types.Array(REAL, 2, "C")
+PAIR = types.Tuple((INTS, READ, INTS, READ))
+WRITE_INTS = types.Array(INT, 1, "C")
+VECTOR = types.UniTuple(REAL, 3)
+# Batches: read-only ones take both kinds.
+READ_ROWS = types.Array(REAL, 2, "C", readonly=True)
+READ_BLOCKS = types.Array(REAL, 3, "C", readonly=True)
+BLOCKS = types.Array(REAL, 3, "C")
+
+
+class Entry(CPUDispatcher):  # type: ignore[misc]
+    """A function that Python calls, compiled for the types of `signature` alone."""
+
+    def __init__(self, function: Any, options: Any, signature: tuple[Any, ...], work: str) -> None:
+        pipeline = {"pipeline_class": modules.EntryCompiler} if modules.AVAILABLE else {}
+        super().__init__(function, targetoptions=options, **pipeline)
+        self.signature, self.work = signature, work
+        self._cache = ModuleCache(function, work)
+
+    @property
+    def ready(self) -> bool:
+        """Is the machine code loaded?"""
+        return self.signature in self.overloads
+
+    def prepare(self) -> None:
+        """Load the machine code, or compile it; nothing is compiled after that."""
+        if not self.ready:
+            with notices.waiting(self.work):
+                self.compile(self.signature)
+            self.disable_compile()
+
+    def _compile_for_args(self, *args: Any, **kws: Any) -> Any:
+        """Called by Numba at the first call, where nothing was prepared."""
+        self.prepare()
+        self._check(args)
+        return self.overloads[self.signature].entry_point
+
+    def _explain_matching_error(self, *args: Any, **kws: Any) -> None:
+        """Called by Numba where the machine code does not fit the arguments."""
+        self._check(args)
+
+    def _check(self, args: tuple[Any, ...]) -> None:
+        names = self._compiler.pysig.parameters
+        for name, given, wanted in zip(names, args, self.signature, strict=True):
+            kind = typeof(given, Purpose.argument)
+            if self.typingctx.can_convert(kind, wanted) is None:
+                raise TypeError(
+                    f"{self.py_func.__name__}: {name} is {kind}, not {wanted}; the kernels are "
+                    "compiled for one kind of arguments, before the loop begins."
+                )

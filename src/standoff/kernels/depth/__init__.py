@@ -1,0 +1,1 @@
+"""Where the bodies meet: the depth by direction, its descent and the search of all directions."""

@@ -1,0 +1,1 @@
+"""What Python calls; each entry is compiled by itself."""

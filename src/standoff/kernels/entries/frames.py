@@ -1,0 +1,167 @@
+"""One frame of the hybrid tracker, in both laws; and the first one, a cold query."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from standoff.kernels.algebra.rigid import mean_motion, relative_pose, relative_twist
+from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.frame.answer import judge, write_answer
+from standoff.kernels.frame.apart import track_predicted
+from standoff.kernels.frame.prediction import feeds, next_state
+from standoff.kernels.pair.certified import (
+    CERTIFIED,
+    NOT_APART,
+    UNCERTIFIED,
+    settle_and_weigh,
+    weigh_jets,
+)
+from standoff.kernels.pair.contact_newton import contact_rates
+from standoff.kernels.pair.descent import pair_jets
+from standoff.kernels.pair.events import (
+    EVENTS,
+    LIMIT,
+    N_COUNTS,
+    NO_LIMIT,
+    RESTARTS,
+    exhausted,
+    tidy_events,
+)
+from standoff.kernels.paper.frame import track_paper
+from standoff.kernels.paper.integrators import feedforward_now
+from standoff.kernels.paper.law import begun
+from standoff.kernels.state.arrays import (
+    FINE,
+    NOT_KNOWN_APART,
+    OUT_COUNTS,
+    START_ANYWHERE,
+    START_HERE,
+)
+from standoff.kernels.state.state import (
+    Integrated,
+    fresh_state,
+    read_place,
+    read_state,
+    write_state,
+)
+from standoff.kernels.state.tracked import Shown, Tracked
+from standoff.kernels.tolerances import START_GAP
+from standoff.kernels.values import NO_RATES, ORIGIN, Found, Motion
+
+
+class Inputs(NamedTuple):
+    """What a frame is given, in world axes, as pointers."""
+
+    pose_a: Any  # 12 numbers, see ``frame``
+    pose_b: Any
+    twist_a: Any  # 6 numbers
+    twist_b: Any
+    has_twist: bool
+
+
+@kernel
+def twisted(inputs, pose):
+    """B's motion seen from A, by the twists given."""
+    v, w = relative_twist(inputs.pose_a, inputs.pose_b, inputs.twist_a, inputs.twist_b)
+    return Motion(pose, v, w)
+
+
+@shared
+def answer_frame(pair, inputs, motion, shown, solve, status, out, work):
+    """Write the answer of a frame. Returns the rates of its parameters, which are found here where
+    no evaluation of the frame belongs to its witness points.
+    """
+    found, rates = shown.found, shown.rates
+    jets = pair_jets(pair, motion.pose, found.place)
+    n_rate = ORIGIN
+    if inputs.has_twist:
+        if shown.inside:
+            n_rate, rates = contact_rates(pair, motion, jets, found.normal, found.distance, work)
+        elif not shown.fresh and found.distance > 0.0:
+            rates = feedforward_now(pair, motion, found.place, solve, work)
+    known = Shown(found, shown.inside, shown.fresh, rates)
+    write_answer(pair, inputs, motion, jets, known, n_rate, status, out)
+    return rates
+
+
+@kernel
+def copy_counts(work, out):
+    for k in range(N_COUNTS):
+        out[OUT_COUNTS + k] = work.counts[k]
+
+
+@kernel
+def begin_at(pair, motion, place, given, goal, work):
+    """What is found at a place that is given: there, or by descent from it."""
+    pose = motion.pose
+    if given == START_HERE:
+        jets = pair_jets(pair, pose, place)
+        outcome, d, lower, normal = weigh_jets(pair, pose, place, jets, ORIGIN, goal)
+        return Found(outcome, place, d, lower, d, normal)
+    return settle_and_weigh(pair, motion, place, 0.0, 0.0, goal, work).found
+
+
+@kernel
+def start_frame(query_from, pair, inputs, options, state, given, out, work):
+    """The first frame: anywhere by the query given, by descent from the state's place, or there."""
+    motion = twisted(inputs, relative_pose(inputs.pose_a, inputs.pose_b))
+    goal = min(options.tolerance, START_GAP)
+    place = read_place(state)
+    found = Found(UNCERTIFIED, place, 0.0, -1.0, 0.0, ORIGIN)
+    inside = False
+    work.counts[LIMIT] = NO_LIMIT  # a start has no deadline
+    if given != START_ANYWHERE:
+        found = begin_at(pair, motion, place, given, goal, work)
+    if found.outcome != CERTIFIED and given != START_HERE:
+        work.counts[RESTARTS] += 0 if given == START_ANYWHERE else 1
+        found, inside = query_from(pair, motion.pose, goal, work)
+        if found.outcome == NOT_APART:
+            return NOT_KNOWN_APART
+    status = judge(pair, motion.pose.p, found, given == START_HERE, goal, False)
+    shown = Shown(found, inside, False, NO_RATES)
+    rates = answer_frame(pair, inputs, motion, shown, options.solve, status, out, work)
+    integrated = Integrated(NO_RATES, NO_RATES, 0.0)
+    if options.paper:
+        integrated = begun(pair, motion.pose, found.place, 0.0)
+    work.counts[EVENTS] = 0
+    known = Tracked(Shown(found, inside, False, rates), integrated)
+    before = fresh_state(found.place, integrated)
+    feed = feeds(options.predictor, inputs.has_twist)
+    write_state(next_state(pair, before, motion, 0.0, known, feed, status), state)
+    copy_counts(work, out)
+    return FINE
+
+
+@kernel
+def step_frame(track, pair, inputs, h, options, state, out, work):
+    """A frame of the law that is given: the state is changed in place, the answer written."""
+    before = read_state(state)
+    for k in range(N_COUNTS):
+        work.counts[k] = 0
+    work.counts[LIMIT] = options.deadline
+    pose = relative_pose(inputs.pose_a, inputs.pose_b)
+    given = inputs.has_twist
+    motion = twisted(inputs, pose) if given else mean_motion(before.motion.pose, pose, h)
+    shown, integrated = track(pair, motion, before, options, h, work)
+    found = shown.found
+    status = judge(pair, pose.p, found, options.paper, options.tolerance, exhausted(work))
+    rates = answer_frame(pair, inputs, motion, shown, options.solve, status, out, work)
+    old, new = before.place, found.place
+    if work.counts[EVENTS] > 0 or old.feature_a != new.feature_a or old.feature_b != new.feature_b:
+        tidy_events(work, old.feature_a, old.feature_b, new.feature_a, new.feature_b)
+    known = Tracked(Shown(found, shown.inside, shown.fresh, rates), integrated)
+    feed = feeds(options.predictor, inputs.has_twist)
+    write_state(next_state(pair, before, motion, h, known, feed, status), state)
+    copy_counts(work, out)
+
+
+@shared
+def frame_predicted(pair, inputs, h, options, state, out, work):
+    """A frame of the predictor-corrector, for single steps and for runs."""
+    step_frame(track_predicted, pair, inputs, h, options, state, out, work)
+
+
+@shared
+def frame_paper(pair, inputs, h, options, state, out, work):
+    """A frame of the paper's law, for single steps and for runs."""
+    step_frame(track_paper, pair, inputs, h, options, state, out, work)

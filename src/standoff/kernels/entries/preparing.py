@@ -1,0 +1,89 @@
+"""Loading or compiling ahead what a loop will call, so that no frame waits for it."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterator
+from pathlib import Path
+
+from standoff.kernels.compiler import cache
+from standoff.kernels.compiler.entry import Entry
+from standoff.kernels.entries import queries, tracker
+
+MODULES = (
+    "standoff.kernels.entries.queries",
+    "standoff.kernels.entries.tracker",
+    "standoff.kernels.pair.normals_system",
+)
+"""Where entries stand."""
+
+BODIES = ("on_face", "chart_normal", "surface_jet", "curve_jet")
+"""What places a start, and builds the half-space against which an overlap is proven."""
+
+PLANAR = ("pcurve_jet", "planar_edge_normal")
+"""What that of planar bodies needs beside it."""
+
+LOCATING = ("feature_jet", "edge_jet", "coedge_conormal", "end_direction")
+"""What locates the instant of a switch in a recorded run."""
+
+SCIPY = ("scipy.linalg.cython_lapack", "scipy.optimize")
+"""Imported by Numba in the first frame that decomposes a matrix, and by a proof of overlap."""
+
+ready_for: set[tuple[bool, bool, bool]] = set()
+
+
+def prepare(paper: bool, planar: bool, runs: bool = False) -> None:
+    """Have ready what a tracker can reach, in contact and out of it.
+
+    Parameters
+    ----------
+    paper : bool
+        Of the paper's law; else of the predictor-corrector.
+    planar : bool
+        Of planar bodies.
+    runs : bool
+        And the loop over many frames.
+    """
+    if (paper, planar, runs) in ready_for:
+        return
+    names = BODIES + (PLANAR if planar else ()) + (LOCATING if runs else ())
+    needed = [getattr(queries, name) for name in names]
+    needed += [tracker.start, tracker.step_paper if paper else tracker.step_predicted]
+    if runs:
+        needed.append(tracker.run_paper if paper else tracker.run_predicted)
+    for each in needed:
+        if isinstance(each, Entry):  # a plain function under NUMBA_DISABLE_JIT=1
+            each.prepare()
+    for name in SCIPY:
+        importlib.import_module(name)
+    ready_for.add((paper, planar, runs))
+
+
+def every_entry() -> Iterator[Entry]:
+    """All entries, in the order of their modules."""
+    for name in MODULES:
+        for each in vars(importlib.import_module(name)).values():
+            if isinstance(each, Entry) and each.py_func.__module__ == name:
+                yield each
+
+
+def prepare_all() -> None:
+    """Have every entry ready, before other processes that ask for them are started."""
+    for each in every_entry():
+        each.prepare()
+
+
+def name_of(entry: Entry) -> str:
+    """Its module and its own name, such as ``tracker.start``."""
+    return f"{entry.py_func.__module__.rpartition('.')[2]}.{entry.py_func.__name__}"
+
+
+def was_compiled(entry: Entry) -> bool:
+    """Was its machine code made in this process? Else it was found on disk."""
+    return bool(entry.stats.cache_misses)
+
+
+def kept_in(entry: Entry) -> Path | None:
+    """The folder of its machine code, once it is ready; None where it could not be kept."""
+    folder = Path(entry.stats.cache_path)
+    return folder if folder.is_dir() and not cache._unsaved.cache_info().misses else None

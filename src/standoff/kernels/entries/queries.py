@@ -1,0 +1,98 @@
+"""Kernels as Python calls them: packed arrays in, pointers below.
+
+A kernel that got arrays from Python and pointers from other kernels would be compiled twice with
+all that it calls. These are the few that the layers above ask for.
+"""
+
+from standoff.kernels.algebra.rigid import relative_pose, relative_twist
+from standoff.kernels.body import features, jets, trimming
+from standoff.kernels.compiler.decorators import entry, pointer
+from standoff.kernels.compiler.entry import INT, INTS, PAIR, READ, REAL, VECTOR, WRITE
+from standoff.kernels.entries.tracker import input_pointers, pair_pointers
+from standoff.kernels.pair import switching
+from standoff.kernels.pair.descent import pair_jets
+from standoff.kernels.pair.system import feedforward, hessian, projection_errors
+from standoff.kernels.state.state import read_place
+from standoff.kernels.values import STILL
+
+
+@entry(READ, INT, INT, REAL, REAL, work="bodies")
+def surface_jet(reals, kind, o, u, v):
+    return jets.surface_jet(pointer(reals, 0), kind, o, u, v)
+
+
+@entry(READ, INT, INT, REAL, work="bodies")
+def curve_jet(reals, kind, o, t):
+    return jets.curve_jet(pointer(reals, 0), kind, o, t)
+
+
+@entry(WRITE, INT, INT, REAL, work="bodies")
+def pcurve_jet(reals, kind, o, t):
+    return jets.pcurve_jet(pointer(reals, 0), kind, o, t)
+
+
+@entry(INTS, READ, INT, INT, REAL, REAL, work="bodies")
+def feature_jet(ints, reals, feature, chart, p, q):
+    return features.feature_jet(pointer(ints, 0), pointer(reals, 0), feature, chart, p, q)
+
+
+@entry(INTS, READ, INT, REAL, work="bodies")
+def edge_jet(ints, reals, feature, t):
+    return features.edge_jet(pointer(ints, 0), pointer(reals, 0), feature, t)
+
+
+@entry(INTS, READ, INT, REAL, REAL, work="bodies")
+def chart_normal(ints, reals, chart, u, v):
+    return features.chart_normal(pointer(ints, 0), pointer(reals, 0), chart, u, v)
+
+
+@entry(INTS, READ, INT, REAL, work="bodies")
+def planar_edge_normal(ints, reals, feature, t):
+    return features.planar_edge_normal(pointer(ints, 0), pointer(reals, 0), feature, t)
+
+
+@entry(INTS, READ, INT, REAL, work="bodies")
+def coedge_parameters(ints, reals, coedge, t):
+    return features.coedge_parameters(pointer(ints, 0), pointer(reals, 0), coedge, t)
+
+
+@entry(INTS, READ, INT, VECTOR, REAL, work="bodies")
+def coedge_conormal(ints, reals, coedge, tangent, t):
+    return features.coedge_conormal(pointer(ints, 0), pointer(reals, 0), coedge, tangent, t)[:2]
+
+
+@entry(INTS, READ, INT, INT, work="bodies")
+def end_direction(ints, reals, edge, end):
+    return switching.end_direction(pointer(ints, 0), pointer(reals, 0), edge, end)
+
+
+@entry(INTS, READ, INT, REAL, REAL, work="bodies")
+def on_face(ints, reals, chart, u, v):
+    return trimming.on_face(pointer(ints, 0), pointer(reals, 0), chart, u, v)
+
+
+# What `pair_system` writes, and how many numbers.
+JETS, ERRORS, FEEDFORWARD, HESSIAN, N_SYSTEM = 0, 36, 40, 44, 54
+
+
+@entry(PAIR, WRITE, WRITE, WRITE, work="bodies")
+def pair_system(pair, motion, state, out):
+    """Both jets in A's frame (2 x 18 numbers), then Psi (4), b (4) and H (10), into `out`, at the
+    state's place."""
+    inputs = input_pointers(motion, 0, True)
+    pose = relative_pose(inputs.pose_a, inputs.pose_b)
+    v, w = relative_twist(inputs.pose_a, inputs.pose_b, inputs.twist_a, inputs.twist_b)
+    jets = pair_jets(pair_pointers(pair), pose, read_place(pointer(state, 0)))
+    for side in range(2):
+        for i in range(6):
+            vector = jets[side][i]
+            for k in range(3):
+                out[JETS + 18 * side + 3 * i + k] = vector[k]
+    psi = projection_errors(jets[0], jets[1])
+    b = feedforward(jets[0], jets[1], STILL, (pose.p, v, w))
+    H = hessian(jets[0], jets[1])
+    for k in range(4):
+        out[ERRORS + k] = psi[k]
+        out[FEEDFORWARD + k] = b[k]
+    for k in range(10):
+        out[HESSIAN + k] = H[k]

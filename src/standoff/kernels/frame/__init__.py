@@ -1,0 +1,1 @@
+"""One frame of the predictor-corrector: apart, in contact, or from a global start."""

@@ -1,0 +1,136 @@
+"""From witness points in A's frame to the answer in world axes, with its status and rates."""
+
+from math import inf
+
+import numpy as np
+
+from standoff.kernels.algebra.rigid import read_rotation, read_vector
+from standoff.kernels.algebra.vectors import add, axpy, cross, dot, rotate, scale, sub
+from standoff.kernels.body import layout as L
+from standoff.kernels.body.features import pair_slack, pair_span
+from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.pair.certified import (
+    CERTIFIED,
+    PENETRATING,
+    TOUCHING_OR_OVERLAPPING,
+    UNCERTIFIED,
+)
+from standoff.kernels.pair.newton import gradient_norm
+from standoff.kernels.pair.system import gradient, projection_errors
+from standoff.kernels.state.arrays import (
+    CONVERGED,
+    DEADLINE,
+    DISTANCE,
+    GLOBAL,
+    LOCAL,
+    LOWER_BOUND,
+    NORMAL,
+    NOT_CERTIFIED,
+    OUT_MODE,
+    OUT_Q,
+    OUT_RATE,
+    POINT_A,
+    POINT_B,
+    RESIDUAL,
+    STATUS,
+    TRACKING,
+    UPPER_BOUND,
+    VELOCITY_A,
+    VELOCITY_B,
+)
+from standoff.kernels.tolerances import DEPTH_PROOF, START_GAP, TOUCHING
+from standoff.kernels.values import ORIGIN
+
+
+@kernel
+def judge(pair, p, found, lenient, tolerance, cut):
+    """Status of an answer by its bounds. `lenient`: one that still converges is TRACKING. `cut`:
+    the evaluations ran out."""
+    outcome, d, lower = found.outcome, found.distance, found.lower
+    radii = pair.reals_a[L.RADIUS] + pair.reals_b[L.RADIUS]
+    goal = START_GAP if tolerance == inf else tolerance
+    span = pair_span(pair, p, abs(d))
+    near = d - lower <= goal * span + pair_slack(pair)
+    if cut and (outcome == UNCERTIFIED or (outcome == TOUCHING_OR_OVERLAPPING and not near)):
+        return DEADLINE
+    # within the tolerance of touching the bound's sign says nothing
+    if d <= radii or outcome == PENETRATING or (near and lower <= radii):
+        if near or outcome in (CERTIFIED, PENETRATING):
+            proof = DEPTH_PROOF * (radii - d) + TOUCHING * span + pair_slack(pair)
+            return GLOBAL if found.upper - d <= proof else LOCAL
+    elif lower > radii and (near or (outcome == CERTIFIED and tolerance < inf)):
+        return CONVERGED
+    if lenient or tolerance == inf:
+        return TRACKING
+    return NOT_CERTIFIED
+
+
+@kernel
+def write_vector(x, to, o):
+    for k in range(3):
+        to[o + k] = x[k]
+
+
+@kernel
+def write_points(pair, inputs, jets, found, out):
+    """Distance, bounds, witness points on the swept surfaces and normal."""
+    jet_a, jet_b = jets
+    Ra, origin = read_rotation(inputs.pose_a, 0), read_vector(inputs.pose_a, 9)
+    radius_a, radius_b = pair.reals_a[L.RADIUS], pair.reals_b[L.RADIUS]
+    n = found.normal
+    out[DISTANCE] = found.distance - radius_a - radius_b
+    out[LOWER_BOUND] = found.lower - radius_a - radius_b
+    out[UPPER_BOUND] = found.upper - radius_a - radius_b
+    write_vector(add(rotate(Ra, axpy(radius_a, n, jet_a[0])), origin), out, POINT_A)
+    write_vector(add(rotate(Ra, axpy(-radius_b, n, jet_b[0])), origin), out, POINT_B)
+    write_vector(rotate(Ra, n), out, NORMAL)
+    out[RESIDUAL] = gradient_norm(jet_a, jet_b, gradient(projection_errors(jet_a, jet_b)))
+
+
+@kernel
+def normal_rate(turn, found):
+    """The rate of the normal outside contact: that of the direction between the points."""
+    n, d = found.normal, found.distance
+    return scale(1.0 / d, axpy(-dot(turn, n), n, turn)) if d > 0.0 else ORIGIN
+
+
+@kernel
+def write_rates(pair, inputs, motion, jets, shown, n_rate, out):
+    """Rate of the distance and velocities of the witness points, from the feedforward.
+
+    V_A is added in world. n_rate is that of n in contact, where it does not follow from the
+    points' rates.
+    """
+    jet_a, jet_b = jets
+    n, rates = shown.found.normal, shown.rates
+    carried = add(motion.v, cross(motion.w, sub(jet_b[0], motion.pose.p)))
+    slide_a = axpy(rates[0], jet_a[1], scale(rates[1], jet_a[2]))
+    move_b = add(carried, axpy(rates[2], jet_b[1], scale(rates[3], jet_b[2])))
+    if not shown.inside:
+        n_rate = normal_rate(sub(move_b, slide_a), shown.found)
+    Ra, origin = read_rotation(inputs.pose_a, 0), read_vector(inputs.pose_a, 9)
+    v_a, w_a = read_vector(inputs.twist_a, 0), read_vector(inputs.twist_a, 3)
+    u_a = rotate(Ra, axpy(pair.reals_a[L.RADIUS], n_rate, slide_a))
+    u_b = rotate(Ra, axpy(-pair.reals_b[L.RADIUS], n_rate, move_b))
+    u_a = add(u_a, add(v_a, cross(w_a, sub(read_vector(out, POINT_A), origin))))
+    u_b = add(u_b, add(v_a, cross(w_a, sub(read_vector(out, POINT_B), origin))))
+    out[OUT_RATE] = dot(n, carried)
+    write_vector(u_a, out, VELOCITY_A)
+    write_vector(u_b, out, VELOCITY_B)
+
+
+@kernel
+def write_answer(pair, inputs, motion, jets, shown, n_rate, status, out):
+    """The whole answer."""
+    place = shown.found.place
+    write_points(pair, inputs, jets, shown.found, out)
+    if inputs.has_twist:
+        write_rates(pair, inputs, motion, jets, shown, n_rate, out)
+    else:
+        for k in range(OUT_RATE, RESIDUAL):
+            out[k] = np.nan
+    out[OUT_MODE], out[OUT_MODE + 1] = place.feature_a, place.chart_a
+    out[OUT_MODE + 2], out[OUT_MODE + 3] = place.feature_b, place.chart_b
+    out[OUT_Q], out[OUT_Q + 1] = place.u, place.v
+    out[OUT_Q + 2], out[OUT_Q + 3] = place.r, place.s
+    out[STATUS] = status

@@ -1,0 +1,107 @@
+"""A frame of the predictor-corrector: apart, in contact, or by a global start."""
+
+from math import inf
+
+from standoff.kernels.algebra.vectors import dot, sub
+from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.depth.penetration import contact_scale
+from standoff.kernels.frame.contact import NEAR, WARM, contact_query
+from standoff.kernels.frame.prediction import apply_step, predict
+from standoff.kernels.frame.restart import cut_off, polished, restart, start_due
+from standoff.kernels.pair.certified import (
+    CERTIFIED,
+    UNCERTIFIED,
+    Followed,
+    settle_and_weigh,
+)
+from standoff.kernels.pair.descent import pair_jets
+from standoff.kernels.pair.events import exhausted
+from standoff.kernels.state.arrays import DEPTH_GLOBAL
+from standoff.kernels.state.tracked import (
+    ANSWERED,
+    TRY_CONTACT,
+    TRY_RESTART,
+    Shown,
+    Tracked,
+    without_rates,
+)
+from standoff.kernels.tolerances import CUT_TURN, SHIFTED_GAP
+from standoff.kernels.values import NO_RATES, Found
+
+
+@kernel
+def follow(pair, motion, before, options, h, work):
+    """(followed, apart): predict with the feedforward, then make one Newton correction (the
+    paper's feedback under Euler with K h = 1), more where a mode changes; where the certificate's
+    gap stays above the tolerance correct to roundoff. `apart` tells that the witness points have
+    not passed each other along the last normal.
+    """
+    tolerance = options.tolerance
+    place = apply_step(pair, before.place, predict(before, options.predictor, h), work)
+    if before.distance < SHIFTED_GAP * contact_scale(pair):
+        jet_a, jet_b = pair_jets(pair, motion.pose, place)
+        if dot(before.normal, sub(jet_b[0], jet_a[0])) <= 0.0:
+            passed = Found(UNCERTIFIED, place, 0.0, -inf, 0.0, before.normal)
+            return Followed(passed, False, NO_RATES), False
+    followed = settle_and_weigh(pair, motion, place, 1.0, tolerance, tolerance, work)
+    if followed.found.outcome == UNCERTIFIED:
+        place = followed.found.place
+        followed = settle_and_weigh(pair, motion, place, 1.0, 0.0, tolerance, work)
+    return followed, True
+
+
+@kernel
+def apart(pair, motion, before, options, h, work):
+    """(what next, tracked): one step of the law, outside contact."""
+    pose = motion.pose
+    followed, stay = follow(pair, motion, before, options, h, work)
+    found, kept = followed.found, before.integrated
+    if found.outcome == CERTIFIED:
+        found = polished(pair, pose, found, options.tolerance, work)
+        return ANSWERED, Tracked(Shown(found, False, followed.fresh, followed.rates), kept)
+    if exhausted(work) and stay:
+        found, inside = cut_off(pair, pose, found)
+        cut = Found(
+            UNCERTIFIED, found.place, found.distance, found.lower, found.upper, found.normal
+        )
+        return ANSWERED, Tracked(Shown(cut, inside, followed.fresh, followed.rates), kept)
+    near = before.distance < SHIFTED_GAP * contact_scale(pair)
+    return TRY_CONTACT if near or not stay else TRY_RESTART, without_rates(found, False, kept)
+
+
+@kernel
+def contact(pair, pose, before, depth, tolerance, work):
+    """(what next, tracked): the local minimum of the depth, from the last frame's."""
+    # where frames are cut off Newton's method and the descent take turns
+    newton = before.inside and (before.cut // CUT_TURN) % 2 == 0
+    begin = NEAR if newton else WARM
+    everywhere = depth == DEPTH_GLOBAL
+    found = contact_query(
+        pair, pose, before.place, before.normal, begin, everywhere, tolerance, work
+    )
+    answered = found.outcome != UNCERTIFIED or exhausted(work)
+    tracked = without_rates(found, found.outcome != CERTIFIED, before.integrated)
+    return ANSWERED if answered else TRY_RESTART, tracked
+
+
+@kernel
+def track_predicted(pair, motion, before, options, h, work):
+    """This frame from the last one: outside contact one step of the law; in contact, where the
+    witness points pass each other, the local minimum of the depth; where neither certifies, a
+    global start.
+    """
+    tolerance, pose = options.tolerance, motion.pose
+    due, first = start_due(before, work)
+    if not before.lost:
+        then = TRY_RESTART
+        if before.inside:
+            then = TRY_CONTACT
+        elif not due:
+            then, tracked = apart(pair, motion, before, options, h, work)
+            if then == ANSWERED:
+                return tracked
+        if then == TRY_CONTACT:
+            then, tracked = contact(pair, pose, before, options.depth, tolerance, work)
+            if then == ANSWERED:
+                return tracked
+    return restart(pair, pose, first, tolerance, before.integrated, work)

@@ -1,0 +1,116 @@
+"""A query in contact or penetration: follow the local minimum of s(n), and prove it the least."""
+
+from math import inf, nan
+
+import numpy as np
+
+from standoff.kernels.algebra.vectors import axpy, dot, norm, sub
+from standoff.kernels.body.features import pair_slack, pair_span
+from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.depth.descent import descend
+from standoff.kernels.depth.penetration import (
+    begin_along,
+    box_depth,
+    from_last,
+    plane_normal,
+)
+from standoff.kernels.depth.search import search, witness_points
+from standoff.kernels.pair.certificate import certify_along
+from standoff.kernels.pair.certified import CERTIFIED, PENETRATING, UNCERTIFIED
+from standoff.kernels.pair.descent import pair_jets
+from standoff.kernels.pair.events import EVENTS, exhausted
+from standoff.kernels.tolerances import ALIGNED, BLUR, DEPTH_PROOF, MAX_RIVALS
+from standoff.kernels.values import Depth, Found
+
+# What a query in contact may begin from: nothing; the direction and place of a frame before; those,
+# near enough for Newton's method.
+COLD, WARM, NEAR = np.int64(0), np.int64(1), np.int64(2)
+
+
+@shared
+def contact_query(pair, pose, place, normal, begin, everywhere, tolerance, work):
+    """The signed distance of the cores and its bounds.
+
+    `begin` is COLD, WARM or NEAR, of the place and the normal. `everywhere`: prove the depth the
+    least, and search where it is not.
+    """
+    last = some_direction(normal)
+    plane, square = plane_normal(pair, pose)
+    at = Depth(False, nan, square if plane else last, place)
+    if plane and begin == COLD:
+        at = Depth(False, nan, square, begin_along(pair, pose, square))
+    if begin == NEAR and not plane:
+        at = from_last(pair, pose, at, tolerance, work)
+    if (begin != COLD or plane) and not at.found:
+        at = descend(pair, pose, at, tolerance, work)
+    least = -inf
+    if plane:
+        least = -at.distance
+    elif not at.found or at.distance <= 0.0:
+        # followed alone, the minimum is still asked whether the bodies overlap at all
+        proof, rivals = (DEPTH_PROOF, MAX_RIVALS) if everywhere else (1.0, 0)
+        logged = work.counts[EVENTS]
+        at, least = search(pair, pose, at, tolerance, proof, rivals, work)
+        work.counts[EVENTS] = logged
+    n = at.normal
+    if plane:
+        n = square
+    elif begin != COLD and not at.found and exhausted(work):
+        n = farther_apart(pair, pose, at.place, n, last)
+    return conclude(pair, pose, Depth(at.found, at.distance, n, at.place), least, tolerance, work)
+
+
+@kernel
+def some_direction(n):
+    """n, or another where it is the (0, 0, 0) between points that coincide."""
+    return n if dot(n, n) > 0.5 else (1.0, 0.0, 0.0)
+
+
+@kernel
+def bound_along(pair, pose, place, n):
+    """What a plane square to n is known to keep the cores apart by, less than 0 in overlap."""
+    x_a, x_b = witness_points(pair, pose, place)
+    bound, _ = certify_along(pair, pose, place, x_a, x_b, n)
+    return max(bound, -box_depth(pair, pose, n) - pair_slack(pair))
+
+
+@kernel
+def farther_apart(pair, pose, place, n, last):
+    """Of two directions the one that is known to keep the cores farther apart."""
+    better = bound_along(pair, pose, place, last) > bound_along(pair, pose, place, n)
+    return last if better else n
+
+
+@kernel
+def conclude(pair, pose, at, least, tolerance, work):
+    """What `contact_query` returns, of a depth.
+
+    `least` bounds every depth from below, -inf where no overlap was shown.
+    """
+    found, _, n, place = at
+    jet_a, jet_b = pair_jets(pair, pose, place)
+    gap = sub(jet_b[0], jet_a[0])
+    d = dot(n, gap)
+    bound, blur = certify_along(pair, pose, place, jet_a[0], jet_b[0], n)
+    upper = norm(gap)
+    if exhausted(work):
+        bound = max(bound, -box_depth(pair, pose, n) - pair_slack(pair))
+    span = pair_span(pair, pose.p, abs(d))
+    allowed = min(tolerance, BLUR) * span + pair_slack(pair) + min(blur, BLUR * span)
+    if d - bound > allowed or norm(axpy(-d, n, gap)) > ALIGNED * span:
+        # not at rest: what is achieved is the bound, or the points' own distance
+        d = bound if bound <= 0.0 else upper
+        found = found and bound <= 0.0 and not exhausted(work)
+    if least >= 0.0:
+        upper = min(upper, -least)
+    if upper > 0.0 and d <= 0.0 and exhausted(work):
+        found = False  # cut off before any overlap was shown
+    if d > 0.0 and bound > 0.0:
+        # apart: the distance is that of the points, which near contact need not be along n
+        d = norm(gap)
+        if found and d - bound <= allowed:
+            return Found(CERTIFIED, place, d, bound, d, n)
+        found = False
+    if not found:
+        return Found(UNCERTIFIED, place, d, bound, upper, n)
+    return Found(PENETRATING, place, d, bound, max(upper, d), n)

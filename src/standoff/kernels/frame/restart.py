@@ -1,0 +1,108 @@
+"""A global start: of a first frame, and of one that the last frame does not lead to."""
+
+from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.depth.penetration import NOTHING, begin_along, contact_scale, minimum_along
+from standoff.kernels.depth.search import overlap_shown
+from standoff.kernels.frame.contact import COLD, bound_along, contact_query, some_direction
+from standoff.kernels.pair.certificate import certify_along
+from standoff.kernels.pair.certified import CERTIFIED, NOT_APART, PENETRATING
+from standoff.kernels.pair.cold_start import FIRST, global_query
+from standoff.kernels.pair.descent import pair_jets
+from standoff.kernels.pair.events import LIMIT, RESTARTS, exhausted
+from standoff.kernels.state.tracked import without_rates
+from standoff.kernels.tolerances import PATIENCE, POLISHED
+from standoff.kernels.values import Depth, Found
+
+
+@shared
+def polish_along(pair, pose, found, tolerance, work):
+    """What `polished` returns of a pair within its reach."""
+    start = Depth(False, found.lower, found.normal, found.place)
+    kind, ended, _ = minimum_along(pair, pose, start, tolerance, work)
+    if kind == NOTHING:
+        return found
+    place, n, d = ended.place, ended.normal, ended.distance
+    jet_a, jet_b = pair_jets(pair, pose, place)
+    lower, _ = certify_along(pair, pose, place, jet_a[0], jet_b[0], n)
+    return Found(found.outcome, place, d, lower, d, n)
+
+
+@kernel
+def polished(pair, pose, found, tolerance, work):
+    """A certified pair, very near contact after Newton's method in the contact-regular form: the
+    direction between its witness points has lost its digits."""
+    if found.distance > POLISHED * contact_scale(pair) or exhausted(work):
+        return found
+    return polish_along(pair, pose, found, tolerance, work)
+
+
+@kernel
+def anywhere_apart(pair, pose, tolerance, work):
+    """(found, inside) of a cold query where the bodies are apart; else the outcome is NOT_APART,
+    and `anywhere` finds the answer.
+    """
+    found = global_query(pair, pose, FIRST, tolerance, work)
+    if found.outcome != CERTIFIED:
+        nothing = Found(
+            NOT_APART, found.place, found.distance, found.lower, found.upper, found.normal
+        )
+        return nothing, False
+    return polished(pair, pose, found, tolerance, work), False
+
+
+@kernel
+def anywhere_from(pair, pose, first, tolerance, work):
+    """(found, inside) of a cold query, apart or not; `first` is the start that is tried first."""
+    found = global_query(pair, pose, first, tolerance, work)
+    if found.outcome == CERTIFIED:
+        return polished(pair, pose, found, tolerance, work), False
+    if exhausted(work):
+        return found, False
+    found = contact_query(pair, pose, found.place, found.normal, COLD, True, tolerance, work)
+    return found, found.outcome == PENETRATING
+
+
+@kernel
+def anywhere(pair, pose, tolerance, work):
+    """`anywhere_from` the first start."""
+    return anywhere_from(pair, pose, FIRST, tolerance, work)
+
+
+@kernel
+def start_due(before, work):
+    """(is a global start due, which): after frames in a row that were cut off and have spent
+    PATIENCE evaluations between them, what they went on from leads nowhere.
+    """
+    if before.cut == 0:
+        return False, FIRST
+    limit = work.counts[LIMIT]
+    turns = (before.cut * limit) // PATIENCE
+    return turns > ((before.cut - 1.0) * limit) // PATIENCE, int((turns + 1.0) % 2.0)
+
+
+@kernel
+def cut_off(pair, pose, found):
+    """(found, inside) of a frame that ran out of evaluations outside contact.
+
+    Where samples alone show that the bodies overlap, the next frame follows the depth from their
+    least direction, and this one answers with what that parts them by.
+    """
+    n = some_direction(found.normal)
+    shown, way, least = overlap_shown(pair, pose)
+    if not shown or found.lower > 0.0:
+        return Found(found.outcome, found.place, found.distance, found.lower, found.upper, n), False
+    place = begin_along(pair, pose, way)
+    last, along = bound_along(pair, pose, place, n), bound_along(pair, pose, place, way)
+    if last > along:
+        return Found(found.outcome, place, last, last, -least, n), True
+    return Found(found.outcome, place, along, along, -least, way), True
+
+
+@kernel
+def restart(pair, pose, first, tolerance, integrated, work):
+    """A frame by a global start."""
+    work.counts[RESTARTS] += 1
+    found, inside = anywhere_from(pair, pose, first, tolerance, work)
+    if exhausted(work) and found.outcome != CERTIFIED and not inside:
+        found, inside = cut_off(pair, pose, found)
+    return without_rates(found, inside, integrated)

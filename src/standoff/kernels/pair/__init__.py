@@ -1,0 +1,1 @@
+"""Two features held: pair system, solve, descent, switching, lower bound, global start."""

@@ -1,0 +1,146 @@
+"""The pair system: Eqs. (1)-(14) of Patoglu and Gillespie (2005) and the contact-regular form.
+
+Every feature pair is this one system. A feature is given by its jet with the columns it lacks
+set to zero: an edge has no second tangent, a vertex none. Rows and columns of such parameters
+vanish from Psi, b and g and are the identity in H, so they stay where they are.
+
+All quantities of one call are in one frame. Notation as in the paper: x_f on A, x_h on B,
+F = [f_u f_v], G = [h_r h_s], dR = x_f - x_h. S = diag(1, 1, -1, -1).
+"""
+
+from standoff.kernels.algebra.vectors import add, cross, dot, scale, sub
+from standoff.kernels.compiler.decorators import small
+
+
+@small
+def active(f):
+    """1 where the parameter of tangent column f exists (the column is not zero), else 0."""
+    return 1.0 if f[0] != 0.0 or f[1] != 0.0 or f[2] != 0.0 else 0.0
+
+
+@small
+def projection_errors(jet_a, jet_b):
+    """Psi = (f_u.dR, f_v.dR, h_r.dR, h_s.dR): the errors to be driven to zero.  Eqs. (1)-(4)"""
+    dR = sub(jet_a[0], jet_b[0])
+    return dot(jet_a[1], dR), dot(jet_a[2], dR), dot(jet_b[1], dR), dot(jet_b[2], dR)
+
+
+@small
+def gradient(psi):
+    """g = S Psi, the gradient of E = |dR|²/2 by q = (u, v, r, s)."""
+    return psi[0], psi[1], -psi[2], -psi[3]
+
+
+@small
+def energy(jet_a, jet_b):
+    dR = sub(jet_a[0], jet_b[0])
+    return 0.5 * dot(dR, dR)
+
+
+@small
+def hessian(jet_a, jet_b):
+    """H = S M, the Hessian of E, with M of Eq. (9).
+
+    Upper triangle by rows: (H00, H01, H02, H03, H11, H12, H13, H22, H23, H33); a masked
+    parameter has 1 on the diagonal.
+    """
+    dR = sub(jet_a[0], jet_b[0])
+    fu, fv, fuu, fuv, fvv = jet_a[1], jet_a[2], jet_a[3], jet_a[4], jet_a[5]
+    hr, hs, hrr, hrs, hss = jet_b[1], jet_b[2], jet_b[3], jet_b[4], jet_b[5]
+    return (
+        dot(fu, fu) + dot(dR, fuu) + 1.0 - active(fu),
+        dot(fu, fv) + dot(dR, fuv),
+        -dot(fu, hr),
+        -dot(fu, hs),
+        dot(fv, fv) + dot(dR, fvv) + 1.0 - active(fv),
+        -dot(fv, hr),
+        -dot(fv, hs),
+        dot(hr, hr) - dot(dR, hrr) + 1.0 - active(hr),
+        dot(hr, hs) - dot(dR, hrs),
+        dot(hs, hs) - dot(dR, hss) + 1.0 - active(hs),
+    )
+
+
+@small
+def point_velocity(x, motion):
+    """V(x) = v + w x (x - p): velocity of the body's point now at x."""
+    p, v, w = motion
+    return add(v, cross(w, sub(x, p)))
+
+
+@small
+def feedforward(jet_a, jet_b, motion_a, motion_b):
+    """b = (F' dV(x_h), G' dV(x_f)), with dV = V_A - V_B and the points crossed.  Eq. (10)
+
+    A motion is (p, v, w): a body's origin, its velocity and the angular velocity. The paper prints
+    b for rotation only; the translation is here too.
+    """
+    x_f, x_h = jet_a[0], jet_b[0]
+    at_h = sub(point_velocity(x_h, motion_a), point_velocity(x_h, motion_b))
+    at_f = sub(point_velocity(x_f, motion_a), point_velocity(x_f, motion_b))
+    return dot(jet_a[1], at_h), dot(jet_a[2], at_h), dot(jet_b[1], at_f), dot(jet_b[2], at_f)
+
+
+@small
+def contact_residual(jet_a, jet_b, n, d):
+    """r of the contact-regular form in y = (q, n, d): 8 numbers."""
+    miss = sub(sub(jet_b[0], jet_a[0]), scale(d, n))
+    return (
+        -dot(jet_a[1], n),
+        -dot(jet_a[2], n),
+        dot(jet_b[1], n),
+        dot(jet_b[2], n),
+        miss[0],
+        miss[1],
+        miss[2],
+        0.5 * (1.0 - dot(n, n)),
+    )
+
+
+@small
+def at(i, j):
+    """Where row i and column j of an 8 x 8 matrix by rows stand."""
+    return 8 * i + j
+
+
+@small
+def contact_jacobian(jet_a, jet_b, n, d, J):
+    """J = dr/dy into J, 64 numbers; symmetric. Masked parameters get 1 on the diagonal."""
+    fu, fv = jet_a[1], jet_a[2]
+    hr, hs = jet_b[1], jet_b[2]
+    for k in range(64):
+        J[k] = 0.0
+    J[at(0, 0)] = -dot(n, jet_a[3]) + 1.0 - active(fu)
+    J[at(0, 1)] = -dot(n, jet_a[4])
+    J[at(1, 1)] = -dot(n, jet_a[5]) + 1.0 - active(fv)
+    J[at(2, 2)] = dot(n, jet_b[3]) + 1.0 - active(hr)
+    J[at(2, 3)] = dot(n, jet_b[4])
+    J[at(3, 3)] = dot(n, jet_b[5]) + 1.0 - active(hs)
+    for i in range(3):
+        J[at(0, 4 + i)] = -fu[i]
+        J[at(1, 4 + i)] = -fv[i]
+        J[at(2, 4 + i)] = hr[i]
+        J[at(3, 4 + i)] = hs[i]
+        J[at(4 + i, 4 + i)] = -d
+        J[at(4 + i, 7)] = -n[i]
+    for i in range(8):
+        for j in range(i):
+            J[at(i, j)] = J[at(j, i)]
+
+
+@small
+def contact_feedforward(jet_a, jet_b, n, motion_a, motion_b):
+    """r_t, the partial time derivative of r under the bodies' motion: 8 numbers."""
+    spin_a = cross(n, motion_a[2])
+    spin_b = cross(n, motion_b[2])
+    slip = sub(point_velocity(jet_b[0], motion_b), point_velocity(jet_a[0], motion_a))
+    return (
+        -dot(jet_a[1], spin_a),
+        -dot(jet_a[2], spin_a),
+        dot(jet_b[1], spin_b),
+        dot(jet_b[2], spin_b),
+        slip[0],
+        slip[1],
+        slip[2],
+        0.0,
+    )

@@ -1,0 +1,1 @@
+"""The paper's law: its feedback, integrators, Voronoi regions and frame."""

@@ -1,0 +1,230 @@
+"""The paper's law over one frame: integrate, saturate, switch; with the variants that it prints."""
+
+from standoff.kernels.algebra.vectors import norm, rotate_back, scale, sub
+from standoff.kernels.body.features import pair_span
+from standoff.kernels.body.trimming import HIT_LIMIT, NO_HIT, walk
+from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.frame.prediction import apply_step
+from standoff.kernels.pair.descent import (
+    NO_EDGE,
+    pair_jets,
+    recentre,
+    release_along,
+    take_hit,
+    walk_pair,
+)
+from standoff.kernels.pair.events import CHART_CHANGES, CORRECTIONS, EVENTS, SATURATIONS
+from standoff.kernels.pair.newton import gradient_norm
+from standoff.kernels.pair.system import gradient, projection_errors
+from standoff.kernels.paper.integrators import Change, integrate
+from standoff.kernels.paper.voronoi import voronoi_switch
+from standoff.kernels.state.arrays import (
+    FEEDBACK_PI,
+    SATURATE_ZERO,
+    SWITCH_MULTIPLIERS,
+    SWITCH_VORONOI,
+)
+from standoff.kernels.state.options import feedback_number
+from standoff.kernels.state.state import Integrated
+from standoff.kernels.tolerances import (
+    EPS,
+    MAX_VORONOI_PASSES,
+    SLOPE,
+    SLOPE_NOISE,
+    STANDSTILL,
+    TOUCHING,
+    WOUND_UP,
+)
+from standoff.kernels.values import NO_RATES, Side, body_of, side_of, with_side
+
+
+@kernel
+def zeroed_step(pair, place, step, work):
+    """The paper's saturation: a component that leads out of its feature is zeroed after the solve.
+
+    Each parameter goes by itself as far as its feature lets it; no feature is left.
+    """
+    for k in range(4):
+        body = k // 2
+        ints, reals = body_of(pair, body)
+        side = side_of(place, body)
+        da, db = (step[k], 0.0) if k % 2 == 0 else (0.0, step[k])
+        hit = walk(ints, reals, side.feature, side.chart, side.p, side.q, da, db)
+        there = Side(side.feature, side.chart, side.p + hit.s * da, side.q + hit.s * db)
+        place = with_side(place, body, there)
+        if hit.kind == HIT_LIMIT:
+            return take_hit(pair, place, body, hit, NO_EDGE, work)[0]
+        work.counts[SATURATIONS] += hit.kind != NO_HIT
+    return recentre(pair, place, work)[0]
+
+
+@kernel
+def voronoi_passes(pair, pose, place, span, reset, work):
+    """Test both bodies' features against each other's witness points until none switches."""
+    for _ in range(MAX_VORONOI_PASSES):
+        jet_a, jet_b = pair_jets(pair, pose, place)
+        switched, place = voronoi_switch(pair, 0, jet_b[0], span, place, reset, work)
+        if switched:
+            continue
+        x = rotate_back(pose.R, sub(jet_a[0], pose.p))
+        switched, place = voronoi_switch(pair, 1, x, span, place, reset, work)
+        if not switched:
+            break
+    return place
+
+
+@kernel
+def saturate_integral(pair, pose, options, place, integral, work):
+    """Keep each part of the integral within what WOUND_UP spans of error would command; those that
+    are cut are counted as saturations."""
+    if options.feedback != FEEDBACK_PI:
+        return integral
+    jet_a, jet_b = pair_jets(pair, pose, place)
+    span = pair_span(pair, pose.p, norm(sub(jet_a[0], jet_b[0])))
+    return (
+        within(integral[0], most_integral(options, span, jet_a[1]), work),
+        within(integral[1], most_integral(options, span, jet_a[2]), work),
+        within(integral[2], most_integral(options, span, jet_b[1]), work),
+        within(integral[3], most_integral(options, span, jet_b[2]), work),
+    )
+
+
+@kernel
+def most_integral(options, span, tangent):
+    return WOUND_UP * span * norm(tangent) / feedback_number(options, 0)
+
+
+@kernel
+def within(value, most, work):
+    """A number cut to its bound, and counted as saturated."""
+    if abs(value) <= most:
+        return value
+    work.counts[SATURATIONS] += 1
+    return most if value > 0.0 else -most
+
+
+@kernel
+def total(four):
+    """NaN where one of four numbers is infinite or none, else 0."""
+    return 0.0 * four[0] + 0.0 * four[1] + 0.0 * four[2] + 0.0 * four[3]
+
+
+@kernel
+def drop_unbounded(change, work):
+    """A frame whose integration overflows changes nothing, and counts as saturated."""
+    numbers = total(change.parameters) + total(change.errors) + total(change.integral)
+    if numbers + total(change.first) == 0.0:
+        return change
+    work.counts[SATURATIONS] += 1
+    return Change(NO_RATES, NO_RATES, NO_RATES, change.gain, NO_RATES)
+
+
+@kernel
+def plus(a, b):
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]
+
+
+@kernel
+def remember(pair, pose, options, before, place, change, moved, work):
+    """The integrated errors and their integral, carried over the frame.
+
+    Where a switch, a change of chart or a saturation has `moved` them the errors are read anew
+    from Eqs. (1)-(4). The integral waits in a frame that is saturated, or it would wind up; that
+    of a body whose feature or chart has changed begins again.
+    """
+    errors = plus(before.integrated.errors, change.errors)
+    integral = before.integrated.integral
+    if work.counts[SATURATIONS] == 0:
+        integral = plus(integral, change.integral)
+    old = before.place
+    if old.feature_a != place.feature_a or old.chart_a != place.chart_a:
+        moved, integral = True, (0.0, 0.0, integral[2], integral[3])
+    if old.feature_b != place.feature_b or old.chart_b != place.chart_b:
+        moved, integral = True, (integral[0], integral[1], 0.0, 0.0)
+    integral = saturate_integral(pair, pose, options, place, integral, work)
+    if moved:
+        errors = errors_at(pair, pose, place)
+    return Integrated(errors, integral, change.gain)
+
+
+@kernel
+def errors_at(pair, pose, place):
+    """The projection errors of Eqs. (1)-(4)."""
+    jet_a, jet_b = pair_jets(pair, pose, place)
+    return projection_errors(jet_a, jet_b)
+
+
+@kernel
+def begun(pair, pose, place, gain):
+    """What the law integrates, at its beginning."""
+    return Integrated(errors_at(pair, pose, place), NO_RATES, gain)
+
+
+@kernel
+def held_step(pair, place, change):
+    """The step of a frame that holds what it meets.
+
+    From a boundary a trial stage may go so far that the sum of the stages leads out of the patch
+    which the first one enters: then the first stage alone is taken, as Euler's method does.
+    """
+    hit = walk_pair(pair, place, change.parameters)[1]
+    if hit.kind == NO_HIT or hit.s > STANDSTILL:
+        return change.parameters
+    within_patch = walk_pair(pair, place, change.first)[1].s > hit.s
+    return change.first if within_patch else change.parameters
+
+
+@kernel
+def as_before(before, place):
+    """Is a place the one before it but for roundoff?"""
+    most = max(
+        max(abs(place.u - before.u), abs(place.v - before.v)),
+        max(abs(place.r - before.r), abs(place.s - before.s)),
+    )
+    same_a = place.feature_a == before.feature_a and place.chart_a == before.chart_a
+    same_b = place.feature_b == before.feature_b and place.chart_b == before.chart_b
+    return same_a and same_b and most <= STANDSTILL
+
+
+@kernel
+def released(pair, pose, before, place, gap, work):
+    """The place after the test of the multipliers; gap is (n, d, least slope).
+
+    A frame may hold a boundary that its step leads out of at once, and the test release it again:
+    nothing has moved, and the next frame would do the same for ever. Then the boundary is kept,
+    so that the next frame solves on it, and moves.
+    """
+    n, d, floor = gap
+    switches = work.counts[EVENTS]
+    free, found = release_along(pair, pose, place, n, d, floor, work)
+    if free and switches > 0 and as_before(before, found):
+        work.counts[EVENTS] = switches
+        return place
+    return found
+
+
+@shared
+def integrate_and_switch(pair, motion, before, options, h, work):
+    """(place, integrated): w = -M⁻¹(v(Psi) + b) over one frame, then a switch."""
+    change = drop_unbounded(integrate(pair, before, motion, h, options, work), work)
+    work.counts[CORRECTIONS] += 1
+    place, pose = before.place, motion.pose
+    if options.saturation == SATURATE_ZERO:
+        place = zeroed_step(pair, place, change.parameters, work)
+    else:
+        place = apply_step(pair, place, held_step(pair, place, change), work)
+    jet_a, jet_b = pair_jets(pair, pose, place)
+    dR = sub(jet_a[0], jet_b[0])
+    d = norm(dR)
+    span = pair_span(pair, pose.p, d)
+    if d > TOUCHING * span and options.switching == SWITCH_MULTIPLIERS:
+        # released before it is at rest, a feature is taken back and given up for ever: a slope
+        # must exceed the residual's own
+        slope = gradient_norm(jet_a, jet_b, gradient(projection_errors(jet_a, jet_b)))
+        floor = max(SLOPE, max(SLOPE_NOISE * EPS * span, slope) / d)
+        place = released(pair, pose, before.place, place, (scale(-1.0 / d, dR), d, floor), work)
+    elif options.switching == SWITCH_VORONOI:
+        place = voronoi_passes(pair, pose, place, span, options.reset, work)
+    counts = work.counts
+    moved = counts[SATURATIONS] + counts[CHART_CHANGES] + counts[EVENTS] > 0
+    return place, remember(pair, pose, options, before, place, change, moved, work)

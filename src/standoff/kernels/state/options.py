@@ -1,0 +1,72 @@
+"""The options of a tracker as kernels read them, by name."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.state.arrays import (
+    LAW_PAPER,
+    O_DATA,
+    O_DEADLINE,
+    O_DEPTH,
+    O_FEEDBACK,
+    O_GAIN,
+    O_INTEGRATOR,
+    O_LAW,
+    O_PREDICTOR,
+    O_REALISATION,
+    O_RESET,
+    O_RESTARTS,
+    O_SATURATION,
+    O_SOLVE,
+    O_SWITCHING,
+    O_TOLERANCE,
+)
+
+
+class Options(NamedTuple):
+    """One law's options; the names of choices stand in ``frame``."""
+
+    paper: bool  # the paper's law, else the predictor-corrector
+    predictor: int
+    integrator: int
+    gain: float  # K, 1/s
+    tolerance: float  # of the gap, in spans
+    feedback: int
+    realisation: int
+    saturation: int
+    switching: int
+    solve: int
+    reset: int
+    restarts: bool
+    depth: int
+    deadline: int  # most evaluations a frame
+    numbers: Any  # pointer to all of them, see `feedback_number`
+
+
+@kernel
+def read_options(numbers):
+    return Options(
+        numbers[O_LAW] == LAW_PAPER,
+        int(numbers[O_PREDICTOR]),
+        int(numbers[O_INTEGRATOR]),
+        numbers[O_GAIN],
+        numbers[O_TOLERANCE],
+        int(numbers[O_FEEDBACK]),
+        int(numbers[O_REALISATION]),
+        int(numbers[O_SATURATION]),
+        int(numbers[O_SWITCHING]),
+        int(numbers[O_SOLVE]),
+        int(numbers[O_RESET]),
+        numbers[O_RESTARTS] != 0.0,
+        int(numbers[O_DEPTH]),
+        int(numbers[O_DEADLINE]),
+        numbers,
+    )
+
+
+@kernel
+def feedback_number(options, k):
+    """Number k of those that the feedback needs."""
+    return options.numbers[O_DATA + k]

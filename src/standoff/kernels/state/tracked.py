@@ -1,0 +1,35 @@
+"""What one frame makes of the last one, before it is written as an answer and a state."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.state.state import Four, Integrated
+from standoff.kernels.values import NO_RATES, Found
+
+# What is to be done next in a frame.
+ANSWERED, TRY_CONTACT, TRY_RESTART = np.int64(0), np.int64(1), np.int64(2)
+
+
+class Shown(NamedTuple):
+    """What a frame's answer shows."""
+
+    found: Found
+    inside: bool  # solved in contact
+    fresh: bool  # are the rates the feedforward at these very points?
+    rates: Four  # 1/s
+
+
+class Tracked(NamedTuple):
+    """The witness points of a frame, and what the paper's law goes on with."""
+
+    shown: Shown
+    integrated: Integrated
+
+
+@kernel
+def without_rates(found, inside, integrated):
+    return Tracked(Shown(found, inside, False, NO_RATES), integrated)

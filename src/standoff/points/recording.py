@@ -1,0 +1,275 @@
+"""A point tracked along a path: every frame, and the instants of its switches."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from standoff.bodies.body import Body
+from standoff.bodies.features import Feature
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.kernels.tolerances import SLOPE
+from standoff.motion import PoseLike, inputs
+from standoff.motion.pose_function import path_of
+from standoff.points.answer import PointEvent, PointProximity
+from standoff.points.events import Switching, events_between
+from standoff.points.state import PointState
+from standoff.points.tracker import PointTracker
+from standoff.read_only import KeepsReadOnly
+from standoff.real_numbers import shape_of, shown
+from standoff.recording.simulate import Moving
+from standoff.tracking.inputs import flat_pose, flat_twist
+
+Array = NDArray[np.float64]
+
+RESOLUTION = 1e-10
+"""Part of the frame's step within which a switch is found: 1e-13 s of a millisecond."""
+
+ROUNDINGS = 4.0
+"""The same in roundings of the time itself, where that is more."""
+
+RELEASE = 4.0
+"""A feature is released at so many times the least slope that counts, with roundoff, at most."""
+
+
+class PointVisit(NamedTuple):
+    """A stay in one mode: the side and the active feature.
+
+    Attributes
+    ----------
+    inside : bool
+        Whether the point was inside the body.
+    feature : Feature
+    start, end : float
+        Times, s.
+    """
+
+    inside: bool
+    feature: Feature
+    start: float
+    end: float
+
+
+@dataclass(frozen=True, eq=False)
+class PointRecording(KeepsReadOnly):
+    """Answers of a run, by frame; row k of every array belongs to ``time[k]``.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        s, on the path's clock.
+    point : ndarray, shape (n, 3)
+    distance, lower_bound, upper_bound, rate, residual : ndarray, shape (n,)
+        As in `PointProximity`.
+    witness, normal : ndarray, shape (n, 3)
+    inside : ndarray of bool, shape (n,)
+    feature : ndarray of Feature, shape (n,)
+    parameter : ndarray, shape (n,)
+        Of the active curve; nan on a vertex.
+    curve_parameter, curve_distance, curve_residual : ndarray, shape (n, curves)
+        Of each curve's nearest minimum, as they are tracked in parallel; distances without sign.
+    answers : tuple of PointProximity
+    events : tuple of PointEvent
+        In order of time.
+    body : Body
+    """
+
+    time: Array
+    point: Array
+    distance: Array
+    lower_bound: Array
+    upper_bound: Array
+    rate: Array
+    residual: Array
+    witness: Array
+    normal: Array
+    inside: NDArray[np.bool_]
+    feature: NDArray[np.object_]
+    parameter: Array
+    curve_parameter: Array
+    curve_distance: Array
+    curve_residual: Array
+    answers: tuple[PointProximity, ...]
+    events: tuple[PointEvent, ...]
+    body: Body = field(repr=False)
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def modes(self) -> list[PointVisit]:
+        """Return the visited modes in order of time; a stay of no length is left out."""
+        first = self.answers[0]
+        inside, feature, start = first.inside, first.feature, float(self.time[0])
+        visits: list[PointVisit] = []
+        for event in self.events:
+            if event.time > start:
+                visits.append(PointVisit(inside, feature, start, event.time))
+                start = event.time
+            inside, feature = inside ^ (event.kind == "crossing"), event.target
+        visits.append(PointVisit(inside, feature, start, float(self.time[-1])))
+        return visits
+
+
+def record_point(
+    tracker: PointTracker,
+    path: Moving | Callable[[float], PoseLike],
+    times: ArrayLike,
+    start: PointState | None = None,
+    *,
+    locate: bool = True,
+) -> PointRecording:
+    """Track a point along a path and record every frame.
+
+    Parameters
+    ----------
+    tracker : PointTracker
+    path : path or function
+        A path of ``standoff.motion``, anything with ``pose(t)`` and ``twist(t)``, or a function of
+        the time that returns a pose; its origin is the point.
+    times : array_like, shape (n,)
+        Of the frames [s], strictly increasing.
+    start : PointState, optional
+        Where to begin, such as a wrong start of ``tracker.start_from``; its answer is the first
+        frame's. By default ``tracker.start``.
+    locate : bool
+        Find the instants of the switches within their steps; else they are dated to the frames.
+
+    Returns
+    -------
+    PointRecording
+
+    Raises
+    ------
+    TypeError
+        No `PointTracker`, or no path.
+    ValueError
+        Times that do not increase, or what the tracker refuses.
+    """
+    if not isinstance(tracker, PointTracker):
+        raise StandoffTypeError(
+            f"{shown(tracker)} is not a PointTracker: so.points.record_point serves planar bodies; "
+            "so.points.SpatialPointTracker locates the switches itself, in step.",
+            "tracker",
+            tracker,
+        )
+    shape = shape_of(times)
+    if shape is None or len(shape) != 1 or not shape[0]:
+        raise StandoffError(f"times = {shown(times)}: give a list of one or more.", "times", times)
+    clock = inputs.array(times, "times", shape)
+    if not (np.diff(clock) > 0.0).all():
+        raise StandoffError(
+            f"times = {shown(times)}: give them strictly increasing.", "times", times
+        )
+    last = float(clock[-1]) if len(clock) > 1 else math.inf
+    moving: Moving = path_of(path, float(clock[0]), last)
+    x, v = _placed(moving, float(clock[0]))
+    state = tracker.start(x, v) if start is None else start
+    states, events = [state], list[PointEvent]()
+    for k, time in enumerate(clock[1:].tolist()):
+        before = float(clock[k])
+        x, v = _placed(moving, time)
+        following, answer = tracker.step(state, x, v, time - before)
+        if answer.events and locate:
+            step = _Step(tracker, moving, state, before)
+            events += step.between(before, state, time, following)
+        else:
+            events += [event._replace(time=time) for event in answer.events]
+        state = following
+        states.append(state)
+    return _recording(tracker, clock, states, tuple(events))
+
+
+class _Step(NamedTuple):
+    """One frame's step, to be looked into: the state of the frame before, and its time."""
+
+    tracker: PointTracker
+    path: Moving
+    state: PointState
+    before: float
+
+    def between(
+        self, low: float, at_low: PointState, high: float, at_high: PointState
+    ) -> list[PointEvent]:
+        """Return the switches between two times, each found by halving the time between."""
+        if at_low.proximity.mode == at_high.proximity.mode:
+            return []
+        spacing = ROUNDINGS * float(np.spacing(max(abs(low), abs(high))))
+        middle = 0.5 * (low + high)
+        if high - low <= max(RESOLUTION * self.tracker.dt, spacing) or not low < middle < high:
+            return self._switches(at_low, high, at_high)
+        x, v = _placed(self.path, middle)
+        at_middle, _ = self.tracker.step(self.state, x, v, middle - self.before)
+        return [
+            *self.between(low, at_low, middle, at_middle),
+            *self.between(middle, at_middle, high, at_high),
+        ]
+
+    def _switches(self, before: PointState, time: float, after: PointState) -> list[PointEvent]:
+        left = after.parallel.of_key(before.proximity.active)
+        at = self._switching(time)
+        found = events_between(before.moment, after.moment, left, (), at, time)
+        return [self._sharpened(event)._replace(located=True) for event in found]
+
+    def _switching(self, time: float) -> Switching:
+        x, v = _placed(self.path, time)
+        return Switching(self.tracker.boundary, x[:2], v[:2])
+
+    def _sharpened(self, event: PointEvent) -> PointEvent:
+        """Move a switch at a Voronoi line from the threshold of release to the line itself."""
+        if event.kind != "voronoi" or not 0.0 < abs(event.value) <= RELEASE * SLOPE:
+            return event
+        time = event.time - event.value / event.slope if event.slope else event.time
+        if not abs(time - event.time) <= self.tracker.dt:
+            return event
+        value, slope = self._switching(time).voronoi((event.source, event.target))
+        return event._replace(time=time, value=value, slope=slope)
+
+
+def _placed(path: Moving, time: float) -> tuple[Array, Array]:
+    """Place and velocity, (3,), of a path's origin at a time [s]."""
+    pose = path.pose(time)
+    return flat_pose(pose)[9:].copy(), flat_twist(path.twist(time), pose)[:3].copy()
+
+
+def _recording(
+    tracker: PointTracker, clock: Array, states: list[PointState], events: tuple[PointEvent, ...]
+) -> PointRecording:
+    answers = tuple(state.proximity for state in states)
+    curves = range(tracker.body.n_edges)
+    nearest = [[answer.of_curve(c) for c in curves] for answer in answers]
+    features = np.empty(len(answers), dtype=object)
+    features[:] = [answer.feature for answer in answers]
+
+    def numbers(name: str) -> Array:
+        return np.array([getattr(answer, name) for answer in answers], dtype=np.float64)
+
+    def of_curves(name: str) -> Array:
+        return np.array([[getattr(m, name) for m in row] for row in nearest])
+
+    return PointRecording(
+        time=clock,
+        point=np.array([state.point for state in states]),
+        distance=numbers("distance"),
+        lower_bound=numbers("lower_bound"),
+        upper_bound=numbers("upper_bound"),
+        rate=numbers("rate"),
+        residual=numbers("residual"),
+        witness=numbers("witness"),
+        normal=numbers("normal"),
+        inside=np.array([answer.inside for answer in answers]),
+        feature=features,
+        parameter=np.array(
+            [answer.parameters[0] if answer.parameters else np.nan for answer in answers]
+        ),
+        curve_parameter=of_curves("parameter"),
+        curve_distance=of_curves("distance"),
+        curve_residual=of_curves("residual"),
+        answers=answers,
+        events=events,
+        body=tracker.body,
+    )

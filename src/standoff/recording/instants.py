@@ -1,0 +1,278 @@
+"""The instants of the switches within one frame's step.
+
+The pose is known at any time from the paths, so the active features are, too: by a descent to the
+minimum from a known answer near by, or, for the paper's law, by a step of the law cut short. What
+lies between two answers with different features is halved until each part holds one switch; its
+instant is the root of its switching function, proven by the features a little before and after;
+where there is no such function, the halving goes on to the resolution.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from standoff.bodies.features import Feature, feature_of
+from standoff.kernels.tolerances import SLOPE
+from standoff.recording.recording import RecordedEvent
+from standoff.recording.switching_function import NoMinimum, switching_function
+from standoff.tracking.calls import DESCEND, Frame, start, step
+from standoff.tracking.laws import PaperLaw
+from standoff.tracking.proximity import Event
+from standoff.tracking.rows import AnswerRows, StateRow
+from standoff.tracking.state import TrackerState
+from standoff.tracking.status import Status
+from standoff.tracking.tracker import Tracker
+
+Array = NDArray[np.float64]
+Motion = tuple[Array, Array, Array, Array]
+"""Flat poses of A and B, (12,), and their twists, (6,)."""
+
+RESOLUTION = 1e-10
+"""Part of the frame's step to which the halving goes on: 1e-13 s of a millisecond."""
+
+ROUNDINGS = 4.0
+"""The same in roundings of the time itself, where that is more."""
+
+PROOF = 1e-7
+"""The features this part of the step before and after a root must be the switch's own."""
+
+PROOF_SLOPE = 4.0 * SLOPE
+"""The switching function a little before and after, at least, where that is farther: below the
+threshold of release itself either feature may be held."""
+
+ROOT_TRIES = 3
+"""Roots that may fail their proof before the halving goes on alone."""
+
+STENCIL = 1e-5
+"""Half width, in steps, of the difference that gives a switching function's rate."""
+
+
+MOST_ANSWERS = 1000
+"""Answers within one step. A switch by halving takes some 40; a body that turns many times within
+the step switches without end, and its switches are then not located."""
+
+
+class Known(NamedTuple):
+    """The answer at one time: its mode is the pair of packed features."""
+
+    time: float
+    row: Array
+
+    @property
+    def mode(self) -> tuple[int, int]:
+        a, _, b, _ = AnswerRows(self.row).mode
+        return int(a), int(b)
+
+
+class Switch(NamedTuple):
+    """A change of mode at a time; value and slope are those of its switching function."""
+
+    time: float
+    before: tuple[int, int]
+    after: tuple[int, int]
+    value: float = math.nan
+    slope: float = math.nan
+
+
+class NotKnown(ArithmeticError):
+    """The features at some time within the step are not certain."""
+
+
+class Step:
+    """One frame's step, to be looked into.
+
+    Parameters
+    ----------
+    tracker : Tracker
+    motion : callable
+        The motion at a time [s].
+    state : TrackerState
+        Of the frame before.
+    before, after : float
+        Times of that frame and this one [s].
+    row : ndarray
+        This frame's flat answer.
+    """
+
+    def __init__(
+        self,
+        tracker: Tracker,
+        motion: Callable[[float], Motion],
+        state: TrackerState,
+        before: float,
+        after: float,
+        row: Array,
+    ) -> None:
+        self.tracker, self.motion, self.state = tracker, motion, state
+        self.pair = tracker.a, tracker.b
+        self.first, self.last = Known(before, state.proximity.row), Known(after, row)
+        self.length = after - before
+        spacing = ROUNDINGS * float(np.spacing(max(abs(before), abs(after))))
+        self.resolution = max(RESOLUTION * self.length, spacing)
+        self.paper = isinstance(tracker.law, PaperLaw)
+        self.answers = 0
+
+    def switches(self) -> list[Switch] | None:
+        """Return the switches in order of time; None where one of them cannot be located."""
+        try:
+            if not self.paper:
+                for end in self.first, self.last:
+                    if self._descended(end.time, end).mode != end.mode:
+                        return None
+            return self._between(self.first, self.last, ROOT_TRIES)
+        except NotKnown:
+            return None
+
+    def _between(self, low: Known, high: Known, tries: int) -> list[Switch]:
+        if low.mode == high.mode:
+            return []
+        if high.time - low.time <= self.resolution:
+            return [Switch(high.time, low.mode, high.mode)]
+        if tries and not self.paper:
+            root = self._root(low, high)
+            if root is not None and self._proven(root, low, high):
+                return [root]
+            tries -= root is not None
+        middle = self._known(0.5 * (low.time + high.time), low, high)
+        return [*self._between(low, middle, tries), *self._between(middle, high, tries)]
+
+    def _known(self, time: float, low: Known, high: Known) -> Known:
+        self.answers += 1
+        if self.answers > MOST_ANSWERS:
+            raise NotKnown(f"more than {MOST_ANSWERS} answers in one step")
+        if self.paper:
+            return self._stepped(time)
+        # From the higher features: a slope too small to release a feature does not hold it there.
+        return self._descended(time, max(low, high, key=self._freedom))
+
+    def _freedom(self, known: Known) -> int:
+        return sum(
+            ("vertex", "edge", "face").index(feature_of(body, number).kind)
+            for body, number in zip(self.pair, known.mode, strict=True)
+        )
+
+    def _descended(self, time: float, near: Known) -> Known:
+        """Descend to the minimum at a time from the features and parameters of a known answer."""
+        row, state = AnswerRows(near.row), StateRow()
+        state.mode, state.q = row.mode, row.q
+        tracker = self.tracker
+        frame = Frame(*self.motion(time), True)
+        found, fine = start(tracker.packed, frame, tracker.options, state, DESCEND)
+        if not fine or found.status != Status.CONVERGED.value:
+            raise NotKnown(f"no certified answer at {time} s")
+        return Known(time, found.data)
+
+    def _stepped(self, time: float) -> Known:
+        """Step the law from the frame before to a time within."""
+        tracker, state = self.tracker, StateRow(self.state.data.copy())
+        h = time - self.first.time
+        found, fine = step(
+            tracker.packed, Frame(*self.motion(time), True), h, tracker.options, state
+        )
+        if not fine or found.status not in (Status.CONVERGED.value, Status.TRACKING.value):
+            raise NotKnown(f"no answer at {time} s")
+        return Known(time, found.data)
+
+    def _root(self, low: Known, high: Known) -> Switch | None:
+        """Return the root of the switching function between two answers, if there is one."""
+        bodies = [s for s in range(2) if low.mode[s] != high.mode[s]]
+        if len(bodies) > 1:
+            return None
+        rising = self._freedom(low) > self._freedom(high)
+        lower, higher = (high, low) if rising else (low, high)
+        function = switching_function(self.pair, bodies[0], lower.row, higher.row)
+        if function is None:
+            return None
+        sign = 1.0 if rising else -1.0
+
+        def value(time: float) -> float:
+            return sign * function(*self.motion(time)[:2])
+
+        try:
+            # The end with the lower feature first: its own minimum is the held one.
+            ends = {known.time: value(known.time) for known in (lower, higher)}
+            at = _crossing(value, low.time, high.time, ends)
+            if at is None:
+                return None
+            reach = STENCIL * self.length
+            left, right = max(at - reach, self.first.time), min(at + reach, self.last.time)
+            slope = sign * (value(right) - value(left)) / (right - left)
+            return Switch(at, low.mode, high.mode, sign * value(at), slope)
+        except NoMinimum:
+            return None
+
+    def _proven(self, root: Switch, low: Known, high: Known) -> bool:
+        """Are the features just before and after a root those of the two answers around it?"""
+        aside = max(PROOF * self.length, self.resolution)
+        if root.slope != 0.0:
+            aside = max(aside, PROOF_SLOPE / abs(root.slope))
+        for at, end in (root.time - aside, low), (root.time + aside, high):
+            inside = low.time < at < high.time
+            if inside and self._known(at, low, high).mode != end.mode:
+                return False
+        return True
+
+
+def _crossing(
+    value: Callable[[float], float], low: float, high: float, ends: dict[float, float]
+) -> float | None:
+    """Return where a function that is negative at `low` and positive at `high` is zero.
+
+    None where it is not so; within the threshold of release an end itself may be the root.
+    """
+    # An event belongs to the frame after its instant, never to the one before.
+    if ends[low] >= 0.0:
+        return math.nextafter(low, high) if ends[low] <= SLOPE else None
+    if ends[high] <= 0.0:
+        return high if ends[high] >= -SLOPE else None
+    finest = 2.0 * float(np.spacing(max(abs(low), abs(high))))
+    root = float(
+        scipy.optimize.brentq(value, low, high, xtol=finest, rtol=4.0 * np.finfo(float).eps)
+    )
+    return max(root, math.nextafter(low, high))
+
+
+def located_events(step: Step, frame: int, told: tuple[Event, ...]) -> list[RecordedEvent] | None:
+    """Return a frame's events with their instants; None where they cannot be located.
+
+    Parameters
+    ----------
+    step : Step
+    frame : int
+    told : tuple of Event
+        The tracker's own events of this frame. Where several lie at one instant their features
+        are in its order.
+    """
+    switches = step.switches()
+    if switches is None:
+        return None
+    events = []
+    for switch in switches:
+        for s, body in enumerate(step.pair):
+            source, target = (feature_of(body, mode[s]) for mode in (switch.before, switch.after))
+            if source != target:
+                way = _way([event for event in told if event.body == "AB"[s]], source, target)
+                events += [
+                    RecordedEvent(
+                        frame, switch.time, "AB"[s], *leg, switch.value, switch.slope, located=True
+                    )
+                    for leg in way
+                ]
+    return events
+
+
+def _way(told: list[Event], source: Feature, target: Feature) -> list[tuple[Feature, Feature]]:
+    """Return the legs from source to target that the tracker told, else the one leg."""
+    legs = [(event.source, event.target) for event in told]
+    sources, targets = [leg[0] for leg in legs], [leg[1] for leg in legs]
+    if source in sources and target in targets:
+        first, last = sources.index(source), targets.index(target)
+        if first <= last:
+            return legs[first : last + 1]
+    return [(source, target)]

@@ -1,0 +1,196 @@
+"""What a tracked run leaves, as data: one row a frame, and the switching events."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.automaton.visits import Visit
+from standoff.bodies.body import Body
+from standoff.bodies.features import Feature
+from standoff.read_only import KeepsReadOnly
+from standoff.tracking.law_options import Law
+from standoff.tracking.laws import every_option, law_of_facts
+from standoff.tracking.rows import Counts
+from standoff.tracking.status import Status
+
+Array = NDArray[np.float64]
+
+
+class RecordedEvent(NamedTuple):
+    """A switch of one body's feature in a recording.
+
+    Attributes
+    ----------
+    frame : int
+        Index of the frame whose step met it.
+    time : float
+        s, on the recording's clock. Where `located`, the first instant known to be in the target
+        feature; else that of the frame.
+    body : "A" or "B"
+    source, target : Feature
+        The features before and after.
+    value : float
+        The switching function at `time`: slope of the distance (dimensionless) along the
+        direction that leads from the lower of the two features into the higher. Zero at a
+        located instant, to roundoff; nan where it is not known.
+    slope : float
+        Rate of the switching function at `time`, 1/s: positive where the higher feature is
+        left, negative where it is entered; nan where it is not known.
+    located : bool
+        Was the instant found within the step, or is it only dated to the frame?
+    """
+
+    frame: int
+    time: float
+    body: str
+    source: Feature
+    target: Feature
+    value: float
+    slope: float
+    located: bool
+
+
+@dataclass(frozen=True)
+class RunInfo:
+    """What a recording is of, and how it was made.
+
+    Attributes
+    ----------
+    bodies : (str, str)
+        Names of A and B.
+    digests : (str, str)
+        ``Body.digest`` of A and B.
+    options : mapping
+        ``law``, the law's name; every option of that law, resolved, as plain data with a scene's
+        keys; dt (the longest step, s); locate. A file of a format before 4 may lack some.
+    title : str
+    length_unit : str
+        Label of lengths; empty where none was given.
+    version : str
+        The Standoff that made it.
+    source : mapping
+        What the caller adds, such as a scene's text; plain data that JSON can hold.
+    repaired : int
+        How many of the poses that the paths gave, two a frame, had a rounded rotation and were
+        brought to the nearest one. What a path was made of, it counts itself.
+    """
+
+    bodies: tuple[str, str]
+    digests: tuple[str, str]
+    options: Mapping[str, Any]
+    title: str = ""
+    length_unit: str = ""
+    version: str = ""
+    source: Mapping[str, Any] = field(default_factory=dict)
+    repaired: int = 0
+
+    @property
+    def law(self) -> Law:
+        """The law, made again from `options`.
+
+        Raises
+        ------
+        ValueError
+            Its feedback is a program's own, or the file keeps only its text.
+        """
+        known = ("law", *every_option())
+        return law_of_facts({name: self.options[name] for name in known if name in self.options})
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedFrames(KeepsReadOnly):
+    """The arrays of a run; `Recording` describes them and draws, stores and marks them."""
+
+    time: Array
+    distance: Array
+    lower_bound: Array
+    upper_bound: Array
+    rate: Array
+    residual: Array
+    point_a: Array
+    point_b: Array
+    normal: Array
+    velocity_a: Array
+    velocity_b: Array
+    feature_a: NDArray[np.object_]
+    feature_b: NDArray[np.object_]
+    parameters_a: Array
+    parameters_b: Array
+    status: NDArray[np.object_]
+    counts: NDArray[np.int64]
+    events: tuple[RecordedEvent, ...]
+    info: RunInfo
+    pair: tuple[Body, Body] | None = field(default=None, repr=False)
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    @property
+    def certified(self) -> NDArray[np.bool_]:
+        """Whether each frame's gap is within the tolerance, shape (n,)."""
+        return np.asarray([s.certified for s in self.status], dtype=bool)
+
+    @property
+    def penetrating(self) -> NDArray[np.bool_]:
+        """Whether the bodies touch or overlap in each frame, shape (n,)."""
+        return np.asarray([s.penetrating for s in self.status], dtype=bool)
+
+    @property
+    def gap(self) -> Array:
+        """Distance less its lower bound [length], shape (n,)."""
+        return self.distance - self.lower_bound
+
+    def closest(self) -> int | None:
+        """Return the frame of the least distance; None where no frame has a distance."""
+        return None if np.isnan(self.distance).all() else int(np.nanargmin(self.distance))
+
+    def widest_gap(self) -> int | None:
+        """Return the frame of the greatest gap; None where no frame has one."""
+        return None if np.isnan(self.gap).all() else int(np.nanargmax(self.gap))
+
+    def total_counts(self) -> Counts:
+        """Return the counts summed over all frames."""
+        return Counts(*self.counts.sum(axis=0).tolist())
+
+    def status_frames(self) -> Counter[Status]:
+        """Return how many frames ended in each status."""
+        return Counter(self.status.tolist())
+
+    def modes(self) -> list[Visit]:
+        """Return the visited modes in order of time.
+
+        A stay ends at the instant of the switch that ends it. Where an overlap has no depth there
+        is no mode: the stay before ends at the last frame with one, the next one begins at the
+        first frame that has one again. Of switches at one instant only the last mode is visited.
+        """
+        visits: list[Visit] = []
+        events = list(self.events)
+        mode: list[Feature] = []
+        start, at = 0.0, 0
+
+        def leave(end: float) -> None:
+            if mode and end > start:
+                visits.append(Visit(mode[0], mode[1], start, end))
+
+        for frame, time in enumerate(self.time.tolist()):
+            here = at
+            while at < len(events) and events[at].frame == frame:
+                at += 1
+            if self.status[frame] is Status.OVERLAPPING:
+                leave(float(self.time[frame - 1]) if frame else time)
+                mode = []
+            elif not mode:
+                mode, start = [self.feature_a[frame], self.feature_b[frame]], time
+            else:
+                for event in events[here:at]:
+                    leave(event.time)
+                    start = max(start, event.time)
+                    mode["AB".index(event.body)] = event.target
+        leave(float(self.time[-1]))
+        return visits

@@ -1,0 +1,240 @@
+"""A recorded run: drawn, stored, and marked in the pair's automaton."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.bodies.features import charts_of, feature_of
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.real_numbers import shown
+from standoff.recording.recorded import RecordedEvent as RecordedEvent
+from standoff.recording.recorded import RecordedFrames
+from standoff.recording.recorded import RunInfo as RunInfo
+from standoff.tracking.rows import AnswerRows
+from standoff.tracking.status import Status
+from standoff.whole_files import file_name, write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from standoff.automaton.graph import Automaton
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Recording(RecordedFrames):
+    """Answers of a run, by frame; row k of every array belongs to ``time[k]``.
+
+    All vectors in world axes, lengths in the bodies' unit.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        s, strictly increasing.
+    distance, lower_bound, upper_bound, rate, residual : ndarray, shape (n,)
+        As in `Proximity`; nan while overlapping. ``upper_bound`` is nan in all frames of a file
+        of format version 2, which does not hold it.
+    point_a, point_b, normal, velocity_a, velocity_b : ndarray, shape (n, 3)
+    feature_a, feature_b : ndarray of Feature, shape (n,)
+    parameters_a, parameters_b : ndarray, shape (n, 3)
+        nan where the feature has fewer parameters.
+    status : ndarray of Status, shape (n,)
+    counts : ndarray of int, shape (n, 10)
+        Work of each frame, in the order of `Counts`.
+    events : tuple of RecordedEvent
+        In order of frame and time. Of each body the source of an event is the target of the one
+        before.
+    info : RunInfo
+    pair : (Body, Body) or None
+        A and B; None in a recording opened from a file, which keeps their digests only.
+    """
+
+    @classmethod
+    def of_answers(
+        cls,
+        time: Array,
+        answers: Array,
+        events: tuple[RecordedEvent, ...],
+        pair: tuple[Body, Body],
+        info: RunInfo,
+    ) -> Recording:
+        """Return the recording of a run's flat answers, (n, N_OUT) as ``kernels.frame`` has it."""
+        a, b = pair
+        statuses = {status.value: status for status in Status}
+        rows = AnswerRows(np.array(answers))
+        return cls(
+            time=time,
+            distance=rows.distance,
+            lower_bound=rows.lower_bound,
+            upper_bound=rows.upper_bound,
+            rate=rows.rate,
+            residual=rows.residual,
+            point_a=rows.point_a,
+            point_b=rows.point_b,
+            normal=rows.normal,
+            velocity_a=rows.velocity_a,
+            velocity_b=rows.velocity_b,
+            feature_a=_objects(rows.mode[:, 0], lambda n: feature_of(a, n)),
+            feature_b=_objects(rows.mode[:, 2], lambda n: feature_of(b, n)),
+            parameters_a=_parameters(a, rows.mode[:, :2], rows.q[:, :2]),
+            parameters_b=_parameters(b, rows.mode[:, 2:], rows.q[:, 2:]),
+            status=_objects(rows.status, statuses.__getitem__),
+            counts=rows.counts,
+            events=events,
+            info=info,
+            pair=pair,
+        )
+
+    def automaton(self) -> Automaton:
+        """Return the pair's automaton with the visited modes and the switches marked.
+
+        Raises
+        ------
+        ValueError
+            In a recording opened from a file, which does not hold the bodies.
+        """
+        from standoff.automaton.graph import automaton
+
+        if self.pair is None:
+            raise StandoffError(
+                "A recording from a file does not hold its bodies: make the pair's with "
+                "standoff.automaton.graph.automaton(a, b) and mark it with "
+                ".marked(recording.modes(), recording.events)."
+            )
+        return automaton(*self.pair).marked(self.modes(), self.events)
+
+    def plot(self, path: str | Path | None = None) -> Figure:
+        """Draw distance and bound, gap and residual, modes and parameters over time.
+
+        Parameters
+        ----------
+        path : str or path, optional
+            Also write the picture there, whole or not at all: .png, .svg or .pdf.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If matplotlib is not installed; the message names the extra.
+        TypeError
+            If `path` is neither a text nor a Path.
+        ValueError
+            If it is empty, or the file's ending is another.
+        OSError
+            If the file cannot be written, or is no regular file but a folder, a FIFO or a device.
+            A link stays: what it leads to is replaced.
+        """
+        from standoff.recording import plot as recording_plot
+
+        if path is None:
+            return recording_plot.draw(self)
+        target = file_name(path)
+        ending = target.suffix.lower().removeprefix(".")
+        if ending not in recording_plot.FORMATS:
+            raise StandoffError(
+                f"{target}: the ending '{target.suffix}' is not known here; name a file that ends "
+                f"in .{', .'.join(recording_plot.FORMATS)}",
+                "path",
+                path,
+            )
+        figure = recording_plot.draw(self)
+        write_whole({target: lambda file: figure.savefig(file, format=ending)})
+        return figure
+
+    def save(self, path: str | Path) -> None:
+        """Write a Parquet file, whole or not at all; `open_recording` reads it.
+
+        docs/scene-format.md lists the columns; any reader of Parquet understands them.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If pyarrow is not installed; the message names the extra.
+        TypeError
+            If `path` is neither a text nor a Path.
+        ValueError
+            If it is empty, or ``info.source`` is nested too deeply.
+        OSError
+            If the file cannot be written, or is no regular file but a folder, a FIFO or a device.
+            A link stays: what it leads to is replaced.
+        """
+        target = file_name(path)
+        from standoff.recording.file import write_table
+
+        write_whole({target: lambda file: write_table(self, file)})
+
+
+def open_recording(path: str | Path) -> Recording:
+    """Read a recording that `Recording.save` or ``standoff track -o`` wrote.
+
+    Everything is as it was, but for ``pair``: the file holds the bodies' names and digests, not
+    the bodies.
+
+    Parameters
+    ----------
+    path : str or Path
+        A Parquet file.
+
+    Returns
+    -------
+    Recording
+
+    Raises
+    ------
+    TypeError
+        If `path` is neither a text nor a Path.
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is no Parquet file or cut off, is no recording, or is of a format that this Standoff
+        does not read.
+    ModuleNotFoundError
+        If pyarrow is not installed; the message names the extra.
+    """
+    from standoff.recording.file import read_table
+
+    given: object = path
+    if not isinstance(given, str | Path):
+        raise StandoffTypeError(
+            f"path is {shown(given)}: give the name of a file, a text or a Path.", "path", path
+        )
+    return Recording(**read_table(Path(path)))
+
+
+def _objects(numbers: Array, meaning: Callable[[int], object]) -> NDArray[np.object_]:
+    """Return one object a number; equal numbers share theirs."""
+    unique, inverse = np.unique(numbers.astype(np.int64), return_inverse=True)
+    table = np.empty(len(unique), dtype=object)
+    for k, number in enumerate(unique.tolist()):
+        table[k] = meaning(number)
+    return table[inverse]
+
+
+def _parameters(body: Body, modes: Array, q: Array) -> Array:
+    """The parameters as `Proximity` gives them, (n, 3), filled with nan.
+
+    modes are the numbers of features and charts, (n, 2), q what they have of u and v, (n, 2).
+    """
+    parameters = np.full((len(q), 3), np.nan)
+    numbers = modes[:, 0].astype(np.int64)
+    on_face = numbers < body.n_faces
+    on_edge = ~on_face & (numbers < body.n_faces + body.n_edges)
+    parameters[on_face | on_edge, 0] = q[on_face | on_edge, 0]
+    parameters[on_face, 1] = q[on_face, 1]
+    for face in np.unique(numbers[on_face]).tolist():
+        first, count = charts_of(body, face)
+        if count > 1:
+            here = numbers == face
+            parameters[here, 2] = modes[here, 1] - first
+    return parameters

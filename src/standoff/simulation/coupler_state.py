@@ -1,0 +1,104 @@
+"""What a virtual coupler knows from one tick to the next, as a value."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from standoff.simulation.device import Fault, Seen
+from standoff.simulation.passivity_observer import PortEnergy
+from standoff.simulation.wrench import Wrench
+
+NO_WRENCH = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+class CouplerCounts(NamedTuple):
+    """How often a coupler did what its user should know of, since its start.
+
+    Attributes
+    ----------
+    ticks : int
+    engaged : int
+        Ticks with the coupler engaged.
+    repeated : int
+        Readings that came twice, none newer being there.
+    skipped : int
+        Readings that never came, by their sequence numbers.
+    force_limits, torque_limits : int
+        Ticks in which the greatest force or torque limited.
+    force_rises, torque_rises : int
+        Ticks in which the greatest rate of force or torque limited.
+    controlled : int
+        Ticks in which the passivity controller damped.
+    control_limits : int
+        Those of them in which it was not allowed to damp enough.
+    slow : int
+        Ticks longer than the period for which passivity was checked.
+    faults : int
+        How often it let go.
+    """
+
+    ticks: int = 0
+    engaged: int = 0
+    repeated: int = 0
+    skipped: int = 0
+    force_limits: int = 0
+    torque_limits: int = 0
+    force_rises: int = 0
+    torque_rises: int = 0
+    controlled: int = 0
+    control_limits: int = 0
+    slow: int = 0
+    faults: int = 0
+
+
+class CouplerState(NamedTuple):
+    """The running state of a `VirtualCoupler`: goes into a tick, and a new one comes out.
+
+    Attributes
+    ----------
+    engaged : bool
+        Whether it renders a wrench.
+    fault : Fault
+        Why it let go last; `Fault.NONE` while it is engaged, and before it ever was.
+    ramp : float
+        From 0, just engaged, to 1: the share of stiffness and damping in use.
+    energy : PortEnergy
+        Since it was engaged.
+    counts : CouplerCounts
+    clock : float
+        Its own clock [s], used where a tick is given no `now`; nan before the first reading.
+    time, sequence : float, int
+        Of the last reading; nan and -1 where there is none since it was engaged.
+    handle, tool : Seen or None
+        Where they were last.
+    on_device, on_tool : tuples of six floats
+        The wrenches of the last tick, force first [N, N m].
+    held : tuple of tuples of six floats
+        Those on the handle whose work is still to be seen, oldest first: one, and one more for
+        each tick of delay.
+    """
+
+    engaged: bool = False
+    fault: Fault = Fault.NONE
+    ramp: float = 0.0
+    energy: PortEnergy = PortEnergy()
+    counts: CouplerCounts = CouplerCounts()
+    clock: float = math.nan
+    time: float = math.nan
+    sequence: int = -1
+    handle: Seen | None = None
+    tool: Seen | None = None
+    on_device: tuple[float, ...] = NO_WRENCH
+    on_tool: tuple[float, ...] = NO_WRENCH
+    held: tuple[tuple[float, ...], ...] = ()
+
+    @property
+    def wrench_on_device(self) -> Wrench:
+        """The wrench of the last tick on the handle."""
+        return Wrench.from_checked(self.on_device)
+
+    @property
+    def wrench_on_tool(self) -> Wrench:
+        """The wrench of the last tick on the tool."""
+        return Wrench.from_checked(self.on_tool)

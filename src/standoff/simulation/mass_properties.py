@@ -1,0 +1,250 @@
+"""Mass, centre and inertia of a body of constant density, from its own boundary, with a bound."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from standoff.bodies.body import Body
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.geometry.validation import Array, matrix3, positive, vector3
+from standoff.read_only import KeepsReadOnly
+from standoff.real_numbers import shown
+from standoff.simulation.moments.boundary import Moments, moments_of
+
+# Two entries across an inertia's diagonal are one number where they differ by no more than this
+# part of its largest, and a moment above the sum of the others by no more is at it: roundoff of
+# whoever computed them.
+INERTIA_ROUNDOFF = 1e-12
+# A volume below so many times its own bound is none: no digit of the centre is left.
+LEAST_VOLUME = 4.0
+# Where refinement ends: remainders over the volume, its reach and its reach squared.
+TOLERANCE = 1e-11
+# A least principal moment below this part of the largest is roundoff of zero: that of a rod 3e-8 of
+# its length wide.
+LEAST_MOMENT = 1e-15
+GIVE_THEM = "give mass, centre and inertia yourself (so.simulation.MassProperties.of)"
+
+
+class MassErrors(NamedTuple):
+    """Bounds of what mass properties may be off: zero where they were given.
+
+    Attributes
+    ----------
+    mass : float
+        In the mass's unit.
+    centre : float
+        Distance, length.
+    inertia : float
+        Spectral norm of the difference, so of any moment and any entry, mass times length squared.
+    volume : float
+        Length cubed.
+    """
+
+    mass: float = 0.0
+    centre: float = 0.0
+    inertia: float = 0.0
+    volume: float = 0.0
+
+
+EXACT = MassErrors()
+
+
+@dataclass(frozen=True, eq=False)
+class MassProperties(KeepsReadOnly):
+    """Mass, centre of mass and inertia of a rigid body.
+
+    Parameters
+    ----------
+    mass : float
+        Positive, kg if lengths are metres and the density is kg/m³.
+    centre : (3,) array_like
+        Centre of mass, body frame, length.
+    inertia : (3, 3) array_like
+        About the centre, in the body's axes, mass times length squared: symmetric, positive
+        definite, no principal moment above the sum of the others. With r the way from the centre
+        it is ∫ (|r|² 1 - r rᵀ) dm.
+    volume : float or None
+        Length cubed; None where the properties were given.
+    error : MassErrors
+        Bounds of what they may be off.
+
+    Raises
+    ------
+    StandoffError
+        A wrong shape, a number that is not finite, a mass that is not positive, an inertia that
+        no body can have.
+    """
+
+    mass: float
+    centre: Array
+    inertia: Array
+    volume: float | None = None
+    error: MassErrors = EXACT
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mass", positive(self.mass, "mass"))
+        object.__setattr__(self, "centre", vector3(self.centre, "centre"))
+        object.__setattr__(self, "inertia", checked_inertia(self.inertia))
+        if self.volume is not None:
+            object.__setattr__(self, "volume", positive(self.volume, "volume"))
+
+    @staticmethod
+    def of(*, mass: float, centre: Any, inertia: Any) -> MassProperties:
+        """Mass properties that are known: of a body that is not solid, or not of one density.
+
+        Parameters
+        ----------
+        mass : float
+            Positive.
+        centre : (3,) array_like
+            Centre of mass, body frame, length.
+        inertia : (3, 3) array_like
+            About the centre, in the body's axes, mass times length squared.
+
+        Returns
+        -------
+        MassProperties
+            Without a volume, its error bounds zero.
+
+        Raises
+        ------
+        StandoffError
+            As the class.
+        """
+        return MassProperties(mass, centre, inertia)
+
+    @property
+    def principal_moments(self) -> Array:
+        """(3,): the eigenvalues of the inertia, ascending, mass times length squared."""
+        return np.asarray(np.linalg.eigvalsh(self.inertia))
+
+
+def checked_inertia(value: Any) -> Array:
+    """An inertia as a read-only symmetric (3, 3) array; StandoffError where no body has it."""
+    inertia = matrix3(value, "inertia")
+    largest = float(np.abs(inertia).max())
+    apart = float(np.abs(inertia - inertia.T).max())
+    if apart > INERTIA_ROUNDOFF * largest:
+        raise StandoffError(
+            f"inertia is not symmetric: entries across its diagonal differ by {apart:.3g}, in\n"
+            f"{inertia}\nGive a symmetric matrix; products of inertia enter with a minus sign.",
+            "inertia",
+            value,
+        )
+    inertia = 0.5 * (inertia + inertia.T)
+    small, middle, large = (float(x) for x in np.linalg.eigvalsh(inertia))
+    if small <= LEAST_MOMENT * large:
+        raise StandoffError(
+            f"inertia is not positive definite: its least principal moment is {small:.3g}, beside "
+            f"{large:.3g}. A body of any width has three positive ones; give a thin rod or a point "
+            "mass the width that it has.",
+            "inertia",
+            value,
+        )
+    over = large - small - middle
+    if over > INERTIA_ROUNDOFF * large:
+        raise StandoffError(
+            f"inertia violates the triangle inequality by {over:.6g}: its principal moments are "
+            f"{small:.6g}, {middle:.6g} and {large:.6g}, and no body has one above the sum of the "
+            "others. Was it taken about the centre of mass, in one unit?",
+            "inertia",
+            value,
+        )
+    inertia.flags.writeable = False
+    return inertia
+
+
+def mass_properties(
+    body: Body, density: float = 1.0, *, tolerance: float = TOLERANCE
+) -> MassProperties:
+    """Mass, centre of mass and inertia of a solid body of constant density.
+
+    Integrals over the body's exact boundary by the divergence theorem, its swept radius included,
+    with bounds of their errors: no mesh.
+
+    Parameters
+    ----------
+    body : Body
+        Bounded, spatial, with volume.
+    density : float
+        Mass over length cubed, positive.
+    tolerance : float
+        Where the refinement of the integrals ends, over the volume, positive. What was reached is
+        in `error`, whatever it is; but a volume that is not told from nothing is refined further.
+
+    Returns
+    -------
+    MassProperties
+
+    Raises
+    ------
+    StandoffTypeError
+        Something else than a body.
+    StandoffError
+        A body without volume or without end; a density or tolerance that is not positive.
+    """
+    if not isinstance(body, Body):
+        raise StandoffTypeError(f"body is {shown(body)}: give a Body.", "body", body)
+    rho = positive(density, "density")
+    _check_solid(body)
+    end = positive(tolerance, "tolerance")
+    found = moments_of(body, end)
+    if end > TOLERANCE and not _has_volume(found):
+        found = moments_of(body, TOLERANCE)
+    if not _has_volume(found):
+        raise StandoffError(
+            f"{body!r} has no volume: {found.volume:.3g}, known to {found.volume_error:.3g}. Round "
+            f"it (rounding=...), or {GIVE_THEM}.",
+            "body",
+            body,
+        )
+    return _properties(found, rho)
+
+
+def _has_volume(found: Moments) -> bool:
+    return found.volume > LEAST_VOLUME * found.volume_error
+
+
+def _check_solid(body: Body) -> None:
+    if not body.bounded:
+        raise StandoffError(
+            f"{body!r} has no end, so no mass: fix it in the world, or {GIVE_THEM}.", "body", body
+        )
+    if body.dimension == 2:
+        raise StandoffError(
+            f"{body!r} is planar and has no volume: extrude it, or {GIVE_THEM}.", "body", body
+        )
+    if not body.face_parts and body.radius == 0.0:
+        raise StandoffError(
+            f"{body!r} has no volume: round it (rounding=...), or {GIVE_THEM}.", "body", body
+        )
+
+
+def _properties(m: Moments, density: float) -> MassProperties:
+    away = m.first / m.volume
+    central = m.second - m.volume * np.outer(away, away)
+    # the errors of each, entry by entry
+    reach = np.abs(away)
+    centre = (m.first_error + reach * m.volume_error) / (m.volume - m.volume_error)
+    volume = m.volume + m.volume_error
+    second = (
+        m.second_error
+        + m.volume_error * np.outer(reach, reach)
+        + volume * (np.outer(reach, centre) + np.outer(centre, reach) + np.outer(centre, centre))
+    )
+    inertia = second + np.diag(np.trace(second) - 2.0 * np.diag(second))
+    return MassProperties(
+        density * m.volume,
+        m.about + away,
+        density * (np.trace(central) * np.eye(3) - central),
+        m.volume,
+        MassErrors(
+            density * m.volume_error,
+            float(np.linalg.norm(centre)),
+            density * float(np.linalg.norm(inertia, 2)),
+            m.volume_error,
+        ),
+    )

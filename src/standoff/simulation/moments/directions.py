@@ -1,0 +1,146 @@
+"""Cells over parts of the unit sphere: ellipsoidal faces by directions, normals at a vertex.
+
+A part of the sphere is given by its boundary. Every piece of it gives a rectangle: the piece's own
+parameter, and the great arc from a fixed direction, the start, to it; their areas have signs. Only
+the point opposite to the start must not be on the boundary. Where it lies in the part, the whole
+sphere is to be added: the signed areas fall short by 4 pi.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from standoff.bodies.shapes.quadrics import sphere_atlas
+from standoff.geometry.curves import Curve
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
+from standoff.kernels.entries.queries import surface_jet
+from standoff.simulation.moments.cells import Cell, Integrand
+from standoff.simulation.moments.flux import Frame, flux, offset_areas
+
+OverSphere = Callable[[Array], Array]
+"""Unit vectors (..., 3) to values (..., columns)."""
+BoundaryPiece = Callable[[Array], tuple[Array, Array]]
+"""Parameters (n,) to points of the unit sphere (n, 3) and their derivatives (n, 3)."""
+
+# Samples of a piece of a boundary.
+SAMPLES = 33
+# Directions from which the one farthest from a boundary is chosen.
+_AROUND = np.array([d for d in product((-1.0, 0.0, 1.0), repeat=3) if any(d)])
+AROUND = _AROUND / np.linalg.norm(_AROUND, axis=1)[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class Arc:
+    """A piece of a boundary, parameter from first to last; sign -1 where the part is on its right,
+    seen from outside the sphere."""
+
+    piece: BoundaryPiece
+    first: float
+    last: float
+    sign: int
+
+
+def sphere_cells(values: OverSphere) -> list[Cell]:
+    """The whole sphere: six gnomonic squares, by angles from their middles."""
+    quarter = 0.25 * np.pi
+    return [
+        Cell(_square(chart, values), (-quarter, -quarter), (quarter, quarter)) for chart in _CHARTS
+    ]
+
+
+_CHARTS = sphere_atlas(np.eye(3), np.zeros(3))
+
+
+def _square(chart: Surface, values: OverSphere) -> Integrand:
+    def integrand(t: Array, s: Array) -> Array:
+        u, v = np.tan(t), np.tan(s)
+        spots = [(a, b) for a in u.tolist() for b in v.tolist()]
+        y = np.array([surface_jet(chart.reals, chart.kind, 0, a, b)[0] for a, b in spots])
+        areas = np.outer(1.0 + u * u, 1.0 + v * v) * (1.0 + np.add.outer(u * u, v * v)) ** -1.5
+        return np.asarray(areas[..., None] * values(y.reshape(len(u), len(v), 3)))
+
+    return integrand
+
+
+def part_cells(arcs: Sequence[Arc], start: Array, values: OverSphere) -> list[Cell]:
+    """The part within arcs; less the whole sphere, if it holds the point opposite to the start."""
+    return [Cell(_sector(arc, start, values), (arc.first, 0.0), (arc.last, 1.0)) for arc in arcs]
+
+
+def _sector(arc: Arc, start: Array, values: OverSphere) -> Integrand:
+    """Over a signed triangle of the start and an arc: the way to the arc times its length."""
+
+    def integrand(t: Array, s: Array) -> Array:
+        y, dy = arc.piece(t)
+        across = np.cross(start, y)
+        sine = np.linalg.norm(across, axis=1)
+        angle = np.arctan2(sine, y @ start)[:, None]
+        safe = np.where(sine > 0.0, sine, 1.0)[:, None]
+        aside = (y - np.cos(angle) * start) / safe
+        turn = arc.sign * (across * dy).sum(axis=1)[:, None] / safe**2
+        ways = angle * s
+        spots = np.cos(ways)[..., None] * start + np.sin(ways)[..., None] * aside[:, None]
+        return np.asarray((turn * angle * np.sin(ways))[..., None] * values(spots))
+
+    return integrand
+
+
+def farthest_start(arcs: Sequence[Arc]) -> Array:
+    """A start whose opposite point is far from the boundary."""
+    times = [np.linspace(arc.first, arc.last, SAMPLES) for arc in arcs]
+    spots = np.concatenate([arc.piece(t)[0] for arc, t in zip(arcs, times, strict=True)])
+    mean = spots.mean(axis=0)
+    length = float(np.linalg.norm(mean))
+    starts = np.vstack([AROUND, mean[None] / length]) if length > 0.0 else AROUND
+    nearest = (-starts @ spots.T).max(axis=1)
+    return np.asarray(starts[int(nearest.argmin())])
+
+
+@dataclass(frozen=True, eq=False)
+class Ellipsoid:
+    """An ellipsoidal surface, linear @ (unit sphere) + shift, and where integrals are taken."""
+
+    linear: Array
+    shift: Array
+    frame: Frame
+
+    def flux(self, y: Array) -> Array:
+        """The integrand of `flux` times the solid angle, at directions (..., 3)."""
+        inverse, det = np.linalg.inv(self.linear), float(np.linalg.det(self.linear))
+        helper = np.eye(3)[np.abs(y).argmin(axis=-1)]
+        one = np.cross(y, helper)
+        one = one / np.linalg.norm(one, axis=-1, keepdims=True)
+        other = np.cross(y, one)
+        x = y @ self.linear.T + self.shift
+        normals = y @ inverse
+        areas = abs(det) * normals
+        if self.frame.radius > 0.0:
+            tangents = (one @ self.linear.T, other @ self.linear.T)
+            slopes = (one @ inverse, other @ inverse)
+            n, moved = offset_areas(tangents, normals, slopes, self.frame.radius)
+            x, areas = x + self.frame.radius * n, np.sign(det) * moved
+        return flux(self.frame, x, areas)
+
+    def boundary(self, curve: Curve) -> BoundaryPiece:
+        """An edge's directions."""
+        inverse = np.linalg.inv(self.linear)
+
+        def piece(t: Array) -> tuple[Array, Array]:
+            jets = [curve.jet(float(x))[:2] for x in t]
+            y = (np.array([x for x, _ in jets]) - self.shift) @ inverse.T
+            dy = np.array([xt for _, xt in jets]) @ inverse.T
+            length = np.linalg.norm(y, axis=1)[:, None]
+            y = y / length
+            return y, (dy - (dy * y).sum(axis=1)[:, None] * y) / length
+
+        return piece
+
+    @property
+    def sense(self) -> int:
+        """-1 where the map mirrors: what is left on the ellipsoid is right on the sphere."""
+        return 1 if np.linalg.det(self.linear) > 0.0 else -1

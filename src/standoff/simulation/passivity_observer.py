@@ -1,0 +1,126 @@
+"""The energy that goes through a coupler's two ports, and the damping that keeps it passive.
+
+After Hannaford and Ryu (IEEE Trans. Robotics and Automation 18(1), 2002), with the held force over
+the displacement until the next sample, which is the work itself and no estimate (Ryu, Kim and
+Hannaford, IEEE Trans. Robotics 20(4), 2004).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+from standoff.simulation.passivity import non_negative
+from standoff.simulation.six_axes import Vector, combined, dot
+
+
+class PortEnergy(NamedTuple):
+    """The energy that went through a coupler since it was engaged [J].
+
+    Attributes
+    ----------
+    device : float
+        Into the coupler from the handle; below zero where more came out.
+    tool : float
+        Into the coupler from the tool.
+    friction : float
+        Taken by the device's own damping, at least: b |Δx|²/dt of each tick, where the coupler was
+        given a `Sampling`. It covers what the holding of the force makes.
+    least : float
+        The least that the three were together. It stays above minus a tolerance where coupler and
+        device are passive.
+    """
+
+    device: float = 0.0
+    tool: float = 0.0
+    friction: float = 0.0
+    least: float = 0.0
+
+    @property
+    def observed(self) -> float:
+        """What went in and did not come out again, stored or dissipated [J]."""
+        return self.device + self.tool + self.friction
+
+    def after(self, device: float, tool: float, friction: float) -> PortEnergy:
+        """Return the account with what went in during one more tick."""
+        into = (self.device + device, self.tool + tool, self.friction + friction)
+        return PortEnergy(*into, min(self.least, into[0] + into[1] + into[2]))
+
+
+@dataclass(frozen=True, kw_only=True)
+class PassivityController:
+    """Variable damping at a coupler's ports while more energy came out than went in.
+
+    Each tick it dissipates what is missing, as far as its limits allow: at the handle first, the
+    rest at the tool. A held damper is passive only up to about the device's own damping, or the
+    mass that moves over the tick, so its limit is no formality.
+
+    Parameters
+    ----------
+    max_damping : float
+        At the handle [N s/m].
+    max_rotational_damping : float
+        At the handle [N m s/rad].
+    max_tool_damping : float
+        At the tool [N s/m].
+    max_tool_rotational_damping : float
+        At the tool [N m s/rad].
+    tolerance : float
+        Energy that may be missing before it acts [J].
+
+    Raises
+    ------
+    StandoffError
+        A number that is not finite, or below zero.
+    """
+
+    max_damping: float
+    max_rotational_damping: float = 0.0
+    max_tool_damping: float = 0.0
+    max_tool_rotational_damping: float = 0.0
+    tolerance: float = 0.0
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = non_negative(getattr(self, field.name), field.name)
+            object.__setattr__(self, field.name, value)
+
+    def damped(
+        self, missing: float, handle: tuple[Vector, Vector], tool: tuple[Vector, Vector], dt: float
+    ) -> tuple[tuple[Vector, Vector], tuple[Vector, Vector], bool]:
+        """Return the forces and torques that dissipate what is missing; is it too much for them?
+
+        Parameters
+        ----------
+        missing : float
+            Energy to be dissipated within the tick [J].
+        handle, tool : pairs of three floats each
+            (v, ω) at the two ports.
+        dt : float
+            The tick [s].
+
+        Returns
+        -------
+        at_handle, at_tool : pairs of three floats each
+            Force and torque.
+        short : bool
+            The limits do not allow as much.
+        """
+        linear, turning = self.max_damping, self.max_rotational_damping
+        at_handle, missing = _damped(missing, handle, (linear, turning), dt)
+        linear, turning = self.max_tool_damping, self.max_tool_rotational_damping
+        at_tool, missing = _damped(missing, tool, (linear, turning), dt)
+        return at_handle, at_tool, missing > 0.0
+
+
+def _damped(
+    missing: float, moving: tuple[Vector, Vector], most: tuple[float, float], dt: float
+) -> tuple[tuple[Vector, Vector], float]:
+    """Force and torque at one port, and what is missing after them."""
+    (v, omega), (linear, turning) = moving, most
+    able = (linear * dot(v, v) + turning * dot(omega, omega)) * dt
+    share = 0.0 if able == 0.0 else min(1.0, missing / able)
+    return (
+        (combined(-share * linear, v, 0.0, v), combined(-share * turning, omega, 0.0, omega)),
+        0.0 if missing <= able else missing - able,
+    )

@@ -1,0 +1,226 @@
+"""Are the witness points unique? If not, the set of all pairs that serve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.bodies.support_sets import LEVEL, ROUNDINGS, support_set
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.geometry.flat_sets import FlatSet, shared
+from standoff.kernels.body import layout as L
+from standoff.motion import Pose, PoseLike
+from standoff.read_only import KeepsReadOnly
+from standoff.real_numbers import shown
+from standoff.tracking.contact.equal_depths import equal_normals
+from standoff.tracking.contact.normal_sets import normal_dimension
+from standoff.tracking.rows import Answer
+
+Array = NDArray[np.float64]
+
+LEAST_EXTENT = 1e-7
+"""Of the lesser core's size: what is shorter or narrower does not count. A round body is level
+with its highest point to roundoff (1e-15 of the size) within 6e-8 of it."""
+
+TOUCHING = 1e-12
+"""Of the sizes: cores that are nearer than this touch, and the normal may not be unique."""
+
+LOOSENESS = 4.0
+"""Witness points off the normal's line by some length may be off their sets by a few times that."""
+
+
+@dataclass(frozen=True, eq=False)
+class WitnessSet(KeepsReadOnly):
+    """All pairs of points that are as far apart as the distance says, world axes.
+
+    Attributes
+    ----------
+    dimension : int
+        0: the witness points are unique; 1: the pairs fill a segment; 2: an area.
+    normal_dimension : int
+        0: the normal is unique; 1: one of a curve of normals (coaxial capsules: a circle); 2: any
+        of a region (concentric spheres: all; corner on corner: a cone). Only bodies that touch or
+        overlap can have more than one.
+    points_a, points_b : (n, 3) arrays
+        The set's extreme points on A and on B, pair by pair: one, the two ends, or the corners in
+        order around the normal. Where an arc bounds it, points along the arc.
+    normal : (3,) array
+        Unit vector from A to B that the set belongs to.
+    normals : (k, 3) array
+        That normal and, in overlap, others along which the bodies are as deep in each other: two
+        for an ellipsoid about the centre of another, six for a cube in the middle of a cube. Found
+        by descents from 53 directions, so a narrow one may be missed; where ``normal_dimension``
+        is not 0, not looked for.
+    residual : float
+        Greatest length of point_b - point_a - distance * normal over the pairs: large where the
+        answer was no optimum.
+    """
+
+    dimension: int
+    normal_dimension: int
+    points_a: Array
+    points_b: Array
+    normal: Array
+    normals: Array
+    residual: float
+
+    @property
+    def unique(self) -> bool:
+        """Are witness points and normal the only ones?"""
+        return self.dimension == self.normal_dimension == 0 and len(self.normals) == 1
+
+    def __repr__(self) -> str:
+        kind = ("a point", "a segment", "an area")[self.dimension]
+        others = f", {len(self.normals)} normals" if len(self.normals) > 1 else ""
+        return f"WitnessSet({kind}, normal_dimension={self.normal_dimension}{others})"
+
+
+def witness_set(
+    proximity: Answer, pose_a: PoseLike | None = None, pose_b: PoseLike | None = None
+) -> WitnessSet:
+    """The set of all pairs of witness points that an answer could have named.
+
+    Parameters
+    ----------
+    proximity : Proximity
+        A converged answer, apart or overlapping.
+    pose_a, pose_b : Pose or what ``Pose.of`` reads, optional
+        World poses that it holds for; those that the answer keeps if not given.
+
+    Returns
+    -------
+    WitnessSet
+
+    Raises
+    ------
+    TypeError
+        No answer.
+    ValueError
+        The answer has no distance; only one pose is given.
+
+    Notes
+    -----
+    The set is {(x, y): y - x = distance * normal}, x where A, and y where B, touches its
+    supporting plane along the normal: the overlap of two flat sets seen along it. What is
+    parallel to 1e-9 rad counts as parallel. Along the other ``normals`` there are other sets.
+    """
+    given: Any = proximity
+    if not isinstance(given, Answer):
+        raise StandoffTypeError(
+            f"{shown(given)} is no answer: give one of so.distance or a Tracker.",
+            "proximity",
+            given,
+        )
+    first, second = _poses(proximity, pose_a, pose_b)
+    if not np.isfinite(proximity.distance):
+        raise StandoffError(
+            f"The answer has no distance (status {proximity.status.name}), so no witness points.",
+            "proximity",
+            proximity,
+        )
+    a, b = proximity.bodies
+    n = proximity.normal
+    size_a, size_b = (float(body.reals[L.SIZE]) for body in (a, b))
+    span = size_a + size_b + abs(proximity.distance) + a.radius + b.radius
+    core_distance = proximity.distance + a.radius + b.radius
+    several, normals = 0, n[None]
+    if core_distance <= TOUCHING * span:
+        several = normal_dimension(a, b, first, second, n)
+        if not several:
+            normals = equal_normals(a, b, first, second, n, proximity.distance)
+    x, y = proximity.point_a, proximity.point_b
+    origin = first.translation
+    sides = [
+        _side(a, first, n, x - a.radius * n, origin),
+        _side(b, second, -n, y + b.radius * n, origin),
+    ]
+    across, on_a, on_b = _overlap(proximity, sides, first, second)
+    points_a = on_a + origin + a.radius * n
+    points_b = on_b + origin - b.radius * n
+    off = points_b - points_a - proximity.distance * n
+    residual = float(np.linalg.norm(off, axis=1).max())
+    return WitnessSet(across, several, points_a, points_b, n, normals, residual)
+
+
+def _poses(
+    proximity: Answer, pose_a: PoseLike | None, pose_b: PoseLike | None
+) -> tuple[Pose, Pose]:
+    if pose_a is not None and pose_b is not None:
+        return Pose.of(pose_a), Pose.of(pose_b)
+    kept = getattr(proximity, "poses", None)
+    if pose_a is not None or pose_b is not None or kept is None:
+        raise StandoffError("Give both poses that the answer holds for.")
+    first, second = (
+        Pose.from_checked(np.reshape(flat[:9], (3, 3)), np.array(flat[9:])) for flat in kept
+    )
+    return first, second
+
+
+def _side(body: Body, pose: Pose, along: Array, witness: Array, origin: Array) -> Array | None:
+    """Points of a core's flat set along a direction, world axes from `origin`; None: its plane."""
+    if not body.bounded:
+        return None
+    inner = pose.rotation.T @ (witness - pose.translation)
+    points = support_set(body, pose.rotation.T @ along, inner)
+    return np.asarray(points @ pose.rotation.T + (pose.translation - origin))
+
+
+def _overlap(
+    proximity: Answer, sides: list[Array | None], pose_a: Pose, pose_b: Pose
+) -> tuple[int, Array, Array]:
+    """(dimension, points on A's core, points on B's), both in world axes from A's origin."""
+    a, b = proximity.bodies
+    n, origin = proximity.normal, pose_a.translation
+    x = proximity.point_a - origin - a.radius * n
+    y = proximity.point_b - origin + b.radius * n
+    sizes = [float(body.reals[L.SIZE]) for body in (a, b) if body.bounded]
+    reach = sum(sizes) + float(np.linalg.norm(pose_b.translation - origin))
+    off = (y - x) - ((y - x) @ n) * n
+    loose = LOOSENESS * float(np.linalg.norm(off))
+    rounding = ROUNDINGS * np.finfo(float).eps * (reach + float(np.linalg.norm(origin)))
+    tolerance = max(LEVEL * min(sizes), 1e2 * rounding) + loose
+    least = max(LEAST_EXTENT * min(sizes), 10.0 * tolerance)
+    frame = _frame(n, a.dimension == 2 or b.dimension == 2)
+    # seen along the line of the witness points both sets lie over each other
+    seen = [None if s is None else (s - w) @ frame for s, w in zip(sides, (x, y), strict=True)]
+    flat = [None if s is None else FlatSet.of(s, least) for s in seen]
+    flat = [f if f is None or f.dimension else FlatSet(0, np.zeros((1, 2))) for f in flat]
+    first, second = flat
+    if first is None or second is None:
+        found = first if second is None else second
+    else:
+        found = shared(first, second, tolerance, least)
+    if found is None or found.dimension == 0:
+        return 0, x[None], y[None]
+    lifted = [
+        w + _lifted(found.corners, side, points, frame, n, w)
+        for side, points, w in zip(sides, seen, (x, y), strict=True)
+    ]
+    return found.dimension, lifted[0], lifted[1]
+
+
+def _frame(n: Array, planar: bool) -> Array:
+    """(3, 2): two unit vectors square to the normal and to each other, right-handed with it."""
+    axis = np.array([0.0, 0.0, 1.0]) if planar else np.eye(3)[int(np.abs(n).argmin())]
+    first = np.cross(axis, n)
+    first = first / np.linalg.norm(first)
+    return np.column_stack([first, np.cross(n, first)])
+
+
+def _lifted(
+    corners: Array, side: Array | None, seen: Array | None, frame: Array, n: Array, witness: Array
+) -> Array:
+    """Corners put back on a set: its own plane or line may be tilted by LEVEL against n."""
+    flat = np.asarray(corners @ frame.T)
+    if side is None or seen is None:
+        return flat
+    heights = (side - witness) @ n
+    slope = np.linalg.lstsq(seen, heights, rcond=1e-6)[0]
+    return np.asarray(flat + np.outer(corners @ slope, n))
+
+
+__all__ = ["WitnessSet", "witness_set"]

@@ -1,0 +1,159 @@
+"""Lag of the paper's law without feedforward, measured on random pairs, beside its bound."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+import standoff as so
+from standoff.bodies import Body
+from standoff.motion import Pose, Twist
+
+Array = NDArray[np.float64]
+
+DT = 1e-3
+"""Frame time [s]."""
+FRAMES = 40
+"""Frames of a case: at K h = 0.5 the start's error is 1e-12 of itself at their end."""
+LAG = 1e-3
+"""Error that the gain is asked to keep, in parts of the smaller body's size."""
+LEAST_STEP, MOST_STEP = 0.02, 1.0
+"""Range of K h: below it a case has no time to settle, above it the error may overshoot."""
+
+
+class Case(NamedTuple):
+    """A random pair in motion; B moves, A is at rest.
+
+    Attributes
+    ----------
+    kind : str
+    a, b : Body
+    pose_b : Pose
+    twist_b : Twist
+    """
+
+    kind: str
+    a: Body
+    b: Body
+    pose_b: Pose
+    twist_b: Twist
+
+
+class Lag(NamedTuple):
+    """What was measured on a case.
+
+    Attributes
+    ----------
+    kind : str
+    error : float
+        Greatest distance of a core's witness point from its true place, over all frames [length].
+    bound : float
+        What ``so.min_gain`` promises with the gain used [length].
+    """
+
+    kind: str
+    error: float
+    bound: float
+
+    @property
+    def part(self) -> float:
+        """The error in parts of its bound."""
+        return self.error / self.bound
+
+
+def ellipsoid(random: np.random.Generator) -> Body:
+    """Semi-axes between 0.3 and 1.2 [length]."""
+    return so.shapes.ellipsoid(*random.uniform(0.3, 1.2, 3))
+
+
+PAIRS: dict[str, Callable[[np.random.Generator], tuple[Body, Body]]] = {
+    "ellipsoid - point": lambda r: (ellipsoid(r), so.shapes.point()),
+    "ellipsoid - ellipsoid": lambda r: (ellipsoid(r), ellipsoid(r)),
+    "box - ellipsoid": lambda r: (so.shapes.box(*r.uniform(0.4, 1.5, 3)), ellipsoid(r)),
+    "lens - ellipsoid": lambda r: (so.shapes.lens(1.0, r.uniform(0.2, 0.6)), ellipsoid(r)),
+    "ellipsoid - capsule": lambda r: (ellipsoid(r), so.shapes.capsule(*r.uniform(0.2, 0.8, 2))),
+    "sphere - ellipsoid": lambda r: (so.shapes.sphere(r.uniform(0.2, 0.8)), ellipsoid(r)),
+}
+
+
+def random_case(kind: str, random: np.random.Generator) -> Case:
+    """B at a random pose some way off, moving sideways, turning, or both."""
+    a, b = PAIRS[kind](random)
+    direction = random.normal(size=3)
+    direction /= np.linalg.norm(direction)
+    turn = Rotation.from_rotvec(random.uniform(-2.0, 2.0, 3)).as_matrix()
+    off = 0.5 * (a.size + b.size) + 10.0 ** random.uniform(-1.5, 0.5)
+    v, omega = random.normal(size=(2, 3)) * [[random.integers(0, 2)], [random.integers(0, 2)]]
+    if not v.any() and not omega.any():
+        v = random.normal(size=3)
+    return Case(kind, a, b, Pose(turn, off * direction), Twist(v, omega))
+
+
+def measured_lag(case: Case) -> Lag | None:
+    """Run a case with the gain that `so.min_gain` asks for; None where that gain leaves the range.
+
+    The truth is the certified distance at the same poses.
+    """
+    poses = poses_of(case)
+    truth = run(so.Tracker(case.a, case.b, dt=DT), case, poses)
+    distances = [answer.distance for answer in truth]
+    v, omega = case.twist_b.v, case.twist_b.omega
+    speed, spin = float(np.linalg.norm(v)), float(np.linalg.norm(omega))
+    wanted = LAG * min(body.size or 1.0 for body in (case.a, case.b))
+    among = min(distances), max(distances)
+    least = so.min_gain(case.a, case.b, wanted, speed, spin, distance=among)
+    gain = float(np.clip(least, LEAST_STEP / DT, MOST_STEP / DT))
+    bound = wanted * least / gain
+    if not 0.0 < bound <= 10.0 * wanted:
+        return None  # too fast for this step: its error would not be small
+    law = so.Tracker(
+        case.a, case.b, DT, law=so.PaperLaw(integrator="euler", gain=gain, feedforward=False)
+    )
+    off = core_points(case, run(law, case, poses)) - core_points(case, truth)
+    error = float(np.linalg.norm(off, axis=2).max())
+    return Lag(case.kind, error, bound)
+
+
+def run(tracker: so.Tracker, case: Case, poses: Array) -> list[so.Proximity]:
+    """The answers at each frame, from a certified start at the first."""
+    home, still = np.eye(4), (np.zeros(3), np.zeros(3))
+    twist = case.twist_b.v, case.twist_b.omega
+    state = tracker.start(home, poses[0], still, twist)
+    answers = [state.proximity]
+    for pose in poses[1:]:
+        state, answer = tracker.step(state, home, pose, still, twist)
+        answers.append(answer)
+    return answers
+
+
+def core_points(case: Case, answers: list[so.Proximity]) -> Array:
+    """Both witness points of each answer, without the swept radii, (n, 2, 3)."""
+    inwards = np.array([[-case.a.radius], [case.b.radius]])
+    return np.array([(one.point_a, one.point_b) + inwards * one.normal for one in answers])
+
+
+def poses_of(case: Case) -> Array:
+    """B's poses, (FRAMES + 1, 4, 4): its twist is constant in world axes, of its origin."""
+    time = DT * np.arange(FRAMES + 1)[:, None]
+    poses = np.zeros((FRAMES + 1, 4, 4))
+    turn = Rotation.from_rotvec(time * case.twist_b.omega).as_matrix()
+    poses[:, :3, :3] = turn @ case.pose_b.rotation
+    poses[:, :3, 3] = case.pose_b.translation + time * case.twist_b.v
+    poses[:, 3, 3] = 1.0
+    return poses
+
+
+def measured_lags(count: int, seed: int = 4) -> list[Lag]:
+    """Cases of each kind in turn, `count` in all, those left out that `measured_lag` refuses."""
+    random = np.random.default_rng(seed)
+    kinds = list(PAIRS)
+    lags = []
+    for k in range(count):
+        lag = measured_lag(random_case(kinds[k % len(kinds)], random))
+        if lag is not None:
+            lags.append(lag)
+    return lags

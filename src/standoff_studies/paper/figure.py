@@ -1,0 +1,134 @@
+"""What a figure of the paper is made of: its picture, its data, and what it is to show."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+class Statement(NamedTuple):
+    """One checkable statement of the paper beside what was measured.
+
+    Attributes
+    ----------
+    source : str
+        Where it stands, or what asks for it: "Fig. 7", "Section II".
+    stated : str
+        What the paper says, in our words, with its number and unit; "-" where it says nothing and
+        the measurement stands for itself.
+    measured : str
+        What was measured, with its unit.
+    holds : bool or None
+        Does the measurement bear the statement out? None where it is neither right nor wrong.
+    why : str
+        Where they differ, the reason.
+    by : str
+        The law that it was measured with, its switching, solve, gain and start.
+    constructed : bool
+        It cannot fail: it follows from how the program is made, which `why` says.
+    """
+
+    source: str
+    stated: str
+    measured: str
+    holds: bool | None
+    why: str = ""
+    by: str = ""
+    constructed: bool = False
+
+
+@dataclass(frozen=True)
+class Animation:
+    """A moving picture: ``draw(figure, k)`` draws frame k on an empty figure of the given size.
+
+    Attributes
+    ----------
+    frames : int
+    draw : callable
+        ``draw(figure, k)``: the figure is cleared before.
+    seconds : float
+        Time of a frame on the screen [s].
+    size : (float, float)
+        Width and height [inches].
+    text : str
+        What it shows, for a reader who does not see it.
+    """
+
+    frames: int
+    draw: Callable[[Figure, int], None]
+    seconds: float = 0.05
+    size: tuple[float, float] = (6.0, 6.0)
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class Artwork:
+    """One figure, made.
+
+    Attributes
+    ----------
+    caption : str
+        A short paragraph: what is drawn, with units, and what to look at.
+    text : str
+        What the picture shows, for a reader who does not see it.
+    draw : callable
+        Draws the picture on a new figure (``style.new_figure``) and returns it; no pyplot.
+    tables : mapping of str to mapping of str to array
+        The figure's data: name of the table, then columns of one length, with units in their
+        names (``time_s``, ``u``, ``distance``).
+    statements : tuple of Statement
+    animation : Animation or None
+    shown : tuple of str
+        Names of the tables that the report and the pages print in full, below the picture.
+    """
+
+    caption: str
+    text: str
+    draw: Callable[[], Figure]
+    tables: Mapping[str, Mapping[str, ArrayLike]] = field(default_factory=dict)
+    statements: tuple[Statement, ...] = ()
+    animation: Animation | None = None
+    shown: tuple[str, ...] = ()
+
+
+def shown_tables(artwork: Artwork) -> dict[str, dict[str, list[str]]]:
+    """Return the tables that are printed in full: name, then heading and column, as text."""
+    return {
+        name: {
+            heading.replace("_", " "): [as_text(value) for value in np.asarray(column).tolist()]
+            for heading, column in artwork.tables[name].items()
+        }
+        for name in artwork.shown
+    }
+
+
+def as_text(value: object) -> str:
+    """Return a table's value as it is printed: numbers with four digits."""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+class Entry(NamedTuple):
+    """A figure in the catalogue: it is made by ``module.function()``, which returns an Artwork.
+
+    Attributes
+    ----------
+    key : str
+        How it is called on the command line: "7", or a word for what the paper has no figure of.
+    title : str
+    chapter : str
+        Heading that it stands under; one chapter's figures share a run and a process.
+    module, function : str
+    """
+
+    key: str
+    title: str
+    chapter: str
+    module: str
+    function: str

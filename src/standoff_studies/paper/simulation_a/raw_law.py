@@ -1,0 +1,126 @@
+"""The paper's law without safeguards, from many starts at many gains, by ``so.Tracker``."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.geometry.validation import Array
+from standoff.kernels.pair import events as N
+from standoff.kernels.state import arrays as K
+from standoff.motion import Twist
+from standoff.tracking import Tracker
+from standoff.tracking.laws import PaperLaw
+from standoff_studies.paper.simulation_a.run import (
+    HOME,
+    SETTLED,
+    Motion,
+    motion,
+    system_at,
+    systems,
+)
+from standoff_studies.paper.simulation_a.setting import FACE, PATH, STEP, VERTEX, point, vault
+
+
+class Trials(NamedTuple):
+    """What became of each start at each gain, arrays of shape (gains, starts).
+
+    Attributes
+    ----------
+    steps : ndarray of int
+        Steps until every error is below `SETTLED` of the initial errors' norm, -1 where that was
+        not reached.
+    monotone : ndarray of bool
+        No error grew in a step until then.
+    indefinite : ndarray of bool
+        The start did not settle, and H had lost positive definiteness at a stage before.
+    """
+
+    steps: NDArray[np.int64]
+    monotone: NDArray[np.bool_]
+    indefinite: NDArray[np.bool_]
+
+
+class Trial(NamedTuple):
+    """One run: its parameters (n, 2) until it settled, left the patch or was given up."""
+
+    q: Array
+    settled: bool
+    monotone: bool
+
+
+def raw_tracker(gain: float) -> Tracker:
+    """The law as it is: H is not made definite, and no feature is left for another."""
+    return Tracker(vault(), point(), STEP, law=PaperLaw(gain=gain, switching="none", solve="plain"))
+
+
+def try_all(starts: Array, gains: Array, frames: int) -> Trials:
+    """Run the law with Heun's method from every start (n, 2) at every gain (m,) [1/s].
+
+    A run ends settled, or fails as soon as a step leads out of the patch, or when `frames` are
+    over.
+    """
+    moving = motion(np.asarray(STEP * np.arange(frames + 1)))
+    shape = len(gains), len(starts)
+    trials = Trials(np.full(shape, -1), np.ones(shape, bool), np.zeros(shape, bool))
+    for row, gain in enumerate(gains.tolist()):
+        tracker = raw_tracker(gain)
+        for column, start in enumerate(starts):
+            trial = follow(tracker, start, moving)
+            trials.monotone[row, column] = trial.monotone
+            if trial.settled:
+                trials.steps[row, column] = len(trial.q) - 1
+            else:
+                trials.indefinite[row, column] = indefinite(trial.q, gain)
+    return trials
+
+
+def follow(tracker: Tracker, start: Array, moving: Motion) -> Trial:
+    """Run the law from one start (2,)."""
+    poses, twists = (HOME, PATH.pose(0.0)), (Twist.zero(), PATH.twist(0.0))
+    state = tracker.start_from(*poses, FACE, start, VERTEX, (), *twists, settle=False)
+    buffer, now = tracker.buffer(state), systems()
+    buffer.pose_b[9:] = moving.x[0]
+    before = np.abs(now.psi(start, buffer.pose_a, buffer.pose_b))
+    goal = SETTLED * np.linalg.norm(before)
+    q, monotone = [start], True
+    for x, v in zip(moving.x[1:], moving.v[1:], strict=True):
+        buffer.pose_b[9:], buffer.twist_b[:3] = x, v
+        tracker.step_into(buffer)
+        if buffer.out[K.OUT_COUNTS + N.SATURATIONS]:
+            break
+        q.append(buffer.out[K.OUT_Q : K.OUT_Q + 2].copy())
+        errors = np.abs(now.psi(q[-1], buffer.pose_a, buffer.pose_b))
+        monotone = monotone and bool((errors <= before).all())
+        if errors.max() < goal:
+            return Trial(np.array(q), True, monotone)
+        before = errors
+    return Trial(np.array(q), False, monotone)
+
+
+def indefinite(q: Array, gain: float) -> bool:
+    """Is H not positive definite at a stage of a run (n, 2) by Heun's method?"""
+    moving = motion(np.asarray(STEP * np.arange(len(q) + 1)))
+    for k, at in enumerate(q):
+        now = system_at(at, moving, k)
+        w = -np.linalg.solve(now.M, gain * now.Psi + now.b)
+        trial = system_at(at + STEP * w, moving, k + 1)
+        if min(np.linalg.eigvalsh(stage.H)[0] for stage in (now, trial)) <= 0.0:
+            return True
+    return False
+
+
+@cache
+def growth_of_small_errors(gain: float, start: tuple[float, float], frames: int) -> float:
+    """What a step multiplies a small error by, measured with the point at rest."""
+    tracker = raw_tracker(gain)
+    pose = PATH.pose(0.0)
+    state = tracker.start_from(HOME, pose, FACE, start, VERTEX, (), settle=False)
+    first = system_at(np.array(start), motion(np.zeros(1)), 0).Psi
+    for _ in range(frames):
+        state, answer = tracker.step(state, HOME, pose, Twist.zero(), Twist.zero())
+    last = system_at(np.array(answer.parameters_a), motion(np.zeros(1)), 0).Psi
+    return float((np.linalg.norm(last) / np.linalg.norm(first)) ** (1.0 / frames))

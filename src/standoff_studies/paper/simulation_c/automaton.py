@@ -1,0 +1,259 @@
+"""Fig. 13: the automaton of the pair, its modes in a grid, with the motion's way through it."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from typing import TYPE_CHECKING, NamedTuple
+
+from numpy.typing import ArrayLike
+
+from standoff.tracking import Feature
+from standoff_studies.paper import style
+from standoff_studies.paper.drawing import planar_features, short_name
+from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.held_features import CONTINUOUS, greatest_growth, growth
+from standoff_studies.paper.simulation_c.kinds import FILLS, KINDS, kind_of, show_kinds
+from standoff_studies.paper.simulation_c.kinds import mode_name as name_of
+from standoff_studies.paper.simulation_c.run import Run, run
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Mode = tuple[Feature, Feature]
+Place = tuple[float, float]
+
+HALF_WIDTH, HALF_HEIGHT = 0.29, 0.25
+"""Of a mode's box, in steps of the grid."""
+STUBS = (0.38, 0.24)
+"""Lengths of an arrow that leaves the grid at one side and comes back at the other, in steps:
+along a row, where its times must fit above it, and along a column."""
+
+
+class Way(NamedTuple):
+    """A switch of the product: from mode to mode, with the times [s] at which it was taken."""
+
+    source: Mode
+    target: Mode
+    times: tuple[float, ...]
+
+
+def figure_13() -> Artwork:
+    """Make Fig. 13."""
+    simulation = run()
+    return Artwork(
+        caption=(
+            "Automaton of the pair: rows are A's features, columns are B's, both in the order of "
+            "the loop, so that every switch goes to a neighbour, and over the edge of the grid to "
+            "its other side. Filled modes were visited, with the time spent in them; blue "
+            "arrows were taken, at the times beside them [s]. Grey lines were not. Letters are "
+            "the snapshots of Fig. 14."
+        ),
+        text=(
+            "A grid of six rows and four columns of modes; arrows lead through the visited ones "
+            "from C1–V1 to C2–C1, each with its switching times."
+        ),
+        draw=lambda: _draw(simulation),
+        tables={"stays": _stays(simulation), "switches": _switches(simulation)},
+        statements=_statements(simulation),
+    )
+
+
+def ways(simulation: Run) -> list[Way]:
+    """Return the switches that were taken, each with all its times."""
+    times: dict[tuple[Mode, Mode], list[float]] = defaultdict(list)
+    for before, after in zip(simulation.stays, simulation.stays[1:], strict=False):
+        source = before.feature_a, before.feature_b
+        times[source, (after.feature_a, after.feature_b)].append(after.start)
+    return [Way(source, target, tuple(at)) for (source, target), at in times.items()]
+
+
+def _stays(simulation: Run) -> dict[str, ArrayLike]:
+    stays = simulation.stays
+    modes = [(stay.feature_a, stay.feature_b) for stay in stays]
+    return {
+        "feature_a": [short_name(a) for a, _ in modes],
+        "feature_b": [short_name(b) for _, b in modes],
+        "kind": [KINDS[kind_of(*mode)] for mode in modes],
+        "start_s": [stay.start for stay in stays],
+        "end_s": [stay.end for stay in stays],
+    }
+
+
+def _switches(simulation: Run) -> dict[str, ArrayLike]:
+    events = simulation.recording.events
+    return {
+        "time_s": [event.time for event in events],
+        "time_by_paper_law_s": [event.time for event in simulation.paper.events],
+        "body": [event.body for event in events],
+        "source": [short_name(event.source) for event in events],
+        "target": [short_name(event.target) for event in events],
+        "switching_function": [event.value for event in events],
+        "switching_function_slope_per_s": [event.slope for event in events],
+        "distance_growth_length": [
+            growth(simulation.recording, simulation.paths, event) for event in events
+        ],
+    }
+
+
+def _statements(simulation: Run) -> tuple[Statement, ...]:
+    stays, events = simulation.stays, simulation.recording.events
+    kinds = Counter(kind_of(stay.feature_a, stay.feature_b) for stay in stays)
+    modes = {(stay.feature_a, stay.feature_b) for stay in stays}
+    every = len(planar_features(simulation.a)) * len(planar_features(simulation.b))
+    grows = greatest_growth(simulation.recording, simulation.paths)
+    same = [event[2:5] for event in simulation.paper.events] == [event[2:5] for event in events]
+    late = max(
+        abs(own.time - theirs.time)
+        for own, theirs in zip(events, simulation.paper.events, strict=same)
+    )
+    return (
+        Statement(
+            "Fig. 13",
+            "the modes are vertex–vertex, vertex–curve and curve–curve",
+            "stays: " + ", ".join(f"{kinds[k]} {KINDS[k]}" for k in range(3)),
+            min(kinds[k] for k in range(3)) >= 2,
+        ),
+        Statement(
+            "Fig. 13",
+            "-",
+            f"{len(modes)} of {every} modes visited in {len(stays)} stays, {len(events)} switches",
+            None,
+        ),
+        Statement(
+            "Section on the hybrid system",
+            "the distance between features never grows at a switch",
+            f"at each of {len(events)} instants the features after the switch are at most "
+            f"{grows:.0e} length farther apart than those before it",
+            grows <= CONTINUOUS,
+            "Old and new feature share the point at which they switch.",
+        ),
+        Statement(
+            "Fig. 13",
+            "-",
+            f"the paper's law (Heun, 1 kHz) takes {'the same' if same else 'other'} switches; "
+            f"instants differ by at most {late:.1e} s",
+            None,
+            "Its witness points lag a little, and it switches by them.",
+        ),
+    )
+
+
+def _draw(simulation: Run) -> Figure:
+    with style.settings():
+        figure = style.new_figure(style.WIDTH, 8.6)
+        axes = figure.subplots()
+        features_a, features_b = planar_features(simulation.a), planar_features(simulation.b)
+        places = {
+            (a, b): (float(column), float(row))
+            for row, a in enumerate(features_a)
+            for column, b in enumerate(features_b)
+        }
+        _draw_lines(axes, len(features_b), len(features_a))
+        for way in ways(simulation):
+            _draw_way(axes, places[way.source], places[way.target], way.times)
+        for mode, place in places.items():
+            _draw_mode(axes, simulation, mode, place)
+        axes.tick_params(labeltop=True, labelbottom=False, length=0.0)
+        axes.grid(visible=False)
+        axes.set_xticks(range(len(features_b)), [f"B {short_name(f)}" for f in features_b])
+        axes.set_yticks(range(len(features_a)), [f"A {short_name(f)}" for f in features_a])
+        axes.set_xlim(-0.72, len(features_b) - 0.28)
+        axes.set_ylim(len(features_a) - 0.42, -0.58)
+        for spine in axes.spines.values():
+            spine.set_visible(False)
+        for word, stay in (("start", simulation.stays[0]), ("end", simulation.stays[-1])):
+            x, y = places[stay.feature_a, stay.feature_b]
+            corner = x - HALF_WIDTH, y - HALF_HEIGHT - 0.03
+            axes.text(*corner, word, ha="left", va="bottom", fontweight="bold")
+        show_kinds(figure)
+    return figure
+
+
+def _draw_lines(axes: Axes, columns: int, rows: int) -> None:
+    """Every switch that the pair allows: along the rows and the columns, and over the sides."""
+    for row in range(rows):
+        axes.plot([-0.5, columns - 0.5], [row, row], color=style.QUIET, linewidth=0.7, zorder=1)
+    for column in range(columns):
+        axes.plot([column, column], [-0.5, rows - 0.5], color=style.QUIET, linewidth=0.7, zorder=1)
+
+
+def _draw_mode(axes: Axes, simulation: Run, mode: Mode, place: Place) -> None:
+    from matplotlib.patches import FancyBboxPatch
+
+    x, y = place
+    stays = [s for s in simulation.stays if (s.feature_a, s.feature_b) == mode]
+    letters = ", ".join(s.letter for s in simulation.snapshots if s[3:] == mode)
+    kind = kind_of(*mode)
+    box = FancyBboxPatch(
+        (x - HALF_WIDTH, y - HALF_HEIGHT),
+        2.0 * HALF_WIDTH,
+        2.0 * HALF_HEIGHT,
+        boxstyle="round,pad=0,rounding_size=0.06",
+        facecolor=FILLS[kind] if stays else "white",
+        edgecolor=style.BLACK if stays else style.QUIET,
+        linestyle="-" if stays else ":",
+        linewidth=1.2 if stays else 0.8,
+        zorder=3,
+    )
+    axes.add_patch(box)
+    text = name_of(*mode)
+    if stays:
+        text += f"\n{sum(s.end - s.start for s in stays):.2f} s"
+    text += f"\n({letters})" if letters else ""
+    axes.text(
+        x,
+        y,
+        text,
+        ha="center",
+        va="center",
+        color=style.BLACK if stays else "#606060",
+        fontweight="bold" if stays else "normal",
+        fontsize=style.FONT - 0.5,
+        zorder=4,
+    )
+
+
+def _draw_way(axes: Axes, source: Place, target: Place, times: tuple[float, ...]) -> None:
+    """An arrow between two neighbours; over the side of the grid, the two ends of one."""
+    label = "\n".join(f"{time:.3f}" for time in times)
+    along = 0 if source[1] == target[1] else 1
+    half = (HALF_WIDTH, HALF_HEIGHT)[along]
+    step = target[along] - source[along]
+    near = abs(step) == 1.0
+    forward = step if near else -step / abs(step)
+    start, end = _aside(source, along, forward * half), _aside(target, along, -forward * half)
+    if near:
+        _arrow(axes, start, end)
+        middle = _aside(start, along, 0.5 * (end[along] - start[along]))
+    else:
+        _arrow(axes, start, _aside(start, along, forward * STUBS[along]), head="-")
+        _arrow(axes, _aside(end, along, -forward * STUBS[along]), end)
+        middle = _aside(start, along, 0.5 * forward * STUBS[along])
+    x, y = middle
+    if along == 0:
+        axes.text(x, y - 0.03, label, ha="center", va="bottom", color=style.BLUE)
+    else:
+        axes.text(x + 0.04, y, label, ha="left", va="center", color=style.BLUE)
+
+
+def _aside(place: Place, along: int, by: float) -> Place:
+    return (place[0] + by, place[1]) if along == 0 else (place[0], place[1] + by)
+
+
+def _arrow(axes: Axes, start: Place, end: Place, head: str = "-|>") -> None:
+    from matplotlib.patches import FancyArrowPatch
+
+    axes.add_patch(
+        FancyArrowPatch(
+            start,
+            end,
+            arrowstyle=head,
+            shrinkA=0.0,
+            shrinkB=0.0,
+            mutation_scale=11.0,
+            color=style.BLUE,
+            linewidth=2.2,
+            zorder=2,
+        )
+    )

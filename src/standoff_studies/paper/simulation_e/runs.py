@@ -1,0 +1,202 @@
+"""The pair, its motion, and the runs that both figures show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import standoff as so
+from standoff.automaton import Visit
+from standoff.bodies import Body
+from standoff.motion import Carried, ConstantTwist, Fixed, Helix, Pose, Twist
+from standoff.recording import Recording
+from standoff.recording.simulate import track_along
+from standoff.recording.times import even_times
+from standoff.tracking import Tracker, TrackerState
+from standoff.tracking.inputs import flat_pose, flat_twist
+from standoff.tracking.laws import PaperLaw
+from standoff_studies.paper.bodies import lens_of_patches
+from standoff_studies.paper.simulation_d.runs import place_on, short
+
+Array = NDArray[np.float64]
+
+STEP = 1e-3
+"""Sample time [s]: the paper's 1 kHz."""
+
+DURATION = 4.0
+"""Time of the run [s]: A's witness point is on its edge for a second of it, as the paper's is from
+2.67 to 3.66 s."""
+
+SEMI_AXES = (0.8, 0.6, 0.7)
+"""Body B is the lens stretched by these along x, y and z."""
+
+PATH_A = Fixed(Pose.identity())
+
+PATH_B = Carried(
+    Helix(radius=1.7, pitch=-0.2, rate=0.5, centre=(0.0, 0.0, -0.2), phase=-0.5),
+    ConstantTwist(Pose.exp((-0.1, 0.0, 0.3)), Twist((0.0, 0.0, 0.0), (-0.15, -0.4, 0.25))),
+)
+"""B's centre winds about A's axis while B turns [length, rad/s]: chosen so that both bodies pass
+from a face over an edge to the next face."""
+
+GAIN = 50.0
+"""K of the printed system [1/s]: "a very low controller gain"."""
+
+START = ((0, (0.4, 0.76)), (1, (0.6, 0.83)))
+"""Face and parameters of A and of B where the printed system is started, one that arrives."""
+
+LAW = f"PaperLaw.as_printed(gain={GAIN:g}): Voronoi tests, M as it is, wrong start"
+"""What the statements say they were measured with."""
+
+CONVERGED = 0.3
+"""When the start has converged [s]: exp(-K t) is 3e-7."""
+
+TRIED, PATIENCE, ARRIVED = 30, 0.6, 1e-4
+"""Random starts, after which time [s], and to which distance [length], they count as arrived."""
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """What both figures show.
+
+    Attributes
+    ----------
+    a, b : Body
+    exact : Recording
+        With the default law: every frame certified, every switch located within its step.
+    paper : Recording
+        With the system as printed at the low `GAIN`, from `START`.
+    """
+
+    a: Body
+    b: Body
+    exact: Recording
+    paper: Recording
+
+
+@cache
+def run() -> Runs:
+    """Track the pair with both laws."""
+    a = lens_of_patches()
+    b = a.transformed(np.diag(SEMI_AXES))
+    exact = so.simulate(so.Tracker(a, b, STEP), PATH_A, PATH_B, DURATION)
+    times = even_times(0.0, DURATION, STEP)
+    law = Tracker(a, b, STEP, law=PaperLaw.as_printed(gain=GAIN))
+    paper = track_along(law, PATH_A, PATH_B, times, state=begin(law, *START))
+    return Runs(a, b, exact, paper)
+
+
+Place = tuple[int, tuple[float, float]]
+"""A face, and parameters on it."""
+
+
+def begin(law: Tracker, place_a: Place, place_b: Place) -> TrackerState:
+    """Return the state at parameters of two faces, whatever they are worth."""
+    pose_a, pose_b, twist_a, twist_b = _placed(0.0)
+    of_a, of_b = ("face", place_a[0]), ("face", place_b[0])
+    places = of_a, place_a[1], of_b, place_b[1]
+    return law.start_from(pose_a, pose_b, *places, twist_a, twist_b, settle=False)
+
+
+class Arrivals(NamedTuple):
+    """How many of the tried starts have come to the distance after `PATIENCE`."""
+
+    arrived: int
+    tried: int
+
+
+@cache
+def arrivals() -> Arrivals:
+    """Try random starts on both bodies with the printed system."""
+    runs, rng = run(), np.random.default_rng(1)
+    law = Tracker(runs.a, runs.b, STEP, law=PaperLaw.as_printed(gain=GAIN))
+    frames = round(PATIENCE / STEP)
+    placed = [(PATH_B.pose(k * STEP), PATH_B.twist(k * STEP)) for k in range(1, frames + 1)]
+    motion = [(flat_pose(pose), flat_twist(twist, pose)) for pose, twist in placed]
+    found = 0
+    for _ in range(TRIED):
+        faces, at = rng.integers(3, size=2).tolist(), rng.uniform(0.02, 0.98, (2, 2)).tolist()
+        places = [(face, (u, v)) for face, (u, v) in zip(faces, at, strict=True)]
+        buffer = law.buffer(begin(law, *places))
+        for pose, twist in motion:
+            buffer.pose_b[:], buffer.twist_b[:] = pose, twist
+            law.step_into(buffer)
+        found += abs(buffer.proximity().distance - runs.exact.distance[frames]) < ARRIVED
+    return Arrivals(int(found), TRIED)
+
+
+def sequence(visits: Iterable[Visit]) -> tuple[tuple[str, str], ...]:
+    """Return the visited modes in order, as the pictures name them: ("F0", "E2") and so on."""
+    return tuple((short(visit.feature_a), short(visit.feature_b)) for visit in visits)
+
+
+def features_of(recording: Recording, body: str) -> tuple[str, ...]:
+    """Return the features that one body's witness point goes through, in order."""
+    names = [pair["AB".index(body)] for pair in sequence(recording.modes())]
+    return tuple(name for k, name in enumerate(names) if k == 0 or name != names[k - 1])
+
+
+@dataclass(frozen=True)
+class FaceParameters:
+    """Where one body's witness point lies in the parameters of a face, by frame.
+
+    While it is on an edge these are those of the face that it came from.
+
+    Attributes
+    ----------
+    face : ndarray of int, shape (n,)
+    u, v : ndarray, shape (n,)
+    on_edge : ndarray of bool, shape (n,)
+    """
+
+    face: NDArray[np.int64]
+    u: Array
+    v: Array
+    on_edge: NDArray[np.bool_]
+
+    @property
+    def pieces(self) -> list[slice]:
+        """Stretches of frames on one face: between them the parameters jump."""
+        cuts = [0, *(np.flatnonzero(np.diff(self.face)) + 1).tolist(), len(self.face)]
+        return [slice(first, last) for first, last in pairwise(cuts)]
+
+
+def face_parameters(recording: Recording, body: str) -> FaceParameters:
+    """Return the face parameters of body "A" or "B" in every frame.
+
+    Raises
+    ------
+    ValueError
+        If the run begins on an edge, or comes to a vertex, whose u has no meaning.
+    """
+    assert recording.pair is not None, "not opened from a file"
+    part = recording.pair["AB".index(body)]
+    features = recording.feature_a if body == "A" else recording.feature_b
+    parameters = recording.parameters_a if body == "A" else recording.parameters_b
+    if features[0].kind != "face" or any(feature.kind == "vertex" for feature in features):
+        raise ValueError(f"body {body}: the run must begin on a face and come to no vertex")
+    face, rows = int(features[0].index), []
+    for feature, own in zip(features, parameters, strict=True):
+        face = int(feature.index) if feature.kind == "face" else face
+        place = place_on(part, face, feature, own)
+        assert place is not None, "an edge is entered from one of its faces"
+        rows.append((face, place.u, place.v, feature.kind == "edge"))
+    columns = list(zip(*rows, strict=True))
+    return FaceParameters(*(np.array(column) for column in columns))
+
+
+def witness_error(runs: Runs) -> Array:
+    """Return how far the paper's law's worse witness point is off the exact one [length], (n,)."""
+    off_a = np.linalg.norm(runs.paper.point_a - runs.exact.point_a, axis=1)
+    off_b = np.linalg.norm(runs.paper.point_b - runs.exact.point_b, axis=1)
+    return np.asarray(np.maximum(off_a, off_b))
+
+
+def _placed(time: float) -> tuple[Pose, Pose, Twist, Twist]:
+    return PATH_A.pose(time), PATH_B.pose(time), PATH_A.twist(time), PATH_B.twist(time)

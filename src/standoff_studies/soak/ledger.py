@@ -1,0 +1,147 @@
+"""How far a soak has come: a file that is written whole or not at all, and goes on from there."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from standoff.tracking.status import Status
+from standoff.version import __version__
+from standoff.whole_files import write_whole
+from standoff_studies.soak.cases import PER_DRAWER
+from standoff_studies.soak.reading import entry, read_facts, rows, whole
+from standoff_studies.soak.tally import Tally
+
+NAME = "soak.json"
+Part = tuple[int, int]
+"""Pairs first .. end - 1."""
+
+
+@dataclass
+class Ledger:
+    """The pairs that are done, and their counts.
+
+    Attributes
+    ----------
+    seed, frames : int
+    done : list of (first, end)
+        Sorted, apart from each other.
+    tally : Tally
+    """
+
+    seed: int
+    frames: int
+    done: list[Part] = field(default_factory=list)
+    tally: Tally = field(default_factory=Tally)
+
+    def add(self, part: Part, tally: Tally) -> None:
+        """Note a part that is done."""
+        merged: list[Part] = []
+        for first, end in sorted([*self.done, part]):
+            if merged and first <= merged[-1][1]:
+                merged[-1] = merged[-1][0], max(end, merged[-1][1])
+            else:
+                merged.append((first, end))
+        self.done = merged
+        self.tally.add(tally)
+
+    def left(self, pairs: int) -> list[Part]:
+        """Return what is left of so many pairs, in parts that share a drawer of shapes."""
+        parts, at = [], 0
+        for first, end in [*self.done, (pairs, pairs)]:
+            while at < min(first, pairs):
+                stop = min(first, pairs, (at // PER_DRAWER + 1) * PER_DRAWER)
+                parts.append((at, stop))
+                at = stop
+            at = max(at, end)
+        return parts
+
+    def pairs_done(self) -> int:
+        """Return how many pairs are done."""
+        return sum(end - first for first, end in self.done)
+
+    def facts(self) -> dict[str, Any]:
+        """Return plain data."""
+        return {
+            "standoff": __version__,
+            "seed": self.seed,
+            "frames": self.frames,
+            "done": [list(part) for part in self.done],
+            **self.tally.facts(),
+        }
+
+    def write(self, folder: Path) -> None:
+        """Write the file.
+
+        Raises
+        ------
+        OSError
+            As on a full disk.
+        """
+        text = json.dumps(self.facts(), indent=1, allow_nan=False)
+        write_whole({folder / NAME: lambda file: file.write(text.encode())})
+
+    @classmethod
+    def read(cls, folder: Path, seed: int, frames: int) -> Ledger:
+        """Return the ledger of a folder, to go on with.
+
+        Raises
+        ------
+        OSError
+            There is none.
+        ValueError
+            It is damaged, or of another run: another seed, number of frames or version.
+        """
+        file = folder / NAME
+        try:
+            facts = read_facts(file)
+            known = {name: entry(facts, name) for name in ("standoff", "seed", "frames")}
+            done = _parts(entry(facts, "done"))
+            tally = Tally.of(facts)
+        except ValueError as error:
+            raise ValueError(f"{file} is no ledger of a soak: {error}") from error
+        wanted = {"standoff": __version__, "seed": seed, "frames": frames}
+        for name, value in wanted.items():
+            if known[name] != value:
+                raise ValueError(
+                    f"{file} is of a run with {name} {known[name]}, not {value}: give that, or "
+                    "another folder."
+                )
+        ledger = cls(seed, frames, done, tally)
+        wrong = ledger.inconsistency()
+        if wrong:
+            raise ValueError(f"{file} is damaged: {wrong}. Begin anew in another folder.")
+        return ledger
+
+    def inconsistency(self) -> str:
+        """Return which sums contradict the pairs that are done; "" if none does."""
+        pairs, sums = self.pairs_done(), self.tally.sums
+        frames = pairs * self.frames
+        wanted = {
+            "pairs": (sums["pairs"], pairs),
+            "frames": (sums["frames"], frames),
+            "frames of all statuses": (sum(sums[status.name] for status in Status), frames),
+            "certified": (
+                sums["certified"],
+                sums[Status.CONVERGED.name] + sums[Status.GLOBAL.name],
+            ),
+        }
+        for name, (count, right) in wanted.items():
+            if count != right:
+                return f"it counts {count} {name} where {right} were done"
+        for name, count in sums.items():
+            if count > frames:
+                return f"it counts {count} '{name}' in {frames} frames"
+        return ""
+
+
+def _parts(facts: Any) -> list[Part]:
+    """The parts of plain data: sorted, and apart from each other."""
+    parts: list[Part] = []
+    for first, end in rows(facts, "'done'", 2):
+        least = parts[-1][1] + 1 if parts else 0
+        first = whole(first, "the first pair of a part of 'done'", least)
+        parts.append((first, whole(end, "the end of a part of 'done'", first + 1)))
+    return parts

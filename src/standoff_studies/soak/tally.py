@@ -1,0 +1,78 @@
+"""What a soak counts: sums and extremes, which may be gathered in any order."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import Any
+
+from standoff_studies.soak.reading import entry, mapping, number, rows, text, whole
+
+EXAMPLES = 40
+"""Frames without a certificate that are kept as examples: those of the lowest pairs."""
+
+
+@dataclass
+class Tally:
+    """Counts of frames, the worst of some numbers, and examples of frames without a certificate.
+
+    Attributes
+    ----------
+    sums : Counter
+    worst : dict of float
+        Greatest values.
+    examples : list of [pair, frame, status, shapes, distance]
+    """
+
+    sums: Counter[str] = field(default_factory=Counter)
+    worst: dict[str, float] = field(default_factory=dict)
+    examples: list[list[Any]] = field(default_factory=list)
+
+    def count(self, name: str, number: int) -> None:
+        """Add to a sum; nothing is left of it where nothing was counted."""
+        if number:
+            self.sums[name] += int(number)
+
+    def note(self, name: str, value: float) -> None:
+        """Keep the greatest of a value."""
+        self.worst[name] = max(float(value), self.worst.get(name, float(value)))
+
+    def add(self, other: Tally) -> None:
+        """Take in another's."""
+        self.sums.update(other.sums)
+        for name, value in other.worst.items():
+            self.note(name, value)
+        self.examples = sorted(self.examples + other.examples, key=lambda e: e[:2])[:EXAMPLES]
+
+    def facts(self) -> dict[str, Any]:
+        """Return plain data, in an order that does not depend on the gathering."""
+        return {
+            "sums": dict(sorted(self.sums.items())),
+            "worst": dict(sorted(self.worst.items())),
+            "examples": self.examples,
+        }
+
+    @classmethod
+    def of(cls, facts: dict[str, Any]) -> Tally:
+        """Return the tally of plain data.
+
+        Raises
+        ------
+        ValueError
+            It is none.
+        """
+        sums = mapping(entry(facts, "sums"), "'sums'")
+        worst = mapping(entry(facts, "worst"), "'worst'")
+        examples = rows(entry(facts, "examples"), "'examples'", 5)
+        for pair, frame, status, shapes, distance in examples:
+            whole(pair, "an example's pair")
+            whole(frame, "an example's frame")
+            text(status, "an example's status")
+            text(shapes, "an example's pair of shapes")
+            if distance is not None:
+                number(distance, "an example's distance")
+        return cls(
+            Counter({name: whole(value, f"the sum '{name}'") for name, value in sums.items()}),
+            {name: number(value, f"the worst '{name}'") for name, value in worst.items()},
+            examples,
+        )

@@ -1,0 +1,40 @@
+"""Committed runs over all kinds of bodies and laws: the answers stay as they were."""
+
+import numpy as np
+import pytest
+
+from families import traces
+
+SAME = 1e-12
+"""Most that a number may differ by: the lengths are about 1."""
+# Rates of points jump where a feature changes, and are known to the digits of the curvature.
+SAME_RATE = 1e-8
+LENGTHS = np.r_[0:3, 4:13]
+RATES = np.r_[3, 13:19]
+DISCRETE = np.r_[19:22]
+
+committed = np.load(traces.FILE)
+
+
+@pytest.mark.parametrize("run", traces.runs(), ids=" ".join)
+def test_answers_are_those_recorded(run):
+    then, now = committed["|".join(run)], traces.trace(*run)
+    same = ((then == now) | (np.isnan(then) & np.isnan(now)))[:, DISCRETE].all(axis=1)
+    # an event may fall one frame earlier or later: there the points differ
+    changed = np.flatnonzero(~same)
+    for k in changed:
+        near = then[max(k - 1, 0) : k + 2, DISCRETE]
+        assert (near == now[k, DISCRETE]).all(axis=1).any(), (k, then[k], now[k])
+    assert np.abs(np.where(np.isnan(then), 0.0, then - now))[same][:, LENGTHS].max() <= SAME
+    assert np.abs(np.where(np.isnan(then), 0.0, then - now))[same][:, RATES].max() <= SAME_RATE
+    assert (np.isnan(then) == np.isnan(now))[same].all()
+
+
+def test_the_runs_meet_what_they_are_to_meet():
+    """Every body and law, frames in contact and apart, and switches."""
+    runs = traces.runs()
+    assert {body for a, b, _ in runs for body in (a, b)} == set(traces.BODIES)
+    assert {law for *_, law in runs} == set(traces.LAWS)
+    rows = np.concatenate([committed["|".join(run)] for run in runs])
+    assert 0.1 < (rows[:, 0] < 0.0).mean() < 0.9
+    assert (np.diff(rows[:, DISCRETE], axis=0) != 0.0).any(axis=1).sum() > 60
