@@ -14,6 +14,7 @@ from standoff.kernels.compiler.decorators import pointer
 from standoff.kernels.entries.queries import chart_normal, feature_jet
 from standoff.kernels.pair import events as N
 from standoff.kernels.paper.voronoi import voronoi_switch
+from standoff.kernels.state.arrays import RESET_FOOT
 from standoff.kernels.values import Pair, Place, Work
 from standoff.tracking.inputs import place
 from standoff.tracking.rows import StateRow
@@ -44,7 +45,7 @@ def switch(
     place = Place(mode[0], mode[1], mode[2], mode[3], q[0], q[1], q[2], q[3])
     work = Work(pointer(counts, 0), pointer(log, 0))
     pair = Pair(body[0], body[1], body[0], body[1])
-    switched, place = voronoi_switch(pair, 0, (x[0], x[1], x[2]), span, place, work)
+    switched, place = voronoi_switch(pair, 0, (x[0], x[1], x[2]), span, place, RESET_FOOT, work)
     mode[0], mode[1], q[0], q[1] = place.feature_a, place.chart_a, place.u, place.v
     return switched
 
