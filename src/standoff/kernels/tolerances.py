@@ -51,6 +51,25 @@ SLOPE_NOISE = 8.0
 # line must not slip between two edges.
 PCURVE_OVERLAP = 1e-12
 
+# A point known no better than this (parameter units, relative) may lie outside by roundoff.
+PARAMETER_NOISE = 1e-14
+# How far (parameter units) along a tangent a curve stays within PARAMETER_NOISE of it: a line that
+# starts on a curve and touches it this near touches it at its start.
+TOUCH_WIDTH = 1e-6
+# A conic is looked at more closely where a line cuts into it by less than this part of it
+# (relative).
+NEAR_TANGENT = 1e-8
+# Roundings (eps of its ends' magnitudes) below which a root's bracket is a point.
+BRACKET_ROUNDINGS = 4.0
+
+# Rays tried to tell inside from outside: one suffices but where it grazes a corner.
+RAYS = 6
+# Where on a boundary curve a ray is aimed (part of its range, dimensionless): the first, and how
+# much farther each next. All RAYS stay off the ends, no two are the same place, and none is a half,
+# third or quarter, where patches have their corners and symmetric faces their symmetry.
+AIM_FIRST = 0.2371
+AIM_STEP = 0.1113
+
 # An atlas's chart is left when |u| or |v| passes RECHART (dimensionless, gnomonic).
 RECHART = 1.2
 
@@ -87,6 +106,9 @@ BLUR = 1e-6
 # Rows of a rotation matrix may miss being orthonormal by this (dimensionless): what a rotation
 # written with ten digits keeps.
 ROTATION = 1e-9
+# Below this angle (radians) series replace quotients that lose their digits: the first term left
+# out is smaller than eps.
+SMALL_ANGLE = 1e-4
 
 # Largest gap (relative to the pair's size) with which a start counts as found: far below any
 # far-side minimum's, however loose the tracker's tolerance is.
@@ -106,6 +128,23 @@ FARTHEST = 1e100
 CREASE_FIRST = 1e-110
 CREASE_LAST = 0.5
 CREASE_STEPS = 30
+# |u| and |v| are kept from 0 by this where an exponent is below 2 (dimensionless): powers of it
+# stay finite, and it is far below any parameter that matters.
+CREASE_FLOOR = 1e-120
+
+# Directions tried around an apex or in a wide sector, before refinement.
+FAN_SCAN = 24
+# Golden-section steps: they shrink the bracket by 1e-12, the fan's own roundoff (radians).
+FAN_REFINE = 60
+
+# Lengths of the certificate carry a few roundings each; the bound is lowered by this many eps
+# of the largest coordinate met, so that it stays a bound in floating point.
+BOUND_ROUNDINGS = 16.0
+
+# How strongly a restart's direction is mixed with those before it, a start (dimensionless).
+MIXING = 0.3
+# A length in the place of 0 where a direction is divided by it: what is 0 stays 0.
+LEAST_DIVISOR = 1e-300
 
 # The edge's point closest to a Voronoi test's point is bracketed between samples (convex arcs
 # have one or two minima), then refined: bisection alone halves 2/16 of the edge to roundoff.
@@ -158,8 +197,12 @@ MAX_PROBES = 320
 POLISHED = 1e-5
 # Other minima that a proven search still tries, where one might be less by DEPTH_PROOF.
 MAX_RIVALS = 8
+# Minima nearer to each other than this (chord) are one.
+SAME_MINIMUM = 0.06
 # A point is above a facet from here on (in contact scales): below it is coplanar.
 COPLANAR = 1e-11
+# Roundings (eps size) of a facet's plane, times how much its corners lean on its longest side.
+FACET_ROUNDINGS = 4.0
 # Half the length of the prism over a planar difference, in contact scales: no depth reaches it.
 PRISM = 2.0
 

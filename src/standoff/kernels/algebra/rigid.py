@@ -15,11 +15,8 @@ from standoff.kernels.algebra.vectors import (
     sub,
 )
 from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.tolerances import SMALL_ANGLE
 from standoff.kernels.values import Motion, Pose
-
-# Below this angle (radians) series replace quotients that lose their digits: the first term left
-# out is smaller than eps.
-SMALL_ANGLE = 1e-4
 
 
 @kernel

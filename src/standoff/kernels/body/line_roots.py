@@ -9,11 +9,9 @@ from math import atan2, hypot, pi, sqrt
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.jets import pcurve_jet
 from standoff.kernels.compiler.decorators import kernel
-from standoff.kernels.tolerances import EPS, PCURVE_OVERLAP
+from standoff.kernels.tolerances import BRACKET_ROUNDINGS, EPS, NEAR_TANGENT, PCURVE_OVERLAP
 
 HALF_TURN = pi
-# A conic is looked at more closely where a line cuts into it by less than this part of it.
-NEAR_TANGENT = 1e-8
 # Instead of a count: the line touches the curve but for noise, and its two roots are one. Then
 # t1 is where, and t2 is the side of the line on which the curve lies: negative on its left.
 TOUCHING_LINE = -1
@@ -70,7 +68,7 @@ def bracketed(reals, o, line, which, start, end):
     differ."""
     t0, f0 = start
     t1, f1 = end
-    least = 4.0 * EPS * (abs(t0) + abs(t1))  # a bracket this wide is a point
+    least = BRACKET_ROUNDINGS * EPS * (abs(t0) + abs(t1))  # a bracket this wide is a point
     for k in range(ROOT_STEPS):
         if abs(t1 - t0) <= least:
             break

@@ -7,10 +7,7 @@ precision of u and v near 0.
 """
 
 from standoff.kernels.compiler.decorators import kernel
-
-# |u| and |v| are kept from 0 by this where an exponent is below 2 (dimensionless): powers of it
-# stay finite, and it is far below any parameter that matters.
-CREASE_FLOOR = 1e-120
+from standoff.kernels.tolerances import CREASE_FLOOR
 
 
 @kernel

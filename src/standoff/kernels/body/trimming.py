@@ -13,7 +13,14 @@ from standoff.kernels.body.features import (
 )
 from standoff.kernels.body.line_roots import TOUCHING_LINE, line_roots
 from standoff.kernels.compiler.decorators import kernel, shared
-from standoff.kernels.tolerances import PCURVE_OVERLAP
+from standoff.kernels.tolerances import (
+    AIM_FIRST,
+    AIM_STEP,
+    PARAMETER_NOISE,
+    PCURVE_OVERLAP,
+    RAYS,
+    TOUCH_WIDTH,
+)
 from standoff.kernels.values import Hit
 
 NO_HIT = 0
@@ -22,13 +29,6 @@ HIT_END = 2  # index: 0 or 1, the end of the edge
 HIT_LIMIT = 3  # the chart's limit: change charts
 
 TURN = 2.0 * pi
-# A point known no better than this (parameter units, relative) may lie outside by roundoff.
-PARAMETER_NOISE = 1e-14
-# How far (parameter units) along a tangent a curve stays within PARAMETER_NOISE of it: a line that
-# starts on a curve and touches it this near touches it at its start.
-TOUCH_WIDTH = 1e-6
-# Rays tried to tell inside from outside: one suffices but where it grazes a corner.
-RAYS = 6
 
 
 @kernel
@@ -181,7 +181,7 @@ def on_face(ints, reals, chart, u, v):
             break
         aim = coedge_record(ints, first + k % n)
         o = ints[aim + L.COEDGE_REALS]
-        t = reals[o] + (0.2371 + 0.1113 * k) * (reals[o + 1] - reals[o])
+        t = reals[o] + (AIM_FIRST + AIM_STEP * k) * (reals[o + 1] - reals[o])
         x, y, _, _, depth = coedge_parameters(ints, reals, first + k % n, t)
         if depth <= 0.0:
             continue

@@ -1,4 +1,4 @@
-"""Pointers that check every index: what `compiling.pointer` gives under STANDOFF_BOUNDS_CHECK=1.
+"""Pointers that check every index: what `decorators.pointer` gives under STANDOFF_BOUNDS_CHECK=1.
 
 Numba's own check (NUMBA_BOUNDSCHECK) sees arrays only, and lets -1 mean the last element. These
 know how many elements lie ahead of them, and refuse any index below 0 or beyond. docs/fuzzing.md

@@ -16,7 +16,7 @@ import numpy as np
 
 from standoff.kernels.algebra.vectors import cross, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, shared
-from standoff.kernels.tolerances import COPLANAR, EPS, MAX_PROBES, PRISM
+from standoff.kernels.tolerances import COPLANAR, EPS, FACET_ROUNDINGS, MAX_PROBES, PRISM
 
 # Seeds, probes, minima; two points each for a planar pair.
 MAX_POINTS = 2 * (MAX_PROBES + 64)
@@ -70,7 +70,7 @@ def add_facet(hull, i, j, k, size):
     # less
     along = scale(1.0 / length, along)
     lean = abs(dot(a, cross(normal, along))) * length / area + abs(dot(a, along)) / length
-    noise = 4.0 * EPS * size * (1.0 + lean)
+    noise = FACET_ROUNDINGS * EPS * size * (1.0 + lean)
     corners[m, 0], corners[m, 1], corners[m, 2] = i, j, k
     facets[m, 0], facets[m, 1], facets[m, 2] = normal
     facets[m, OFFSET] = dot(normal, a) - noise

@@ -35,6 +35,7 @@ from standoff.kernels.pair.events import SEARCHES, exhausted
 from standoff.kernels.tolerances import (
     MAX_PROBES,
     PRISM,
+    SAME_MINIMUM,
     SHIFTED_GAP,
     TOUCHING,
 )
@@ -42,8 +43,6 @@ from standoff.kernels.values import Depth
 
 # Seeds of the polytope: the axes, and for spatial bodies the cube's corners.
 SEEDS = 14
-# Minima nearer to each other than this (chord) are one.
-SAME_MINIMUM = 0.06
 
 
 @kernel

@@ -52,7 +52,7 @@ from standoff.kernels.values import NO_RATES, ORIGIN, Found, Motion
 class Inputs(NamedTuple):
     """What a frame is given, in world axes, as pointers."""
 
-    pose_a: Any  # 12 numbers, see ``frame``
+    pose_a: Any  # R (9, row-major), p (3)
     pose_b: Any
     twist_a: Any  # 6 numbers
     twist_b: Any

@@ -28,12 +28,8 @@ from standoff.kernels.body.features import (
 )
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.switching import apex_normal, end_direction, steepest_in_sector
-from standoff.kernels.tolerances import EPS, FRONT
+from standoff.kernels.tolerances import BOUND_ROUNDINGS, EPS, FRONT
 from standoff.kernels.values import side_of
-
-# Lengths of the certificate carry a few roundings each; the bound is lowered by this many eps
-# of the largest coordinate met, so that it stays a bound in floating point.
-BOUND_ROUNDINGS = 16.0
 
 
 @kernel

@@ -16,12 +16,11 @@ from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.pair.certified import UNCERTIFIED, settle_and_weigh
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import RESTARTS, exhausted
+from standoff.kernels.tolerances import LEAST_DIVISOR, MIXING
 from standoff.kernels.values import ORIGIN, Found, Place, Side, resting, together
 
 MAX_STARTS = 12
 GILBERT_STEPS = 40
-# How strongly a restart's direction is mixed with those before it, a start (dimensionless).
-MIXING = 0.3
 FIRST = np.int64(0)  # the start that is tried first; of the type of a count
 NOWHERE = Place(FIRST, FIRST, FIRST, FIRST, 0.0, 0.0, 0.0, 0.0)
 
@@ -137,7 +136,7 @@ def global_query(pair, pose, first, tolerance, work):
             break
         # aim the next start along this failure's gap, turned a little more each time
         jet_a, jet_b = pair_jets(pair, pose, found.place)
-        gap = scale(1.0 / max(found.distance, 1e-300), sub(jet_b[0], jet_a[0]))
+        gap = scale(1.0 / max(found.distance, LEAST_DIVISOR), sub(jet_b[0], jet_a[0]))
         direction = add(gap, scale(MIXING * attempt, direction))
         if norm(direction) == 0.0:
             direction = (1.0, 0.0, 0.0)

@@ -29,11 +29,15 @@ from standoff.kernels.body.features import (
 )
 from standoff.kernels.body.trimming import HIT_COEDGE, HIT_END, TURN, wrapped
 from standoff.kernels.compiler.decorators import kernel
-from standoff.kernels.tolerances import CREASE_FIRST, CREASE_LAST, CREASE_STEPS, SLOPE
+from standoff.kernels.tolerances import (
+    CREASE_FIRST,
+    CREASE_LAST,
+    CREASE_STEPS,
+    FAN_REFINE,
+    FAN_SCAN,
+    SLOPE,
+)
 from standoff.kernels.values import NO_CHART, Side
-
-FAN_SCAN = 24  # directions tried around an apex or in a wide sector, before refinement
-FAN_REFINE = 60  # golden-section steps: shrinks the bracket by 1e-12, the fan's own roundoff
 
 NOT_TRIED = np.int64(-1)  # of the type of a feature's number: a literal would compile twice
 NONE_TRIED = (NOT_TRIED, NOT_TRIED, NOT_TRIED)

@@ -36,7 +36,14 @@ from standoff.kernels.pair.switching import (
     steepest_release,
 )
 from standoff.kernels.state.arrays import RESET_NEAREST
-from standoff.kernels.tolerances import CLOSEST_SAMPLES, CLOSEST_STEPS, EPS, SLOPE, SLOPE_NOISE
+from standoff.kernels.tolerances import (
+    BRACKET_ROUNDINGS,
+    CLOSEST_SAMPLES,
+    CLOSEST_STEPS,
+    EPS,
+    SLOPE,
+    SLOPE_NOISE,
+)
 from standoff.kernels.values import NO_CHART, Side, body_of, side_of, with_side
 
 SAME = -1  # the feature is kept
@@ -75,7 +82,7 @@ def closest_on_edge(ints, reals, edge, x):
         if curvature <= 0.0 or not low <= t + step <= high:
             step = 0.5 * (low + high) - t
         t += step
-        if abs(step) <= 4.0 * EPS * (abs(t) + t1 - t0):
+        if abs(step) <= BRACKET_ROUNDINGS * EPS * (abs(t) + t1 - t0):
             break
     if not closed and (t <= t0 or t >= t1):
         return (t0, 0) if t <= t0 else (t1, 1)
@@ -214,7 +221,7 @@ def nearest_in_parameters(ints, reals, coedge, side):
         step = -slope / speed2 if speed2 > 0.0 else 0.0
         step = min(max(t + step, low), high) - t
         t += step
-        if abs(step) <= 4.0 * EPS * (abs(t) + t1 - t0):
+        if abs(step) <= BRACKET_ROUNDINGS * EPS * (abs(t) + t1 - t0):
             break
     return t
 
