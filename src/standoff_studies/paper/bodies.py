@@ -20,12 +20,13 @@ PLANAR_CONTROL = (
 
 LEAF_CONTROL = (
     ((-0.7, 0.0), (0.0, -0.75), (0.7, 0.0)),
-    ((0.7, 0.0), (0.35, 0.5), (-0.3, 0.45), (-0.7, 0.0)),
+    ((0.7, 0.0), (0.5, 0.35), (0.1, 0.45)),
+    ((0.1, 0.45), (-0.4, 0.45), (-0.7, 0.0)),
 )
-"""Control points of the leaf's two Bézier curves, counter-clockwise [length]."""
+"""Control points of the leaf's three Bézier curves, counter-clockwise [length]."""
 
-LEAF_WEIGHTS = ((1.0, 0.8, 1.0), (1.0, 1.0, 1.0, 1.0))
-"""Weights of the leaf: its lower curve is an arc of an ellipse, its upper one a plain cubic."""
+LEAF_WEIGHTS = ((1.0, 0.8, 1.0), (1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
+"""Weights of the leaf: its lower curve is an arc of an ellipse, the others are parabolas."""
 
 
 def planar_body() -> Body:
@@ -37,9 +38,9 @@ def planar_body() -> Body:
 
 
 def leaf() -> Body:
-    """The moving planar body of simulation C: an elliptic arc and a cubic, with two sharp tips.
+    """The moving planar body of simulation C: three curves and three vertices, two of them sharp.
 
-    Curve i goes from vertex i to vertex i + 1 (modulo 2).
+    Curve i goes from vertex i to vertex i + 1 (modulo 3).
     """
     pairs = zip(LEAF_CONTROL, LEAF_WEIGHTS, strict=True)
     return shapes.planar_loop([RationalBezier(points, weights) for points, weights in pairs])

@@ -21,7 +21,7 @@ from standoff_studies.paper.drawing import (
     short_name,
 )
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.simulation_c.run import FRAME, Run, run
+from standoff_studies.paper.simulation_c.run import FRAME, OWN_LAW, Run, run
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
 
 if TYPE_CHECKING:
@@ -38,8 +38,8 @@ RAY = 4.0
 """Length of the drawn external lines: out of the view [length]."""
 LINES = "#404040"
 """Dark enough for thin broken lines."""
-CURVES_OUT, VERTICES_OUT = 0.33, 0.52
-"""How far outside curves and vertices their regions are named [length]."""
+CURVES_OUT, VERTICES_OUT, NARROW_OUT = 0.33, 0.52, 1.15
+"""How far outside curves and vertices their regions are named, and B's narrow V2 [length]."""
 ON_LINE = 1e-9
 """A witness point within this of an external line is on it [length]: instants of 1e-9 s."""
 
@@ -56,8 +56,8 @@ def figure_12() -> Artwork:
         ),
         text=(
             "Left body A with three curves and three vertices, six outward lines and a "
-            "three-branched medial axis; right body B, a leaf with two tips, four outward lines "
-            "and one medial branch from tip to tip."
+            "three-branched medial axis; right body B, a leaf with two sharp tips and one blunt "
+            "corner, the same, flatter."
         ),
         draw=lambda: _draw(simulation),
         tables={"external_lines": _lines(simulation), "medial_axes": _axes(simulation)},
@@ -119,7 +119,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
     first, second = regions()
     counts = len(first.external), len(second.external)
     branches = len(first.medial_axis), len(second.medial_axis)
-    off = max(off_line(simulation, event) for event in simulation.recording.events)
+    off = max(off_line(simulation, event) for event in simulation.exact.events)
     corners = simulation.a.n_vertices, simulation.b.n_vertices
     return (
         Statement(
@@ -128,13 +128,15 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"external lines: {counts[0]} of A, {counts[1]} of B, two a vertex; branches of the "
             f"medial axis: {branches[0]} of A, {branches[1]} of B",
             counts == (2 * corners[0], 2 * corners[1]) and min(branches) >= 1,
+            by="so.voronoi_regions, before the run: no law",
         ),
         Statement(
             "Section on the hybrid system",
             "features switch where the opposing witness point crosses into another Voronoi region",
-            f"at all {len(simulation.recording.events)} switching instants it is within {off:.1e} "
+            f"at all {len(simulation.exact.events)} switching instants it is within {off:.1e} "
             "length of the external line between the two features",
             off <= ON_LINE,
+            by=OWN_LAW + ": the claim is of the closest points",
         ),
     )
 
@@ -161,7 +163,9 @@ def _draw_body(axes: Axes, body: Body, k: int) -> None:
     name_features(axes, body, inset=inset, features=own, color=colour)
     name_features(axes, body, inset=-CURVES_OUT, features=own, fontweight="bold")
     corners = [f for f in planar_features(body) if f.kind == "vertex"]
-    name_features(axes, body, inset=-VERTICES_OUT, features=corners, fontweight="bold")
+    for corner in corners:
+        out = NARROW_OUT if (k, corner.index) == (1, 2) else VERTICES_OUT
+        name_features(axes, body, inset=-out, features=[corner], fontweight="bold")
     axes.set_xlim(width)
     axes.set_ylim(HEIGHT)
     axes.set_xlabel("x [length]")

@@ -1,4 +1,4 @@
-"""Simulation C's motion, tracked by the library's own law and by the paper's."""
+"""Simulation C's motion, tracked by the printed system from a wrong start and by the library."""
 
 from __future__ import annotations
 
@@ -12,10 +12,13 @@ from numpy.typing import NDArray
 from standoff.automaton import Visit
 from standoff.bodies import Body
 from standoff.motion import Carried, ConstantTwist, Fixed, Path, Pose, Spiral, Twist
-from standoff.recording import Recording, simulate
-from standoff.tracking import Feature, Tracker
+from standoff.recording import RecordedEvent, Recording, simulate
+from standoff.recording.simulate import track_along
+from standoff.recording.times import even_times
+from standoff.tracking import Feature, Tracker, TrackerState
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import leaf, planar_body
+from standoff_studies.paper.many_starts import Arrivals, distances, motion_along
 
 Array = NDArray[np.float64]
 
@@ -31,9 +34,31 @@ RATE, PHASE = math.pi / 4.0, math.radians(150.0)
 SPIN = -1.5
 """Of B about its centre [rad/s], against the turn of the spiral."""
 
-SNAPSHOT_STAYS = (0, 1, 3, 4, 5, 9, 11, 12, 15, 18, 21, 25)
-"""Stays whose middles are the snapshots of Fig. 14: four of each kind of mode."""
 LETTERS = "abcdefghijkl"
+"""Of the snapshots of Fig. 14: the middles of as many equal parts of the motion."""
+
+GAIN = 25.0
+"""K of the printed system [1/s]: "a very low controller gain"."""
+
+START = ((1, 0.7), (0, 0.2))
+"""Curve and parameter of A and of B where the printed system is started, one of those that arrive;
+the closest points are on A's C1 at 0.1 and at B's V1."""
+
+LAW = f"PaperLaw.as_printed(gain={GAIN:g}): Voronoi tests, M as it is, wrong start"
+"""What the statements say they were measured with."""
+
+OWN_LAW = "the library's own law, certified"
+
+CONVERGED = 0.6
+"""When the start has converged [s]: exp(-K t) is 3e-7."""
+
+TRIED, ARRIVED = 200, 1e-3
+"""Random starts on both bodies, and to which distance [length] they count as arrived, after
+`CONVERGED`."""
+
+
+REST = Fixed(Pose.identity())
+"""A stays where it is."""
 
 
 class Snapshot(NamedTuple):
@@ -55,19 +80,19 @@ class Run(NamedTuple):
         A is at rest at home.
     path : Path
         B's motion.
-    recording : Recording
+    exact : Recording
         By the library's own law: certified, switching instants located.
     paper : Recording
-        By the paper's law with Heun's method and K h = 1, from the same start.
+        By the printed system at the low `GAIN`, from `START`. All figures show it.
     stays : tuple of Visit
-        The modes of `recording` in order of time.
+        The modes of `paper` in order of time.
     snapshots : tuple of Snapshot
     """
 
     a: Body
     b: Body
     path: Path
-    recording: Recording
+    exact: Recording
     paper: Recording
     stays: tuple[Visit, ...]
     snapshots: tuple[Snapshot, ...]
@@ -75,7 +100,7 @@ class Run(NamedTuple):
     @property
     def paths(self) -> tuple[Path, Path]:
         """Of A, which rests, and of B."""
-        return Fixed(Pose.identity()), self.path
+        return REST, self.path
 
 
 def motion() -> Path:
@@ -87,36 +112,89 @@ def motion() -> Path:
 @cache
 def run() -> Run:
     """Return the simulation, computed once."""
-    a, b, path, home = planar_body(), leaf(), motion(), Pose.identity()
-    recording = simulate(Tracker(a, b, FRAME), home, path, DURATION)
-    paper = simulate(Tracker(a, b, FRAME, law=PaperLaw(integrator="heun")), home, path, DURATION)
-    stays = tuple(recording.modes())
+    a, b, path = planar_body(), leaf(), motion()
+    exact = simulate(Tracker(a, b, FRAME), REST, path, DURATION)
+    law = printed_tracker(a, b)
+    state, times = begin(law, path, *START), even_times(0.0, DURATION, FRAME)
+    paper = track_along(law, REST, path, times, state=state)
+    part = DURATION / len(LETTERS)
     snapshots = tuple(
-        _snapshot(letter, stays[number])
-        for letter, number in zip(LETTERS, SNAPSHOT_STAYS, strict=True)
+        _snapshot(letter, paper, round((k + 0.5) * part / FRAME))
+        for k, letter in enumerate(LETTERS)
     )
-    return Run(a, b, path, recording, paper, stays, snapshots)
+    return Run(a, b, path, exact, paper, tuple(paper.modes()), snapshots)
 
 
-def _snapshot(letter: str, stay: Visit) -> Snapshot:
-    frame = round(0.5 * (stay.start + stay.end) / FRAME)
-    return Snapshot(letter, frame, frame * FRAME, stay.feature_a, stay.feature_b)
+def printed_tracker(a: Body, b: Body) -> Tracker:
+    """Return the tracker of the system as printed."""
+    return Tracker(a, b, FRAME, law=PaperLaw.as_printed(gain=GAIN))
 
 
-def loop_parameter(body: Body, features: NDArray[np.object_], parameters: Array) -> Array:
-    """Return where around its loop a body's witness point is, shape (n,).
+Place = tuple[int, float]
+"""A curve, and its parameter."""
 
-    The number of the curve plus its parameter in [0, 1]; at vertex i it is i.
+
+def begin(law: Tracker, path: Path, place_a: Place, place_b: Place) -> TrackerState:
+    """Return the state at parameters of two curves, whatever they are worth."""
+    of_a, of_b = (("edge", place[0]) for place in (place_a, place_b))
+    places = of_a, place_a[1:], of_b, place_b[1:]
+    twists = Twist.zero(), path.twist(0.0)
+    return law.start_from(Pose.identity(), path.pose(0.0), *places, *twists, settle=False)
+
+
+@cache
+def arrivals() -> Arrivals:
+    """Try random starts on both bodies with the printed system."""
+    simulation, rng = run(), np.random.default_rng(1)
+    law = printed_tracker(simulation.a, simulation.b)
+    motion = motion_along(*simulation.paths, even_times(0.0, CONVERGED, FRAME))
+    due, found = simulation.exact.distance[len(motion.rows)], 0
+    for _ in range(TRIED):
+        curves, at = rng.integers(3, size=2).tolist(), rng.uniform(0.02, 0.98, 2).tolist()
+        state = begin(law, simulation.path, *zip(curves, at, strict=True))
+        found += bool(abs(distances(law, state, motion)[-1] - due) < ARRIVED)
+    return Arrivals(found, TRIED)
+
+
+def entered(recording: Recording) -> list[RecordedEvent]:
+    """Return the switches after the wrong start has converged."""
+    return [event for event in recording.events if event.time > CONVERGED]
+
+
+def furthest_instants(simulation: Run) -> float:
+    """Return how far any switch is from that of the library's own law [s], once converged.
+
+    Infinite where the features differ.
     """
-    found = np.array([float(feature.index) for feature in features])
-    on_curve = np.array([feature.kind == "edge" for feature in features])
-    found[on_curve] += parameters[on_curve, 0]
-    return np.asarray(np.mod(found, body.n_edges))
+    ours, due = entered(simulation.paper), entered(simulation.exact)
+    if [event[2:5] for event in ours] != [event[2:5] for event in due]:
+        return float("inf")
+    return max(abs(one.time - other.time) for one, other in zip(ours, due, strict=True))
+
+
+def _snapshot(letter: str, recording: Recording, frame: int) -> Snapshot:
+    mode = recording.feature_a[frame], recording.feature_b[frame]
+    return Snapshot(letter, frame, frame * FRAME, *mode)
+
+
+def curve_parameters(body: Body, features: NDArray[np.object_], parameters: Array) -> Array:
+    """Return each curve's parameter by frame, (n, curves): nan while the point is not on it.
+
+    At a vertex that of the curve into it is 1, that of the curve out of it 0.
+    """
+    found = np.full((len(features), body.n_edges), np.nan)
+    for k, feature in enumerate(features):
+        if feature.kind == "edge":
+            found[k, feature.index] = parameters[k, 0]
+        else:
+            found[k, feature.index] = 0.0
+            found[k, feature.index - 1] = 1.0
+    return found
 
 
 def witness_error(simulation: Run) -> Array:
-    """Return how far the paper's law's witness points are from the certified ones [length]."""
-    first, second = simulation.recording, simulation.paper
+    """Return how far the printed system's witness points are from the certified ones [length]."""
+    first, second = simulation.exact, simulation.paper
     off_a = np.linalg.norm(second.point_a - first.point_a, axis=1)
     off_b = np.linalg.norm(second.point_b - first.point_b, axis=1)
     return np.asarray(np.maximum(off_a, off_b))
@@ -124,7 +202,7 @@ def witness_error(simulation: Run) -> Array:
 
 def vertex_slip(simulation: Run) -> float:
     """Return how far a witness point is from the vertex that holds it, at most [length]."""
-    recording = simulation.recording
+    recording = simulation.paper
     poses = [simulation.path.pose(time) for time in recording.time.tolist()]
     turns = np.array([pose.rotation for pose in poses])
     shifts = np.array([pose.translation for pose in poses])

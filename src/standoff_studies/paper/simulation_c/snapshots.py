@@ -18,7 +18,17 @@ from standoff_studies.paper.drawing import (
 )
 from standoff_studies.paper.figure import Animation, Artwork, Statement
 from standoff_studies.paper.simulation_c.kinds import KINDS, kind_of, mode_name
-from standoff_studies.paper.simulation_c.run import DURATION, FRAME, RADIUS, Run, run
+from standoff_studies.paper.simulation_c.run import (
+    DURATION,
+    FRAME,
+    GAIN,
+    LAW,
+    OWN_LAW,
+    RADIUS,
+    Run,
+    run,
+    witness_error,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,16 +56,18 @@ def figure_14() -> Artwork:
     times = [snapshot.time for snapshot in simulation.snapshots]
     return Artwork(
         caption=(
-            "Twelve moments of the motion, all at one scale. A (solid, blue) rests; B (dashed, "
-            "red) spins while its centre spirals in. Thick curves and squares are the active "
+            "Twelve moments of the motion, the middles of twelve equal parts of it, all at one "
+            f"scale; the printed system at K = {GAIN:g}/s from a wrong start. A (solid, blue) "
+            "rests; B (dashed, "
+            "vermilion) spins while its centre spirals in. Thick curves and squares are the active "
             "features, named in the middle of their bodies; the black line joins the witness "
-            "points. Titles: time [s], mode (A's feature, then B's), distance d [length]. The "
+            "points, the thin grey one under it those of the library's own law. "
+            "Titles: time [s], mode (A's feature, then B's), distance d [length]. The "
             "animation shows the whole motion; grey is the way of B's centre."
         ),
         text=(
             "Twelve small pictures of two planar bodies joined by a witness line, "
-            f"from {times[0]:.2f} s to {times[-1]:.2f} s; four each of vertex–vertex, "
-            "vertex–curve and curve–curve."
+            f"a second apart from {times[0]:.2f} s to {times[-1]:.2f} s."
         ),
         draw=lambda: _draw(simulation),
         tables={"snapshots": _table(simulation)},
@@ -71,7 +83,7 @@ def figure_14() -> Artwork:
 
 
 def _table(simulation: Run) -> dict[str, ArrayLike]:
-    recording, found = simulation.recording, simulation.snapshots
+    recording, found = simulation.paper, simulation.snapshots
     frames = [snapshot.frame for snapshot in found]
     table: dict[str, ArrayLike] = {
         "snapshot": [snapshot.letter for snapshot in found],
@@ -87,22 +99,33 @@ def _table(simulation: Run) -> dict[str, ArrayLike]:
 
 
 def _statements(simulation: Run) -> tuple[Statement, ...]:
-    recording = simulation.recording
+    exact = simulation.exact
     kinds = [kind_of(*snapshot[3:]) for snapshot in simulation.snapshots]
+    frames = [snapshot.frame for snapshot in simulation.snapshots]
+    right = sum(
+        (exact.feature_a[frame], exact.feature_b[frame]) == snapshot[3:]
+        for frame, snapshot in zip(frames, simulation.snapshots, strict=True)
+    )
     centres = [np.linalg.norm(simulation.path.pose(t).translation) for t in (0.0, DURATION)]
     return (
         Statement(
             "Fig. 14",
             "twelve snapshots, each with its active features",
-            ", ".join(f"{kinds.count(k)} {KINDS[k]}" for k in range(3)),
-            len(kinds) == 12 and set(kinds) == {0, 1, 2},
+            f"in {right} of {len(kinds)} the active features are those of the closest points, and "
+            f"witness points at most {witness_error(simulation)[frames].max():.0e} length off; "
+            + ", ".join(f"{kinds.count(k)} {KINDS[k]}" for k in range(3)),
+            right == len(kinds) == 12,
+            by=LAW,
         ),
         Statement(
             "Fig. 14",
             "B spins while its centre spirals in towards A",
             f"centre from {centres[0]:.2f} to {centres[1]:.2f} length; least distance "
-            f"{recording.distance.min():.3f}, proven {recording.lower_bound.min():.3f} length",
-            bool(centres[1] < centres[0] and recording.lower_bound.min() > 0.0),
+            f"{exact.distance.min():.3f}, proven {exact.lower_bound.min():.3f} length",
+            bool(centres[1] < centres[0] and exact.lower_bound.min() > 0.0),
+            "the motion is ours",
+            OWN_LAW,
+            constructed=True,
         ),
     )
 
@@ -121,7 +144,7 @@ def _draw(simulation: Run) -> Figure:
             axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
             axes.set_axis_off()
             name = mode_name(snapshot.feature_a, snapshot.feature_b)
-            distance = simulation.recording.distance[snapshot.frame]
+            distance = simulation.paper.distance[snapshot.frame]
             axes.set_title(f"({snapshot.letter}) {snapshot.time:.2f} s  {name}\nd = {distance:.3f}")
         corner = panels[0].get_xlim()[0], panels[0].get_ylim()[0]
         _draw_ruler(panels[0], (corner[0] + MARGIN, corner[1] + 2.0 * MARGIN))
@@ -136,7 +159,7 @@ def _box(simulation: Run, time: float) -> Array:
 
 
 def _draw_pair(axes: Axes, simulation: Run, frame: int) -> None:
-    recording = simulation.recording
+    recording, exact = simulation.paper, simulation.exact
     pose = simulation.path.pose(float(recording.time[frame]))
     sides = (
         (simulation.a, Pose.identity(), recording.feature_a[frame], style.BLUE, "-"),
@@ -148,6 +171,8 @@ def _draw_pair(axes: Axes, simulation: Run, frame: int) -> None:
         x, y = outline(body, where).mean(axis=0).tolist()
         name = short_name(feature)
         axes.text(x, y, name, ha="center", va="center", color=colour, fontweight="bold")
+    ends = exact.point_a[frame], exact.point_b[frame]
+    draw_witness_line(axes, *ends, color=style.QUIET, linewidth=3.4, markersize=5.0, zorder=4)
     draw_witness_line(axes, recording.point_a[frame], recording.point_b[frame])
 
 
@@ -159,7 +184,7 @@ def _draw_ruler(axes: Axes, start: tuple[float, float]) -> None:
 
 def _draw_moment(figure: Figure, simulation: Run, k: int) -> None:
     """Draw one picture of the animation: frame k of `PICTURES` over the whole motion."""
-    recording = simulation.recording
+    recording = simulation.paper
     frame = round(k / (PICTURES - 1) * (len(recording) - 1))
     axes = figure.subplots()
     times = np.linspace(0.0, frame * FRAME, 2 + frame // 50)
