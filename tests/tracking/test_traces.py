@@ -36,7 +36,7 @@ def test_answers_are_those_recorded(run):
     assert np.abs(np.where(np.isnan(then), 0.0, then - now))[same][:, RATES].max() <= SAME_RATE
     assert (np.isnan(then) == np.isnan(now))[same].all()
     bounds = np.abs(then - now)[same, UPPER_BOUND]
-    searched = now[same, DISCRETE[0]] == so.Status.GLOBAL
+    searched = now[same, DISCRETE[0]] == so.Status.GLOBAL.value
     assert (bounds <= np.where(searched, DEPTH_PROOF * (RADII - now[same, 0]), SAME)).all()
 
 
