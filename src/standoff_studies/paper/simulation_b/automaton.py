@@ -9,25 +9,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from standoff.bodies import shapes
-from standoff.motion import Pose
-from standoff.points import PointEvent, PointVisit
+from standoff.points import PointEvent
 from standoff.tracking import Feature
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import planar_features, short_name
-from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.held_features import CONTINUOUS, held_distance
-from standoff_studies.paper.simulation_b.run import (
-    CONVERGED,
-    DENSE,
-    FRAME,
-    GAIN,
-    PAST,
-    Run,
-    brute_modes,
-    late,
-    run,
-)
+from standoff_studies.paper.figure import Artwork
+from standoff_studies.paper.simulation_b.run import GAIN, Run, run
+from standoff_studies.paper.simulation_b.switching import statements
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,9 +36,6 @@ KINDS = {
 """Names, dashes and colours of the three kinds of switches."""
 FILLS = {True: "#F8E3CF", False: "#D3E8F6"}
 """Behind a visited mode inside and outside."""
-INSTANT, SLOPE = 1e-9, 1e-3
-"""To what an instant is located [s], where its switching function has a slope above that [1/s];
-else to the first over the slope."""
 
 
 class Switch(NamedTuple):
@@ -67,8 +52,10 @@ def figure_9() -> Artwork:
     simulation = run()
     return Artwork(
         caption=(
-            "Automaton of body and point. The inner modes are those of a point inside, where three "
-            "trackers run in parallel and the nearest curve wins; the outer ring is that of a "
+            f"Automaton of body and point, and the way of the printed system at K = {GAIN:g}/s "
+            "from a wrong start. The inner modes are those of a point inside, where three "
+            "trackers run in parallel and the medial axis tells which is the active one; the outer "
+            "ring is that of a "
             "point outside, on curves or anchored at vertices. Filled modes were visited, with the "
             "time spent there; coloured arrows were taken, with the switching instants [s]: dashed "
             "a jump over the medial axis, dotted through the boundary, solid over a Voronoi line."
@@ -79,7 +66,7 @@ def figure_9() -> Artwork:
         ),
         draw=lambda: _draw(simulation),
         tables={"stays": _stays(simulation), "switches": _switches(simulation)},
-        statements=_statements(simulation),
+        statements=statements(simulation),
     )
 
 
@@ -134,157 +121,6 @@ def _switches(simulation: Run) -> dict[str, ArrayLike]:
     }
 
 
-def _statements(simulation: Run) -> tuple[Statement, ...]:
-    paper = simulation.paper
-    counts = {kind: sum(event.kind == kind for event in paper.events) for kind in KINDS}
-    onto = sum(e.kind == "voronoi" and e.target.kind == "vertex" for e in paper.events)
-    back = counts["voronoi"] - onto
-    brute = brute_modes(simulation.body, paper.point[simulation.snapshots, :2])
-    settled = paper.time[simulation.snapshots] > CONVERGED
-    own = np.array([short_name(f) for f in paper.feature[simulation.snapshots]])
-    agree = int((own == np.array(brute))[settled].sum())
-    return (
-        Statement(
-            "Fig. 9",
-            "both kinds of switches occur: jumps between curves inside; curve to vertex and "
-            "vertex to curve outside",
-            f"{counts['medial']} jumps over the medial axis, {counts['crossing']} crossing of the "
-            f"boundary, {onto} switches from a curve to a vertex and {back} back",
-            counts["medial"] >= 6 and onto >= 3 and back >= 3,
-        ),
-        _curve_to_curve(simulation),
-        Statement(
-            "Fig. 9",
-            "-",
-            f"modes against a search over {simulation.body.n_edges * DENSE} points of the "
-            f"boundary: the same in {agree} of {int(settled.sum())} snapshots after the wrong "
-            "start",
-            agree == int(settled.sum()),
-        ),
-        _instants(simulation),
-        _growth(simulation),
-        *_starts(simulation),
-    )
-
-
-def _curve_to_curve(simulation: Run) -> Statement:
-    stays = [v for v in simulation.paper.modes() if not v.inside and v.feature.kind == "vertex"]
-    first: PointVisit = stays[0]
-    frames = [math.ceil(t / FRAME) for t in (first.start, first.end)]
-    (source,) = (e.source for e in simulation.paper.events if e.time == first.start)
-    (target,) = (e.target for e in simulation.paper.events if e.time == first.end)
-    return Statement(
-        "Fig. 9",
-        "curve to curve outside",
-        f"at {first.start:.4f} s: from {short_name(source)} by {short_name(first.feature)} "
-        f"to {short_name(target)} in {1e3 * (first.end - first.start):.2f} ms, within one frame",
-        frames[0] == frames[1] and source.kind == target.kind == "edge",
-        "At a sharp vertex two curves' regions do not touch: the point passes the vertex at "
-        f"{PAST} length, and its region within a step.",
-    )
-
-
-def _instants(simulation: Run) -> Statement:
-    exact = simulation.exact.events
-    near = [
-        abs(e.value) <= INSTANT * (abs(e.slope) if abs(e.slope) > SLOPE else 1.0) for e in exact
-    ]
-    own = late(simulation.paper)
-    off = [abs(a.time - b.time) for a, b in zip(own, late(simulation.exact), strict=True)]
-    return Statement(
-        "Fig. 9",
-        "switching instants",
-        f"{len(exact)} instants, each a root of its switching function, where it is "
-        f"{max(abs(event.value) for event in exact):.0e} and its slope at least "
-        f"{min(abs(event.slope) for event in exact):.2g} per s, so within {INSTANT:g} s; the "
-        f"paper's law at K = {GAIN:g} per s switches within {max(off):.1e} s of them",
-        all(near),
-        "Voronoi switches and the crossing do not depend on the parameters. A jump does where a "
-        "parameter has just left its bound: the law sets off before its curve is nearest.",
-    )
-
-
-def growths(simulation: Run) -> dict[str, list[float]]:
-    """By how much the feature after a switch is farther from the point than that before [length].
-
-    At the located instants. Over the medial axis that is the switching function itself; at the
-    boundary the feature stays.
-    """
-    events = simulation.exact.events
-    found = {"medial": [e.value for e in events if e.kind == "medial"], "voronoi": []}
-    for event in events:
-        if event.kind == "voronoi":
-            before, after = (
-                _held(simulation, event.time, feature, other)
-                for feature, other in (
-                    (event.source, event.target),
-                    (event.target, event.source),
-                )
-            )
-            found["voronoi"].append(after - before)
-    return found
-
-
-def _held(simulation: Run, time: float, feature: Feature, other: Feature) -> float:
-    """Distance to one feature alone, sought from the vertex that it shares with the other."""
-    parameters: tuple[float, ...] = ()
-    if feature.kind == "edge":
-        curve = simulation.body.edge_parts[feature.index].curve
-        parameters = (curve.first if other.index == feature.index else curve.last,)
-    poses = Pose.identity(), simulation.path.pose(time)
-    pair = simulation.body, shapes.point()
-    return held_distance(pair, poses, (feature, parameters), (("vertex", 0), ()))
-
-
-def _growth(simulation: Run) -> Statement:
-    found = growths(simulation)
-    grows = max(max(found["medial"]), max(found["voronoi"]))
-    return Statement(
-        "Section on the hybrid system",
-        "the distance between features never grows at a switch",
-        f"at the instants of {len(found['medial'])} jumps and {len(found['voronoi'])} Voronoi "
-        f"switches the feature after it is at most {grows:.0e} length farther away than the one "
-        "before it",
-        grows <= CONTINUOUS,
-    )
-
-
-def _starts(simulation: Run) -> tuple[Statement, Statement]:
-    """The claim on the switching times, outside, where it holds, and inside."""
-    claim = "for a body and a point the switching times do not depend on the continuous state"
-    runs = [late(recording) for recording in (simulation.paper, *simulation.others)]
-    same = all([e[1:4] for e in run] == [e[1:4] for e in runs[0]] for run in runs)
-    times = np.array([[event.time for event in run] for run in runs]) if same else np.empty((0, 0))
-    outside = np.array([event.kind == "voronoi" for event in runs[0]])
-    outer, inner = (
-        float(np.ptp(times[:, kind], axis=0).max()) if same else math.nan
-        for kind in (outside, ~outside)
-    )
-    counts = [
-        sum(event.kind == "medial" for event in recording.events)
-        for recording in (simulation.exact, simulation.paper, *simulation.others)
-    ]
-    return (
-        Statement(
-            "Section on the hybrid system",
-            claim,
-            f"outside, from {len(runs)} wrong starts: the same {int(outside.sum())} Voronoi "
-            f"switches, instants within {outer:.0e} s",
-            same and outer < INSTANT,
-        ),
-        Statement(
-            "Section on the hybrid system",
-            claim,
-            f"inside: {counts[0]} jumps over the medial axis from the right start, "
-            f"{', '.join(str(count) for count in counts[1:])} from the wrong ones; those after "
-            f"{CONVERGED} s, when all have converged, are the same within {inner:.0e} s",
-            len(set(counts)) == 1,
-            "A jump compares the distances that the trackers have, so while they converge it "
-            "depends on their parameters.",
-        ),
-    )
-
-
 def _places(simulation: Run) -> dict[Mode, tuple[float, float]]:
     """Where modes stand: two rings, turned as the body's features are."""
     ring = planar_features(simulation.body)
@@ -309,8 +145,7 @@ def _draw(simulation: Run) -> Figure:
             times[visit.inside, visit.feature] += visit.end - visit.start
         for mode, place in places.items():
             _draw_mode(axes, mode, place, times.get(mode))
-        first = simulation.paper.answers[0]
-        x, y = places[first.inside, first.feature]
+        x, y = places[bool(simulation.paper.inside[0]), simulation.paper.feature[0]]
         axes.text(x - 0.62, y, "start", ha="center", va="center", fontweight="bold", zorder=6)
         for name, dashes, colour in KINDS.values():
             axes.plot([], [], linestyle=dashes, color=colour, linewidth=2.0, label=name)

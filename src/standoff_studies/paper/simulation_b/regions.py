@@ -11,7 +11,7 @@ from standoff.bodies.voronoi import MedialBranch
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import draw_planar_body, name_features, short_name
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.simulation_b.run import Run, run
+from standoff_studies.paper.simulation_b.run import NO_LAW, Run, run
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
 
 if TYPE_CHECKING:
@@ -96,6 +96,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"{len(regions.external)} lines, two from each of {simulation.body.n_vertices} "
             "vertices, square to its two curves",
             len(regions.external) == 6,
+            by=NO_LAW,
         ),
         Statement(
             "Fig. 8",
@@ -104,6 +105,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"({x:.4f}, {y:.4f}), depth {junctions[0][1]:.4f} length; their ends there agree "
             f"within {spread:.0e}",
             len(regions.medial_axis) == 3 and corners == 3 and spread < SAME,
+            by=NO_LAW,
         ),
     )
 

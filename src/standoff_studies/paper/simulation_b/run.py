@@ -1,4 +1,4 @@
-"""Simulation B's motion, tracked by the paper's law from wrong starts and by the library's own."""
+"""Simulation B's motion, by the printed system from wrong starts and by the library's own law."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ from standoff.bodies import Body
 from standoff.bodies.voronoi import VoronoiRegions, voronoi_regions
 from standoff.motion import Spiral
 from standoff.points import PointEvent, PointRecording, PointTracker, record_point
-from standoff.tracking.laws import PaperLaw
+from standoff.tracking import Feature
 from standoff_studies.paper.bodies import planar_body
+from standoff_studies.paper.many_starts import Arrivals, distances, motion_along
+from standoff_studies.paper.simulation_b.printed import REST, Printed, PrintedRun
 
 Array = NDArray[np.float64]
 
@@ -42,6 +44,19 @@ OTHER_STARTS = ((0.05, 0.95, 0.95), (1.0, 0.0, 1.0))
 CONVERGED = 0.6
 """When the starts have converged [s]: e^(−K t) is 3e-7."""
 
+LAW = (
+    f"PaperLaw, gain={GAIN:g}, saturation zeroed, M as it is, wrong start; inside one tracker a "
+    "curve, switched on the medial axis, outside as_printed with Voronoi tests"
+)
+"""What the statements say they were measured with."""
+OWN_LAW = "the library's own law, certified"
+NO_LAW = "so.voronoi_regions, before the run: no law"
+
+TRIED = 41
+"""Starts that are tried on each curve, from end to end."""
+ARRIVED = 1e-3
+"""Greatest error of the distance to the curve at `CONVERGED` of one that arrives [length]."""
+
 DENSE = 2001
 """Points of each curve in the brute-force search."""
 
@@ -56,9 +71,11 @@ class Run(NamedTuple):
     regions : VoronoiRegions
     path : Spiral
         Of the point.
-    paper : PointRecording
-        By the paper's law (Heun, `GAIN`, switching as printed) from `WRONG_START`.
-    others : tuple of PointRecording
+    printed : Printed
+        What runs the printed system from a start.
+    paper : PrintedRun
+        By the printed system at the low `GAIN` from `WRONG_START`. All figures show it.
+    others : tuple of PrintedRun
         The same from `OTHER_STARTS`.
     exact : PointRecording
         By the library's own law, certified.
@@ -69,8 +86,9 @@ class Run(NamedTuple):
     body: Body
     regions: VoronoiRegions
     path: Spiral
-    paper: PointRecording
-    others: tuple[PointRecording, ...]
+    printed: Printed
+    paper: PrintedRun
+    others: tuple[PrintedRun, ...]
     exact: PointRecording
     snapshots: NDArray[np.int64]
 
@@ -89,28 +107,44 @@ def run() -> Run:
     body = planar_body()
     path, regions = motion(body), voronoi_regions(body)
     times = np.asarray(FRAME * np.arange(round(DURATION / FRAME) + 1), dtype=np.float64)
-    paper = from_wrong_start(body, path, times, WRONG_START)
-    others = [from_wrong_start(body, path, times, start, math.inf) for start in OTHER_STARTS]
+    printed = Printed(body, regions, path, times, GAIN)
+    paper, *others = (printed.run(start) for start in (WRONG_START, *OTHER_STARTS))
     exact = record_point(PointTracker(body, FRAME), path, times)
     snapshots = np.arange(SNAPSHOTS) * round(DURATION / FRAME / SNAPSHOTS)
-    return Run(body, regions, path, paper, tuple(others), exact, snapshots)
+    return Run(body, regions, path, printed, paper, tuple(others), exact, snapshots)
 
 
-def from_wrong_start(
-    body: Body, path: Spiral, times: Array, start: tuple[float, ...], tolerance: float = 1e-10
-) -> PointRecording:
-    """Track the point by the paper's law from given parameters; without a finite tolerance the
-    answers are not certified, which takes less time."""
-    tracker = PointTracker(
-        body, FRAME, law=PaperLaw(gain=GAIN, switching="voronoi", tolerance=tolerance)
-    )
-    x, v = path.pose(float(times[0])).translation, path.twist(float(times[0])).v
-    return record_point(tracker, path, times, tracker.start_from(x, start, v))
+@cache
+def arrivals() -> Arrivals:
+    """Try starts all over each curve: each of the parallel trackers is alone on its curve."""
+    simulation = run()
+    printed, k, found = simulation.printed, round(CONVERGED / FRAME), 0
+    motion = motion_along(REST, simulation.path, printed.times[: k + 1])
+    for curve in range(simulation.body.n_edges):
+        due = simulation.exact.curve_distance[k, curve]
+        for u in np.linspace(0.0, 1.0, TRIED).tolist():
+            state = printed.begun(printed.parallel, Feature("edge", curve), u, 0)
+            found += bool(abs(distances(printed.parallel, state, motion)[-1] - due) < ARRIVED)
+    return Arrivals(found, TRIED * simulation.body.n_edges)
 
 
-def late(recording: PointRecording) -> list[PointEvent]:
+def late(recording: PointRecording | PrintedRun) -> list[PointEvent]:
     """Return the switches after the starts have converged."""
     return [event for event in recording.events if event.time > CONVERGED]
+
+
+def off_instants(simulation: Run) -> dict[str, float]:
+    """Return how far switches are from those of the library's own law, by their kind [s].
+
+    Infinite where the features differ.
+    """
+    ours, due = simulation.paper.events, simulation.exact.events
+    if [event[1:4] for event in ours] != [event[1:4] for event in due]:
+        return dict.fromkeys(("medial", "crossing", "voronoi"), math.inf)
+    off: dict[str, float] = {}
+    for one, other in zip(ours, due, strict=True):
+        off[one.kind] = max(off.get(one.kind, 0.0), abs(one.time - other.time))
+    return off
 
 
 def brute_modes(body: Body, points: Array) -> list[str]:
@@ -132,15 +166,18 @@ def brute_modes(body: Body, points: Array) -> list[str]:
     return found
 
 
-def psi(recording: PointRecording, curve: int) -> Array:
+def psi(recording: PrintedRun, curve: int) -> Array:
     """Return the projection error of one curve's tracker by frame [length²], shape (n,)."""
     path = recording.body.edge_parts[curve].curve
-    speed = [np.linalg.norm(path.jet(t)[1]) for t in recording.curve_parameter[:, curve].tolist()]
-    return np.asarray(recording.curve_residual[:, curve] * np.array(speed))
+    found = np.full(len(recording), np.nan)
+    for k in np.flatnonzero(np.isfinite(recording.curve_parameter[:, curve])).tolist():
+        c, tangent, _ = path.jet(float(recording.curve_parameter[k, curve]))
+        found[k] = tangent @ (c - recording.point[k])
+    return found
 
 
-def decay(recording: PointRecording, curve: int, first: float, last: float) -> float:
+def decay(recording: PrintedRun, curve: int, first: float, last: float) -> float:
     """Return the rate of decay of a curve's projection error between two times [1/s]."""
-    error = psi(recording, curve)
+    error = np.abs(psi(recording, curve))
     ends = [int(np.searchsorted(recording.time, t - 0.5 * FRAME)) for t in (first, last)]
     return float(np.log(error[ends[0]] / error[ends[1]]) / (last - first))

@@ -19,6 +19,8 @@ from standoff_studies.paper.simulation_b.run import (
     CONVERGED,
     FRAME,
     GAIN,
+    LAW,
+    OWN_LAW,
     SNAPSHOTS,
     WRONG_START,
     Run,
@@ -35,8 +37,11 @@ Array = NDArray[np.float64]
 
 EXTENT = 1.85
 """Half width of the view [length]."""
-STARTING = 5
-"""Snapshots in which the wrong start can be seen: after 0.2 s it has fallen to e^-5."""
+OFF = 0.01
+"""Snapshots whose witness point is off by more [length], before `CONVERGED`, still come from the
+wrong start: on paper it is half a millimetre."""
+SWEEP = ((0.62, 0.9), (1.9, 2.2), (3.42, 3.72))
+"""Times between which arrows show which way the point goes [s]."""
 WINDOW = (0.02, 0.2)
 """Times between which the decay is measured [s]."""
 SECONDS = 0.08
@@ -55,9 +60,12 @@ def figure_10() -> Artwork:
     simulation = run()
     return Artwork(
         caption=(
-            "A hundred snapshots, one every 40 ms: the point (dots) and its witness line. The "
-            "first ones (thick, black) still come from the deliberately wrong start; then the "
-            "lines are square to the curve. Inside (red, dashed) they jump over the medial axis; "
+            "A hundred snapshots, one every 40 ms: the point (dots) and its witness line, by the "
+            f"printed system at K = {GAIN:g}/s; thin and grey, the library's own law. The "
+            f"first ones (thick, black, off by more than {OFF:g}) still come from the "
+            "deliberately wrong start; then the "
+            "lines are square to the curve. Arrows show which way the point goes. "
+            "Inside (vermilion, dashed) they jump over the medial axis; "
             "outside they end on a curve (blue), or are anchored at a vertex (green, "
             "dash-dotted). The animation also shows, inside, the two curves that are not nearest."
         ),
@@ -82,11 +90,17 @@ def figure_10() -> Artwork:
 def kind_of(simulation: Run, snapshot: int) -> str:
     """Return which of `LOOKS` a snapshot's witness line has."""
     frame = int(simulation.snapshots[snapshot])
-    if snapshot < STARTING:
+    if paper_error(simulation, frame) > OFF and simulation.paper.time[frame] < CONVERGED:
         return "start"
     if simulation.paper.inside[frame]:
         return "inside"
     return "vertex" if simulation.paper.feature[frame].kind == "vertex" else "curve"
+
+
+def paper_error(simulation: Run, frame: int) -> float:
+    """Return how far the printed system's witness point is off in one frame [length]."""
+    own, exact = simulation.paper.witness[frame], simulation.exact.witness[frame]
+    return float(np.linalg.norm(own - exact))
 
 
 def _table(simulation: Run) -> dict[str, ArrayLike]:
@@ -126,6 +140,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"curves' errors fall at {min(rates):.2f} to {max(rates):.2f} per s with "
             f"K = {GAIN:g} per s",
             max(abs(rate - GAIN) for rate in rates) < 0.02 * GAIN,
+            by=LAW,
         ),
         Statement(
             "Fig. 10",
@@ -136,6 +151,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             None,
             "The greatest errors come after a parameter has left its bound, from which the law "
             "sets off early, by its rate over K.",
+            LAW,
         ),
         Statement(
             "Fig. 10",
@@ -144,13 +160,15 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"it changes by at most {jump:.2e} length, the point's way by {speed:.2e}; the normal "
             f"turns by {turn:.1e} rad in the crossing's frame",
             bool(jump <= speed * (1.0 + 1e-12)),
+            by=OWN_LAW,
         ),
         Statement(
             "Fig. 10",
             "-",
-            f"own law: certified in {certified:.0%} of {len(exact)} frames, bounds at most "
+            f"certified in {certified:.0%} of {len(exact)} frames, bounds at most "
             f"{np.max(exact.upper_bound - exact.lower_bound):.1e} length apart",
             bool(certified == 1.0),
+            by=OWN_LAW,
         ),
     )
 
@@ -164,14 +182,29 @@ def _draw(simulation: Run) -> Figure:
         paper = simulation.paper
         for k, frame in enumerate(simulation.snapshots.tolist()):
             _, colour, dashes, width = LOOKS[kind_of(simulation, k)]
+            exact = np.array([paper.point[frame], simulation.exact.witness[frame]])
+            axes.plot(exact[:, 0], exact[:, 1], color=style.QUIET, linewidth=0.6, zorder=1)
             ends = np.array([paper.point[frame], paper.witness[frame]])
             axes.plot(ends[:, 0], ends[:, 1], color=colour, linestyle=dashes, linewidth=width)
             axes.plot(*ends[0, :2], "o", color=colour, markersize=2.8, zorder=5)
         for name, colour, dashes, width in LOOKS.values():
             axes.plot([], [], color=colour, linestyle=dashes, linewidth=width + 0.4, label=name)
+        axes.plot([], [], color=style.QUIET, linewidth=0.8, label="library's own law")
+        for span in SWEEP:
+            _draw_sweep(axes, simulation, *span)
         _frame_view(axes)
         figure.legend(loc="outside lower center", ncols=2, frameon=False, handlelength=3.5)
     return figure
+
+
+def _draw_sweep(axes: Axes, simulation: Run, first: float, last: float) -> None:
+    """An arrow beside a part of the point's way, just outside it."""
+    low, high = (int(np.searchsorted(simulation.paper.time, t)) for t in (first, last))
+    way = 1.0 * simulation.paper.point[low:high, :2]
+    way *= 1.0 + 0.07 / np.linalg.norm(way, axis=1)[:, None]
+    axes.plot(way[:, 0], way[:, 1], color=style.BLACK, linewidth=1.3, zorder=6)
+    head = {"arrowstyle": "-|>", "color": style.BLACK, "mutation_scale": 13.0, "shrinkA": 0.0}
+    axes.annotate("", tuple(way[-1]), tuple(way[-12]), arrowprops=head, zorder=6)
 
 
 def _frame_view(axes: Axes) -> None:
@@ -192,9 +225,8 @@ def _draw_moment(figure: Figure, simulation: Run, k: int) -> None:
     draw_planar_body(axes, simulation.body, colour=style.BLUE, linewidth=1.4)
     draw_feature(axes, simulation.body, paper.feature[frame], colour=style.BLUE)
     if paper.inside[frame]:
-        for minimum in paper.answers[frame].minima:
-            curve = simulation.body.edge_parts[minimum.feature.index].curve
-            ends = np.array([paper.point[frame], curve.point(minimum.parameter)])
+        for part, u in zip(simulation.body.edge_parts, paper.curve_parameter[frame], strict=True):
+            ends = np.array([paper.point[frame], part.curve.point(float(u))])
             axes.plot(ends[:, 0], ends[:, 1], "--", color=style.RED, linewidth=1.1)
     draw_witness_line(axes, paper.point[frame], paper.witness[frame], linewidth=2.2)
     _frame_view(axes)
