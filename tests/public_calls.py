@@ -230,6 +230,8 @@ MECHANISM = {
 }
 ARM = {**MECHANISM, "stiffness": 100.0, "rotational_stiffness": 1.0}
 WEIGHED = {"mass": 1.0, "centre": np.zeros(3), "inertia": np.eye(3)}
+HEAVY = simulation.RigidBody.free(SPHERE, mass=1.0, pose=AWAY)
+
 SIMULATION: dict[str, dict[str, Any]] = {
     "DeviceLimits": {"max_force": 5.0, "max_torque": 0.1, "workspace": 0.2},
     "Disturbances": {"script": {3: "nan"}, "drop_out": 0.1, "malformed": 0.1, "seed": 1},
@@ -276,6 +278,39 @@ SIMULATION: dict[str, dict[str, Any]] = {
         "max_age": 0.01,
         "sampling": simulation.Sampling(**SAMPLING),
         "controller": None,
+    },
+    "HuntCrossley": {
+        "stiffness": 1e4,
+        "damping": 0.1,
+        "friction": 0.3,
+        "slip_speed": 0.1,
+        "depth": 1e-3,
+    },
+    "RigidBody.free": {
+        "body": SPHERE,
+        "density": None,
+        "mass": 1.0,
+        "inertia": np.eye(3),
+        "centre": [0.0, 0.0, 0.0],
+        "pose": AWAY,
+        "twist": so.Twist.zero(),
+    },
+    "RigidBody.fixed": {"body": BOX, "pose": HOME},
+    "RigidBody.driven": {"body": BOX, "path": motion.Fixed(HOME)},
+    "System": {
+        "bodies": [simulation.RigidBody.fixed(BOX), HEAVY],
+        "contact": simulation.HuntCrossley(stiffness=1e3),
+        "pairs": [(0, 1)],
+        "gravity": [0.0, 0.0, -9.81],
+    },
+    "Operator": {
+        "system": simulation.System(
+            [simulation.RigidBody.fixed(BOX), HEAVY], simulation.HuntCrossley(stiffness=1e3)
+        ),
+        "dt": 1e-3,
+        "method": "rk4",
+        "tracker": "inside",
+        "gain": 100.0,
     },
     "Wrench": {"force": AXES, "torque": AXES},
     "largest_stiffness": {

@@ -36,6 +36,7 @@ FAST = (
     "scene/test_scene_motions.py",
     "scene/test_scene_refusals.py",
     "simulation/test_simulated_device.py",
+    "simulation/test_system_input.py",
     "soak/test_checks.py",
     "tracking/test_bad_input.py",
     "tracking/test_coincident.py",

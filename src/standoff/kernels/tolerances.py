@@ -218,3 +218,7 @@ WOUND_UP = 10.0
 # A frame whose parameters change by less, relative to patches of [0, 1], has gone out to a boundary
 # and back: an edge's parameter and its pcurve give the point back but for a few roundings.
 STANDSTILL = 1e-12
+
+# Radians between level and tilted, where a flat contact of simulated bodies ends: far above the
+# tilt of bodies at rest on each other (depth over size), far below that of one that has tipped.
+FLAT_TILT = 0.02

@@ -1,10 +1,12 @@
-"""What bodies weigh; the coupler between a tool and a hand, and the devices it is felt by."""
+"""Rigid bodies that move and touch, and what they weigh; the coupler between a tool and a hand, and
+the devices it is felt by."""
 
 from typing import TYPE_CHECKING
 
 from standoff.on_demand import on_demand
 
 if TYPE_CHECKING:
+    from standoff.simulation.contact import HuntCrossley
     from standoff.simulation.coupler import VirtualCoupler
     from standoff.simulation.coupler_state import CouplerCounts, CouplerState
     from standoff.simulation.device import Device, DeviceLimits, DeviceReading, Fault
@@ -12,6 +14,7 @@ if TYPE_CHECKING:
     from standoff.simulation.encoder import Encoder
     from standoff.simulation.human_arm import HumanArm
     from standoff.simulation.mass_properties import MassErrors, MassProperties, mass_properties
+    from standoff.simulation.operator import Operator
     from standoff.simulation.passivity import (
         Sampling,
         largest_stiffness,
@@ -19,12 +22,17 @@ if TYPE_CHECKING:
         required_damping_of,
     )
     from standoff.simulation.passivity_observer import PassivityController, PortEnergy
+    from standoff.simulation.rigid_body import RigidBody
     from standoff.simulation.simulated_device import Mechanism, ScriptedHand, SimulatedDevice
+    from standoff.simulation.system import System
+    from standoff.simulation.system_run import SystemRun
+    from standoff.simulation.system_state import Energy, SystemState
     from standoff.simulation.wrench import Wrench
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
         {
+            "standoff.simulation.contact": ("HuntCrossley",),
             "standoff.simulation.coupler": ("VirtualCoupler",),
             "standoff.simulation.coupler_state": ("CouplerCounts", "CouplerState"),
             "standoff.simulation.device": (
@@ -41,6 +49,7 @@ else:
                 "MassProperties",
                 "mass_properties",
             ),
+            "standoff.simulation.operator": ("Operator",),
             "standoff.simulation.passivity": (
                 "Sampling",
                 "largest_stiffness",
@@ -48,11 +57,15 @@ else:
                 "required_damping_of",
             ),
             "standoff.simulation.passivity_observer": ("PassivityController", "PortEnergy"),
+            "standoff.simulation.rigid_body": ("RigidBody",),
             "standoff.simulation.simulated_device": (
                 "Mechanism",
                 "ScriptedHand",
                 "SimulatedDevice",
             ),
+            "standoff.simulation.system": ("System",),
+            "standoff.simulation.system_run": ("SystemRun",),
+            "standoff.simulation.system_state": ("Energy", "SystemState"),
             "standoff.simulation.wrench": ("Wrench",),
         },
     )
@@ -65,16 +78,23 @@ __all__ = [
     "DeviceReading",
     "Disturbances",
     "Encoder",
+    "Energy",
     "Fault",
     "HumanArm",
+    "HuntCrossley",
     "MassErrors",
     "MassProperties",
     "Mechanism",
+    "Operator",
     "PassivityController",
     "PortEnergy",
+    "RigidBody",
     "Sampling",
     "ScriptedHand",
     "SimulatedDevice",
+    "System",
+    "SystemRun",
+    "SystemState",
     "VirtualCoupler",
     "Wrench",
     "largest_stiffness",

@@ -31,6 +31,7 @@ WORK = {
     "runs": Work("runs of many frames", 1, 2),
     "paper": Work("frames of the paper's law", 8, 25),
     "paper runs": Work("runs of the paper's law", 1, 2),
+    "simulation": Work("simulations of bodies", 12, 45),
     "study": Work("the paper's studies", 2, 3),
 }
 

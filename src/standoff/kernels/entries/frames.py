@@ -27,7 +27,7 @@ from standoff.kernels.pair.events import (
     exhausted,
     tidy_events,
 )
-from standoff.kernels.paper.frame import track_paper
+from standoff.kernels.paper.frame import track_carried, track_paper
 from standoff.kernels.paper.integrators import feedforward_now
 from standoff.kernels.paper.law import begun
 from standoff.kernels.state.arrays import (
@@ -133,8 +133,11 @@ def start_frame(query_from, pair, inputs, options, state, given, out, work):
 
 
 @kernel
-def step_frame(track, pair, inputs, h, options, state, out, work):
-    """A frame of the law that is given: the state is changed in place, the answer written."""
+def step_frame(track, pair, inputs, steps, options, state, out, work):
+    """A frame of the law that is given: the state is changed in place, the answer written. `steps`
+    are the time h, and what `track` goes by: h, or a change of the parameters over it.
+    """
+    h, step = steps
     before = read_state(state)
     for k in range(N_COUNTS):
         work.counts[k] = 0
@@ -142,7 +145,7 @@ def step_frame(track, pair, inputs, h, options, state, out, work):
     pose = relative_pose(inputs.pose_a, inputs.pose_b)
     given = inputs.has_twist
     motion = twisted(inputs, pose) if given else mean_motion(before.motion.pose, pose, h)
-    shown, integrated = track(pair, motion, before, options, h, work)
+    shown, integrated = track(pair, motion, before, options, step, work)
     found = shown.found
     status = judge(pair, pose.p, found, options.paper, options.tolerance, exhausted(work))
     rates = answer_frame(pair, inputs, motion, shown, options.solve, status, out, work)
@@ -158,10 +161,16 @@ def step_frame(track, pair, inputs, h, options, state, out, work):
 @shared
 def frame_predicted(pair, inputs, h, options, state, out, work):
     """A frame of the predictor-corrector, for single steps and for runs."""
-    step_frame(track_predicted, pair, inputs, h, options, state, out, work)
+    step_frame(track_predicted, pair, inputs, (h, h), options, state, out, work)
 
 
 @shared
 def frame_paper(pair, inputs, h, options, state, out, work):
     """A frame of the paper's law, for single steps and for runs."""
-    step_frame(track_paper, pair, inputs, h, options, state, out, work)
+    step_frame(track_paper, pair, inputs, (h, h), options, state, out, work)
+
+
+@shared
+def frame_carried(pair, inputs, h, change, options, state, out, work):
+    """A frame whose parameters were integrated together with the bodies' motion."""
+    step_frame(track_carried, pair, inputs, (h, change), options, state, out, work)

@@ -8,11 +8,12 @@ from pathlib import Path
 
 from standoff.kernels.compiler import cache
 from standoff.kernels.compiler.entry import Entry
-from standoff.kernels.entries import queries, tracker
+from standoff.kernels.entries import queries, simulation, tracker
 
 MODULES = (
     "standoff.kernels.entries.queries",
     "standoff.kernels.entries.tracker",
+    "standoff.kernels.entries.simulation",
     "standoff.kernels.pair.normals_system",
 )
 """Where entries stand."""
@@ -57,6 +58,14 @@ def prepare(paper: bool, planar: bool, runs: bool = False) -> None:
     for name in SCIPY:
         importlib.import_module(name)
     ready_for.add((paper, planar, runs))
+
+
+def prepare_simulation() -> None:
+    """Have ready what a simulated system runs by."""
+    if isinstance(simulation.run_system, Entry):
+        simulation.run_system.prepare()
+    for name in SCIPY:
+        importlib.import_module(name)
 
 
 def every_entry() -> Iterator[Entry]:

@@ -10,7 +10,7 @@ from standoff.kernels.frame.restart import cut_off, restart, start_due
 from standoff.kernels.pair.certified import CERTIFIED, PENETRATING, UNCERTIFIED, weigh_jets
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import exhausted
-from standoff.kernels.paper.law import begun, integrate_and_switch
+from standoff.kernels.paper.law import begun, carry_and_switch, integrate_and_switch
 from standoff.kernels.state.arrays import SWITCH_NONE
 from standoff.kernels.state.tracked import (
     ANSWERED,
@@ -30,10 +30,10 @@ def left_alone(options):
 
 
 @kernel
-def follow_paper(pair, motion, before, options, h, work):
+def follow_paper(advance, pair, motion, before, options, step, work):
     """(found, apart, integrated) of one step of the law."""
     pose = motion.pose
-    place, integrated = integrate_and_switch(pair, motion, before, options, h, work)
+    place, integrated = advance(pair, motion, before, options, step, work)
     jets = pair_jets(pair, pose, place)
     outcome, d, lower, normal = weigh_jets(pair, pose, place, jets, ORIGIN, options.tolerance)
     # while it still converges from a wrong start the normal tells nothing
@@ -43,12 +43,12 @@ def follow_paper(pair, motion, before, options, h, work):
 
 
 @kernel
-def outside(pair, motion, before, options, h, work):
+def outside(advance, pair, motion, before, options, step, work):
     """(what next, doubted, tracked): one step of the law, outside contact. Doubted where the law
     lags behind the motion, and the bodies may have met."""
     pose = motion.pose
     alone = left_alone(options)
-    found, apart, integrated = follow_paper(pair, motion, before, options, h, work)
+    found, apart, integrated = follow_paper(advance, pair, motion, before, options, step, work)
     near = before.distance < SHIFTED_GAP * contact_scale(pair)
     lags = apart and found.outcome == UNCERTIFIED
     # behind the motion, or no longer apart?
@@ -74,6 +74,18 @@ def anew(pair, pose, tracked, gain):
 @kernel
 def track_paper(pair, motion, before, options, h, work):
     """`track_predicted`, of the paper's law."""
+    return track_by(integrate_and_switch, pair, motion, before, options, h, work)
+
+
+@kernel
+def track_carried(pair, motion, before, options, change, work):
+    """`track_paper`, of a change that was integrated together with the bodies' motion."""
+    return track_by(carry_and_switch, pair, motion, before, options, change, work)
+
+
+@kernel
+def track_by(advance, pair, motion, before, options, step, work):
+    """A frame of the paper's law, whose parameters `advance` takes on by a step."""
     pose = motion.pose
     due, first = start_due(before, work)
     alone = left_alone(options)
@@ -85,7 +97,9 @@ def track_paper(pair, motion, before, options, h, work):
             Found(UNCERTIFIED, before.place, 0.0, 0.0, 0.0, before.normal), False, kept
         )
         if not inside:
-            then, doubted, outside_contact = outside(pair, motion, before, options, h, work)
+            then, doubted, outside_contact = outside(
+                advance, pair, motion, before, options, step, work
+            )
             kept = outside_contact.integrated
             if then == ANSWERED:
                 return outside_contact

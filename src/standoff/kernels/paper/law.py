@@ -206,7 +206,14 @@ def released(pair, pose, before, place, gap, work):
 @shared
 def integrate_and_switch(pair, motion, before, options, h, work):
     """(place, integrated): w = -M⁻¹(v(Psi) + b) over one frame, then a switch."""
-    change = drop_unbounded(integrate(pair, before, motion, h, options, work), work)
+    change = integrate(pair, before, motion, h, options, work)
+    return carry_and_switch(pair, motion, before, options, change, work)
+
+
+@kernel
+def carry_and_switch(pair, motion, before, options, change, work):
+    """(place, integrated): a change that was integrated, then a switch."""
+    change = drop_unbounded(change, work)
     work.counts[CORRECTIONS] += 1
     place, pose = before.place, motion.pose
     if options.saturation == SATURATE_ZERO:

@@ -1,0 +1,146 @@
+"""Where everything of a simulated system stands: its flat arrays, its state and its rates.
+
+A free body is kept by its rotation, its centre of mass, that centre's velocity and its angular
+momentum about it, all in world axes. Momentum, not angular velocity, so that without a torque
+nothing of it is integrated at all. A fixed or driven body has its origin in place of the centre
+and its angular velocity in place of the momentum.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.state.arrays import N_OUT, N_STATE
+
+# Kinds of bodies.
+FREE, FIXED, DRIVEN = range(3)
+
+# Integers of a system: header, a row a body, a row a pair, then the flat parts of the bodies.
+I_BODIES, I_PAIRS, I_METHOD, I_INSIDE = range(4)
+INT_HEADER = 4
+# A body: its kind, where its packed arrays begin among all bodies', its column in the table of
+# driven motions, and where its flat parts begin in these integers.
+B_KIND, B_INTS, B_REALS, B_DRIVEN, B_FLATS = range(5)
+INT_BODY = 5
+INT_PAIR = 2  # the numbers of its two bodies
+
+# Numbers of a system: gravity (3), the step, a row a body, a row a pair, then the flat parts.
+GRAVITY, STEP = 0, 3
+REAL_HEADER = 4
+B_MASS, B_CENTRE, B_INERTIA, B_INVERSE = 0, 1, 4, 13  # centre and inertia in the body's axes
+REAL_BODY = 22
+P_STIFFNESS, P_DAMPING, P_FRICTION, P_SLIP = range(4)
+REAL_PAIR = 4
+
+# The state: time, energy lost in contacts, energy that driven bodies gave, the greatest depth so
+# far, ticks with a pair that was not certified; a row a body; a row a pair.
+S_TIME, S_LOST, S_GIVEN, S_DEEPEST, S_UNCERTIFIED = range(5)
+STATE_HEADER = 8
+ROTATION, CENTRE, VELOCITY, SPIN = 0, 9, 12, 15
+N_BODY = 18
+N_PAIR = N_STATE + N_OUT
+
+# Rates of the state: of the two energies; a body's turn (body axes), velocity, acceleration and
+# torque; a pair's four parameters.
+R_LOST, R_GIVEN = 0, 1
+RATE_HEADER = 2
+TURN, SPEED, PUSH, TORQUE = 0, 3, 6, 9
+RATE_BODY = 12
+RATE_PAIR = 4
+
+# What a pair's contact comes to, for records: force on B (world), energy stored, depth, spots.
+T_FORCE, T_STORED, T_DEPTH, T_SPOTS = 0, 3, 4, 5
+N_TOUCH = 6
+# A body's loads: force, and torque about its centre, world.
+N_LOAD = 6
+
+# A row of the table of driven motions: a pose (12) and a twist (6).
+N_DRIVEN = 18
+
+
+class System(NamedTuple):
+    """A packed system: arrays where parts of them are pointed to, else pointers."""
+
+    layout: Any  # pointer
+    numbers: Any  # pointer
+    ints: Any  # array: of all bodies, one behind the other
+    reals: Any  # array
+    options: Any  # of the tracker, as `Options`
+
+
+class Scratch(NamedTuple):
+    """What one tick writes over: pointers, but for the two arrays."""
+
+    stage: Any  # array: rows of the bodies at a stage, as a state has them
+    rates: Any  # of one stage
+    total: Any  # of the whole step
+    first: Any  # of its first stage
+    loads: Any  # N_LOAD numbers a body
+    motion: Any  # array: N_MOTION numbers
+    touch: Any  # N_TOUCH numbers a pair
+    spots: Any  # see ``flat_contact``
+
+
+@kernel
+def n_bodies(system):
+    return system.layout[I_BODIES]
+
+
+@kernel
+def n_pairs(system):
+    return system.layout[I_PAIRS]
+
+
+@kernel
+def body_ints(body):
+    """Where a body's row stands among the integers."""
+    return INT_HEADER + INT_BODY * body
+
+
+@kernel
+def kind_of(system, body):
+    return system.layout[body_ints(body) + B_KIND]
+
+
+@kernel
+def bodies_of(system, pair):
+    """The numbers of a pair's two bodies."""
+    o = INT_HEADER + INT_BODY * n_bodies(system) + INT_PAIR * pair
+    return system.layout[o], system.layout[o + 1]
+
+
+@kernel
+def body_numbers(body):
+    return REAL_HEADER + REAL_BODY * body
+
+
+@kernel
+def pair_numbers(system, pair):
+    return REAL_HEADER + REAL_BODY * n_bodies(system) + REAL_PAIR * pair
+
+
+@kernel
+def body_row(body):
+    """Where a body's row stands in the state."""
+    return STATE_HEADER + N_BODY * body
+
+
+@kernel
+def pair_row(system, pair):
+    return STATE_HEADER + N_BODY * n_bodies(system) + N_PAIR * pair
+
+
+@kernel
+def body_rates(body):
+    return RATE_HEADER + RATE_BODY * body
+
+
+@kernel
+def pair_rates(system, pair):
+    return RATE_HEADER + RATE_BODY * n_bodies(system) + RATE_PAIR * pair
+
+
+@kernel
+def n_rates(system):
+    return pair_rates(system, n_pairs(system))

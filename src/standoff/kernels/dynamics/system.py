@@ -1,0 +1,133 @@
+"""The right-hand side of the whole operator: bodies, contacts and tracker parameters together."""
+
+from standoff.kernels.algebra.rigid import read_vector, relative_pose, relative_twist
+from standoff.kernels.algebra.vectors import scale
+from standoff.kernels.compiler.decorators import kernel, pointer
+from standoff.kernels.dynamics.arrays import (
+    B_DRIVEN,
+    FREE,
+    I_INSIDE,
+    N_BODY,
+    N_DRIVEN,
+    N_LOAD,
+    R_GIVEN,
+    R_LOST,
+    TURN,
+    body_ints,
+    body_rates,
+    body_row,
+    kind_of,
+    n_bodies,
+    n_pairs,
+    pair_rates,
+    pair_row,
+)
+from standoff.kernels.dynamics.forces import Witness, touch_pair
+from standoff.kernels.dynamics.inside_law import near_contact, normal_at, place_ahead, stage_rates
+from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
+from standoff.kernels.dynamics.rigid_body import power, write_rates
+from standoff.kernels.state.arrays import POSE_A, POSE_B, TWIST_A, TWIST_B
+from standoff.kernels.state.state import read_four, read_state
+from standoff.kernels.values import Motion
+
+
+@kernel
+def clear_loads(system, scratch):
+    for k in range(N_LOAD * n_bodies(system)):
+        scratch.loads[k] = 0.0
+
+
+@kernel
+def motion_of(scratch):
+    """B's motion seen from A, of the row of numbers in the scratch."""
+    m = scratch.motion
+    a, b = pointer(m, POSE_A), pointer(m, POSE_B)
+    v, w = relative_twist(a, b, pointer(m, TWIST_A), pointer(m, TWIST_B))
+    return Motion(relative_pose(a, b), v, w)
+
+
+@kernel
+def touch_tracked(system, pair, state, rows, first, scratch):
+    """A pair's contact at the tracker's own answer, at the start of a tick; the power it loses."""
+    before = read_state(pointer(state, pair_row(system, pair)))
+    write_motion(system, pair, rows, first, scratch.motion)
+    witness = Witness(before.place, motion_of(scratch).pose, before.normal)
+    packed = packed_pair(system, pair)
+    return touch_pair(system, packed, pair, witness, rows, first, scratch.motion, scratch)
+
+
+@kernel
+def touch_ahead(system, pair, state, s, rates, work, scratch):
+    """A pair's contact at a stage, a time s along its rates; its new rates are written in their
+    place. Returns the power that it loses.
+    """
+    before = read_state(pointer(state, pair_row(system, pair)))
+    write_motion(system, pair, scratch.stage, body_row(0), scratch.motion)
+    motion = motion_of(scratch)
+    packed = packed_pair(system, pair)
+    o = pair_rates(system, pair)
+    place = place_ahead(packed, before.place, s, read_four(rates, o))
+    near = near_contact(packed, before)
+    n = before.normal
+    if near:
+        n = normal_at(packed, motion.pose, place, n)[0]
+    w = stage_rates(packed, motion, place, n, near, system.options, before.integrated, work)
+    for k in range(4):
+        rates[o + k] = w[k]
+    witness = Witness(place, motion.pose, n)
+    rows = scratch.stage
+    return touch_pair(system, packed, pair, witness, rows, body_row(0), scratch.motion, scratch)
+
+
+@kernel
+def renew_rates(system, pair, state, rates, work, scratch):
+    """A pair's rates at the start, but with the twists of the bodies in the scratch."""
+    before = read_state(pointer(state, pair_row(system, pair)))
+    write_motion(system, pair, scratch.stage, body_row(0), scratch.motion)
+    renewed = motion_of(scratch)
+    motion = Motion(before.motion.pose, renewed.v, renewed.w)
+    packed = packed_pair(system, pair)
+    near, n, kept = near_contact(packed, before), before.normal, before.integrated
+    w = stage_rates(packed, motion, before.place, n, near, system.options, kept, work)
+    for k in range(4):
+        rates[pair_rates(system, pair) + k] = w[k]
+
+
+@kernel
+def bodies_rates(system, s, lost, rates, scratch):
+    """Rates of bodies and energies at a stage, a time s from the start, of the loads."""
+    given = 0.0
+    for body in range(n_bodies(system)):
+        r, o = body_rates(body), body_row(body)
+        turned = scale(s, read_vector(rates, r + TURN))
+        write_rates(system, body, scratch.stage, o, turned, scratch.loads, rates, r)
+        if kind_of(system, body) != FREE:
+            given -= power(body, scratch.stage, o, scratch.loads)
+    rates[R_LOST], rates[R_GIVEN] = lost, given
+
+
+@kernel
+def stage_of(system, state, s, held, rates, work, scratch):
+    """All rates at a stage, whose bodies stand in the scratch, a time s after the start. `held`:
+    the loads stay those of the start, as a tracker beside the operator leaves them.
+    """
+    lost = rates[R_LOST]
+    if not held:
+        clear_loads(system, scratch)
+        lost = 0.0
+        for pair in range(n_pairs(system)):
+            if system.layout[I_INSIDE]:
+                lost += touch_ahead(system, pair, state, s, rates, work, scratch)
+            else:
+                lost += touch_tracked(system, pair, state, scratch.stage, body_row(0), scratch)
+    bodies_rates(system, s, lost, rates, scratch)
+
+
+@kernel
+def drive(system, table, row, rows):
+    """Set the bodies that are driven to a row of their motions, (pose, v, w) each, world."""
+    for body in range(n_bodies(system)):
+        column = system.layout[body_ints(body) + B_DRIVEN]
+        if column >= 0:
+            for k in range(N_BODY):
+                rows[body_row(body) + k] = table[row, N_DRIVEN * column + k]

@@ -1,0 +1,165 @@
+"""A simulated system as Python calls it: many ticks of the whole operator in one compiled loop."""
+
+import numpy as np
+from numba import types
+
+from standoff.kernels.compiler.decorators import entry, kernel, pointer
+from standoff.kernels.compiler.entry import INT, INTS, READ, ROWS, WRITE
+from standoff.kernels.dynamics.arrays import (
+    FREE,
+    I_INSIDE,
+    N_LOAD,
+    N_TOUCH,
+    S_DEEPEST,
+    S_TIME,
+    S_UNCERTIFIED,
+    STEP,
+    Scratch,
+    System,
+    body_row,
+    kind_of,
+    n_bodies,
+    n_pairs,
+    n_rates,
+    pair_row,
+)
+from standoff.kernels.dynamics.flat_contact import N_SPOTS
+from standoff.kernels.dynamics.operator import change_of, step_bodies
+from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
+from standoff.kernels.dynamics.rigid_body import kinetic, potential
+from standoff.kernels.dynamics.system import clear_loads, touch_tracked
+from standoff.kernels.entries.frames import frame_carried, frame_paper, frame_predicted
+from standoff.kernels.entries.tracker import input_pointers, refused
+from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNT_SLOTS
+from standoff.kernels.paper.integrators import Change
+from standoff.kernels.state.arrays import (
+    CONVERGED,
+    FINE,
+    GLOBAL,
+    LOCAL,
+    N_MOTION,
+    N_STATE,
+    STATUS,
+    TRACKING,
+)
+from standoff.kernels.state.options import read_options
+from standoff.kernels.values import NO_RATES, Work
+
+# Columns of an account, after which come N_TOUCH numbers a pair.
+A_KINETIC, A_POTENTIAL, A_STORED = range(3)
+ACCOUNT_HEADER = 3
+
+
+@kernel
+def scratch_for(system):
+    rows = n_bodies(system)
+    rates = n_rates(system)
+    return (
+        np.zeros(body_row(rows)),
+        np.zeros(rates),
+        np.zeros(rates),
+        np.zeros(rates),
+        np.zeros(N_LOAD * rows + 1),
+        np.zeros(N_MOTION),
+        np.zeros(N_TOUCH * n_pairs(system) + 1),
+        np.zeros(N_SPOTS),
+    )
+
+
+@kernel
+def pointed(arrays):
+    return Scratch(
+        arrays[0],
+        pointer(arrays[1], 0),
+        pointer(arrays[2], 0),
+        pointer(arrays[3], 0),
+        pointer(arrays[4], 0),
+        arrays[5],
+        pointer(arrays[6], 0),
+        pointer(arrays[7], 0),
+    )
+
+
+@kernel
+def track_pair(system, pair, state, h, work, scratch):
+    """The tracker's frame of a pair at the end of a tick; FINE, or what it refuses."""
+    o = pair_row(system, pair)
+    write_motion(system, pair, state, body_row(0), scratch.motion)
+    inputs = input_pointers(scratch.motion, 0, True)
+    why = refused(inputs)
+    if why != FINE:
+        return why
+    kept, out = pointer(state, o), pointer(state, o + N_STATE)
+    packed = packed_pair(system, pair)
+    if system.layout[I_INSIDE]:
+        dq = change_of(system, pair, h, scratch.total)
+        first = change_of(system, pair, h, scratch.first)
+        change = Change(dq, NO_RATES, NO_RATES, system.options.gain, first)
+        frame_carried(packed, inputs, h, change, system.options, kept, out, work)
+    elif system.options.paper:
+        frame_paper(packed, inputs, h, system.options, kept, out, work)
+    else:
+        frame_predicted(packed, inputs, h, system.options, kept, out, work)
+    status = out[STATUS]
+    sound = status in (CONVERGED, TRACKING, LOCAL, GLOBAL)
+    state[S_UNCERTIFIED] += 0.0 if sound else 1.0
+    state[S_DEEPEST] = max(state[S_DEEPEST], -out[0])
+    return FINE
+
+
+@kernel
+def account(system, state, row, scratch):
+    """Energies and contacts of a state, into a row of the accounts."""
+    clear_loads(system, scratch)
+    for k in range(ACCOUNT_HEADER):
+        row[k] = 0.0
+    for body in range(n_bodies(system)):
+        if kind_of(system, body) == FREE:
+            row[A_KINETIC] += kinetic(system, body, state, body_row(body))
+            row[A_POTENTIAL] += potential(system, body, state, body_row(body))
+    for pair in range(n_pairs(system)):
+        touch_tracked(system, pair, state, state, body_row(0), scratch)
+        for k in range(N_TOUCH):
+            row[ACCOUNT_HEADER + N_TOUCH * pair + k] = scratch.touch[N_TOUCH * pair + k]
+        row[A_STORED] += scratch.touch[N_TOUCH * pair + 3]
+
+
+SYSTEM = types.Tuple((INTS, READ, INTS, READ, READ))
+RECORDS = types.Tuple((ROWS, ROWS))
+
+
+@entry(SYSTEM, WRITE, ROWS, INT, RECORDS, work="simulation")
+def run_system(packed, state, table, every, records):
+    """Many ticks; the state is changed in place.
+
+    `packed` is (layout, numbers, ints, reals, options). `records` are the states and the accounts:
+    row 0 is of the start, each next one of a tick `every` later. `table` has the driven bodies'
+    motions, a row each half tick. Returns (-1, FINE), or the tick
+    after which a pose or twist was refused, and why: the rows before it are written.
+    """
+    layout, numbers, ints, reals, options = packed
+    states, accounts = records
+    read = read_options(pointer(options, 0))
+    system = System(pointer(layout, 0), pointer(numbers, 0), ints, reals, read)
+    arrays = scratch_for(system)
+    scratch = pointed(arrays)
+    counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
+    log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
+    work = Work(pointer(counts, 0), pointer(log, 0))
+    h = numbers[STEP]
+    begun = state[S_TIME]
+    states[0, :] = state
+    account(system, state, accounts[0], scratch)
+    for tick in range(every * (states.shape[0] - 1)):
+        step_bodies(system, state, h, table, tick, work, scratch)
+        state[S_TIME] = begun + (tick + 1) * h
+        for pair in range(n_pairs(system)):
+            why = track_pair(system, pair, state, h, work, scratch)
+            if why != FINE:
+                return tick, why
+        if (tick + 1) % every == 0:
+            row = (tick + 1) // every
+            states[row, :] = state
+            account(system, state, accounts[row], scratch)
+    counts[0] = 0  # alive until here, see `pointer`
+    return -1, FINE

@@ -1,0 +1,260 @@
+"""One operator of a system: bodies, contacts and trackers advanced by one fixed-step method."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.kernels.dynamics import arrays as K
+from standoff.kernels.dynamics.operator import METHODS
+from standoff.kernels.entries import simulation as entries
+from standoff.kernels.entries.preparing import prepare_simulation
+from standoff.kernels.state import arrays as T
+from standoff.motion import inputs
+from standoff.read_only import KeepsReadOnly
+from standoff.real_numbers import shown
+from standoff.simulation import stability
+from standoff.simulation.packed_system import body_start, driven_row, driven_table, pack_system
+from standoff.simulation.rigid_body import DRIVEN
+from standoff.simulation.system import System
+from standoff.simulation.system_run import SystemRun
+from standoff.simulation.system_state import SystemState
+from standoff.tracking.choices import positive_number, whole_number, yes_or_no
+from standoff.tracking.law_options import Law
+from standoff.tracking.laws import PaperLaw, PredictorCorrector
+from standoff.tracking.options import pack_options
+from standoff.tracking.tracker import ColdQuery
+
+Array = NDArray[np.float64]
+
+SIDES = ("inside", "beside")
+
+MOST_NUMBERS = 200_000_000
+"""Numbers that one run may record: 1.6 GB."""
+
+OVERLAP = 1e-9
+"""Of the lesser body's size: a start that overlaps by no more touches, to roundoff."""
+
+
+class Operator(KeepsReadOnly):
+    """Bodies, contacts and tracked parameters as one state, advanced by one method.
+
+    Parameters
+    ----------
+    system : System
+    dt : float
+        Step [time], positive.
+    method : str
+        "euler", "heun", "midpoint", "rk4", or "semi-implicit", which is for stiff contact: momenta
+        by the forces at the start of the step, then poses by the new momenta.
+    tracker : str
+        "inside": the parameters of the witness points are part of the state and of every stage,
+        advanced by the paper's law (in contact by its contact-regular form). "beside": one step of
+        the tracker a tick, at whose witness points the forces are held over the tick's stages.
+    gain : float, optional
+        K [1/time] of the law inside; one over the step if not given.
+
+    Raises
+    ------
+    StandoffTypeError
+        No system.
+    StandoffError
+        A step that is not positive; an unknown method; a gain beyond the method's limit; a contact
+        too stiff for the step, with the largest stable stiffness; a slip speed too small for it.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        dt: float,
+        method: str = "semi-implicit",
+        tracker: str = "beside",
+        gain: float | None = None,
+    ) -> None:
+        if not isinstance(system, System):
+            raise StandoffTypeError(
+                f"system is {shown(system)}: give a standoff.simulation.System.", "system", system
+            )
+        self.system = system
+        self.dt = positive_number(dt, "dt")
+        inputs.word(method, "method", METHODS)
+        inputs.word(tracker, "tracker", SIDES)
+        self.method, self.tracker = method, tracker
+        self.law = self._law(gain)
+        for pair in range(len(system.pairs)):
+            self._check_stiffness(pair)
+            self._check_slip(pair)
+        self.options = pack_options(self.law)
+        self._pack()
+
+    def _pack(self) -> None:
+        number = METHODS.index(self.method)
+        inside = self.tracker == "inside"
+        self.packed = pack_system(self.system, self.dt, number, inside, self.options)
+        prepare_simulation()
+
+    def _law(self, gain: float | None) -> Law:
+        if self.tracker == "beside":
+            if gain is not None:
+                raise StandoffError(
+                    f"gain = {shown(gain)} is of the law inside; a tracker beside the operator "
+                    "corrects by Newton's method: leave it out.",
+                    "gain",
+                    gain,
+                )
+            return PredictorCorrector(depth="local").resolved(self.dt)
+        integrator = "euler" if self.method == "semi-implicit" else self.method
+        return PaperLaw(integrator=integrator, gain=gain, depth="local").resolved(self.dt)
+
+    def _check_stiffness(self, pair: int) -> None:
+        """Refuse a contact that the step does not follow."""
+        system, contact = self.system, self.system.contacts[pair]
+        give = system.springs(pair) * system.give(pair)
+        depth = system.depth(pair)
+        slope, drag = contact.tangent(depth)
+        if stability.is_stable(self.method, give * slope, give * drag, self.dt):
+            return
+        largest = stability.largest_stable_stiffness(contact, self.method, self.dt, give, depth)
+        names = " and ".join(system.bodies[k].body.name for k in system.pairs[pair])
+        raise StandoffError(
+            f"stiffness = {contact.stiffness:g} of {names} is beyond what {self.method} follows at "
+            f"dt = {self.dt:g} down to the depth {depth:g}: the largest stable one is "
+            f"{largest:.4g}. Take a shorter step, less stiffness or damping, or give the depth "
+            "that the contact is meant for.",
+            "stiffness",
+            contact.stiffness,
+        )
+
+    def _check_slip(self, pair: int) -> None:
+        """Refuse friction that would throw a resting body to and fro."""
+        system, contact = self.system, self.system.contacts[pair]
+        least = stability.least_slip_speed(
+            contact.friction, system.weight(pair), system.give(pair), self.dt
+        )
+        if contact.friction > 0.0 and contact.slip_speed < least:
+            raise StandoffError(
+                f"slip_speed = {contact.slip_speed:g} is too small for dt = {self.dt:g}: under its "
+                f"own weight a body would be thrown to and fro by friction. Give at least "
+                f"{least:.4g}, or take a shorter step.",
+                "slip_speed",
+                contact.slip_speed,
+            )
+
+    def start(self, time: float = 0.0, *, allow_overlap: bool = False) -> SystemState:
+        """Return the state of the bodies' own poses and twists, with certified witness points.
+
+        Parameters
+        ----------
+        time : float
+            On the clock of the driven bodies' paths [time].
+        allow_overlap : bool
+            Start also where bodies overlap: they will push each other apart.
+
+        Raises
+        ------
+        StandoffError
+            Bodies overlap, by a depth that is told, and that is not allowed.
+        """
+        t = inputs.number(time, "time")
+        allowed = yes_or_no(allow_overlap, "allow_overlap")
+        header = np.zeros(K.STATE_HEADER)
+        header[K.S_TIME] = t
+        rows = [
+            driven_row(body, t) if body.kind == DRIVEN else body_start(body)
+            for body in self.system.bodies
+        ]
+        still = SystemState(self.system, np.concatenate([header, *rows]))
+        pairs = [self._pair_start(pair, still, allowed) for pair in range(len(self.system.pairs))]
+        data = np.concatenate([still.data, *pairs])
+        if pairs:
+            depths = [-row[T.N_STATE + T.DISTANCE] for row in pairs]
+            data[K.S_DEEPEST] = max(0.0, *depths)
+        data.flags.writeable = False
+        return SystemState(self.system, data)
+
+    def _pair_start(self, pair: int, still: SystemState, allowed: bool) -> Array:
+        """A pair's part of the state: the tracker's own, and its answer."""
+        a, b = self.system.pairs[pair]
+        first, second = self.system.bodies[a].body, self.system.bodies[b].body
+        query = ColdQuery(first, second, self.dt, self.law)
+        found = query.start(still.pose(a), still.pose(b), still.twist(a), still.twist(b))
+        answer = found.proximity
+        size = min(first.size, second.size)
+        if not allowed and answer.distance < -OVERLAP * size:
+            raise StandoffError(
+                f"Bodies {a} ({first.name}) and {b} ({second.name}) overlap at the start, by "
+                f"{answer.depth:.6g}: move them apart, or call start(allow_overlap=True), and they "
+                "will push each other apart."
+            )
+        return np.concatenate([found.data, answer.row])
+
+    def run(self, state: SystemState, ticks: int, every: int = 1) -> SystemRun:
+        """Advance a state by many ticks in one compiled loop.
+
+        Parameters
+        ----------
+        state : SystemState
+            Of this system; it is not changed.
+        ticks : int
+            How many steps.
+        every : int
+            Record every so many of them; ``ticks`` is a multiple of it.
+
+        Raises
+        ------
+        StandoffError
+            The motion left all bounds, at a tick that is told: a step too long for it.
+        """
+        self._check_state(state)
+        ticks, every = whole_number(ticks, "ticks"), whole_number(every, "every")
+        if ticks % every:
+            raise StandoffError(
+                f"ticks = {ticks} is no multiple of every = {every}: the last tick would not be "
+                "recorded.",
+                "every",
+                every,
+            )
+        count = ticks // every + 1
+        width = entries.ACCOUNT_HEADER + K.N_TOUCH * len(self.system.pairs)
+        if count * (len(state.data) + width) > MOST_NUMBERS:
+            raise StandoffError(
+                f"{count} records of {len(state.data) + width} numbers are more than "
+                f"{MOST_NUMBERS}: record every so many ticks (every=...), or run in parts.",
+                "ticks",
+                ticks,
+            )
+        table = driven_table(self.system, state.time, self.dt, ticks)
+        data = state.data.copy()
+        states, accounts = np.empty((count, len(data))), np.empty((count, width))
+        tick, why = entries.run_system(self.packed, data, table, every, (states, accounts))
+        if why != T.FINE:
+            raise StandoffError(
+                f"After tick {tick + 1} ({state.time + (tick + 1) * self.dt:g} s) a body's motion "
+                "was no longer finite: take a shorter step or less stiffness."
+            )
+        for array in (states, accounts):
+            array.flags.writeable = False
+        return SystemRun(self.system, states, accounts)
+
+    def step(self, state: SystemState) -> SystemState:
+        """Advance a state by one tick."""
+        return self.run(state, 1).final
+
+    def _check_state(self, state: Any) -> None:
+        if not isinstance(state, SystemState):
+            raise StandoffTypeError(
+                f"state is {shown(state)}: get one from operator.start.", "state", state
+            )
+        if state.system is not self.system:
+            raise StandoffError(
+                "The state belongs to another system: get one from operator.start.", "state", state
+            )
+
+    def __repr__(self) -> str:
+        return (
+            f"<Operator {self.method}, tracker {self.tracker}, dt = {self.dt:g}, of "
+            f"{self.system!r}>"
+        )

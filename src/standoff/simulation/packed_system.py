@@ -1,0 +1,93 @@
+"""A system as the kernels read it, and as its state begins."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels.dynamics import arrays as K
+from standoff.simulation.flat_parts import pack_flat_parts
+from standoff.simulation.rigid_body import DRIVEN, FREE, RigidBody
+from standoff.simulation.system import System
+
+Array = NDArray[np.float64]
+KINDS = {"free": K.FREE, "fixed": K.FIXED, "driven": K.DRIVEN}
+
+
+def pack_system(system: System, dt: float, method: int, inside: bool, options: Array) -> Any:
+    """(layout, numbers, ints, reals, options), all read-only."""
+    layout = [len(system.bodies), len(system.pairs), method, int(inside)]
+    numbers = [*system.gravity, dt]
+    ints = [body.body.ints for body in system.bodies]
+    reals = [body.body.reals for body in system.bodies]
+    starts = [np.cumsum([0, *(len(part) for part in parts)]) for parts in (ints, reals)]
+    flats_at = K.INT_HEADER + K.INT_BODY * len(system.bodies) + K.INT_PAIR * len(system.pairs)
+    numbers_at = K.REAL_HEADER + K.REAL_BODY * len(system.bodies)
+    numbers_at += K.REAL_PAIR * len(system.pairs)
+    flat_rows: list[int] = []
+    flat_numbers: list[float] = []
+    column = 0
+    for number, body in enumerate(system.bodies):
+        driven = column if body.kind == DRIVEN else -1
+        column += body.kind == DRIVEN
+        at = flats_at + len(flat_rows)
+        layout += [KINDS[body.kind], int(starts[0][number]), int(starts[1][number]), driven, at]
+        numbers += _mass_row(body)
+        rows, found = pack_flat_parts(system.flats[number], numbers_at + len(flat_numbers))
+        flat_rows += rows
+        flat_numbers += found
+    for pair, contact in zip(system.pairs, system.contacts, strict=True):
+        layout += pair
+        numbers += [contact.stiffness, contact.damping, contact.friction, contact.slip_speed]
+    packed = (
+        np.array(layout + flat_rows, dtype=np.int64),
+        np.array(numbers + flat_numbers),
+        np.concatenate(ints),
+        np.concatenate(reals),
+        options,
+    )
+    for array in packed:
+        array.flags.writeable = False
+    return packed
+
+
+def _mass_row(body: RigidBody) -> list[float]:
+    mass = body.mass_properties
+    if mass is None:
+        return [0.0] * K.REAL_BODY
+    inverse = np.linalg.inv(mass.inertia)
+    return [mass.mass, *mass.centre, *mass.inertia.ravel(), *inverse.ravel()]
+
+
+def body_start(body: RigidBody) -> Array:
+    """A body's row of the state, at its pose and twist."""
+    R, v, omega = body.pose.rotation, body.twist.v, body.twist.omega
+    mass = body.mass_properties
+    if body.kind != FREE or mass is None:
+        return np.concatenate([R.ravel(), body.pose.translation, v, omega])
+    arm = R @ mass.centre
+    spin = R @ mass.inertia @ R.T @ omega
+    return np.concatenate([R.ravel(), body.pose.translation + arm, v + np.cross(omega, arm), spin])
+
+
+def driven_table(system: System, start: float, dt: float, ticks: int) -> Array:
+    """Motions of the driven bodies, a row each half tick: (pose 12, twist 6) for each."""
+    driven = [body for body in system.bodies if body.kind == DRIVEN]
+    if not driven:
+        return np.zeros((1, 1))
+    rows = np.empty((2 * ticks + 1, K.N_DRIVEN * len(driven)))
+    for k in range(2 * ticks + 1):
+        t = start + 0.5 * k * dt
+        for column, body in enumerate(driven):
+            rows[k, K.N_DRIVEN * column : K.N_DRIVEN * (column + 1)] = driven_row(body, t)
+    return rows
+
+
+def driven_row(body: RigidBody, t: float) -> Array:
+    """Pose and twist of a driven body at a time, world: 18 numbers."""
+    pose, twist = body.path.pose(t), body.path.twist(t)
+    if twist.frame != "world":
+        twist = twist.in_world(pose)
+    return np.concatenate([pose.rotation.ravel(), pose.translation, twist.v, twist.omega])

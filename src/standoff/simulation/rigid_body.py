@@ -1,0 +1,197 @@
+"""Bodies of a simulated system: free ones with mass, fixed ones, and ones driven along a path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from standoff.bodies.body import Body
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.geometry.validation import positive
+from standoff.motion import Pose, PoseLike, Twist, TwistLike
+from standoff.motion.pose_function import path_of
+from standoff.read_only import KeepsReadOnly
+from standoff.real_numbers import shown
+from standoff.simulation.mass_properties import MassProperties, mass_properties
+
+FREE, FIXED, DRIVEN = "free", "fixed", "driven"
+
+
+@dataclass(frozen=True, eq=False)
+class RigidBody(KeepsReadOnly):
+    """A body of a system. Make one with `RigidBody.free`, `.fixed` or `.driven`.
+
+    Attributes
+    ----------
+    body : Body
+    kind : str
+        "free", "fixed" or "driven".
+    mass_properties : MassProperties or None
+        None of one that does not move freely.
+    pose : Pose
+        Of the body's frame in the world, where the system starts.
+    twist : Twist
+        Of the body's origin, where the system starts, world axes.
+    path : path or None
+        Of one that is driven.
+    """
+
+    body: Body
+    kind: str
+    mass_properties: MassProperties | None
+    pose: Pose
+    twist: Twist
+    path: Any = None
+
+    @staticmethod
+    def free(
+        body: Body,
+        *,
+        density: float | None = None,
+        mass: float | None = None,
+        inertia: Any = None,
+        centre: Any = None,
+        pose: PoseLike | None = None,
+        twist: TwistLike | None = None,
+    ) -> RigidBody:
+        """Return a body that moves by the forces on it.
+
+        Parameters
+        ----------
+        body : Body
+        density : float, optional
+            Of a solid body [mass/length³]; or give its mass.
+        mass : float, optional
+            [mass]. Alone it is spread evenly over the body's volume.
+        inertia : (3, 3) array_like, optional
+            About the centre of mass, in the body's axes [mass length²], beside the mass.
+        centre : (3,) array_like, optional
+            Centre of mass, body frame [length], beside the inertia; the origin if not given.
+        pose : Pose or what ``Pose.of`` reads, optional
+            At the start; the identity if not given.
+        twist : Twist or what ``Twist.of`` reads, optional
+            At the start; at rest if not given.
+
+        Raises
+        ------
+        StandoffTypeError
+            No body.
+        StandoffError
+            A body without end; both or none of density and mass; a mass that is not positive; a
+            body without volume and no inertia; an inertia that no body can have.
+        """
+        check_body(body)
+        if not body.bounded:
+            raise StandoffError(
+                f"{body!r} has no end and cannot move freely: fix it, or drive it.", "body", body
+            )
+        if (density is None) == (mass is None):
+            raise StandoffError(
+                f"density = {shown(density)} and mass = {shown(mass)}: give one of them.",
+                "mass",
+                mass,
+            )
+        if inertia is not None:
+            if mass is None:
+                raise StandoffError(
+                    "An inertia goes with a mass, not with a density: give mass=...",
+                    "inertia",
+                    inertia,
+                )
+            middle = np.zeros(3) if centre is None else centre
+            found = MassProperties.of(mass=mass, centre=middle, inertia=inertia)
+        elif centre is not None:
+            raise StandoffError(
+                "A centre of mass goes with an inertia: give both, or neither.", "centre", centre
+            )
+        else:
+            found = _even(body, density, mass)
+        at = Pose.identity() if pose is None else Pose.of(pose)
+        moving = Twist.zero() if twist is None else Twist.of(twist).in_world(at)
+        return RigidBody(body, FREE, found, at, moving)
+
+    @staticmethod
+    def fixed(body: Body, pose: PoseLike | None = None) -> RigidBody:
+        """Return a body that never moves.
+
+        Parameters
+        ----------
+        body : Body
+            Of any kind but planar, a half-space too.
+        pose : Pose or what ``Pose.of`` reads, optional
+            The identity if not given.
+
+        Raises
+        ------
+        StandoffTypeError
+            No body.
+        StandoffError
+            A planar body; no pose.
+        """
+        check_body(body)
+        at = Pose.identity() if pose is None else Pose.of(pose)
+        return RigidBody(body, FIXED, None, at, Twist.zero())
+
+    @staticmethod
+    def driven(body: Body, path: Any) -> RigidBody:
+        """Return a body that follows a path whatever it meets.
+
+        Parameters
+        ----------
+        body : Body
+        path : path
+            Of ``standoff.motion``, or anything with ``pose(t)`` and ``twist(t)``.
+
+        Raises
+        ------
+        StandoffTypeError
+            No body; no path.
+        StandoffError
+            A planar body.
+        """
+        check_body(body)
+        try:
+            found = path_of(path, 0.0, np.inf)
+        except TypeError as error:
+            raise StandoffTypeError(
+                f"path is {shown(path)}: give a path of standoff.motion, or an object with pose(t) "
+                "and twist(t).",
+                "path",
+                path,
+            ) from error
+        at = Pose.of(found.pose(0.0))
+        return RigidBody(body, DRIVEN, None, at, Twist.of(found.twist(0.0)).in_world(at), found)
+
+    def __repr__(self) -> str:
+        mass = "" if self.mass_properties is None else f", mass {self.mass_properties.mass:g}"
+        return f"<RigidBody {self.body.name}: {self.kind}{mass}>"
+
+
+def check_body(body: object) -> None:
+    """Raise TypeError where something given is no body, ValueError where it is planar."""
+    if not isinstance(body, Body):
+        raise StandoffTypeError(
+            f"body is {shown(body)}: make one with so.shapes or Body.from_brep.", "body", body
+        )
+    if body.dimension == 2:
+        raise StandoffError(f"{body!r} is planar: systems are spatial; extrude it.", "body", body)
+
+
+def _even(body: Body, density: float | None, mass: float | None) -> MassProperties:
+    """Mass properties of a solid of one density, which a mass alone tells too."""
+    if density is not None:
+        return mass_properties(body, density)
+    wanted = positive(mass, "mass")
+    unit = mass_properties(body, 1.0)
+    scale = wanted / unit.mass
+    return MassProperties(
+        wanted,
+        unit.centre,
+        scale * unit.inertia,
+        unit.volume,
+        unit.error._replace(
+            mass=0.0, inertia=scale * unit.error.inertia + unit.error.mass / unit.mass
+        ),
+    )

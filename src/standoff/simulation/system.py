@@ -1,0 +1,195 @@
+"""A system: bodies, which pairs of them meet, how, and in what field of gravity."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.geometry.validation import Array, vector3
+from standoff.kernels.body import layout as L
+from standoff.read_only import KeepsReadOnly
+from standoff.real_numbers import shown
+from standoff.simulation.contact import HuntCrossley
+from standoff.simulation.flat_parts import FlatParts, flat_parts
+from standoff.simulation.rigid_body import FREE, RigidBody
+from standoff.tracking.inputs import check_pair
+
+EARTH = (0.0, 0.0, -9.81)
+"""Gravity if none is given, length/s² in metres."""
+
+FLAT_SPRINGS = 4.0
+"""Springs of one stiffness that a flat contact is worth (``kernels.dynamics.flat_contact``)."""
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class System(KeepsReadOnly):
+    """Bodies that move by gravity and by what they do to each other.
+
+    Parameters
+    ----------
+    bodies : sequence of RigidBody
+    contact : HuntCrossley or sequence of it
+        Of all pairs, or one for each pair, in their order.
+    pairs : sequence of (int, int), optional
+        Numbers of the bodies that are tracked and may touch; all pairs with a free body if not
+        given.
+    gravity : (3,) array_like
+        Acceleration [length/time²], world axes.
+
+    Attributes
+    ----------
+    bodies : tuple of RigidBody
+    pairs : tuple of (int, int)
+    contacts : tuple of HuntCrossley
+        One for each pair.
+    gravity : (3,) array
+
+    Raises
+    ------
+    StandoffTypeError
+        Something that is no RigidBody or no HuntCrossley.
+    StandoffError
+        No body that is free; a pair that does not exist, is given twice, or cannot move; two
+        half-spaces.
+    """
+
+    bodies: tuple[RigidBody, ...]
+    pairs: tuple[tuple[int, int], ...]
+    contacts: tuple[HuntCrossley, ...]
+    gravity: Array
+    flats: tuple[FlatParts, ...]
+
+    def __init__(
+        self,
+        bodies: Sequence[RigidBody],
+        contact: HuntCrossley | Sequence[HuntCrossley],
+        pairs: Sequence[tuple[int, int]] | None = None,
+        gravity: Any = EARTH,
+    ) -> None:
+        found = _listed(bodies, "bodies", RigidBody)
+        object.__setattr__(self, "bodies", found)
+        if not any(b.kind == FREE for b in found):
+            raise StandoffError(
+                "None of the bodies is free, so nothing moves by itself: make one with "
+                "RigidBody.free.",
+                "bodies",
+                bodies,
+            )
+        object.__setattr__(self, "pairs", _pairs(found, pairs))
+        if isinstance(contact, HuntCrossley):
+            contacts = (contact,) * len(self.pairs)
+        else:
+            contacts = _listed(contact, "contact", HuntCrossley)
+        if len(contacts) != len(self.pairs):
+            raise StandoffError(
+                f"contact has {len(contacts)} entries for {len(self.pairs)} pairs {self.pairs}: "
+                "give one for all, or one for each.",
+                "contact",
+                contact,
+            )
+        object.__setattr__(self, "contacts", contacts)
+        object.__setattr__(self, "gravity", vector3(gravity, "gravity"))
+        object.__setattr__(self, "flats", tuple(flat_parts(b.body) for b in found))
+
+    def give(self, pair: int) -> float:
+        """The inverse of the least mass [1/mass] that a push between a pair's bodies moves: at the
+        point of each that is farthest from its centre, square to its least moment of inertia.
+        """
+        total = 0.0
+        for number in self.pairs[pair]:
+            body = self.bodies[number]
+            if body.mass_properties is None:
+                continue
+            mass = body.mass_properties
+            arm = farthest(body) ** 2 / float(mass.principal_moments[0])
+            total += 1.0 / mass.mass + arm
+        return total
+
+    def springs(self, pair: int) -> float:
+        """How many springs of its stiffness a pair's contact can be."""
+        a, b = (self.flats[k] for k in self.pairs[pair])
+        return FLAT_SPRINGS if a.several and b.several else 1.0
+
+    def depth(self, pair: int) -> float:
+        """The depth that a pair's contact is meant for, length."""
+        given = self.contacts[pair].depth
+        sizes = [self.bodies[k].body.size for k in self.pairs[pair]]
+        return given if given is not None else 0.01 * min(sizes)
+
+    def weight(self, pair: int) -> float:
+        """The weight of the heavier of a pair's free bodies, force."""
+        masses = [self.bodies[k].mass_properties for k in self.pairs[pair]]
+        field = float(np.linalg.norm(self.gravity))
+        return max(field * m.mass for m in masses if m is not None)
+
+    def __repr__(self) -> str:
+        return f"<System of {len(self.bodies)} bodies, {len(self.pairs)} pairs>"
+
+
+def farthest(body: RigidBody) -> float:
+    """A bound on how far a free body reaches from its centre of mass, length."""
+    mass = body.mass_properties
+    assert mass is not None
+    reals = body.body.reals
+    middle = reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
+    half = reals[L.BOX_HALF : L.BOX_HALF + 3]
+    corner = np.abs(middle - mass.centre) + half
+    return float(np.linalg.norm(corner)) + body.body.radius
+
+
+def _listed(given: Any, name: str, kind: type) -> tuple[Any, ...]:
+    if not isinstance(given, list | tuple):
+        raise StandoffTypeError(
+            f"{name} is {shown(given)}: give a list of {kind.__name__}.", name, given
+        )
+    found = tuple(given)
+    for item in found:
+        if not isinstance(item, kind):
+            raise StandoffTypeError(
+                f"{name} has {shown(item)}, which is no {kind.__name__}.", name, given
+            )
+    return found
+
+
+def _pairs(bodies: tuple[RigidBody, ...], given: Any) -> tuple[tuple[int, int], ...]:
+    if given is None:
+        return tuple(
+            (i, j)
+            for i, j in combinations(range(len(bodies)), 2)
+            if FREE in (bodies[i].kind, bodies[j].kind)
+        )
+    found = []
+    for item in _listed(given, "pairs", object):
+        pair = _pair(item, len(bodies), given)
+        if pair in found or pair[::-1] in found:
+            raise StandoffError(f"pairs names {pair} twice.", "pairs", given)
+        if FREE not in (bodies[pair[0]].kind, bodies[pair[1]].kind):
+            raise StandoffError(
+                f"Neither body of the pair {pair} is free: nothing would feel their contact.",
+                "pairs",
+                given,
+            )
+        check_pair(bodies[pair[0]].body, bodies[pair[1]].body)
+        found.append(pair)
+    return tuple(found)
+
+
+def _pair(item: Any, count: int, given: Any) -> tuple[int, int]:
+    numbers = tuple(item) if isinstance(item, tuple | list) else ()
+    whole = len(numbers) == 2 and all(
+        isinstance(k, int | np.integer) and not isinstance(k, bool) and 0 <= k < count
+        for k in numbers
+    )
+    if not whole or numbers[0] == numbers[1]:
+        raise StandoffError(
+            f"pairs has {shown(item)}: give two different numbers of bodies, from 0 to "
+            f"{count - 1}.",
+            "pairs",
+            given,
+        )
+    return int(numbers[0]), int(numbers[1])

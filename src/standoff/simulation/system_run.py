@@ -1,0 +1,122 @@
+"""The record of a run of a system."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels.dynamics import arrays as K
+from standoff.kernels.entries import simulation as E
+from standoff.read_only import KeepsReadOnly
+from standoff.simulation import system_state as S
+from standoff.simulation.system import System
+from standoff.simulation.system_state import Energy, SystemState
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SystemRun(KeepsReadOnly):
+    """States of a system at even times, the first and the last among them.
+
+    Attributes
+    ----------
+    system : System
+    states : (n, m) array
+        A row each, laid out in ``standoff.kernels.dynamics.arrays``.
+    accounts : (n, k) array
+        Energies and contacts of each, laid out in ``standoff.kernels.entries.simulation``.
+    """
+
+    system: System
+    states: Array
+    accounts: Array
+
+    @property
+    def times(self) -> Array:
+        """(n,) times [s]."""
+        return self.states[:, K.S_TIME]
+
+    @property
+    def final(self) -> SystemState:
+        """The last state."""
+        return self.state(len(self.states) - 1)
+
+    def state(self, row: int) -> SystemState:
+        """Return a state of the record, from which a run can go on."""
+        data = self.states[row].copy()
+        data.flags.writeable = False
+        return SystemState(self.system, data)
+
+    def rotations(self, body: int) -> Array:
+        """Return the rotations of a body's frame, (n, 3, 3)."""
+        return S.positions(self.system, body, self.states)[0]
+
+    def positions(self, body: int) -> Array:
+        """Return the positions of a body's origin, (n, 3)."""
+        return S.positions(self.system, body, self.states)[1]
+
+    def velocities(self, body: int) -> Array:
+        """Return the velocities of a body's origin, (n, 3), world axes."""
+        return S.velocities(self.system, body, self.states)[0]
+
+    def angular_velocities(self, body: int) -> Array:
+        """Return the angular velocities of a body, (n, 3), world axes."""
+        return S.velocities(self.system, body, self.states)[1]
+
+    def angular_momenta(self, body: int) -> Array:
+        """Return the angular momenta of a free body about its centre of mass, (n, 3), world."""
+        return S.momenta(body, self.states)
+
+    @property
+    def distances(self) -> Array:
+        """(n, pairs) signed distances, less than zero in overlap."""
+        return S.distances(self.system, self.states)
+
+    @property
+    def witness_points(self) -> tuple[Array, Array, Array]:
+        """Points on A, on B, and normals from A to B, each (n, pairs, 3), world."""
+        return S.witness_points(self.system, self.states)
+
+    @property
+    def forces(self) -> Array:
+        """(n, pairs, 3) forces of the contacts on the second body of each pair, world."""
+        return self._touches()[:, :, K.T_FORCE : K.T_FORCE + 3]
+
+    @property
+    def spots(self) -> Array:
+        """(n, pairs) numbers of spots at which the pairs touch."""
+        return self._touches()[:, :, K.T_SPOTS].astype(int)
+
+    @property
+    def energy(self) -> Energy:
+        """Energies, (n,) arrays."""
+        return Energy(
+            self.accounts[:, E.A_KINETIC],
+            self.accounts[:, E.A_POTENTIAL],
+            self.accounts[:, E.A_STORED],
+            self.states[:, K.S_LOST],
+            self.states[:, K.S_GIVEN],
+        )
+
+    @property
+    def deepest(self) -> float:
+        """The greatest depth of any pair since the start, length; 0 where none touched."""
+        return float(self.states[-1, K.S_DEEPEST])
+
+    @property
+    def uncertified(self) -> int:
+        """How many answers of the trackers since the start were not certified."""
+        return int(self.states[-1, K.S_UNCERTIFIED])
+
+    def _touches(self) -> Array:
+        shape = (len(self.accounts), len(self.system.pairs), K.N_TOUCH)
+        return self.accounts[:, E.ACCOUNT_HEADER :].reshape(shape)
+
+    def __repr__(self) -> str:
+        return (
+            f"<SystemRun of {len(self.states)} states to {self.times[-1]:g} s, deepest "
+            f"{self.deepest:.3g}, {self.uncertified} uncertified>"
+        )

@@ -1,0 +1,151 @@
+"""What a system carries from tick to tick, as a value, and its energies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels.dynamics import arrays as K
+from standoff.kernels.state import arrays as T
+from standoff.motion import Pose, Twist
+from standoff.read_only import KeepsReadOnly
+from standoff.simulation.rigid_body import FREE
+from standoff.simulation.system import System
+
+Array = NDArray[np.float64]
+
+
+class Energy(NamedTuple):
+    """Energies of a system, each a number or an array of them.
+
+    Attributes
+    ----------
+    kinetic : float or array
+        Of the free bodies.
+    potential : float or array
+        Of the free bodies in the field of gravity, from the world's origin.
+    stored : float or array
+        In the springs of the contacts.
+    dissipated : float or array
+        Lost in the contacts since the start, by damping and friction.
+    supplied : float or array
+        Given by driven bodies since the start.
+    """
+
+    kinetic: Any
+    potential: Any
+    stored: Any
+    dissipated: Any
+    supplied: Any
+
+    @property
+    def mechanical(self) -> Any:
+        """Kinetic, potential and stored."""
+        return self.kinetic + self.potential + self.stored
+
+    @property
+    def balance(self) -> Any:
+        """What no step of an exact method changes: mechanical and dissipated less supplied."""
+        return self.mechanical + self.dissipated - self.supplied
+
+
+@dataclass(frozen=True, eq=False)
+class SystemState(KeepsReadOnly):
+    """A system at an instant: goes into a run and comes out of it, never changed.
+
+    Attributes
+    ----------
+    system : System
+    data : (n,) array
+        Read-only, laid out in ``standoff.kernels.dynamics.arrays``.
+    """
+
+    system: System
+    data: Array
+
+    @property
+    def time(self) -> float:
+        """Time [s]."""
+        return float(self.data[K.S_TIME])
+
+    def pose(self, body: int) -> Pose:
+        """Return the pose of a body's frame in the world."""
+        rotation, position = positions(self.system, body, self.data[None])
+        return Pose.from_checked(rotation[0], position[0])
+
+    def twist(self, body: int) -> Twist:
+        """Return the twist of a body's origin, world axes."""
+        v, omega = velocities(self.system, body, self.data[None])
+        return Twist(v[0], omega[0])
+
+    def distance(self, pair: int) -> float:
+        """Return the signed distance of a pair."""
+        return float(distances(self.system, self.data[None])[0, pair])
+
+    def __repr__(self) -> str:
+        return f"<SystemState at {self.time:g} s>"
+
+
+def _row(body: int) -> int:
+    return K.STATE_HEADER + K.N_BODY * body
+
+
+def _turns(body: int, rows: Array) -> Array:
+    at = _row(body) + K.ROTATION
+    return rows[:, at : at + 9].reshape(-1, 3, 3)
+
+
+def _part(body: int, rows: Array, part: int) -> Array:
+    at = _row(body) + part
+    return rows[:, at : at + 3]
+
+
+def positions(system: System, body: int, rows: Array) -> tuple[Array, Array]:
+    """(n, 3, 3) rotations and (n, 3) positions of a body's frame, of rows of states."""
+    rotations, at = _turns(body, rows), _part(body, rows, K.CENTRE)
+    mass = system.bodies[body].mass_properties
+    if system.bodies[body].kind == FREE and mass is not None:
+        at = at - rotations @ mass.centre
+    return rotations, at
+
+
+def velocities(system: System, body: int, rows: Array) -> tuple[Array, Array]:
+    """(n, 3) velocities of a body's origin and angular velocities, world, of rows of states."""
+    v, spin = _part(body, rows, K.VELOCITY), _part(body, rows, K.SPIN)
+    mass = system.bodies[body].mass_properties
+    if system.bodies[body].kind != FREE or mass is None:
+        return v, spin
+    R = _turns(body, rows)
+    inverse = np.linalg.inv(mass.inertia)
+    omega = np.einsum("nij,jk,nlk,nl->ni", R, inverse, R, spin)
+    return v - np.cross(omega, R @ mass.centre), omega
+
+
+def momenta(body: int, rows: Array) -> Array:
+    """(n, 3) angular momenta of a free body about its centre, world, of rows of states."""
+    return _part(body, rows, K.SPIN)
+
+
+def _answers(system: System, rows: Array) -> Array:
+    """(n, pairs, N_OUT) answers of the trackers."""
+    at = K.STATE_HEADER + K.N_BODY * len(system.bodies)
+    both = rows[:, at:].reshape(len(rows), len(system.pairs), K.N_PAIR)
+    return both[:, :, T.N_STATE :]
+
+
+def distances(system: System, rows: Array) -> Array:
+    """(n, pairs) signed distances, of rows of states."""
+    return _answers(system, rows)[:, :, T.DISTANCE]
+
+
+def witness_points(system: System, rows: Array) -> tuple[Array, Array, Array]:
+    """Points on A, on B and normals, (n, pairs, 3) each, world, of rows of states."""
+    out = _answers(system, rows)
+    return (
+        out[:, :, T.POINT_A : T.POINT_A + 3],
+        out[:, :, T.POINT_B : T.POINT_B + 3],
+        out[:, :, T.NORMAL : T.NORMAL + 3],
+    )
