@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import BSpline
 
 from standoff.geometry import NurbsCurve, NurbsSurface
-from standoff.geometry.knot_removal import SPARE
+from standoff.geometry.tolerances import SPARE_KNOT
 
 SPACINGS = [0.3, 0.038, 1e-2, 1e-3, 1e-4, 1e-5]
 
@@ -27,7 +27,7 @@ def test_inserted_knots_cut_no_span(degree, spacing, rational, rng):
     new = [t for t in 0.41 + spacing * np.arange(-2, 3) if 0.0 < t < 1.0]
     fine = curve.refined(new).refined(new[:1] if degree > 1 else [])
     assert np.array_equal(fine.essential.knots, curve.knots)
-    assert fine.moved <= SPARE * np.sqrt(12.0)
+    assert fine.moved <= SPARE_KNOT * np.sqrt(12.0)
     assert set(fine.spare_knots()) == set(new)
     for t in np.linspace(0.0, 1.0, 101):
         assert np.allclose(fine.point(t), curve.point(t), rtol=0.0, atol=1e-14)
@@ -105,7 +105,7 @@ def test_the_bound_of_the_move_holds_on_a_surface_and_corners_stay(spacing, rng)
     assert np.array_equal(fine.essential_v.knots, surface.knots_v)
     assert fine.knots_u.size == surface.knots_u.size + len(new)
     reach = float(np.abs(fine.control_points).max())
-    assert 0.0 < fine.moved <= 2.0 * SPARE * np.sqrt(3.0) * reach
+    assert 0.0 < fine.moved <= 2.0 * SPARE_KNOT * np.sqrt(3.0) * reach
     for u in np.linspace(0.0, 1.0, 9):
         for v in np.linspace(0.0, 1.0, 9):
             off = np.linalg.norm(fine.jet(u, v)[0] - surface.jet(u, v)[0])

@@ -5,9 +5,11 @@ import pytest
 import splines
 
 from standoff.geometry import Extrusion, NurbsCurve, Revolution, bernstein, ellipsoid_patches
-from standoff.geometry.hulls import TIGHT, tight_box
+from standoff.geometry.hulls import tight_box
+from standoff.geometry.tolerances import TIGHT_BOX
 
-# Of the diagonal: a box may be too large by TIGHT of that of the control points; samples miss some.
+# Of the diagonal: a box may be too large by TIGHT_BOX of that of the control points; samples miss
+# some.
 SEEN = 2e-3
 # Samples that may be nearest to an outermost point, in each span and to each side, and how many
 # times finer the grid round them is.
@@ -85,5 +87,5 @@ def test_swept_surfaces_reach_as_far_as_their_profile(sweep):
     surface = Revolution(profile) if sweep is Revolution else Extrusion(profile, [0.0, 1.0, 0.0])
     high = surface.box()[1]
     # the middle of the quadratic is half way to its control point
-    np.testing.assert_allclose(high[[0, 2]], [1.25, 2.0], atol=2.0 * TIGHT)
+    np.testing.assert_allclose(high[[0, 2]], [1.25, 2.0], atol=2.0 * TIGHT_BOX)
     assert (high[[0, 2]] >= [1.25, 2.0]).all()

@@ -7,7 +7,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from standoff.impact.moment import EPS, POSE_ROUNDINGS, TIME_ROUNDINGS
+from standoff.impact.moment import EPS
+from standoff.impact.tolerances import POSE_ROUNDINGS, TIME_ROUNDINGS
 from standoff.motion import (
     Bounded,
     Carried,

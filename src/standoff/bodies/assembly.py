@@ -12,7 +12,12 @@ import numpy as np
 from standoff.bodies.charts import edge_points, interior_point, make_charts, surface_normal
 from standoff.bodies.orientation import chart_at, orient
 from standoff.bodies.packing import Assembled, Chart, Sector
-from standoff.bodies.tolerances import JOIN_TOLERANCE, SINGULAR, WIDE_ANGLE, coordinate_roundoff
+from standoff.bodies.tolerances import (
+    JOIN_TOLERANCE,
+    SINGULAR_CORNER,
+    WIDE_ANGLE,
+    coordinate_roundoff,
+)
 from standoff.bodies.topology import SIDES, Apex, Edge, Face
 from standoff.errors import BodyError
 from standoff.geometry.curves import Curve
@@ -180,7 +185,7 @@ def _wide_sector(
     tangents = np.column_stack([jet[1], jet[2]])
     normal = np.cross(jet[1], jet[2])
     area = float(np.linalg.norm(normal))
-    if area <= SINGULAR * float(np.prod(np.linalg.norm(tangents, axis=0))):
+    if area <= SINGULAR_CORNER * float(np.prod(np.linalg.norm(tangents, axis=0))):
         return None  # no direction of (u, v) leads into the face from such a corner
     start = stop = None
     for j, end in ends:

@@ -16,8 +16,8 @@ from standoff.bodies.convexity import Known
 from standoff.bodies.finishing import Packed, finish
 from standoff.bodies.packing import Ints
 from standoff.bodies.report import BodyReport
-from standoff.bodies.sewing import MAX_SPREAD, sew
-from standoff.bodies.tolerances import SIMILARITY_TOLERANCE, SINGULAR_MAP
+from standoff.bodies.sewing import sew
+from standoff.bodies.tolerances import MAX_SPREAD, SIMILARITY_TOLERANCE, SINGULAR_MAP
 from standoff.bodies.topology import Edge, Face, check_parts, parts_of
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.pcurves import Pcurve

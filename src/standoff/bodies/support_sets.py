@@ -15,6 +15,7 @@ import numpy as np
 import scipy
 
 from standoff.bodies.body import Body
+from standoff.bodies.tolerances import HEIGHT_ROUNDINGS, LEVEL, NEAREST_SPOT, PEAK
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.surface_curves import SurfaceCurve
@@ -24,11 +25,6 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import on_face
 
-# Radians: a point is level with another if the line between them is tilted by no more. The normal
-# of an answer is good to it, and two faces whose normals agree to it count as parallel.
-LEVEL = 1e-9
-# A height carries this many roundings (eps) of the core's size and its offset from its origin.
-ROUNDINGS = 16.0
 # Samples of a piece of a curve: between two of them an arc of a convex body's boundary rises and
 # falls once.
 SAMPLES = 17
@@ -80,7 +76,7 @@ def support_set(body: Body, direction: Array, witness: Array) -> Array:
     """
     size = float(body.reals[L.SIZE])
     offset = float(np.linalg.norm(body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]))
-    rounding = ROUNDINGS * np.finfo(float).eps * (size + offset)
+    rounding = HEIGHT_ROUNDINGS * np.finfo(float).eps * (size + offset)
     lowest = float(witness @ direction) - rounding - LEVEL * size
     pieces = list(_pieces(body, direction, lowest))
     peaks = [p for piece in pieces for p in _peaks(piece, direction)]
@@ -243,7 +239,7 @@ def _peaks(piece: Piece, direction: Array) -> Iterator[Array]:
     yield from piece.points(spots[[0, -1]])
     for k, (a, b) in enumerate(pairwise(slopes)):
         if a > 0.0 >= b:
-            t = scipy.optimize.brentq(slope, spots[k], spots[k + 1], xtol=1e-15, rtol=1e-15)
+            t = scipy.optimize.brentq(slope, spots[k], spots[k + 1], xtol=PEAK, rtol=PEAK)
             yield piece.jet(float(t))[0]
 
 
@@ -257,11 +253,11 @@ def _arc_parameters(piece: Piece, witness: Array) -> Array:
     k = int(((piece.points(even) - witness) ** 2).sum(axis=1).argmin())
     low, high = even[max(k - 1, 0)], even[min(k + 1, ARC_POINTS - 1)]
     found = scipy.optimize.minimize_scalar(
-        away, bounds=(low, high), method="bounded", options={"xatol": 1e-12}
+        away, bounds=(low, high), method="bounded", options={"xatol": NEAREST_SPOT}
     )
     near = float(found.x) if found.fun < away(float(even[k])) else float(even[k])
     steps = (piece.last - piece.first) * np.concatenate([-NEAR_WITNESS, [0.0], NEAR_WITNESS])
     return np.unique(np.clip(np.concatenate([even, near + steps]), piece.first, piece.last))
 
 
-__all__ = ["LEVEL", "ROUNDINGS", "curve_breaks", "support_set", "surface_breaks"]
+__all__ = ["curve_breaks", "support_set", "surface_breaks"]

@@ -18,7 +18,7 @@ a curve and of a surface carry three or four each. The certificate takes as many
 
 FAR_OFF: Final = 1e3
 """Greatest coordinate over extent above which a hull is taken about the vertices' middle [no unit]:
-below it the facets' normals lose no more than three digits, within COPLANAR."""
+below it the facets' normals lose no more than three digits, within COPLANAR_FACETS."""
 
 JOIN_TOLERANCE: Final = 1e-9
 """Endpoints of curves and their vertices must agree to this fraction of the body's size."""
@@ -26,7 +26,7 @@ JOIN_TOLERANCE: Final = 1e-9
 WIDE_ANGLE: Final = 1e-6
 """A face's angle at a vertex of 180 degrees less this (radians) counts as wide."""
 
-SINGULAR: Final = 1e-12
+SINGULAR_CORNER: Final = 1e-12
 """Tangents at a corner whose sine is below this are one direction: the chart is singular there."""
 
 CHART_RIM: Final = 1e-3
@@ -36,7 +36,8 @@ COLLAPSED_TANGENT: Final = 1e-11
 """A tangent shorter than this part of the other has collapsed: its direction is roundoff."""
 
 INWARD_STEP: Final = 1e-3
-"""How far towards the middle of the domain the sign of a collapsed side's normal is taken."""
+"""How far towards the middle of the domain (part of the way) the sign of a collapsed side's normal
+is taken: off the side's roundoff, and before anything turns."""
 
 FLAT_ROUNDINGS: Final = 8.0
 """A face that passes the body's middle by no more than this many roundings of the coordinates is a
@@ -70,13 +71,13 @@ SIMILARITY_TOLERANCE: Final = 1e-12
 """A linear map is a similarity (keeps spheres) when its singular values agree to this ratio."""
 
 SINGULAR_MAP: Final = 1e-14
-"""Least over greatest singular value of a map that keeps a body's volume: below, its inverse, by
-which pcurves are found, has no digits."""
+"""Least over greatest singular value (a ratio) of a map that keeps a body's volume: below, its
+inverse, by which pcurves are found, has no digits."""
 
 CORNER_ROUNDOFF: Final = 1e-12
 """A corner (radians) more hollow than this is roundoff no more, below it a smooth joint."""
 
-COPLANAR: Final = 1e-9
+COPLANAR_FACETS: Final = 1e-9
 """Facets of a polytope whose normals differ by less (sine) are one face; hull facets of one plane
 differ by the roundoff of their vertices."""
 
@@ -92,8 +93,9 @@ FLATTEST: Final = 5e-15
 """A box whose core is thinner than this fraction of its length is flat: roundoff of its corners."""
 
 THIN: Final = 1e-6
-"""Thickness over extent below which a polytope that cannot be built is told to be too thin: its
-facets' planes are then one to roundoff, or to COPLANAR where there are many. It refuses nothing."""
+"""Thickness over extent (a ratio) below which a polytope that cannot be built is told to be too
+thin: its facets' planes are then one to roundoff, or to COPLANAR_FACETS where there are many. It
+refuses nothing."""
 
 OFF_PLANE: Final = 1e-9
 """Vertices may be off their common plane by this part of their extent: they are moved into it."""
@@ -107,6 +109,81 @@ NARROWEST: Final = 1e-12
 
 SEWING_TOLERANCE: Final = 1e-9
 """Sides closer than this part of the body's size are one edge: the roundoff of making patches."""
+
+THIN_LENS: Final = 1e-9
+"""A lens's offset, and its radius less the offset, are at least this part of its radius: what
+float64 can still tell from a ball and from nothing."""
+
+SAME_RADIUS: Final = 1e-14
+"""Rings whose radii differ by less (relative) are joined by a cylinder."""
+
+SHORTEST_ARC: Final = 1e-6
+"""An arc of a profile's hull shorter than this part of a sample's step is one ring."""
+
+ON_AXIS: Final = 1e-13
+"""Points nearer to the axis than this part of the size are on it."""
+
+NO_ABSOLUTE_WIDTH: Final = 1e-300
+"""Absolute width of a root's bracket (parameter units) where the relative one alone decides: SciPy
+asks for a number above 0."""
+
+ROOT_WIDTH: Final = 4.0 * EPS
+"""Relative width of that bracket: the least that SciPy takes."""
+
+HELD_ENDS_RANK: Final = 1e-12
+"""Singular values of a bitangent's Newton system below this part of the greatest count as 0, as
+where both ends of the line are held."""
+
+BITANGENT_STEP: Final = 4e-16
+"""A step of the bitangent's Newton method below this part of the parameters is the last: two
+roundings."""
+
+PROJECTION_STEP: Final = 4e-16
+"""A projection on a side has arrived when its step is below this part of the side's parameter
+range."""
+
+MAX_SPREAD: Final = 3.0
+"""Corners of one vertex may spread over this many sewing tolerances (lengths); more is a chain of
+corners, which a tolerance far above the sewing's quality makes."""
+
+LEAST_THICKNESS: Final = 2.0
+"""A shell whose volume is below this many sewing tolerances (lengths) times its area is a sheet, no
+body."""
+
+STRAIGHT_SIDE: Final = 2e-14
+"""A straight pcurve serves where it is no farther from the first side than the nearest points are,
+but for this part of the body's size and STRAIGHT_SHARE of that distance itself."""
+
+STRAIGHT_SHARE: Final = 0.5
+"""Part of the nearest points' distance by which a straight pcurve may be farther off: half of it
+leaves the greater part of the gap to the sewing."""
+
+SPLINE_MISS: Final = 1e-13
+"""A span of a spline serves when it misses the nearest points by this part of the size or by
+SPLINE_SHARE of their distance, or has been halved often enough."""
+
+SPLINE_SHARE: Final = 0.1
+"""Part of the nearest points' distance by which a span may miss them: it is lost in the gap
+itself."""
+
+AFFINE_SIDE: Final = 1e-13
+"""A side's rational parameter whose constant (a ratio, dimensionless) is 1 to this is affine: the
+roundoff of its least squares."""
+
+LEVEL: Final = 1e-9
+"""Radians: a point is level with another if the line between them is tilted by no more. The normal
+of an answer is good to it, and two faces whose normals agree to it count as parallel."""
+
+HEIGHT_ROUNDINGS: Final = 16.0
+"""A height carries this many roundings (eps) of the core's size and its offset from its origin."""
+
+PEAK: Final = 1e-15
+"""Width (parameter units, and relative) to which a highest point of a curve is bracketed:
+roundoff."""
+
+NEAREST_SPOT: Final = 1e-12
+"""Width (parameter units) to which the arc's point nearest to the witness is sought: the distance's
+square is level to roundoff over far more."""
 
 
 def coordinate_roundoff(points: Array) -> float:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.bodies.tessellation import EdgeLine, FaceMesh
 from standoff.cli.errors import MissingExtra
+from standoff.cli.tolerances import FLAT_CLOUD
 from standoff.scene.reader import Array
 
 try:
@@ -225,7 +226,7 @@ def _draw_skin(axes: Space, parts: Parts, towards: Array) -> None:
     """The core swept by its ball: the hull of balls at points of the core."""
     body = parts.body
     spots = parts.cloud
-    if len(spots) > 4 and np.linalg.matrix_rank(spots - spots[0], tol=1e-9 * parts.size) == 3:
+    if len(spots) > 4 and np.linalg.matrix_rank(spots - spots[0], tol=FLAT_CLOUD * parts.size) == 3:
         spots = spots[scipy.spatial.ConvexHull(spots).vertices]
     points = (spots[:, None] + body.radius * _ball()).reshape(-1, 3)
     try:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.control.tolerances import FOUND_MINIMUM, SETTLED_RUN
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.validation import Array
 from standoff.kernels.entries import tracker as kernels
@@ -21,13 +22,6 @@ from standoff.tracking.choices import whole_number
 from standoff.tracking.inputs import flat_pose, place
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.rows import AnswerRows, StateRow, motion_row
-
-# A run has found the minimum where its distance and witness points are within this part of the
-# pair's size of the true ones: far above roundoff, far below the way to any other stationary point.
-FOUND = 1e-6
-# A run has settled where the projection of the witness vector on the tangents is below this part
-# of its length.
-SETTLED = 1e-6
 
 Place = tuple[Any, Any]
 
@@ -122,8 +116,9 @@ def basin(
         np.linalg.norm(last.point_b - true.point_b, axis=1),
     )
     reached = np.asarray(last.distance)
-    found = (off <= FOUND * size) & (np.abs(reached - true.distance) <= FOUND * size)
-    settled = last.residual <= SETTLED * reached
+    near = FOUND_MINIMUM * size
+    found = (off <= near) & (np.abs(reached - true.distance) <= near)
+    settled = last.residual <= SETTLED_RUN * reached
     return Basin(found, settled & ~found, reached, steps, true.repaired)
 
 

@@ -11,6 +11,7 @@ import scipy
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import charts_of
+from standoff.control.tolerances import POLE_AREA, SEARCH_TOLERANCE
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
@@ -21,15 +22,10 @@ from standoff.kernels.entries.queries import coedge_parameters, on_face
 from standoff.real_numbers import shown
 from standoff.tracking.inputs import check_body
 
-# Tangents whose area falls below this part of their lengths' product, or of which one (over the
-# domain) is this much shorter than the other, are a pole's: curvature there is roundoff, which
-# grows with the inverse square of this; it is taken at the points beside it.
-POLE = 1e-4
 # Points along every side of a face, and along a planar curve, at which a search begins.
 SIDE_POINTS = 33
-# Local searches from the best starts, and their tolerance relative to the parameters' range.
+# Local searches from the best starts.
 SEARCHES = 3
-SEARCH_TOLERANCE = 1e-9
 
 
 class LeastCurvature(NamedTuple):
@@ -112,7 +108,7 @@ def _curvatures(surface: Surface, u: float, v: float) -> tuple[float, float] | N
     area = float(np.linalg.norm(normal))
     across = [float(np.linalg.norm(t)) * w for t, w in zip((xu, xv), _widths(surface), strict=True)]
     lengths = float(np.linalg.norm(xu) * np.linalg.norm(xv))
-    if area <= POLE * lengths or min(across) <= POLE * max(across):
+    if area <= POLE_AREA * lengths or min(across) <= POLE_AREA * max(across):
         return None
     first = np.array([[xu @ xu, xu @ xv], [xu @ xv, xv @ xv]])
     second = np.array([[xuu @ normal, xuv @ normal], [xuv @ normal, xvv @ normal]]) / area

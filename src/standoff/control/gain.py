@@ -10,15 +10,13 @@ from numpy.polynomial import Polynomial
 
 from standoff.bodies.body import Body
 from standoff.control.curvature import least_curvature
+from standoff.control.tolerances import REAL_EXTREME
 from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Plane, Sphere
 from standoff.geometry.validation import finite, not_negative, positive
 from standoff.kernels.body import layout as L
 from standoff.real_numbers import real_array, shape_of, shown
 from standoff.tracking.inputs import check_body, check_pair
-
-# A root of a derivative counts as real where its imaginary part is below this part of it.
-REAL_ROOT = 1e-6
 
 
 def min_gain(
@@ -320,7 +318,7 @@ def _greatest(top: Polynomial, bottom: Polynomial, low: float, high: float) -> f
         return math.inf
     slope = top.deriv() * bottom - top * bottom.deriv()
     roots = slope.trim().roots() if slope.degree() else np.zeros(0)
-    real = roots.real[np.abs(roots.imag) <= REAL_ROOT * np.abs(roots)]
+    real = roots.real[np.abs(roots.imag) <= REAL_EXTREME * np.abs(roots)]
     places = [low, *real[(real > low) & (real < high)].tolist()]
     values = [float(top(x)) / float(bottom(x)) for x in places]
     if math.isfinite(high):

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
+from standoff.control.tolerances import REAL_LIMIT
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.validation import not_negative, positive
 from standoff.kernels.paper import integrators as I
@@ -17,10 +18,6 @@ from standoff.tracking.choices import INTEGRATORS, choice
 from standoff.tracking.feedback import Feedback, growth_factor
 
 Complex = NDArray[np.complex128]
-
-# A root of R(-z) = 1 or -1 whose imaginary part is below this is real, and one below it is z = 0
-# itself: far above roundoff, far below the limits, which are 2 and more.
-REAL_ROOT = 1e-9
 
 
 def growth_polynomial(integrator: str) -> Polynomial:
@@ -69,8 +66,8 @@ def stability_limit(integrator: str) -> float:
     """
     factor = growth_polynomial(integrator)
     crossings = np.concatenate([(factor - 1.0).roots(), (factor + 1.0).roots()])
-    real = -crossings.real[np.abs(crossings.imag) <= REAL_ROOT]
-    return float(real[real > REAL_ROOT].min())
+    real = -crossings.real[np.abs(crossings.imag) <= REAL_LIMIT]
+    return float(real[real > REAL_LIMIT].min())
 
 
 def sampled_roots(integrator: str, feedback: Feedback, dt: float) -> Complex:

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import charts_of
+from standoff.control.tolerances import CURVE_TOLERANCE, DIRECTION_TOLERANCE
 from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 from standoff.kernels.entries import queries
@@ -35,8 +36,6 @@ from standoff.tracking.inputs import flat_pose, place
 from standoff.tracking.pair_system import UPPER
 from standoff.tracking.rows import StateRow, motion_row
 
-# Relative error of the curves outwards; their ends are found to this as well.
-CURVE_TOLERANCE = 1e-8
 # Greatest length of a curve, in parts of the pair's size: past it there is no end worth finding.
 LONGEST = 20.0
 # Points kept on each curve, its end included.
@@ -205,7 +204,8 @@ def _least(
 
     n = len(best.direction)
     corners = best.direction + np.vstack([np.zeros(n), SPREAD * np.eye(n)])
-    options = {"initial_simplex": corners, "maxfev": SEARCH * n, "xatol": 1e-6, "fatol": 0.0}
+    ends = {"maxfev": SEARCH * n, "xatol": DIRECTION_TOLERANCE, "fatol": 0.0}
+    options = {"initial_simplex": corners, **ends}
     scipy.optimize.minimize(end, best.direction, method="Nelder-Mead", options=options)
     return min([best, *sought], key=value)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from standoff.errors import StandoffError
+from standoff.geometry.tolerances import PARALLEL_AXES, WHOLE_CONIC
 from standoff.geometry.validation import Array, affine_map, check_alike, finite, vector3
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import curve_jet
@@ -147,9 +148,9 @@ class ConicArc(Curve):
         centre = vector3(_planar(centre), "centre")
         a, b = vector3(_planar(a), "a"), vector3(_planar(b), "b")
         first, last = float(finite(first, "first", ())), float(finite(last, "last", ()))
-        if np.linalg.norm(np.cross(a, b)) <= 1e-14 * np.linalg.norm(a) * np.linalg.norm(b):
+        if np.linalg.norm(np.cross(a, b)) <= PARALLEL_AXES * np.linalg.norm(a) * np.linalg.norm(b):
             raise StandoffError(f"Conic arc with parallel or zero axes a = {a}, b = {b}.")
-        if not 0.0 < last - first <= FULL_TURN * (1.0 + 1e-15):
+        if not 0.0 < last - first <= FULL_TURN * (1.0 + WHOLE_CONIC):
             raise StandoffError(
                 f"Conic arc from t = {first} to {last}: give 0 < last - first <= 2 pi.",
                 "last",
@@ -161,7 +162,7 @@ class ConicArc(Curve):
 
     @property
     def closed(self) -> bool:
-        return self.last - self.first >= FULL_TURN * (1.0 - 1e-15)
+        return self.last - self.first >= FULL_TURN * (1.0 - WHOLE_CONIC)
 
 
 class RationalBezier(Curve):

@@ -13,6 +13,7 @@ from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Cone, Cylinder, Sphere, Surface
+from standoff.geometry.tolerances import ROUND_SECTION
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.real_numbers import shown
@@ -74,9 +75,10 @@ def _round_pcurve(curve: Curve, surface: Surface, basis: Array) -> Pcurve:
     a, b = basis[:2, 0], basis[:2, 1]
     radius = np.linalg.norm(a)
     height = basis[2, 2]
-    level = np.abs(basis[2, :2]).max() <= 1e-12 * max(1.0, abs(height))
-    round_ = abs(a @ b) <= 1e-12 * radius**2 and abs(np.linalg.norm(b) - radius) <= 1e-12 * radius
-    centred = np.linalg.norm(basis[:2, 2]) <= 1e-12 * radius
+    level = np.abs(basis[2, :2]).max() <= ROUND_SECTION * max(1.0, abs(height))
+    alike = abs(np.linalg.norm(b) - radius) <= ROUND_SECTION * radius
+    round_ = abs(a @ b) <= ROUND_SECTION * radius**2 and alike
+    centred = np.linalg.norm(basis[:2, 2]) <= ROUND_SECTION * radius
     if not (level and round_ and centred):
         raise StandoffError(
             f"On a {type(surface).__name__} only sections square to its axis and generators have "

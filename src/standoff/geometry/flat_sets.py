@@ -7,16 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
+from standoff.geometry.tolerances import KEPT_EXTENT, NARROWED, WIDENINGS
 from standoff.geometry.validation import Array
-
-# What two sets share is sought with both widened by a tolerance, and by this part of it. An extent
-# that they truly share stays; that of a tangency or of a corner goes with the tolerance, at least
-# like its square root.
-NARROWED = 1e-2
-KEPT = 0.5
-# The least widening, in parts of the tolerance, that shows all they share is taken: touching sides
-# are cut apart by roundoff.
-WIDENINGS = (0.0, 1e-5, 1e-4, 1e-3)
 
 
 @dataclass(frozen=True)
@@ -87,7 +79,7 @@ def shared(a: FlatSet, b: FlatSet, tolerance: float, least: float) -> FlatSet | 
 
 def _settled(wide: FlatSet, narrow: FlatSet) -> FlatSet:
     """Of the lesser dimension if an extent of the wider set goes with the tolerance."""
-    kept = [x > KEPT * y for x, y in zip(_extents(narrow), _extents(wide), strict=True)]
+    kept = [x > KEPT_EXTENT * y for x, y in zip(_extents(narrow), _extents(wide), strict=True)]
     dimension = min(narrow.dimension, wide.dimension, sum(kept))
     if dimension == narrow.dimension:
         return narrow

@@ -10,15 +10,12 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.geometry.bernstein import halves
+from standoff.geometry.tolerances import BOX_MARGIN, TIGHT_BOX
 from standoff.geometry.validation import Array
 
-# A box is known well when no side may be moved inward by more than this fraction of its diagonal.
-TIGHT = 1e-4
 # Halvings at most, and pieces at once.
 MOST_HALVINGS = 24
 MOST_PIECES = 512
-# Points of a box computed so are rounded by this many units of roundoff of the greatest number.
-MARGIN = 8.0 * float(np.finfo(np.float64).eps)
 
 
 def tight_box(h: Array) -> tuple[Array, Array]:
@@ -31,17 +28,17 @@ def tight_box(h: Array) -> tuple[Array, Array]:
     Notes
     -----
     The box is the hull of control points after halving, outward by some units of roundoff where
-    there was any halving. No side is farther from the surface than ``TIGHT`` of the diagonal,
+    there was any halving. No side is farther from the surface than ``TIGHT_BOX`` of the diagonal,
     unless there are too many pieces.
     """
     d = h.shape[1] - 1
     points = (h[:, :d] / h[:, d:]).reshape(len(h), d, -1)
-    margin = MARGIN * float(np.abs(points).max())
+    margin = BOX_MARGIN * float(np.abs(points).max())
     # points of the surface: corners of every patch
     inner_low, inner_high = _corners(h)
     low, high = points.min(axis=2), points.max(axis=2)
     outer_low, outer_high = low.min(axis=0), high.max(axis=0)
-    limit = TIGHT * float(np.linalg.norm(outer_high - outer_low))
+    limit = TIGHT_BOX * float(np.linalg.norm(outer_high - outer_low))
     settled_low, settled_high = inner_low.copy(), inner_high.copy()
     halved = False
     for _ in range(MOST_HALVINGS):

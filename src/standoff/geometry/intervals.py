@@ -18,10 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.geometry.tolerances import CREST_ROUNDOFF, LIBRARY_ERROR
 from standoff.geometry.validation import Array
 
-# NumPy promises 4 units in the last place at most for its elementary functions; twice that.
-LIBRARY_ERROR = 8 * float(np.finfo(np.float64).eps)
 TINY = float(np.finfo(np.float64).tiny)
 # Angles beyond this are not reduced: their quadrant is not known to the last place.
 GREATEST_ANGLE = 1e6
@@ -185,7 +184,7 @@ def _wave(a: Interval, function: Any, crest: float) -> Interval:
     low, high = function(a.lo), function(a.hi)
     ends = _widened(np.minimum(low, high), np.maximum(low, high))
     # A crest that lies within the roundoff of its place counts as inside.
-    spare = 1e-15 * (1.0 + a.magnitude)
+    spare = CREST_ROUNDOFF * (1.0 + a.magnitude)
     first, last = (a.lo - spare - crest) / TURN, (a.hi + spare - crest) / TURN
     top = np.floor(last) >= np.ceil(first)
     bottom = np.floor(last - 0.5) >= np.ceil(first - 0.5)
@@ -197,7 +196,7 @@ def _wave(a: Interval, function: Any, crest: float) -> Interval:
 
 def tan(a: Interval | float) -> Interval:
     a = interval(a)
-    spare = 1e-15 * (1.0 + a.magnitude)
+    spare = CREST_ROUNDOFF * (1.0 + a.magnitude)
     branch = np.floor((a.lo - spare) / np.pi + 0.5)
     inside = (branch == np.floor((a.hi + spare) / np.pi + 0.5)) & (a.magnitude < GREATEST_ANGLE)
     return _only(inside, _widened(np.tan(a.lo), np.tan(a.hi)))

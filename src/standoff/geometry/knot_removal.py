@@ -15,15 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from standoff.geometry.knots import KnotVector, insertion
+from standoff.geometry.tolerances import SAME_WEIGHTS, SPARE_KNOT
 from standoff.geometry.validation import Array
-
-# A knot is spare if the surface without it moves by no more than this fraction of its size, or if
-# that is more, of its distance from the origin: insertions, one after the other, round each
-# control point by a few 1e-16.
-SPARE = 1e-14
-# Weights that differ by less than this fraction are equal but for such rounding: the spline is
-# then kept polynomial.
-SAME_WEIGHTS = 1e-14
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +39,7 @@ class Place:
     @property
     def limit(self) -> float:
         """How far a spline may move for a knot left out, length."""
-        return SPARE * max(2.0 * self.radius, self.reach)
+        return SPARE_KNOT * max(2.0 * self.radius, self.reach)
 
     def moved(self, h: Array, other: Array) -> float:
         """A bound of the distance between splines of the same knots, at equal parameters.

@@ -12,13 +12,10 @@ from standoff.geometry.hulls import tight_box
 from standoff.geometry.knot_removal import essential_row
 from standoff.geometry.knots import KnotVector, bezier_spans, elevate_knots, knot_vector, refine
 from standoff.geometry.nurbs import checked_weights
+from standoff.geometry.tolerances import SMOOTH_JOINT
 from standoff.geometry.validation import Array, affine_map, finite
 from standoff.kernels.body import layout as L
 from standoff.real_numbers import shape_of
-
-# Ends closer than this fraction of the curve's extent, with tangents parallel to this sine, are
-# one smooth joint: roundoff of control points computed by trigonometry.
-JOINT_TOLERANCE = 1e-12
 
 
 class NurbsCurve(Curve):
@@ -100,12 +97,12 @@ class NurbsCurve(Curve):
         start, stop = self.blocks[0], self.blocks[-1]
         a, b = start[:, :3] / start[:, 3:], stop[:, :3] / stop[:, 3:]
         extent = float(np.ptp(self.control_points, axis=0).max())
-        if np.abs(a[0] - b[-1]).max() > JOINT_TOLERANCE * extent:
+        if np.abs(a[0] - b[-1]).max() > SMOOTH_JOINT * extent:
             return False
         out, back = a[1] - a[0], b[-1] - b[-2]
         size = float(np.linalg.norm(out) * np.linalg.norm(back))
         turn = float(np.linalg.norm(np.cross(out, back)))
-        return bool(out @ back > 0.0) and turn <= JOINT_TOLERANCE * size
+        return bool(out @ back > 0.0) and turn <= SMOOTH_JOINT * size
 
     def box(self) -> tuple[Array, Array]:
         """(low, high) corners of a box that surely holds the curve, tightly."""

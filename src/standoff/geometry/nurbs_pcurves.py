@@ -12,6 +12,7 @@ from standoff.errors import StandoffError
 from standoff.geometry.knots import bezier_spans, knot_vector
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.pcurves import Pcurve
+from standoff.geometry.tolerances import INFLECTION, STRAIGHT_PCURVE
 from standoff.geometry.validation import Array, finite
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import pcurve_jet
@@ -20,9 +21,7 @@ from standoff.kernels.entries.queries import pcurve_jet
 MOST_TURN = 0.9 * np.pi
 TURN_POINTS = 65
 # A piece is halved until it turns little; one that turns back at a point never would.
-MAX_HALVINGS = 20
-# Curvature below this part of the greatest (dimensionless) is roundoff of a straight piece.
-STRAIGHT = 1e-11
+PIECE_HALVINGS = 20
 
 
 class BezierPcurve(Pcurve):
@@ -121,9 +120,9 @@ def _turning_pieces(piece: BezierPcurve) -> list[BezierPcurve]:
 
     ts = np.linspace(first, last, 16 * len(piece.matrix))
     bends = np.array([bend(t) for t in ts])
-    bends[np.abs(bends) <= STRAIGHT * np.abs(bends).max(initial=0.0)] = 0.0
+    bends[np.abs(bends) <= STRAIGHT_PCURVE * np.abs(bends).max(initial=0.0)] = 0.0
     cuts = [
-        float(scipy.optimize.brentq(bend, ts[k], ts[k + 1], xtol=1e-15))
+        float(scipy.optimize.brentq(bend, ts[k], ts[k + 1], xtol=INFLECTION))
         for k in range(len(ts) - 1)
         if bends[k] * bends[k + 1] < 0.0
     ]
@@ -144,7 +143,7 @@ def _halved(piece: BezierPcurve, halvings: int = 0) -> list[BezierPcurve]:
     if total < MOST_TURN:
         return [piece]
     middle = 0.5 * (first + last)
-    if halvings == MAX_HALVINGS:
+    if halvings == PIECE_HALVINGS:
         raise StandoffError(
             f"The trimming curve turns back on itself at its parameter {middle:.9g}: give one "
             "that runs on."

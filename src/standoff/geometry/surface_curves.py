@@ -11,6 +11,7 @@ from standoff.errors import StandoffError
 from standoff.geometry.curves import Curve, fill_curve
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
+from standoff.geometry.tolerances import WHOLE_TURN
 from standoff.geometry.validation import Array, finite
 from standoff.kernels.body import layout as L
 from standoff.real_numbers import shown
@@ -117,7 +118,7 @@ class SurfaceCurve(Curve):
         if not self.surface.periodic:
             return False
         turn = abs(self.pcurve.point(self.last)[0] - self.pcurve.point(self.first)[0])
-        return bool(abs(turn - 2.0 * np.pi) <= 1e-14 * turn)
+        return bool(abs(turn - 2.0 * np.pi) <= WHOLE_TURN * turn)
 
     def _central(self, t: float) -> tuple[Surface, tuple[Array, Array, Array]]:
         """The surface that sees the point at t most centrally, and the pcurve there."""

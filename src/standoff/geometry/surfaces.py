@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from standoff.errors import StandoffError
+from standoff.geometry.tolerances import DEPENDENT_COLUMNS
 from standoff.geometry.validation import Array, affine_map, finite, matrix3, vector3
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import surface_jet
@@ -20,8 +21,6 @@ from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import real_array, shape_of, shown
 
 Domain = tuple[float, float, float, float]
-# Columns of a unit length whose volume is below this are taken as dependent.
-SINGULAR = 1e-30
 UNBOUNDED: Domain = (-np.inf, np.inf, -np.inf, np.inf)
 
 
@@ -82,7 +81,7 @@ class Surface(KeepsReadOnly, ABC):
         shift = vector3(self.shift, f"{type(self).__name__}.shift")
         # by columns, which may have different units: a cylinder's are its radius and a length
         lengths = np.abs(linear).max(axis=0)
-        if lengths.min() == 0.0 or abs(np.linalg.det(linear / lengths)) < SINGULAR:
+        if lengths.min() == 0.0 or abs(np.linalg.det(linear / lengths)) < DEPENDENT_COLUMNS:
             raise StandoffError(
                 f"{type(self).__name__}.linear is singular:\n{linear}\n"
                 "Give three independent columns.",

@@ -10,6 +10,7 @@ from standoff.errors import StandoffError
 from standoff.geometry.curve_bounds import box_of, curve_breaks, curve_reach
 from standoff.geometry.curves import FULL_TURN, Curve
 from standoff.geometry.surfaces import Domain, Surface
+from standoff.geometry.tolerances import ALONG_PROFILE, PROFILE_ROUNDOFF
 from standoff.geometry.torus import checked_turn, full_turn
 from standoff.geometry.validation import LEAST, Array, affine_map, finite, vector3
 from standoff.kernels.body import layout as L
@@ -17,11 +18,6 @@ from standoff.real_numbers import shown
 
 # Points of a profile that are looked at.
 PROFILE_SAMPLES = 65
-# A profile may leave the x-z plane, or pass the axis, by this fraction of its size: roundoff.
-PROFILE_ROUNDOFF = 1e-12
-# Sine of the angle between a profile and the direction it is moved along, below which the
-# surface has no normal.
-ALONG_PROFILE = 1e-9
 
 
 class Revolution(Surface):

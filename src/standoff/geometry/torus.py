@@ -9,12 +9,9 @@ import numpy as np
 from standoff.errors import StandoffError
 from standoff.geometry.curves import FULL_TURN
 from standoff.geometry.surfaces import Domain, Surface
+from standoff.geometry.tolerances import ANGLE_ROUNDOFF
 from standoff.geometry.validation import Array, affine_map, finite, positive
 from standoff.kernels.body import layout as L
-
-# Angles may pass a whole turn, or the ends of the convex part, by this (radians): roundoff of
-# computing them.
-ANGLE_ROUNDOFF = 1e-15
 
 
 def full_turn(first: float, last: float) -> bool:

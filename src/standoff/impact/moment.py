@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.planes import outer_plane
+from standoff.impact.tolerances import POSE_ROUNDINGS, TIME_ROUNDINGS
 from standoff.kernels.body import layout as L
 from standoff.motion import Pose
 from standoff.motion.bounds import bounds_of, cross, length
@@ -21,13 +22,6 @@ from standoff.tracking.tracker import Tracker
 Array = NDArray[np.float64]
 
 EPS = float(np.finfo(np.float64).eps)
-
-POSE_ROUNDINGS = 16.0
-"""Roundings of each length that goes into a pose or a world point: the products of a rotation with
-a point, and those that made the rotation."""
-
-TIME_ROUNDINGS = 4.0
-"""Roundings of the time, each worth the way of the bodies in it: paths multiply rates by it."""
 
 
 class Placed:

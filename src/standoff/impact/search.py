@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from typing import Any
 
 from standoff.bodies.body import Body
@@ -12,18 +11,20 @@ from standoff.impact.answer import Impact, ImpactStatus
 from standoff.impact.chord import Chords
 from standoff.impact.moment import EPS, Box, Moment
 from standoff.impact.pace import SHORTEN, Pace
+from standoff.impact.tolerances import (
+    AIM,
+    LEAST_TOLERANCE,
+    NEIGHBOURS,
+    SHORTEST_TIME,
+    TRACKER_SHARE,
+    TRACKER_TOLERANCE,
+)
 from standoff.motion.bounds import breaks_of, known
 from standoff.motion.inputs import GREATEST, number
 from standoff.recording.simulate import MotionLike, moving
 from standoff.tracking.choices import positive_number, whole_number
 from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.tracker import Tracker
-
-TRACKER_SHARE = 0.1
-"""The tracker's own gap may be this part of the tolerance."""
-
-AIM = 0.3
-"""The search aims at a gap of this part of the tolerance, so that it ends a little before."""
 
 BALLS_APART = 0.3
 """Bounding balls farther apart than this part of their radii stand for the bodies."""
@@ -34,15 +35,6 @@ BALLS_AIM = 0.2
 PROBES = 8
 """Instants looked at beyond the bracket's beginning for one that is proven to be in contact, each
 twice as far as the one before."""
-
-ROUNDINGS = 8.0
-"""The tolerance is at least so many times what rounding of the poses and of time may do."""
-
-NEIGHBOURS = 4.0
-"""Times within so many roundings of each other have nothing useful between them."""
-
-SHORTEST = sys.float_info.min
-"""Nor have times this near [s]: below it floating point loses digits."""
 
 
 def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
@@ -114,7 +106,8 @@ def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
     paths = moving(path_a, "path_a"), moving(path_b, "path_b")
     for path in paths:
         known(path)
-    tracker = Tracker(a, b, law=PredictorCorrector(tolerance=min(1e-10, TRACKER_SHARE * tolerance)))
+    gap = min(TRACKER_TOLERANCE, TRACKER_SHARE * tolerance)
+    tracker = Tracker(a, b, law=PredictorCorrector(tolerance=gap))
     search = _Search(tracker, paths, clearance, tolerance, max_evaluations)
     begin = number(start, "start")
     return search.run(begin, _end(paths, begin, duration))
@@ -229,7 +222,7 @@ class _Search:
         ahead: list[Moment] = []
         before = math.inf  # the next instant to look at is before this one
         while self.now.time < stop:
-            tolerance = max(self.tolerance, ROUNDINGS * self.now.rounding)
+            tolerance = max(self.tolerance, LEAST_TOLERANCE * self.now.rounding)
             gap = self.gap(self.now, balls=True)
             balls = gap > max(BALLS_APART * self.reach, 2.0 * tolerance)
             target = BALLS_AIM * self.reach
@@ -251,7 +244,7 @@ class _Search:
                     ahead.pop()
             # A short time before the stop is looked at as any other; only where an instant was
             # refused is there nothing left to look at.
-            least = max(NEIGHBOURS * EPS * abs(self.now.time), SHORTEST)
+            least = max(NEIGHBOURS * EPS * abs(self.now.time), SHORTEST_TIME)
             left, longest = stop - self.now.time, SHORTEN * (before - self.now.time)
             if longest <= least:
                 return self._stuck(before)
@@ -353,7 +346,7 @@ class _Search:
             status,
             self.now.proximity,
             self.clearance,
-            max(self.tolerance, ROUNDINGS * self.now.rounding),
+            max(self.tolerance, LEAST_TOLERANCE * self.now.rounding),
             self.steps,
             self.evaluations,
             self.queries,

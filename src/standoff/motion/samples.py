@@ -15,13 +15,10 @@ from standoff.motion.bounds import MotionBounds, cross, length, turning
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import HasMatrix, Pose, PoseLike
 from standoff.motion.pose_stack import PoseStack
-from standoff.motion.tolerances import HALF_TURN
+from standoff.motion.tolerances import HALF_TURN_ANGLE, NEAR_HALF_TURN
 from standoff.motion.twist import Twist, screws
 from standoff.read_only import KeepsReadOnly
 from standoff.spellings import no_attribute
-
-NEAR_HALF_TURN = -1.0 + 1e-6
-"""Trace of a turn that may be a half one, whose trace is −1 and whose rotations have a defect."""
 
 FASTER = 10.0
 """A screw is no more than this faster than its ends' distances from the origin in its time."""
@@ -96,7 +93,7 @@ class PoseSamples(KeepsReadOnly):
                 "poses",
             )
         turns = np.linalg.norm(omega, axis=1) * steps
-        half = turns > np.pi - HALF_TURN
+        half = turns > np.pi - HALF_TURN_ANGLE
         if half.any():
             raise StandoffError(
                 f"{self._between(half)} differ by a half turn, so that the way from one to the "

@@ -29,4 +29,8 @@ QUATERNION_ROUNDING: Final = 1e-9
 
 #: Radian. Two samples whose rotations differ by a half turn to within this have two shortest
 #: screws between them. The accuracy to which rotations are accepted decides which would be taken.
-HALF_TURN: Final = 1e-9
+HALF_TURN_ANGLE: Final = 1e-9
+
+#: No unit. Trace of a turn that may be a half one, whose trace is −1: rotations have a defect, of
+#: up to ``ORTHONORMALITY``, and the trace rises with the square of the angle that is missing.
+NEAR_HALF_TURN: Final = -1.0 + 1e-6

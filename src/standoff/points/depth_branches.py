@@ -12,29 +12,24 @@ from numpy.typing import NDArray
 from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.points.parallel_minima import HOME, pose_of
+from standoff.points.tolerances import DEPTH_ROUNDOFF, RAY_WITHIN, SAME_NORMAL
 from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.state import TrackerState
 from standoff.tracking.tracker import Tracker
 
 Array = NDArray[np.float64]
 
-SAME_NORMAL = 1e-6
-"""Two minima whose unit normals differ by less are one: the normal fixes the depth. [-]"""
-
-ROUNDINGS = 1e-12
-"""Part of the body's size by which a depth may change beyond the point's way: roundoff."""
 
 FAR = 4.0
 """Where a ray is surely outside a bounded body, in sizes of the body."""
 
-WITHIN = 1e-6
-"""How near to the boundary a ray is followed, in parts of the size and of the way: where a face
-is met so near, no other is nearer but at an edge."""
 
 RAY_STEPS = 40
 """Most steps of a ray to the boundary."""
 
-RAYS = np.array([d for d in product((-1.0, 0.0, 1.0), repeat=3) if sum(map(abs, d)) in (1, 3)])
+RAY_DIRECTIONS = np.array(
+    [d for d in product((-1.0, 0.0, 1.0), repeat=3) if sum(map(abs, d)) in (1, 3)]
+)
 """Along the axes and the space diagonals, not of unit length."""
 
 
@@ -82,7 +77,7 @@ class DepthBranches:
         A branch's depth changes by no more than the point moves. Of branches that have come to
         one minimum, the one stays whose normal has turned least.
         """
-        reach = float(np.linalg.norm(x - start)) + ROUNDINGS * self.size
+        reach = float(np.linalg.norm(x - start)) + DEPTH_ROUNDOFF * self.size
         moved: list[tuple[float, Branch]] = []
         for branch in branches:
             state = self.at(branch.state, x)
@@ -115,7 +110,7 @@ class DepthBranches:
         """Minima at a point, (3,), followed back from where rays meet the boundary."""
         if not np.isfinite(self.size):
             return []  # a half-space has one minimum
-        return [self.at(self._ray(x, d / np.linalg.norm(d)), x) for d in RAYS]
+        return [self.at(self._ray(x, d / np.linalg.norm(d)), x) for d in RAY_DIRECTIONS]
 
     def _ray(self, x: Array, direction: Array) -> TrackerState:
         """The state just within the boundary where a ray leaves the body.
@@ -126,10 +121,10 @@ class DepthBranches:
         way = FAR * self.size
         for _ in range(RAY_STEPS):
             p = self.cold(x + way * direction).proximity
-            if p.distance <= WITHIN * self.size:
+            if p.distance <= RAY_WITHIN * self.size:
                 break
             way -= p.distance / float(p.normal @ direction)
-        return self.cold(x + (1.0 - WITHIN) * way * direction)
+        return self.cold(x + (1.0 - RAY_WITHIN) * way * direction)
 
 
 def known(branches: Sequence[Branch], state: TrackerState) -> Branch | None:

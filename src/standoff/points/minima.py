@@ -8,17 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.points.planar_boundary import PlanarBoundary
+from standoff.points.tolerances import PARAMETER_AT_REST
 
 Array = NDArray[np.float64]
 
-NEWTON_STEPS = 60
+MINIMUM_STEPS = 60
 """Most Newton steps to a minimum: more than any start between two samples was seen to need."""
 
-HALVINGS = 40
+STEP_HALVINGS = 40
 """Most halvings of one step: then it is below roundoff."""
-
-ROUNDINGS = 4.0 * float(np.finfo(float).eps)
-"""Part of a curve's range that a parameter at rest may still move by: roundoff."""
 
 
 def descend(boundary: PlanarBoundary, edge: int, t: float, x: Array) -> float:
@@ -35,14 +33,14 @@ def descend(boundary: PlanarBoundary, edge: int, t: float, x: Array) -> float:
     """
     curve = boundary.curves[edge]
     span = curve.last - curve.first
-    for _ in range(NEWTON_STEPS):
+    for _ in range(MINIMUM_STEPS):
         c, c1, c2 = curve.jet(t)
         away = c[:2] - x
         slope = float(c1[:2] @ away)
         bend = abs(float(c1[:2] @ c1[:2] + c2[:2] @ away))
         step = -slope / bend if bend > 0.0 else -math.copysign(span, slope)
         energy = float(away @ away)
-        for _ in range(HALVINGS):
+        for _ in range(STEP_HALVINGS):
             new = within(boundary, edge, t + step)
             rest = boundary.point(edge, new) - x
             if float(rest @ rest) <= energy:
@@ -51,7 +49,7 @@ def descend(boundary: PlanarBoundary, edge: int, t: float, x: Array) -> float:
         else:
             return t
         moved, t = abs(step) if new != t else 0.0, new
-        if moved <= ROUNDINGS * span:
+        if moved <= PARAMETER_AT_REST * span:
             break
     return t
 

@@ -12,6 +12,7 @@ from standoff.bodies.features import Feature
 from standoff.points.answer import Minimum
 from standoff.points.minima import descend, measured, parameter_rate, within
 from standoff.points.planar_boundary import INTERVALS, Bracket, Place, PlanarBoundary
+from standoff.points.tolerances import SAME_PARAMETER, SETTLED_RESIDUAL
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.state import TrackerState
 from standoff.tracking.tracker import Tracker
@@ -22,16 +23,10 @@ HOME = np.eye(4)
 AT_HOME = np.zeros(3), np.zeros(3)
 POINT = ("vertex", 0)
 
-AT_REST = 1e-3
-"""Residual, in sizes of the body, below which the paper's law counts as having settled on a
-minimum: far above its steady error, far below a start that is still on its way."""
 
 LAG = 1.5 / INTERVALS
 """How far, in parts of a curve's range, a tracker may be from the minimum that it follows: it is
 known to half a sample, and the paper's law lags."""
-
-SAME_PLACE = 1e-6
-"""Two minima of a curve whose parameters differ by less, in parts of its range, are one."""
 
 
 class Parallel(NamedTuple):
@@ -160,7 +155,7 @@ class ParallelTracker(KeepsReadOnly):
 
     def at_rest(self, minimum: Minimum) -> bool:
         """Has a tracker settled on a minimum?"""
-        return self.law is None or minimum.residual <= AT_REST * self.boundary.body.size
+        return self.law is None or minimum.residual <= SETTLED_RESIDUAL * self.boundary.body.size
 
     def _corrected(
         self, edge: int, t: float, before: tuple[Array, Array | None], x: Array, h: float
@@ -185,7 +180,7 @@ class ParallelTracker(KeepsReadOnly):
     def _doubles(self, parallel: Parallel, edge: int, active: int) -> list[int]:
         """Keys of minima that are another's too, or are ends while the curve has others."""
         curve = self.boundary.curves[edge]
-        near = SAME_PLACE * (curve.last - curve.first)
+        near = SAME_PARAMETER * (curve.last - curve.first)
         own = [m for m in parallel.minima if m.feature.index == edge]
         own.sort(key=lambda m: (m.key != active, m.key))
         kept: list[Minimum] = []

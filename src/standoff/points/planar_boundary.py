@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.kernels.entries.queries import planar_edge_normal
+from standoff.points.tolerances import ON_BOUNDARY, SHORTEST_CHORD
 from standoff.read_only import KeepsReadOnly
 
 Array = NDArray[np.float64]
@@ -34,12 +35,6 @@ MOST_TURN = 0.5
 MOST_CHORDS = 4_000
 """Chords halved for one point. A touching disc needs some hundred; all the boundary needs them
 only where it all is at one distance, as a circle's is from its centre."""
-
-SHORTEST = 1e-8
-"""Shortest chord to be halved, in sizes of the body: its arc is off it by roundoff alone."""
-
-ON_BOUNDARY = 16.0 * float(np.finfo(float).eps)
-"""A point this near to the boundary, in sizes of the body, is on no side of it: roundoff."""
 
 
 class Bounds(NamedTuple):
@@ -207,7 +202,7 @@ class PlanarBoundary(KeepsReadOnly):
         bounds = self._chord_bounds(x)
         low = np.flatnonzero(bounds < goal)
         others = float(np.delete(bounds, low).min()) if len(low) < len(bounds) else math.inf
-        shortest = SHORTEST * self.body.size
+        shortest = SHORTEST_CHORD * self.body.size
         # the chord that bounds the least is halved first; numbers tell equal ones apart
         queue = [(float(bounds[k]), int(k), self._chord(int(k))) for k in low]
         heapq.heapify(queue)

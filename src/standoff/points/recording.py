@@ -19,22 +19,15 @@ from standoff.motion.pose_function import path_of
 from standoff.points.answer import PointEvent, PointProximity
 from standoff.points.events import Switching, events_between
 from standoff.points.state import PointState
+from standoff.points.tolerances import RELEASE_SLOPES
 from standoff.points.tracker import PointTracker
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of, shown
 from standoff.recording.simulate import Moving
+from standoff.recording.tolerances import INSTANT_RESOLUTION, INSTANT_ROUNDINGS
 from standoff.tracking.inputs import flat_pose, flat_twist
 
 Array = NDArray[np.float64]
-
-RESOLUTION = 1e-10
-"""Part of the frame's step within which a switch is found: 1e-13 s of a millisecond."""
-
-ROUNDINGS = 4.0
-"""The same in roundings of the time itself, where that is more."""
-
-RELEASE = 4.0
-"""A feature is released at so many times the least slope that counts, with roundoff, at most."""
 
 
 class PointVisit(NamedTuple):
@@ -198,9 +191,10 @@ class _Step(NamedTuple):
         """Return the switches between two times, each found by halving the time between."""
         if at_low.proximity.mode == at_high.proximity.mode:
             return []
-        spacing = ROUNDINGS * float(np.spacing(max(abs(low), abs(high))))
+        spacing = INSTANT_ROUNDINGS * float(np.spacing(max(abs(low), abs(high))))
         middle = 0.5 * (low + high)
-        if high - low <= max(RESOLUTION * self.tracker.dt, spacing) or not low < middle < high:
+        least = max(INSTANT_RESOLUTION * self.tracker.dt, spacing)
+        if high - low <= least or not low < middle < high:
             return self._switches(at_low, high, at_high)
         x, v = _placed(self.path, middle)
         at_middle, _ = self.tracker.step(self.state, x, v, middle - self.before)
@@ -221,7 +215,7 @@ class _Step(NamedTuple):
 
     def _sharpened(self, event: PointEvent) -> PointEvent:
         """Move a switch at a Voronoi line from the threshold of release to the line itself."""
-        if event.kind != "voronoi" or not 0.0 < abs(event.value) <= RELEASE * SLOPE:
+        if event.kind != "voronoi" or not 0.0 < abs(event.value) <= RELEASE_SLOPES * SLOPE:
             return event
         time = event.time - event.value / event.slope if event.slope else event.time
         if not abs(time - event.time) <= self.tracker.dt:

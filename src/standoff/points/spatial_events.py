@@ -11,16 +11,12 @@ import scipy
 from numpy.typing import NDArray
 
 from standoff.points.answer import PointEvent
-from standoff.points.depth_branches import SAME_NORMAL, Branch, DepthBranches
+from standoff.points.depth_branches import Branch, DepthBranches
+from standoff.points.tolerances import DEPTH_SWITCH_RESOLUTION, EQUAL_DEPTHS, SAME_NORMAL
 from standoff.tracking.state import TrackerState
 
 Array = NDArray[np.float64]
 
-RESOLUTION = 1e-15
-"""Part of the step within which a switch is found; the roundoff of the depths is above it."""
-
-EQUAL = 1e-11
-"""Part of the body's size by which two depths may differ at a switch: roundoff."""
 
 MOST_LEGS = 8
 """Most switches over the medial axis that one step is split into."""
@@ -104,7 +100,7 @@ class Switches:
                 *self.medial(source, lesser, first, tau, legs // 2),
                 *self.medial(lesser, target, tau, last, legs // 2),
             ]
-        located = abs(excess(tau)) <= EQUAL * self.minima.size
+        located = abs(excess(tau)) <= EQUAL_DEPTHS * self.minima.size
         if located and self._one(source, target, tau):
             return []
         return [self._medial_event(source, target, tau if located else last, located)]
@@ -153,7 +149,7 @@ class Switches:
         best = None
         for other in self.others:
             d = self.minima.at(other, x).proximity.distance
-            if d > goal + EQUAL * self.minima.size:
+            if d > goal + EQUAL_DEPTHS * self.minima.size:
                 goal, best = d, other
         return best
 
@@ -184,4 +180,4 @@ def _root(
         return first
     if high == 0.0:
         return last
-    return float(scipy.optimize.brentq(function, first, last, xtol=RESOLUTION))
+    return float(scipy.optimize.brentq(function, first, last, xtol=DEPTH_SWITCH_RESOLUTION))

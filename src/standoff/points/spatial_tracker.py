@@ -22,6 +22,7 @@ from standoff.points.spatial_answer import (
     answer_of,
 )
 from standoff.points.spatial_events import Switches, Way, states_of
+from standoff.points.tolerances import TIE
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.tracking.choices import positive_number
@@ -30,9 +31,6 @@ from standoff.tracking.state import TrackerState
 from standoff.tracking.tracker import Tracker
 
 Array = NDArray[np.float64]
-
-TIE = 4.0 * float(np.finfo(float).eps)
-"""Two depths that differ by less, in sizes of the body, are equal: the active one stays."""
 
 
 class SpatialPointTracker(KeepsReadOnly):

@@ -32,6 +32,7 @@ from standoff.points.parallel_minima import (
 )
 from standoff.points.planar_boundary import Place, PlanarBoundary
 from standoff.points.state import Answering, Found, PointState
+from standoff.points.tolerances import ENTRY_INSTANT, TIE
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.tracking.choices import positive_number
@@ -44,14 +45,9 @@ from standoff.tracking.tracker import Tracker
 
 Array = NDArray[np.float64]
 
-TIE = 4.0 * float(np.finfo(float).eps)
-"""Two distances that differ by less, in sizes of the body, are equal: the active one stays."""
 
 MOST_RESTARTS = 4
 """Nearer points, met by the certificate, that one frame follows up."""
-
-INSTANT = 1e-9
-"""Part of a step in which the automaton outside switches, but hardly moves, when it is entered."""
 
 
 class PointTracker(KeepsReadOnly):
@@ -314,7 +310,8 @@ class PointTracker(KeepsReadOnly):
             outside = self.outer.start_from(HOME, pose, at, t, POINT, (), *twists(v))
             answer = outside.proximity
             if isinstance(self.law, PaperLaw) and feature is None:
-                outside, answer = self.outer.step(outside, HOME, pose, *twists(v), dt=INSTANT * h)
+                instant = ENTRY_INSTANT * h
+                outside, answer = self.outer.step(outside, HOME, pose, *twists(v), dt=instant)
         else:
             outside, answer = self.outer.step(before, HOME, pose, *twists(v), dt=h)
         if answer.status.penetrating:  # within roundoff of the boundary

@@ -21,6 +21,13 @@ from standoff.bodies.features import Feature, feature_of
 from standoff.kernels.tolerances import SLOPE
 from standoff.recording.recording import RecordedEvent
 from standoff.recording.switching_function import NoMinimum, switching_function
+from standoff.recording.tolerances import (
+    INSTANT_RESOLUTION,
+    INSTANT_ROUNDINGS,
+    PROOF_SLOPE,
+    RATE_STENCIL,
+    SWITCH_PROOF,
+)
 from standoff.tracking.calls import DESCEND, Frame, start, step
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.proximity import Event
@@ -33,25 +40,9 @@ Array = NDArray[np.float64]
 Motion = tuple[Array, Array, Array, Array]
 """Flat poses of A and B, (12,), and their twists, (6,)."""
 
-RESOLUTION = 1e-10
-"""Part of the frame's step to which the halving goes on: 1e-13 s of a millisecond."""
-
-ROUNDINGS = 4.0
-"""The same in roundings of the time itself, where that is more."""
-
-PROOF = 1e-7
-"""The features this part of the step before and after a root must be the switch's own."""
-
-PROOF_SLOPE = 4.0 * SLOPE
-"""The switching function a little before and after, at least, where that is farther: below the
-threshold of release itself either feature may be held."""
 
 ROOT_TRIES = 3
 """Roots that may fail their proof before the halving goes on alone."""
-
-STENCIL = 1e-5
-"""Half width, in steps, of the difference that gives a switching function's rate."""
-
 
 MOST_ANSWERS = 1000
 """Answers within one step. A switch by halving takes some 40; a body that turns many times within
@@ -113,8 +104,8 @@ class Step:
         self.pair = tracker.a, tracker.b
         self.first, self.last = Known(before, state.proximity.row), Known(after, row)
         self.length = after - before
-        spacing = ROUNDINGS * float(np.spacing(max(abs(before), abs(after))))
-        self.resolution = max(RESOLUTION * self.length, spacing)
+        spacing = INSTANT_ROUNDINGS * float(np.spacing(max(abs(before), abs(after))))
+        self.resolution = max(INSTANT_RESOLUTION * self.length, spacing)
         self.paper = isinstance(tracker.law, PaperLaw)
         self.answers = 0
 
@@ -200,7 +191,7 @@ class Step:
             at = _crossing(value, low.time, high.time, ends)
             if at is None:
                 return None
-            reach = STENCIL * self.length
+            reach = RATE_STENCIL * self.length
             left, right = max(at - reach, self.first.time), min(at + reach, self.last.time)
             slope = sign * (value(right) - value(left)) / (right - left)
             return Switch(at, low.mode, high.mode, sign * value(at), slope)
@@ -209,7 +200,7 @@ class Step:
 
     def _proven(self, root: Switch, low: Known, high: Known) -> bool:
         """Are the features just before and after a root those of the two answers around it?"""
-        aside = max(PROOF * self.length, self.resolution)
+        aside = max(SWITCH_PROOF * self.length, self.resolution)
         if root.slope != 0.0:
             aside = max(aside, PROOF_SLOPE / abs(root.slope))
         for at, end in (root.time - aside, low), (root.time + aside, high):

@@ -65,7 +65,7 @@ LABEL_SHARE = 0.07
 """Least part of the time axis that a feature must be active to be named within its band: there is
 room for the name."""
 
-LEAST_GAP = 0.1
+LEAST_SHOWN_GAP = 0.1
 """Height at which a gap that rounds to zero or less is drawn, in rounding units of the greatest
 distance: a logarithm cannot show it where it is."""
 
@@ -189,7 +189,7 @@ def _shade_overlaps(axes: Axes, times: Array, recording: RecordedFrames, *, name
 
 def _draw_gap(axes: Axes, times: Array, recording: RecordedFrames) -> None:
     scale = np.nanmax(np.abs(recording.distance), initial=0.0) or 1.0
-    floor = LEAST_GAP * float(np.spacing(scale))
+    floor = LEAST_SHOWN_GAP * float(np.spacing(scale))
     gap, residual = np.maximum(recording.gap, floor), np.maximum(recording.residual, floor)
     good = recording.certified
     bad = ~good & ~np.isnan(gap)

@@ -18,20 +18,13 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_conormal, edge_jet, end_direction, feature_jet
+from standoff.recording.tolerances import FLAT_DIRECTION, HELD_AT_REST
 from standoff.tracking.rows import AnswerRows
 
 Array = NDArray[np.float64]
 
-NEWTON_STEPS = 20
+HELD_STEPS = 20
 """Most steps of the held minimum: from a neighbouring frame 2 to 4 are taken."""
-
-AT_REST = 1e-14
-"""A step that moves the witness points by less (relative to body sizes and distance) is the last:
-some roundings of the witness points."""
-
-FLAT = 1e-10
-"""Singular values of H below this part of the greatest belong to flat directions, as between
-parallel edges; the step is the shortest one."""
 
 
 class NoMinimum(ArithmeticError):
@@ -83,18 +76,19 @@ class SwitchingFunction:
             for k in range(L.dimension(body.ints, self.mode[2 * s]))
         ]
         q = self.q.copy()
-        for _ in range(NEWTON_STEPS):
+        for _ in range(HELD_STEPS):
             across, gradient, hessian, tangents = self._derivatives(poses, q)
             step = np.zeros(4)
             if free:
                 held = np.ix_(free, free)
-                step[free] = -np.linalg.lstsq(hessian[held], gradient[free], rcond=FLAT)[0]
+                found = np.linalg.lstsq(hessian[held], gradient[free], rcond=FLAT_DIRECTION)
+                step[free] = -found[0]
             q += step
             moved = float(np.abs(tangents * step[:, None]).max())
             scale = sum(x.size for x in self.pair if x.bounded) + float(np.linalg.norm(across))
             if not np.isfinite(moved):
                 break
-            if moved <= AT_REST * scale:
+            if moved <= HELD_AT_REST * scale:
                 return across, q
         raise NoMinimum("Newton's method did not come to rest")
 

@@ -8,19 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
+from standoff.recording.tolerances import WHOLE_STEPS
 
 Array = NDArray[np.float64]
 
 MOST_FRAMES = 10_000_000
 """Most frames of one run. A frame is kept in some 600 bytes, so this many take 6 GB; a greater
 number comes from a step or a duration in the wrong unit."""
-
-WHOLE_STEPS = 1e-9
-"""Part of a step by which a duration may miss a whole number of steps and still count as one.
-
-0.3 / 0.1 is a little less than 3 in double precision; a duration of a million steps is off by a
-few 1e-10 of a step.
-"""
 
 
 def even_times(start: float, duration: float, step: float) -> Array:

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from standoff.recording.times import MOST_FRAMES, WHOLE_STEPS
+from standoff.recording.times import MOST_FRAMES
+from standoff.recording.tolerances import WHOLE_STEPS
 from standoff.scene.errors import SceneError
 from standoff.scene.motions import Motion
 from standoff.scene.reader import Array

@@ -8,12 +8,12 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from standoff.kernels.tolerances import LEAST_DIVISOR
+from standoff.tracking.tolerances import SHRINK
+
 Array = NDArray[np.float64]
 Support = Callable[[Array], Array]
 
-# The hulls are shrunk by this part of their size before they are compared, and the linear program
-# is solved to a tenth of it: what it calls overlap is overlap.
-SHRINK = 1e-8
 # Rounds of the search: each adds the support points along the last separating direction. Smooth
 # bodies 1e-6 of their size deep took 20 at most.
 ROUNDS = 60
@@ -24,7 +24,7 @@ def separating_direction(a: Array, b: Array) -> Array | None:
     meet. A linear program: the greatest t with w.a + t <= c <= w.b - t, |w| <= 1 by components.
     """
     centre = 0.5 * (a.mean(axis=0) + b.mean(axis=0))
-    size = max(np.abs(a - centre).max(), np.abs(b - centre).max(), 1e-300)
+    size = max(np.abs(a - centre).max(), np.abs(b - centre).max(), LEAST_DIVISOR)
     a, b = ((x - centre) / size for x in (a, b))
     a, b = (x + SHRINK * (x.mean(axis=0) - x) for x in (a, b))
     spatial = 1.0 if np.ptp(np.vstack([a, b])[:, 2]) > 0.0 else 0.0

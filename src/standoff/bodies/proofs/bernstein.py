@@ -25,13 +25,13 @@ from standoff.bodies.proofs.defects import Dent, dents_total
 from standoff.bodies.proofs.forms import Forms, forms_of, with_poles
 from standoff.bodies.proofs.normals import in_hemisphere
 from standoff.bodies.proofs.proof import PatchProof
-from standoff.bodies.proofs.straight import (
-    ROUNDED,
-    Grid,
-    Nearness,
-    plane_nearness,
-    ruled_along,
-    turn_to,
+from standoff.bodies.proofs.straight import Grid, Nearness, plane_nearness, ruled_along, turn_to
+from standoff.bodies.proofs.tolerances import (
+    CURVATURE_ROUNDING,
+    NEARLY_FLAT,
+    PROVEN_DEFECT,
+    ROUNDED_POINTS,
+    STRAIGHT_TURN,
 )
 from standoff.errors import StandoffError
 from standoff.geometry import bernstein
@@ -43,16 +43,6 @@ from standoff.geometry.validation import Array
 MOST_BOXES = 2000
 # Enough boxes to show the size of the dents of a patch that is not convex.
 FINE_BOXES = 300
-# Curvature found below minus this, 1 / size, is no rounding: the patch is not convex.
-ROUNDING = 1e-14
-# A convex patch has no greater defect, as a fraction of its size or, if that is more, of its
-# distance from the origin: rounding of control points bends a patch of degree 9 by some 1e-13.
-PROVEN = 1e-12
-# Curvature below this, 1 / size, everywhere: the patch may be flat, which is then tried.
-NEARLY_FLAT = 1e-9
-# Radians between normals of a patch and of the plane or straight lines it is but for rounding, if
-# it lies more than its size from the origin times that: a few roundings over a narrow span.
-STRAIGHT = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +103,8 @@ def _proven(surface: NurbsSurface, outward: int | None, spare: bool) -> tuple[Pa
     every = [piece.forms for piece in pieces]
     plane = plane_nearness([piece.points for piece in pieces], every)
     moved = max(piece.moved for piece in pieces)
-    if plane.distance <= ROUNDED * max(reach, 1.0) and plane.turn <= STRAIGHT * max(reach, 1.0):
+    far = max(reach, 1.0)
+    if plane.distance <= ROUNDED_POINTS * far and plane.turn <= STRAIGHT_TURN * far:
         proof = PatchProof(
             convex=True,
             defect=(plane.rise + moved) * size,
@@ -131,7 +122,7 @@ def _proven(surface: NurbsSurface, outward: int | None, spare: bool) -> tuple[Pa
     dents = [dent for r in results for dent in r.dents]
     rise, tilt = dents_total(dents)
     worst = int(np.argmin([np.nan_to_num(r.found, nan=np.inf) for r in results]))
-    convex = rise <= PROVEN * max(reach, 1.0) and all(r.convex for r in results)
+    convex = rise <= PROVEN_DEFECT * max(reach, 1.0) and all(r.convex for r in results)
     rise, tilt = min(rise + near.rise, plane.rise), min(tilt + near.turn, plane.turn)
     flat = convex and float(np.abs(bends).max(initial=0.0)) <= NEARLY_FLAT and _flat(pieces, sense)
     proof = PatchProof(
@@ -144,7 +135,7 @@ def _proven(surface: NurbsSurface, outward: int | None, spare: bool) -> tuple[Pa
         tilt=tilt,
         curvature=-max((d.curvature for d in dents), default=0.0) / size,
     )
-    return proof, results[worst].found < -ROUNDING
+    return proof, results[worst].found < -CURVATURE_ROUNDING
 
 
 def _refuse_creases(surface: NurbsSurface) -> None:
@@ -194,11 +185,11 @@ def _straightened(
 ) -> tuple[list[Piece], Nearness] | None:
     """The patch as one ruled by straight lines, if it is so but for rounding; how near it is."""
     for along_u in (False, True):
-        ruled = ruled_along(grid, along_u, ROUNDED * max(reach, 1.0))
+        ruled = ruled_along(grid, along_u, ROUNDED_POINTS * max(reach, 1.0))
         if ruled is None:
             continue
         turn = turn_to(ruled.spans, [piece.forms for piece in pieces], reach, along_u)
-        if turn <= STRAIGHT * max(reach, 1.0):
+        if turn <= STRAIGHT_TURN * max(reach, 1.0):
             return _pieces(ruled.whole, reach), Nearness(ruled.distance, turn)
     return None
 
@@ -245,7 +236,7 @@ def _search(piece: Piece, sense: int) -> SpanBound:
             heappush(open_cells, (_weight(bound), count, cell, bound))
 
     look(ROOT)
-    while open_cells and count < (FINE_BOXES if found < -ROUNDING else MOST_BOXES):
+    while open_cells and count < (FINE_BOXES if found < -CURVATURE_ROUNDING else MOST_BOXES):
         _, _, cell, bound = heappop(open_cells)
         for half in cell.halves(bound.along_u):
             look(half)

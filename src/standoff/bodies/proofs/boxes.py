@@ -8,6 +8,12 @@ from functools import lru_cache
 import numpy as np
 
 from standoff.bodies.proofs.forms import Forms
+from standoff.bodies.proofs.tolerances import (
+    FLAT_TURN,
+    NORMAL_ROUNDING,
+    ORTHONORMAL_FRAME,
+    TIGHT_JACOBIAN,
+)
 from standoff.geometry import bernstein
 from standoff.geometry.validation import Array
 
@@ -16,12 +22,6 @@ from standoff.geometry.validation import Array
 # normals are free of such rounding, and smaller boxes serve.
 DEEPEST = 26
 DEEPEST_APEX = 44
-# J strays by no more than this fraction of itself over a box whose bound is tight.
-TIGHT = 0.25
-# Radians: a patch whose normals turn by less over a box is flat there.
-FLAT_TURN = 1e-13
-# Coefficients of T shorter than this fraction of the longest are rounding.
-NORMAL_ROUNDING = 1e-15
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,8 @@ def curvature_bound(forms: Forms, cell: Cell, sense: int) -> CurvatureBound:
     jacobian = bernstein.value(forms.jacobian, u, v)
     frame = _frame(jacobian)
     metric = frame.T @ (jacobian @ jacobian.T) @ frame
-    regular = abs(metric[0, 0] - 1.0) + abs(metric[1, 1] - 1.0) + abs(metric[0, 1]) < 1e-6
+    off = abs(metric[0, 0] - 1.0) + abs(metric[1, 1] - 1.0) + abs(metric[0, 1])
+    regular = off < ORTHONORMAL_FRAME
     second = -sense * _mapped(cell.part(forms.second), frame)
     least = float(_least(second).min())
     speed = np.linalg.norm(jacobian, axis=1) * [0.5 ** cell.u[0], 0.5 ** cell.v[0]]
@@ -116,12 +117,12 @@ def curvature_bound(forms: Forms, cell: Cell, sense: int) -> CurvatureBound:
         columns = np.tensordot(frame.T, cell.part(forms.jacobian), 1)
         size, spread = _size(forms, cell, normal, columns)
     distance = _apex_distance(forms, cell.ends)
-    turn = np.pi if spread <= TIGHT and distance > 0.0 else _turn(normal, forms)
-    if spread > TIGHT and regular:
+    turn = np.pi if spread <= TIGHT_JACOBIAN and distance > 0.0 else _turn(normal, forms)
+    if spread > TIGHT_JACOBIAN and regular:
         along_u = _strays(columns, -2) >= _strays(columns, -1)
     apex = -least / size if size > 0.0 else np.inf
     bound = -apex / distance if distance > 0.0 else -np.inf
-    tight = spread <= TIGHT or turn <= FLAT_TURN
+    tight = spread <= TIGHT_JACOBIAN or turn <= FLAT_TURN
     return CurvatureBound(bound, apex, width, turn, convex, tight, found, along_u)
 
 

@@ -17,15 +17,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.bodies.proofs.tolerances import COLLAPSED_SIDE, SMOOTH_POLE
 from standoff.geometry import bernstein
 from standoff.geometry.validation import Array
-
-# Points of a side closer together than this fraction of the patch's size are one point (a pole):
-# as close as curves and vertices of a body must meet. What is moved counts as a dent.
-COLLAPSE = 1e-9
-# A pole is smooth, not a sharp apex, where it is so but for this many times the rounding of the
-# control points: rounding alone leaves the ring round a pole out of plane.
-SMOOTH_POLE = 4.0
 
 # Products are taken in the widest floating point the platform has, so that cancellation costs
 # nothing but the rounding of the control points themselves.
@@ -68,7 +62,7 @@ def forms_of(points: Array, reach: float) -> Forms:
     noise = _noise(points, reach)
     poles, sharp = [], []
     for side in range(4):
-        if _width(points, side) <= COLLAPSE:
+        if _width(points, side) <= COLLAPSED_SIDE:
             poles.append(side)
             jacobian, normal, second, smooth = _freed(jacobian, normal, second, side, noise)
             if not smooth:
@@ -174,7 +168,7 @@ def with_poles(points: Array) -> tuple[Array, float]:
     points, moved = points.copy(), 0.0
     for side in range(4):
         width = _width(points, side)
-        if 0.0 < width <= COLLAPSE:
+        if 0.0 < width <= COLLAPSED_SIDE:
             row = _edge(points, side)
             pole = (row[:3] / row[3]).mean(axis=1)
             row[:3] = pole[:, None] * row[3]

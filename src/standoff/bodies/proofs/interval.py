@@ -27,6 +27,7 @@ from standoff.bodies.proofs.formulas.normals import hemisphere_axis, least_cosin
 from standoff.bodies.proofs.formulas.signs import FIRST_GRID, Bounds, sign_of_product, widest
 from standoff.bodies.proofs.formulas.taylor import TaylorBounds, curvature
 from standoff.bodies.proofs.proof import PatchProof
+from standoff.bodies.proofs.tolerances import BEND_ROUNDOFF, FEW_OPERATIONS
 from standoff.geometry.formulas import FormulaSurface
 from standoff.geometry.formulas.compiled import Formula
 from standoff.geometry.formulas.enclosures import Boxes, Enclosure, grid, hull, images
@@ -34,9 +35,6 @@ from standoff.geometry.formulas.expressions import sympy_module
 from standoff.geometry.intervals import TINY, Interval
 from standoff.geometry.validation import Array
 
-# Curvature times the patch's diameter within this of zero is roundoff of the formula's own
-# coefficients, not a bend: such a patch is convex, with its bound as defect.
-ROUNDOFF = 1e-12
 # The bound of the least curvature is this near to a value seen when the search may end.
 NEARNESS = 1.05
 # Boxes of one search, each 10 to 20 microseconds for 2000 characters of program: 1 to 2 seconds.
@@ -181,12 +179,12 @@ class _Search:
             inward = -(high + np.sqrt(np.maximum(high * high - least, 0.0)))
             bound = np.where(self.one_sided | (side >= 0.0), outward, inward)
         # roundoff of these few operations
-        return np.asarray(bound * (1.0 + 1e-14))
+        return np.asarray(bound * (1.0 + FEW_OPERATIONS))
 
     def run(self) -> Bent:
         boxes, count = self.boxes, len(self.boxes)
         bound, axis = self.least(boxes)
-        enough = -ROUNDOFF / self.diameter
+        enough = -BEND_ROUNDOFF / self.diameter
         while count * self.bounds.cost < MOST_BOXES:
             worst = float(bound.min())
             if worst >= enough or worst >= NEARNESS * min(self.found, 0.0) + 0.5 * enough:

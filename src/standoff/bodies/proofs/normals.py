@@ -8,6 +8,7 @@ import numpy as np
 
 from standoff.bodies.proofs.boxes import ROOT, Cell
 from standoff.bodies.proofs.forms import Forms
+from standoff.bodies.proofs.tolerances import HEIGHT_ROUNDING
 from standoff.geometry import bernstein
 from standoff.geometry.validation import Array
 
@@ -15,8 +16,6 @@ from standoff.geometry.validation import Array
 MOST_BOXES = 600
 # Steps towards the axis of the least cone round the sampled normals: within 1/steps of it.
 AXIS_STEPS = 200
-# Heights of coefficients above this, relative to the longest, count as zero: singular corners.
-HEIGHT_ROUNDING = 1e-14
 
 
 def in_hemisphere(pieces: Sequence[Forms]) -> bool:

@@ -16,6 +16,7 @@ from standoff.bodies.proofs import bernstein, interval
 from standoff.bodies.proofs.forms import forms_of, with_poles
 from standoff.bodies.proofs.normals import in_hemisphere
 from standoff.bodies.proofs.proof import PatchProof
+from standoff.bodies.proofs.tolerances import FLAT_PROFILE, WHOLE_ARCS
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.bernstein import segment
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
@@ -30,8 +31,6 @@ from standoff.geometry.validation import Array
 LONGEST_ARC = 0.5 * np.pi
 # Parts of the domain's sides where it is seen to which side a surface bulges.
 INNER = (0.125, 0.375, 0.625, 0.875)
-# A mean curvature below this part of the second derivatives, by arc length, is roundoff: flat.
-NEARLY_FLAT = 1e-9
 
 
 def prove_swept(surface: Revolution | Extrusion, outward: int | None = None) -> PatchProof:
@@ -103,7 +102,7 @@ def _bulging(surface: Revolution | Extrusion) -> int:
             mean = float(normal @ (g * xuu - 2.0 * f * xuv + e * xvv)) / scale
             size = max(float(np.linalg.norm(xuu)) / e, float(np.linalg.norm(xvv)) / g)
             total, most = total + mean, max(most, size)
-    return -int(np.sign(total)) if abs(total) > NEARLY_FLAT * most else 0
+    return -int(np.sign(total)) if abs(total) > FLAT_PROFILE * most else 0
 
 
 def _formula(surface: Revolution | Extrusion, profile: FormulaCurve) -> FormulaSurface:
@@ -202,7 +201,7 @@ def rational_pieces(
 
 
 def _arcs(first: float, last: float) -> list[tuple[float, float]]:
-    count = int(np.ceil((last - first) / LONGEST_ARC * (1.0 - 1e-15)))
+    count = int(np.ceil((last - first) / LONGEST_ARC * (1.0 - WHOLE_ARCS)))
     ends = np.linspace(first, last, max(count, 1) + 1)
     return [(float(a), float(b)) for a, b in pairwise(ends)]
 

@@ -17,16 +17,12 @@ import numpy as np
 
 from standoff.bodies.proofs.boxes import Cell
 from standoff.bodies.proofs.forms import Forms, forms_of, with_poles
+from standoff.bodies.proofs.tolerances import NORMAL_ROUNDING
 from standoff.geometry import bernstein
 from standoff.geometry.validation import Array
 
-# Control points off a plane or line by less than this fraction of the size, or if that is more of
-# the distance from the origin, are rounded: elevation, knots and maps leave some 1e-15.
-ROUNDED = 1e-14
-# Normals of coefficients shorter than this fraction of the longest are rounding.
-NORMAL_ROUNDING = 1e-15
 # Halvings of a span along its curve before normals are compared: there they turn little.
-HALVINGS = 4
+SPAN_HALVINGS = 4
 
 
 @dataclass(frozen=True)
@@ -146,8 +142,8 @@ def _turn_between(one: Array, other: Array, along_u: bool) -> float:
     They turn little along u, or v.
     """
     greatest = 0.0
-    for k in range(2**HALVINGS):
-        across = (HALVINGS, k)
+    for k in range(2**SPAN_HALVINGS):
+        across = (SPAN_HALVINGS, k)
         cell = Cell((0, 0), across) if along_u else Cell(across, (0, 0))
         normal = cell.part(other)
         apart = float(np.linalg.norm(cell.part(one - other), axis=0).max())

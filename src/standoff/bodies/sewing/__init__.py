@@ -5,8 +5,6 @@ matching.py finds which sides lie along which, correspondence.py their trimming 
 that they are one closed shell and which way out is, sew.py makes the parts of the body.
 """
 
-from standoff.bodies.sewing.corners import MAX_SPREAD
 from standoff.bodies.sewing.sew import Sewn, sew
-from standoff.bodies.tolerances import SEWING_TOLERANCE
 
-__all__ = ["MAX_SPREAD", "SEWING_TOLERANCE", "Sewn", "sew"]
+__all__ = ["Sewn", "sew"]

@@ -11,14 +11,12 @@ import scipy
 
 from standoff.bodies.sewing.patches import Patch
 from standoff.bodies.sewing.sides import SIDE_NAMES, Side
+from standoff.bodies.tolerances import MAX_SPREAD
 from standoff.errors import BodyError
 from standoff.geometry.validation import Array
 
 # Corners of a patch in the order of SIDE_NAMES: side k runs from corner k to corner k + 1.
 _CORNERS = ((0, 2), (1, 2), (1, 3), (0, 3))
-# Corners of one vertex may spread over this many tolerances; more is a chain of corners, which a
-# tolerance far above the sewing's quality makes.
-MAX_SPREAD = 3.0
 
 
 @dataclass(frozen=True, eq=False)

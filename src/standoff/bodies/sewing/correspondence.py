@@ -15,6 +15,13 @@ import scipy
 
 from standoff.bodies.sewing.corners import Stretch
 from standoff.bodies.sewing.sides import Side, in_spans
+from standoff.bodies.tolerances import (
+    AFFINE_SIDE,
+    SPLINE_MISS,
+    SPLINE_SHARE,
+    STRAIGHT_SHARE,
+    STRAIGHT_SIDE,
+)
 from standoff.errors import BodyError
 from standoff.geometry.nurbs_pcurves import NurbsPcurve
 from standoff.geometry.pcurves import Pcurve
@@ -24,14 +31,7 @@ from standoff.kernels.body import layout as L
 # Shares of an edge where the correspondence is read, and (between them) where it is checked.
 NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 12) / 12)
 CHECKS = (np.arange(17) + 0.5) / 17
-# A straight pcurve serves where it is no farther from the first side than the nearest points
-# are, but for this part of the body's size and of that distance itself.
-STRAIGHT = 2e-14
-STRAIGHT_SHARE = 0.5
-# A span of a spline serves when it misses the nearest points by this part of the size or by
-# SPLINE_SHARE of their distance, or has been halved MAX_CUTS times.
-SPLINE = 1e-13
-SPLINE_SHARE = 0.1
+# Halvings of a span of a spline, after which it serves as it is.
 MAX_CUTS = 7
 # Highest degree that the kernels take; Chebyshev's points of [-1, 1] with its ends, descending.
 DEGREE = 9
@@ -79,9 +79,9 @@ def correspond(one: Stretch, other: Stretch, size: float) -> Correspondence:
     points = [one.side.point(float(t)) for t in times]
     straight = (row[0] * times + row[1]) / (scale[0] * times + scale[1])
     residual = _farthest(other.side, straight, points)
-    if residual <= near * (1.0 + STRAIGHT_SHARE) + STRAIGHT * size:
+    if residual <= near * (1.0 + STRAIGHT_SHARE) + STRAIGHT_SIDE * size:
         return Correspondence(_straight(other.side, row, scale), sense, residual)
-    return _spline(one, other, sense, max(SPLINE * size, SPLINE_SHARE * near))
+    return _spline(one, other, sense, max(SPLINE_MISS * size, SPLINE_SHARE * near))
 
 
 def _times(side: Side, other: Side) -> Array:
@@ -107,7 +107,7 @@ def _moebius(x: Array, s: Array, s0: float, s1: float) -> tuple[Array, Array]:
     """
     left, right = (s - s0) * (1.0 - x), (s1 - s) * x
     k = float(left @ right / (right @ right)) if right.any() else 1.0
-    if not k > 0.0 or abs(k - 1.0) < 1e-13:
+    if not k > 0.0 or abs(k - 1.0) < AFFINE_SIDE:
         k = 1.0
     return np.array([k * s1 - s0, s0]), np.array([k - 1.0, 1.0])
 

@@ -18,7 +18,7 @@ from standoff.geometry.validation import Array
 from standoff.real_numbers import shown
 
 # Halvings of one patch before it counts as singular: 2^8 pieces on its way round.
-MAX_HALVINGS = 8
+PATCH_HALVINGS = 8
 # Points along u and v from which a patch's extent is read.
 GRID = 5
 
@@ -108,7 +108,7 @@ def cut_patches(patches: Sequence[Surface], tolerance: float) -> tuple[list[Patc
                 found.append(piece)
                 continue
             along, reason = way
-            if depth == MAX_HALVINGS:
+            if depth == PATCH_HALVINGS:
                 raise BodyError(
                     f"{piece.label}: {reason}, even after {depth} halvings.",
                     part=("patch", piece.given),

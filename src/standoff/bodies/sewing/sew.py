@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.proofs import PatchProof
-from standoff.bodies.sewing.corners import MAX_SPREAD, Outline, Stretch, outline
+from standoff.bodies.sewing.corners import Outline, Stretch, outline
 from standoff.bodies.sewing.correspondence import Correspondence, correspond, isoline
 from standoff.bodies.sewing.matching import match
 from standoff.bodies.sewing.patches import Patch, check_patches, cut_patches, grid_points
 from standoff.bodies.sewing.shell import check_shell, outward_senses
 from standoff.bodies.sewing.sides import SENSES
-from standoff.bodies.tolerances import SEWING_TOLERANCE
+from standoff.bodies.tolerances import MAX_SPREAD, SEWING_TOLERANCE
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.errors import BodyError
 from standoff.geometry.pcurves import Pcurve

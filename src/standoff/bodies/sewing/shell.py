@@ -10,6 +10,7 @@ import scipy
 from standoff.bodies.sewing.corners import Outline, Stretch
 from standoff.bodies.sewing.patches import Patch
 from standoff.bodies.sewing.sides import SENSES
+from standoff.bodies.tolerances import LEAST_THICKNESS
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
@@ -17,8 +18,6 @@ from standoff.geometry.validation import Array
 Pairs = Sequence[tuple[Stretch, Stretch]]
 # Gauss points along u and v for the volume, of which the sign and the order are wanted.
 VOLUME_POINTS = 6
-# A shell whose volume is below this many tolerances times its area is a sheet, no body.
-LEAST_THICKNESS = 2.0
 # Patches of a shell that one message names.
 MOST_NAMED = 6
 

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from standoff.bodies.tolerances import PROJECTION_STEP
 from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.surfaces import Surface
@@ -17,7 +18,7 @@ from standoff.geometry.validation import Array
 SIDE_NAMES = ("v0", "u1", "v1", "u0")
 SENSES = {"v0": 1, "u1": 1, "v1": -1, "u0": -1}
 # Points of the polyline that starts a projection.
-POLYLINE = 17
+POLYLINE_POINTS = 17
 # A link of it that is a greater part of its length is halved, at most so often: where a parameter
 # runs unevenly, as weights of a ratio of 1e6 make it, even parameters lie in one place.
 LONGEST_LINK = 0.25
@@ -25,8 +26,6 @@ LINK_HALVINGS = 40
 # Newton steps of one projection: it starts within a link of the polyline, and halves the range
 # where it would leave it.
 PROJECTION_STEPS = 60
-# A projection has arrived when its step is below this part of the side's parameter range.
-PROJECTION_STEP = 4e-16
 # Shares of a side where it is compared with another: none symmetric, none at an end.
 PROBES = np.array([0.03, 0.17, 0.31, 0.48, 0.64, 0.81, 0.96])
 # The same for every span between knots: a bulge of a spline fills at least one.
@@ -78,13 +77,13 @@ class Side:
 
     @cached_property
     def knots(self) -> Array:
-        """Parameters of the polyline, ascending: POLYLINE even ones, the curve's knots, and more
-        where its links would be long."""
+        """Parameters of the polyline, ascending: POLYLINE_POINTS even ones, the curve's knots, and
+        more where its links would be long."""
         return self._halved(self._even)
 
     @cached_property
     def _even(self) -> Array:
-        return np.union1d(np.linspace(self.first, self.last, POLYLINE), self.breaks)
+        return np.union1d(np.linspace(self.first, self.last, POLYLINE_POINTS), self.breaks)
 
     def _halved(self, knots: Array) -> Array:
         points = np.array([self.point(float(t)) for t in knots])

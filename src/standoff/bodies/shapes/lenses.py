@@ -6,15 +6,12 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.bodies.shapes.quadrics import SINGLE_CHART_REACH, sphere_atlas
+from standoff.bodies.tolerances import THIN_LENS
 from standoff.bodies.topology import Edge, Face
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.surfaces import Sphere
 from standoff.geometry.validation import not_negative, positive
-
-# A lens's offset, and its radius less the offset, are at least this part of its radius: what
-# float64 can still tell from a ball and from nothing.
-THIN_LENS = 1e-9
 
 
 def lens(radius: float, offset: float, *, rounding: float = 0.0) -> Body:

@@ -10,7 +10,14 @@ import scipy
 
 from standoff.bodies.body import Body
 from standoff.bodies.shapes.arguments import by_position, positive_numbers
-from standoff.bodies.tolerances import COPLANAR, FAR_OFF, FLATTEST, LEAST_CORE, SAME_VERTEX, THIN
+from standoff.bodies.tolerances import (
+    COPLANAR_FACETS,
+    FAR_OFF,
+    FLATTEST,
+    LEAST_CORE,
+    SAME_VERTEX,
+    THIN,
+)
 from standoff.bodies.topology import Edge, Face
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.curves import Line
@@ -314,7 +321,7 @@ def _facets(points: Array) -> list[Loop]:
             k = front.pop()
             members.update(int(v) for v in hull.simplices[k])
             for m in hull.neighbors[k]:
-                if group[m] < 0 and np.abs(hull.equations[m, :3] - normal).max() < COPLANAR:
+                if group[m] < 0 and np.abs(hull.equations[m, :3] - normal).max() < COPLANAR_FACETS:
                     group[m] = len(planes)
                     front.append(int(m))
         planes.append((normal, members))

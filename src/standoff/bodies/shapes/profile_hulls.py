@@ -13,6 +13,14 @@ from itertools import pairwise
 import numpy as np
 import scipy
 
+from standoff.bodies.tolerances import (
+    BITANGENT_STEP,
+    HELD_ENDS_RANK,
+    NO_ABSOLUTE_WIDTH,
+    ON_AXIS,
+    ROOT_WIDTH,
+    SHORTEST_ARC,
+)
 from standoff.errors import BodyError
 from standoff.geometry.curves import ConicArc, Curve
 from standoff.geometry.validation import Array
@@ -23,10 +31,6 @@ SAMPLES = 2048
 TANGENT_STEPS = 40
 # A tangent point may move this many samples from the hull's own.
 TANGENT_REACH = 3.0
-# An arc shorter than this part of a sample is one ring.
-SHORTEST_ARC = 1e-6
-# Points nearer to the axis than this fraction of the size are on it.
-ON_AXIS = 1e-13
 
 
 @dataclass(frozen=True)
@@ -142,9 +146,8 @@ def _root(
     if at_low <= 0.0 or at_high >= 0.0:  # no inner maximum: an end of the curve, or flat
         ends = [low] if at_low <= 0.0 else [high]
         return ends[0] if ends[0] in (curve.first, curve.last) and not curve.closed else t
-    return float(
-        scipy.optimize.brentq(slope, low, high, xtol=1e-300, rtol=4.0 * np.finfo(float).eps)
-    )
+    widths = {"xtol": NO_ABSOLUTE_WIDTH, "rtol": ROOT_WIDTH}
+    return float(scipy.optimize.brentq(slope, low, high, **widths))
 
 
 def _cross(a: Array, b: Array) -> float:
@@ -174,12 +177,12 @@ def _touching(curve: Curve, a: float, b: float, step: float) -> tuple[float, flo
         for k in range(2):
             if held[k]:
                 matrix[k], slopes[k] = np.eye(2)[k], 0.0
-        change = np.linalg.lstsq(matrix, -slopes, rcond=1e-12)[0]
+        change = np.linalg.lstsq(matrix, -slopes, rcond=HELD_ENDS_RANK)[0]
         change[held] = 0.0  # not roundoff either: an end stays an end
         new_a, new_b = a + change[0], b + change[1]
         if ends:
             new_a, new_b = (min(max(float(t), ends[0]), ends[1]) for t in (new_a, new_b))
-        if abs(new_a - a) + abs(new_b - b) <= 4e-16 * (abs(a) + abs(b)):
+        if abs(new_a - a) + abs(new_b - b) <= BITANGENT_STEP * (abs(a) + abs(b)):
             break
         a, b = float(new_a), float(new_b)
     reach = TANGENT_REACH * step

@@ -7,14 +7,12 @@ import numpy as np
 from standoff.bodies.body import Body
 from standoff.bodies.shapes.isolines import along_u
 from standoff.bodies.shapes.profile_hulls import Arc, Chain, hull_chain
+from standoff.bodies.tolerances import SAME_RADIUS
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
 from standoff.geometry.surfaces import Cone, Cylinder, Plane
 from standoff.geometry.swept import Revolution
 from standoff.geometry.validation import Array, not_negative
-
-# Rings whose radii differ by less (relative) are joined by a cylinder.
-SAME_RADIUS = 1e-14
 
 
 def hull_of_revolution(curve: Curve, *, rounding: float = 0.0) -> Body:

@@ -18,6 +18,7 @@ from standoff.bodies.voronoi.tolerances import (
     SOLVED,
 )
 from standoff.geometry.validation import Array
+from standoff.kernels.tolerances import EPS
 
 # Radii between two samples are not lower than these by such a factor.
 FAR_ABOVE = 4.0
@@ -25,7 +26,6 @@ FAR_ABOVE = 4.0
 MOST_ROOTS = 4
 # Samplings of an arc, each between neighbours of the lowest sample before.
 ZOOMS = 4
-ROUNDOFF = float(np.finfo(np.float64).eps)
 
 
 class Touch(NamedTuple):
@@ -108,7 +108,7 @@ def _root(function: Callable[[float], float], us: Array, i: int) -> float:
     a, b = float(us[i]), float(us[i + 1])
     if function(a) >= 0.0 or function(b) <= 0.0:  # zero but for the samples' roundoff
         return a if abs(function(a)) <= abs(function(b)) else b
-    return float(scipy.optimize.brentq(function, a, b, xtol=ROUNDOFF, rtol=4.0 * ROUNDOFF))
+    return float(scipy.optimize.brentq(function, a, b, xtol=EPS, rtol=4.0 * EPS))
 
 
 def _radii(foot: Foot, y: Array, yu: Array, least: float) -> tuple[Array, Array]:
@@ -163,7 +163,7 @@ def junction(outline: Outline, places: tuple[Place, Place, Place]) -> Junction |
         length = float(np.abs(step).max())
         # where two feet are close the steps never get small: they end as roundoff of the equations
         solved = float(np.abs(miss).max()) <= SOLVED * outline.size
-        if length <= ROUNDOFF * outline.size or (solved and length >= 0.5 * last):
+        if length <= EPS * outline.size or (solved and length >= 0.5 * last):
             return Junction(y[:2], float(y[2]), (now[0], now[1], now[2]))
         if not np.isfinite(length):
             return None

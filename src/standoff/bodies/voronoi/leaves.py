@@ -13,13 +13,11 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from standoff.bodies.voronoi.discs import ROUNDOFF, edge_distances
+from standoff.bodies.voronoi.discs import edge_distances
 from standoff.bodies.voronoi.outline import Outline, Place
-from standoff.bodies.voronoi.tolerances import FLAT_CURVATURE, SAME_DEPTH
+from standoff.bodies.voronoi.tolerances import AT_END, FLAT_CURVATURE, SAME_DEPTH
 from standoff.geometry.validation import Array
-
-# A maximum nearer than this to the end of its arc (part of the arc) is at the end.
-AT_END = 1e-7
+from standoff.kernels.tolerances import EPS
 
 
 class Leaf(NamedTuple):
@@ -118,7 +116,7 @@ def _bracket(places: list[Place], a: int, b: int, outline: Outline) -> tuple[Pla
             lambda u, arc=arc: -arc.foot(float(u)).curvature,
             bounds=(lo, hi),
             method="bounded",
-            options={"xatol": np.sqrt(ROUNDOFF) * (hi - lo)},
+            options={"xatol": np.sqrt(EPS) * (hi - lo)},
         )
         tops += [(arc.foot(u).curvature, (n, u)) for u in (lo, float(found.x), hi)]
     n, u = max(tops)[1]

@@ -19,6 +19,7 @@ from standoff.bodies.voronoi.discs import Junction, Touch, greatest_disc, juncti
 from standoff.bodies.voronoi.leaves import Leaf, leaves_of
 from standoff.bodies.voronoi.outline import Outline, Place
 from standoff.bodies.voronoi.tolerances import (
+    BRACKET_SLACK,
     HALVINGS,
     LONGEST_CHORD,
     NEAR_JUNCTION,
@@ -30,8 +31,6 @@ from standoff.geometry.validation import Array
 
 # Bisections of a branch that are always made, so that symmetry hides no bend; and the most.
 LEAST_DEPTH, MOST_DEPTH = 3, 14
-# How far Newton's junction may lie outside its bracket: the roundoff of the bracket's ends.
-BRACKET_SLACK = 1e-6
 
 
 @dataclass(eq=False)

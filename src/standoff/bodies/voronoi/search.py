@@ -11,22 +11,19 @@ import scipy
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.bodies.tessellation import chart_box, chart_outline, chart_row
+from standoff.bodies.voronoi.tolerances import FOOT_AT_REST, OFF_NORMAL
 from standoff.errors import StandoffError
 from standoff.geometry.curves import Curve
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import chart_normal, feature_jet, on_face
+from standoff.kernels.tolerances import EPS
 from standoff.read_only import KeepsReadOnly
 
 # Samples along an edge, and along each side of a chart.
 ALONG, GRID, COARSE_GRID, FEW_CHARTS = 65, 13, 5, 24
 # Starts of a descent on one chart, its steps, and how often one is halved.
 STARTS, STEPS, HALVINGS = 2, 30, 12
-# A step on a face that moves the point by less [of the way to it and the body's size] is the last.
-AT_REST = 1e-15
-# A face's nearest point has the way to it along its normal: greatest sine of the angle between.
-OFF_NORMAL = 1e-6
-ROUNDOFF = float(np.finfo(np.float64).eps)
 
 
 class Candidate(NamedTuple):
@@ -74,7 +71,7 @@ class Boundary(KeepsReadOnly):
         """
         found = [*self._vertices(x), *self._edges(x), *self._faces(x)]
         best = min(found, key=lambda c: c.distance)
-        if best.inside and best.distance > ROUNDOFF * self.scale:
+        if best.inside and best.distance > EPS * self.scale:
             raise StandoffError(
                 f"point = {x} lies {best.distance:.6g} inside {self.body!r}: regions of a spatial "
                 "body are found outside.",
@@ -124,21 +121,21 @@ class Boundary(KeepsReadOnly):
                 trial = np.clip(q + step, box[0], box[1])
                 ahead = np.array(feature_jet(ints, reals, face, chart, trial[0], trial[1]))
                 lower = 0.5 * float((ahead[0] - x) @ (ahead[0] - x))
-                if lower <= energy * (1.0 + 4.0 * ROUNDOFF):
+                if lower <= energy * (1.0 + 4.0 * EPS):
                     break
                 step = 0.5 * step
             else:
                 break
             moved = float(np.linalg.norm(ahead[0] - jet[0]))
             q, jet, energy = trial, ahead, lower
-            if moved <= AT_REST * (self.scale + np.sqrt(2.0 * energy)):
+            if moved <= FOOT_AT_REST * (self.scale + np.sqrt(2.0 * energy)):
                 break
         if not on_face(ints, reals, chart, float(q[0]), float(q[1])):
             return np.inf, False
         way, normal = x - jet[0], np.array(chart_normal(ints, reals, chart, q[0], q[1]))
         distance = float(np.linalg.norm(way))
         off = float(np.linalg.norm(np.cross(way, normal)))
-        if not normal.any() or off > OFF_NORMAL * distance + AT_REST * self.scale:
+        if not normal.any() or off > OFF_NORMAL * distance + FOOT_AT_REST * self.scale:
             return np.inf, False
         return distance, bool(way @ normal < 0.0)
 
@@ -173,7 +170,7 @@ def _newton(jet: Array, x: Array) -> Array:
     second = np.array([[jet[3] @ d, jet[4] @ d], [jet[4] @ d, jet[5] @ d]])
     values, vectors = np.linalg.eigh(metric + second)
     # a direction in which the distance falls off both ways is taken as it would be on a plane
-    least = np.maximum(np.abs(values), ROUNDOFF * float(np.abs(values).max(initial=0.0)))
+    least = np.maximum(np.abs(values), EPS * float(np.abs(values).max(initial=0.0)))
     along = vectors.T @ gradient
     return np.asarray(-vectors @ np.where(least > 0.0, along / np.where(least > 0, least, 1.0), 0))
 
@@ -191,6 +188,6 @@ def _stationary(curve: Curve, x: Array) -> list[float]:
     for i in np.flatnonzero((slopes[:-1] < 0.0) & (slopes[1:] >= 0.0)):
         t = us[i + 1]
         if slopes[i + 1] > 0.0:
-            t = scipy.optimize.brentq(slope, us[i], us[i + 1], xtol=ROUNDOFF, rtol=4.0 * ROUNDOFF)
+            t = scipy.optimize.brentq(slope, us[i], us[i + 1], xtol=EPS, rtol=4.0 * EPS)
         found.append(float(np.linalg.norm(curve.point(float(t)) - x)))
     return found

@@ -42,7 +42,7 @@ HALVINGS = 60
 """Most bisections of a foot's way to a junction: the whole of float64's digits."""
 
 NEAR_JUNCTION = 1e-3
-"""A foot's bracket at a junction [of its way] from which Newton's method is tried."""
+"""A foot's bracket at a junction [part of its way] from which Newton's method is tried."""
 
 NEWTON_STEPS = 12
 """Most steps of Newton's method on a junction; from such a bracket four do."""
@@ -55,3 +55,17 @@ CHECK_SAMPLES = 24
 
 FINEST_POLYLINE = 1e-7
 """Finest polyline that may be asked for [body's size]: a branch then has a few thousand points."""
+
+BRACKET_SLACK = 1e-6
+"""How far Newton's junction may lie outside its bracket [parameter units]: the roundoff of the
+bracket's ends."""
+
+FOOT_AT_REST = 1e-15
+"""A step on a face that moves the point by less [of the way to it and the body's size] is the
+last."""
+
+OFF_NORMAL = 1e-6
+"""A face's nearest point has the way to it along its normal: greatest sine of the angle between."""
+
+AT_END = 1e-7
+"""A maximum nearer than this to the end of its arc (part of the arc) is at the end."""

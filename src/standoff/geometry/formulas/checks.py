@@ -21,6 +21,7 @@ from standoff.geometry.formulas.enclosures import (
 )
 from standoff.geometry.formulas.expressions import parameter_values, read_expression
 from standoff.geometry.intervals import Interval
+from standoff.geometry.tolerances import VANISHING_NORMAL
 from standoff.geometry.validation import GREATEST, Array
 from standoff.real_numbers import real_array, shape_of, shown
 
@@ -29,9 +30,6 @@ CURVE_VARIABLES = ("t",)
 # A side of a patch may have collapsed: within this part of the domain's side from its border a
 # vanishing normal is left to the convexity proof.
 RIM = 1.0 / 32.0
-# |x_u x x_v| below this part of its greatest value over the patch is taken for no normal: its
-# direction has lost half of its digits.
-VANISHING = 1e-8
 # Halvings of a box while no normal is proven in it, and boxes looked at in one patch.
 DEEPEST = 60
 MOST_BOXES = 8_000
@@ -136,7 +134,7 @@ def check_normal(formula: Formula, domain: Sequence[float]) -> None:
     spots = [corners[:, 0] + np.array([a, b]) * np.diff(corners)[:, 0] for a in at for b in at]
     lengths = np.array([_normal_length(formula, p) for p in spots])
     inner = np.array([0.0 < a < 1.0 and 0.0 < b < 1.0 for a in at for b in at])
-    place = _without_direction(formula, domain, VANISHING * float(lengths.max()))
+    place = _without_direction(formula, domain, VANISHING_NORMAL * float(lengths.max()))
     if lengths[inner].max() <= 0.0:
         place = np.asarray(spots[int(np.flatnonzero(inner)[0])])
     if place is not None:

@@ -17,13 +17,12 @@ from standoff.geometry.formulas.checks import (
 )
 from standoff.geometry.formulas.compiled import Formula, compiled
 from standoff.geometry.formulas.enclosures import Enclosure, grid, hull
+from standoff.geometry.tolerances import CLOSED_CURVE
 from standoff.geometry.validation import Array, affine_map
 from standoff.kernels.body import layout as L
 
 # Boxes whose hull is the box of a curve: its excess falls with the square.
 BOX_GRID = 256
-# A curve whose ends are nearer than this part of its size is closed if its tangents agree too.
-CLOSED = 1e-12
 
 
 class FormulaCurve(Curve):
@@ -80,8 +79,8 @@ class FormulaCurve(Curve):
         """Whether both ends and their tangents are the same, to roundoff."""
         (a, at, _), (b, bt, _) = self.jet(self.first), self.jet(self.last)
         low, high = self.box()
-        ends = np.linalg.norm(a - b) <= CLOSED * np.linalg.norm(high - low)
-        return bool(ends and np.linalg.norm(at - bt) <= CLOSED * np.linalg.norm(at))
+        ends = np.linalg.norm(a - b) <= CLOSED_CURVE * np.linalg.norm(high - low)
+        return bool(ends and np.linalg.norm(at - bt) <= CLOSED_CURVE * np.linalg.norm(at))
 
     def transformed(self, linear: Array, shift: Array) -> FormulaCurve:
         """The exact image under x -> linear x + shift, by the same compiled function."""

@@ -10,13 +10,11 @@ from numpy.typing import NDArray
 
 from standoff.geometry.formulas.programs import Writer
 from standoff.geometry.intervals import FUNCTIONS, Interval, interval
+from standoff.geometry.tolerances import SMALLEST_BOX
 from standoff.geometry.validation import Array
 
 # Boxes a side that a search begins with.
 FIRST_GRID = 8
-# A box this small (part of the domain's side) in which a formula still has no bound holds a pole,
-# or a point where the compiled jet loses all its digits, such as sin(u)/u at 0.
-SMALLEST = 2.0**-26
 # Boxes evaluated at once, and in one search: a few milliseconds, about a second.
 CHUNK = 256
 # Boxes that are cut on first, so that a place is found before all of a pole's line is covered.
@@ -124,7 +122,7 @@ def without_bounds(enclosure: Enclosure, domain: Sequence[float]) -> Array | Non
             waiting.append(boxes[DIVE:])
             boxes = boxes[:DIVE]
         extent = (boxes.high - boxes.low) / size
-        if extent.max() <= SMALLEST or evaluated > MOST_BOXES:
+        if extent.max() <= SMALLEST_BOX or evaluated > MOST_BOXES:
             return np.asarray(boxes.middle[0])
         waiting.append(boxes.halves(extent.argmax(axis=1)))
     return None

@@ -11,12 +11,12 @@ from standoff.bodies.body import Body
 from standoff.kernels.body import layout as L
 from standoff.motion import Pose
 from standoff.tracking.calls import Frame, Pair, packed, start, step
-from standoff.tracking.contact.normal_sets import AROUND, SAME
 from standoff.tracking.inputs import flat_pose
 from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.options import pack_options
 from standoff.tracking.rows import StateRow
 from standoff.tracking.status import Status
+from standoff.tracking.tolerances import AROUND, SAME_WIDTH
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def equal_normals(
     -------
     (k, 3) array
         Unit vectors, world, the answer's own first. Each is a local minimum of the depth within
-        SAME of the size; they are apart by more than AROUND.
+        SAME_WIDTH of the size; they are apart by more than AROUND.
     """
     found = [normal]
     if not (a.bounded and b.bounded):
@@ -57,7 +57,7 @@ def equal_normals(
             continue
         depth, n = _descent(pair, options, (pose_a, pose_b), way / length, size)
         near = min(float(np.linalg.norm(n - m)) for m in found) <= AROUND
-        if abs(depth - distance) <= SAME * size and not near:
+        if abs(depth - distance) <= SAME_WIDTH * size and not near:
             found.append(n)
     return np.array(found)
 

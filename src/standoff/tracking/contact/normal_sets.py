@@ -12,16 +12,10 @@ from standoff.bodies.body import Body
 from standoff.kernels.body import layout as L
 from standoff.motion import Pose
 from standoff.tracking.support import support_point
+from standoff.tracking.tolerances import AROUND, LEAST_WIDTH_ANGLE, SAME_WIDTH
 
 Array = NDArray[np.float64]
 
-AROUND = 1e-3
-"""Radians: other normals are tried at this angle. Normal cones narrower than this, as of polytopes
-with thousands of facets, are not seen."""
-
-SAME = 1e-10
-"""Of the size: widths of overlap (support sums) closer than this are the same. At AROUND one
-that grows with a radius of curvature of 2e-4 of the size differs by more."""
 
 DIRECTIONS = 24
 """Directions around the normal that are tried first."""
@@ -49,14 +43,14 @@ def normal_dimension(a: Body, b: Body, pose_a: Pose, pose_b: Pose, normal: Array
     size = float(a.reals[L.SIZE] + b.reals[L.SIZE]) + a.radius + b.radius
     excess = _excess(a, b, pose_a, pose_b, normal)
     if a.dimension == 2 or b.dimension == 2:
-        return int(min(excess(1.0, 0.0), excess(-1.0, 0.0)) <= SAME * size)
+        return int(min(excess(1.0, 0.0), excess(-1.0, 0.0)) <= SAME_WIDTH * size)
 
     def around(angle: float) -> float:
         return excess(float(np.cos(angle)), float(np.sin(angle)))
 
     angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
     found = np.array([around(t) for t in angles])
-    low = found <= SAME * size
+    low = found <= SAME_WIDTH * size
     if (low & np.roll(low, 1)).any():
         return 2
     if low.any():
@@ -66,9 +60,9 @@ def normal_dimension(a: Body, b: Body, pose_a: Pose, pose_b: Pose, normal: Array
         if found[k] < WORTH_A_SEARCH * found.max():
             bounds = (angles[k] - step, angles[k] + step)
             least = scipy.optimize.minimize_scalar(
-                around, bounds=bounds, method="bounded", options={"xatol": 1e-9}
+                around, bounds=bounds, method="bounded", options={"xatol": LEAST_WIDTH_ANGLE}
             )
-            if least.fun <= SAME * size:
+            if least.fun <= SAME_WIDTH * size:
                 return 1
     return 0
 

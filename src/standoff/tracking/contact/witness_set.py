@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.bodies.support_sets import LEVEL, ROUNDINGS, support_set
+from standoff.bodies.support_sets import support_set
+from standoff.bodies.tolerances import HEIGHT_ROUNDINGS, LEVEL
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.flat_sets import FlatSet, shared
 from standoff.kernels.body import layout as L
@@ -19,18 +20,9 @@ from standoff.real_numbers import shown
 from standoff.tracking.contact.equal_depths import equal_normals
 from standoff.tracking.contact.normal_sets import normal_dimension
 from standoff.tracking.rows import Answer
+from standoff.tracking.tolerances import LEAST_EXTENT, LINE_RANK, LOOSENESS, TOUCHING_CORES
 
 Array = NDArray[np.float64]
-
-LEAST_EXTENT = 1e-7
-"""Of the lesser core's size: what is shorter or narrower does not count. A round body is level
-with its highest point to roundoff (1e-15 of the size) within 6e-8 of it."""
-
-TOUCHING = 1e-12
-"""Of the sizes: cores that are nearer than this touch, and the normal may not be unique."""
-
-LOOSENESS = 4.0
-"""Witness points off the normal's line by some length may be off their sets by a few times that."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +120,7 @@ def witness_set(
     span = size_a + size_b + abs(proximity.distance) + a.radius + b.radius
     core_distance = proximity.distance + a.radius + b.radius
     several, normals = 0, n[None]
-    if core_distance <= TOUCHING * span:
+    if core_distance <= TOUCHING_CORES * span:
         several = normal_dimension(a, b, first, second, n)
         if not several:
             normals = equal_normals(a, b, first, second, n, proximity.distance)
@@ -181,7 +173,7 @@ def _overlap(
     reach = sum(sizes) + float(np.linalg.norm(pose_b.translation - origin))
     off = (y - x) - ((y - x) @ n) * n
     loose = LOOSENESS * float(np.linalg.norm(off))
-    rounding = ROUNDINGS * np.finfo(float).eps * (reach + float(np.linalg.norm(origin)))
+    rounding = HEIGHT_ROUNDINGS * np.finfo(float).eps * (reach + float(np.linalg.norm(origin)))
     tolerance = max(LEVEL * min(sizes), 1e2 * rounding) + loose
     least = max(LEAST_EXTENT * min(sizes), 10.0 * tolerance)
     frame = _frame(n, a.dimension == 2 or b.dimension == 2)
@@ -219,7 +211,7 @@ def _lifted(
     if side is None or seen is None:
         return flat
     heights = (side - witness) @ n
-    slope = np.linalg.lstsq(seen, heights, rcond=1e-6)[0]
+    slope = np.linalg.lstsq(seen, heights, rcond=LINE_RANK)[0]
     return np.asarray(flat + np.outer(corners @ slope, n))
 
 

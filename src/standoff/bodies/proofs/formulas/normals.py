@@ -8,14 +8,9 @@ import numpy as np
 import scipy
 
 from standoff.bodies.proofs.formulas.forms import curvature_forms
-from standoff.bodies.proofs.formulas.signs import (
-    FIRST_GRID,
-    SMALLEST,
-    Bounds,
-    sign_of_product,
-    widest,
-)
+from standoff.bodies.proofs.formulas.signs import FIRST_GRID, Bounds, sign_of_product, widest
 from standoff.bodies.proofs.formulas.taylor import TaylorBounds, normal
+from standoff.bodies.proofs.tolerances import FEW_OPERATIONS, LEAST_COSINE, SMALLEST_SIGN_BOX
 from standoff.geometry.formulas.compiled import Formula
 from standoff.geometry.formulas.enclosures import Boxes, grid, mapped
 from standoff.geometry.intervals import TINY, Interval
@@ -23,9 +18,6 @@ from standoff.geometry.validation import Array
 
 # Boxes evaluated for one axis.
 MOST_BOXES = 8_192
-# Cosine to the axis: normals nearer to 90 degrees from it do not count as inside the hemisphere.
-# Two poles at float64's pi / 2 and -pi / 2 fit one by 6e-17, which serves nothing.
-LEAST_COSINE = 1e-9
 COORDINATES = np.concatenate([np.eye(3), -np.eye(3)])
 
 
@@ -99,7 +91,7 @@ def _all_on_one_side(bounds: Bounds | TaylorBounds, domain: tuple[float, ...], a
         evaluated += len(boxes)
         if (
             evaluated * bounds.cost > MOST_BOXES
-            or ((boxes.high - boxes.low) / size).max() < SMALLEST
+            or ((boxes.high - boxes.low) / size).max() < SMALLEST_SIGN_BOX
         ):
             return False
         value, _, slopes = bounds(boxes)
@@ -124,7 +116,7 @@ def least_cosines(
     """(n,) the least cosine between `axis` and cofactors @ normal over each box; -1 if unknown."""
     value = mapped(cofactors, _normal_bounds(formula, domain)(boxes)[0])
     with np.errstate(invalid="ignore"):
-        high = np.sqrt((value.magnitude**2).sum(axis=0)) * (1.0 + 1e-14)
+        high = np.sqrt((value.magnitude**2).sum(axis=0)) * (1.0 + FEW_OPERATIONS)
         low = along(value, axis).lo
         cosine = np.where(low > 0.0, low / high, -1.0)
     return np.asarray(np.nan_to_num(cosine, nan=-1.0))

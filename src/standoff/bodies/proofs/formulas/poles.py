@@ -10,15 +10,12 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.proofs.formulas.symbolic import Ring, TooLargeError, cross, dot
+from standoff.bodies.proofs.tolerances import DOMAIN_ROUNDINGS, NEARLY_COLLAPSED
 from standoff.geometry.formulas.compiled import Formula
 from standoff.geometry.formulas.expressions import sympy_module
 from standoff.geometry.intervals import Interval, interval, near
 
-# A side of the domain within this many roundings of a multiple of pi / 12 stands for it.
-ROUNDINGS = 2
 PARTS_OF_PI = 12
-# Sides longer than this part of their distance to the patch's middle are not looked at further.
-NEARLY_COLLAPSED = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +72,7 @@ def _values(level: float) -> Iterable[Any]:
     yield sympy.Rational(level)
     times = round(level / np.pi * PARTS_OF_PI)
     exact = sympy.pi * sympy.Rational(times, PARTS_OF_PI)
-    if times and abs(float(exact) - level) <= ROUNDINGS * np.spacing(abs(level)):
+    if times and abs(float(exact) - level) <= DOMAIN_ROUNDINGS * np.spacing(abs(level)):
         yield exact
 
 

@@ -7,19 +7,17 @@ from typing import Any
 
 import numpy as np
 
+from standoff.bodies.proofs.tolerances import SMALLEST_SIGN_BOX, ZERO_BOUND
 from standoff.geometry.formulas.enclosures import Boxes, Enclosure, grid, mean_value
 from standoff.geometry.formulas.expressions import sympy_module
 from standoff.geometry.intervals import Interval
 from standoff.geometry.validation import Array
 
-# A bound as near to zero as this comes from rounding an exact zero outward.
-ZERO = 1e-290
 FIRST_GRID = 8
 CHUNK = 1024
-# Boxes evaluated for one sign, and the least part of the domain's side: beyond, a sign that is
-# still open is zero, or as good as zero, somewhere.
+# Boxes evaluated for one sign: beyond, one that is still open is zero, or as good as zero,
+# somewhere.
 MOST_BOXES = 16_384
-SMALLEST = 2.0**-20
 
 
 class Bounds:
@@ -97,7 +95,7 @@ def proven_sign(expression: Any, variables: tuple[str, ...], domain: Sequence[fl
         value, middle, slopes = bounds(boxes)
         if ((middle.hi < 0.0) if up else (middle.lo > 0.0)).any():
             return 0
-        is_open = ~(value.lo[0] >= -ZERO) if up else ~(value.hi[0] <= ZERO)
+        is_open = ~(value.lo[0] >= -ZERO_BOUND) if up else ~(value.hi[0] <= ZERO_BOUND)
         boxes, slopes = (
             boxes[is_open],
             [Interval(s.lo[:, is_open], s.hi[:, is_open]) for s in slopes],
@@ -105,12 +103,12 @@ def proven_sign(expression: Any, variables: tuple[str, ...], domain: Sequence[fl
         if not len(boxes):
             break
         ends = bounds.at_ends(boxes, slopes, 0, greatest=not up)
-        is_open = ~(ends >= -ZERO) if up else ~(ends <= ZERO)
+        is_open = ~(ends >= -ZERO_BOUND) if up else ~(ends <= ZERO_BOUND)
         boxes, slopes = (
             boxes[is_open],
             [Interval(s.lo[:, is_open], s.hi[:, is_open]) for s in slopes],
         )
-        if len(boxes) and ((boxes.high - boxes.low) / size).max() < SMALLEST:
+        if len(boxes) and ((boxes.high - boxes.low) / size).max() < SMALLEST_SIGN_BOX:
             return 0
         if len(boxes):
             boxes = boxes.halves(widest(boxes, slopes, size))

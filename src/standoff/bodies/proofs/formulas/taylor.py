@@ -21,6 +21,7 @@ import numpy as np
 
 from standoff.bodies.proofs.formulas.poles import Pole, poles_of
 from standoff.bodies.proofs.formulas.symbolic import cross, dot
+from standoff.bodies.proofs.tolerances import QUOTIENT_ROUNDOFF
 from standoff.geometry.formulas.compiled import Formula
 from standoff.geometry.formulas.enclosures import Boxes
 from standoff.geometry.formulas.series import Series, SeriesProgram, powers
@@ -32,7 +33,7 @@ from standoff.geometry.validation import Array
 ORDER = 4
 ORDER_AT_POLE = 6
 # A box nearer to a pole than this many of its own widths is expanded about the pole.
-REACH = 1.0
+POLE_WIDTHS = 1.0
 # Boxes evaluated at once: some megabytes.
 CHUNK = 512
 # Characters of program that one box costs beside those of the formula: the forms' own products.
@@ -72,7 +73,7 @@ class TaylorBounds:
         for k, pole in enumerate(self.poles):
             low, high = boxes.low[:, pole.axis], boxes.high[:, pole.axis]
             gap = low - pole.level if pole.inward > 0 else pole.level - high
-            near[gap <= REACH * (high - low)] = k
+            near[gap <= POLE_WIDTHS * (high - low)] = k
         found: list[Bounded] = []
         order = []
         for k in range(-1, len(self.poles)):
@@ -278,6 +279,6 @@ def _over(x: Interval, w: Interval) -> Interval:
     """x / w of w >= 0, which may be zero at the apex: the limits there."""
     low = np.where(x.lo >= 0.0, x.lo / w.hi, np.where(w.lo > 0.0, x.lo / w.lo, -np.inf))
     high = np.where(x.hi <= 0.0, x.hi / w.hi, np.where(w.lo > 0.0, x.hi / w.lo, np.inf))
-    spare = 1e-15
+    spare = QUOTIENT_ROUNDOFF
     low = np.where(np.isnan(x.lo), np.nan, low - spare * np.abs(low))
     return Interval(low, np.where(np.isnan(x.hi), np.nan, high + spare * np.abs(high)))
