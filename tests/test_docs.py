@@ -87,7 +87,7 @@ REFERENCE = {page.name: sorted(documented(page.name)) for page in (DOCS / "api")
 @pytest.mark.parametrize("page", REFERENCE)
 def test_every_name_of_the_reference_is_there(page: str) -> None:
     for full in REFERENCE[page]:
-        named(full)
+        assert named(full) is not None, full
 
 
 @pytest.mark.parametrize(

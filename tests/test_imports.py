@@ -331,3 +331,31 @@ def test_a_name_that_left_the_front_says_where_it_is(name: str, home: str) -> No
 def test_what_never_was_is_no_attribute() -> None:
     for module in (so, so.points, so.shapes):
         assert not hasattr(module, "no_such_name")
+
+
+BOX = so.shapes.box(1.0, 1.0, 1.0)
+LOOP = so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (1, 0), (0, 1))])
+
+
+@pytest.mark.parametrize(
+    ("made", "shown"),
+    [
+        (
+            so.Tracker(BOX, BOX),
+            "a b buffer dt law resolved_law start start_from step step_into",
+        ),
+        (so.PointTracker(LOOP), "body dt law start start_from step tolerance"),
+        (so.points.SpatialPointTracker(BOX), "body dt start step"),
+        (so.PredictorCorrector(), "deadline depth facts name predictor resolved tolerance"),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_tab_completion_shows_no_internals_of_an_object(made: object, shown: str) -> None:
+    assert [name for name in sorted(dir(made)) if not name.startswith("_")] == shown.split()
+
+
+def test_what_is_hidden_is_there() -> None:
+    tracker = so.Tracker(BOX, BOX)
+    assert tracker.packed[0] is BOX.ints
+    assert "packed" not in dir(tracker)
+    assert so.PredictorCorrector().only_one is not None

@@ -43,12 +43,17 @@ def test_it_can_be_silenced(tmp_path: Path) -> None:
     assert any(tmp_path.rglob("*.nbi"))  # it was compiled
 
 
-def test_a_closed_stderr_stops_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_closed_stderr_stops_nothing(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.delenv(notices.QUIET, raising=False)
+    notices.say("everybody reads this")
+    assert "everybody reads this" in capsys.readouterr().err
     with (tmp_path / "closed").open("w") as closed:
         pass
     monkeypatch.setattr(sys, "stderr", closed)
     notices.say("nobody reads this")
+    assert capsys.readouterr().err == ""
 
 
 def test_every_entry_is_needed_for_something_and_all_that_is_named_is_an_entry_s() -> None:

@@ -25,6 +25,7 @@ from standoff.points.spatial_events import Switches, Way, states_of
 from standoff.points.tolerances import TIE
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
+from standoff.shown_names import hides
 from standoff.tracking.choices import positive_number
 from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.state import TrackerState
@@ -33,6 +34,7 @@ from standoff.tracking.tracker import Tracker
 Array = NDArray[np.float64]
 
 
+@hides("minima", "outer")
 class SpatialPointTracker(KeepsReadOnly):
     """Keeps the signed distance of a moving point to a spatial body, inside and outside.
 

@@ -35,6 +35,7 @@ from standoff.points.state import Answering, Found, PointState
 from standoff.points.tolerances import ENTRY_INSTANT, TIE
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
+from standoff.shown_names import hides
 from standoff.tracking.choices import positive_number
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw
@@ -50,6 +51,7 @@ MOST_RESTARTS = 4
 """Nearer points, met by the certificate, that one frame follows up."""
 
 
+@hides("answering", "boundary", "outer", "parallel")
 class PointTracker(KeepsReadOnly):
     """Keeps the signed distance of a moving point to a planar body, inside and outside.
 

@@ -238,6 +238,9 @@ class Law:
         ]
         return f"{type(self).__name__}({', '.join(given)})"
 
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if name not in ("check_step", "only_one")]
+
     def resolved(self, dt: float) -> Law:
         """Return the law with the defaults that hang on the frame time [s], or on each other,
         filled in.

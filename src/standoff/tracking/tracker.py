@@ -17,6 +17,7 @@ from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion import PoseLike, TwistLike
 from standoff.read_only import KeepsReadOnly
+from standoff.shown_names import hides
 from standoff.spellings import no_attribute
 from standoff.tracking.choices import positive_number
 from standoff.tracking.inputs import (
@@ -45,6 +46,7 @@ Array = NDArray[np.float64]
 UNDECIDED = (float(Status.NOT_CERTIFIED.value),)
 
 
+@hides("check_state", "options", "packed", "planar")
 class Tracker(KeepsReadOnly):
     """Keeps the minimum distance of two convex bodies while they move.
 
