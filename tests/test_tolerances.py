@@ -22,6 +22,7 @@ NO_TOLERANCE = {
     ("geometry/validation.py", "1e-50"): "the least length that a user may give",
     ("recording/plot.py", "1e-16"): "where an axis without values begins",
     ("scene/settings.py", "1e-3"): "an option's default, a time",
+    ("tracking/inputs.py", "1e-12"): "PLANE_TILT, beside the check of planar poses that it serves",
     ("tracking/law_options.py", "1e-10"): "an option's default: `tolerance` itself",
 }
 # The moments' own stand beside the sums of roundoff that they end.

@@ -4,10 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-PLANE_TILT: Final = 1e-12
-"""A planar body's pose may be tilted by this (entries of R, dimensionless): roundoff of composing
-rotations."""
-
 SHRINK: Final = 1e-8
 """The hulls are shrunk by this part of their size before they are compared, and the linear program
 is solved to a tenth of it: what it calls overlap is overlap."""
