@@ -8,6 +8,7 @@ from standoff.cli.arguments import (
     Command,
     DistanceCommand,
     ImpactCommand,
+    SimulateCommand,
     TrackCommand,
     WarmupCommand,
 )
@@ -36,6 +37,8 @@ def _doing(command: Command) -> str:
             return f"checking {shown(command.what)}"
         case AutomatonCommand():
             return f"finding the modes of {_pairs(command.pair)} of {shown(command.scene)}"
+        case SimulateCommand():
+            return f"simulating {shown(command.scene)}"
         case WarmupCommand():
             return f"loading all kernels; what must be compiled takes about {ALL_SECONDS} s in all"
         case _:

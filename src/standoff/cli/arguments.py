@@ -154,6 +154,33 @@ class AutomatonCommand:
 
 
 @dataclass(frozen=True)
+class SimulateCommand:
+    """Let a scene's bodies fall, roll, slide and bounce, and sum up what was seen.
+
+    Exit codes: 0 done, 1 results could not be written, 2 bad input, 3 finished but not certified.
+    """
+
+    scene: SceneFile
+    """Scene of a simulation; docs/simulation.md describes the format."""
+    output: Annotated[
+        Path | None, arg(aliases=["-o"], metavar="OUT.parquet", help_behavior_hint="")
+    ] = None
+    """Write every record to this Parquet file."""
+    plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
+    """Plot paths, distances, forces and energies to this file (.png, .svg or .pdf)."""
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Print the summary as JSON."""
+    step: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
+    """In place of the scene's: time of a tick, s."""
+    duration: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
+    """In place of the scene's: time that is simulated, s."""
+    method: Annotated[str | None, arg(metavar="METHOD", help_behavior_hint="")] = None
+    """In place of the scene's: semi-implicit, euler, heun, midpoint or rk4."""
+    tracker: Annotated[str | None, arg(metavar="inside|beside", help_behavior_hint="")] = None
+    """In place of the scene's: the tracker inside the operator, or beside it."""
+
+
+@dataclass(frozen=True)
 class WarmupCommand:
     """Compile all kernels ahead, once for this installation, so that no later use waits for it.
 
@@ -174,6 +201,7 @@ Command = (
     | ImpactCommand
     | CheckCommand
     | AutomatonCommand
+    | SimulateCommand
     | WarmupCommand
     | AddedCommand
 )
@@ -184,6 +212,7 @@ OWN: dict[str, type] = {
     "impact": ImpactCommand,
     "check": CheckCommand,
     "automaton": AutomatonCommand,
+    "simulate": SimulateCommand,
     "warmup": WarmupCommand,
 }
 """The library's own commands, by name."""

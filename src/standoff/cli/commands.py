@@ -8,6 +8,7 @@ from standoff.cli.arguments import (
     Command,
     DistanceCommand,
     ImpactCommand,
+    SimulateCommand,
     TrackCommand,
     WarmupCommand,
 )
@@ -45,6 +46,10 @@ def run(command: Command) -> int:
             from standoff.cli.automaton import run_automaton
 
             return run_automaton(command)
+        case SimulateCommand():
+            from standoff.cli.simulate import run_simulate
+
+            return run_simulate(command)
         case WarmupCommand():
             from standoff.cli.warmup import run_warmup
 

@@ -13,8 +13,8 @@ from standoff.recording.simulate import Progress
 
 
 @contextmanager
-def progress_bar() -> Iterator[Progress | None]:
-    """Show a progress bar on stderr where that is a terminal."""
+def progress_bar(doing: str = "tracking") -> Iterator[Progress | None]:
+    """Show a progress bar on stderr where that is a terminal; `doing` stands before it."""
     if not sys.stderr.isatty():
         yield None
         return
@@ -22,6 +22,6 @@ def progress_bar() -> Iterator[Progress | None]:
         task = bar.add_task("starting", total=None)
 
         def show(done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total, description="tracking")
+            bar.update(task, completed=done, total=total, description=doing)
 
         yield show

@@ -95,6 +95,11 @@ class Table:
         """Return the keys in file order, for tables whose keys are the user's own names."""
         return list(self._content)
 
+    def replaced(self, over: Mapping[str, object]) -> Table:
+        """Return the same table with other values in place of its own."""
+        content = {**self._content, **over}
+        return Table(content, file=self.file, path=self.path, json=self._json)
+
     def error(self, problem: str, key: str | None = None) -> SceneError:
         """Return the error about `key` of this table, or about the table itself."""
         parts = [part for part in (self.path, key) if part]

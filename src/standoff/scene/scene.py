@@ -164,19 +164,19 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
         message names the file, the key and the fix.
     """
     path = Path(file)
-    text = _text_of(path)
+    text = text_of(path)
     try:
         content = toml_tables(text)
     except SceneError as error:
         raise error.found_in(path) from error
     top = Table(content, file=path)
-    _check_version(top)
+    check_version(top)
     top.expect(*KEYS)
-    bodies = _named(top, "bodies", read_body)
+    bodies = named(top, "bodies", read_body)
     if not bodies:
         raise top.error("no bodies; add a table such as [bodies.tool]", "bodies")
-    placements = _named(top, "placements", read_pose, bodies)
-    motions = _named(top, "motions", lambda table: table, bodies)
+    placements = named(top, "placements", read_pose, bodies)
+    motions = named(top, "motions", lambda table: table, bodies)
     pairs = read_pairs(top, list(bodies))
     return Scene(
         file=path,
@@ -190,7 +190,8 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
     )
 
 
-def _text_of(path: Path) -> str:
+def text_of(path: Path) -> str:
+    """Return the text of a scene file, or raise SceneError."""
     problem = file_problem(path, str(path), "the current folder")
     if problem is not None:
         raise SceneError(problem)
@@ -205,7 +206,8 @@ def _text_of(path: Path) -> str:
         raise SceneError(f"cannot be read: {error.strerror}", file=path) from error
 
 
-def _check_version(top: Table) -> None:
+def check_version(top: Table) -> None:
+    """Refuse a scene of another version of the format."""
     version = top.required("version", f"version = {VERSION}")
     if type(version) is not int or version != VERSION:
         raise top.error(
@@ -215,7 +217,7 @@ def _check_version(top: Table) -> None:
         )
 
 
-def _named(
+def named(
     top: Table,
     key: str,
     read: Callable[[Table], Value],

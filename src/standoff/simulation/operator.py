@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,12 @@ SIDES = ("inside", "beside")
 
 MOST_NUMBERS = 200_000_000
 """Numbers that one run may record: 1.6 GB."""
+
+BLOCK = 20_000
+"""Ticks of one compiled loop, a tenth of a second or so: progress is told between them."""
+
+Progress = Callable[[int, int], None]
+"""Told, as a run goes on, how many ticks are done, and of how many."""
 
 OVERLAP = 1e-9
 """Of the lesser body's size: a start that overlaps by no more touches, to roundoff."""
@@ -191,8 +198,15 @@ class Operator(KeepsReadOnly):
             )
         return np.concatenate([found.data, answer.row])
 
-    def run(self, state: SystemState, ticks: int, every: int = 1) -> SystemRun:
-        """Advance a state by many ticks in one compiled loop.
+    def run(
+        self,
+        state: SystemState,
+        ticks: int,
+        every: int = 1,
+        *,
+        progress: Progress | None = None,
+    ) -> SystemRun:
+        """Advance a state by many ticks, in compiled loops.
 
         Parameters
         ----------
@@ -202,9 +216,13 @@ class Operator(KeepsReadOnly):
             How many steps.
         every : int
             Record every so many of them; ``ticks`` is a multiple of it.
+        progress : callable, optional
+            Called now and then with the ticks done and the ticks in all.
 
         Raises
         ------
+        StandoffTypeError
+            No state.
         StandoffError
             The motion left all bounds, at a tick that is told: a step too long for it.
         """
@@ -226,18 +244,34 @@ class Operator(KeepsReadOnly):
                 "ticks",
                 ticks,
             )
-        table = driven_table(self.system, state.time, self.dt, ticks)
         data = state.data.copy()
         states, accounts = np.empty((count, len(data))), np.empty((count, width))
-        tick, why = entries.run_system(self.packed, data, table, every, (states, accounts))
-        if why != T.FINE:
-            raise StandoffError(
-                f"After tick {tick + 1} ({state.time + (tick + 1) * self.dt:g} s) a body's motion "
-                "was no longer finite: take a shorter step or less stiffness."
-            )
+        block = max(1, BLOCK // every)
+        for first in range(0, count - 1, block):
+            last = min(first + block, count - 1)
+            rows = slice(first, last + 1)
+            self._advance(data, state.time, first * every, every, (states[rows], accounts[rows]))
+            if progress is not None:
+                progress(last * every, ticks)
         for array in (states, accounts):
             array.flags.writeable = False
         return SystemRun(self.system, states, accounts)
+
+    def _advance(
+        self, data: Array, start: float, done: int, every: int, records: tuple[Array, Array]
+    ) -> None:
+        """One compiled loop: `data` is changed in place, the records are written."""
+        ticks = every * (len(records[0]) - 1)
+        # counted from the start of the run, so that blocks add no rounding
+        data[K.S_TIME] = start + done * self.dt
+        table = driven_table(self.system, float(data[K.S_TIME]), self.dt, ticks)
+        tick, why = entries.run_system(self.packed, data, table, every, records)
+        if why != T.FINE:
+            at = done + tick + 1
+            raise StandoffError(
+                f"After tick {at} ({start + at * self.dt:g} s) a body's motion was no longer "
+                "finite: take a shorter step or less stiffness."
+            )
 
     def step(self, state: SystemState) -> SystemState:
         """Advance a state by one tick."""

@@ -1,0 +1,178 @@
+"""``standoff simulate``: bodies that move and touch, their summary and their files."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from standoff import __version__
+from standoff.cli.arguments import SimulateCommand
+from standoff.cli.errors import CommandError, ExitCode, MissingExtra
+from standoff.cli.facts import json_text
+from standoff.cli.output import Writer, check_target, write_whole
+from standoff.cli.progress import progress_bar
+from standoff.cli.summary import line
+from standoff.errors import StandoffError
+from standoff.scene import SceneError
+from standoff.scene.simulation import SimulationScene, load_simulation
+from standoff.simulation.rigid_body import FREE
+from standoff.simulation.system_run import SystemRun
+
+TABLE_ENDINGS = (".parquet",)
+PLOT_ENDINGS = (".png", ".svg", ".pdf")
+
+
+def run_simulate(command: SimulateCommand) -> int:
+    """Simulate, write the files asked for, and print the summary.
+
+    Raises
+    ------
+    SceneError, CommandError
+        If the scene, an option or an output file is not usable, or the motion left all bounds.
+    WriteError
+        If the files could not be written after all.
+    """
+    given = {name: getattr(command, name) for name in ("step", "duration", "method", "tracker")}
+    scene = load_simulation(command.scene, given)
+    _check_files(command)
+    operator = scene.operator
+    try:
+        state = operator.start(scene.start, allow_overlap=scene.allow_overlap)
+        with progress_bar("simulating") as progress:
+            run = operator.run(state, scene.ticks, scene.every, progress=progress)
+    except StandoffError as error:
+        raise SceneError(_cured(str(error)), key="simulate", file=scene.file) from error
+    facts = _facts(scene, run)
+    files = _files(command, scene, run, facts)
+    write_whole(files)
+    if command.json:
+        print(json_text(facts | {"files": [str(path) for path in files]}))
+    else:
+        print("\n".join(_lines(scene, run, list(files))))
+    return ExitCode.DONE if run.uncertified == 0 else ExitCode.NOT_CERTIFIED
+
+
+def _cured(text: str) -> str:
+    """A message of the library, in a scene's words."""
+    return text.replace("call start(allow_overlap=True)", "write allow_overlap = true")
+
+
+def _check_files(command: SimulateCommand) -> None:
+    if command.output is not None:
+        check_target(command.output, "-o", TABLE_ENDINGS)
+    if command.plot is not None:
+        check_target(command.plot, "--plot", PLOT_ENDINGS)
+    if command.output is not None and command.output == command.plot:
+        raise CommandError(f"-o and --plot {command.plot}: name two files")
+    try:
+        # Imported now, so that a missing library is told before the run.
+        if command.output is not None:
+            import standoff.simulation.file
+        if command.plot is not None:
+            import standoff.simulation.plot  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise MissingExtra(str(error.name)) from error
+
+
+def _files(
+    command: SimulateCommand, scene: SimulationScene, run: SystemRun, facts: dict[str, Any]
+) -> dict[Path, Writer]:
+    files: dict[Path, Writer] = {}
+    if command.output is not None:
+        from standoff.simulation.file import write_run
+
+        files[command.output] = lambda file: write_run(run, scene.names, facts, file)
+    if command.plot is not None:
+        from standoff.simulation.plot import write_plot
+
+        ending = command.plot.suffix.lower().removeprefix(".")
+        files[command.plot] = lambda file: write_plot(
+            run, scene.names, scene.title, scene.length_unit, (file, ending)
+        )
+    return files
+
+
+def _facts(scene: SimulationScene, run: SystemRun) -> dict[str, Any]:
+    """The summary as plain data."""
+    operator, energy = scene.operator, run.energy
+    return {
+        "standoff": __version__,
+        "scene": scene.file.name,
+        "scene_sha256": hashlib.sha256(scene.text.encode()).hexdigest(),
+        "title": scene.title,
+        "length_unit": scene.length_unit,
+        "method": operator.method,
+        "tracker": operator.tracker,
+        "step": operator.dt,
+        "ticks": scene.ticks,
+        "records": len(run.times),
+        "start": float(run.times[0]),
+        "end": float(run.times[-1]),
+        "bodies": {name: _body_facts(run, k) for k, name in enumerate(scene.names)},
+        "pairs": {
+            scene.pair_name(k): {
+                "closest": float(run.distances[:, k].min()),
+                "greatest_force": float(np.linalg.norm(run.forces[:, k], axis=1).max()),
+                "distance": float(run.distances[-1, k]),
+            }
+            for k in range(len(run.system.pairs))
+        },
+        "energy": {
+            name: [float(value[0]), float(value[-1])] for name, value in energy._asdict().items()
+        },
+        "balance_drift": float(np.abs(energy.balance - energy.balance[0]).max()),
+        "deepest": run.deepest,
+        "uncertified": run.uncertified,
+    }
+
+
+def _body_facts(run: SystemRun, number: int) -> dict[str, Any]:
+    body = run.system.bodies[number]
+    mass = body.mass_properties
+    return {
+        "kind": body.kind,
+        "mass": None if mass is None else mass.mass,
+        "position": run.positions(number)[-1].tolist(),
+        "velocity": run.velocities(number)[-1].tolist(),
+        "angular_velocity": run.angular_velocities(number)[-1].tolist(),
+    }
+
+
+def _lines(scene: SimulationScene, run: SystemRun, written: list[Path]) -> list[str]:
+    operator, unit, energy = scene.operator, scene.length_unit, run.energy
+    lines = [
+        line("scene", scene.title),
+        line("operator", f"{operator.method}, tracker {operator.tracker}, step {operator.dt:g} s"),
+        line("ticks", f"{scene.ticks} to {run.times[-1]:g} s, {len(run.times)} records"),
+    ]
+    for number, name in enumerate(scene.names):
+        if run.system.bodies[number].kind == FREE:
+            x, v = run.positions(number)[-1], run.velocities(number)[-1]
+            lines.append(line(name, f"at {_vector(x)} {unit}, speed {np.linalg.norm(v):.6g}"))
+    for number in range(len(run.system.pairs)):
+        force = np.linalg.norm(run.forces[:, number], axis=1).max()
+        lines.append(
+            line(
+                scene.pair_name(number),
+                f"closest {run.distances[:, number].min():.6g} {unit}, greatest force {force:.6g}",
+            )
+        )
+    lines.append(
+        line(
+            "energy",
+            f"kinetic {energy.kinetic[-1]:.6g}, stored {energy.stored[-1]:.6g}, dissipated "
+            f"{energy.dissipated[-1]:.6g}, supplied {energy.supplied[-1]:.6g}",
+        )
+    )
+    drift = np.abs(energy.balance - energy.balance[0]).max()
+    lines.append(line("", f"its balance drifted by {drift:.3g}"))
+    lines.append(line("deepest", f"{run.deepest:.6g} {unit}"))
+    lines.append(line("certified", "all" if run.uncertified == 0 else f"but {run.uncertified}"))
+    return [*lines, *(line("wrote", str(path)) for path in written)]
+
+
+def _vector(x: Any) -> str:
+    return "(" + ", ".join(f"{value:.6g}" for value in x) + ")"

@@ -1,0 +1,248 @@
+"""Scenes of simulations: bodies with mass, their contacts, and the operator that moves them."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+
+from standoff.bodies.body import Body
+from standoff.kernels.dynamics.operator import METHODS
+from standoff.motion import Pose, Twist
+from standoff.motion.twist import Frame
+from standoff.scene.errors import SceneError
+from standoff.scene.files import toml_tables
+from standoff.scene.motions import read_motion
+from standoff.scene.placements import read_pose
+from standoff.scene.reader import Table
+from standoff.scene.scene import DEFAULT_LENGTH_UNIT, check_version, named, text_of
+from standoff.scene.shapes import read_body
+from standoff.simulation.contact import HuntCrossley
+from standoff.simulation.operator import SIDES, Operator
+from standoff.simulation.rigid_body import FREE, RigidBody
+from standoff.simulation.system import EARTH, System
+
+KEYS = (
+    "version",
+    "title",
+    "length_unit",
+    "bodies",
+    "placements",
+    "motions",
+    "free",
+    "contact",
+    "contacts",
+    "simulate",
+)
+"""Every key that the top of a simulation's file may have."""
+
+FREE_KEYS = ("density", "mass", "inertia", "centre", "linear", "angular", "frame")
+CONTACT_KEYS = ("stiffness", "damping", "friction", "slip_speed", "depth")
+SETTINGS = (
+    "step",
+    "duration",
+    "start",
+    "every",
+    "method",
+    "tracker",
+    "gain",
+    "gravity",
+    "allow_overlap",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class SimulationScene:
+    """What a simulation's file says, checked and built.
+
+    Attributes
+    ----------
+    file : Path
+    text : str
+        Its content.
+    title : str
+    length_unit : str
+        Label of lengths; no number is converted.
+    names : tuple of str
+        Of the bodies, in the order of the system's.
+    operator : Operator
+    start : float
+        Time of the first tick on the clock of the motions [s].
+    ticks : int
+    every : int
+        A record every so many ticks.
+    allow_overlap : bool
+    """
+
+    file: Path
+    text: str
+    title: str
+    length_unit: str
+    names: tuple[str, ...]
+    operator: Operator
+    start: float
+    ticks: int
+    every: int
+    allow_overlap: bool
+
+    @property
+    def system(self) -> System:
+        """The bodies, their pairs and contacts."""
+        return self.operator.system
+
+    def pair_name(self, pair: int) -> str:
+        """Return the names of a pair's bodies, with a hyphen."""
+        a, b = self.system.pairs[pair]
+        return f"{self.names[a]}-{self.names[b]}"
+
+
+def load_simulation(
+    file: str | os.PathLike[str], given: Mapping[str, object] | None = None
+) -> SimulationScene:
+    """Read, check and build the scene of a simulation.
+
+    Parameters
+    ----------
+    file : str or path
+        A TOML file; docs/simulation.md describes the format.
+    given : mapping, optional
+        Values that stand in place of those of ``[simulate]``; None stands in place of none.
+
+    Raises
+    ------
+    SceneError
+        If anything in it is unknown, missing, of the wrong type or shape, or refused by what it
+        describes. The message names the file, the key and the fix.
+    """
+    path = Path(file)
+    text = text_of(path)
+    try:
+        content = toml_tables(text)
+    except SceneError as error:
+        raise error.found_in(path) from error
+    top = Table(content, file=path)
+    check_version(top)
+    top.expect(*KEYS)
+    bodies = named(top, "bodies", read_body)
+    if not bodies:
+        raise top.error("no bodies; add a table such as [bodies.ball]", "bodies")
+    rigid = _rigid_bodies(top, bodies)
+    settings = _settings(top, given or {})
+    system = _system(top, tuple(bodies), rigid, settings)
+    step, duration = settings.positive("step"), settings.positive("duration")
+    every = settings.count("every", 1)
+    operator = settings.build(lambda: _operator(system, step, settings))
+    ticks = every * max(1, math.ceil(duration / step / every - 1e-9))
+    overlap = settings.true_or_false("allow_overlap") if "allow_overlap" in settings else False
+    return SimulationScene(
+        file=path,
+        text=text,
+        title=top.text("title", path.name),
+        length_unit=top.text("length_unit", DEFAULT_LENGTH_UNIT),
+        names=tuple(bodies),
+        operator=operator,
+        start=settings.number("start", 0.0),
+        ticks=ticks,
+        every=every,
+        allow_overlap=overlap,
+    )
+
+
+def _settings(top: Table, given: Mapping[str, object]) -> Table:
+    """The table ``[simulate]``, with what was given in place of its values."""
+    table = top.table("simulate")
+    table.expect(*SETTINGS)
+    over = {name: value for name, value in given.items() if value is not None}
+    return table.replaced(over)
+
+
+def _operator(system: System, step: float, settings: Table) -> Operator:
+    method = settings.choice("method", list(METHODS), "semi-implicit")
+    tracker = settings.choice("tracker", list(SIDES), "beside")
+    gain = settings.positive("gain") if "gain" in settings else None
+    return Operator(system, step, method, tracker, gain)
+
+
+def _rigid_bodies(top: Table, bodies: Mapping[str, Body]) -> list[RigidBody]:
+    placements = named(top, "placements", read_pose, bodies)
+    motions = named(top, "motions", lambda table: table, bodies)
+    free = named(top, "free", lambda table: table, bodies)
+    found = []
+    for name, body in bodies.items():
+        placement = placements.get(name)
+        if name in free and name in motions:
+            raise free[name].error(
+                "a body that is free has no motion of its own; remove one of them"
+            )
+        if name in free:
+            found.append(_free(free[name], body, placement or Pose.identity()))
+        elif name in motions:
+            motion = read_motion(motions[name], placement)
+            found.append(motions[name].build(partial(RigidBody.driven, body, motion.path)))
+        else:
+            found.append(RigidBody.fixed(body, placement))
+    return found
+
+
+def _free(table: Table, body: Body, pose: Pose) -> RigidBody:
+    table.expect(*FREE_KEYS)
+    if table.only_one(("density", "mass")) is None:
+        table.required("density", "density = 1000.0 (or mass = 1.0)")
+    density = table.positive("density") if "density" in table else None
+    mass = table.positive("mass") if "mass" in table else None
+    inertia = table.matrix("inertia", ((3, 3),)) if "inertia" in table else None
+    centre = table.vector("centre", 3) if "centre" in table else None
+    linear = table.vector("linear", 3) if "linear" in table else np.zeros(3)
+    angular = table.vector("angular", 3) if "angular" in table else np.zeros(3)
+    frame: Any = table.choice("frame", list(get_args(Frame)), "world")
+    twist = Twist(linear, angular, frame)
+    return table.build(
+        lambda: RigidBody.free(
+            body, density=density, mass=mass, inertia=inertia, centre=centre, pose=pose, twist=twist
+        )
+    )
+
+
+def _contact(table: Table) -> HuntCrossley:
+    given = {
+        "stiffness": table.positive("stiffness", example="stiffness = 1e6"),
+        "damping": table.not_negative("damping", 0.0),
+        "friction": table.not_negative("friction", 0.0),
+        "slip_speed": table.not_negative("slip_speed", 0.0),
+    }
+    depth = table.positive("depth") if "depth" in table else None
+    return table.build(lambda: HuntCrossley(**given, depth=depth))
+
+
+def _system(top: Table, names: tuple[str, ...], rigid: list[RigidBody], settings: Table) -> System:
+    """The system, its contacts those of ``[contact]``, but for the pairs of ``[[contacts]]``."""
+    gravity = settings.vector("gravity", 3) if "gravity" in settings else np.array(EARTH)
+    pairs = [
+        (i, j)
+        for i in range(len(names))
+        for j in range(i + 1, len(names))
+        if FREE in (rigid[i].kind, rigid[j].kind)
+    ]
+    usual = None
+    if "contact" in top:
+        table = top.table("contact")
+        table.expect(*CONTACT_KEYS)
+        usual = _contact(table)
+    own: dict[tuple[int, int], HuntCrossley] = {}
+    for entry in top.tables("contacts") if "contacts" in top else []:
+        entry.expect("a", "b", *CONTACT_KEYS)
+        i, j = sorted(names.index(entry.choice(key, list(names))) for key in ("a", "b"))
+        if (i, j) not in pairs or (i, j) in own:
+            raise entry.error("names a pair twice, one body twice, or a pair without a free body")
+        own[i, j] = _contact(entry)
+    if usual is None:
+        pairs = [pair for pair in pairs if pair in own]
+    contacts = [own.get(pair, usual) for pair in pairs]
+    known = [contact for contact in contacts if contact is not None]
+    return top.build(lambda: System(rigid, known, pairs, gravity))
