@@ -97,3 +97,10 @@ class DeviceError(StandoffError, RuntimeError):
 
 class MaskedNumbers(StandoffTypeError):
     """Some of the numbers given are masked: there is no value to compute with."""
+
+
+def not_installed(library: str, extra: str = "cli") -> str:
+    """What is said where a library is missing that comes with an extra of this package."""
+    return (
+        f"{library} is not installed; install the extra '{extra}': pip install 'standoff[{extra}]'"
+    )

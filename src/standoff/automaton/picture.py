@@ -12,6 +12,7 @@ from standoff.automaton.graph import Automaton, Transition, mode_of
 from standoff.automaton.text import MOST_DRAWN, Names, moves, product_switches
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
+from standoff.errors import not_installed
 
 try:
     from matplotlib.axes import Axes
@@ -19,10 +20,7 @@ try:
     from matplotlib.figure import Figure
     from matplotlib.patches import FancyArrowPatch, Patch
 except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(
-        "matplotlib is not installed; install the extra 'cli': pip install 'standoff[cli]'",
-        name="matplotlib",
-    ) from error
+    raise ModuleNotFoundError(not_installed("matplotlib"), name="matplotlib") from error
 
 Place = tuple[float, float]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from standoff.errors import StandoffError
+from standoff.errors import StandoffError, not_installed
 
 
 class ExitCode(IntEnum):
@@ -27,10 +27,7 @@ class MissingExtra(CommandError):
     """A library is missing that comes with an extra of this package."""
 
     def __init__(self, library: str, extra: str = "cli") -> None:
-        super().__init__(
-            f"{library} is not installed; install the extra '{extra}': "
-            f"pip install 'standoff[{extra}]'"
-        )
+        super().__init__(not_installed(library, extra))
 
 
 class WriteError(Exception):

@@ -92,19 +92,7 @@ def basin(
             f"{shown(tracker)} is not a Tracker: make one by so.Tracker(a, b).", "tracker", tracker
         )
     steps = whole_number(steps, "steps")
-    given: Any = starts
-    if not isinstance(given, Sequence) or isinstance(given, str | bytes) or not given:
-        raise StandoffError(
-            f"starts = {shown(given)} of {steps} steps: give one or more.", "starts", starts
-        )
-    for k, start in enumerate(given):
-        pair = isinstance(start, tuple | list) and len(start) == 2
-        if not pair or not all(isinstance(x, tuple | list) and len(x) == 2 for x in start):
-            raise StandoffError(
-                f"starts[{k}] = {shown(start)}: give a pair of (feature, parameters) for A and B.",
-                "starts",
-                start,
-            )
+    _check_starts(starts, steps)
     true = distance(tracker.a, tracker.b, pose_a, pose_b)
     if not true.certified or true.distance <= 0.0:
         raise StandoffError(f"The pair has no certified distance to compare with: {true!r}.")
@@ -120,6 +108,22 @@ def basin(
     found = (off <= near) & (np.abs(reached - true.distance) <= near)
     settled = last.residual <= SETTLED_RUN * reached
     return Basin(found, settled & ~found, reached, steps, true.repaired)
+
+
+def _check_starts(given: Any, steps: int) -> None:
+    """Refuse what is no sequence of pairs of places."""
+    if not isinstance(given, Sequence) or isinstance(given, str | bytes) or not given:
+        raise StandoffError(
+            f"starts = {shown(given)} of {steps} steps: give one or more.", "starts", given
+        )
+    for k, start in enumerate(given):
+        pair = isinstance(start, tuple | list) and len(start) == 2
+        if not pair or not all(isinstance(x, tuple | list) and len(x) == 2 for x in start):
+            raise StandoffError(
+                f"starts[{k}] = {shown(start)}: give a pair of (feature, parameters) for A and B.",
+                "starts",
+                start,
+            )
 
 
 def _size(body: Body) -> float:

@@ -74,13 +74,19 @@ def min_gain(
     least, most = _range(distance)
     skins = a.radius + b.radius
     motion = speed + (spin * reach(b) if spin else 0.0), spin
+    return _greatest_lag(a, b, (least + skins, most + skins), motion) / error
+
+
+def _greatest_lag(
+    a: Body, b: Body, among: tuple[float, float], motion: tuple[float, float]
+) -> float:
+    """The greatest speed that either witness point can have, with what a late release adds."""
     curvatures = least_curvature(a).value, least_curvature(b).value
-    among = least + skins, most + skins
     speeds = witness_speeds(*curvatures, among, *motion)
     waits = (0.0, 0.0)
     if _switches(a) or _switches(b):
         waits = release_speeds(*curvatures, among, *motion)
-    return max(speed + wait for speed, wait in zip(speeds, waits, strict=True)) / error
+    return max(speed + wait for speed, wait in zip(speeds, waits, strict=True))
 
 
 def witness_speeds(

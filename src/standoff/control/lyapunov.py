@@ -30,7 +30,7 @@ from standoff.kernels.entries.queries import on_face
 from standoff.kernels.tolerances import RECHART
 from standoff.motion import PoseLike
 from standoff.real_numbers import shown
-from standoff.tracking import Feature, distance
+from standoff.tracking import Feature, Proximity, distance
 from standoff.tracking.choices import whole_number
 from standoff.tracking.inputs import flat_pose, place
 from standoff.tracking.pair_system import UPPER
@@ -125,11 +125,7 @@ def lyapunov_level(
         no parameters.
     """
     directions = whole_number(directions, "directions")
-    given: Any = seed
-    if isinstance(given, bool) or not isinstance(given, int | np.integer) or given < 0:
-        raise StandoffError(
-            f"seed = {shown(seed)}: give a whole number, zero or above.", "seed", seed
-        )
+    _check_seed(seed)
     best = distance(a, b, pose_a, pose_b)
     if not best.certified or best.distance <= 0.0:
         raise StandoffError(f"The pair has no certified minimum: {best!r}.")
@@ -140,20 +136,13 @@ def lyapunov_level(
     _, H, metric, energy = system.at(q0)
     L = np.array(np.linalg.cholesky(metric), dtype=np.float64)
     if system.definiteness(H, L) <= CURVE_TOLERANCE:
-        raise StandoffError(
-            f"H is not positive definite at the optimum, {best.feature_a} - {best.feature_b}: "
-            "the faces are parallel, or the bodies touch."
-        )
+        raise _not_definite(best)
 
     def follow(direction: Array) -> Curve:
         unit = np.asarray(direction / np.linalg.norm(direction))
         return _outwards(system, q0, L, unit, energy)
 
-    around = _directions(len(q0), directions, seed)
-    found = [follow(direction) for direction in around]
-    if len(q0) > 1:
-        found += [_least(follow, found, lambda c: c.slopes[-1])]
-        found += [_least(follow, found, lambda c: c.energies[-1])]
+    found = _followed(follow, _directions(len(q0), directions, seed))
     curves, slopes, energies, singular, ways = (np.array(x) for x in zip(*found, strict=True))
     return LyapunovLevels(
         feature_a=best.feature_a,
@@ -169,6 +158,29 @@ def lyapunov_level(
         singular=singular,
         repaired=best.repaired,
     )
+
+
+def _not_definite(best: Proximity) -> StandoffError:
+    return StandoffError(
+        f"H is not positive definite at the optimum, {best.feature_a} - {best.feature_b}: "
+        "the faces are parallel, or the bodies touch."
+    )
+
+
+def _check_seed(seed: Any) -> None:
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise StandoffError(
+            f"seed = {shown(seed)}: give a whole number, zero or above.", "seed", seed
+        )
+
+
+def _followed(follow: Callable[[Array], Curve], around: Array) -> list[Curve]:
+    """The curves in given directions, and where there are several parameters both least ones."""
+    found = [follow(direction) for direction in around]
+    if around.shape[1] > 1:
+        found += [_least(follow, found, lambda c: c.slopes[-1])]
+        found += [_least(follow, found, lambda c: c.energies[-1])]
+    return found
 
 
 def _directions(n: int, count: int, seed: int) -> Array:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from abc import abstractmethod
+from typing import Any, Self
 
 import numpy as np
 
@@ -20,7 +21,43 @@ from standoff.real_numbers import shown
 PROFILE_SAMPLES = 65
 
 
-class Revolution(Surface):
+class Swept(Surface):
+    """What both kinds have: a profile, whose sweep is kept in its own frame by an affine map."""
+
+    profile: Curve
+
+    @abstractmethod
+    def _with(self, domain: Domain, linear: Array, shift: Array) -> Self:
+        """The same sweep over another domain, mapped by linear x + shift."""
+
+    @abstractmethod
+    def _reach(self, direction: Array) -> float:
+        """A bound of direction @ x over the domain."""
+
+    def transformed(self, linear: Array, shift: Array) -> Self:
+        """The exact image under x -> linear x + shift; parameters stay the same."""
+        linear, shift = affine_map(linear, shift)
+        return self._with(self.domain, linear @ self.linear, linear @ self.shift + shift)
+
+    def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Self:
+        """The same surface on a smaller domain; parameters stay the same."""
+        return self._with(self.smaller_domain(u0, u1, v0, v1), self.linear, self.shift)
+
+    @property
+    def moved(self) -> float:
+        """How far the spare knots of the profile, left out, may have moved the surface, length."""
+        return float(np.linalg.norm(self.linear, 2)) * self.profile.moved
+
+    def box(self) -> tuple[Array, Array]:
+        """(low, high), each (3,), body frame: surely around the surface over its domain."""
+        return box_of(self._reach)
+
+    def highest(self, direction: Array) -> None:
+        """None: `box` serves."""
+        return
+
+
+class Revolution(Swept):
     """(r(v) cos u, r(v) sin u, z(v)): a profile (r, 0, z) turned about the axis z.
 
     Parameters
@@ -41,8 +78,6 @@ class Revolution(Surface):
     """
 
     kind = L.REVOLUTION
-
-    profile: Curve
 
     def __init__(self, profile: Curve, first: Any = 0.0, last: Any = FULL_TURN) -> None:
         first, last = checked_turn(first, last, "Revolution")
@@ -75,32 +110,14 @@ class Revolution(Surface):
     def _data(self) -> Array:
         return np.concatenate([[float(self.profile.kind)], self.profile.data])
 
-    def transformed(self, linear: Array, shift: Array) -> Revolution:
-        """The exact image under x -> linear x + shift; parameters stay the same."""
-        linear, shift = affine_map(linear, shift)
-        return self._with(self.domain, linear @ self.linear, linear @ self.shift + shift)
-
-    def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Revolution:
-        """The same surface on a smaller domain; parameters stay the same."""
-        return self._with(self.smaller_domain(u0, u1, v0, v1), self.linear, self.shift)
-
-    def _with(self, domain: Domain, linear: Array, shift: Array) -> Revolution:
-        surface = object.__new__(Revolution)
+    def _with(self, domain: Domain, linear: Array, shift: Array) -> Self:
+        surface = object.__new__(type(self))
         surface._set(self.profile, domain, linear, shift)
         return surface
-
-    @property
-    def moved(self) -> float:
-        """How far the spare knots of the profile, left out, may have moved the surface, length."""
-        return float(np.linalg.norm(self.linear, 2)) * self.profile.moved
 
     def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Knots of the profile where it is not C², as v."""
         return (), curve_breaks(self.profile, *self.domain[2:])
-
-    def box(self) -> tuple[Array, Array]:
-        """(low, high), each (3,), body frame: surely around the surface over its domain."""
-        return box_of(self._reach)
 
     def _reach(self, direction: Array) -> float:
         """A bound of direction @ x over the domain."""
@@ -112,12 +129,8 @@ class Revolution(Surface):
         along = np.array([np.hypot(y[0], y[1]) * cosine, 0.0, y[2]])
         return curve_reach(self.profile, along, v0, v1) + float(direction @ self.shift)
 
-    def highest(self, direction: Array) -> None:
-        """None: `box` serves."""
-        return
 
-
-class Extrusion(Surface):
+class Extrusion(Swept):
     """c(u) + v d: a profile moved along a direction.
 
     Parameters
@@ -138,7 +151,6 @@ class Extrusion(Surface):
 
     kind = L.EXTRUSION
 
-    profile: Curve
     direction: Array
 
     def __init__(self, profile: Curve, direction: Any, first: Any = 0.0, last: Any = 1.0) -> None:
@@ -179,32 +191,14 @@ class Extrusion(Surface):
     def _data(self) -> Array:
         return np.concatenate([[float(self.profile.kind)], self.direction, self.profile.data])
 
-    def transformed(self, linear: Array, shift: Array) -> Extrusion:
-        """The exact image under x -> linear x + shift; parameters stay the same."""
-        linear, shift = affine_map(linear, shift)
-        return self._with(self.domain, linear @ self.linear, linear @ self.shift + shift)
-
-    def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Extrusion:
-        """The same surface on a smaller domain; parameters stay the same."""
-        return self._with(self.smaller_domain(u0, u1, v0, v1), self.linear, self.shift)
-
-    def _with(self, domain: Domain, linear: Array, shift: Array) -> Extrusion:
-        surface = object.__new__(Extrusion)
+    def _with(self, domain: Domain, linear: Array, shift: Array) -> Self:
+        surface = object.__new__(type(self))
         surface._set(self.profile, self.direction, domain, linear, shift)
         return surface
-
-    @property
-    def moved(self) -> float:
-        """How far the spare knots of the profile, left out, may have moved the surface, length."""
-        return float(np.linalg.norm(self.linear, 2)) * self.profile.moved
 
     def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Knots of the profile where it is not C², as u."""
         return curve_breaks(self.profile, *self.domain[:2]), ()
-
-    def box(self) -> tuple[Array, Array]:
-        """(low, high), each (3,), body frame: surely around the surface over its domain."""
-        return box_of(self._reach)
 
     def _reach(self, direction: Array) -> float:
         """A bound of direction @ x over the domain."""
@@ -213,10 +207,6 @@ class Extrusion(Surface):
         along = float(y @ self.direction)
         moved = max(v0 * along, v1 * along)
         return curve_reach(self.profile, y, u0, u1) + moved + float(direction @ self.shift)
-
-    def highest(self, direction: Array) -> None:
-        """None: `box` serves."""
-        return
 
 
 def _profile_points(profile: Any, name: str) -> Array:

@@ -87,6 +87,25 @@ def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
         whole number of at least 2, times beyond 1e100 s, a duration lost beside the start, a
         pair that cannot be tracked, or what a path refuses.
     """
+    clearance = _checked_clearance(clearance)
+    duration = positive_number(duration, "duration")
+    tolerance = positive_number(tolerance, "tolerance")
+    _check_budget(max_evaluations)
+    paths = moving(path_a, "path_a"), moving(path_b, "path_b")
+    for path in paths:
+        known(path)
+    search = _Search(_tracker(a, b, tolerance), paths, clearance, tolerance, max_evaluations)
+    begin = number(start, "start")
+    return search.run(begin, _end(paths, begin, duration))
+
+
+def _tracker(a: Body, b: Body, tolerance: float) -> Tracker:
+    """A tracker whose bounds are closer than the search's tolerance."""
+    gap = min(TRACKER_TOLERANCE, TRACKER_SHARE * tolerance)
+    return Tracker(a, b, law=PredictorCorrector(tolerance=gap))
+
+
+def _checked_clearance(clearance: float) -> float:
     clearance = number(clearance, "clearance")
     if clearance < 0.0:
         raise StandoffError(
@@ -95,22 +114,16 @@ def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
             "clearance",
             clearance,
         )
-    duration = positive_number(duration, "duration")
-    tolerance = positive_number(tolerance, "tolerance")
+    return clearance
+
+
+def _check_budget(max_evaluations: int) -> None:
     if whole_number(max_evaluations, "max_evaluations") < 2:
         raise StandoffError(
             f"max_evaluations = {max_evaluations}: at least 2 are needed.",
             "max_evaluations",
             max_evaluations,
         )
-    paths = moving(path_a, "path_a"), moving(path_b, "path_b")
-    for path in paths:
-        known(path)
-    gap = min(TRACKER_TOLERANCE, TRACKER_SHARE * tolerance)
-    tracker = Tracker(a, b, law=PredictorCorrector(tolerance=gap))
-    search = _Search(tracker, paths, clearance, tolerance, max_evaluations)
-    begin = number(start, "start")
-    return search.run(begin, _end(paths, begin, duration))
 
 
 def _end(paths: tuple[Any, Any], start: float, duration: float) -> float:

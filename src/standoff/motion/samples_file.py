@@ -63,6 +63,17 @@ def read_pose_samples(file: str | os.PathLike[str]) -> PoseSamples:
         )
     path = Path(file)
     noun, rows = _rows_of(path)
+    times, poses = _timed(path, noun, rows)
+    try:
+        return PoseSamples(times, poses)
+    except ValueError as error:
+        raise StandoffError(f"{path}: {error}", "file", path) from error
+
+
+def _timed(
+    path: Path, noun: str, rows: Iterator[tuple[int, list[float]]]
+) -> tuple[list[float], list[Pose]]:
+    """Times, which must increase, and poses of a file's samples."""
     times: list[float] = []
     poses: list[Pose] = []
     for line, values in rows:
@@ -81,10 +92,7 @@ def read_pose_samples(file: str | os.PathLike[str]) -> PoseSamples:
         except ValueError as error:
             problem = f"{error}; the columns are {' '.join(_COLUMNS)}"
             raise _fault(path, line, problem, noun) from error
-    try:
-        return PoseSamples(times, poses)
-    except ValueError as error:
-        raise StandoffError(f"{path}: {error}", "file", path) from error
+    return times, poses
 
 
 def _rows_of(path: Path) -> tuple[str, Iterator[tuple[int, list[float]]]]:

@@ -93,7 +93,21 @@ class PointCounts(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class PointProximity(KeepsReadOnly):
+class PointDistance(KeepsReadOnly):
+    """What the answers of both kinds of point tracker begin with; they say what each field is."""
+
+    distance: float
+    lower_bound: float
+    upper_bound: float
+    witness: Array
+    normal: Array
+    inside: bool
+    feature: Feature
+    parameters: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class PointProximity(PointDistance):
     """The signed distance of a point to a body, and how it was proven. Vectors in world axes.
 
     Attributes
@@ -129,14 +143,6 @@ class PointProximity(KeepsReadOnly):
         Since the start [s].
     """
 
-    distance: float
-    lower_bound: float
-    upper_bound: float
-    witness: Array
-    normal: Array
-    inside: bool
-    feature: Feature
-    parameters: tuple[float, ...]
     minima: tuple[Minimum, ...]
     active: int
     rate: float

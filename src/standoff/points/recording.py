@@ -150,14 +150,7 @@ def record_point(
             "tracker",
             tracker,
         )
-    shape = shape_of(times)
-    if shape is None or len(shape) != 1 or not shape[0]:
-        raise StandoffError(f"times = {shown(times)}: give a list of one or more.", "times", times)
-    clock = inputs.array(times, "times", shape)
-    if not (np.diff(clock) > 0.0).all():
-        raise StandoffError(
-            f"times = {shown(times)}: give them strictly increasing.", "times", times
-        )
+    clock = _clock(times)
     last = float(clock[-1]) if len(clock) > 1 else math.inf
     moving: Moving = path_of(path, float(clock[0]), last)
     x, v = _placed(moving, float(clock[0]))
@@ -175,6 +168,19 @@ def record_point(
         state = following
         states.append(state)
     return _recording(tracker, clock, states, tuple(events))
+
+
+def _clock(times: ArrayLike) -> Array:
+    """The times as an array; raises ValueError where they do not increase."""
+    shape = shape_of(times)
+    if shape is None or len(shape) != 1 or not shape[0]:
+        raise StandoffError(f"times = {shown(times)}: give a list of one or more.", "times", times)
+    clock = inputs.array(times, "times", shape)
+    if not (np.diff(clock) > 0.0).all():
+        raise StandoffError(
+            f"times = {shown(times)}: give them strictly increasing.", "times", times
+        )
+    return clock
 
 
 class _Step(NamedTuple):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
-from standoff.points.answer import PointCounts, PointEvent
+from standoff.points.answer import PointCounts, PointDistance, PointEvent
 from standoff.points.depth_branches import Branch
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.state import TrackerState
@@ -45,7 +45,7 @@ class DepthMinimum(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class SpatialPointProximity(KeepsReadOnly):
+class SpatialPointProximity(PointDistance):
     """The signed distance of a point to a spatial body. Vectors in the body's frame.
 
     Attributes
@@ -78,14 +78,6 @@ class SpatialPointProximity(KeepsReadOnly):
         Since the start [s].
     """
 
-    distance: float
-    lower_bound: float
-    upper_bound: float
-    witness: Array
-    normal: Array
-    inside: bool
-    feature: Feature
-    parameters: tuple[float, ...]
     minima: tuple[DepthMinimum, ...]
     active: int
     rate: float

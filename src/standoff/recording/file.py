@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
-from standoff.errors import StandoffError
+from standoff.errors import StandoffError, not_installed
 from standoff.nesting import JSON, text_problem, value_problem
 from standoff.real_numbers import SHOWN_CHARACTERS, shown
 from standoff.recording.recorded import RecordedEvent, RecordedFrames, RunInfo
@@ -28,10 +28,7 @@ try:
     import pyarrow as pa
     import pyarrow.parquet as pq
 except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(
-        "pyarrow is not installed; install the extra 'cli': pip install 'standoff[cli]'",
-        name="pyarrow",
-    ) from error
+    raise ModuleNotFoundError(not_installed("pyarrow"), name="pyarrow") from error
 
 Array = NDArray[np.float64]
 

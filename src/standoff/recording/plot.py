@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
+from standoff.errors import not_installed
 from standoff.recording.recorded import RecordedFrames
 
 try:
@@ -20,10 +21,7 @@ try:
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(
-        "matplotlib is not installed; install the extra 'cli': pip install 'standoff[cli]'",
-        name="matplotlib",
-    ) from error
+    raise ModuleNotFoundError(not_installed("matplotlib"), name="matplotlib") from error
 
 Array = NDArray[np.float64]
 Value = TypeVar("Value")

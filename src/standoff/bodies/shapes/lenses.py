@@ -11,7 +11,7 @@ from standoff.bodies.topology import Edge, Face
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.surfaces import Sphere
-from standoff.geometry.validation import not_negative, positive
+from standoff.geometry.validation import Array, not_negative, positive
 
 
 def lens(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
@@ -56,25 +56,36 @@ def lens(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
     top = np.array([0.0, 0.0, np.sqrt((r - c) * (r + c))])
     angles = 2.0 * np.pi / 3.0 * np.arange(3)
     centres = [-c * np.array([np.cos(t), np.sin(t), 0.0]) for t in angles]
+    edges, faces = _edges(r, centres, top[2]), _faces(r, centres, c, top[2])
+    return Body.from_brep([-top, top], edges, faces, rounding=rounding, name="lens")
+
+
+def _edges(r: float, centres: list[Array], height: float) -> list[Edge]:
+    """Where balls i and i + 1 meet: arcs from the lower vertex to the upper one, at `height`."""
     edges = []
     for i in range(3):
-        # the edge where balls i and i + 1 meet: opposite to ball i + 2's centre, a circle
-        # about the midpoint of their centres, in the plane that bisects them
+        # opposite to ball i + 2's centre, a circle about the midpoint of their centres, in the
+        # plane that bisects them
         a, b = centres[i], centres[(i + 1) % 3]
         middle = 0.5 * (a + b)
         out = -middle / np.linalg.norm(middle)
         reach = np.sqrt(r * r - 0.25 * float((a - b) @ (a - b)))
         x_axis, z_axis = reach * out, np.array([0.0, 0.0, reach])
-        half = float(np.arctan2(top[2], float(-middle @ out)))
+        half = float(np.arctan2(height, float(-middle @ out)))
         edges.append(Edge(ConicArc(middle, x_axis, z_axis, -half, half), 0, 1))
+    return edges
+
+
+def _faces(r: float, centres: list[Array], c: float, height: float) -> list[Face]:
+    """The three spherical faces; one that is steep gets an atlas instead of a chart."""
     faces = []
     for i in range(3):
         z = -centres[i] / c
         x = np.cross([0.0, 0.0, 1.0], z)
         frame = r * np.column_stack([x, np.array([0.0, 0.0, 1.0]), z])
         charts: tuple[Sphere, ...] = (Sphere(frame, centres[i]),)
-        if top[2] / c > SINGLE_CHART_REACH:
+        if height / c > SINGLE_CHART_REACH:
             charts = sphere_atlas(frame, centres[i])
         # seen from outside, edge i lies at greater angle about z, edge i - 1 at lesser
         faces.append(Face(charts, ((i, 1), ((i + 2) % 3, -1))))
-    return Body.from_brep([-top, top], edges, faces, rounding=rounding, name="lens")
+    return faces

@@ -116,14 +116,7 @@ def witness_set(
         )
     a, b = proximity.bodies
     n = proximity.normal
-    size_a, size_b = (float(body.reals[L.SIZE]) for body in (a, b))
-    span = size_a + size_b + abs(proximity.distance) + a.radius + b.radius
-    core_distance = proximity.distance + a.radius + b.radius
-    several, normals = 0, n[None]
-    if core_distance <= TOUCHING_CORES * span:
-        several = normal_dimension(a, b, first, second, n)
-        if not several:
-            normals = equal_normals(a, b, first, second, n, proximity.distance)
+    several, normals = _normals(proximity, first, second)
     x, y = proximity.point_a, proximity.point_b
     origin = first.translation
     sides = [
@@ -136,6 +129,18 @@ def witness_set(
     off = points_b - points_a - proximity.distance * n
     residual = float(np.linalg.norm(off, axis=1).max())
     return WitnessSet(across, several, points_a, points_b, n, normals, residual)
+
+
+def _normals(proximity: Answer, first: Pose, second: Pose) -> tuple[int, Array]:
+    """Of how many dimensions the normals are, and, where each stands alone, all of them."""
+    a, b = proximity.bodies
+    n, distance = proximity.normal, proximity.distance
+    size_a, size_b = (float(body.reals[L.SIZE]) for body in (a, b))
+    span = size_a + size_b + abs(distance) + a.radius + b.radius
+    if distance + a.radius + b.radius > TOUCHING_CORES * span:
+        return 0, n[None]
+    several = normal_dimension(a, b, first, second, n)
+    return several, n[None] if several else equal_normals(a, b, first, second, n, distance)
 
 
 def _poses(
