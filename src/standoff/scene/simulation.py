@@ -16,6 +16,7 @@ from standoff.bodies.body import Body
 from standoff.kernels.dynamics.operator import METHODS
 from standoff.motion import Pose, Twist
 from standoff.motion.twist import Frame
+from standoff.recording.tolerances import WHOLE_STEPS
 from standoff.scene.errors import SceneError
 from standoff.scene.files import toml_tables
 from standoff.scene.motions import read_motion
@@ -138,7 +139,7 @@ def load_simulation(
     step, duration = settings.positive("step"), settings.positive("duration")
     every = settings.count("every", 1)
     operator = settings.build(lambda: _operator(system, step, settings))
-    ticks = every * max(1, math.ceil(duration / step / every - 1e-9))
+    ticks = every * max(1, math.ceil(duration / step / every - WHOLE_STEPS))
     overlap = settings.true_or_false("allow_overlap") if "allow_overlap" in settings else False
     return SimulationScene(
         file=path,
