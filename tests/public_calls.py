@@ -230,6 +230,17 @@ MECHANISM = {
 }
 ARM = {**MECHANISM, "stiffness": 100.0, "rotational_stiffness": 1.0}
 WEIGHED = {"mass": 1.0, "centre": np.zeros(3), "inertia": np.eye(3)}
+SLIDING: dict[str, Any] = {
+    "bodies": [BOX, SPHERE],
+    "place": lambda theta: [HOME, so.Pose(np.eye(3), [0.0, 0.0, 1.0 + theta[0]])],
+    "jacobian": lambda theta: [np.zeros((6, 1)), np.eye(6)[:, 2:3]],
+    "mass": lambda theta: [[2.0]],
+    "coriolis": lambda theta, rate: [0.0],
+    "field": lambda theta, rate: [0.0],
+    "contact": simulation.HuntCrossley(stiffness=1e3),
+    "pairs": [(0, 1)],
+    "drive": None,
+}
 HEAVY = simulation.RigidBody.free(SPHERE, mass=1.0, pose=AWAY)
 
 SIMULATION: dict[str, dict[str, Any]] = {
@@ -302,6 +313,16 @@ SIMULATION: dict[str, dict[str, Any]] = {
         "contact": simulation.HuntCrossley(stiffness=1e3),
         "pairs": [(0, 1)],
         "gravity": [0.0, 0.0, -9.81],
+    },
+    "GeneralisedSystem": SLIDING,
+    "solve": {
+        "system": simulation.GeneralisedSystem(**SLIDING),
+        "theta": [0.5],
+        "rate": [0.0],
+        "duration": 1e-3,
+        "method": "RK23",
+        "tolerance": 1e-3,
+        "max_step": 1e-3,
     },
     "Operator": {
         "system": simulation.System(

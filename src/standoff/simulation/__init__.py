@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING
 from standoff.on_demand import on_demand
 
 if TYPE_CHECKING:
+    from standoff.simulation.adaptive import Solution, SystemEvent, solve
     from standoff.simulation.contact import HuntCrossley
     from standoff.simulation.coupler import VirtualCoupler
     from standoff.simulation.coupler_state import CouplerCounts, CouplerState
     from standoff.simulation.device import Device, DeviceLimits, DeviceReading, Fault
     from standoff.simulation.disturbances import Disturbances
     from standoff.simulation.encoder import Encoder
+    from standoff.simulation.generalised_system import GeneralisedSystem
     from standoff.simulation.human_arm import HumanArm
     from standoff.simulation.mass_properties import MassErrors, MassProperties, mass_properties
     from standoff.simulation.operator import Operator
@@ -32,6 +34,7 @@ else:
     __getattr__, __dir__ = on_demand(
         __name__,
         {
+            "standoff.simulation.adaptive": ("Solution", "SystemEvent", "solve"),
             "standoff.simulation.contact": ("HuntCrossley",),
             "standoff.simulation.coupler": ("VirtualCoupler",),
             "standoff.simulation.coupler_state": ("CouplerCounts", "CouplerState"),
@@ -43,6 +46,7 @@ else:
             ),
             "standoff.simulation.disturbances": ("Disturbances",),
             "standoff.simulation.encoder": ("Encoder",),
+            "standoff.simulation.generalised_system": ("GeneralisedSystem",),
             "standoff.simulation.human_arm": ("HumanArm",),
             "standoff.simulation.mass_properties": (
                 "MassErrors",
@@ -80,6 +84,7 @@ __all__ = [
     "Encoder",
     "Energy",
     "Fault",
+    "GeneralisedSystem",
     "HumanArm",
     "HuntCrossley",
     "MassErrors",
@@ -92,7 +97,9 @@ __all__ = [
     "Sampling",
     "ScriptedHand",
     "SimulatedDevice",
+    "Solution",
     "System",
+    "SystemEvent",
     "SystemRun",
     "SystemState",
     "VirtualCoupler",
@@ -101,4 +108,5 @@ __all__ = [
     "mass_properties",
     "required_damping",
     "required_damping_of",
+    "solve",
 ]

@@ -1,0 +1,205 @@
+"""A system in the user's own coordinates: M(θ) θ'' = F − C(θ, θ') − N(θ, θ'), with contact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.geometry.validation import finite
+from standoff.motion import Pose, PoseLike
+from standoff.read_only import KeepsReadOnly
+from standoff.real_numbers import shown
+from standoff.simulation.contact import HuntCrossley
+from standoff.tracking.inputs import check_pair
+from standoff.tracking.proximity import Proximity
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class GeneralisedSystem(KeepsReadOnly):
+    """Bodies that are placed by coordinates θ, with the equations of motion that you give.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+    place : callable
+        θ (n,) to the bodies' poses in the world, one each.
+    jacobian : callable
+        θ to the bodies' Jacobians, one (6, n) array each: the twist of a body's origin, (v, ω) in
+        world axes, is J θ'.
+    mass : callable
+        θ to M (n, n), symmetric and positive definite.
+    coriolis : callable
+        (θ, θ') to C(θ, θ'), (n,).
+    field : callable
+        (θ, θ') to N(θ, θ'), (n,): gravity, springs, friction in joints.
+    contact : HuntCrossley
+        Of all pairs.
+    pairs : sequence of (int, int)
+        Numbers of the bodies that are tracked and may touch.
+    drive : callable, optional
+        (t, θ, θ') to the generalised forces F, (n,); none if not given.
+
+    Raises
+    ------
+    StandoffTypeError
+        Something that is no body, no contact or no function.
+    StandoffError
+        A pair that does not exist, or cannot be one.
+    """
+
+    bodies: Sequence[Body]
+    place: Callable[[Array], Sequence[PoseLike]]
+    jacobian: Callable[[Array], Sequence[Any]]
+    mass: Callable[[Array], Any]
+    coriolis: Callable[[Array, Array], Any]
+    field: Callable[[Array, Array], Any]
+    contact: HuntCrossley
+    pairs: Sequence[tuple[int, int]] = ((0, 1),)
+    drive: Callable[[float, Array, Array], Any] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("place", "jacobian", "mass", "coriolis", "field"):
+            _check_function(getattr(self, name), name)
+        if self.drive is not None:
+            _check_function(self.drive, "drive")
+        if not isinstance(self.contact, HuntCrossley):
+            raise StandoffTypeError(
+                f"contact is {shown(self.contact)}: give a HuntCrossley.", "contact", self.contact
+            )
+        object.__setattr__(self, "bodies", _tuple(self.bodies, "bodies"))
+        object.__setattr__(self, "pairs", _tuple(self.pairs, "pairs"))
+        for body in self.bodies:
+            if not isinstance(body, Body):
+                raise StandoffTypeError(f"bodies has {shown(body)}: give bodies.", "bodies", body)
+        for pair in self.pairs:
+            self._check_pair(pair)
+
+    def _check_pair(self, pair: Any) -> None:
+        count = len(self.bodies)
+        numbers = tuple(pair) if isinstance(pair, tuple | list) else ()
+        whole = all(type(k) is int and 0 <= k < count for k in numbers)
+        if len(numbers) != 2 or not whole or numbers[0] == numbers[1]:
+            raise StandoffError(
+                f"pairs has {shown(pair)}: give two different numbers of bodies, from 0 to "
+                f"{count - 1}.",
+                "pairs",
+                pair,
+            )
+        check_pair(self.bodies[numbers[0]], self.bodies[numbers[1]])
+
+    def poses(self, theta: Array) -> list[Pose]:
+        """Return the bodies' poses at coordinates."""
+        found = [Pose.of(pose) for pose in self.place(theta)]
+        if len(found) != len(self.bodies):
+            raise StandoffError(
+                f"place returned {len(found)} poses for {len(self.bodies)} bodies: give one each.",
+                "place",
+            )
+        return found
+
+    def jacobians(self, theta: Array) -> list[Array]:
+        """Return the bodies' Jacobians, (6, n) each, at coordinates."""
+        found = [finite(J, "jacobian", (6, len(theta))) for J in self.jacobian(theta)]
+        if len(found) != len(self.bodies):
+            raise StandoffError(
+                f"jacobian returned {len(found)} arrays for {len(self.bodies)} bodies: give one "
+                "each.",
+                "jacobian",
+            )
+        return found
+
+    def acceleration(
+        self, t: float, theta: Array, rate: Array, answers: Sequence[Proximity]
+    ) -> Array:
+        """Return θ'' = M⁻¹ (F − C − N + Σ Jᵀ w), the pairs' contacts among the forces.
+
+        Parameters
+        ----------
+        t : float
+        theta, rate : (n,) arrays
+            Coordinates and their rates.
+        answers : sequence of Proximity
+            Of the pairs, at these coordinates.
+
+        Raises
+        ------
+        StandoffError
+            M that is singular, not symmetric, or not positive definite, with θ; wrong shapes.
+        """
+        n = len(theta)
+        forces = -finite(self.coriolis(theta, rate), "coriolis", (n,))
+        forces = forces - finite(self.field(theta, rate), "field", (n,))
+        if self.drive is not None:
+            forces = forces + finite(self.drive(t, theta, rate), "drive", (n,))
+        touching = [k for k, answer in enumerate(answers) if answer.distance < 0.0]
+        if touching:
+            poses, jacobians = self.poses(theta), self.jacobians(theta)
+            for k in touching:
+                forces = forces + self._contact_forces(k, answers[k], poses, jacobians, rate)
+        matrix = checked_inertia_matrix(finite(self.mass(theta), "mass", (n, n)), theta)
+        return np.asarray(np.linalg.solve(matrix, forces))
+
+    def _contact_forces(
+        self, pair: int, answer: Proximity, poses: list[Pose], jacobians: list[Array], rate: Array
+    ) -> Array:
+        """The generalised forces of one pair's contact, at the middle of its overlap."""
+        point, n = 0.5 * (answer.point_a + answer.point_b), answer.normal
+        a, b = self.pairs[pair]
+        rows = []
+        for number in (a, b):
+            J, arm = jacobians[number], point - poses[number].translation
+            rows.append(J[:3] - np.cross(arm, J[3:], axisb=0, axisc=0))
+        between = (rows[1] - rows[0]) @ rate
+        closing = -float(n @ between)
+        push = self.contact.force(-answer.distance, closing)
+        slip = between + closing * n
+        u = float(np.linalg.norm(slip))
+        grip = 0.0
+        if self.contact.friction > 0.0:
+            grip = self.contact.friction * push / float(np.hypot(u, self.contact.slip_speed))
+        return np.asarray((rows[1] - rows[0]).T @ (push * n - grip * slip))
+
+
+SINGULAR = 1e-12
+"""Least eigenvalue of M over its greatest: below it no digit of θ'' is known to four places."""
+
+SYMMETRIC = 1e-9
+"""Part of its greatest entry by which M's entries across the diagonal may differ: roundoff of
+whoever computed them."""
+
+
+def checked_inertia_matrix(matrix: Array, theta: Array) -> Array:
+    """M(θ), symmetric and positive definite; else StandoffError, with θ."""
+    largest = float(np.abs(matrix).max())
+    at = f"M(theta) at theta = {np.array2string(theta, precision=6)}"
+    if float(np.abs(matrix - matrix.T).max()) > SYMMETRIC * largest:
+        raise StandoffError(f"{at} is not symmetric:\n{matrix}", "mass", matrix)
+    values = np.linalg.eigvalsh(matrix)
+    if not values[0] > SINGULAR * max(largest, float(values[-1])):
+        raise StandoffError(
+            f"{at} is singular or not positive definite: its eigenvalues go from "
+            f"{values[0]:.3g} to {values[-1]:.3g}. Choose coordinates that are regular there, and "
+            "give every body that moves its mass.",
+            "mass",
+            matrix,
+        )
+    return matrix
+
+
+def _check_function(given: Any, name: str) -> None:
+    if not callable(given):
+        raise StandoffTypeError(f"{name} is {shown(given)}: give a function.", name, given)
+
+
+def _tuple(given: Any, name: str) -> tuple[Any, ...]:
+    if not isinstance(given, tuple | list):
+        raise StandoffTypeError(f"{name} is {shown(given)}: give a list.", name, given)
+    return tuple(given)
