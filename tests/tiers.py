@@ -10,6 +10,7 @@ FAST = (
     "test_limits.py",
     "test_package.py",
     "test_tiers.py",
+    "test_tolerances.py",
     "bodies/test_straight_patches.py",
     "cli/test_law_options.py",
     "control/test_growth.py",

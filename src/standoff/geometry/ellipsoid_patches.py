@@ -35,7 +35,7 @@ def ellipsoid_patches(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
     ValueError
         A semi-axis that is not finite or not positive.
     """
-    axes = np.array([positive(a, "a"), positive(b, "b"), positive(c, "c")])
+    axes = _semi_axes(a, b, c)
     points, weights = _cube_tile()
     x, y, z = np.eye(3)
     frames = ((y, z, x), (z, x, y), (x, y, z), (z, y, -x), (x, z, -y), (y, x, -z))
@@ -61,7 +61,7 @@ def ellipsoid_octants(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
     ValueError
         A semi-axis that is not finite or not positive.
     """
-    axes = np.array([positive(a, "a"), positive(b, "b"), positive(c, "c")])
+    axes = _semi_axes(a, b, c)
     round_ = np.array([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     arc = np.array([1.0, np.sqrt(0.5), 1.0])
     patches = []
@@ -76,6 +76,10 @@ def ellipsoid_octants(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
         # the lower octant: mirrored, and u turned so that f_u x f_v stays outward
         patches.append(BezierPatch(points[::-1] * axes * [1.0, 1.0, -1.0], weights))
     return tuple(patches)
+
+
+def _semi_axes(a: Any, b: Any, c: Any) -> Array:
+    return np.array([positive(a, "a"), positive(b, "b"), positive(c, "c")])
 
 
 def _cube_tile() -> tuple[Array, Array]:
