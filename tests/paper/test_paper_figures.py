@@ -45,7 +45,7 @@ def test_keys_name_figures_in_the_order_of_the_report() -> None:
 @pytest.mark.parametrize(
     ("key", "message"),
     [
-        ("5", "unknown figure '5'; known here: 7, 12, 13, 14, gains, verdict, all, and ranges"),
+        ("5", "unknown figure '5'; known here: 7, 12, 13, 14, gains, verdict, convergence, all"),
         ("gians", "did you mean 'gains'"),
         ("verdcit", "did you mean 'verdict'"),
         ("1-6", "unknown figure '1-6'"),

@@ -37,6 +37,7 @@ CATALOGUE: tuple[Entry, ...] = (
     _entry("18", "Parameters in time", "Simulation D", "simulation_d", "figure_18"),
     _entry("19", "Five snapshots", "Simulation E", "simulation_e", "figure_19"),
     _entry("20", "Parameters in time", "Simulation E", "simulation_e", "figure_20"),
+    _entry("arrivals", "Which starts arrive", "Convergence", "convergence", "as_committed"),
     _entry("voronoi", "Voronoi regions", "Voronoi regions", "voronoi_figure", "regions"),
     _entry("gains", "Gains: decay and lag", "Control theory", "control", "decay_and_lag"),
     _entry("stability", "Stability", "Control theory", "control", "stability"),
@@ -45,9 +46,15 @@ CATALOGUE: tuple[Entry, ...] = (
     _entry("lyapunov", "Lyapunov levels", "Control theory", "control", "lyapunov"),
     _entry("normals", "The normals' set", "Reference [28]", "normals", "comparison"),
     _entry("variants", "The variants as printed", "Variants and verdict", "variants", "variants"),
+    _entry("cost", "What an update costs", "Variants and verdict", "update_cost", "update_cost"),
     _entry("verdict", "Verdict", "Variants and verdict", "verdict", "verdict"),
 )
 # fmt: on
+
+ON_REQUEST: tuple[Entry, ...] = (
+    _entry("convergence", "Which starts arrive, run anew", "Convergence", "convergence", "anew"),
+)
+"""What takes minutes, and is made only where it is asked for by its own key."""
 
 ALL = "all"
 """The key of every figure."""
@@ -81,14 +88,15 @@ def chosen(keys: Sequence[str]) -> tuple[Entry, ...]:
         If no figure has a key, or a range is empty.
     """
     wanted = {found for key in keys for found in _named(key.strip().casefold())}
-    return tuple(entry for entry in CATALOGUE if entry.key in wanted)
+    return tuple(entry for entry in (*CATALOGUE, *ON_REQUEST) if entry.key in wanted)
 
 
 def _named(key: str) -> set[str]:
     """The keys of the catalogue that one key of the command line stands for."""
-    known = {entry.key for entry in CATALOGUE}
+    usual = {entry.key for entry in CATALOGUE}
     if key == ALL:
-        return known
+        return usual
+    known = usual | {entry.key for entry in ON_REQUEST}
     ends = RANGE.fullmatch(key)
     if ends:
         low, high = map(int, ends.groups())
@@ -102,7 +110,7 @@ def _named(key: str) -> set[str]:
 
 
 def _refusal(key: str) -> str:
-    names = [*(entry.key for entry in CATALOGUE), ALL]
+    names = [*(entry.key for entry in (*CATALOGUE, *ON_REQUEST)), ALL]
     likely = None if key.isdecimal() else nearest(key, names)
     hint = f"did you mean '{likely}'? " if likely else ""
     return f"unknown figure '{key}'; {hint}known here: {', '.join(names)}, and ranges such as 8-11"

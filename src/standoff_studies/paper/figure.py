@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -42,6 +42,11 @@ class Statement(NamedTuple):
     why: str = ""
     by: str = ""
     constructed: bool = False
+
+
+def measured_by(by: str, statements: Iterable[Statement]) -> tuple[Statement, ...]:
+    """Return statements of which those that name no law have been measured with this one."""
+    return tuple(s if s.by else s._replace(by=by) for s in statements)
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from itertools import groupby
 
 from standoff import __version__
 from standoff_studies.paper.figure import Statement
+from standoff_studies.paper.items import ITEMS
 from standoff_studies.paper.making import Made
 from standoff_studies.paper.typesetting import pieces, stop
 from standoff_studies.paper.verdicts import Verdict, counted
@@ -93,6 +94,8 @@ def report_html(made: Sequence[Made], of: int) -> str:
         counts=counted(statements),
         Verdict=Verdict,
         stop=stop,
+        items=ITEMS,
+        anchors={section.anchor for section in sections},
     )
 
 

@@ -35,6 +35,9 @@ FLOOR = 1e-15
 PAPER = "Heun, K h = 1 (paper)"
 AT = "at 1, 10 and 33 ms"
 
+SPELT = {"PC": "predictor-corrector", "PC2": "predictor-corrector,\ntwo steps"}
+"""Short names of the library's laws, and how they are written in the picture and the tables."""
+
 FIRST_STYLE = {"Heun": 0, "Euler": 1, "RK4": 2, "one": 3, "two": 4, "secant": 5, "PC": 6}
 """Colour, dashes and marker of a law, by its first word; those without feedforward are hollow."""
 
@@ -89,10 +92,11 @@ def verdict() -> Artwork:
             "Two ellipsoids of size 2 in smooth motion at 1 to 2 rad/s. Above: greatest error of "
             "the witness points against what it costs, second-order evaluations in a second of "
             "motion; down and to the left is better, and frames get longer to the left (1 to 33 "
-            "ms). PC is the library's predictor-corrector with the last feedforward, PC2 with the "
-            "blend of the last two. Below: what twists that are wrong by a part of their length "
-            "do, at 10 ms frames; -1 means no twist at all. In short: the paper's law holds what "
-            "it claims (a fixed step, errors that decay at a rate and a limit known in advance, "
+            "ms). The predictor-corrector, the library's law, predicts by the last feedforward, in "
+            "two steps by the blend of the last two. Below: what twists that are wrong by a part "
+            "of their length do, at 10 ms frames; -1 means no twist at all. In short: the paper's "
+            "law holds what it claims (a fixed step, errors that decay at a rate and a limit known "
+            "in advance, "
             "feedforward that pays), but its order of integration buys nothing at K h = 1, it "
             "needs safeguards from a start far away, and once the next pose is known its own two "
             "parts, applied one after the other, are better by orders for half the cost."
@@ -118,7 +122,7 @@ def accuracy_table() -> dict[str, list[str]]:
     times = frame_times()
     rows = accuracies()
     table = {
-        "law": list(rows),
+        "law": [_written(name) for name in rows],
         "evaluations a frame": [f"{rows[name][STEPS[0]].evaluations:.2f}" for name in rows],
         "time a frame [us]": [f"{1e6 * times[name]:.2f}" for name in rows],
     }
@@ -132,7 +136,7 @@ def wrong_table() -> dict[str, list[str]]:
     found = with_wrong_twists()
     keys = [(name, step) for name in found for step in STEPS]
     table = {
-        "law": [name for name, _ in keys],
+        "law": [_written(name) for name, _ in keys],
         "frame [ms]": [f"{1e3 * step:g}" for _, step in keys],
     }
     for wrong in TABLED:
@@ -155,6 +159,11 @@ def curve_table() -> dict[str, list[str] | list[float]]:
 def statements() -> tuple[Statement, ...]:
     """What the paper claims for its law beside what was measured, and what it leaves open."""
     return (*_claims(), *_own())
+
+
+def _written(name: str) -> str:
+    """A law's name in one line, without an abbreviation."""
+    return SPELT.get(name, name).replace("\n", " ")
 
 
 def _errors(name: str) -> list[float]:
@@ -247,13 +256,13 @@ def draw() -> Figure:
     for name, by_step in accuracies().items():
         cost = [got.evaluations / step for step, got in by_step.items()]
         error = [max(got.error, FLOOR) for got in by_step.values()]
-        above.plot(cost, error, label=name, **_look(name))
+        above.plot(cost, error, label=SPELT.get(name, name), **_look(name))
     _logarithmic(above, "second-order evaluations in a second of motion")
     above.set_xscale("log")
     above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
     for name, errors in with_wrong_twists().items():
         line = [errors[WRONG_STEP, wrong] for wrong in WRONG]
-        below.plot(WRONG, line, label=name, **_look(name))
+        below.plot(WRONG, line, label=SPELT.get(name, name), **_look(name))
     _logarithmic(below, f"error of the twists, in parts of them; frames of {1e3 * WRONG_STEP:g} ms")
     below.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
     return figure

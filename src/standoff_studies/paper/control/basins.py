@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
+from scipy.ndimage import label
 
 import standoff as so
 from standoff.bodies import Body
@@ -96,6 +98,24 @@ def weighted(found: np.ndarray) -> float:
     return float((weight * found).sum() / weight.sum())
 
 
+def parts(found: np.ndarray) -> list[int]:
+    """Cells of each connected part of a basin on the map, the largest first.
+
+    Cells join by their sides, over the seam of the longitudes, and all of them at a pole.
+    """
+    cells = found.reshape(ROWS, COLUMNS)
+    # One more row at each pole and one more column on the right join what meets there.
+    around = np.pad(np.hstack([cells, cells[:, :1]]), ((1, 1), (0, 0)))
+    around[0], around[-1] = cells[0].any(), cells[-1].any()
+    names, _ = label(around)
+    names, same = names[1:-1], {}
+    for left, right in zip(names[:, 0].tolist(), names[:, -1].tolist(), strict=True):
+        if left and right:
+            same[max(left, right)] = min(left, right)
+    flat = [same.get(name, name) for name in names[:, :-1].ravel().tolist() if name]
+    return sorted(Counter(flat).values(), reverse=True)
+
+
 def attraction() -> Artwork:
     """Basins of the three laws."""
     return Artwork(
@@ -124,6 +144,7 @@ def _statements() -> tuple[Statement, ...]:
         return f"{weighted(beside_a_point(law).found):.1%}, {of_two(law).fraction:.1%}"
 
     all_found = of_two("safeguarded").found.all() and beside_a_point("safeguarded").found.all()
+    sizes = parts(beside_a_point("Newton").found)
     raw = beside_a_point("raw law").found.all() and of_two("raw law").found.all()
     return (
         Statement(
@@ -138,6 +159,15 @@ def _statements() -> tuple[Statement, ...]:
             "-",
             f"Newton, K h = 1: {share('Newton')} of the starts",
             None,
+        ),
+        Statement(
+            "Section I",
+            "the basin of Newton's method is not connected",
+            f"on the map of body and point it falls into {len(sizes)} separate parts of "
+            f"{', '.join(map(str, sizes))} starts",
+            len(sizes) > 1,
+            by="PaperLaw(integrator='euler', gain=1000, solve='plain'): Newton's method; "
+            f"{ROWS * COLUMNS} starts on an ellipsoid beside a point",
         ),
         Statement(
             "Convergence",

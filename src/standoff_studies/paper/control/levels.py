@@ -162,14 +162,14 @@ def lyapunov() -> Artwork:
         caption=(
             "The curved face of a cap in its parameters (u, v), and a point above it. V = "
             "Ψᵀ D*⁻¹ Ψ / 2 falls along the law as dV/dt = −2KV, E = |ΔR|²/2 as dE/dt = "
-            "−K gᵀH⁻¹g while H is positive definite, within the red line. Thick: the largest "
+            "−K gᵀH⁻¹g while H is positive definite, within the vermilion line. Thick: the largest "
             "level set of each that lies there, with its level; thin grey lines: the law's own "
             "trajectories, on which Ψ keeps its direction. Below: both functions in time."
         ),
         text=(
             "A roundish region of parameters with a dot at the minimum. Around it two closed "
-            "curves, the larger one of E, each touching the red line det H = 0 in one point; fine "
-            "lines run from the red line into the dot. Below: V falls on one straight line for "
+            "curves, the larger one of E, each touching the vermilion line det H = 0 in one point; "
+            "fine lines run from that line into the dot. Below: V falls on one straight line for "
             "all starts, E − E* beside it."
         ),
         draw=_draw,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -122,7 +122,7 @@ def _draw_integrated() -> Figure:
             label=name,
         )
     below.set(yscale="log", xlabel="time [s]", ylabel="|Ψ| [length²]", xlim=(0.0, time[-1]))
-    below.legend(loc="upper right")
+    below.legend(loc="upper right", handlelength=4.5)
     return figure
 
 
@@ -150,7 +150,22 @@ def _draw_evaluated() -> Figure:
     true.set_ylim(bottom=1e-13)
     true.legend(loc="lower center", ncols=3, handlelength=1.5, columnspacing=1.0)
     wrong.legend(loc="center right")
+    _tell_dashes(figure)
     return figure
+
+
+def _tell_dashes(figure: Figure) -> None:
+    """Below the lower plots: solid is the one realisation, dashed the other."""
+    from matplotlib.lines import Line2D
+
+    look: dict[str, Any] = {"color": style.BLACK}
+    handles = [
+        Line2D([], [], linestyle="-", label="Fig. 3: Ψ integrated (lower plots)", **look),
+        Line2D([], [], linestyle="--", label="Fig. 4: Ψ evaluated (lower plots)", **look),
+    ]
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=2, frameon=False, handlelength=4.0
+    )
 
 
 def _draw_apart(axes: Axes, lines: dict[str, c.Difference], title: str) -> None:

@@ -12,10 +12,11 @@ from standoff.geometry.validation import Array
 from standoff.tracking import distance
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_space import space_axes
-from standoff_studies.paper.figure import Animation, Artwork, Statement
+from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
 from standoff_studies.paper.simulation_a.gains import TURN
 from standoff_studies.paper.simulation_a.run import HOME, Run, run
 from standoff_studies.paper.simulation_a.setting import FACE, PATH, STEP, point, vault
+from standoff_studies.paper.simulation_a.statements import LAW
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,9 +66,9 @@ def figure_6() -> Artwork:
     return Artwork(
         caption=(
             "A point on a helix above a convex bicubic patch, the roof of a convex body; the "
-            f"paper's law by Heun's method at 1 kHz, K = {GAIN:g} 1/s. Above: the witness line "
+            f"paper's law by Heun's method at 1 kHz, K = {GAIN:g} 1/s. Left: the witness line "
             f"after {', '.join(map(str, FIRST))} steps; it starts at the wrong end of the patch "
-            f"and ends square on it, while the point goes {_way(FIRST[-1]):.2f} [length]. Below: "
+            f"and ends square on it, while the point goes {_way(FIRST[-1]):.2f} [length]. Right: "
             f"the line every {EACH * STEP:g} s for one turn, with the paths of the point (dashed) "
             "and of the witness point (thick). Lengths are in the scene's unit."
         ),
@@ -79,7 +80,7 @@ def figure_6() -> Artwork:
         ),
         draw=_draw,
         tables={"run": run_table(made)},
-        statements=_statements(made),
+        statements=measured_by(LAW, _statements(made)),
         animation=Animation(
             frames=len(ANIMATED),
             draw=_draw_frame,
@@ -133,8 +134,8 @@ def _way(frame: int) -> float:
 
 def _draw() -> Figure:
     made = snapshot_run()
-    figure = style.new_figure(style.WIDTH, 9.0)
-    above = space_axes(figure, *VIEW, place=(2, 1, 1))
+    figure = style.new_figure(style.WIDTH, 4.0)
+    above = space_axes(figure, *VIEW, place=(1, 2, 1))
     _draw_patch(above)
     for n, frame in enumerate(FIRST):
         colour = style.COLOURS[n]
@@ -142,7 +143,7 @@ def _draw() -> Figure:
         foot, top = made.witness[frame], made.target[frame]
         place = foot + BEYOND * (foot - top) / np.linalg.norm(foot - top)
         above.text(*place, str(frame), ha="center", va="center", fontweight="bold", zorder=9)
-    below = space_axes(figure, *VIEW, place=(2, 1, 2))
+    below = space_axes(figure, *VIEW, place=(1, 2, 2))
     _draw_patch(below)
     settled = made.witness[FIRST[-1] :]
     below.plot(*settled.T, color=style.GREEN, linewidth=2.6, zorder=6)

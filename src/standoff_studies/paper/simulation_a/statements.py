@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from standoff_studies.paper.figure import Statement
+from standoff_studies.paper.figure import Statement, measured_by
 from standoff_studies.paper.simulation_a import gains
 from standoff_studies.paper.simulation_a.run import SETTLED, Run
 from standoff_studies.paper.simulation_a.setting import STEP
@@ -15,13 +15,19 @@ STATED = (75, 10)
 LEVELS = (1e-2, 1e-3, 1e-4)
 """Cosines below which the steps are counted."""
 
+LAW = (
+    "the raw law, Eq. (12), at the gain named: Heun, 1 kHz, M as it is, on one face without a "
+    "switch, from Fig. 6's wrong start if not told otherwise"
+)
+"""What the statements say they were measured with."""
+
 ABOUT = 0.15
 """Part by which a number may differ from the paper's "about 75" or "about 10" steps."""
 
 
 def statements(slow: Run, fast: Run) -> tuple[Statement, ...]:
     """Fig. 7's statements, for the runs at K = 100 and K = 1000 1/s."""
-    return (
+    made = (
         _steps(slow, STATED[0]),
         _steps(fast, STATED[1]),
         _as_cosines(slow, fast),
@@ -33,6 +39,7 @@ def statements(slow: Run, fast: Run) -> tuple[Statement, ...]:
         _lower_end(),
         _without_feedforward(),
     )
+    return measured_by(LAW, made)
 
 
 def _steps(made: Run, stated: int) -> Statement:

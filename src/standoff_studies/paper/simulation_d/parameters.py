@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 from standoff.recording import Recording
 from standoff.tracking import pair_system
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.simulation_d.runs import (
     GAIN,
     HELIX,
     LAW,
+    OWN_LAW,
     REST,
     STEP,
     Runs,
@@ -72,7 +73,7 @@ def figure_18() -> Artwork:
         ),
         draw=_draw,
         tables={"parameters": table},
-        statements=_statements(runs),
+        statements=measured_by(OWN_LAW, _statements(runs)),
     )
 
 

@@ -57,6 +57,8 @@ GAIN = 25.0
 LAW = f"PaperLaw.as_printed(gain={GAIN:g}): Voronoi tests, M as it is, wrong start"
 """What the statements say they were measured with."""
 
+OWN_LAW = "the library's own law, certified"
+
 ENTERED = 0.005
 """After these seconds the switches of a wrong start to the true feature are over: the guards see
 the point alone, and a frame passes several [s]."""

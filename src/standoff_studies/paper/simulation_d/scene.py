@@ -13,13 +13,14 @@ from standoff.bodies.voronoi import voronoi_regions
 from standoff.tracking import Feature
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import View
-from standoff_studies.paper.figure import Animation, Artwork, Statement
+from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
 from standoff_studies.paper.simulation_d.runs import (
     DURATION,
     ENTERED,
     GAIN,
     HELIX,
     LAW,
+    OWN_LAW,
     SETTLED,
     STEP,
     WRONG_STARTS,
@@ -97,7 +98,7 @@ def figure_16() -> Artwork:
         ),
         draw=_draw,
         tables={"run": table},
-        statements=_statements(runs),
+        statements=measured_by(OWN_LAW, _statements(runs)),
         animation=Animation(
             frames=FRAMES,
             draw=_draw_frame,

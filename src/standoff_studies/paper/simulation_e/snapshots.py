@@ -13,13 +13,14 @@ from standoff.motion import Pose
 from standoff.tracking import Feature
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import View, posed
-from standoff_studies.paper.figure import Animation, Artwork, Statement
+from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
 from standoff_studies.paper.simulation_d.runs import short
 from standoff_studies.paper.simulation_e.runs import (
     CONVERGED,
     DURATION,
     GAIN,
     LAW,
+    OWN_LAW,
     PATH_A,
     PATH_B,
     SEMI_AXES,
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-AZIMUTH, ELEVATION = -25.0, 56.0
+AZIMUTH, ELEVATION = 8.0, 56.0
 """Where the viewer stands [degrees]: so that both ends of the witness lines are seen."""
 
 COLOURS = {"A": ("#CBE6F6", "#5F9FC8", "#9FD3F2"), "B": ("#F7D08A", "#DDA03F", "#FBE9C6")}
@@ -45,13 +46,16 @@ COLOURS = {"A": ("#CBE6F6", "#5F9FC8", "#9FD3F2"), "B": ("#F7D08A", "#DDA03F", "
 LOOKS = {"face": (style.BLUE, "o"), "edge": (style.RED, "s"), "vertex": (style.BLACK, "^")}
 """Colour and mark of a witness point by the kind of its feature."""
 
+HEIGHTS = (1.25, 1.0, 1.0)
+"""Of the rows of panels."""
+
 FRAMES = 64
 """Pictures of the animation."""
 
 TRIAD = (1.4, -1.4)
 """Where the world's axes are drawn [length on the paper]."""
 
-ACROSS, UP = (-1.0, 2.4), (-2.2, 1.1)
+ACROSS, UP = (-1.6, 2.3), (-2.5, 1.1)
 """What the animation shows [length on the paper]: both bodies at all times."""
 
 FAN = 0.2
@@ -93,7 +97,7 @@ def figure_19() -> Artwork:
                 "feature_b": [short(feature) for feature in recording.feature_b],
             }
         },
-        statements=_statements(runs),
+        statements=measured_by(OWN_LAW, _statements(runs)),
         animation=Animation(
             frames=FRAMES,
             draw=_draw_frame,
@@ -148,16 +152,18 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
 def _draw() -> Figure:
     runs = run()
     with style.settings():
-        figure = style.new_figure(style.WIDTH, 9.8)
-        panels = figure.subplots(3, 2).ravel().tolist()
+        figure = style.new_figure(style.WIDTH, 8.4)
+        panels = figure.subplots(3, 2, height_ratios=HEIGHTS).ravel().tolist()
         for axes, frame in zip(panels, snapshot_frames(runs), strict=False):
             _draw_snapshot(axes, runs, frame, start=axes is panels[0])
         _draw_motion(panels[-1], runs)
-        limits = [(axes.get_xlim(), axes.get_ylim()) for axes in panels]
-        across, up = (np.array([pair[k] for pair in limits]) for k in (0, 1))
-        for axes in panels:
-            axes.set_xlim(across[:, 0].min(), across[:, 1].max())
-            axes.set_ylim(up[:, 0].min(), up[:, 1].max())
+        # One scale in all panels, and each row as high as its two need.
+        across = np.array([axes.get_xlim() for axes in panels])
+        for first in range(0, len(panels), 2):
+            up = np.array([axes.get_ylim() for axes in panels[first : first + 2]])
+            for axes in panels[first : first + 2]:
+                axes.set_xlim(across[:, 0].min(), across[:, 1].max())
+                axes.set_ylim(up[:, 0].min(), up[:, 1].max())
         _legend(figure)
     return figure
 
