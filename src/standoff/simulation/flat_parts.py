@@ -38,6 +38,12 @@ class FlatParts(NamedTuple):
     faces: tuple[FlatFace, ...]
     tips: Array
     rims: Array
+    kind: int
+
+    @property
+    def springs(self) -> int:
+        """The most corners of one face."""
+        return max((len(face.corners) for face in self.faces), default=0)
 
     @property
     def several(self) -> bool:
@@ -59,8 +65,19 @@ def flat_parts(body: Body) -> FlatParts:
         and edge.curve.last - edge.curve.first > FULL_TURN - FULL
     ]
     return FlatParts(
-        tuple(faces), np.asarray(body.vertex_points), np.reshape(rims, (-1, F.RIM_REALS))
+        tuple(faces),
+        np.asarray(body.vertex_points),
+        np.reshape(rims, (-1, F.RIM_REALS)),
+        _kind(body, len(faces)),
     )
+
+
+def _kind(body: Body, flat_faces: int) -> int:
+    """A half-space; a body of flat faces, straight edges, or vertices alone; or a curved one."""
+    if not body.bounded:
+        return F.HALFSPACE
+    straight = all(isinstance(edge.curve, Line) for edge in body.edge_parts)
+    return F.POLYTOPE if straight and flat_faces == body.n_faces else F.CURVED
 
 
 def _flat_face(body: Body, number: int, face: Face) -> FlatFace:
@@ -111,5 +128,5 @@ def pack_flat_parts(parts: FlatParts, offset: int) -> tuple[list[int], list[floa
     numbers += list(parts.tips.ravel())
     rims = offset + len(numbers)
     numbers += list(parts.rims.ravel())
-    header = [len(parts.faces), len(parts.tips), len(parts.rims), tips, rims]
+    header = [len(parts.faces), len(parts.tips), len(parts.rims), tips, rims, parts.kind]
     return header + rows, numbers

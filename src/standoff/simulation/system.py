@@ -113,7 +113,9 @@ class System(KeepsReadOnly):
     def springs(self, pair: int) -> float:
         """How many springs of its stiffness a pair's contact can be."""
         a, b = (self.flats[k] for k in self.pairs[pair])
-        return FLAT_SPRINGS if a.several and b.several else 1.0
+        if not (a.several and b.several):
+            return 1.0
+        return max(FLAT_SPRINGS, float(max(a.springs, b.springs)))
 
     def depth(self, pair: int) -> float:
         """The depth that a pair's contact is meant for, length."""

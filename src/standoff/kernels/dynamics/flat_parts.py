@@ -21,11 +21,13 @@ NOTHING, SEGMENT, AREA, PLANE = range(4)
 # Corners of one area; a rim is a polygon of RIM_CORNERS.
 MAX_SPOTS = 32
 
-# Of a body among the integers: how many flat faces, vertices and rims, and where the numbers of
-# the last two stand; then for each face how many corners (0: a half-space) and where its numbers
-# stand: outward normal, a point, corners in order.
-F_FACES, F_TIPS, F_RIMS, F_TIP_REALS, F_RIM_REALS = range(5)
-FLAT_HEADER = 5
+# Of a body among the integers: how many flat faces, vertices and rims, where the numbers of the
+# last two stand, and its kind; then for each face how many corners (0: a half-space) and where its
+# numbers stand: outward normal, a point, corners in order.
+F_FACES, F_TIPS, F_RIMS, F_TIP_REALS, F_RIM_REALS, F_KIND = range(6)
+FLAT_HEADER = 6
+# Kinds of bodies, of which a half-space and a body of flat faces meet vertex by vertex.
+CURVED, POLYTOPE, HALFSPACE = range(3)
 FLAT_FACE = 2
 FACE_REALS = 6
 # A rim's numbers: centre and two conjugate half axes of the ellipse.

@@ -11,6 +11,7 @@ from standoff.kernels.algebra.vectors import add, axpy, cross, dot, rotate, scal
 from standoff.kernels.body.layout import RADIUS
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.dynamics.arrays import (
+    B_FLATS,
     N_BODY,
     N_TOUCH,
     P_DAMPING,
@@ -22,14 +23,23 @@ from standoff.kernels.dynamics.arrays import (
     T_SPOTS,
     T_STORED,
     bodies_of,
+    body_ints,
     pair_numbers,
 )
 from standoff.kernels.dynamics.contact_force import Material, spot_push
 from standoff.kernels.dynamics.flat_contact import flat_spots, height, share
+from standoff.kernels.dynamics.flat_parts import (
+    F_KIND,
+    F_TIP_REALS,
+    F_TIPS,
+    FLAT_HEADER,
+    HALFSPACE,
+    POLYTOPE,
+)
 from standoff.kernels.dynamics.rigid_body import load, put
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.state.arrays import POSE_A, TWIST_A, TWIST_B
-from standoff.kernels.values import Vector
+from standoff.kernels.values import Pose, Vector
 
 
 class Witness(NamedTuple):
@@ -103,6 +113,63 @@ def flat_spot(shared, points, k, radii):
 
 
 @kernel
+def kind_in(system, body):
+    return system.layout[system.layout[body_ints(body) + B_FLATS] + F_KIND]
+
+
+@kernel
+def plane_of(system, pair):
+    """0 or 1 where A or B is a half-space and the other body has flat faces alone; else -1."""
+    a, b = bodies_of(system, pair)
+    if kind_in(system, a) == HALFSPACE and kind_in(system, b) == POLYTOPE:
+        return 0
+    if kind_in(system, b) == HALFSPACE and kind_in(system, a) == POLYTOPE:
+        return 1
+    return -1
+
+
+@kernel
+def plane_and_corners(system, pair, side, pose):
+    """(normal from A to B, the pose of the other body's corners in A's frame, where they stand, how
+    many) of a half-space and a polytope.
+    """
+    numbers = bodies_of(system, pair)
+    identity = Pose((1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
+    plane = system.layout[body_ints(numbers[side]) + B_FLATS]
+    outward = read_vector(system.numbers, system.layout[plane + FLAT_HEADER + 1])
+    other = system.layout[body_ints(numbers[1 - side]) + B_FLATS]
+    at, count = system.layout[other + F_TIP_REALS], system.layout[other + F_TIPS]
+    if side == 0:
+        return outward, pose, at, count
+    return scale(-1.0, rotate(pose.R, outward)), identity, at, count
+
+
+@kernel
+def touch_corners(system, packed, pair, witness, rows, first, motion, scratch):
+    """`touch_pair`, of a half-space and a body of flat faces: every corner below the plane carries
+    a spring of its own, so the force is the slope of an energy, whatever the tilt.
+    """
+    side = plane_of(system, pair)
+    n, placed, at, count = plane_and_corners(system, pair, side, witness.pose)
+    jets = pair_jets(packed, witness.pose, witness.place)
+    radii = packed.reals_a[RADIUS] + packed.reals_b[RADIUS]
+    level = dot(n, jets[side][0])
+    sign = 1.0 if side == 0 else -1.0
+    R, origin = read_rotation(motion, POSE_A), read_vector(motion, POSE_A + 9)
+    lost = 0.0
+    for k in range(count):
+        x = add(rotate(placed.R, read_vector(system.numbers, at + 3 * k)), placed.p)
+        depth = radii - sign * (dot(n, x) - level)
+        if depth > 0.0:
+            # the middle between the plane and the corner
+            middle = axpy(sign * 0.5 * (depth - radii), n, x)
+            point = add(rotate(R, middle), origin)
+            spot = Spot(point, depth, 1.0)
+            lost += press(system, pair, rows, first, motion, rotate(R, n), spot, scratch)
+    return lost
+
+
+@kernel
 def touch_pair(system, packed, pair, witness, rows, first, motion, scratch):
     """Put a pair's contact on its bodies' loads; the power that it loses.
 
@@ -115,6 +182,8 @@ def touch_pair(system, packed, pair, witness, rows, first, motion, scratch):
     depth = radii[0] + radii[1] - dot(n, sub(jet_b[0], jet_a[0]))
     if not depth > 0.0:
         return 0.0
+    if plane_of(system, pair) >= 0:
+        return touch_corners(system, packed, pair, witness, rows, first, motion, scratch)
     R, origin = read_rotation(motion, POSE_A), read_vector(motion, POSE_A + 9)
     world_n = rotate(R, n)
     heights = (dot(n, jet_a[0]), -dot(n, jet_b[0]))
