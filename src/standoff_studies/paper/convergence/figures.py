@@ -51,8 +51,8 @@ def _artwork(cells: tuple[Cell, ...]) -> Artwork:
             f"{STARTS} random starts at each gain. Above: the part of them that has come to the "
             f"true distance within {ARRIVED:g} length after {PATIENCE:g}/K and {LEAST_FRAMES} "
             "frames, with 95 % intervals (Wilson's); left with both bodies at rest, right with B "
-            "moving. Voronoi tests with M as it is are the system as printed. Below: time that the middle one and the "
-            "hundredth slowest of those that arrive take, in units of 1/K."
+            "moving. Voronoi tests with M as it is are the system as printed. Below: time that the "
+            "middle one and the hundredth slowest of those that arrive take, in units of 1/K."
         ),
         text=(
             "Four diagrams over the gain. With the rank rule nearly all starts arrive at every "
