@@ -25,6 +25,7 @@ from standoff_studies.paper.simulation_e.runs import (
     face_parameters,
     features_of,
     run,
+    witness_error,
 )
 
 if TYPE_CHECKING:
@@ -35,6 +36,9 @@ Array = NDArray[np.float64]
 
 BESIDE = 0.2
 """By which our instants may be off the paper's [s]."""
+
+LEAST_DRAWN = 1e-10
+"""Witness errors below this are drawn at it [length]: those of the other law."""
 
 SHADES = ("#FFFFFF", "#ECECEC")
 """Behind the modes, in turn."""
@@ -51,12 +55,13 @@ def figure_20() -> Artwork:
             "named on top, A's feature first; thin lines mark the switching instants. On an edge "
             "(bar) the point keeps the parameters of the patch that it came from, and u or r stays "
             "at 1; when it leaves to the next patch they jump to that one's. Below: the distance, "
-            "in the radius of A's faces."
+            "and how far the worse witness point is off, in the radius of A's faces."
         ),
         text=(
             "Two panels of parameters between 0 and 1, one a body. In each, u rises to 1, stays "
             "there while the point is on an edge, then jumps to 0 on the next patch and rises "
-            "again. The third panel shows the distance, a smooth curve through all switches."
+            "again. The third panel shows the distance, a smooth curve through all switches, the "
+            "last the error, which falls from the start and again after each switch."
         ),
         draw=_draw,
         tables={"parameters": _parameter_table(runs), "switches": _switch_table(runs)},
@@ -222,8 +227,8 @@ def _switch_table(runs: Runs) -> dict[str, Array | list[str]]:
 def _draw() -> Figure:
     runs = run()
     with style.settings():
-        figure = style.new_figure(style.WIDTH, 6.6)
-        panels = figure.subplots(3, 1, sharex=True)
+        figure = style.new_figure(style.WIDTH, 8.2)
+        panels = figure.subplots(4, 1, sharex=True)
         for axes, body in zip(panels, "AB", strict=False):
             _shade(axes, runs)
             _draw_parameters(axes, runs, body)
@@ -237,13 +242,22 @@ def _draw() -> Figure:
             label="library's law",
         )
         panels[2].legend(frameon=False)
-        panels[2].set(xlabel="time [s]", ylabel="distance [radius]")
+        panels[2].set_ylabel("distance [radius]")
+        _draw_errors(panels[3], runs)
         panels[2].set_xlim(0.0, runs.paper.time[-1])
         _name_modes(panels[0], runs)
         handles, names = panels[0].get_legend_handles_labels()
         figure.legend(handles, names, loc="outside lower center", ncols=3, frameon=False)
         figure.align_ylabels()
     return figure
+
+
+def _draw_errors(axes: Axes, runs: Runs) -> None:
+    """How far the worse witness point is off: what a switch leaves decays again."""
+    _shade(axes, runs)
+    axes.semilogy(runs.paper.time, np.maximum(witness_error(runs), LEAST_DRAWN), color=style.GREEN)
+    axes.set_ylim(0.5 * LEAST_DRAWN, 3.0)
+    axes.set(xlabel="time [s]", ylabel="error [radius]")
 
 
 def _draw_parameters(axes: Axes, runs: Runs, body: str) -> None:
