@@ -103,6 +103,11 @@ class Operator(KeepsReadOnly):
         self.packed = pack_system(self.system, self.dt, number, inside, self.options)
         prepare_simulation()
 
+    def __setstate__(self, stored: Any) -> None:
+        super().__setstate__(stored)
+        # in another process the bodies' formulas have other addresses
+        self._pack()
+
     def _law(self, gain: float | None) -> Law:
         if self.tracker == "beside":
             if gain is not None:
