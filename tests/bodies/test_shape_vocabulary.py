@@ -178,6 +178,7 @@ POINTS = st.tuples(COORDINATES, COORDINATES, COORDINATES).map(np.array)
 def test_a_segment_between_two_points(start: Any, end: Any, at: Any) -> None:
     """The distance of a point from it, in closed form."""
     body = shapes.segment(start=start, end=end)
+    assert shapes.segment(start, end).digest == body.digest
     way = end - start
     share = np.clip((at - start) @ way / max(way @ way, 1e-300), 0.0, 1.0)
     exact = np.linalg.norm(at - start - share * way)

@@ -191,3 +191,8 @@ def test_broken_quaternions_are_refused(make: Any) -> None:
 def test_composing_with_something_else_is_a_type_error() -> None:
     with pytest.raises(TypeError):
         Pose.identity() @ np.eye(4)  # type: ignore[operator]
+
+
+def test_a_homogeneous_matrix_is_sent_to_where_it_is_read():
+    with pytest.raises(ValueError, match=r"(?s)rotation is 4 by 4.*Pose\.of\(matrix\)"):
+        Pose(np.eye(4))

@@ -195,7 +195,7 @@ def test_an_unstable_feedback_is_refused(feedback: so.feedback.Feedback) -> None
 
 
 def test_a_feedback_is_for_the_papers_law() -> None:
-    with pytest.raises(TypeError, match="unexpected keyword"):
+    with pytest.raises(TypeError, match="has no option"):
         so.PredictorCorrector(feedback=so.feedback.Linear(1.0))
     with pytest.raises(ValueError, match="both name the gain"):
         so.PaperLaw(gain=1.0, feedback=so.feedback.Linear(1.0))

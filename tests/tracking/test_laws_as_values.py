@@ -17,6 +17,7 @@ import pytest
 import standoff as so
 from standoff.cli.arguments import parse
 from standoff.cli.track import settings_of
+from standoff.errors import StandoffTypeError
 from standoff.kernels.pair.events import NO_LIMIT
 from standoff.kernels.paper import integrators as I
 from standoff.kernels.state import arrays as K
@@ -274,3 +275,24 @@ def test_the_old_spelling_is_told_the_new_one(call: Any, spelling: str) -> None:
     with pytest.raises(TypeError) as caught:
         call()
     assert spelling in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (
+            lambda: so.PaperLaw(gian=3.0),
+            r"no option 'gian'\. Did you mean 'gain'\?",
+        ),
+        (
+            lambda: so.PredictorCorrector(gain=3.0),
+            r"no option 'gain'\. .*has the options tol",
+        ),
+        (lambda: so.PaperLaw("heun"), "'heun'.*options are given by name"),
+    ],
+    ids=["misspelt", "of the other law", "by position"],
+)
+def test_an_option_that_a_law_does_not_have_is_named(call, words):
+    with pytest.raises(StandoffTypeError, match=words) as told:
+        call()
+    assert told.value.argument in ("gian", "gain", "law")

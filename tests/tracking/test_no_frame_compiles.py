@@ -49,6 +49,8 @@ def loop(tracker, state, poses, **given):
     for each in poses:
         state, answer = tracker.step(state, pose(0.0), each, **given)
         seen.add(answer.status.name)
+        if answer.events:
+            seen.add("switch")
     return state, seen
 
 def tell(seen=()):
@@ -84,7 +86,7 @@ def test_a_first_switch_overlap_and_search_compile_nothing():
         tell(seen | more)
     """)
     assert told["asked"] == []
-    assert {"CONVERGED", "GLOBAL"} <= set(told["seen"])
+    assert {"CONVERGED", "GLOBAL", "switch"} <= set(told["seen"])
 
 
 def test_the_kind_of_array_that_holds_a_pose_compiles_nothing():

@@ -304,6 +304,12 @@ def matrix_of(value: Any) -> Any:
 
 
 def _numbers(rotation: RotationLike, translation: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    if shape_of(rotation) == (4, 4):
+        raise StandoffError(
+            f"rotation is 4 by 4: {shown(rotation)}; write Pose.of(matrix) for a homogeneous one.",
+            "rotation",
+            rotation,
+        )
     return (
         inputs.array(matrix_of(rotation), "rotation", (3, 3)),
         inputs.array(translation, "translation", (3,)),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,10 +96,29 @@ def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
             flat = np.empty(6)
             flat[:3], flat[3:] = v, omega
             return flat
+    if type(twist) is np.ndarray and twist.shape == (6,) and twist.dtype in PLAIN:
+        return twist  # its numbers are the kernel's to check, as a plain pose's are
     twist = Twist.of(twist)
     if twist.frame != "world":
         twist = twist.in_world(Pose.of(pose))
     return np.concatenate([twist.v, twist.omega])
+
+
+def refuse_twists(twist_a: Array, twist_b: Array) -> NoReturn:
+    """Say which of two flat twists is not finite.
+
+    Raises
+    ------
+    StandoffError
+    """
+    for name, twist in (("twist_a", twist_a), ("twist_b", twist_b)):
+        if not np.isfinite(twist).all():
+            raise StandoffError(
+                f"{name} has a NaN or infinite number: {text(twist)}; give six finite ones.",
+                name,
+                twist.copy(),
+            )
+    raise StandoffError("The twists are too large: their sum is infinite.", "twist_a")
 
 
 def same_body(a: Body, b: Body) -> bool:

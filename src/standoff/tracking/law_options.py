@@ -8,6 +8,7 @@ docstring are made from that. Nothing heavy is imported here: the command line's
 from __future__ import annotations
 
 import dataclasses
+import functools
 import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -191,6 +192,37 @@ def documented(law: Class) -> Class:
     lines += ["", "    Raises", "    ------", "    TypeError", "        No such option."]
     lines += ["    ValueError", "        Values that an option does not take.", "    "]
     law.__doc__ = str(law.__doc__).rstrip() + "\n".join(lines)
+    return law
+
+
+def told_by_name(law: Class) -> Class:
+    """Make a law tell of options that it does not have, which its dataclass would only refuse."""
+    made = law.__dict__["__init__"]
+
+    @functools.wraps(made)
+    def checked(self: Any, *args: Any, **given: Any) -> None:
+        known = options_of(law)
+        if not args and given.keys() <= known.keys():
+            made(self, **given)
+            return
+        import difflib
+
+        from standoff.errors import StandoffTypeError
+        from standoff.real_numbers import shown
+
+        listed = f"so.{law.__name__} has the options {', '.join(known)}."
+        if args:
+            raise StandoffTypeError(
+                f"so.{law.__name__}({shown(args[0])}): options are given by name. {listed}", "law"
+            )
+        name = min(given.keys() - known.keys())
+        near = difflib.get_close_matches(name, known, 1)
+        meant = f" Did you mean {near[0]!r}?" if near else ""
+        raise StandoffTypeError(
+            f"so.{law.__name__} has no option {name!r}.{meant} {listed}", name, given[name]
+        )
+
+    setattr(law, "__init__", checked)  # noqa: B010 - mypy takes no assignment to a method
     return law
 
 

@@ -21,6 +21,7 @@ from standoff.tracking.law_options import (
     documented,
     option,
     options_of,
+    told_by_name,
 )
 
 
@@ -38,6 +39,7 @@ class OptionsConflict(StandoffError):
         self.options = options
 
 
+@told_by_name
 @documented
 @dataclass(frozen=True, kw_only=True, repr=False)
 class PredictorCorrector(Law):
@@ -53,6 +55,7 @@ class PredictorCorrector(Law):
     )
 
 
+@told_by_name
 @documented
 @dataclass(frozen=True, kw_only=True, repr=False)
 class PaperLaw(Law):

@@ -13,7 +13,14 @@ from standoff.errors import StandoffError
 from standoff.kernels.entries import queries
 from standoff.motion import Pose, PoseLike, TwistLike
 from standoff.real_numbers import shown
-from standoff.tracking.inputs import check_in_plane, check_pair, flat_pose, flat_twist, place
+from standoff.tracking.inputs import (
+    check_in_plane,
+    check_pair,
+    flat_pose,
+    flat_twist,
+    place,
+    refuse_twists,
+)
 from standoff.tracking.rows import StateRow, motion_row
 
 Array = NDArray[np.float64]
@@ -96,7 +103,7 @@ def pair_system(
     flat_a, flat_b = flat_pose(pose_a), flat_pose(pose_b)
     xi_a, xi_b = flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
     if not np.isfinite([xi_a, xi_b]).all():
-        raise StandoffError("A twist has a NaN or infinite number: give six finite ones.")
+        refuse_twists(xi_a, xi_b)
     if a.dimension == 2 or b.dimension == 2:
         check_in_plane(flat_a, flat_b)
     system = systems.at(systems.q, flat_a, flat_b, xi_a, xi_b)

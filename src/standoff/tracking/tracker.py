@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +27,7 @@ from standoff.tracking.inputs import (
     flat_and_mark,
     flat_twist,
     place,
+    refuse_twists,
     repair,
     same_body,
 )
@@ -35,7 +37,7 @@ from standoff.tracking.old_spellings import ATTRIBUTES, takes_a_law
 from standoff.tracking.options import pack_options
 from standoff.tracking.overlap_proof import cores_overlap
 from standoff.tracking.proximity import Proximity, events_of
-from standoff.tracking.rows import StateRow, motion_row, poses_of
+from standoff.tracking.rows import StateRow, motion_row, poses_of, twists_of
 from standoff.tracking.state import FrameBuffer, TrackerState
 from standoff.tracking.status import Status
 
@@ -331,7 +333,7 @@ class Tracker(KeepsReadOnly):
             It is something worse.
         """
         if why == K.BAD_TWIST:
-            raise StandoffError("A twist has a NaN or infinite number: give six finite ones.")
+            refuse_twists(*twists_of(motion))
         first = why == K.BAD_POSE_A
         flat_a, flat_b = poses_of(motion)
         repair(flat_a if first else flat_b, "pose_a" if first else "pose_b")
@@ -363,8 +365,25 @@ class Tracker(KeepsReadOnly):
 class ColdQuery(Tracker):
     """A tracker that is asked for starts only: what frames need is not compiled for it."""
 
+    def __init__(self, a: Body, b: Body) -> None:
+        check_pair(a, b)
+        self.a, self.b, self.law = a, b, DEFAULT_LAW
+        self.dt, self.resolved_law, self.options = _without_frames()
+        self.packed = self._packed()
+        self.planar = a.dimension == 2 or b.dimension == 2
+
     def _prepare(self) -> None:
         pass
+
+
+@functools.cache
+def _without_frames() -> tuple[float, Law, Array]:
+    """A frame time, the default law at it and its options, made once for all cold queries."""
+    dt = 1e-3
+    law = DEFAULT_LAW.resolved(dt)
+    options = pack_options(law)
+    options.setflags(write=False)
+    return dt, law, options
 
 
 def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:

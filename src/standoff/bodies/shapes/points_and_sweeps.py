@@ -40,11 +40,15 @@ def segment(length: float, *, rounding: float = ...) -> Body: ...
 
 
 @overload
+def segment(start: Any, /, end: Any, *, rounding: float = ...) -> Body: ...
+
+
+@overload
 def segment(*, start: Any, end: Any, rounding: float = ...) -> Body: ...
 
 
 def segment(
-    length: float | None = None, *, start: Any = None, end: Any = None, rounding: float = 0.0
+    length: Any = None, end: Any = None, *, start: Any = None, rounding: float = 0.0
 ) -> Body:
     """A segment of the z axis, centred; or the one from `start` to `end`.
 
@@ -53,7 +57,8 @@ def segment(
     length : float
         From end to end, length, zero or above; 0 is a point.
     start, end : (3,) array_like
-        Its ends, body frame, lengths; given together, in place of `length`.
+        Its ends, body frame, lengths; given together, by name or as ``segment(start, end)``, in
+        place of `length`.
     rounding : float
         Radius of a ball swept over it, length, zero or above: a capsule.
 
@@ -69,6 +74,8 @@ def segment(
         A number that is not finite, a length or rounding that is negative, or beyond 1e50, or
         between 0 and 1e-50.
     """
+    if start is None and end is not None:
+        start, length = length, None
     if (length is None) == (start is None) or (start is None) != (end is None):
         raise StandoffTypeError(
             "so.shapes.segment takes length=..., or start=(x, y, z) and end=(x, y, z)."
