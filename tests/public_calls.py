@@ -230,13 +230,32 @@ MECHANISM = {
 }
 ARM = {**MECHANISM, "stiffness": 100.0, "rotational_stiffness": 1.0}
 WEIGHED = {"mass": 1.0, "centre": np.zeros(3), "inertia": np.eye(3)}
+# The functions of a system by its own equations: named, so that it can be stored.
+
+
+def _place(theta: Any) -> list[so.Pose]:
+    return [HOME, so.Pose(np.eye(3), [0.0, 0.0, 1.0 + theta[0]])]
+
+
+def _jacobian(theta: Any) -> list[Any]:
+    return [np.zeros((6, 1)), np.eye(6)[:, 2:3]]
+
+
+def _mass(theta: Any) -> list[list[float]]:
+    return [[2.0]]
+
+
+def _no_force(theta: Any, rate: Any) -> list[float]:
+    return [0.0]
+
+
 SLIDING: dict[str, Any] = {
     "bodies": [BOX, SPHERE],
-    "place": lambda theta: [HOME, so.Pose(np.eye(3), [0.0, 0.0, 1.0 + theta[0]])],
-    "jacobian": lambda theta: [np.zeros((6, 1)), np.eye(6)[:, 2:3]],
-    "mass": lambda theta: [[2.0]],
-    "coriolis": lambda theta, rate: [0.0],
-    "field": lambda theta, rate: [0.0],
+    "place": _place,
+    "jacobian": _jacobian,
+    "mass": _mass,
+    "coriolis": _no_force,
+    "field": _no_force,
     "contact": simulation.HuntCrossley(stiffness=1e3),
     "pairs": [(0, 1)],
     "drive": None,

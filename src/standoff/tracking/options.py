@@ -5,6 +5,7 @@ An option named ``depth`` goes into the slot ``O_DEPTH``, a choice as its place 
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from standoff.kernels.pair.events import NO_LIMIT
 from standoff.kernels.state import arrays as K
 from standoff.tracking.feedback import Linear
 from standoff.tracking.law_options import Law, OfFeedback, options_of
-from standoff.tracking.laws import PaperLaw
+from standoff.tracking.laws import DEFAULT_LAW, PaperLaw
 
 NUMBERS = {"deadline": NO_LIMIT}
 """What stands for an option that is not given."""
@@ -45,3 +46,17 @@ def pack_options(law: Law) -> NDArray[np.float64]:
 def _pack_feedback(feedback: Any, options: NDArray[np.float64]) -> None:
     options[K.O_FEEDBACK], options[K.O_GAIN], data = feedback.packed()
     options[K.O_DATA : K.O_DATA + len(data)] = data
+
+
+def resolved_options(law: Law, dt: float) -> tuple[Law, NDArray[np.float64]]:
+    """A law with what it leaves open settled for a frame time, s, and its options."""
+    if law is DEFAULT_LAW:
+        return _usual_options(dt)  # every cold query asks for them
+    resolved = law.resolved(dt)
+    return resolved, pack_options(resolved)
+
+
+@functools.lru_cache(maxsize=16)
+def _usual_options(dt: float) -> tuple[Law, NDArray[np.float64]]:
+    resolved = DEFAULT_LAW.resolved(dt)
+    return resolved, pack_options(resolved)

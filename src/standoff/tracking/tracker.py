@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,7 +33,7 @@ from standoff.tracking.inputs import (
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, checked_law
 from standoff.tracking.old_spellings import ATTRIBUTES, takes_a_law
-from standoff.tracking.options import pack_options
+from standoff.tracking.options import resolved_options
 from standoff.tracking.overlap_proof import cores_overlap
 from standoff.tracking.proximity import Proximity, events_of
 from standoff.tracking.rows import StateRow, motion_row, poses_of, twists_of
@@ -82,8 +81,7 @@ class Tracker(KeepsReadOnly):
         self.a, self.b = a, b
         self.dt = positive_number(dt, "dt")
         self.law = checked_law(law)
-        self.resolved_law = law.resolved(self.dt)
-        self.options = pack_options(self.resolved_law)
+        self.resolved_law, self.options = resolved_options(law, self.dt)
         self.packed = self._packed()
         self.planar = a.dimension == 2 or b.dimension == 2
         self._prepare()
@@ -365,25 +363,8 @@ class Tracker(KeepsReadOnly):
 class ColdQuery(Tracker):
     """A tracker that is asked for starts only: what frames need is not compiled for it."""
 
-    def __init__(self, a: Body, b: Body) -> None:
-        check_pair(a, b)
-        self.a, self.b, self.law = a, b, DEFAULT_LAW
-        self.dt, self.resolved_law, self.options = _without_frames()
-        self.packed = self._packed()
-        self.planar = a.dimension == 2 or b.dimension == 2
-
     def _prepare(self) -> None:
         pass
-
-
-@functools.cache
-def _without_frames() -> tuple[float, Law, Array]:
-    """A frame time, the default law at it and its options, made once for all cold queries."""
-    dt = 1e-3
-    law = DEFAULT_LAW.resolved(dt)
-    options = pack_options(law)
-    options.setflags(write=False)
-    return dt, law, options
 
 
 def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
