@@ -10,7 +10,7 @@ import pytest
 
 from standoff.cli.announcement import announce
 from standoff.cli.arguments import parse
-from standoff.kernels.compiler.notices import QUIET
+from standoff.kernels.compiler.notices import ALL_SECONDS, QUIET
 
 SAID = {
     "track s.toml": "tracking the pairs of s.toml ...",
@@ -29,7 +29,7 @@ SAID = {
         "measuring the errors of pairs of box, lens, 10 cases at each gap and depth ..."
     ),
     "accuracy": "measuring the errors of all pairs, 10 cases at each gap and depth ...",
-    "warmup": "loading all kernels; what must be compiled takes about 60 s in all ...",
+    "warmup": f"loading all kernels; what must be compiled takes about {ALL_SECONDS} s in all ...",
 }
 
 

@@ -194,5 +194,5 @@ def test_composing_with_something_else_is_a_type_error() -> None:
 
 
 def test_a_homogeneous_matrix_is_sent_to_where_it_is_read():
-    with pytest.raises(ValueError, match=r"(?s)rotation is 4 by 4.*Pose\.of\(matrix\)"):
+    with pytest.raises(ValueError, match=r"(?s)rotation has shape.*Pose\.of\(matrix\)"):
         Pose(np.eye(4))

@@ -105,7 +105,7 @@ def test_a_run_that_leaves_all_bounds_says_at_which_tick() -> None:
     operator = sim.Operator(on_floor(BALL, SOFT, pose=upright(1.0)), 1e-3)
     state = operator.start()
     endless = state.data.copy()
-    endless[K.STATE_HEADER + K.N_BODY + K.VELOCITY] = np.inf
+    endless[K.STATE_HEADER + K.N_BODY + K.X_VELOCITY] = np.inf
     with pytest.raises(so.StandoffError, match="After tick 1 "):
         operator.run(sim.SystemState(state.system, endless), 10)
 

@@ -94,7 +94,7 @@ def _row(body: int) -> int:
 
 
 def _turns(body: int, rows: Array) -> Array:
-    at = _row(body) + K.ROTATION
+    at = _row(body) + K.X_ROTATION
     return rows[:, at : at + 9].reshape(-1, 3, 3)
 
 
@@ -105,7 +105,7 @@ def _part(body: int, rows: Array, part: int) -> Array:
 
 def positions(system: System, body: int, rows: Array) -> tuple[Array, Array]:
     """(n, 3, 3) rotations and (n, 3) positions of a body's frame, of rows of states."""
-    rotations, at = _turns(body, rows), _part(body, rows, K.CENTRE)
+    rotations, at = _turns(body, rows), _part(body, rows, K.X_CENTRE)
     mass = system.bodies[body].mass_properties
     if system.bodies[body].kind == FREE and mass is not None:
         at = at - rotations @ mass.centre
@@ -114,7 +114,7 @@ def positions(system: System, body: int, rows: Array) -> tuple[Array, Array]:
 
 def velocities(system: System, body: int, rows: Array) -> tuple[Array, Array]:
     """(n, 3) velocities of a body's origin and angular velocities, world, of rows of states."""
-    v, spin = _part(body, rows, K.VELOCITY), _part(body, rows, K.SPIN)
+    v, spin = _part(body, rows, K.X_VELOCITY), _part(body, rows, K.X_SPIN)
     mass = system.bodies[body].mass_properties
     if system.bodies[body].kind != FREE or mass is None:
         return v, spin
@@ -126,7 +126,7 @@ def velocities(system: System, body: int, rows: Array) -> tuple[Array, Array]:
 
 def momenta(body: int, rows: Array) -> Array:
     """(n, 3) angular momenta of a free body about its centre, world, of rows of states."""
-    return _part(body, rows, K.SPIN)
+    return _part(body, rows, K.X_SPIN)
 
 
 def _answers(system: System, rows: Array) -> Array:

@@ -37,7 +37,7 @@ REAL_PAIR = 4
 # far, ticks with a pair that was not certified; a row a body; a row a pair.
 S_TIME, S_LOST, S_GIVEN, S_DEEPEST, S_UNCERTIFIED = range(5)
 STATE_HEADER = 8
-ROTATION, CENTRE, VELOCITY, SPIN = 0, 9, 12, 15
+X_ROTATION, X_CENTRE, X_VELOCITY, X_SPIN = 0, 9, 12, 15
 N_BODY = 18
 N_PAIR = N_STATE + N_OUT
 
@@ -45,7 +45,7 @@ N_PAIR = N_STATE + N_OUT
 # torque; a pair's four parameters.
 R_LOST, R_GIVEN = 0, 1
 RATE_HEADER = 2
-TURN, SPEED, PUSH, TORQUE = 0, 3, 6, 9
+R_TURN, R_SPEED, R_PUSH, R_TORQUE = 0, 3, 6, 9
 RATE_BODY = 12
 RATE_PAIR = 4
 

@@ -13,9 +13,9 @@ from standoff.kernels.dynamics.arrays import (
     I_METHOD,
     R_GIVEN,
     R_LOST,
-    ROTATION,
     S_GIVEN,
     S_LOST,
+    X_ROTATION,
     body_rates,
     body_row,
     kind_of,
@@ -109,7 +109,7 @@ def step_bodies(system, state, h, table, tick, work, scratch):
         o = body_row(body)
         stand(scratch.stage, o, state, o)
         if kind_of(system, body) == FREE:
-            put(orthonormal(read_rotation(state, o + ROTATION)), state, o + ROTATION)
+            put(orthonormal(read_rotation(state, o + X_ROTATION)), state, o + X_ROTATION)
     state[S_LOST] += h * scratch.total[R_LOST]
     state[S_GIVEN] += h * scratch.total[R_GIVEN]
 

@@ -28,18 +28,18 @@ from standoff.kernels.dynamics.arrays import (
     B_CENTRE,
     B_INVERSE,
     B_MASS,
-    CENTRE,
     FREE,
     GRAVITY,
     N_BODY,
     N_LOAD,
-    PUSH,
-    ROTATION,
-    SPEED,
-    SPIN,
-    TORQUE,
-    TURN,
-    VELOCITY,
+    R_PUSH,
+    R_SPEED,
+    R_TORQUE,
+    R_TURN,
+    X_CENTRE,
+    X_ROTATION,
+    X_SPIN,
+    X_VELOCITY,
     body_numbers,
     kind_of,
 )
@@ -61,8 +61,8 @@ def spin_in_body(system, body, R, momentum):
 @kernel
 def pose_and_twist(system, body, rows, o):
     """(R, p, v, w): pose of the body's frame and the twist of its origin, world, of its row."""
-    R, x = read_rotation(rows, o + ROTATION), read_vector(rows, o + CENTRE)
-    v, w = read_vector(rows, o + VELOCITY), read_vector(rows, o + SPIN)
+    R, x = read_rotation(rows, o + X_ROTATION), read_vector(rows, o + X_CENTRE)
+    v, w = read_vector(rows, o + X_VELOCITY), read_vector(rows, o + X_SPIN)
     if kind_of(system, body) == FREE:
         w = rotate(R, spin_in_body(system, body, R, w))
     arm = rotate(R, read_vector(system.numbers, body_numbers(body) + B_CENTRE))
@@ -99,10 +99,10 @@ def stand(rows, o, to, q):
 @kernel
 def along_rates(rows, o, s, rates, r, to, q):
     """A body's row a time s farther along its rates."""
-    R = read_rotation(rows, o + ROTATION)
-    turned = compose(R, exp_rotation(scale(s, read_vector(rates, r + TURN))))
-    put(turned, to, q + ROTATION)
-    for part, rate in ((CENTRE, SPEED), (VELOCITY, PUSH), (SPIN, TORQUE)):
+    R = read_rotation(rows, o + X_ROTATION)
+    turned = compose(R, exp_rotation(scale(s, read_vector(rates, r + R_TURN))))
+    put(turned, to, q + X_ROTATION)
+    for part, rate in ((X_CENTRE, R_SPEED), (X_VELOCITY, R_PUSH), (X_SPIN, R_TORQUE)):
         put(axpy(s, read_vector(rates, r + rate), read_vector(rows, o + part)), to, q + part)
 
 
@@ -112,18 +112,18 @@ def write_rates(system, body, rows, o, turned, loads, rates, r):
     (body axes).
     """
     if kind_of(system, body) != FREE:
-        for k in range(TORQUE + 3):
+        for k in range(R_TORQUE + 3):
             rates[r + k] = 0.0
         return
-    R = read_rotation(rows, o + ROTATION)
-    w = spin_in_body(system, body, R, read_vector(rows, o + SPIN))
-    put(right_jacobian_inverse(turned, w), rates, r + TURN)
-    put(read_vector(rows, o + VELOCITY), rates, r + SPEED)
+    R = read_rotation(rows, o + X_ROTATION)
+    w = spin_in_body(system, body, R, read_vector(rows, o + X_SPIN))
+    put(right_jacobian_inverse(turned, w), rates, r + R_TURN)
+    put(read_vector(rows, o + X_VELOCITY), rates, r + R_SPEED)
     force = read_vector(loads, N_LOAD * body)
     mass = system.numbers[body_numbers(body) + B_MASS]
     gravity = read_vector(system.numbers, GRAVITY)
-    put(axpy(1.0 / mass, force, gravity), rates, r + PUSH)
-    put(read_vector(loads, N_LOAD * body + 3), rates, r + TORQUE)
+    put(axpy(1.0 / mass, force, gravity), rates, r + R_PUSH)
+    put(read_vector(loads, N_LOAD * body + 3), rates, r + R_TORQUE)
 
 
 @kernel
@@ -131,21 +131,21 @@ def step_semi_implicit(system, body, rows, o, h, rates, r, to):
     """Momentum first, by the loads at the start; then the pose by the new momentum, the turn by its
     middle: without loads that is the midpoint rule.
     """
-    R = read_rotation(rows, o + ROTATION)
-    v = axpy(h, read_vector(rates, r + PUSH), read_vector(rows, o + VELOCITY))
-    momentum = axpy(h, read_vector(rates, r + TORQUE), read_vector(rows, o + SPIN))
+    R = read_rotation(rows, o + X_ROTATION)
+    v = axpy(h, read_vector(rates, r + R_PUSH), read_vector(rows, o + X_VELOCITY))
+    momentum = axpy(h, read_vector(rates, r + R_TORQUE), read_vector(rows, o + X_SPIN))
     halfway = scale(0.5 * h, spin_in_body(system, body, R, momentum))
     w = spin_in_body(system, body, compose(R, exp_rotation(halfway)), momentum)
-    put(compose(R, exp_rotation(scale(h, w))), to, o + ROTATION)
-    put(axpy(h, v, read_vector(rows, o + CENTRE)), to, o + CENTRE)
-    put(v, to, o + VELOCITY)
-    put(momentum, to, o + SPIN)
+    put(compose(R, exp_rotation(scale(h, w))), to, o + X_ROTATION)
+    put(axpy(h, v, read_vector(rows, o + X_CENTRE)), to, o + X_CENTRE)
+    put(v, to, o + X_VELOCITY)
+    put(momentum, to, o + X_SPIN)
 
 
 @kernel
 def load(system, body, rows, o, point, force, loads):
     """Add a force (world) at a point (world) to a body's loads."""
-    arm = sub(point, read_vector(rows, o + CENTRE))
+    arm = sub(point, read_vector(rows, o + X_CENTRE))
     put(add(read_vector(loads, N_LOAD * body), force), loads, N_LOAD * body)
     turning = add(read_vector(loads, N_LOAD * body + 3), cross(arm, force))
     put(turning, loads, N_LOAD * body + 3)
@@ -155,14 +155,16 @@ def load(system, body, rows, o, point, force, loads):
 def power(body, rows, o, loads):
     """What the loads of a body that moves by itself give it a second."""
     force, torque = read_vector(loads, N_LOAD * body), read_vector(loads, N_LOAD * body + 3)
-    return dot(force, read_vector(rows, o + VELOCITY)) + dot(torque, read_vector(rows, o + SPIN))
+    return dot(force, read_vector(rows, o + X_VELOCITY)) + dot(
+        torque, read_vector(rows, o + X_SPIN)
+    )
 
 
 @kernel
 def kinetic(system, body, rows, o):
     """Kinetic energy of a free body."""
-    R, v = read_rotation(rows, o + ROTATION), read_vector(rows, o + VELOCITY)
-    momentum = read_vector(rows, o + SPIN)
+    R, v = read_rotation(rows, o + X_ROTATION), read_vector(rows, o + X_VELOCITY)
+    momentum = read_vector(rows, o + X_SPIN)
     w = rotate(R, spin_in_body(system, body, R, momentum))
     mass = system.numbers[body_numbers(body) + B_MASS]
     return 0.5 * mass * dot(v, v) + 0.5 * dot(w, momentum)
@@ -173,5 +175,5 @@ def potential(system, body, rows, o):
     """Energy of a free body in the field of gravity, from the world's origin."""
     gravity = read_vector(system.numbers, GRAVITY)
     return -system.numbers[body_numbers(body) + B_MASS] * dot(
-        gravity, read_vector(rows, o + CENTRE)
+        gravity, read_vector(rows, o + X_CENTRE)
     )

@@ -12,7 +12,7 @@ from standoff.kernels.dynamics.arrays import (
     N_LOAD,
     R_GIVEN,
     R_LOST,
-    TURN,
+    R_TURN,
     body_ints,
     body_rates,
     body_row,
@@ -99,7 +99,7 @@ def bodies_rates(system, s, lost, rates, scratch):
     given = 0.0
     for body in range(n_bodies(system)):
         r, o = body_rates(body), body_row(body)
-        turned = scale(s, read_vector(rates, r + TURN))
+        turned = scale(s, read_vector(rates, r + R_TURN))
         write_rates(system, body, scratch.stage, o, turned, scratch.loads, rates, r)
         if kind_of(system, body) != FREE:
             given -= power(body, scratch.stage, o, scratch.loads)
