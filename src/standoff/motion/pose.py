@@ -306,8 +306,8 @@ def matrix_of(value: Any) -> Any:
 def _numbers(rotation: RotationLike, translation: ArrayLike) -> tuple[FloatArray, FloatArray]:
     if shape_of(rotation) == (4, 4):
         raise StandoffError(
-            f"rotation has shape (4, 4), value {shown(rotation)}: give an array of 3 by 3 numbers, or "
-            "write Pose.of(matrix) for a homogeneous matrix.",
+            f"rotation has shape (4, 4), value {shown(rotation)}: give an array of 3 by 3 numbers, "
+            "or write Pose.of(matrix) for a homogeneous matrix.",
             "rotation",
             rotation,
         )
