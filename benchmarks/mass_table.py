@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from standoff.simulation import MassProperties, mass_properties
-from standoff.simulation.mass_properties import TOLERANCE
 from standoff.simulation.moments.boundary import moments_of
+from standoff.simulation.tolerances import MOMENTS_END
 
 CASES = Path(__file__).parents[1] / "tests" / "simulation"
 REPEATS = 3
@@ -57,7 +57,7 @@ def main() -> None:
             float(np.linalg.norm(found.centre - true.centre)) / body.size,
             float(np.linalg.norm(found.inertia - true.inertia, 2)) / found.principal_moments[2],
         ]
-        nodes = moments_of(body, TOLERANCE).nodes
+        nodes = moments_of(body, MOMENTS_END).nodes
         print(
             f"| {name} | {max(errors):.0e} | {max(relative(found, body.size)):.0e} "
             f"| {nodes} | {1e3 * min(times):.0f} |",

@@ -22,11 +22,8 @@ NO_TOLERANCE = {
     ("geometry/validation.py", "1e-50"): "the least length that a user may give",
     ("recording/plot.py", "1e-16"): "where an axis without values begins",
     ("scene/settings.py", "1e-3"): "an option's default, a time",
-    ("tracking/inputs.py", "1e-12"): "PLANE_TILT, beside the check of planar poses that it serves",
     ("tracking/law_options.py", "1e-10"): "an option's default: `tolerance` itself",
 }
-# The moments' own stand beside the sums of roundoff that they end.
-BESIDE_THEIR_SUMS = "simulation/"
 
 UNITS = re.compile(
     r"""\b(lengths? | radians? | rad | chord | cosines? | sine | s\] | relative | dimensionless
@@ -92,7 +89,7 @@ EVERY = [
 
 def stray(module: str, source: str) -> list[str]:
     """Small numbers of a module that belong into its package's `tolerances.py`."""
-    if module in PLACES or module.startswith(BESIDE_THEIR_SUMS):
+    if module in PLACES:
         return []
     return [
         f"{module}:{line}: {text} belongs into the tolerances.py of its package"
@@ -144,7 +141,7 @@ def test_no_module_gives_a_tolerance_s_name_to_another_number() -> None:
         for node in ast.parse(file.read_text(encoding="utf-8")).body:
             if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
                 name = node.targets[0].id
-                if name in names and not module.startswith(BESIDE_THEIR_SUMS):
+                if name in names:
                     found.append(f"{module}: {name}")
     assert found == []
 

@@ -15,6 +15,7 @@ from standoff.motion import Twist, inputs
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.simulation.generalised_system import GeneralisedSystem
+from standoff.simulation.tolerances import EVENT_INSTANT
 from standoff.tracking import PredictorCorrector, Proximity, Tracker
 from standoff.tracking.choices import positive_number
 
@@ -22,8 +23,6 @@ Array = NDArray[np.float64]
 
 METHODS: Final = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 
-INSTANT: Final = 1e-12
-"""Part of the duration to which a switch is located: the tracker's own answers carry no more."""
 
 MOST_EVENTS: Final = 10_000
 """Contacts and releases of one solution: bodies that settle touch ever more often."""
@@ -234,7 +233,7 @@ class _Solver:
         self, states: Any, pair: int, old: tuple[str, str], between: tuple[float, float]
     ) -> float:
         low, high = between
-        while high - low > INSTANT * max(1.0, high):
+        while high - low > EVENT_INSTANT * max(1.0, high):
             middle = 0.5 * (low + high)
             if not low < middle < high:
                 break

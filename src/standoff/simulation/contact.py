@@ -88,7 +88,7 @@ class HuntCrossley:
         def off(e: float) -> float:
             return math.log1p(x) - math.log1p(-e * x) - x * (1.0 + e)
 
-        low, high = 0.0, min(1.0, (1.0 - 1e-16) / x)
+        low, high = 0.0, min(1.0, math.nextafter(1.0, 0.0) / x)
         for _ in range(200):  # halved to the last digit
             middle = 0.5 * (low + high)
             low, high = (middle, high) if off(middle) < 0.0 else (low, middle)

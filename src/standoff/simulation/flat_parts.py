@@ -14,14 +14,12 @@ from standoff.geometry.surfaces import Plane
 from standoff.kernels.body import layout as L
 from standoff.kernels.dynamics import flat_parts as F
 from standoff.kernels.entries.queries import chart_normal
+from standoff.simulation.tolerances import RIM_GAP
 
 Array = NDArray[np.float64]
 
 RIM_CORNERS = 12
 """Corners of the polygon that stands for a closed curved edge; an open one has half as many."""
-
-FULL = 1e-9
-"""Radians: an arc that lacks less of a full turn is a rim."""
 
 
 class FlatFace(NamedTuple):
@@ -62,7 +60,7 @@ def flat_parts(body: Body) -> FlatParts:
         edge.curve.basis().T[[2, 0, 1]].ravel()
         for edge in body.edge_parts
         if isinstance(edge.curve, ConicArc)
-        and edge.curve.last - edge.curve.first > FULL_TURN - FULL
+        and edge.curve.last - edge.curve.first > FULL_TURN - RIM_GAP
     ]
     return FlatParts(
         tuple(faces),

@@ -16,6 +16,7 @@ from standoff.motion import Pose, PoseLike
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.simulation.contact import HuntCrossley
+from standoff.simulation.tolerances import SINGULAR_INERTIA, SYMMETRIC_INERTIA
 from standoff.tracking.inputs import check_pair
 from standoff.tracking.proximity import Proximity
 
@@ -168,22 +169,14 @@ class GeneralisedSystem(KeepsReadOnly):
         return np.asarray((rows[1] - rows[0]).T @ (push * n - grip * slip))
 
 
-SINGULAR = 1e-12
-"""Least eigenvalue of M over its greatest: below it no digit of θ'' is known to four places."""
-
-SYMMETRIC = 1e-9
-"""Part of its greatest entry by which M's entries across the diagonal may differ: roundoff of
-whoever computed them."""
-
-
 def checked_inertia_matrix(matrix: Array, theta: Array) -> Array:
     """M(θ), symmetric and positive definite; else StandoffError, with θ."""
     largest = float(np.abs(matrix).max())
     at = f"M(theta) at theta = {np.array2string(theta, precision=6)}"
-    if float(np.abs(matrix - matrix.T).max()) > SYMMETRIC * largest:
+    if float(np.abs(matrix - matrix.T).max()) > SYMMETRIC_INERTIA * largest:
         raise StandoffError(f"{at} is not symmetric:\n{matrix}", "mass", matrix)
     values = np.linalg.eigvalsh(matrix)
-    if not values[0] > SINGULAR * max(largest, float(values[-1])):
+    if not values[0] > SINGULAR_INERTIA * max(largest, float(values[-1])):
         raise StandoffError(
             f"{at} is singular or not positive definite: its eigenvalues go from "
             f"{values[0]:.3g} to {values[-1]:.3g}. Choose coordinates that are regular there, and "

@@ -13,18 +13,10 @@ from standoff.geometry.validation import Array, matrix3, positive, vector3
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.simulation.moments.boundary import Moments, moments_of
+from standoff.simulation.tolerances import INERTIA_ROUNDOFF, LEAST_MOMENT, MOMENTS_END
 
-# Two entries across an inertia's diagonal are one number where they differ by no more than this
-# part of its largest, and a moment above the sum of the others by no more is at it: roundoff of
-# whoever computed them.
-INERTIA_ROUNDOFF = 1e-12
 # A volume below so many times its own bound is none: no digit of the centre is left.
 LEAST_VOLUME = 4.0
-# Where refinement ends: remainders over the volume, its reach and its reach squared.
-TOLERANCE = 1e-11
-# A least principal moment below this part of the largest is roundoff of zero: that of a rod 3e-8 of
-# its length wide.
-LEAST_MOMENT = 1e-15
 GIVE_THEM = "give mass, centre and inertia yourself (so.simulation.MassProperties.of)"
 
 
@@ -158,7 +150,7 @@ def checked_inertia(value: Any) -> Array:
 
 
 def mass_properties(
-    body: Body, density: float = 1.0, *, tolerance: float = TOLERANCE
+    body: Body, density: float = 1.0, *, tolerance: float = MOMENTS_END
 ) -> MassProperties:
     """Mass, centre of mass and inertia of a solid body of constant density.
 
@@ -192,8 +184,8 @@ def mass_properties(
     _check_solid(body)
     end = positive(tolerance, "tolerance")
     found = moments_of(body, end)
-    if end > TOLERANCE and not _has_volume(found):
-        found = moments_of(body, TOLERANCE)
+    if end > MOMENTS_END and not _has_volume(found):
+        found = moments_of(body, MOMENTS_END)
     if not _has_volume(found):
         raise StandoffError(
             f"{body!r} has no volume: {found.volume:.3g}, known to {found.volume_error:.3g}. Round "

@@ -23,6 +23,7 @@ from standoff.simulation.rigid_body import DRIVEN
 from standoff.simulation.system import System
 from standoff.simulation.system_run import SystemRun
 from standoff.simulation.system_state import SystemState
+from standoff.simulation.tolerances import TOUCHING_START
 from standoff.tracking.choices import positive_number, whole_number, yes_or_no
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw, PredictorCorrector
@@ -41,9 +42,6 @@ BLOCK = 20_000
 
 Progress = Callable[[int, int], None]
 """Told, as a run goes on, how many ticks are done, and of how many."""
-
-OVERLAP = 1e-9
-"""Of the lesser body's size: a start that overlaps by no more touches, to roundoff."""
 
 
 class Operator(KeepsReadOnly):
@@ -195,7 +193,7 @@ class Operator(KeepsReadOnly):
         found = query.start(still.pose(a), still.pose(b), still.twist(a), still.twist(b))
         answer = found.proximity
         size = min(first.size, second.size)
-        if not allowed and answer.distance < -OVERLAP * size:
+        if not allowed and answer.distance < -TOUCHING_START * size:
             raise StandoffError(
                 f"Bodies {a} ({first.name}) and {b} ({second.name}) overlap at the start, by "
                 f"{answer.depth:.6g}: move them apart, or call start(allow_overlap=True), and they "

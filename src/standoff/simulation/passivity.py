@@ -33,6 +33,7 @@ from standoff.errors import PassivityError, StandoffError, StandoffTypeError
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray
 from standoff.real_numbers import shown
+from standoff.simulation.tolerances import DAMPING_ROUNDING
 
 ANGLES: Final = 2048
 """Frequencies between 0 and Nyquist's at which a right side is looked at before its greatest value
@@ -43,10 +44,6 @@ MOST_ANGLES: Final = 1_000_000
 
 LONGEST_DELAY: Final = 20
 """Ticks. Beyond it the largest passive stiffness is below a fortieth of that without delay."""
-
-ROUNDING: Final = 1e-12
-"""No unit. By this part the damping needed may pass the damping there is: so that the largest
-stiffness, which an error tells, is accepted when it is given back."""
 
 
 def non_negative(value: Any, name: str, *, above_zero: bool = False) -> float:
@@ -265,7 +262,7 @@ def check_passive(stiffness: float, damping: float, sampling: Sampling, *, of: s
     )
     own = float(getattr(sampling, f"device_{kind}damping"))
     needed = required_damping(stiffness, damping, sampling)
-    if needed <= own * (1.0 + ROUNDING):
+    if needed <= own * (1.0 + DAMPING_ROUNDING):
         return
     largest = largest_stiffness(damping, own, sampling)
     cure = (

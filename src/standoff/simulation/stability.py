@@ -11,15 +11,13 @@ from numpy.typing import NDArray
 from standoff.kernels.dynamics.operator import METHODS
 from standoff.kernels.paper.integrators import NODES, STAGES, WEIGHTS
 from standoff.simulation.contact import HuntCrossley
+from standoff.simulation.tolerances import STIFFNESS_FOUND
 
 Array = NDArray[np.float64]
 
 GROWTH: Final = 0.01
 """The part of its energy that a contact may gain over a half period by the method alone: Euler's,
 Heun's and the midpoint rule let every undamped spring grow, more slowly the shorter the step."""
-
-RESOLUTION: Final = 1e-6
-"""Relative: how near the largest stable stiffness is found."""
 
 
 def propagation(method: str, stiffness: float, damping: float, dt: float) -> Array:
@@ -68,7 +66,7 @@ def largest_stable_stiffness(
     while not stable(low) and low > 1e-14 * high:
         low *= 0.1
     high = min(high, 10.0 * low)
-    while high > (1.0 + RESOLUTION) * low:
+    while high > (1.0 + STIFFNESS_FOUND) * low:
         middle = math.sqrt(low * high)
         low, high = (middle, high) if stable(middle) else (low, middle)
     return low

@@ -19,10 +19,9 @@ from standoff.motion.rotations import defect, mirrored, without_rounding
 from standoff.motion.tolerances import ORTHONORMALITY, ROUNDED
 from standoff.real_numbers import check_unmasked, shown
 from standoff.tracking.rows import NO_TWIST, StateRow
+from standoff.tracking.tolerances import PLANE_TILT
 
 Array = NDArray[np.float64]
-# A planar body's pose may be tilted by this (entries of R): roundoff of composing rotations.
-PLANE_TILT = 1e-12
 LAST_ROW = [0.0, 0.0, 0.0, 1.0]
 PLAIN = (np.float64, np.float32)
 # Where R (row-major) and p stand in a 4x4 matrix.

@@ -33,3 +33,7 @@ LOOSENESS: Final = 4.0
 LINE_RANK: Final = 1e-6
 """A set whose lesser extent is below this part of the greater (singular values) is a line: its own
 tilt across has no digits."""
+
+PLANE_TILT = 1e-12
+"""Dimensionless, entries of R: a planar body's pose may be tilted by this, the roundoff of composing
+rotations."""

@@ -24,7 +24,7 @@ ROUNDINGS = 16.0
 # of the last.
 SAFETY, LEAST_SHARE = 8.0, 1e-3
 # A cell this narrow (of the rectangle it began as) is refined no more.
-NARROWEST = 2.0**-40
+NARROWEST_CELL = 2.0**-40
 
 Integrand = Callable[[Array, Array], Array]
 """Parameters (m,) and (n,) to values (m, n, columns) on their grid."""
@@ -180,7 +180,7 @@ def _count(cell: Cell) -> int:
 def _excess(cell: Cell, sums: Sums, unit: Array) -> float:
     """The greatest remainder of a cell, relative; 0 where it is roundoff or cannot be halved."""
     spans = [b - a for a, b in zip(cell.low, cell.high, strict=True)]
-    if min(spans) < NARROWEST:
+    if min(spans) < NARROWEST_CELL:
         return 0.0
     rounding = ROUNDINGS * np.finfo(float).eps * sums.magnitude
     return float((np.maximum(sums.remainder - rounding, 0.0) * unit).max())

@@ -30,8 +30,8 @@ BoundaryPiece = Callable[[Array], tuple[Array, Array]]
 # Samples of a piece of a boundary.
 SAMPLES = 33
 # Directions from which the one farthest from a boundary is chosen.
-_AROUND = np.array([d for d in product((-1.0, 0.0, 1.0), repeat=3) if any(d)])
-AROUND = _AROUND / np.linalg.norm(_AROUND, axis=1)[:, None]
+_EVENLY_AROUND = np.array([d for d in product((-1.0, 0.0, 1.0), repeat=3) if any(d)])
+EVENLY_AROUND = _EVENLY_AROUND / np.linalg.norm(_EVENLY_AROUND, axis=1)[:, None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +96,7 @@ def farthest_start(arcs: Sequence[Arc]) -> Array:
     spots = np.concatenate([arc.piece(t)[0] for arc, t in zip(arcs, times, strict=True)])
     mean = spots.mean(axis=0)
     length = float(np.linalg.norm(mean))
-    starts = np.vstack([AROUND, mean[None] / length]) if length > 0.0 else AROUND
+    starts = np.vstack([EVENLY_AROUND, mean[None] / length]) if length > 0.0 else EVENLY_AROUND
     nearest = (-starts @ spots.T).max(axis=1)
     return np.asarray(starts[int(nearest.argmin())])
 

@@ -25,11 +25,10 @@ from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters, surface_jet
 from standoff.simulation.moments.cells import Cell, Integrand
 from standoff.simulation.moments.flux import Frame, flux, offset_areas
+from standoff.simulation.tolerances import LEVEL_CURVE
 
 # Points of a trimming curve between which it crosses a line of (u, v) at most once.
 SAMPLES = 65
-# A trimming curve is level, or on an axis, where it is within this of it (parameter units).
-LEVEL = 1e-14
 # Beside a coordinate plane a superellipsoid goes by powers of a parameter. Where they are not even
 # whole numbers the parameter is itself taken by a power, that makes them this at least: few nodes
 # then do.
@@ -216,7 +215,10 @@ def _is_octant(chart: Chart) -> bool:
     """Do a chart's trimming curves run along u = 0 and v = 0, the others' sides at or above 0."""
     for k in chart.coedges:
         u, v = TrimmingCurve(chart.body, k).samples()[:2]
-        if min(np.abs(u).max(), np.abs(v).max()) > LEVEL or min(u.min(), v.min()) < -LEVEL:
+        if (
+            min(np.abs(u).max(), np.abs(v).max()) > LEVEL_CURVE
+            or min(u.min(), v.min()) < -LEVEL_CURVE
+        ):
             return False
     return len(chart.coedges) > 0
 

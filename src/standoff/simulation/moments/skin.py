@@ -26,13 +26,12 @@ from standoff.simulation.moments.cells import Cell
 from standoff.simulation.moments.directions import Arc, OverSphere, part_cells, sphere_cells
 from standoff.simulation.moments.faces import Chart, TrimmingCurve, chart_breaks
 from standoff.simulation.moments.flux import Frame, flux
+from standoff.simulation.tolerances import NORMALS_RESOLVED
 
 # A normal shorter than this is none: its chart has collapsed there.
 HALF = 0.5
-# Degrees of the polynomials that the normals along a collapsed side are followed by, and what their
-# last coefficients must have fallen to: the roundoff of a normal.
+# Degrees of the polynomials that the normals along a collapsed side are followed by.
 DEGREES = (8, 16, 32, 64, 128)
-RESOLVED = 1e-13
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,7 +210,7 @@ def _followed(
         rows = np.array([normal(float(t)) for t in times])
         fits = [Chebyshev.fit(times, rows[:, k], degree, domain=[first, last]) for k in range(3)]
         tail = max(float(np.abs(f.coef[-2:]).max()) for f in fits)
-        if tail <= RESOLVED:
+        if tail <= NORMALS_RESOLVED:
             break
     else:
         raise StandoffError(

@@ -1,0 +1,46 @@
+"""Tolerances of mass, contact and motion: each with its unit and its reason."""
+
+from typing import Final
+
+STIFFNESS_FOUND: Final = 1e-6
+"""Relative: how near the largest stable stiffness is found."""
+
+RIM_GAP: Final = 1e-9
+"""Radians: an arc that lacks less of a full turn is a rim."""
+
+EVENT_INSTANT: Final = 1e-12
+"""Part of the duration to which a switch is located: the tracker's own answers carry no more."""
+
+SINGULAR_INERTIA: Final = 1e-12
+"""Least eigenvalue of M over its greatest, a ratio: below it no digit of θ'' is known to four
+places."""
+
+SYMMETRIC_INERTIA: Final = 1e-9
+"""Part of its greatest entry by which M's entries across the diagonal may differ: roundoff of
+whoever computed them."""
+
+DAMPING_ROUNDING: Final = 1e-12
+"""No unit. By this part the damping needed may pass the damping there is: so that the largest
+stiffness, which an error tells, is accepted when it is given back."""
+
+TOUCHING_START: Final = 1e-9
+"""Part of the lesser body's size: a start that overlaps by no more touches, to roundoff."""
+
+INERTIA_ROUNDOFF: Final = 1e-12
+"""Relative: two entries across an inertia's diagonal are one number where they differ by no more
+than this part of its largest, and a moment above the sum of the others by no more is at it:
+roundoff of whoever computed them."""
+
+MOMENTS_END: Final = 1e-11
+"""Relative: where refinement ends: remainders over the volume, its reach and its reach squared."""
+
+LEAST_MOMENT: Final = 1e-15
+"""Relative: a least principal moment below this part of the largest is roundoff of zero: that of a
+rod 3e-8 of its length wide."""
+
+LEVEL_CURVE: Final = 1e-14
+"""Parameter units: a trimming curve is level, or on an axis, where it is within this of it."""
+
+NORMALS_RESOLVED: Final = 1e-13
+"""Relative: what the last coefficients of the polynomials that follow the normals along a collapsed
+side must have fallen to: the roundoff of a normal."""
