@@ -22,6 +22,8 @@ NO_TOLERANCE = {
     ("geometry/validation.py", "1e-50"): "the least length that a user may give",
     ("recording/plot.py", "1e-16"): "where an axis without values begins",
     ("scene/settings.py", "1e-3"): "an option's default, a time",
+    ("simulation/simulated_device.py", "1e-4"): "an option's default, an inertia",
+    ("simulation/simulated_device.py", "1e-3"): "an option's default, a damping",
     ("tracking/law_options.py", "1e-10"): "an option's default: `tolerance` itself",
 }
 

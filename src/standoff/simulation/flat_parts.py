@@ -14,7 +14,7 @@ from standoff.geometry.surfaces import Plane
 from standoff.kernels.body import layout as L
 from standoff.kernels.dynamics import flat_parts as F
 from standoff.kernels.entries.queries import chart_normal
-from standoff.simulation.tolerances import RIM_GAP
+from standoff.simulation.tolerances import RIM_GAP, SHARED_END
 
 Array = NDArray[np.float64]
 
@@ -107,7 +107,7 @@ def _corners(body: Body, face: Face, normal: Array) -> Array:
     angles = np.arctan2(away @ np.cross(normal, across), away @ across)
     ordered = cloud[np.argsort(angles)]
     # neighbouring edges share their ends
-    least = 1e-9 * float(np.abs(away).max())
+    least = SHARED_END * float(np.abs(away).max())
     apart = np.linalg.norm(ordered - np.roll(ordered, 1, axis=0), axis=1) > least
     kept = ordered[apart]
     if len(kept) > F.MAX_SPOTS // 2:

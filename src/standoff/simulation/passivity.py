@@ -33,7 +33,13 @@ from standoff.errors import PassivityError, StandoffError, StandoffTypeError
 from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray
 from standoff.real_numbers import shown
-from standoff.simulation.tolerances import DAMPING_ROUNDING
+from standoff.simulation.tolerances import (
+    DAMPING_ROUNDING,
+    FIRST_FREQUENCY,
+    NO_DAMPING,
+    PEAK_FOUND,
+    STIFFNESS_ROUNDING,
+)
 
 ANGLES: Final = 2048
 """Frequencies between 0 and Nyquist's at which a right side is looked at before its greatest value
@@ -178,7 +184,10 @@ def largest_stiffness(damping: float, device_damping: float, sampling: Sampling)
         return over
 
     largest = -_greatest(excess)
-    if largest < 0.0 or required_damping(largest, b, sampling) > own * (1.0 + 1e-9) + 1e-300:
+    if (
+        largest < 0.0
+        or required_damping(largest, b, sampling) > own * (1.0 + STIFFNESS_ROUNDING) + NO_DAMPING
+    ):
         return -math.inf
     return largest
 
@@ -246,7 +255,7 @@ def required_damping_of(
         found: FloatArray = 0.5 * seconds * np.real(turned)
         return found
 
-    return _greatest(right_side, first=1e-3 * math.pi / angles, angles=int(angles))
+    return _greatest(right_side, first=FIRST_FREQUENCY * math.pi / angles, angles=int(angles))
 
 
 def check_passive(stiffness: float, damping: float, sampling: Sampling, *, of: str) -> None:
@@ -312,6 +321,6 @@ def _greatest(
         lambda angle: -float(function(np.array([angle]))[0]),
         bounds=around,
         method="bounded",
-        options={"xatol": 1e-10},
+        options={"xatol": PEAK_FOUND},
     )
     return max(float(values[best]), -float(refined.fun))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from standoff.kernels.dynamics.operator import METHODS
 from standoff.kernels.paper.integrators import NODES, STAGES, WEIGHTS
 from standoff.simulation.contact import HuntCrossley
-from standoff.simulation.tolerances import STIFFNESS_FOUND
+from standoff.simulation.tolerances import LEAST_STABLE, STABLE_ROUNDING, STIFFNESS_FOUND
 
 Array = NDArray[np.float64]
 
@@ -39,7 +39,7 @@ def is_stable(method: str, stiffness: float, damping: float, dt: float) -> bool:
     GROWTH over a half period?
     """
     radius = float(np.abs(np.linalg.eigvals(propagation(method, stiffness, damping, dt))).max())
-    if radius <= 1.0 + 1e-12:
+    if radius <= 1.0 + STABLE_ROUNDING:
         return True
     steps = math.pi / (math.sqrt(stiffness) * dt)
     return 2.0 * steps * math.log(radius) <= math.log1p(GROWTH)
@@ -63,7 +63,7 @@ def largest_stable_stiffness(
     # far beyond the limit of any method: a spring whose period is a tenth of the step
     high = (20.0 * math.pi / dt) ** 2 / (1.5 * give * math.sqrt(depth))
     low = high
-    while not stable(low) and low > 1e-14 * high:
+    while not stable(low) and low > LEAST_STABLE * high:
         low *= 0.1
     high = min(high, 10.0 * low)
     while high > (1.0 + STIFFNESS_FOUND) * low:

@@ -44,3 +44,36 @@ LEVEL_CURVE: Final = 1e-14
 NORMALS_RESOLVED: Final = 1e-13
 """Relative: what the last coefficients of the polynomials that follow the normals along a collapsed
 side must have fallen to: the roundoff of a normal."""
+
+STABLE_ROUNDING: Final = 1e-12
+"""No unit, of the spectral radius: a step that grows by no more is stable, to the roundoff of its
+eigenvalues."""
+
+LEAST_STABLE: Final = 1e-14
+"""Relative: where the search for a stable stiffness gives up, as there is none."""
+
+SHARED_END: Final = 1e-9
+"""Relative to a face's reach: corners nearer than this are the shared end of two edges."""
+
+STIFFNESS_ROUNDING: Final = 1e-9
+"""Relative: by this part the damping needed by the stiffness found may pass the damping there is,
+as the search ends there."""
+
+NO_DAMPING: Final = 1e-300
+"""N s/m, parts of the least damping: keeps the comparison true where both are zero."""
+
+FIRST_FREQUENCY: Final = 1e-3
+"""Part of the first interval of the grid of frequencies, where the search for the greatest damping
+needed begins: at zero itself the expression is 0 / 0."""
+
+PEAK_FOUND: Final = 1e-10
+"""Radians (frequency times the period): to which the frequency of the greatest damping needed is
+found."""
+
+LEAST_SHARE: Final = 1e-3
+"""Share of the last difference that a cell's remainder is never trusted below, whatever the last
+two differences foretell."""
+
+ANGLE_TOLERANCE: Final = 1e-10
+"""Steradians, of the area of an ellipsoidal face's directions (1 rad by 1 rad): only its sign is
+asked."""

@@ -34,6 +34,6 @@ LINE_RANK: Final = 1e-6
 """A set whose lesser extent is below this part of the greater (singular values) is a line: its own
 tilt across has no digits."""
 
-PLANE_TILT = 1e-12
-"""Dimensionless, entries of R: a planar body's pose may be tilted by this, the roundoff of composing
-rotations."""
+PLANE_TILT: Final = 1e-12
+"""Dimensionless, entries of R: a planar body's pose may be tilted by this, the roundoff of
+composing rotations."""

@@ -40,6 +40,7 @@ from standoff.simulation.moments.flux import (
     Frame,
 )
 from standoff.simulation.moments.skin import skin_cells
+from standoff.simulation.tolerances import ANGLE_TOLERANCE
 
 # Points on the boundary are off their places by so many roundings (eps of the frame's reach, and of
 # how far the surfaces' own origins are): affine maps, jets and sums.
@@ -48,8 +49,8 @@ POINT_ROUNDINGS = 32.0
 MOST_NODES = 400_000
 # Samples of an edge whose chords give its length, and how much longer it may be.
 CHORDS, LONGER = 65, 1.01
-# Steradians, of the area of an ellipsoidal face's directions: only its sign is asked.
-ANGLE_TOLERANCE, ANGLE_NODES = 1e-10, 20_000
+# Most nodes of the area of an ellipsoidal face's directions.
+ANGLE_NODES = 20_000
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,15 +14,15 @@ from functools import cache
 import numpy as np
 
 from standoff.geometry.validation import Array
+from standoff.simulation.tolerances import LEAST_SHARE
 
 # Orders of the rules along either parameter: 2^k - 1 nodes. Past the last a cell is halved.
 FIRST_LEVEL, LAST_LEVEL = 3, 6
 # Values a rule is made of carry so many roundings (eps of the sum of their magnitudes): less than
 # this is no difference between two rules.
 ROUNDINGS = 16.0
-# A remainder is this many times what the last two differences foretell, and never below this share
-# of the last.
-SAFETY, LEAST_SHARE = 8.0, 1e-3
+# A remainder is this many times what the last two differences foretell.
+SAFETY = 8.0
 # A cell this narrow (of the rectangle it began as) is refined no more.
 NARROWEST_CELL = 2.0**-40
 
