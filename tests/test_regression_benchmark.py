@@ -20,10 +20,12 @@ def times(factor):
         (NOISY, ""),
         # twice the time in two rounds of seven is a disturbed machine
         ((10.0, 20.4, 9.9, 10.1, 20.0, 9.8, 10.3), ""),
+        # the middle is 9 % above, but three rounds say the contrary
+        ((11.0, 11.2, 10.9, 11.1, 9.0, 9.1, 9.2), ""),
         # a drift of the machine that both commits share
         ((*tuple(1.1 * t for t in STEADY[:6]), 9.0), "slower"),
     ],
-    ids=["slower", "faster", "too little", "noise", "disturbed", "one round apart"],
+    ids=["slower", "faster", "too little", "noise", "disturbed", "no agreement", "one round apart"],
 )
 def test_a_change_is_told_from_noise(after, verdict):
     assert judged(Row("work", STEADY, after, True)) == verdict
