@@ -88,7 +88,7 @@ class Sweep:
             self.attempt("cold", label, lambda p=pose_a, q=pose_b: so.distance(a, b, p, q))
             starts = [random_start(body, self.rng) for body in (a, b)]
             for settle in (True, False):
-                given = (pose_a, pose_b, *starts[0], *starts[1])
+                given = (pose_a, pose_b, *starts)
                 self.attempt(
                     "start_from",
                     label,

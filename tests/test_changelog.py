@@ -92,6 +92,7 @@ def names() -> dict[str, Any]:
         "curves": curves,
         "patches": patches(),
         "pose": path.pose(0.0),
+        "p": so.distance(a, b, path.pose(0.0), path.pose(1.0)),
         "samples": PoseSamples([0.0, 1.0], [path.pose(0.0), path.pose(1.0)]),
         "motion": Motion(path, "helix", np.zeros(0)),
         "settings": TrackSettings(),

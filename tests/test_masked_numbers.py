@@ -27,10 +27,8 @@ def method_calls() -> list[Call]:
     placed = {
         "pose_a": HOME,
         "pose_b": AWAY,
-        "feature_a": ("vertex", 0),
-        "parameters_a": (),
-        "feature_b": ("face", 0),
-        "parameters_b": (0.1, 0.2),
+        "place_a": (("vertex", 0), ()),
+        "place_b": (("face", 0), (0.1, 0.2)),
     }
     surface = geometry.BezierPatch([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 1]]])
     curve = geometry.RationalBezier([[0, 0, 0], [1, 0, 0], [1, 1, 0]])

@@ -50,7 +50,7 @@ def test_a_start_at_such_a_vertex_gets_away(box, rng):
         gap = 10.0 ** rng.uniform(-3, 0)
         at = on_edge + gap * (out + rng.uniform(-0.6, 0.6) * np.array([out[0], 0.0, -1.0]))
         state = tracker.start_from(
-            FLAT, so.Pose(np.eye(3), turn @ at), ("vertex", k), (), ("vertex", 0), ()
+            FLAT, so.Pose(np.eye(3), turn @ at), (("vertex", k), ()), (("vertex", 0), ())
         )
         answer = state.proximity
         assert answer.certified

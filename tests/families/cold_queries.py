@@ -137,7 +137,7 @@ def run_family(name: str, count: int, seed: int) -> tuple[Report, Report]:
         tracker = so.Tracker(a, b)
         starts = [(random_start(a, rng), random_start(b, rng)) for _ in instance.poses]
         answers = [
-            tracker.start_from(p.pose_a, p.pose_b, *first, *second).proximity
+            tracker.start_from(p.pose_a, p.pose_b, first, second).proximity
             for p, (first, second) in zip(instance.poses, starts, strict=True)
         ]
         judge(given, instance, answers)

@@ -19,6 +19,7 @@ BODIES = {
     "cone": so.shapes.cone(0.5, 1.0),
 }
 POINT = so.shapes.point()
+AT_POINT = (("vertex", 0), ())
 REST = np.eye(4)
 BESIDE = (0.0, 5e-324, 1e-17, 1e-16, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2)
 """Parameters from the collapsed side on."""
@@ -36,7 +37,7 @@ def around(body: so.Body, n: int) -> NDArray[np.float64]:
 def held(body: so.Body, pose: so.Pose, kind: str, index: int, place: tuple[float, ...]) -> float:
     """lower_bound of an answer whose witness point is held at a place, right or wrong."""
     tracker = so.Tracker(body, POINT, law=so.PaperLaw())
-    state = tracker.start_from(REST, pose, (kind, index), place, ("vertex", 0), (), settle=False)
+    state = tracker.start_from(REST, pose, ((kind, index), place), AT_POINT, settle=False)
     return state.proximity.lower_bound
 
 

@@ -19,6 +19,7 @@ from standoff_studies.paper.held_features import (
 )
 from standoff_studies.paper.simulation_d import modes, parameters, runs, scene
 
+AT_POINT = (("vertex", 0), ())
 LENS = support.Lens(1.0, 0.45)
 HOME = so.Pose.identity()
 # Faces of the lens at each of its edges, as it was sewn: asserted in the first test.
@@ -175,7 +176,7 @@ def test_the_distance_never_grows_at_a_switch(run, truth):
         pose = runs.HELIX.pose(event.time - 0.02)
         place = run.exact.feature_a[event.frame - 21], run.exact.parameters_a[event.frame - 21]
         own = place[0], place[1][~np.isnan(place[1])]
-        found = held_distance(run.exact.pair, (HOME, pose), own, (("vertex", 0), ()))
+        found = held_distance(run.exact.pair, (HOME, pose), own, AT_POINT)
         distance, _ = closed_forms.point_lens(pose.translation, LENS)
         assert found == pytest.approx(distance, abs=1e-12)
 
@@ -325,7 +326,9 @@ def test_a_start_anywhere_converges(run):
     motion = HOME, runs.HELIX.pose(0.0)
     for _ in range(15):
         start = law.start_from(
-            *motion, ("face", int(rng.integers(3))), rng.uniform(0.02, 0.98, 2), ("vertex", 0), ()
+            *motion,
+            (("face", int(rng.integers(3))), rng.uniform(0.02, 0.98, 2)),
+            AT_POINT,
         )
         recording = track_along(law, rest, runs.HELIX, times, state=start)
         assert recording.residual[-1] < 1e-5

@@ -18,6 +18,7 @@ from standoff.recording.simulate import track_along
 
 BOX = so.shapes.box(1.0, 1.0, 1.0)
 POINT = so.shapes.point()
+AT_POINT = (("vertex", 0), ())
 PAST = straight((-1.0, -0.9, 0.8), (1.0, 0.77, 0.013))
 OFF = REST, so.Pose(np.eye(3), (2.0, 0.0, 0.0))
 THROUGH = straight((-1.0, 0.1, 0.2), (1.0, 0.0, 0.0))
@@ -85,7 +86,7 @@ def test_a_run_begins_at_a_given_state() -> None:
     lens, times = so.shapes.lens(1.0, 0.45), np.arange(200) * 1e-3
     path = straight((1.2, 0.3, 0.4), (0.1, 0.2, 0.0))
     tracker = so.Tracker(lens, POINT, law=so.PaperLaw())
-    start = tracker.start_from(REST, path.pose(0.0), ("face", 0), (-0.3, 0.4), ("vertex", 0), ())
+    start = tracker.start_from(REST, path.pose(0.0), (("face", 0), (-0.3, 0.4)), AT_POINT)
     recording = track_along(tracker, Fixed(REST), path, times, state=start)
     assert recording.distance[0] == start.proximity.distance
     state = start

@@ -27,8 +27,8 @@ def run(
 ) -> list[so.Proximity]:
     tracker = so.Tracker(LENS, POINT, H, law=law)
     pose, twist = circling(0.0)
-    place = ("face", 0), start, ("vertex", 0), ()
-    state = tracker.start_from(REST, pose, *place, STILL, twist, settle=False)
+    places = (("face", 0), start), (("vertex", 0), ())
+    state = tracker.start_from(REST, pose, *places, STILL, twist, settle=False)
     answers = [state.proximity]
     for k in range(1, frames + 1):
         pose, twist = circling(k * H)
@@ -127,7 +127,7 @@ def arrived(law: so.PaperLaw, starts: int, frames: int) -> int:
     for _ in range(starts):
         faces, places = rng.integers(3, size=2), rng.uniform(size=(2, 2))
         state = tracker.start_from(
-            REST, pose, ("face", int(faces[0])), places[0], ("face", int(faces[1])), places[1],
+            REST, pose, (("face", int(faces[0])), places[0]), (("face", int(faces[1])), places[1]),
             STILL, STILL, settle=False,
         )  # fmt: skip
         buffer = tracker.buffer(state)

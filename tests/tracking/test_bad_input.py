@@ -226,15 +226,15 @@ def test_features_and_parameters(feature, parameters, words):
     for tracker, order in ((so.Tracker(LENS, POINT), 1), (so.Tracker(POINT, LENS), -1)):
         given = [(feature, parameters), (("vertex", 0), ())][::order]
         with pytest.raises(ValueError, match=words):
-            tracker.start_from(HOME, AWAY, *given[0], *given[1])
+            tracker.start_from(HOME, AWAY, *given)
 
 
 def test_charts_that_a_face_does_not_have():
     tracker = so.Tracker(so.shapes.ellipsoid(1, 2, 3), POINT)
-    tracker.start_from(HOME, 4 * AWAY - 3 * HOME, ("face", 0), (0.1, 0.2, 5), ("vertex", 0), ())
+    tracker.start_from(HOME, 4 * AWAY - 3 * HOME, (("face", 0), (0.1, 0.2, 5)), (("vertex", 0), ()))
     for chart in (6, -1, 0.5):
         with pytest.raises(ValueError, match=f"charts 0 to 5, not {chart}"):
-            tracker.start_from(HOME, AWAY, ("face", 0), (0.1, 0.2, chart), ("vertex", 0), ())
+            tracker.start_from(HOME, AWAY, (("face", 0), (0.1, 0.2, chart)), (("vertex", 0), ()))
 
 
 def test_a_state_stored_by_another_version():
@@ -278,7 +278,7 @@ def test_states_and_buffers_of_another_pair():
 def test_what_is_no_feature(feature):
     tracker = so.Tracker(LENS, POINT)
     with pytest.raises((ValueError, TypeError), match="feature"):
-        tracker.start_from(HOME, AWAY, feature, (0, 0), ("vertex", 0), ())
+        tracker.start_from(HOME, AWAY, (feature, (0, 0)), (("vertex", 0), ()))
 
 
 def test_what_is_no_state_or_answer_is_named():
@@ -289,3 +289,29 @@ def test_what_is_no_state_or_answer_is_named():
     state = so.Tracker(box, box).start(so.Pose.identity(), so.Pose.exp([0, 0, 0], [3, 0, 0]))
     with pytest.raises(TypeError, match="no answer"):
         so.witness_set(state)
+
+
+@pytest.mark.parametrize("given", [(0, 0, 0), None, 3, "face"])
+def test_a_place_is_a_feature_and_its_parameters(given):
+    tracker = so.Tracker(LENS, POINT)
+    with pytest.raises(so.StandoffError, match=r"place_a = .*give \(feature, parameters\)"):
+        tracker.start_from(HOME, AWAY, given, (("vertex", 0), ()))
+    with pytest.raises(so.StandoffError, match=r"place_b = .*give \(feature, parameters\)"):
+        tracker.start_from(HOME, AWAY, (("face", 0), (0.1, 0.2)), given)
+
+
+def test_an_answers_places_begin_the_same_frame():
+    tracker = so.Tracker(LENS, so.shapes.ellipsoid(0.5, 0.4, 0.3), law=so.PaperLaw())
+    best = so.distance(tracker.a, tracker.b, HOME, AWAY)
+    begun = tracker.start_from(HOME, AWAY, best.place_a, best.place_b).proximity
+    assert (begun.place_a, begun.place_b) == (best.place_a, best.place_b)
+    assert begun.distance == best.distance
+
+
+def test_features_beside_their_parameters_are_told_to_come_as_places():
+    start_from = so.Tracker(LENS, POINT).start_from
+    old = {"feature_a": ("face", 0), "parameters_a": (0.1, 0.2), "feature_b": ("vertex", 0)}
+    with pytest.raises(so.StandoffTypeError, match=r"write start_from\(pose_a, pose_b, \(feature"):
+        start_from(HOME, AWAY, **old)
+    with pytest.raises(so.StandoffTypeError, match="or p.place_a"):
+        start_from(HOME, AWAY, so.Feature("face", 0), (0.1, 0.2), so.Feature("vertex", 0), ())

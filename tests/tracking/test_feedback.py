@@ -13,6 +13,7 @@ from standoff.tracking.feedback import growth_factor
 
 DOME = so.shapes.cap(1.0, 0.2)
 POINT = so.shapes.point()
+AT_POINT = (("vertex", 0), ())
 FACE = ("face", 0)
 REST = np.eye(4)
 ABOVE = so.Pose(np.eye(3), [0.1, 0.05, 2.0])
@@ -42,7 +43,7 @@ def errors_at_rest(
     best = so.distance(body, POINT, REST, ABOVE)
     u, v, *chart = best.parameters_a
     place = (u + start, v - 0.6 * start, *chart)
-    state = tracker.start_from(REST, ABOVE, best.feature_a, place, ("vertex", 0), (), settle=False)
+    state = tracker.start_from(REST, ABOVE, (best.feature_a, place), AT_POINT, settle=False)
     rows = [psi_of(body, state.proximity)]
     for _ in range(steps):
         state, answer = tracker.step(state, REST, ABOVE, NO_TWIST, NO_TWIST)
@@ -52,7 +53,7 @@ def errors_at_rest(
 
 def psi_of(body: so.Body, answer: so.Proximity) -> np.ndarray:
     place = answer.feature_a, answer.parameters_a
-    return so.tracking.pair_system(body, POINT, REST, ABOVE, place, (("vertex", 0), ())).Psi
+    return so.tracking.pair_system(body, POINT, REST, ABOVE, place, AT_POINT).Psi
 
 
 @pytest.mark.parametrize("integrator", POLYNOMIALS)

@@ -114,10 +114,8 @@ def test_steps_of_the_papers_law(gain, expected, start):
     tracker = so.Tracker(*ELLIPSOIDS, dt=1e-3, law=so.PaperLaw(integrator="heun", gain=gain))
     state = tracker.start_from(
         *ELLIPSOID_POSES,
-        settled.feature_a,
-        settled.parameters_a + shift,
-        settled.feature_b,
-        settled.parameters_b - shift,
+        (settled.feature_a, settled.parameters_a + shift),
+        (settled.feature_b, settled.parameters_b - shift),
         REST,
         REST,
         settle=False,

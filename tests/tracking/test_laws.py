@@ -142,7 +142,7 @@ def domes_from(offset, integrator, gain, dt):
     start = parameters(best) + offset
     tracker = so.Tracker(DOME_A, DOME_B, dt=dt, law=so.PaperLaw(integrator=integrator, gain=gain))
     state = tracker.start_from(
-        REST_A, REST_B, best.feature_a, start[:2], best.feature_b, start[2:], settle=False
+        REST_A, REST_B, (best.feature_a, start[:2]), (best.feature_b, start[2:]), settle=False
     )
     return tracker, state
 
@@ -235,10 +235,8 @@ def test_errors_decay_exponentially_in_motion():
     state = tracker.start_from(
         pose_a,
         pose_b,
-        best.feature_a,
-        start[:2],
-        best.feature_b,
-        start[2:],
+        (best.feature_a, start[:2]),
+        (best.feature_b, start[2:]),
         twist_a,
         twist_b,
         settle=False,

@@ -16,6 +16,7 @@ LENS = so.shapes.lens(1.0, 0.45)
 PATCHED = lens_of_patches()
 ELLIPSOID = so.shapes.ellipsoid(0.5, 0.4, 0.3)
 POINT = so.shapes.point()
+AT_POINT = (("vertex", 0), ())
 REST = np.eye(4)
 STILL = so.Twist(np.zeros(3), np.zeros(3))
 H = 1e-3
@@ -46,8 +47,8 @@ def both_ways(
         (wrong.feature_a, wrong.parameters_a),
         (wrong.feature_b, wrong.parameters_b),
     )
-    one = forth.start_from(REST, pose, *places[0], *places[1], STILL, twist, settle=False)
-    two = turned.start_from(pose, REST, *places[1], *places[0], twist, STILL, settle=False)
+    one = forth.start_from(REST, pose, *places, STILL, twist, settle=False)
+    two = turned.start_from(pose, REST, places[1], places[0], twist, STILL, settle=False)
     for k in range(1, steps + 1):
         pose, twist = orbit(k)
         one, _ = forth.step(one, REST, pose, STILL, twist)
@@ -101,7 +102,7 @@ def test_a_matrix_acts_on_the_errors_of_b() -> None:
     at = so.Pose(np.eye(3), [1.2, 0.3, 0.4])
     best = so.distance(POINT, LENS, at, REST)
     place = (best.parameters_b[0] + 1e-4, best.parameters_b[1] - 6e-5)
-    state = tracker.start_from(at, REST, ("vertex", 0), (), best.feature_b, place, settle=False)
+    state = tracker.start_from(at, REST, AT_POINT, (best.feature_b, place), settle=False)
     first = state.errors[2:]
     state, _ = tracker.step(state, at, REST, STILL, STILL)
     z = H * np.array(gains[2:])
@@ -110,7 +111,7 @@ def test_a_matrix_acts_on_the_errors_of_b() -> None:
 
 def psi(body: so.Body, pose: so.Pose, answer: so.Proximity) -> np.ndarray:
     place = answer.feature_a, answer.parameters_a
-    return so.tracking.pair_system(body, POINT, REST, pose, place, (("vertex", 0), ())).Psi
+    return so.tracking.pair_system(body, POINT, REST, pose, place, AT_POINT).Psi
 
 
 def circle(k: int, radius: float) -> tuple[so.Pose, so.Twist]:
@@ -147,7 +148,7 @@ def test_errors_start_anew_at_a_saturation() -> None:
     )
     pose, twist = circle(0, 1.6)
     state = tracker.start_from(
-        REST, pose, ("face", 0), (0.9, 0.2), ("vertex", 0), (), STILL, twist, settle=False
+        REST, pose, (("face", 0), (0.9, 0.2)), AT_POINT, STILL, twist, settle=False
     )
     saturated = 0
     for k in range(1, 400):
@@ -181,7 +182,7 @@ def test_errors_and_integral_start_anew_after_an_overlap() -> None:
     away, inside = so.Pose(np.eye(3), [1.4, 0.2, 0.1]), so.Pose(np.eye(3), [0.05, 0.0, 0.0])
     best = so.distance(LENS, POINT, REST, away)
     wrong = (best.parameters_a[0] + 0.05, best.parameters_a[1])
-    state = tracker.start_from(REST, away, best.feature_a, wrong, ("vertex", 0), (), settle=False)
+    state = tracker.start_from(REST, away, (best.feature_a, wrong), AT_POINT, settle=False)
     for _ in range(3):
         state, _ = tracker.step(state, REST, away, STILL, STILL)
     assert np.abs(state.integral).max() > 1e-6
@@ -202,7 +203,7 @@ def test_velocities_are_those_of_the_feedforward_alone() -> None:
     for gain in (1.0, 900.0):
         tracker = so.Tracker(LENS, POINT, dt=H, law=so.PaperLaw(gain=gain))
         state = tracker.start_from(
-            REST, pose, ("face", 0), (0.35, 0.2), ("vertex", 0), (), STILL, twist, settle=False
+            REST, pose, (("face", 0), (0.35, 0.2)), AT_POINT, STILL, twist, settle=False
         )
         found.append(state.proximity.velocity_a)
     np.testing.assert_array_equal(*found)
@@ -212,7 +213,7 @@ def test_a_swept_partner_that_reaches_a_feature_is_tracked_on_it() -> None:
     """With switching="none" one feature is tracked; what its certificate shows is said."""
     ball = so.shapes.sphere(0.2)
     near = so.Pose(np.eye(3), [0.65, 0.0, 0.0])
-    at = ("face", 0), (0.0, 0.0), ("vertex", 0), ()
+    at = (("face", 0), (0.0, 0.0)), AT_POINT
     tracker = so.Tracker(LENS, ball, dt=H, law=so.PaperLaw(switching="none"))
     state = tracker.start_from(REST, near, *at, settle=False)
     _, answer = tracker.step(state, REST, near, STILL, STILL)
@@ -230,7 +231,7 @@ def test_the_raw_law_makes_no_step_where_it_has_none() -> None:
     top, bottom = so.distance(box, box, REST, above), so.distance(box, box, above, REST)
     tracker = so.Tracker(box, box, dt=H, law=so.PaperLaw(solve="plain"))
     state = tracker.start_from(
-        REST, above, top.feature_a, (0.5, 0.5), bottom.feature_a, (0.4, 0.4), settle=False
+        REST, above, (top.feature_a, (0.5, 0.5)), (bottom.feature_a, (0.4, 0.4)), settle=False
     )
     _, answer = tracker.step(state, REST, above, STILL, STILL)
     assert answer.counts.regularised >= 2

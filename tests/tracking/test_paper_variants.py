@@ -16,6 +16,7 @@ PATCHED = lens_of_patches()
 LOOP = planar_body()
 BOX = so.shapes.box(0.5, 0.6, 0.7)
 POINT = so.shapes.point()
+AT_POINT = (("vertex", 0), ())
 REST = np.eye(4)
 STILL = so.Twist(np.zeros(3), np.zeros(3))
 H = 1e-3
@@ -34,7 +35,7 @@ def walk(
 ) -> tuple[list[so.TrackerState], so.Tracker]:
     tracker = so.Tracker(body, POINT, dt=h, law=so.PaperLaw(**options))
     pose, twist = circling(0, h)
-    state = tracker.start_from(REST, pose, *start, ("vertex", 0), (), STILL, twist, settle=False)
+    state = tracker.start_from(REST, pose, start, AT_POINT, STILL, twist, settle=False)
     states = [state]
     for k in range(1, steps + 1):
         pose, twist = circling(k, h)
@@ -58,9 +59,7 @@ PATCH_WRONG = ("face", 0), (0.9, 0.2)
 def true_errors(state: so.TrackerState, k: int) -> np.ndarray:
     answer = state.proximity
     place = answer.feature_a, answer.parameters_a
-    return so.tracking.pair_system(
-        LENS, POINT, REST, circling(k)[0], place, (("vertex", 0), ())
-    ).Psi
+    return so.tracking.pair_system(LENS, POINT, REST, circling(k)[0], place, AT_POINT).Psi
 
 
 def test_integrated_errors_decay_by_themselves() -> None:
@@ -128,7 +127,7 @@ def test_a_step_that_a_boundary_cuts_is_read_anew(saturation: str) -> None:
         within = so.distance(BOX, POINT, REST, so.Pose(np.eye(3), [x[0] - 0.03, x[1], x[2]]))
         assert best.feature_a == within.feature_a
         start = within.feature_a, within.parameters_a
-        state = tracker.start_from(REST, pose, *start, ("vertex", 0), (), STILL, STILL)
+        state = tracker.start_from(REST, pose, start, AT_POINT, STILL, STILL)
         for _ in range(100):
             state, answer = tracker.step(state, REST, pose, STILL, STILL)
         assert np.linalg.norm(answer.point_a - best.point_a) < 1e-9
@@ -230,7 +229,7 @@ def test_zeroing_after_the_solve_is_biased_until_it_is_at_rest() -> None:
 
     def last(**options: Any) -> so.Proximity:
         tracker = so.Tracker(PATCHED, POINT, dt=H, law=so.PaperLaw(gain=500.0, **options))
-        state = tracker.start_from(REST, far, *PATCH_WRONG, ("vertex", 0), (), settle=False)
+        state = tracker.start_from(REST, far, PATCH_WRONG, AT_POINT, settle=False)
         for _ in range(400):
             state, answer = tracker.step(state, REST, far, STILL, STILL)
         return answer
@@ -246,9 +245,7 @@ def test_parallel_trackers_stay_on_their_curves() -> None:
     depth = []
     for curve in range(3):
         tracker = so.Tracker(LOOP, POINT, dt=H, law=so.PaperLaw(gain=500.0, switching="none"))
-        state = tracker.start_from(
-            REST, inside, ("edge", curve), (0.5,), ("vertex", 0), (), settle=False
-        )
+        state = tracker.start_from(REST, inside, (("edge", curve), (0.5,)), AT_POINT, settle=False)
         for _ in range(100):
             state, answer = tracker.step(state, REST, inside, STILL, STILL)
             assert answer.feature_a == so.Feature("edge", curve)
@@ -268,7 +265,7 @@ def test_the_raw_law_goes_to_the_far_side() -> None:
         tracker = so.Tracker(body, POINT, dt=H, law=so.PaperLaw(solve=solve, gain=500.0))
         behind = so.distance(body, POINT, REST, so.Pose(np.eye(3), [0.3, 0.2, -3.0]))
         state = tracker.start_from(
-            REST, far, behind.feature_a, behind.parameters_a, ("vertex", 0), (), settle=False
+            REST, far, (behind.feature_a, behind.parameters_a), AT_POINT, settle=False
         )
         for _ in range(400):
             state, answer = tracker.step(state, REST, far, STILL, STILL)

@@ -224,7 +224,7 @@ def test_what_evaluates_a_pair_at_rest_counts_repaired_poses_too() -> None:
     body = so.shapes.ellipsoid(1.0, 0.8, 0.6)
     away = so.Pose(AWAY.rotation, AWAY.translation + np.array([3.0, 0.0, 0.0]))
     best = so.distance(body, body, HOME, away)
-    places = (best.feature_a, best.parameters_a), (best.feature_b, best.parameters_b)
+    places = best.place_a, best.place_b
     tracker = so.Tracker(body, body, 1e-3)
     for pose, count in ((away, 0), (away.matrix.astype(np.float32), 1)):
         assert so.tracking.pair_system(body, body, HOME, pose, *places).repaired == count

@@ -19,11 +19,10 @@ from standoff.real_numbers import shown
 from standoff.tracking import Tracker, distance
 from standoff.tracking.calls import DESCEND, HERE
 from standoff.tracking.choices import whole_number
-from standoff.tracking.inputs import flat_pose, place
+from standoff.tracking.inputs import flat_pose
 from standoff.tracking.laws import PaperLaw
+from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.rows import AnswerRows, StateRow, motion_row
-
-Place = tuple[Any, Any]
 
 
 class Basin(NamedTuple):
@@ -60,7 +59,7 @@ def basin(
     tracker: Tracker,
     pose_a: PoseLike,
     pose_b: PoseLike,
-    starts: Sequence[tuple[Place, Place]],
+    starts: Sequence[tuple[PlaceLike, PlaceLike]],
     steps: int,
 ) -> Basin:
     """Run a tracker at rest from many starts and compare with the certified minimum.
@@ -145,12 +144,12 @@ class _Frames:
         self.events = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
         self.given = HERE if isinstance(tracker.law, PaperLaw) else DESCEND
 
-    def after(self, place_a: Place, place_b: Place) -> Array:
+    def after(self, place_a: PlaceLike, place_b: PlaceLike) -> Array:
         """The answer's numbers after all frames from a start."""
         t = self.tracker
         begun = StateRow()
-        place(begun, 0, t.a, *place_a)
-        place(begun, 1, t.b, *place_b)
+        put(begun, 0, t.a, place_a)
+        put(begun, 1, t.b, place_b)
         state = begun.data
         first = self.motions[0]
         kernels.start(t.packed, first, True, t.options, state, self.given, self.outs[0])

@@ -32,8 +32,9 @@ from standoff.motion import PoseLike
 from standoff.real_numbers import shown
 from standoff.tracking import Feature, Proximity, distance
 from standoff.tracking.choices import whole_number
-from standoff.tracking.inputs import flat_pose, place
+from standoff.tracking.inputs import flat_pose
 from standoff.tracking.pair_system import UPPER
+from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.rows import StateRow, motion_row
 
 # Greatest length of a curve, in parts of the pair's size: past it there is no end worth finding.
@@ -130,7 +131,7 @@ def lyapunov_level(
     if not best.certified or best.distance <= 0.0:
         raise StandoffError(f"The pair has no certified minimum: {best!r}.")
     system = _System(a, b, pose_a, pose_b)
-    q0 = system.place((best.feature_a, best.parameters_a), (best.feature_b, best.parameters_b))
+    q0 = system.place(best.place_a, best.place_b)
     if not len(q0):
         raise StandoffError("Both witness points are vertices: there are no parameters to err.")
     _, H, metric, energy = system.at(q0)
@@ -274,11 +275,11 @@ class _System:
         self.state = StateRow()
         self.out = np.empty(queries.N_SYSTEM)
 
-    def place(self, place_a: tuple[object, object], place_b: tuple[object, object]) -> Array:
+    def place(self, place_a: PlaceLike, place_b: PlaceLike) -> Array:
         """Set the mode; its parameters, (n,)."""
         state = self.state = StateRow()
-        place(state, 0, self.bodies[0], *place_a)
-        place(state, 1, self.bodies[1], *place_b)
+        put(state, 0, self.bodies[0], place_a)
+        put(state, 1, self.bodies[1], place_b)
         self.mode = state.mode.astype(np.int64)
         counts = [
             2 - int(number >= body.n_faces) - int(number >= body.n_faces + body.n_edges)

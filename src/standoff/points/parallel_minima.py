@@ -93,7 +93,7 @@ class ParallelTracker(KeepsReadOnly):
         if self.law is not None:
             feature = Feature("edge", edge)
             state = self.law.start_from(
-                HOME, pose_of(x), feature, (t,), POINT, (), *twists(v), settle=False
+                HOME, pose_of(x), (feature, (t,)), (POINT, ()), *twists(v), settle=False
             )
             laws = (*laws, state)
         minimum = self._measured(edge, t, x, parallel.next_key)

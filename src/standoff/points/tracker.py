@@ -309,7 +309,7 @@ class PointTracker(KeepsReadOnly):
             at = best.feature if feature is None else Feature(*feature)
             own = [m for m in parallel.minima if m.feature == at]
             t = (min(own, key=lambda m: m.distance).parameter,) if own else ()
-            outside = self.outer.start_from(HOME, pose, at, t, POINT, (), *twists(v))
+            outside = self.outer.start_from(HOME, pose, (at, t), (POINT, ()), *twists(v))
             answer = outside.proximity
             if isinstance(self.law, PaperLaw) and feature is None:
                 instant = ENTRY_INSTANT * h

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import operator
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.bodies.features import charts_of
-from standoff.errors import MaskedNumbers, StandoffError, StandoffTypeError
-from standoff.kernels.entries.queries import on_face
+from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.tolerances import FARTHEST
 from standoff.motion import Pose, PoseLike, Twist, TwistLike
 from standoff.motion.inputs import text
 from standoff.motion.rotations import defect, mirrored, without_rounding
 from standoff.motion.tolerances import ORTHONORMALITY, ROUNDED
-from standoff.real_numbers import check_unmasked, shown
-from standoff.tracking.rows import NO_TWIST, StateRow
+from standoff.real_numbers import shown
+from standoff.tracking.rows import NO_TWIST
 from standoff.tracking.tolerances import PLANE_TILT
 
 Array = NDArray[np.float64]
@@ -159,76 +156,3 @@ def check_in_plane(flat_a: Array, flat_b: Array) -> None:
                 name,
                 flat,
             )
-
-
-def _chart_of(body: Body, face: int, values: Array) -> int:
-    """The packed chart of parameters (u, v) or (u, v, chart) on a face."""
-    first, count = charts_of(body, face)
-    u, v = float(values[0]), float(values[1])
-    numbers = range(count)
-    if len(values) == 3:
-        if values[2] not in numbers:
-            raise StandoffError(
-                f"Face {face} has charts 0 to {count - 1}, not {values[2]}.", "parameters", values
-            )
-        numbers = range(int(values[2]), int(values[2]) + 1)
-    for number in numbers:
-        if on_face(body.ints, body.reals, first + number, u, v):
-            return first + number
-    raise StandoffError(
-        f"Parameters {tuple(values)} lie outside face {face}.", "parameters", values
-    )
-
-
-def place(state: StateRow, side: int, body: Body, feature: Any, parameters: Any) -> None:
-    """Write a feature and its parameters into a state, for A (0) or B (1), checked."""
-    try:
-        kind, index = feature
-        check_unmasked(index)
-        index = operator.index(index)
-    except (TypeError, ValueError) as error:
-        raise StandoffError(
-            f"{shown(feature)} is no feature: give so.Feature('face', 0) or ('face', 0).",
-            "feature",
-            feature,
-        ) from error
-    sizes = {"face": body.n_faces, "edge": body.n_edges, "vertex": body.n_vertices}
-    if kind not in sizes or not 0 <= index < sizes[kind]:
-        raise StandoffError(
-            f"{body!r} has no {kind} {index}: faces, edges and vertices are numbered from 0.",
-            "feature",
-            feature,
-        )
-    try:
-        check_unmasked(parameters)
-        values = np.atleast_1d(np.asarray(parameters, dtype=np.float64)).ravel()
-    except MaskedNumbers as error:
-        raise StandoffError(
-            f"The parameter list {error}: {shown(parameters)}", "parameters", parameters
-        ) from error
-    except (TypeError, ValueError) as error:
-        raise StandoffError(
-            f"Parameters {shown(parameters)} are not numbers.", "parameters", parameters
-        ) from error
-    wanted = {"face": 2, "edge": 1, "vertex": 0}[kind]
-    atlas = kind == "face" and charts_of(body, index)[1] > 1
-    if len(values) not in (wanted, wanted + atlas) or not np.isfinite(values).all():
-        also = " (and the number of its chart)" if atlas else ""
-        raise StandoffError(
-            f"A {kind} takes {wanted} finite parameters{also}, not {shown(parameters)}.",
-            "parameters",
-            parameters,
-        )
-    offset = {"face": 0, "edge": body.n_faces, "vertex": body.n_faces + body.n_edges}[kind]
-    chart = -1
-    if kind == "face":
-        chart = _chart_of(body, index, values)
-    if kind == "edge":
-        curve = body.edge_parts[index].curve
-        if not curve.closed and not curve.first <= values[0] <= curve.last:
-            raise StandoffError(
-                f"Parameter {values[0]} lies outside edge {index}: [{curve.first}, {curve.last}].",
-                "parameters",
-                parameters,
-            )
-    state.place(side, offset + index, chart, values[:wanted])

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ParamSpec, TypeVar
 
 from standoff.bodies.body import Body
+from standoff.bodies.features import Feature
 from standoff.errors import StandoffTypeError
 from standoff.real_numbers import shown
 from standoff.tracking.law_options import Law, options_of
@@ -72,6 +73,29 @@ def takes_a_tracker(function: Callable[P, R]) -> Callable[P, R]:
                 "The pair, the frame time and the law are the tracker's: write "
                 f"so.simulate({tracker}, path_a, path_b, duration).",
                 "tracker",
+            )
+        return function(*args, **kwargs)
+
+    return checked
+
+
+def takes_places(function: Callable[P, R]) -> Callable[P, R]:
+    """Decorate ``start_from``, so that 0.1's features and parameters are told to come in pairs."""
+
+    @functools.wraps(function)
+    def checked(*args: P.args, **kwargs: P.kwargs) -> R:
+        # self and the poses come first; there a feature alone was followed by its parameters
+        alone = any(
+            isinstance(x, Feature) or (isinstance(x, tuple | list) and x and isinstance(x[0], str))
+            for x in args[3:5]
+        )
+        named: Mapping[str, Any] = kwargs
+        if alone or any(name.startswith(("feature_", "parameters_")) for name in named):
+            raise StandoffTypeError(
+                "A feature and its parameters are one place: write start_from(pose_a, pose_b, "
+                "(feature_a, parameters_a), (feature_b, parameters_b)), or p.place_a and "
+                "p.place_b of an answer p.",
+                "place_a",
             )
         return function(*args, **kwargs)
 

@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.errors import StandoffError
 from standoff.kernels.entries import queries
 from standoff.motion import Pose, PoseLike, TwistLike
-from standoff.real_numbers import shown
 from standoff.tracking.inputs import (
     check_in_plane,
     check_pair,
     flat_pose,
     flat_twist,
-    place,
     refuse_twists,
 )
+from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.rows import StateRow, motion_row
 
 Array = NDArray[np.float64]
@@ -70,8 +67,8 @@ def pair_system(
     b: Body,
     pose_a: PoseLike,
     pose_b: PoseLike,
-    place_a: tuple[Any, Any],
-    place_b: tuple[Any, Any],
+    place_a: PlaceLike,
+    place_b: PlaceLike,
     twist_a: TwistLike | None = None,
     twist_b: TwistLike | None = None,
 ) -> PairSystem:
@@ -110,12 +107,6 @@ def pair_system(
     return system._replace(repaired=pose_a.repaired + pose_b.repaired)
 
 
-def _two(given: Any, name: str) -> Sequence[Any]:
-    if not isinstance(given, tuple | list) or len(given) != 2:
-        raise StandoffError(f"{name} = {shown(given)}: give (feature, parameters).", name, given)
-    return given
-
-
 class PairSystems:
     """The paper's system of one pair of features, for many parameters and poses.
 
@@ -133,13 +124,11 @@ class PairSystems:
         Parameters of the places.
     """
 
-    def __init__(
-        self, a: Body, b: Body, place_a: tuple[Any, Any], place_b: tuple[Any, Any]
-    ) -> None:
+    def __init__(self, a: Body, b: Body, place_a: PlaceLike, place_b: PlaceLike) -> None:
         check_pair(a, b)
         state = StateRow()
-        place(state, 0, a, *_two(place_a, "place_a"))
-        place(state, 1, b, *_two(place_b, "place_b"))
+        put(state, 0, a, place_a)
+        put(state, 1, b, place_b)
         self.packed = (a.ints, a.reals, b.ints, b.reals)
         mode = state.mode.astype(np.int64)
         self.counts = [

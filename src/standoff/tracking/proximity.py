@@ -69,6 +69,8 @@ class Proximity(Answer):
     parameters_a, parameters_b : tuple of float
         (u, v) on a face, (u, v, chart) on a face with an atlas of charts, (t,) on an edge, ()
         on a vertex.
+    place_a, place_b : (feature, parameters)
+        Both of these, as ``Tracker.start_from`` takes them.
     rate : float
         Time derivative of the distance; nan where no twists were given.
     velocity_a, velocity_b : (3,) arrays

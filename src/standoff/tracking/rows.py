@@ -294,6 +294,14 @@ class Answer(KeepsReadOnly):
         return AnswerRows(self._out).parameters(self._b, 1)
 
     @property
+    def place_a(self) -> tuple[Feature, tuple[float, ...]]:
+        return self.feature_a, self.parameters_a
+
+    @property
+    def place_b(self) -> tuple[Feature, tuple[float, ...]]:
+        return self.feature_b, self.parameters_b
+
+    @property
     def rate(self) -> float:
         return float(self._out[K.OUT_RATE])
 

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.bodies.features import Feature
 from standoff.bodies.packing import Ints
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.entries import tracker as kernels
@@ -25,16 +24,16 @@ from standoff.tracking.inputs import (
     check_pair,
     flat_and_mark,
     flat_twist,
-    place,
     refuse_twists,
     repair,
     same_body,
 )
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, checked_law
-from standoff.tracking.old_spellings import ATTRIBUTES, takes_a_law
+from standoff.tracking.old_spellings import ATTRIBUTES, takes_a_law, takes_places
 from standoff.tracking.options import resolved_options
 from standoff.tracking.overlap_proof import cores_overlap
+from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.proximity import Proximity, events_of
 from standoff.tracking.rows import StateRow, motion_row, poses_of, twists_of
 from standoff.tracking.state import FrameBuffer, TrackerState
@@ -123,29 +122,28 @@ class Tracker(KeepsReadOnly):
         """
         return self._start(pose_a, pose_b, twist_a, twist_b, np.zeros(K.N_STATE), 0)
 
-    def start_from(  # noqa: PLR0913 - two places, each a feature and its parameters
+    @takes_places
+    def start_from(
         self,
         pose_a: PoseLike,
         pose_b: PoseLike,
-        feature_a: Feature | tuple[str, int],
-        parameters_a: Any,
-        feature_b: Feature | tuple[str, int],
-        parameters_b: Any,
+        place_a: PlaceLike,
+        place_b: PlaceLike,
         twist_a: TwistLike | None = None,
         twist_b: TwistLike | None = None,
+        *,
         settle: bool | None = None,
     ) -> TrackerState:
-        """Begin at given features and parameters, as ``Proximity`` gives them.
+        """Begin at a given place of each body, as ``Proximity.place_a`` and ``place_b`` give them.
 
         Parameters
         ----------
         pose_a, pose_b, twist_a, twist_b
             As in ``start``.
-        feature_a, feature_b : Feature or pair
-            ``("face", 0)`` and the like.
-        parameters_a, parameters_b : sequence of float
-            (u, v) on a face, (u, v, chart) on a face with an atlas (without the chart: the first
-            that holds them), (t,) on an edge, () on a vertex.
+        place_a, place_b : (feature, parameters)
+            A feature, ``("face", 0)`` and the like, and its parameters: (u, v) on a face,
+            (u, v, chart) on a face with an atlas (without the chart: the first that holds them),
+            (t,) on an edge, () on a vertex.
         settle : bool
             True descends from there to the certified minimum (the default of the
             predictor-corrector), False begins there as it stands (the default of the paper's
@@ -154,11 +152,11 @@ class Tracker(KeepsReadOnly):
         Raises
         ------
         ValueError
-            As ``start``; no such feature, or parameters outside it.
+            As ``start``; no place, no such feature, or parameters outside it.
         """
         state = StateRow()
-        place(state, 0, self.a, feature_a, parameters_a)
-        place(state, 1, self.b, feature_b, parameters_b)
+        put(state, 0, self.a, place_a)
+        put(state, 1, self.b, place_b)
         settle = not isinstance(self.law, PaperLaw) if settle is None else settle
         return self._start(pose_a, pose_b, twist_a, twist_b, state.data, 1 if settle else 2)
 

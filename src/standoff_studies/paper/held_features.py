@@ -30,7 +30,7 @@ def held_distance(
     Both are kept: the witness points saturate at their ends.
     """
     law = Tracker(*bodies, law=PaperLaw(integrator="euler", switching="none"))
-    state = law.start_from(*poses, *place_a, *place_b, settle=False)
+    state = law.start_from(*poses, place_a, place_b, settle=False)
     still = Twist.zero()
     for _ in range(STEPS):
         state, answer = law.step(state, *poses, still, still)

@@ -106,8 +106,8 @@ def pose_b() -> Pose:
 def _answer(a: Body, b: Body, pose_a: Pose, pose_b: Pose) -> tuple[Proximity, PairSystem]:
     answer = so.distance(a, b, pose_a, pose_b)
     places = (
-        (answer.feature_a, answer.parameters_a),
-        (answer.feature_b, answer.parameters_b),
+        answer.place_a,
+        answer.place_b,
     )
     return answer, so.tracking.pair_system(a, b, pose_a, pose_b, *places)
 

@@ -112,7 +112,7 @@ def run(name: str, start: tuple[float, float] = WRONG_STARTS[0], gain: float | N
     tracker = so.Tracker(LENS, POINT, dt=STEP, law=so.PaperLaw(**options))
     pose, twist = motion(0.0)
     state = tracker.start_from(
-        REST, pose, ("face", 0), start, *POINT_PLACE, STILL, twist, settle=False
+        REST, pose, (("face", 0), start), POINT_PLACE, STILL, twist, settle=False
     )
     answers, gains, switches = [state.proximity], [state.gain], []
     for k in range(1, len(truth())):
@@ -151,7 +151,9 @@ def edge_at_rest() -> AtRest:
 
     def last(**options: Any) -> float:
         tracker = so.Tracker(LENS, POINT, dt=STEP, law=so.PaperLaw(gain=500.0, **options))
-        state = tracker.start_from(REST, pose, ("face", 0), (0.97, 0.6), *POINT_PLACE, settle=False)
+        state = tracker.start_from(
+            REST, pose, (("face", 0), (0.97, 0.6)), POINT_PLACE, settle=False
+        )
         for _ in range(500):
             state, answer = tracker.step(state, REST, pose, STILL, STILL)
         return answer.distance

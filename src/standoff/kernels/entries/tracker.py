@@ -13,18 +13,16 @@ from standoff.kernels.frame.restart import anywhere, anywhere_apart
 from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNT_SLOTS
 from standoff.kernels.state.arrays import (
     FINE,
-    LAW_PAPER,
     N_MOTION,
     N_OUT,
     NOT_KNOWN_APART,
-    O_LAW,
     POSE_A,
     POSE_B,
     TWIST_A,
     TWIST_B,
     refusal,
 )
-from standoff.kernels.state.options import read_options
+from standoff.kernels.state.options import names_paper_law, read_options
 from standoff.kernels.values import Pair, Work
 
 
@@ -169,13 +167,13 @@ def run_paper(pair, motions, has_twist, steps, options, state, outs, events):
 
 def step(pair, motion, has_twist, h, options, state, out, events):
     """One frame of the law that the options name: `step_predicted` or `step_paper`."""
-    one = step_paper if options[O_LAW] == LAW_PAPER else step_predicted
+    one = step_paper if names_paper_law(options) else step_predicted
     return one(pair, motion, has_twist, h, options, state, out, events)
 
 
 def run(pair, motions, has_twist, steps, options, state, outs, events):
     """Many frames of the law that the options name: `run_predicted` or `run_paper`."""
-    many = run_paper if options[O_LAW] == LAW_PAPER else run_predicted
+    many = run_paper if names_paper_law(options) else run_predicted
     return many(pair, motions, has_twist, steps, options, state, outs, events)
 
 

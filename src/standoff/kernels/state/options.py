@@ -66,6 +66,11 @@ def read_options(numbers):
     )
 
 
+def names_paper_law(numbers):
+    """Do these options name the paper's law?"""
+    return numbers[O_LAW] == LAW_PAPER
+
+
 @kernel
 def feedback_number(options, k):
     """Number k of those that the feedback needs."""

@@ -13,9 +13,10 @@ from scipy.ndimage import label
 
 import standoff as so
 from standoff.bodies import Body
-from standoff.control.basin import Basin, Place, basin
+from standoff.control.basin import Basin, basin
 from standoff.geometry.validation import Array
 from standoff.motion import Pose
+from standoff.tracking.places import PlaceLike
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement
 
@@ -52,7 +53,7 @@ def ellipsoids() -> tuple[Body, Body]:
     return so.shapes.ellipsoid(1.0, 0.7, 0.5), so.shapes.ellipsoid(0.4, 0.9, 0.6)
 
 
-def place_of(direction: Array) -> Place:
+def place_of(direction: Array) -> PlaceLike:
     """Where a full ellipsoid's atlas has the image of a unit vector: its most central chart."""
     k = int(np.abs(direction).argmax())
     # charts come in the order +z, -z, +x, -x, +y, -y

@@ -80,13 +80,13 @@ def _errors(steps: int, offset: Array, options: dict[str, Any]) -> Array:
         (best.feature_b, (r + offset[2], s + offset[3], chart_b)),
     )
     tracker = so.Tracker(*bodies(), dt=STEP, law=so.PaperLaw(**options))
-    state = tracker.start_from(*REST, *places[0], *places[1], settle=False)
+    state = tracker.start_from(*REST, *places, settle=False)
     rows = [so.tracking.pair_system(*bodies(), *REST, *places).Psi]
     for _ in range(steps):
         state, answer = tracker.step(state, *REST, STILL, STILL)
         now = (
-            (answer.feature_a, answer.parameters_a),
-            (answer.feature_b, answer.parameters_b),
+            answer.place_a,
+            answer.place_b,
         )
         rows.append(so.tracking.pair_system(*bodies(), *REST, *now).Psi)
     return np.array(rows)

@@ -106,10 +106,8 @@ def run(name: str) -> Run:
     state = tracker.start_from(
         home,
         pose(0),
-        best.feature_a,
-        np.array(best.parameters_a) + OFFSET[:2],
-        best.feature_b,
-        np.array(best.parameters_b) + OFFSET[2:],
+        (best.feature_a, np.array(best.parameters_a) + OFFSET[:2]),
+        (best.feature_b, np.array(best.parameters_b) + OFFSET[2:]),
         None,
         Twist(*DRIFT),
         settle=False,
@@ -134,7 +132,7 @@ def run(name: str) -> Run:
 
 def first_error(answer: so.Proximity, frame: int) -> float:
     """Psi_u of an answer."""
-    places = (answer.feature_a, answer.parameters_a), (answer.feature_b, answer.parameters_b)
+    places = answer.place_a, answer.place_b
     return float(so.tracking.pair_system(*bodies(), Pose.identity(), pose(frame), *places).Psi[0])
 
 

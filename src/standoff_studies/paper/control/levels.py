@@ -126,7 +126,7 @@ def watched(bodies: str) -> Watched:
     rows = []
     for q in np.vstack(chosen):
         on_a, on_b = places(made, q)
-        state = tracker.start_from(home, made.pose_b, *on_a, *on_b, settle=False)
+        state = tracker.start_from(home, made.pose_b, on_a, on_b, settle=False)
         values = [functions(made, q)]
         for _ in range(WATCHED_FRAMES):
             state, answer = tracker.step(state, home, made.pose_b, still, still)

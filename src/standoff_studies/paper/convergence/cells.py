@@ -127,7 +127,7 @@ def arrival_times(motion: str, law: PaperLaw, starts: int = STARTS) -> Array:
     poses, twists = (PATH_A.pose(0.0), path.pose(0.0)), (Twist.zero(), path.twist(0.0))
     for k in range(starts):
         faces, at = rng.integers(3, size=2).tolist(), rng.uniform(size=(2, 2))
-        places = ("face", faces[0]), at[0], ("face", faces[1]), at[1]
+        places = (("face", faces[0]), at[0]), (("face", faces[1]), at[1])
         state = tracker.start_from(*poses, *places, *twists, settle=False)
         off = np.flatnonzero(~(np.abs(distances(tracker, state, rows) - due) < ARRIVED))
         last = int(off[-1]) if len(off) else -1

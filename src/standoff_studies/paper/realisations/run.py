@@ -141,7 +141,7 @@ def trace(
     q = np.array(closest()) + miss
     start = Twist(told[0, :3], told[0, 3:])
     poses, twists = (PATH_A.pose(0.0), PATH_B.pose(0.0)), (PATH_A.twist(0.0), start)
-    state = tracker.start_from(*poses, FACE, q[:2], FACE, q[2:], *twists, settle=False)
+    state = tracker.start_from(*poses, (FACE, q[:2]), (FACE, q[2:]), *twists, settle=False)
     rows, believed = _follow(tracker, state, moved, told)
     left = (rows[:, [K.OUT_MODE, K.OUT_MODE + 2]] != FACE.index).any(axis=1)
     if left.any():

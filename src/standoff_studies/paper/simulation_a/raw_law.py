@@ -81,7 +81,7 @@ def try_all(starts: Array, gains: Array, frames: int) -> Trials:
 def follow(tracker: Tracker, start: Array, moving: Motion) -> Trial:
     """Run the law from one start (2,)."""
     poses, twists = (HOME, PATH.pose(0.0)), (Twist.zero(), PATH.twist(0.0))
-    state = tracker.start_from(*poses, FACE, start, VERTEX, (), *twists, settle=False)
+    state = tracker.start_from(*poses, (FACE, start), (VERTEX, ()), *twists, settle=False)
     buffer, now = tracker.buffer(state), systems()
     buffer.pose_b[9:] = moving.x[0]
     before = np.abs(now.psi(start, buffer.pose_a, buffer.pose_b))
@@ -118,7 +118,7 @@ def growth_of_small_errors(gain: float, start: tuple[float, float], frames: int)
     """What a step multiplies a small error by, measured with the point at rest."""
     tracker = raw_tracker(gain)
     pose = PATH.pose(0.0)
-    state = tracker.start_from(HOME, pose, FACE, start, VERTEX, (), settle=False)
+    state = tracker.start_from(HOME, pose, (FACE, start), (VERTEX, ()), settle=False)
     first = system_at(np.array(start), motion(np.zeros(1)), 0).Psi
     for _ in range(frames):
         state, answer = tracker.step(state, HOME, pose, Twist.zero(), Twist.zero())

@@ -185,7 +185,7 @@ def track(
         law=PaperLaw(integrator=integrator, gain=gain, feedforward=feedforward),
     )
     poses, twists = (HOME, PATH.pose(0.0)), (Twist.zero(), PATH.twist(0.0))
-    state = tracker.start_from(*poses, FACE, start, VERTEX, (), *twists, settle=False)
+    state = tracker.start_from(*poses, (FACE, start), (VERTEX, ()), *twists, settle=False)
     buffer = tracker.buffer(state)
     rows = np.empty((len(moving.x), K.N_OUT))
     rows[0] = state.proximity.row

@@ -139,7 +139,7 @@ class Printed:
             (Pose.identity(), self.path.pose(time)),
             (Twist.zero(), self.path.twist(time)),
         )
-        return law.start_from(*poses, feature, (parameter,), *POINT, *twists, settle=False)
+        return law.start_from(*poses, (feature, (parameter,)), POINT, *twists, settle=False)
 
     def run(self, start: tuple[float, ...]) -> PrintedRun:
         """Track the point all the way from one parameter for each curve."""

@@ -137,7 +137,7 @@ Place = tuple[int, float]
 def begin(law: Tracker, path: Path, place_a: Place, place_b: Place) -> TrackerState:
     """Return the state at parameters of two curves, whatever they are worth."""
     of_a, of_b = (("edge", place[0]) for place in (place_a, place_b))
-    places = of_a, place_a[1:], of_b, place_b[1:]
+    places = (of_a, place_a[1:]), (of_b, place_b[1:])
     twists = Twist.zero(), path.twist(0.0)
     return law.start_from(Pose.identity(), path.pose(0.0), *places, *twists, settle=False)
 

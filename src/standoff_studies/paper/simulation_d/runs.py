@@ -129,8 +129,8 @@ def begin(law: Tracker, face: int, parameters: tuple[float, float]) -> TrackerSt
     """Return the state at parameters of a face, whatever they are worth."""
     poses = Pose.identity(), HELIX.pose(0.0)
     twists = Twist.zero(), HELIX.twist(0.0)
-    place = ("face", face), parameters, ("vertex", 0), ()
-    return law.start_from(*poses, *place, *twists, settle=False)
+    places = (("face", face), parameters), (("vertex", 0), ())
+    return law.start_from(*poses, *places, *twists, settle=False)
 
 
 class Arrivals(NamedTuple):

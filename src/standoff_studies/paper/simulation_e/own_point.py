@@ -70,7 +70,7 @@ def _switches(
     tracker = Tracker(runs.a, runs.b, INSTANT, law=LAWS[switching])
     still = Twist.zero()
     (a, at_a), (b, at_b) = places
-    state = tracker.start_from(*poses, a, at_a, b, at_b, still, still, settle=False)
+    state = tracker.start_from(*poses, (a, at_a), (b, at_b), still, still, settle=False)
     _, answer = tracker.step(state, *poses, still, still)
     after: tuple[Feature, Feature] = (answer.feature_a, answer.feature_b)
     return after[own] != place[0]

@@ -108,7 +108,7 @@ def begin(law: Tracker, place_a: Place, place_b: Place) -> TrackerState:
     """Return the state at parameters of two faces, whatever they are worth."""
     pose_a, pose_b, twist_a, twist_b = _placed(0.0)
     of_a, of_b = ("face", place_a[0]), ("face", place_b[0])
-    places = of_a, place_a[1], of_b, place_b[1]
+    places = (of_a, place_a[1]), (of_b, place_b[1])
     return law.start_from(pose_a, pose_b, *places, twist_a, twist_b, settle=False)
 
 
