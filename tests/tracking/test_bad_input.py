@@ -313,5 +313,5 @@ def test_features_beside_their_parameters_are_told_to_come_as_places():
     old = {"feature_a": ("face", 0), "parameters_a": (0.1, 0.2), "feature_b": ("vertex", 0)}
     with pytest.raises(so.StandoffTypeError, match=r"write start_from\(pose_a, pose_b, \(feature"):
         start_from(HOME, AWAY, **old)
-    with pytest.raises(so.StandoffTypeError, match="or p.place_a"):
+    with pytest.raises(so.StandoffTypeError, match=r"or p\.place_a"):
         start_from(HOME, AWAY, so.Feature("face", 0), (0.1, 0.2), so.Feature("vertex", 0), ())
