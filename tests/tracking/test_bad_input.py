@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import standoff as so
+from standoff.errors import StandoffTypeError
 from standoff.geometry import ConicArc
 
 NAN, INF = np.nan, np.inf
@@ -311,7 +312,7 @@ def test_an_answers_places_begin_the_same_frame():
 def test_features_beside_their_parameters_are_told_to_come_as_places():
     start_from = so.Tracker(LENS, POINT).start_from
     old = {"feature_a": ("face", 0), "parameters_a": (0.1, 0.2), "feature_b": ("vertex", 0)}
-    with pytest.raises(so.StandoffTypeError, match=r"write start_from\(pose_a, pose_b, \(feature"):
+    with pytest.raises(StandoffTypeError, match=r"write start_from\(pose_a, pose_b, \(feature"):
         start_from(HOME, AWAY, **old)
-    with pytest.raises(so.StandoffTypeError, match=r"or p\.place_a"):
+    with pytest.raises(StandoffTypeError, match=r"or p\.place_a"):
         start_from(HOME, AWAY, so.Feature("face", 0), (0.1, 0.2), so.Feature("vertex", 0), ())
