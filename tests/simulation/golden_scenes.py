@@ -1,8 +1,8 @@
 """Scenes whose traces are stored, and the file that stores them.
 
 Run ``python tests/simulation/golden_scenes.py`` to write ``golden.npz`` anew: only where a change
-of the operator's answers is meant. Each scene is one that does not multiply roundoff by much, so that
-another machine's roundoff stays below 1e-12: bounces, slides and rolls, no tumbling.
+of the operator's answers is meant. Each scene is one that does not multiply roundoff by much, so
+that another machine's roundoff stays below 1e-12: bounces, slides and rolls, no tumbling.
 """
 
 from __future__ import annotations
