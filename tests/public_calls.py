@@ -260,10 +260,13 @@ SLIDING: dict[str, Any] = {
     "pairs": [(0, 1)],
     "drive": None,
 }
+COUPLER = simulation.VirtualCoupler(stiffness=1.0, damping=0.1, max_force=1.0, max_age=1.0)
 HEAVY = simulation.RigidBody.free(SPHERE, mass=1.0, pose=AWAY)
 
 SIMULATION: dict[str, dict[str, Any]] = {
     "DeviceLimits": {"max_force": 5.0, "max_torque": 0.1, "workspace": 0.2},
+    "DeviceReadings": {"readings": [None]},
+    "DeviceReadings.along": {"path": motion.Fixed(HOME), "count": 3, "period": 1e-3},
     "Disturbances": {"script": {3: "nan"}, "drop_out": 0.1, "malformed": 0.1, "seed": 1},
     "Encoder": {
         "position_step": 1e-5,
@@ -332,6 +335,8 @@ SIMULATION: dict[str, dict[str, Any]] = {
         "contact": simulation.HuntCrossley(stiffness=1e3),
         "pairs": [(0, 1)],
         "gravity": [0.0, 0.0, -9.81],
+        "coupler": COUPLER,
+        "tool": 1,
     },
     "GeneralisedSystem": SLIDING,
     "solve": {

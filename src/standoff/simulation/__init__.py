@@ -9,8 +9,10 @@ if TYPE_CHECKING:
     from standoff.simulation.adaptive import Solution, SystemEvent, solve
     from standoff.simulation.contact import HuntCrossley
     from standoff.simulation.coupler import VirtualCoupler
+    from standoff.simulation.coupler_run import CouplerRun
     from standoff.simulation.coupler_state import CouplerCounts, CouplerState
     from standoff.simulation.device import Device, DeviceLimits, DeviceReading, Fault
+    from standoff.simulation.device_readings import DeviceReadings
     from standoff.simulation.disturbances import Disturbances
     from standoff.simulation.encoder import Encoder
     from standoff.simulation.generalised_system import GeneralisedSystem
@@ -37,6 +39,7 @@ else:
             "standoff.simulation.adaptive": ("Solution", "SystemEvent", "solve"),
             "standoff.simulation.contact": ("HuntCrossley",),
             "standoff.simulation.coupler": ("VirtualCoupler",),
+            "standoff.simulation.coupler_run": ("CouplerRun",),
             "standoff.simulation.coupler_state": ("CouplerCounts", "CouplerState"),
             "standoff.simulation.device": (
                 "Device",
@@ -44,6 +47,7 @@ else:
                 "DeviceReading",
                 "Fault",
             ),
+            "standoff.simulation.device_readings": ("DeviceReadings",),
             "standoff.simulation.disturbances": ("Disturbances",),
             "standoff.simulation.encoder": ("Encoder",),
             "standoff.simulation.generalised_system": ("GeneralisedSystem",),
@@ -76,10 +80,12 @@ else:
 
 __all__ = [
     "CouplerCounts",
+    "CouplerRun",
     "CouplerState",
     "Device",
     "DeviceLimits",
     "DeviceReading",
+    "DeviceReadings",
     "Disturbances",
     "Encoder",
     "Energy",

@@ -6,30 +6,36 @@ import math
 from dataclasses import dataclass, fields
 from typing import Any, Final
 
+import numpy as np
+from numpy.typing import NDArray
+
 from standoff.errors import StandoffTypeError
+from standoff.kernels.dynamics import coupler_arrays as K
+from standoff.kernels.entries.coupler import couple_once
+from standoff.kernels.entries.preparing import prepare_coupler
 from standoff.motion import inputs
 from standoff.motion.pose import PoseLike
 from standoff.motion.twist import TwistLike
 from standoff.real_numbers import shown
-from standoff.simulation.arrivals import Arrival, arrived
-from standoff.simulation.coupler_state import NO_WRENCH, CouplerState
-from standoff.simulation.device import STILL, DeviceReading, Fault, Seen, read_motion
+from standoff.simulation.arrivals import motion_row, reading_row
+from standoff.simulation.coupler_state import (
+    NO_WRENCH,
+    CouplerState,
+    packed_state,
+    unpacked_state,
+)
+from standoff.simulation.device import DeviceReading, Fault, read_motion
 from standoff.simulation.passivity import Sampling, check_passive, non_negative
 from standoff.simulation.passivity_observer import PassivityController
-from standoff.simulation.six_axes import (
-    Vector,
-    combined,
-    difference,
-    dot,
-    limited,
-    rotation_error,
-)
 from standoff.simulation.wrench import Wrench
 
-LET_GO_ANGLE: Final = 3.0
-"""Radian between handle and tool, at which the coupler lets go. At π the shorter way round changes
-its side, and the torque would turn round. To cross what is left from one tick to the next, 0.28
-rad, a hand would have to turn at 280 rad/s at 1 kHz; it reaches 20."""
+Array = NDArray[np.float64]
+
+LET_GO_ANGLE: Final = K.LET_GO_ANGLE
+"""Radian between handle and tool, at which the coupler lets go."""
+
+LOST: Final = np.full(18, math.nan)
+"""In place of the pose and twist of a tool that has none."""
 
 SLOW: Final = 1.1
 """No unit. A tick longer by this factor than the period for which passivity was checked is
@@ -126,6 +132,7 @@ class VirtualCoupler:
                     self.sampling,
                     of="rotation",
                 )
+        prepare_coupler()
 
     def start(self) -> CouplerState:
         """Return the state before the first tick: not engaged.
@@ -149,9 +156,8 @@ class VirtualCoupler:
         _check_state(state)
         if state.engaged:
             return state
-        past = 1 if self.sampling is None else self.sampling.delay + 1
-        ramp = 1.0 if self.engage_time == 0.0 else 0.0
-        return CouplerState(engaged=True, ramp=ramp, counts=state.counts, held=(NO_WRENCH,) * past)
+        ramp, held = 1.0 if self.engage_time == 0.0 else 0.0, (NO_WRENCH,) * self.past
+        return CouplerState(engaged=True, ramp=ramp, counts=state.counts, held=held)
 
     def disengage(self, state: CouplerState) -> CouplerState:
         """Return the state that renders no wrench until it is engaged; this is no fault.
@@ -207,142 +213,43 @@ class VirtualCoupler:
         """
         _check_state(state)
         seconds = non_negative(dt, "dt", above_zero=True)
-        clock = None if now is None else inputs.number(now, "now")
-        slow = self.sampling is not None and seconds > SLOW * self.sampling.period
-        counts = state.counts._replace(
-            ticks=state.counts.ticks + 1,
-            engaged=state.counts.engaged + state.engaged,
-            slow=state.counts.slow + slow,
-        )
-        state = state._replace(counts=counts)
-        if not state.engaged:
-            return state, Wrench.zero(), Wrench.zero()
-        lag = 0.0 if self.sampling is None else self.sampling.velocity_time_constant
-        known = state.clock + seconds if clock is None else clock
-        handle = arrived(state, reading, known, self.max_age, lag)
+        clock = math.nan if now is None else inputs.number(now, "now")
         tool = read_motion(tool_pose, tool_twist)
-        if isinstance(handle, Fault):
-            state = _let_go(state, handle)
-        elif isinstance(tool, Fault):
-            state = _let_go(state, Fault.TOOL)
-        else:
-            state = self._coupled(self._accounted(state, handle, tool), seconds)
-        return state, state.wrench_on_device, state.wrench_on_tool
+        numbers = LOST if isinstance(tool, Fault) else motion_row(tool)
+        data = packed_state(state, self.past)
+        couple_once(self.packed, data, reading_row(reading), numbers, seconds, clock)
+        after = unpacked_state(data)
+        return after, after.wrench_on_device, after.wrench_on_tool
 
-    def _accounted(self, state: CouplerState, arrival: Arrival, tool: Seen) -> CouplerState:
-        """The state with a reading taken in, and the work of the last tick in its account."""
-        energy, counts, handle = state.energy, state.counts, arrival.handle
-        if state.handle is not None and state.tool is not None:
-            way = difference(handle.p, state.handle.p)
-            turn = rotation_error(handle.R, state.handle.R)
-            friction = 0.0
-            if self.sampling is not None and not arrival.repeated:
-                friction = self.sampling.device_damping * dot(way, way)
-                friction += self.sampling.device_rotational_damping * dot(turn, turn)
-                friction /= arrival.elapsed
-            held = state.held[0]
-            way_of_tool = difference(tool.p, state.tool.p)
-            turn_of_tool = rotation_error(tool.R, state.tool.R)
-            energy = energy.after(
-                -dot(held[:3], way) - dot(held[3:], turn),
-                -dot(state.on_tool[:3], way_of_tool) - dot(state.on_tool[3:], turn_of_tool),
-                friction,
+    @property
+    def past(self) -> int:
+        """Wrenches on the handle whose work is still to be seen: one, and one a tick of delay."""
+        return 1 if self.sampling is None else self.sampling.delay + 1
+
+    @property
+    def packed(self) -> Array:
+        """What the kernels read, laid out in ``standoff.kernels.dynamics.coupler_arrays``."""
+        sampling, controller = self.sampling, self.controller
+        row = np.zeros(K.N_COUPLER)
+        row[: K.Q_LAG] = (
+            *(self.stiffness, self.damping, self.rotational_stiffness, self.rotational_damping),
+            *(self.max_force, self.max_torque, self.max_force_rate, self.max_torque_rate),
+            *(self.engage_time, self.max_age),
+        )
+        row[K.Q_SLOW], row[K.Q_HELD] = math.inf, self.past
+        if sampling is not None:
+            row[K.Q_LAG] = sampling.velocity_time_constant
+            row[K.Q_SLOW] = SLOW * sampling.period
+            row[K.Q_FRICTION] = sampling.device_damping
+            row[K.Q_TURN_FRICTION] = sampling.device_rotational_damping
+        if controller is not None:
+            row[K.Q_CONTROLLED : K.Q_HELD] = (
+                *(1.0, controller.tolerance),
+                *(controller.max_damping, controller.max_rotational_damping),
+                *(controller.max_tool_damping, controller.max_tool_rotational_damping),
             )
-            counts = counts._replace(
-                repeated=counts.repeated + arrival.repeated,
-                skipped=counts.skipped + arrival.skipped,
-            )
-        return state._replace(
-            energy=energy,
-            counts=counts,
-            clock=arrival.clock,
-            time=arrival.time,
-            sequence=arrival.sequence,
-            handle=handle,
-            tool=tool,
-        )
-
-    def _coupled(self, state: CouplerState, dt: float) -> CouplerState:
-        """The state with the wrenches of a tick, from where handle and tool are in it."""
-        handle, tool = state.handle, state.tool
-        assert handle is not None
-        assert tool is not None
-        turn = rotation_error(handle.R, tool.R)
-        if (self.rotational_stiffness > 0.0 or self.rotational_damping > 0.0) and (
-            dot(turn, turn) > LET_GO_ANGLE**2
-        ):
-            return _let_go(state, Fault.HALF_TURN)
-        spring = _spring_and_damper(
-            state.ramp,
-            (self.stiffness, difference(handle.p, tool.p)),
-            (self.damping, difference(handle.v, tool.v)),
-        )
-        twisting = _spring_and_damper(
-            state.ramp,
-            (self.rotational_stiffness, turn),
-            (self.rotational_damping, difference(handle.omega, tool.omega)),
-        )
-        counts = state.counts
-        at_device: tuple[Vector, Vector] = (STILL, STILL)
-        at_tool: tuple[Vector, Vector] = (STILL, STILL)
-        if self.controller is not None:
-            missing = -state.energy.observed - self.controller.tolerance
-            if missing > 0.0:
-                moving = (handle.v, handle.omega), (tool.v, tool.omega)
-                at_device, at_tool, short = self.controller.damped(missing, *moving, dt)
-                counts = counts._replace(
-                    controlled=counts.controlled + 1, control_limits=counts.control_limits + short
-                )
-        on_device, limits = self._within_limits(
-            (
-                combined(-1.0, spring, 1.0, at_device[0]),
-                combined(-1.0, twisting, 1.0, at_device[1]),
-            ),
-            state.on_device,
-            dt,
-        )
-        on_tool, more = self._within_limits(
-            (combined(1.0, spring, 1.0, at_tool[0]), combined(1.0, twisting, 1.0, at_tool[1])),
-            state.on_tool,
-            dt,
-        )
-        force, rise, torque, torque_rise = (a or b for a, b in zip(limits, more, strict=True))
-        grown = 1.0 if self.engage_time == 0.0 else state.ramp + dt / self.engage_time
-        return state._replace(
-            ramp=min(1.0, grown),
-            on_device=on_device,
-            on_tool=on_tool,
-            held=(*state.held[1:], on_device),
-            counts=counts._replace(
-                force_limits=counts.force_limits + force,
-                force_rises=counts.force_rises + rise,
-                torque_limits=counts.torque_limits + torque,
-                torque_rises=counts.torque_rises + torque_rise,
-            ),
-        )
-
-    def _within_limits(
-        self, wanted: tuple[Vector, Vector], last: Vector, dt: float
-    ) -> tuple[Vector, tuple[bool, bool, bool, bool]]:
-        """Six numbers within the limits, and what limited: force, its rise, torque, its rise."""
-        force, *of_force = limited(wanted[0], last[:3], self.max_force, self.max_force_rate * dt)
-        torque, *of_torque = limited(
-            wanted[1], last[3:], self.max_torque, self.max_torque_rate * dt
-        )
-        return force + torque, (of_force[0], of_force[1], of_torque[0], of_torque[1])
-
-
-def _spring_and_damper(
-    share: float, spring: tuple[float, Vector], damper: tuple[float, Vector]
-) -> Vector:
-    """A share of stiffness times displacement plus damping times its rate."""
-    return combined(share * spring[0], spring[1], share * damper[0], damper[1])
-
-
-def _let_go(state: CouplerState, fault: Fault) -> CouplerState:
-    """The state of a coupler that a fault has disengaged; the account of energy stays readable."""
-    counts = state.counts._replace(faults=state.counts.faults + 1)
-    return CouplerState(fault=fault, counts=counts, energy=state.energy)
+        row.flags.writeable = False
+        return row
 
 
 def _check_state(state: Any) -> None:

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, Protocol, Self, runtime_checkable
 import numpy as np
 
 from standoff.errors import StandoffError
+from standoff.kernels.dynamics import coupler_arrays as K
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import Twist, TwistLike
 from standoff.simulation.passivity import non_negative
@@ -123,15 +124,15 @@ class Device(Protocol):
 class Fault(IntEnum):
     """Why a coupler let go."""
 
-    NONE = 0
-    MISSING = 1
-    LATE = 2
-    NON_FINITE = 3
-    MALFORMED = 4
-    OUT_OF_ORDER = 5
-    INVALID = 6
-    HALF_TURN = 7
-    TOOL = 8
+    NONE = K.NO_FAULT
+    MISSING = K.MISSING
+    LATE = K.LATE
+    NON_FINITE = K.NON_FINITE
+    MALFORMED = K.MALFORMED
+    OUT_OF_ORDER = K.OUT_OF_ORDER
+    INVALID = K.INVALID
+    HALF_TURN = K.HALF_TURN
+    TOOL = K.TOOL
 
     @property
     def advice(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +18,23 @@ from standoff.motion import inputs
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.simulation import stability
+from standoff.simulation.coupled_tool import check_tool
+from standoff.simulation.coupler_state import packed_state
+from standoff.simulation.device import Device, DeviceReading
+from standoff.simulation.device_loop import (
+    blocks,
+    check_count,
+    check_device,
+    given_readings,
+    read,
+    write,
+)
+from standoff.simulation.device_readings import DeviceReadings
 from standoff.simulation.packed_system import body_start, driven_row, driven_table, pack_system
 from standoff.simulation.rigid_body import DRIVEN
 from standoff.simulation.system import System
 from standoff.simulation.system_run import SystemRun
-from standoff.simulation.system_state import SystemState
+from standoff.simulation.system_state import SystemState, coupler_at
 from standoff.simulation.tolerances import TOUCHING_START
 from standoff.tracking.choices import positive_number, whole_number, yes_or_no
 from standoff.tracking.law_options import Law
@@ -39,6 +51,15 @@ MOST_NUMBERS = 200_000_000
 
 BLOCK = 20_000
 """Ticks of one compiled loop, a tenth of a second or so: progress is told between them."""
+
+
+class Going(NamedTuple):
+    """A run under way: the state, changed in place, when it began, and ticks a record."""
+
+    data: Array
+    start: float
+    every: int
+
 
 Progress = Callable[[int, int], None]
 """Told, as a run goes on, how many ticks are done, and of how many."""
@@ -68,7 +89,8 @@ class Operator(KeepsReadOnly):
         No system.
     StandoffError
         A step that is not positive; an unknown method; a gain beyond the method's limit; a contact
-        too stiff for the step, with the largest stable stiffness; a slip speed too small for it.
+        or a coupler too stiff for the step, with the largest stable stiffness; a slip speed too
+        small for it; a step that does not fit into the period of a coupler's device.
     """
 
     def __init__(
@@ -89,6 +111,7 @@ class Operator(KeepsReadOnly):
         inputs.word(tracker, "tracker", SIDES)
         self.method, self.tracker = method, tracker
         self.law = self._law(gain)
+        check_tool(system, self.dt, method)
         for pair in range(len(system.pairs)):
             self._check_stiffness(pair)
             self._check_slip(pair)
@@ -99,6 +122,7 @@ class Operator(KeepsReadOnly):
         number = METHODS.index(self.method)
         inside = self.tracker == "inside"
         self.packed = pack_system(self.system, self.dt, number, inside, self.options)
+        self._ticks_a_reading = int(self.packed[0][K.I_READING])
         prepare_simulation()
 
     def __setstate__(self, stored: Any) -> None:
@@ -178,7 +202,9 @@ class Operator(KeepsReadOnly):
         ]
         still = SystemState(self.system, np.concatenate([header, *rows]))
         pairs = [self._pair_start(pair, still, allowed) for pair in range(len(self.system.pairs))]
-        data = np.concatenate([still.data, *pairs])
+        coupler = self.system.coupler
+        ends = [] if coupler is None else [packed_state(coupler.start(), coupler.past)]
+        data = np.concatenate([still.data, *pairs, *ends])
         if pairs:
             depths = [-row[T.N_STATE + T.DISTANCE] for row in pairs]
             data[K.S_DEEPEST] = max(0.0, *depths)
@@ -207,6 +233,7 @@ class Operator(KeepsReadOnly):
         ticks: int,
         every: int = 1,
         *,
+        device: Device | DeviceReadings | None = None,
         progress: Progress | None = None,
     ) -> SystemRun:
         """Advance a state by many ticks, in compiled loops.
@@ -218,18 +245,57 @@ class Operator(KeepsReadOnly):
         ticks : int
             How many steps.
         every : int
-            Record every so many of them; ``ticks`` is a multiple of it.
+            Record every so many of them; ``ticks`` is a multiple of it, and it is one of the ticks
+            from reading to reading, where a coupler has a device.
+        device : Device or DeviceReadings, optional
+            What moves the handle of the system's coupler. A device is open; it is read, and its
+            wrench written, once a period: that many ticks are one compiled call. Readings that are
+            given run without Python. Without either an engaged coupler lets go.
         progress : callable, optional
             Called now and then with the ticks done and the ticks in all.
 
         Raises
         ------
         StandoffTypeError
-            No state.
+            No state; no device.
         StandoffError
-            The motion left all bounds, at a tick that is told: a step too long for it.
+            The motion left all bounds, at a tick that is told: a step too long for it; too few
+            readings; a device without a coupler.
         """
         self._check_state(state)
+        ticks, every = self._counts(ticks, every)
+        check_device(device, self.system.coupler is not None)
+        check_count(device, ticks // self._ticks_a_reading)
+        count = ticks // every + 1
+        width = entries.ACCOUNT_HEADER + K.N_TOUCH * len(self.system.pairs)
+        width += self.system.coupler is not None
+        if count * (len(state.data) + width) > MOST_NUMBERS:
+            raise StandoffError(
+                f"{count} records of {len(state.data) + width} numbers are more than "
+                f"{MOST_NUMBERS}: record every so many ticks (every=...), or run in parts.",
+                "ticks",
+                ticks,
+            )
+        states, accounts = np.empty((count, len(state.data))), np.empty((count, width))
+        going = Going(state.data.copy(), state.time, every)
+        size = 1 if isinstance(device, Device) else max(1, BLOCK // every)
+        for first, last in blocks(count - 1, size):
+            rows = slice(first, last + 1)
+            records = (states[rows], accounts[rows])
+            if isinstance(device, Device):
+                self._with_device(going, first, device, records)
+            else:
+                a_record = every // self._ticks_a_reading
+                read = given_readings(device, first * a_record, (last - first) * a_record)
+                self._advance(going, first * every, read, records)
+            if progress is not None:
+                progress(last * every, ticks)
+        for array in (states, accounts):
+            array.flags.writeable = False
+        return SystemRun(self.system, states, accounts)
+
+    def _counts(self, ticks: Any, every: Any) -> tuple[int, int]:
+        """Ticks and ticks a record, in whole records of whole readings."""
         ticks, every = whole_number(ticks, "ticks"), whole_number(every, "every")
         if ticks % every:
             raise StandoffError(
@@ -238,47 +304,65 @@ class Operator(KeepsReadOnly):
                 "every",
                 every,
             )
-        count = ticks // every + 1
-        width = entries.ACCOUNT_HEADER + K.N_TOUCH * len(self.system.pairs)
-        if count * (len(state.data) + width) > MOST_NUMBERS:
+        if every % self._ticks_a_reading:
             raise StandoffError(
-                f"{count} records of {len(state.data) + width} numbers are more than "
-                f"{MOST_NUMBERS}: record every so many ticks (every=...), or run in parts.",
-                "ticks",
-                ticks,
+                f"every = {every} is no multiple of {self._ticks_a_reading}, the ticks from one "
+                "reading of the device to the next: records are made where readings come.",
+                "every",
+                every,
             )
-        data = state.data.copy()
-        states, accounts = np.empty((count, len(data))), np.empty((count, width))
-        block = max(1, BLOCK // every)
-        for first in range(0, count - 1, block):
-            last = min(first + block, count - 1)
-            rows = slice(first, last + 1)
-            self._advance(data, state.time, first * every, every, (states[rows], accounts[rows]))
-            if progress is not None:
-                progress(last * every, ticks)
-        for array in (states, accounts):
-            array.flags.writeable = False
-        return SystemRun(self.system, states, accounts)
+        return ticks, every
+
+    def _with_device(
+        self, going: Going, record: int, device: Device, records: tuple[Array, Array]
+    ) -> None:
+        """The ticks from one record to the next, reading by reading."""
+        ticks, at = self._ticks_a_reading, coupler_at(self.system)
+        states = np.empty((2, len(going.data))), np.empty((2, records[1].shape[1]))
+        short = going._replace(every=ticks)
+        for reading in range(going.every // ticks):
+            done = record * going.every + reading * ticks
+            self._advance(short, done, read(device), states)
+            write(device, going.data[at:])
+            if record == 0 and reading == 0:
+                records[0][0], records[1][0] = states[0][0], states[1][0]
+        records[0][1], records[1][1] = states[0][1], states[1][1]
 
     def _advance(
-        self, data: Array, start: float, done: int, every: int, records: tuple[Array, Array]
+        self, going: Going, done: int, readings: Array, records: tuple[Array, Array]
     ) -> None:
-        """One compiled loop: `data` is changed in place, the records are written."""
+        """One compiled loop: the data are changed in place, the records are written."""
+        data, every = going.data, going.every
         ticks = every * (len(records[0]) - 1)
         # counted from the start of the run, so that blocks add no rounding
-        data[K.S_TIME] = start + done * self.dt
+        data[K.S_TIME] = going.start + done * self.dt
         table = driven_table(self.system, float(data[K.S_TIME]), self.dt, ticks)
-        tick, why = entries.run_system(self.packed, data, table, every, records)
+        tick, why = entries.run_system(self.packed, data, (table, readings), every, records)
         if why != T.FINE:
             at = done + tick + 1
             raise StandoffError(
-                f"After tick {at} ({start + at * self.dt:g} s) a body's motion was no longer "
+                f"After tick {at} ({going.start + at * self.dt:g} s) a body's motion was no longer "
                 "finite: take a shorter step or less stiffness."
             )
 
-    def step(self, state: SystemState) -> SystemState:
-        """Advance a state by one tick."""
-        return self.run(state, 1).final
+    def step(self, state: SystemState, reading: DeviceReading | None = None) -> SystemState:
+        """Advance a state by one tick; with a coupler, by those of one reading of its device.
+
+        Parameters
+        ----------
+        state : SystemState
+        reading : DeviceReading, optional
+            Of the coupler's device; None where nothing came, and an engaged coupler lets go. The
+            wrench to be held on the handle is `state.coupler.wrench_on_device` of the new state.
+
+        Raises
+        ------
+        StandoffTypeError, StandoffError
+            As `run`.
+        """
+        given = None if reading is None else DeviceReadings([reading])
+        ticks = self._ticks_a_reading
+        return self.run(state, ticks, ticks, device=given).final
 
     def _check_state(self, state: Any) -> None:
         if not isinstance(state, SystemState):

@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
+from standoff.recording.tolerances import WHOLE_STEPS
 from standoff.simulation.flat_parts import pack_flat_parts
 from standoff.simulation.rigid_body import DRIVEN, FREE, RigidBody
 from standoff.simulation.system import System
@@ -18,7 +20,8 @@ KINDS = {"free": K.FREE, "fixed": K.FIXED, "driven": K.DRIVEN}
 
 def pack_system(system: System, dt: float, method: int, inside: bool, options: Array) -> Any:
     """(layout, numbers, ints, reals, options), all read-only."""
-    layout = [len(system.bodies), len(system.pairs), method, int(inside)]
+    tool = -1 if system.tool is None else system.tool
+    layout = [len(system.bodies), len(system.pairs), method, int(inside), tool, 0, 1]
     numbers = [*system.gravity, dt]
     ints = [body.body.ints for body in system.bodies]
     reals = [body.body.reals for body in system.bodies]
@@ -41,9 +44,13 @@ def pack_system(system: System, dt: float, method: int, inside: bool, options: A
     for pair, contact in zip(system.pairs, system.contacts, strict=True):
         layout += pair
         numbers += [contact.stiffness, contact.damping, contact.friction, contact.slip_speed]
+    numbers += flat_numbers
+    if system.coupler is not None:
+        layout[K.I_COUPLER], layout[K.I_READING] = len(numbers), ticks_a_reading(system, dt)
+        numbers += system.coupler.packed.tolist()
     packed = (
         np.array(layout + flat_rows, dtype=np.int64),
-        np.array(numbers + flat_numbers),
+        np.array(numbers),
         np.concatenate(ints),
         np.concatenate(reals),
         options,
@@ -51,6 +58,28 @@ def pack_system(system: System, dt: float, method: int, inside: bool, options: A
     for array in packed:
         array.flags.writeable = False
     return packed
+
+
+def ticks_a_reading(system: System, dt: float) -> int:
+    """Ticks from a reading of a coupler's device to the next; 1 where nothing is known of it.
+
+    Raises
+    ------
+    StandoffError
+        The device's period is no whole number of steps.
+    """
+    if system.coupler is None or system.coupler.sampling is None:
+        return 1
+    period = system.coupler.sampling.period
+    ticks = round(period / dt)
+    if ticks < 1 or abs(period / dt - ticks) > WHOLE_STEPS * ticks:
+        raise StandoffError(
+            f"dt = {dt:g} does not fit into the device's period of {period:g} a whole number of "
+            "times: take a step that does, the period itself or a part of it.",
+            "dt",
+            dt,
+        )
+    return ticks
 
 
 def _mass_row(body: RigidBody) -> list[float]:

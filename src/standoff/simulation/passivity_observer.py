@@ -11,7 +11,6 @@ from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 from standoff.simulation.passivity import non_negative
-from standoff.simulation.six_axes import Vector, combined, dot
 
 
 class PortEnergy(NamedTuple):
@@ -40,11 +39,6 @@ class PortEnergy(NamedTuple):
     def observed(self) -> float:
         """What went in and did not come out again, stored or dissipated [J]."""
         return self.device + self.tool + self.friction
-
-    def after(self, device: float, tool: float, friction: float) -> PortEnergy:
-        """Return the account with what went in during one more tick."""
-        into = (self.device + device, self.tool + tool, self.friction + friction)
-        return PortEnergy(*into, min(self.least, into[0] + into[1] + into[2]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,43 +78,3 @@ class PassivityController:
         for field in fields(self):
             value = non_negative(getattr(self, field.name), field.name)
             object.__setattr__(self, field.name, value)
-
-    def damped(
-        self, missing: float, handle: tuple[Vector, Vector], tool: tuple[Vector, Vector], dt: float
-    ) -> tuple[tuple[Vector, Vector], tuple[Vector, Vector], bool]:
-        """Return the forces and torques that dissipate what is missing; is it too much for them?
-
-        Parameters
-        ----------
-        missing : float
-            Energy to be dissipated within the tick [J].
-        handle, tool : pairs of three floats each
-            (v, ω) at the two ports.
-        dt : float
-            The tick [s].
-
-        Returns
-        -------
-        at_handle, at_tool : pairs of three floats each
-            Force and torque.
-        short : bool
-            The limits do not allow as much.
-        """
-        linear, turning = self.max_damping, self.max_rotational_damping
-        at_handle, missing = _damped(missing, handle, (linear, turning), dt)
-        linear, turning = self.max_tool_damping, self.max_tool_rotational_damping
-        at_tool, missing = _damped(missing, tool, (linear, turning), dt)
-        return at_handle, at_tool, missing > 0.0
-
-
-def _damped(
-    missing: float, moving: tuple[Vector, Vector], most: tuple[float, float], dt: float
-) -> tuple[tuple[Vector, Vector], float]:
-    """Force and torque at one port, and what is missing after them."""
-    (v, omega), (linear, turning) = moving, most
-    able = (linear * dot(v, v) + turning * dot(omega, omega)) * dt
-    share = 0.0 if able == 0.0 else min(1.0, missing / able)
-    return (
-        (combined(-share * linear, v, 0.0, v), combined(-share * turning, omega, 0.0, omega)),
-        0.0 if missing <= able else missing - able,
-    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
@@ -39,8 +40,14 @@ def is_stable(method: str, stiffness: float, damping: float, dt: float) -> bool:
     GROWTH over a half period?
     """
     radius = float(np.abs(np.linalg.eigvals(propagation(method, stiffness, damping, dt))).max())
+    return _keeps(radius, stiffness, dt)
+
+
+def _keeps(radius: float, stiffness: float, dt: float) -> bool:
     if radius <= 1.0 + STABLE_ROUNDING:
         return True
+    if stiffness == 0.0:
+        return False
     steps = math.pi / (math.sqrt(stiffness) * dt)
     return 2.0 * steps * math.log(radius) <= math.log1p(GROWTH)
 
@@ -61,7 +68,44 @@ def largest_stable_stiffness(
         return is_stable(method, give * slope, give * drag, dt)
 
     # far beyond the limit of any method: a spring whose period is a tenth of the step
-    high = (20.0 * math.pi / dt) ** 2 / (1.5 * give * math.sqrt(depth))
+    return _largest(stable, (20.0 * math.pi / dt) ** 2 / (1.5 * give * math.sqrt(depth)))
+
+
+def largest_coupled_stiffness(damping: float, method: str, dt: float, give: float) -> float:
+    """The largest stiffness [force/length, or torque/rad] with which a coupler that is held over a
+    step lets its tool be followed; 0 where its damping alone is too much.
+
+    Parameters
+    ----------
+    damping : float
+        [force time/length], or of a rotation.
+    give : float
+        The inverse of the mass or inertia that it moves.
+    """
+
+    def stable(k: float) -> bool:
+        return is_stable_held(method, give * k, give * damping, dt)
+
+    found = _largest(stable, (20.0 * math.pi / dt) ** 2 / give)
+    return found if stable(found) else 0.0
+
+
+def is_stable_held(method: str, stiffness: float, damping: float, dt: float) -> bool:
+    """Does a spring and damper by mass [1/s², 1/s] keep its energy, but for GROWTH over a half
+    period, whose force is that of a step's start, held over it?
+    """
+    if stiffness == 0.0 and damping == 0.0:
+        return True
+    push = np.array([[-stiffness, -damping]])
+    v = np.array([[0.0, 1.0]]) + dt * push
+    way = {"semi-implicit": v, "euler": np.array([[0.0, 1.0]])}
+    mean = way.get(method, v - 0.5 * dt * push)
+    made = np.vstack([np.array([[1.0, 0.0]]) + dt * mean, v])
+    return _keeps(float(np.abs(np.linalg.eigvals(made)).max()), stiffness, dt)
+
+
+def _largest(stable: Callable[[float], bool], high: float) -> float:
+    """The largest stable stiffness below one that is not."""
     low = high
     while not stable(low) and low > LEAST_STABLE * high:
         low *= 0.1

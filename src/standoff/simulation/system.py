@@ -15,7 +15,9 @@ from standoff.kernels.body import layout as L
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.simulation.contact import HuntCrossley
+from standoff.simulation.coupler import VirtualCoupler
 from standoff.simulation.flat_parts import FlatParts, flat_parts
+from standoff.simulation.passivity import whole_number
 from standoff.simulation.rigid_body import FREE, RigidBody
 from standoff.tracking.inputs import check_pair
 
@@ -40,6 +42,10 @@ class System(KeepsReadOnly):
         given.
     gravity : (3,) array_like
         Acceleration [length/time²], world axes.
+    coupler : VirtualCoupler, optional
+        Joins the handle of a device to one of the bodies.
+    tool : int, optional
+        The number of that body, a free one.
 
     Attributes
     ----------
@@ -48,6 +54,8 @@ class System(KeepsReadOnly):
     contacts : tuple of HuntCrossley
         One for each pair.
     gravity : (3,) array
+    coupler : VirtualCoupler or None
+    tool : int or None
 
     Raises
     ------
@@ -55,7 +63,7 @@ class System(KeepsReadOnly):
         Something that is no RigidBody or no HuntCrossley.
     StandoffError
         No body that is free; a pair that does not exist, is given twice, or cannot move; two
-        half-spaces.
+        half-spaces; a coupler without its tool, or a tool that is not free.
     """
 
     bodies: tuple[RigidBody, ...]
@@ -63,6 +71,8 @@ class System(KeepsReadOnly):
     contacts: tuple[HuntCrossley, ...]
     gravity: Array
     flats: tuple[FlatParts, ...]
+    coupler: VirtualCoupler | None
+    tool: int | None
 
     def __init__(
         self,
@@ -70,6 +80,8 @@ class System(KeepsReadOnly):
         contact: HuntCrossley | Sequence[HuntCrossley],
         pairs: Sequence[tuple[int, int]] | None = None,
         gravity: Any = EARTH,
+        coupler: VirtualCoupler | None = None,
+        tool: int | None = None,
     ) -> None:
         found = _listed(bodies, "bodies", RigidBody)
         object.__setattr__(self, "bodies", found)
@@ -95,6 +107,8 @@ class System(KeepsReadOnly):
         object.__setattr__(self, "contacts", contacts)
         object.__setattr__(self, "gravity", vector3(gravity, "gravity"))
         object.__setattr__(self, "flats", tuple(flat_parts(b.body) for b in found))
+        object.__setattr__(self, "tool", _tool(coupler, tool, found))
+        object.__setattr__(self, "coupler", coupler)
 
     def give(self, pair: int) -> float:
         """The inverse of the least mass [1/mass] that a push between a pair's bodies moves: at the
@@ -130,7 +144,8 @@ class System(KeepsReadOnly):
         return max(field * m.mass for m in masses if m is not None)
 
     def __repr__(self) -> str:
-        return f"<System of {len(self.bodies)} bodies, {len(self.pairs)} pairs>"
+        coupled = "" if self.tool is None else f", body {self.tool} coupled to a device"
+        return f"<System of {len(self.bodies)} bodies, {len(self.pairs)} pairs{coupled}>"
 
 
 def farthest(body: RigidBody) -> float:
@@ -142,6 +157,31 @@ def farthest(body: RigidBody) -> float:
     half = reals[L.BOX_HALF : L.BOX_HALF + 3]
     corner = np.abs(middle - mass.centre) + half
     return float(np.linalg.norm(corner)) + body.body.radius
+
+
+def _tool(coupler: Any, tool: Any, bodies: tuple[RigidBody, ...]) -> int | None:
+    """The number of the body that a coupler joins to a device; None without a coupler."""
+    if coupler is not None and not isinstance(coupler, VirtualCoupler):
+        raise StandoffTypeError(
+            f"coupler is {shown(coupler)}: give a VirtualCoupler, or None.", "coupler", coupler
+        )
+    if coupler is None and tool is None:
+        return None
+    if coupler is None or tool is None:
+        raise StandoffError(
+            "A coupler goes with the number of the body that it moves: give coupler=... and "
+            "tool=..., or neither.",
+            "tool",
+            tool,
+        )
+    free = [k for k, body in enumerate(bodies) if body.kind == FREE]
+    if not whole_number(tool) or tool not in free:
+        raise StandoffError(
+            f"tool is {shown(tool)}: give the number of a free body; here those are {free}.",
+            "tool",
+            tool,
+        )
+    return int(tool)
 
 
 def _listed(given: Any, name: str, kind: type) -> tuple[Any, ...]:

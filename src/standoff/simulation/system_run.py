@@ -11,8 +11,10 @@ from standoff.kernels.dynamics import arrays as K
 from standoff.kernels.entries import simulation as E
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation import system_state as S
+from standoff.simulation.coupler_run import CouplerRun, coupler_run
 from standoff.simulation.system import System
 from standoff.simulation.system_state import Energy, SystemState
+from standoff.tracking.rows import AnswerRows
 
 Array = NDArray[np.float64]
 
@@ -80,6 +82,10 @@ class SystemRun(KeepsReadOnly):
         """Points on A, on B, and normals from A to B, each (n, pairs, 3), world."""
         return S.witness_points(self.system, self.states)
 
+    def answers(self, pair: int) -> AnswerRows:
+        """Return the tracker's answers of a pair by name, n rows: features, parameters, bounds."""
+        return AnswerRows(S.answers(self.system, self.states)[:, pair])
+
     @property
     def forces(self) -> Array:
         """(n, pairs, 3) forces of the contacts on the second body of each pair, world."""
@@ -102,6 +108,13 @@ class SystemRun(KeepsReadOnly):
         )
 
     @property
+    def coupler(self) -> CouplerRun | None:
+        """What the coupler did; None where the system has none."""
+        if self.system.coupler is None:
+            return None
+        return coupler_run(self.states[:, S.coupler_at(self.system) :], self.accounts[:, -1])
+
+    @property
     def deepest(self) -> float:
         """The greatest depth of any pair since the start, length; 0 where none touched."""
         return float(self.states[-1, K.S_DEEPEST])
@@ -113,7 +126,8 @@ class SystemRun(KeepsReadOnly):
 
     def _touches(self) -> Array:
         shape = (len(self.accounts), len(self.system.pairs), K.N_TOUCH)
-        return self.accounts[:, E.ACCOUNT_HEADER :].reshape(shape)
+        pairs = slice(E.ACCOUNT_HEADER, E.ACCOUNT_HEADER + K.N_TOUCH * len(self.system.pairs))
+        return self.accounts[:, pairs].reshape(shape)
 
     def __repr__(self) -> str:
         return (

@@ -8,10 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
 from standoff.kernels.state import arrays as T
 from standoff.motion import Pose, Twist
 from standoff.read_only import KeepsReadOnly
+from standoff.simulation.coupler import VirtualCoupler
+from standoff.simulation.coupler_state import CouplerState, packed_state, unpacked_state
 from standoff.simulation.rigid_body import FREE
 from standoff.simulation.system import System
 
@@ -32,7 +35,7 @@ class Energy(NamedTuple):
     dissipated : float or array
         Lost in the contacts since the start, by damping and friction.
     supplied : float or array
-        Given by driven bodies since the start.
+        Given by driven bodies and by a coupler's wrench on its tool since the start.
     """
 
     kinetic: Any
@@ -85,8 +88,56 @@ class SystemState(KeepsReadOnly):
         """Return the signed distance of a pair."""
         return float(distances(self.system, self.data[None])[0, pair])
 
+    @property
+    def coupler(self) -> CouplerState | None:
+        """The coupler's state; None where the system has none."""
+        if self.system.coupler is None:
+            return None
+        return unpacked_state(self.data[coupler_at(self.system) :])
+
+    def engage(self) -> SystemState:
+        """Return the same state with its coupler engaged, its wrench growing from zero.
+
+        Raises
+        ------
+        StandoffError
+            The system has no coupler.
+        """
+        own, state = self._coupled()
+        return self._with(own, own.engage(state))
+
+    def disengage(self) -> SystemState:
+        """Return the same state with its coupler at rest until it is engaged again.
+
+        Raises
+        ------
+        StandoffError
+            The system has no coupler.
+        """
+        own, state = self._coupled()
+        return self._with(own, own.disengage(state))
+
+    def _coupled(self) -> tuple[VirtualCoupler, CouplerState]:
+        own, state = self.system.coupler, self.coupler
+        if own is None or state is None:
+            raise StandoffError(
+                "The system has no coupler: give one with System(..., coupler=..., tool=...)."
+            )
+        return own, state
+
+    def _with(self, own: VirtualCoupler, coupler: CouplerState) -> SystemState:
+        kept = self.data[: coupler_at(self.system)]
+        data = np.concatenate([kept, packed_state(coupler, own.past)])
+        data.flags.writeable = False
+        return SystemState(self.system, data)
+
     def __repr__(self) -> str:
         return f"<SystemState at {self.time:g} s>"
+
+
+def coupler_at(system: System) -> int:
+    """Where a coupler's state begins in a row of states: behind all bodies and pairs."""
+    return K.STATE_HEADER + K.N_BODY * len(system.bodies) + K.N_PAIR * len(system.pairs)
 
 
 def _row(body: int) -> int:
@@ -129,21 +180,21 @@ def momenta(body: int, rows: Array) -> Array:
     return _part(body, rows, K.X_SPIN)
 
 
-def _answers(system: System, rows: Array) -> Array:
+def answers(system: System, rows: Array) -> Array:
     """(n, pairs, N_OUT) answers of the trackers."""
     at = K.STATE_HEADER + K.N_BODY * len(system.bodies)
-    both = rows[:, at:].reshape(len(rows), len(system.pairs), K.N_PAIR)
+    both = rows[:, at : coupler_at(system)].reshape(len(rows), len(system.pairs), K.N_PAIR)
     return both[:, :, T.N_STATE :]
 
 
 def distances(system: System, rows: Array) -> Array:
     """(n, pairs) signed distances, of rows of states."""
-    return _answers(system, rows)[:, :, T.DISTANCE]
+    return answers(system, rows)[:, :, T.DISTANCE]
 
 
 def witness_points(system: System, rows: Array) -> tuple[Array, Array, Array]:
     """Points on A, on B and normals, (n, pairs, 3) each, world, of rows of states."""
-    out = _answers(system, rows)
+    out = answers(system, rows)
     return (
         out[:, :, T.POINT_A : T.POINT_A + 3],
         out[:, :, T.POINT_B : T.POINT_B + 3],

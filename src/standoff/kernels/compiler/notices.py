@@ -32,6 +32,7 @@ WORK = {
     "paper": Work("frames of the paper's law", 8, 25),
     "paper runs": Work("runs of the paper's law", 1, 2),
     "simulation": Work("simulations of bodies", 12, 45),
+    "coupler": Work("the virtual coupler", 2, 3),
     "study": Work("the paper's studies", 2, 3),
 }
 

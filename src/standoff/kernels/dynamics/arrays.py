@@ -16,16 +16,18 @@ from standoff.kernels.state.arrays import N_OUT, N_STATE
 # Kinds of bodies.
 FREE, FIXED, DRIVEN = range(3)
 
-# Integers of a system: header, a row a body, a row a pair, then the flat parts of the bodies.
-I_BODIES, I_PAIRS, I_METHOD, I_INSIDE = range(4)
-INT_HEADER = 4
+# Integers of a system: header, a row a body, a row a pair, then the flat parts of the bodies. Of a
+# coupler: the number of the tool, -1 without one; where its numbers stand; ticks a reading.
+I_BODIES, I_PAIRS, I_METHOD, I_INSIDE, I_TOOL, I_COUPLER, I_READING = range(7)
+INT_HEADER = 7
 # A body: its kind, where its packed arrays begin among all bodies', its column in the table of
 # driven motions, and where its flat parts begin in these integers.
 B_KIND, B_INTS, B_REALS, B_DRIVEN, B_FLATS = range(5)
 INT_BODY = 5
 INT_PAIR = 2  # the numbers of its two bodies
 
-# Numbers of a system: gravity (3), the step, a row a body, a row a pair, then the flat parts.
+# Numbers of a system: gravity (3), the step, a row a body, a row a pair, the flat parts, then those
+# of a coupler (``coupler_arrays``).
 GRAVITY, STEP = 0, 3
 REAL_HEADER = 4
 B_MASS, B_CENTRE, B_INERTIA, B_INVERSE = 0, 1, 4, 13  # centre and inertia in the body's axes
@@ -33,8 +35,9 @@ REAL_BODY = 22
 P_STIFFNESS, P_DAMPING, P_FRICTION, P_SLIP = range(4)
 REAL_PAIR = 4
 
-# The state: time, energy lost in contacts, energy that driven bodies gave, the greatest depth so
-# far, ticks with a pair that was not certified; a row a body; a row a pair.
+# The state: time, energy lost in contacts, energy that driven bodies and a coupler gave, the
+# greatest depth so far, ticks with a pair that was not certified; a row a body; a row a pair; a
+# coupler's own (``coupler_arrays``).
 S_TIME, S_LOST, S_GIVEN, S_DEEPEST, S_UNCERTIFIED = range(5)
 STATE_HEADER = 8
 X_ROTATION, X_CENTRE, X_VELOCITY, X_SPIN = 0, 9, 12, 15
@@ -67,6 +70,7 @@ class System(NamedTuple):
     ints: Any  # array: of all bodies, one behind the other
     reals: Any  # array
     options: Any  # of the tracker, as `Options`
+    coupler: Any  # pointer: the numbers of a coupler (``coupler_arrays``), where there is one
 
 
 class Scratch(NamedTuple):
@@ -144,3 +148,9 @@ def pair_rates(system, pair):
 @kernel
 def n_rates(system):
     return pair_rates(system, n_pairs(system))
+
+
+@kernel
+def coupler_row(system):
+    """Where the coupler's state stands in the state."""
+    return pair_row(system, n_pairs(system))

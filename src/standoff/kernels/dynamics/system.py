@@ -22,6 +22,7 @@ from standoff.kernels.dynamics.arrays import (
     pair_rates,
     pair_row,
 )
+from standoff.kernels.dynamics.coupled_tool import add_pull, coupled
 from standoff.kernels.dynamics.forces import Witness, touch_pair
 from standoff.kernels.dynamics.inside_law import near_contact, normal_at, place_ahead, stage_rates
 from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
@@ -120,6 +121,8 @@ def stage_of(system, state, s, held, rates, work, scratch):
                 lost += touch_ahead(system, pair, state, s, rates, work, scratch)
             else:
                 lost += touch_tracked(system, pair, state, scratch.stage, body_row(0), scratch)
+        if coupled(system):
+            add_pull(system, state, scratch.stage, body_row(0), scratch.loads)
     bodies_rates(system, s, lost, rates, scratch)
 
 

@@ -7,6 +7,7 @@ from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import INT, INTS, READ, ROWS, WRITE
 from standoff.kernels.dynamics.arrays import (
     FREE,
+    I_COUPLER,
     I_INSIDE,
     N_LOAD,
     N_TOUCH,
@@ -22,6 +23,13 @@ from standoff.kernels.dynamics.arrays import (
     n_pairs,
     n_rates,
     pair_row,
+)
+from standoff.kernels.dynamics.coupled_tool import (
+    book_pull,
+    coupled,
+    power_of_pull,
+    pull_tool,
+    stored_in_coupler,
 )
 from standoff.kernels.dynamics.flat_contact import N_SPOTS
 from standoff.kernels.dynamics.operator import change_of, step_bodies
@@ -45,7 +53,7 @@ from standoff.kernels.state.arrays import (
 from standoff.kernels.state.options import read_options
 from standoff.kernels.values import NO_RATES, Work
 
-# Columns of an account, after which come N_TOUCH numbers a pair.
+# Columns of an account, after which come N_TOUCH numbers a pair, and what is stored in a coupler.
 A_KINETIC, A_POTENTIAL, A_STORED = range(3)
 ACCOUNT_HEADER = 3
 
@@ -122,25 +130,43 @@ def account(system, state, row, scratch):
         for k in range(N_TOUCH):
             row[ACCOUNT_HEADER + N_TOUCH * pair + k] = scratch.touch[N_TOUCH * pair + k]
         row[A_STORED] += scratch.touch[N_TOUCH * pair + 3]
+    if coupled(system):
+        row[ACCOUNT_HEADER + N_TOUCH * n_pairs(system)] = stored_in_coupler(system, state)
+
+
+@kernel
+def tick_bodies(system, state, h, drives, tick, work, scratch):
+    """One tick of coupler, bodies and energies; `drives` are driven motions and readings."""
+    table, readings = drives
+    power = 0.0
+    if coupled(system):
+        pull_tool(system, state, readings, tick, h, scratch)
+        power = power_of_pull(system, state)
+    step_bodies(system, state, h, table, tick, work, scratch)
+    if coupled(system):
+        book_pull(system, state, h, power)
 
 
 SYSTEM = types.Tuple((INTS, READ, INTS, READ, READ))
 RECORDS = types.Tuple((ROWS, ROWS))
+DRIVES = types.Tuple((ROWS, WRITE))
 
 
-@entry(SYSTEM, WRITE, ROWS, INT, RECORDS, work="simulation")
-def run_system(packed, state, table, every, records):
+@entry(SYSTEM, WRITE, DRIVES, INT, RECORDS, work="simulation")
+def run_system(packed, state, drives, every, records):
     """Many ticks; the state is changed in place.
 
     `packed` is (layout, numbers, ints, reals, options). `records` are the states and the accounts:
-    row 0 is of the start, each next one of a tick `every` later. `table` has the driven bodies'
-    motions, a row each half tick. Returns (-1, FINE), or the tick
-    after which a pose or twist was refused, and why: the rows before it are written.
+    row 0 is of the start, each next one of a tick `every` later. `drives` are a table of the driven
+    bodies' motions, a row each half tick, and readings of a coupler's device, N_READING numbers
+    each (``coupler_arrays``), the first of which is for the first tick. Returns (-1, FINE), or the
+    tick after which a pose or twist was refused, and why: the rows before it are written.
     """
     layout, numbers, ints, reals, options = packed
     states, accounts = records
     read = read_options(pointer(options, 0))
-    system = System(pointer(layout, 0), pointer(numbers, 0), ints, reals, read)
+    coupler = pointer(numbers, layout[I_COUPLER])
+    system = System(pointer(layout, 0), pointer(numbers, 0), ints, reals, read, coupler)
     arrays = scratch_for(system)
     scratch = pointed(arrays)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
@@ -151,7 +177,7 @@ def run_system(packed, state, table, every, records):
     states[0, :] = state
     account(system, state, accounts[0], scratch)
     for tick in range(every * (states.shape[0] - 1)):
-        step_bodies(system, state, h, table, tick, work, scratch)
+        tick_bodies(system, state, h, drives, tick, work, scratch)
         state[S_TIME] = begun + (tick + 1) * h
         for pair in range(n_pairs(system)):
             why = track_pair(system, pair, state, h, work, scratch)
