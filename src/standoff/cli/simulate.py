@@ -18,8 +18,11 @@ from standoff.cli.summary import line
 from standoff.errors import StandoffError
 from standoff.scene import SceneError
 from standoff.scene.simulation import SimulationScene, load_simulation
+from standoff.simulation.coupler_run import CouplerRun
+from standoff.simulation.device import Fault
 from standoff.simulation.rigid_body import FREE
 from standoff.simulation.system_run import SystemRun
+from standoff.simulation.system_state import SystemState
 
 TABLE_ENDINGS = (".parquet",)
 PLOT_ENDINGS = (".png", ".svg", ".pdf")
@@ -41,8 +44,7 @@ def run_simulate(command: SimulateCommand) -> int:
     operator = scene.operator
     try:
         state = operator.start(scene.start, allow_overlap=scene.allow_overlap)
-        with progress_bar("simulating") as progress:
-            run = operator.run(state, scene.ticks, scene.every, progress=progress)
+        run = _run(scene, state)
     except StandoffError as error:
         raise SceneError(_cured(str(error)), key="simulate", file=scene.file) from error
     facts = _facts(scene, run)
@@ -53,6 +55,17 @@ def run_simulate(command: SimulateCommand) -> int:
     else:
         print("\n".join(_lines(scene, run, list(files))))
     return ExitCode.DONE if run.uncertified == 0 else ExitCode.NOT_CERTIFIED
+
+
+def _run(scene: SimulationScene, state: SystemState) -> SystemRun:
+    """The run, with the scene's device if there is one."""
+    with progress_bar("simulating") as progress:
+        if scene.device is None:
+            return scene.operator.run(state, scene.ticks, scene.every, progress=progress)
+        with scene.device as device:
+            return scene.operator.run(
+                state.engage(), scene.ticks, scene.every, device=device, progress=progress
+            )
 
 
 def _cured(text: str) -> str:
@@ -123,9 +136,27 @@ def _facts(scene: SimulationScene, run: SystemRun) -> dict[str, Any]:
         "energy": {
             name: [float(value[0]), float(value[-1])] for name, value in energy._asdict().items()
         },
+        "coupler": None if run.coupler is None else _coupler_facts(scene, run.coupler),
         "balance_drift": float(np.abs(energy.balance - energy.balance[0]).max()),
         "deepest": run.deepest,
         "uncertified": run.uncertified,
+    }
+
+
+def _coupler_facts(scene: SimulationScene, found: CouplerRun) -> dict[str, Any]:
+    tool = scene.system.tool
+    return {
+        "tool": None if tool is None else scene.names[tool],
+        "engaged": bool(found.engaged[-1]),
+        "fault": Fault(int(found.fault[-1])).name,
+        "greatest_force": float(np.linalg.norm(found.on_device[:, :3], axis=1).max()),
+        "greatest_torque": float(np.linalg.norm(found.on_device[:, 3:], axis=1).max()),
+        "device_work": float(found.energy.device[-1]),
+        "tool_work": float(found.energy.tool[-1]),
+        "least_observed": float(found.energy.least[-1]),
+        "stored": float(found.stored[-1]),
+        "damped": float(found.damped[-1]),
+        "counts": found.counts._asdict(),
     }
 
 
@@ -160,6 +191,8 @@ def _lines(scene: SimulationScene, run: SystemRun, written: list[Path]) -> list[
                 f"closest {run.distances[:, number].min():.6g} {unit}, greatest force {force:.6g}",
             )
         )
+    if run.coupler is not None:
+        lines += _coupler_lines(_coupler_facts(scene, run.coupler))
     lines.append(
         line(
             "energy",
@@ -172,6 +205,16 @@ def _lines(scene: SimulationScene, run: SystemRun, written: list[Path]) -> list[
     lines.append(line("deepest", f"{run.deepest:.6g} {unit}"))
     lines.append(line("certified", "all" if run.uncertified == 0 else f"but {run.uncertified}"))
     return [*lines, *(line("wrote", str(path)) for path in written)]
+
+
+def _coupler_lines(facts: dict[str, Any]) -> list[str]:
+    ended = "engaged" if facts["engaged"] else f"let go: {facts['fault']}"
+    force, torque = facts["greatest_force"], facts["greatest_torque"]
+    works = f"the hand gave {facts['device_work']:.6g}, the tool {facts['tool_work']:.6g}"
+    return [
+        line("coupler", f"greatest force {force:.6g}, torque {torque:.6g}, {ended}"),
+        line("", f"{works}; its damper took {facts['damped']:.6g}"),
+    ]
 
 
 def _vector(x: Any) -> str:

@@ -17,6 +17,7 @@ from standoff.kernels.dynamics.operator import METHODS
 from standoff.motion import Pose, Twist
 from standoff.motion.twist import Frame
 from standoff.recording.tolerances import WHOLE_STEPS
+from standoff.scene.devices import Coupled, read_coupled
 from standoff.scene.errors import SceneError
 from standoff.scene.files import toml_tables
 from standoff.scene.motions import read_motion
@@ -27,6 +28,7 @@ from standoff.scene.shapes import read_body
 from standoff.simulation.contact import HuntCrossley
 from standoff.simulation.operator import SIDES, Operator
 from standoff.simulation.rigid_body import FREE, RigidBody
+from standoff.simulation.simulated_device import SimulatedDevice
 from standoff.simulation.system import EARTH, System
 
 KEYS = (
@@ -39,6 +41,8 @@ KEYS = (
     "free",
     "contact",
     "contacts",
+    "coupler",
+    "device",
     "simulate",
 )
 """Every key that the top of a simulation's file may have."""
@@ -79,6 +83,8 @@ class SimulationScene:
     every : int
         A record every so many ticks.
     allow_overlap : bool
+    device : SimulatedDevice or None
+        What moves the handle of the system's coupler, where it has one.
     """
 
     file: Path
@@ -91,6 +97,7 @@ class SimulationScene:
     ticks: int
     every: int
     allow_overlap: bool
+    device: SimulatedDevice | None = None
 
     @property
     def system(self) -> System:
@@ -135,10 +142,12 @@ def load_simulation(
         raise top.error("no bodies; add a table such as [bodies.ball]", "bodies")
     rigid = _rigid_bodies(top, bodies)
     settings = _settings(top, given or {})
-    system = _system(top, tuple(bodies), rigid, settings)
+    free = [name for name, body in zip(bodies, rigid, strict=True) if body.kind == FREE]
+    coupled = read_coupled(top, free)
+    system = _system(top, tuple(bodies), rigid, settings, coupled)
     step, duration = settings.positive("step"), settings.positive("duration")
-    every = settings.count("every", 1)
     operator = settings.build(lambda: _operator(system, step, settings))
+    every = _every(settings, operator.ticks_a_reading)
     ticks = every * max(1, math.ceil(duration / step / every - WHOLE_STEPS))
     overlap = settings.true_or_false("allow_overlap") if "allow_overlap" in settings else False
     return SimulationScene(
@@ -152,7 +161,20 @@ def load_simulation(
         ticks=ticks,
         every=every,
         allow_overlap=overlap,
+        device=None if coupled is None else coupled.device,
     )
+
+
+def _every(settings: Table, ticks_a_reading: int) -> int:
+    """Ticks a record: whole readings where a device is read."""
+    every = settings.count("every", ticks_a_reading)
+    if every % ticks_a_reading:
+        raise settings.error(
+            f"must be a multiple of {ticks_a_reading}, the steps in a period of the device, got "
+            f"{every}",
+            "every",
+        )
+    return every
 
 
 def _settings(top: Table, given: Mapping[str, object]) -> Table:
@@ -221,7 +243,13 @@ def _contact(table: Table) -> HuntCrossley:
     return table.build(lambda: HuntCrossley(**given, depth=depth))
 
 
-def _system(top: Table, names: tuple[str, ...], rigid: list[RigidBody], settings: Table) -> System:
+def _system(
+    top: Table,
+    names: tuple[str, ...],
+    rigid: list[RigidBody],
+    settings: Table,
+    coupled: Coupled | None,
+) -> System:
     """The system, its contacts those of ``[contact]``, but for the pairs of ``[[contacts]]``."""
     gravity = settings.vector("gravity", 3) if "gravity" in settings else np.array(EARTH)
     pairs = [
@@ -246,4 +274,6 @@ def _system(top: Table, names: tuple[str, ...], rigid: list[RigidBody], settings
         pairs = [pair for pair in pairs if pair in own]
     contacts = [own.get(pair, usual) for pair in pairs]
     known = [contact for contact in contacts if contact is not None]
-    return top.build(lambda: System(rigid, known, pairs, gravity))
+    coupler = None if coupled is None else coupled.coupler
+    tool = None if coupled is None else names.index(coupled.tool)
+    return top.build(lambda: System(rigid, known, pairs, gravity, coupler, tool))

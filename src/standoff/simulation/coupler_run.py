@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,7 @@ class CouplerRun(NamedTuple):
     on_device, on_tool : (n, 6) arrays
         Wrenches, force first, held on the handle and on the tool in the tick before [N, N m].
     energy : PortEnergy
-        Of (n,) arrays: the work at both ports, by the ticks before.
+        Its fields are (n,) arrays: the work at both ports, by the ticks before.
     stored : (n,) array
         In the coupler's springs, the tool where it is now [J].
     damped : (n,) array
@@ -43,7 +43,7 @@ class CouplerRun(NamedTuple):
     handle_rotations: Array
     on_device: Array
     on_tool: Array
-    energy: PortEnergy
+    energy: Any
     stored: Array
     damped: Array
     counts: CouplerCounts

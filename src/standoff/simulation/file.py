@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from standoff.simulation.coupler_run import CouplerRun
 from standoff.simulation.system_run import SystemRun
 from standoff.version import __version__
 
@@ -49,6 +50,8 @@ def write_run(
         columns |= _body_columns(run, number, name)
     for number, (a, b) in enumerate(run.system.pairs):
         columns |= _pair_columns(run, number, f"{names[a]}-{names[b]}")
+    if run.coupler is not None:
+        columns |= _coupler_columns(run.coupler)
     columns |= {f"energy.{name}": value for name, value in run.energy._asdict().items()}
     metadata = {"format": FORMAT, "format_version": FORMAT_VERSION, "standoff": __version__}
     told = json.dumps(metadata | dict(facts), ensure_ascii=False, allow_nan=False)
@@ -75,6 +78,29 @@ def _pair_columns(run: SystemRun, number: int, name: str) -> dict[str, Any]:
         f"{name}.point_a": _rows(point_a),
         f"{name}.point_b": _rows(point_b),
         f"{name}.normal": _rows(normal),
+    }
+
+
+def _coupler_columns(found: CouplerRun) -> dict[str, Any]:
+    known = np.isfinite(found.handle_positions[:, 0])
+    quaternions = np.full((len(known), 4), np.nan)
+    if known.any():
+        turned = Rotation.from_matrix(found.handle_rotations[known])
+        quaternions[known] = np.roll(turned.as_quat(canonical=True), 1, axis=1)
+    return {
+        "coupler.handle_position": _rows(found.handle_positions),
+        "coupler.handle_quaternion_wxyz": _rows(quaternions),
+        "coupler.force_on_tool": _rows(found.on_tool[:, :3]),
+        "coupler.torque_on_tool": _rows(found.on_tool[:, 3:]),
+        "coupler.force_on_device": _rows(found.on_device[:, :3]),
+        "coupler.torque_on_device": _rows(found.on_device[:, 3:]),
+        "coupler.engaged": found.engaged,
+        "coupler.fault": found.fault,
+        "coupler.device_work": found.energy.device,
+        "coupler.tool_work": found.energy.tool,
+        "coupler.device_friction": found.energy.friction,
+        "coupler.stored": found.stored,
+        "coupler.damped": found.damped,
     }
 
 

@@ -83,6 +83,12 @@ class Operator(KeepsReadOnly):
     gain : float, optional
         K [1/time] of the law inside; one over the step if not given.
 
+    Attributes
+    ----------
+    ticks_a_reading : int
+        Ticks from one reading of a coupler's device to the next: its period over the step; 1 where
+        there is none.
+
     Raises
     ------
     StandoffTypeError
@@ -122,7 +128,7 @@ class Operator(KeepsReadOnly):
         number = METHODS.index(self.method)
         inside = self.tracker == "inside"
         self.packed = pack_system(self.system, self.dt, number, inside, self.options)
-        self._ticks_a_reading = int(self.packed[0][K.I_READING])
+        self.ticks_a_reading = int(self.packed[0][K.I_READING])
         prepare_simulation()
 
     def __setstate__(self, stored: Any) -> None:
@@ -265,7 +271,7 @@ class Operator(KeepsReadOnly):
         self._check_state(state)
         ticks, every = self._counts(ticks, every)
         check_device(device, self.system.coupler is not None)
-        check_count(device, ticks // self._ticks_a_reading)
+        check_count(device, ticks // self.ticks_a_reading)
         count = ticks // every + 1
         width = entries.ACCOUNT_HEADER + K.N_TOUCH * len(self.system.pairs)
         width += self.system.coupler is not None
@@ -285,7 +291,7 @@ class Operator(KeepsReadOnly):
             if isinstance(device, Device):
                 self._with_device(going, first, device, records)
             else:
-                a_record = every // self._ticks_a_reading
+                a_record = every // self.ticks_a_reading
                 read = given_readings(device, first * a_record, (last - first) * a_record)
                 self._advance(going, first * every, read, records)
             if progress is not None:
@@ -304,9 +310,9 @@ class Operator(KeepsReadOnly):
                 "every",
                 every,
             )
-        if every % self._ticks_a_reading:
+        if every % self.ticks_a_reading:
             raise StandoffError(
-                f"every = {every} is no multiple of {self._ticks_a_reading}, the ticks from one "
+                f"every = {every} is no multiple of {self.ticks_a_reading}, the ticks from one "
                 "reading of the device to the next: records are made where readings come.",
                 "every",
                 every,
@@ -317,7 +323,7 @@ class Operator(KeepsReadOnly):
         self, going: Going, record: int, device: Device, records: tuple[Array, Array]
     ) -> None:
         """The ticks from one record to the next, reading by reading."""
-        ticks, at = self._ticks_a_reading, coupler_at(self.system)
+        ticks, at = self.ticks_a_reading, coupler_at(self.system)
         states = np.empty((2, len(going.data))), np.empty((2, records[1].shape[1]))
         short = going._replace(every=ticks)
         for reading in range(going.every // ticks):
@@ -361,7 +367,7 @@ class Operator(KeepsReadOnly):
             As `run`.
         """
         given = None if reading is None else DeviceReadings([reading])
-        ticks = self._ticks_a_reading
+        ticks = self.ticks_a_reading
         return self.run(state, ticks, ticks, device=given).final
 
     def _check_state(self, state: Any) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import BinaryIO
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.simulation.rigid_body import FIXED
 from standoff.simulation.system_run import SystemRun
@@ -20,8 +21,13 @@ except ModuleNotFoundError as error:
         name="matplotlib",
     ) from error
 
+Array = NDArray[np.float64]
+
 # Okabe and Ito's colours, told apart by eyes without red or green.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "black")
+HANDLE = "#7F7F7F"
+"""Grey: of a coupler and its device."""
+
 DASHES = ("-", "--", ":")
 """Of x, y and z."""
 
@@ -76,6 +82,11 @@ def _paths(axes: Axes, run: SystemRun, names: Sequence[str], unit: str) -> None:
                 color=colour,
                 label=f"{names[number]}, {'xyz'[axis]}",
             )
+    if run.coupler is not None:
+        for axis, dashes in enumerate(DASHES):
+            label = f"device, {'xyz'[axis]}"
+            place = run.coupler.handle_positions[:, axis]
+            axes.plot(run.times, place, dashes, color=HANDLE, linewidth=0.9, label=label)
     axes.set_ylabel(f"position [{unit}]")
     if len(moving) > MOST_NAMED:
         axes.set_title(f"{len(moving) - MOST_NAMED} more bodies are not drawn", fontsize="small")
@@ -87,12 +98,25 @@ def _pairs(panels: Sequence[Axes], run: SystemRun, names: Sequence[str], unit: s
         label = f"{names[a]} – {names[b]}"
         for axes, values in zip(panels, (distances, forces), strict=True):
             axes.plot(run.times, values[:, number], color=COLOURS[number], label=label)
+    if run.coupler is not None:
+        pull = np.linalg.norm(run.coupler.on_device[:, :3], axis=1)
+        panels[1].plot(run.times, pull, color=HANDLE, linewidth=0.9, label="coupler, on the device")
+        for time in _let_go(run):
+            panels[1].axvline(time, color=HANDLE, linestyle=":", label="coupler lets go")
     panels[0].axhline(0.0, color="black", linewidth=0.6)
     panels[0].set_ylabel(f"distance [{unit}]")
-    panels[1].set_ylabel("contact force")
+    panels[1].set_ylabel("contact force" if run.coupler is None else "force")
     if len(run.system.pairs) > MOST_NAMED:
         more = len(run.system.pairs) - MOST_NAMED
         panels[0].set_title(f"{more} more pairs are not drawn", fontsize="small")
+
+
+def _let_go(run: SystemRun) -> Array:
+    """When the coupler let go, at the end of the record that shows it."""
+    assert run.coupler is not None
+    fault = run.coupler.fault
+    found: Array = run.times[1:][(fault[1:] != 0) & (fault[:-1] == 0)]
+    return found
 
 
 def _energies(axes: Axes, run: SystemRun) -> None:
@@ -101,7 +125,7 @@ def _energies(axes: Axes, run: SystemRun) -> None:
     lines = {
         "kinetic": energy.kinetic,
         "potential, from its least": energy.potential - floor,
-        "stored": energy.stored,
+        "stored in contacts": energy.stored,
         "dissipated": energy.dissipated,
         "supplied": energy.supplied,
         "balance": energy.balance - floor,
@@ -110,4 +134,8 @@ def _energies(axes: Axes, run: SystemRun) -> None:
         if name != "supplied" or np.any(values != 0.0):
             dashes = "--" if name == "balance" else "-"
             axes.plot(run.times, values, dashes, color=colour, label=name)
+    if run.coupler is not None:
+        axes.plot(run.times, run.coupler.stored, color=HANDLE, label="stored in the coupler")
+        work = run.coupler.energy.device
+        axes.plot(run.times, work, ":", color=HANDLE, label="the hand’s work")
     axes.set_ylabel("energy")

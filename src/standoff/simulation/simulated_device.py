@@ -125,6 +125,7 @@ class SimulatedDevice:
     Attributes
     ----------
     limits : DeviceLimits
+    hand : ScriptedHand or None
     held : Wrench
         What the motors hold now.
     cut : int
@@ -162,7 +163,7 @@ class SimulatedDevice:
                 raise StandoffTypeError(
                     f"{name} is {shown(part)}: give a {kind.__name__}", name, part
                 )
-        self._mechanism = mechanism
+        self._mechanism, self.hand = mechanism, hand
         self._period = non_negative(period, "period", above_zero=True)
         self._delay = checked_delay(delay)
         self._encoder = encoder or Encoder()
