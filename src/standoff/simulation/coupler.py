@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.errors import StandoffTypeError
+from standoff.kernels.compiler.entry import Entry
 from standoff.kernels.dynamics import coupler_arrays as K
-from standoff.kernels.entries.coupler import couple_once
-from standoff.kernels.entries.preparing import prepare_coupler
+from standoff.kernels.entries.simulation import couple_once
 from standoff.motion import inputs
 from standoff.motion.pose import PoseLike
 from standoff.motion.twist import TwistLike
@@ -132,7 +132,8 @@ class VirtualCoupler:
                     self.sampling,
                     of="rotation",
                 )
-        prepare_coupler()
+        if isinstance(couple_once, Entry):  # a plain function under NUMBA_DISABLE_JIT=1
+            couple_once.prepare()
 
     def start(self) -> CouplerState:
         """Return the state before the first tick: not engaged.

@@ -8,13 +8,12 @@ from pathlib import Path
 
 from standoff.kernels.compiler import cache
 from standoff.kernels.compiler.entry import Entry
-from standoff.kernels.entries import coupler, queries, simulation, tracker
+from standoff.kernels.entries import queries, simulation, tracker
 
 MODULES = (
     "standoff.kernels.entries.queries",
     "standoff.kernels.entries.tracker",
     "standoff.kernels.entries.simulation",
-    "standoff.kernels.entries.coupler",
     "standoff.kernels.pair.normals_system",
 )
 """Where entries stand."""
@@ -67,12 +66,6 @@ def prepare_simulation() -> None:
         simulation.run_system.prepare()
     for name in SCIPY:
         importlib.import_module(name)
-
-
-def prepare_coupler() -> None:
-    """Have ready a tick of a virtual coupler that runs by itself."""
-    if isinstance(coupler.couple_once, Entry):
-        coupler.couple_once.prepare()
 
 
 def every_entry() -> Iterator[Entry]:

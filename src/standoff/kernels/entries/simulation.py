@@ -1,10 +1,12 @@
-"""A simulated system as Python calls it: many ticks of the whole operator in one compiled loop."""
+"""A simulated system as Python calls it: many ticks of the whole operator in one compiled loop; and
+one tick of a virtual coupler by itself.
+"""
 
 import numpy as np
 from numba import types
 
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
-from standoff.kernels.compiler.entry import INT, INTS, READ, ROWS, WRITE
+from standoff.kernels.compiler.entry import INT, INTS, READ, REAL, ROWS, WRITE
 from standoff.kernels.dynamics.arrays import (
     FREE,
     I_COUPLER,
@@ -31,6 +33,7 @@ from standoff.kernels.dynamics.coupled_tool import (
     pull_tool,
     stored_in_coupler,
 )
+from standoff.kernels.dynamics.coupler import Moment, couple
 from standoff.kernels.dynamics.flat_contact import N_SPOTS
 from standoff.kernels.dynamics.operator import change_of, step_bodies
 from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
@@ -189,3 +192,11 @@ def run_system(packed, state, drives, every, records):
             account(system, state, accounts[row], scratch)
     counts[0] = 0  # alive until here, see `pointer`
     return -1, FINE
+
+
+@entry(READ, WRITE, READ, READ, REAL, REAL, work="coupler")
+def couple_once(coupler, state, reading, tool, dt, clock):
+    """One tick of a coupler, its state in place; `clock` is nan where the coupler's own serves."""
+    moment = Moment(dt, clock, True, dt)
+    couple(pointer(coupler, 0), pointer(state, 0), pointer(reading, 0), pointer(tool, 0), moment)
+    return len(coupler) + len(state) + len(reading) + len(tool)  # alive until here, see `pointer`
