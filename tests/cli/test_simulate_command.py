@@ -238,7 +238,7 @@ def with_hand(tmp_path: Path, old: str, new: str) -> Path:
         (
             "mass = 0.1",
             "mass = 0.1, path = { kind = 'twist', linear = [1, 0, 0] }, arm = { mass = 1.0 }",
-            "stiffness",
+            "device.arm",
         ),
         ("mass = 0.1", "mass = 0.1, path = { kind = 'circle' }", "device.path.kind"),
         ("mass = 0.1", "mass = 0.1, disturbances = { script = { a = 'nan' } }", "from 0"),
