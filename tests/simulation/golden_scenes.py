@@ -25,8 +25,6 @@ FILE = Path(__file__).parent / "golden.npz"
 FLOOR = so.shapes.halfspace()
 RECORDS = 25
 """Recorded states of each run, the first not counted."""
-PARTS = ("bodies", "accounts", "digest")
-"""What of a trace is stored."""
 
 
 def build() -> str:
@@ -108,7 +106,9 @@ class Trace(NamedTuple):
     """(n, k) arrays of a run's records, and a digest of every bit of them and of the trackers."""
 
     bodies: np.ndarray
-    accounts: np.ndarray
+    energies: np.ndarray
+    forces: np.ndarray
+    spots: np.ndarray
     digest: str
 
 
@@ -116,9 +116,11 @@ def trace(name: str) -> Trace:
     make, tracker = SCENES[name]
     operator, ticks, overlap = make(tracker)
     run = operator.run(operator.start(allow_overlap=overlap), ticks, every=ticks // RECORDS)
-    bits = run.states.tobytes() + run.accounts.tobytes()
     end = K.STATE_HEADER + K.N_BODY * len(operator.system.bodies)
-    return Trace(run.states[:, :end], run.accounts, hashlib.sha256(bits).hexdigest())
+    energies = np.stack(run.energy, axis=1)
+    bits = run.states.tobytes() + energies.tobytes() + run.forces.tobytes()
+    digest = hashlib.sha256(bits).hexdigest()
+    return Trace(run.states[:, :end], energies, run.forces[:, 0], run.spots, digest)
 
 
 def main() -> None:
@@ -127,7 +129,9 @@ def main() -> None:
         print("\n".join(f"{name} {kept.digest}" for name, kept in found.items()))
         return
     arrays = {
-        f"{name} {part}": kept._asdict()[part] for name, kept in found.items() for part in PARTS
+        f"{name} {part}": array
+        for name, kept in found.items()
+        for part, array in kept._asdict().items()
     }
     np.savez_compressed(FILE, build=np.array(build()), **arrays)
     print(f"{FILE.name}: {FILE.stat().st_size} bytes")

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from standoff.kernels.dynamics import arrays as K
-from standoff.kernels.entries import simulation as E
 
 ELSEWHERE = 1e-12
 """Relative to the largest vector of a kind: another machine's roundoff. A change of the start by
@@ -29,16 +28,15 @@ def off(found: np.ndarray, stored: np.ndarray) -> float:
 @pytest.mark.parametrize("name", golden.SCENES)
 def test_a_stored_trace_replays(name: str) -> None:
     found = golden.trace(name)
-    bodies, accounts = STORED[f"{name} bodies"], STORED[f"{name} accounts"]
+    bodies = STORED[f"{name} bodies"]
     for o in range(K.STATE_HEADER, bodies.shape[1], K.N_BODY):
         for part, size in ((K.X_ROTATION, 9), (K.X_CENTRE, 3), (K.X_VELOCITY, 3), (K.X_SPIN, 3)):
             columns = slice(o + part, o + part + size)
             assert off(found.bodies[:, columns], bodies[:, columns]) < ELSEWHERE
     assert off(found.bodies[:, : K.STATE_HEADER], bodies[:, : K.STATE_HEADER]) < ELSEWHERE
-    energies = slice(0, E.ACCOUNT_HEADER)
-    assert off(found.accounts[:, energies], accounts[:, energies]) < ELSEWHERE
-    touches = slice(E.ACCOUNT_HEADER, None)
-    assert off(found.accounts[:, touches], accounts[:, touches]) < ELSEWHERE
+    assert off(found.energies, STORED[f"{name} energies"]) < ELSEWHERE
+    assert off(found.forces, STORED[f"{name} forces"]) < ELSEWHERE
+    assert np.array_equal(found.spots, STORED[f"{name} spots"])
     if SAME_BUILD:
         assert found.digest == str(STORED[f"{name} digest"])
 
@@ -53,8 +51,7 @@ def test_traces_replay_bit_for_bit_in_another_process() -> None:
 def test_traces_touch_and_let_go() -> None:
     """What is stored is worth it: contacts begin and end, bodies turn, energy is lost."""
     for name in golden.SCENES:
-        accounts = STORED[f"{name} accounts"]
-        touches = accounts[:, E.ACCOUNT_HEADER + K.T_SPOTS] > 0
+        touches = STORED[f"{name} spots"][:, 0] > 0
         assert touches.any()
         assert touches.all() == name.startswith(("pressed", "sliding"))
         assert STORED[f"{name} bodies"][-1, K.S_LOST] > 1e-4
