@@ -347,6 +347,7 @@ SIMULATION: dict[str, dict[str, Any]] = {
         "method": "RK23",
         "tolerance": 1e-3,
         "max_step": 1e-3,
+        "allow_overlap": False,
     },
     "Operator": {
         "system": simulation.System(

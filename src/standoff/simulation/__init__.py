@@ -7,6 +7,7 @@ from standoff.on_demand import on_demand
 
 if TYPE_CHECKING:
     from standoff.simulation.adaptive import Solution, SystemEvent, solve
+    from standoff.simulation.adaptive_bodies import SystemSolution
     from standoff.simulation.contact import HuntCrossley
     from standoff.simulation.coupler import VirtualCoupler
     from standoff.simulation.coupler_run import CouplerRun
@@ -37,6 +38,7 @@ else:
         __name__,
         {
             "standoff.simulation.adaptive": ("Solution", "SystemEvent", "solve"),
+            "standoff.simulation.adaptive_bodies": ("SystemSolution",),
             "standoff.simulation.contact": ("HuntCrossley",),
             "standoff.simulation.coupler": ("VirtualCoupler",),
             "standoff.simulation.coupler_run": ("CouplerRun",),
@@ -107,6 +109,7 @@ __all__ = [
     "System",
     "SystemEvent",
     "SystemRun",
+    "SystemSolution",
     "SystemState",
     "VirtualCoupler",
     "Wrench",

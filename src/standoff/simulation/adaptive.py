@@ -1,12 +1,11 @@
-"""A system in the user's coordinates, solved by SciPy's adaptive methods, with events."""
+"""Systems solved by SciPy's adaptive methods, with events: in your coordinates, or of bodies."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple
+from typing import Any, overload
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from standoff.errors import StandoffError, StandoffTypeError
@@ -14,39 +13,15 @@ from standoff.geometry.validation import finite
 from standoff.motion import Twist, inputs
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
+from standoff.simulation.adaptive_bodies import SystemSolution, solve_bodies
+from standoff.simulation.adaptive_legs import METHODS, Features, Legs
+from standoff.simulation.adaptive_legs import SystemEvent as SystemEvent
 from standoff.simulation.generalised_system import GeneralisedSystem
-from standoff.simulation.tolerances import EVENT_INSTANT
+from standoff.simulation.system import System
 from standoff.tracking import PredictorCorrector, Proximity, Tracker
-from standoff.tracking.choices import positive_number
+from standoff.tracking.choices import positive_number, yes_or_no
 
 Array = NDArray[np.float64]
-
-METHODS: Final = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
-
-
-MOST_EVENTS: Final = 10_000
-"""Contacts and releases of one solution: bodies that settle touch ever more often."""
-
-
-class SystemEvent(NamedTuple):
-    """Something that happened at an instant.
-
-    Attributes
-    ----------
-    time : float
-        [s]
-    kind : str
-        "contact", "release" or "switch".
-    pair : int
-    source, target : str
-        Features of A and B before and after a switch; empty for the others.
-    """
-
-    time: float
-    kind: str
-    pair: int
-    source: str = ""
-    target: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,65 +54,115 @@ class Solution(KeepsReadOnly):
         )
 
 
+@overload
 def solve(
     system: GeneralisedSystem,
     theta: Any,
     rate: Any,
     duration: float,
     *,
+    method: str = ...,
+    tolerance: float = ...,
+    max_step: float | None = ...,
+) -> Solution: ...
+
+
+@overload
+def solve(
+    system: System,
+    *,
+    duration: float,
+    method: str = ...,
+    tolerance: float = ...,
+    max_step: float | None = ...,
+    allow_overlap: bool = ...,
+) -> SystemSolution: ...
+
+
+def solve(
+    system: GeneralisedSystem | System,
+    theta: Any = None,
+    rate: Any = None,
+    duration: float | None = None,
+    *,
     method: str = "DOP853",
     tolerance: float = 1e-9,
     max_step: float | None = None,
-) -> Solution:
-    """Solve a system's equations of motion from θ and θ' at time 0.
+    allow_overlap: bool = False,
+) -> Solution | SystemSolution:
+    """Solve a system's equations of motion from time 0.
 
     At every evaluation the witness points are tracked to roundoff at the coordinates asked for,
-    so they are a function of θ and no part of the error that the method controls. The solution is
-    stopped where a pair touches or parts, and goes on from there: the force has a kink there.
+    so they are a function of these and no part of the error that the method controls. The solution
+    is stopped where a pair touches or parts, and goes on from there: the force has a kink there.
+
+    Free bodies turn in charts of rotation vectors, about the rotation at which a leg began; where
+    one has turned by 1.5 rad the next leg begins, so their rotations stay rotations.
 
     Parameters
     ----------
-    system : GeneralisedSystem
+    system : GeneralisedSystem or System
+        In your own coordinates, or of rigid bodies, which start at their own poses and twists.
     theta, rate : (n,) array_like
-        Where it starts.
+        Where a GeneralisedSystem starts; of no use to a System.
     duration : float
         [time], positive.
     method : str
         One of SciPy's: "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA".
     tolerance : float
-        Relative and absolute tolerance of θ and θ' in a step, positive.
+        Relative and absolute tolerance of the state in a step, positive.
     max_step : float, optional
         Longest step [time], a hundredth of the duration if not given: a contact that begins and
         ends within one step is not seen.
+    allow_overlap : bool
+        Of a System: start also where bodies overlap.
 
     Returns
     -------
-    Solution
+    Solution, or SystemSolution of a System
 
     Raises
     ------
     StandoffTypeError
         No system.
     StandoffError
-        Wrong shapes and numbers; an unknown method; an M(θ) that is singular; a step that the
-        method could not make.
+        Wrong shapes and numbers; an unknown method; an M(θ) that is singular; bodies that overlap
+        at the start; a step that the method could not make.
     """
-    if not isinstance(system, GeneralisedSystem):
+    if not isinstance(system, GeneralisedSystem | System):
         raise StandoffTypeError(
-            f"system is {shown(system)}: give a GeneralisedSystem.", "system", system
+            f"system is {shown(system)}: give a GeneralisedSystem or a System.", "system", system
         )
-    first = finite(theta, "theta", (-1,))
-    second = finite(rate, "rate", (len(first),))
     end = positive_number(duration, "duration")
     inputs.word(method, "method", METHODS)
     allowed = positive_number(tolerance, "tolerance")
+    overlap = yes_or_no(allow_overlap, "allow_overlap")
     longest = 0.01 * end if max_step is None else positive_number(max_step, "max_step")
     options = {"method": method, "rtol": allowed, "atol": allowed, "max_step": longest}
-    return _Solver(system, len(first)).solve(np.concatenate([first, second]), end, options)
+    if isinstance(system, System):
+        for name, given in (("theta", theta), ("rate", rate)):
+            if given is not None:
+                raise StandoffError(
+                    f"{name} = {shown(given)} is of a GeneralisedSystem; the bodies of a System "
+                    "start at their own poses and twists: leave it out.",
+                    name,
+                    given,
+                )
+        return solve_bodies(system, end, options, overlap)
+    first = finite(theta, "theta", (-1,))
+    second = finite(rate, "rate", (len(first),))
+    legs = _Generalised(system, len(first))
+    found = legs.solve(0.0, np.concatenate([first, second]), end, options)
+    rows = np.array(found.states)
+    distances = np.array([legs.distances(0.0, row) for row in rows])
+    n = len(first)
+    return Solution(
+        found.times, rows[:, :n], rows[:, n:], distances, found.events, legs.evaluations
+    )
 
 
-class _Solver:
-    """The trackers' warm starts, and what is collected on the way."""
+class _Generalised(Legs):
+    """A system in the user's coordinates: the state is (θ, θ'). Trackers go on where they were."""
 
     def __init__(self, system: GeneralisedSystem, n: int) -> None:
         self.system, self.n = system, n
@@ -146,7 +171,6 @@ class _Solver:
             Tracker(system.bodies[a], system.bodies[b], law=law) for a, b in system.pairs
         ]
         self.warm: list[Any] = [None] * len(self.trackers)
-        self.evaluations = 0
 
     def answers(self, y: Array) -> list[Proximity]:
         """The pairs' witness points at a state."""
@@ -170,73 +194,8 @@ class _Solver:
         turning = self.system.acceleration(t, theta, rate, self.answers(y))
         return np.concatenate([rate, turning])
 
-    def solve(self, y: Array, end: float, options: dict[str, Any]) -> Solution:
-        times, states, events = [0.0], [y], []
-        t, inside = 0.0, [answer.distance < 0.0 for answer in self.answers(y)]
-        while t < end:
-            crossing = [self._crossing(k, within) for k, within in enumerate(inside)]
-            part = scipy.integrate.solve_ivp(
-                self.slope, (t, end), y, events=crossing, dense_output=True, **options
-            )
-            if not part.success:
-                raise StandoffError(
-                    f"{options['method']} failed at {part.t[-1]:g} s: {part.message}"
-                )
-            events += self._switches(part)
-            times += list(part.t[1:])
-            states += list(part.y.T[1:])
-            t, y = float(part.t[-1]), part.y[:, -1]
-            for k, found in enumerate(part.t_events):
-                if len(found):
-                    kind = "release" if inside[k] else "contact"
-                    events.append(SystemEvent(float(found[-1]), kind, k))
-                    inside[k] = not inside[k]
-            if len(events) > MOST_EVENTS:
-                raise StandoffError(
-                    f"more than {MOST_EVENTS} contacts, releases and switches until {t:g} s: give "
-                    "the contact more damping, or a shorter duration.",
-                    "duration",
-                )
-        rows = np.array(states)
-        distances = np.array([[a.distance for a in self.answers(row)] for row in rows])
-        ordered = tuple(sorted(events, key=lambda event: event.time))
-        theta, rate = rows[:, : self.n], rows[:, self.n :]
-        return Solution(np.array(times), theta, rate, distances, ordered, self.evaluations)
+    def distances(self, t: float, y: Array) -> list[float]:
+        return [answer.distance for answer in self.answers(y)]
 
-    def _crossing(self, pair: int, inside: bool) -> Any:
-        """Where a pair that is apart touches, or one that touches parts."""
-
-        def distance(t: float, y: Array) -> float:
-            return self.answers(y)[pair].distance
-
-        distance.terminal = True  # type: ignore[attr-defined]
-        distance.direction = 1.0 if inside else -1.0  # type: ignore[attr-defined]
-        return distance
-
-    def _features(self, y: Array) -> list[tuple[str, str]]:
+    def features(self, t: float, y: Array) -> Features:
         return [(str(answer.feature_a), str(answer.feature_b)) for answer in self.answers(y)]
-
-    def _switches(self, part: Any) -> list[SystemEvent]:
-        """Changes of features between the steps, each located by halving."""
-        found = []
-        before = self._features(part.y[:, 0])
-        for start, end in zip(part.t[:-1], part.t[1:], strict=True):
-            after = self._features(part.sol(end))
-            for pair, (old, new) in enumerate(zip(before, after, strict=True)):
-                if old != new:
-                    at = self._located(part.sol, pair, old, (float(start), float(end)))
-                    found.append(SystemEvent(at, "switch", pair, " ".join(old), " ".join(new)))
-            before = after
-        return found
-
-    def _located(
-        self, states: Any, pair: int, old: tuple[str, str], between: tuple[float, float]
-    ) -> float:
-        low, high = between
-        while high - low > EVENT_INSTANT * max(1.0, high):
-            middle = 0.5 * (low + high)
-            if not low < middle < high:
-                break
-            same = self._features(states(middle))[pair] == old
-            low, high = (middle, high) if same else (low, middle)
-        return high

@@ -19,7 +19,6 @@ from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.simulation import stability
 from standoff.simulation.coupled_tool import check_tool
-from standoff.simulation.coupler_state import packed_state
 from standoff.simulation.device import Device, DeviceReading
 from standoff.simulation.device_loop import (
     blocks,
@@ -30,17 +29,15 @@ from standoff.simulation.device_loop import (
     write,
 )
 from standoff.simulation.device_readings import DeviceReadings
-from standoff.simulation.packed_system import body_start, driven_row, driven_table, pack_system
-from standoff.simulation.rigid_body import DRIVEN
+from standoff.simulation.packed_system import driven_table, pack_system
 from standoff.simulation.system import System
 from standoff.simulation.system_run import SystemRun
+from standoff.simulation.system_start import started
 from standoff.simulation.system_state import SystemState, coupler_at
-from standoff.simulation.tolerances import TOUCHING_START
 from standoff.tracking.choices import positive_number, whole_number, yes_or_no
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw, PredictorCorrector
 from standoff.tracking.options import pack_options
-from standoff.tracking.tracker import ColdQuery
 
 Array = NDArray[np.float64]
 
@@ -199,39 +196,7 @@ class Operator(KeepsReadOnly):
             Bodies overlap, by a depth that is told, and that is not allowed.
         """
         t = inputs.number(time, "time")
-        allowed = yes_or_no(allow_overlap, "allow_overlap")
-        header = np.zeros(K.STATE_HEADER)
-        header[K.S_TIME] = t
-        rows = [
-            driven_row(body, t) if body.kind == DRIVEN else body_start(body)
-            for body in self.system.bodies
-        ]
-        still = SystemState(self.system, np.concatenate([header, *rows]))
-        pairs = [self._pair_start(pair, still, allowed) for pair in range(len(self.system.pairs))]
-        coupler = self.system.coupler
-        ends = [] if coupler is None else [packed_state(coupler.start(), coupler.past)]
-        data = np.concatenate([still.data, *pairs, *ends])
-        if pairs:
-            depths = [-row[T.N_STATE + T.DISTANCE] for row in pairs]
-            data[K.S_DEEPEST] = max(0.0, *depths)
-        data.flags.writeable = False
-        return SystemState(self.system, data)
-
-    def _pair_start(self, pair: int, still: SystemState, allowed: bool) -> Array:
-        """A pair's part of the state: the tracker's own, and its answer."""
-        a, b = self.system.pairs[pair]
-        first, second = self.system.bodies[a].body, self.system.bodies[b].body
-        query = ColdQuery(first, second, self.dt, self.law)
-        found = query.start(still.pose(a), still.pose(b), still.twist(a), still.twist(b))
-        answer = found.proximity
-        size = min(first.size, second.size)
-        if not allowed and answer.distance < -TOUCHING_START * size:
-            raise StandoffError(
-                f"Bodies {a} ({first.name}) and {b} ({second.name}) overlap at the start, by "
-                f"{answer.depth:.6g}: move them apart, or call start(allow_overlap=True), and they "
-                "will push each other apart."
-            )
-        return np.concatenate([found.data, answer.row])
+        return started(self.system, self.law, self.dt, t, yes_or_no(allow_overlap, "allow_overlap"))
 
     def run(
         self,

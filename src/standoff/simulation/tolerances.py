@@ -77,3 +77,7 @@ two differences foretell."""
 ANGLE_TOLERANCE: Final = 1e-10
 """Steradians, of the area of an ellipsoidal face's directions (1 rad by 1 rad): only its sign is
 asked."""
+
+CHART_SERIES: Final = 1e-3
+"""Radians, half the angle of a chart: below it two terms of the series for J_r⁻¹ miss it by less
+than 1e-12 of a third-order term, and the closed form loses digits."""

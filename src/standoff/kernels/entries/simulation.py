@@ -37,7 +37,7 @@ from standoff.kernels.dynamics.coupler import Moment, couple
 from standoff.kernels.dynamics.flat_contact import N_SPOTS
 from standoff.kernels.dynamics.operator import change_of, step_bodies
 from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
-from standoff.kernels.dynamics.rigid_body import kinetic, potential
+from standoff.kernels.dynamics.rigid_body import kinetic, potential, power
 from standoff.kernels.dynamics.system import clear_loads, touch_tracked
 from standoff.kernels.entries.frames import frame_carried, frame_paper, frame_predicted
 from standoff.kernels.entries.tracker import input_pointers, refused
@@ -150,6 +150,15 @@ def tick_bodies(system, state, h, drives, tick, work, scratch):
         book_pull(system, state, h, power)
 
 
+@kernel
+def system_of(packed):
+    """A system by pointers, of its arrays (layout, numbers, ints, reals, options)."""
+    layout, numbers, ints, reals, options = packed
+    read = read_options(pointer(options, 0))
+    coupler = pointer(numbers, layout[I_COUPLER])
+    return System(pointer(layout, 0), pointer(numbers, 0), ints, reals, read, coupler)
+
+
 SYSTEM = types.Tuple((INTS, READ, INTS, READ, READ))
 RECORDS = types.Tuple((ROWS, ROWS))
 DRIVES = types.Tuple((ROWS, WRITE))
@@ -165,17 +174,14 @@ def run_system(packed, state, drives, every, records):
     each (``coupler_arrays``), the first of which is for the first tick. Returns (-1, FINE), or the
     tick after which a pose or twist was refused, and why: the rows before it are written.
     """
-    layout, numbers, ints, reals, options = packed
     states, accounts = records
-    read = read_options(pointer(options, 0))
-    coupler = pointer(numbers, layout[I_COUPLER])
-    system = System(pointer(layout, 0), pointer(numbers, 0), ints, reals, read, coupler)
+    system = system_of(packed)
     arrays = scratch_for(system)
     scratch = pointed(arrays)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
     work = Work(pointer(counts, 0), pointer(log, 0))
-    h = numbers[STEP]
+    h = system.numbers[STEP]
     begun = state[S_TIME]
     states[0, :] = state
     account(system, state, accounts[0], scratch)
@@ -200,3 +206,38 @@ def couple_once(coupler, state, reading, tool, dt, clock):
     moment = Moment(dt, clock, True, dt)
     couple(pointer(coupler, 0), pointer(state, 0), pointer(reading, 0), pointer(tool, 0), moment)
     return len(coupler) + len(state) + len(reading) + len(tool)  # alive until here, see `pointer`
+
+
+@entry(SYSTEM, WRITE, WRITE, WRITE, work="simulation")
+def load_system(packed, state, loads, row):
+    """What contacts do to bodies where these stand in a state, for methods that are not ours.
+
+    The trackers go to the state's poses from where they are in it, in place. `loads` become those
+    of the bodies, N_LOAD numbers each, and then the power that the contacts lose and that driven
+    bodies give; `row` becomes the account of the state. Returns FINE, or why a pose or twist was
+    refused.
+    """
+    system = system_of(packed)
+    arrays = scratch_for(system)
+    scratch = pointed(arrays)
+    counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
+    log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
+    work = Work(pointer(counts, 0), pointer(log, 0))
+    for pair in range(n_pairs(system)):
+        why = track_pair(system, pair, state, system.numbers[STEP], work, scratch)
+        if why != FINE:
+            return why
+    account(system, state, row, scratch)
+    clear_loads(system, scratch)
+    lost, given = 0.0, 0.0
+    for pair in range(n_pairs(system)):
+        lost += touch_tracked(system, pair, state, state, body_row(0), scratch)
+    for body in range(n_bodies(system)):
+        if kind_of(system, body) != FREE:
+            given -= power(body, state, body_row(body), scratch.loads)
+    end = N_LOAD * n_bodies(system)
+    for k in range(end):
+        loads[k] = scratch.loads[k]
+    loads[end], loads[end + 1] = lost, given
+    counts[0] = 0  # alive until here, see `pointer`
+    return FINE

@@ -1,0 +1,226 @@
+"""Rigid bodies solved by SciPy's adaptive methods: charts of rotation vectors, and true rotations.
+
+A leg of the solution turns a body by exp(f) from the rotation at which the leg began, and the
+method integrates the rotation vector f, whose rate is J_r(f)⁻¹ w. A body that has turned far ends
+the leg; the next one begins with f = 0 at the rotation reached. So no constraint has to be kept,
+and no singularity of the chart, at a full turn, comes near.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from standoff.bodies.features import feature_of
+from standoff.errors import StandoffError
+from standoff.kernels.dynamics import arrays as K
+from standoff.kernels.entries import simulation as entries
+from standoff.kernels.entries.preparing import prepare_simulation
+from standoff.kernels.state import arrays as T
+from standoff.read_only import KeepsReadOnly
+from standoff.simulation.adaptive_legs import Features, Legs, SystemEvent
+from standoff.simulation.packed_system import driven_row, pack_system
+from standoff.simulation.rigid_body import DRIVEN, FREE
+from standoff.simulation.system import System
+from standoff.simulation.system_run import SystemRun
+from standoff.simulation.system_start import started
+from standoff.simulation.system_state import distances
+from standoff.simulation.tolerances import CHART_SERIES
+from standoff.tracking.laws import PredictorCorrector
+from standoff.tracking.options import pack_options
+from standoff.tracking.rows import AnswerRows
+
+Array = NDArray[np.float64]
+
+CHART: Final = 1.5
+"""Radians: a body that has turned farther begins a new chart, as the chart ends at a full turn."""
+
+TURN, CENTRE, VELOCITY, SPIN = 0, 3, 6, 9
+WIDTH = 12
+"""A free body's part of what is integrated; behind all of them the energies lost and given."""
+
+
+@dataclass(frozen=True, eq=False)
+class SystemSolution(KeepsReadOnly):
+    """Bodies over time, at the steps that the method chose.
+
+    Attributes
+    ----------
+    run : SystemRun
+        The states at these steps: poses, velocities, distances, forces and energies, as of an
+        operator's run.
+    events : tuple of SystemEvent
+        In order of time.
+    evaluations : int
+        Of the right-hand side.
+    """
+
+    run: SystemRun
+    events: tuple[SystemEvent, ...]
+    evaluations: int
+
+    def __repr__(self) -> str:
+        return (
+            f"<SystemSolution of {len(self.run.times)} steps to {self.run.times[-1]:g} s, "
+            f"{len(self.events)} events, {self.evaluations} evaluations>"
+        )
+
+
+def solve_bodies(
+    system: System, end: float, options: dict[str, Any], allow_overlap: bool
+) -> SystemSolution:
+    """Solve a system's motion from its bodies' own poses and twists, at time 0."""
+    if system.coupler is not None:
+        raise StandoffError(
+            "The system has a coupler, whose wrench is held from reading to reading: an Operator "
+            "follows that, an adaptive method does not.",
+            "system",
+            system,
+        )
+    legs = _Bodies(system, float(options["max_step"]), allow_overlap)
+    found = legs.solve(0.0, np.zeros(WIDTH * len(legs.free) + 2), end, options)
+    states = np.array(found.states)
+    accounts = np.array(legs.accounts)
+    for array in (states, accounts):
+        array.flags.writeable = False
+    return SystemSolution(SystemRun(system, states, accounts), found.events, legs.evaluations)
+
+
+class _Bodies(Legs):
+    """A system of rigid bodies. `data` is a state as the operator's, whose trackers go along."""
+
+    def __init__(self, system: System, dt: float, allow_overlap: bool) -> None:
+        self.system = system
+        law = PredictorCorrector(predictor="none", depth="local").resolved(dt)
+        self.packed = pack_system(system, dt, 0, False, pack_options(law))
+        prepare_simulation(loads=True)
+        self.data = started(system, law, dt, 0.0, allow_overlap).data.copy()
+        self.loads = np.zeros(K.N_LOAD * len(system.bodies) + 2)
+        self.free = [k for k, body in enumerate(system.bodies) if body.kind == FREE]
+        self.masses = [system.bodies[k].mass_properties for k in self.free]
+        self.inverses = [np.linalg.inv(m.inertia) for m in self.masses if m is not None]
+        self.turns = [np.eye(3)] * len(self.free)
+        self.account = np.zeros(entries.ACCOUNT_HEADER + K.N_TOUCH * len(system.pairs))
+        self.accounts: list[Array] = []
+        self.so_far = np.zeros(2)
+        self.fresh = True
+
+    def begun(self, t: float, y: Array) -> Array:
+        """The state in charts about the rotations that it has."""
+        if self.fresh:
+            y = self._first()
+            self.fresh = False
+        else:
+            self.turns = [
+                self._rotation(k, y[WIDTH * k : WIDTH * k + 3]) for k in range(len(self.free))
+            ]
+        begun = y.copy()
+        for k in range(len(self.free)):
+            begun[WIDTH * k : WIDTH * k + 3] = 0.0
+        return begun
+
+    def _first(self) -> Array:
+        parts = []
+        for k, number in enumerate(self.free):
+            row = self.data[K.body_row(number) :]
+            self.turns[k] = row[K.X_ROTATION : K.X_ROTATION + 9].reshape(3, 3).copy()
+            parts += [np.zeros(3), row[K.X_CENTRE : K.X_SPIN + 3]]
+        return np.concatenate([*parts, [0.0, 0.0]])
+
+    def _rotation(self, k: int, f: Array) -> Array:
+        turned = scipy.spatial.transform.Rotation.from_rotvec(f).as_matrix()
+        R = self.turns[k] @ turned
+        # its roundoff alone, so that many charts do not add it up
+        return np.asarray(0.5 * R @ (3.0 * np.eye(3) - R.T @ R))
+
+    def place(self, t: float, y: Array) -> Array:
+        """Put the bodies where a state has them, track their pairs, and return the loads."""
+        self.data[K.S_TIME] = t
+        for number, body in enumerate(self.system.bodies):
+            if body.kind == DRIVEN:
+                o = K.body_row(number)
+                self.data[o : o + K.N_DRIVEN] = driven_row(body, t)
+        for k, number in enumerate(self.free):
+            o, part = K.body_row(number), y[WIDTH * k : WIDTH * (k + 1)]
+            self.data[o : o + 9] = self._rotation(k, part[:3]).ravel()
+            self.data[o + K.X_CENTRE : o + K.X_SPIN + 3] = part[CENTRE:]
+        why = entries.load_system(self.packed, self.data, self.loads, self.account)
+        if why != T.FINE:
+            raise StandoffError(
+                f"At {t:g} s a body's motion was no longer finite: take a smaller tolerance or a "
+                "shorter max_step."
+            )
+        return self.loads
+
+    def slope(self, t: float, y: Array) -> Array:
+        self.evaluations += 1
+        loads = self.place(t, y)
+        rates = np.empty_like(y)
+        for k, number in enumerate(self.free):
+            part, mass = y[WIDTH * k : WIDTH * (k + 1)], self.masses[k]
+            assert mass is not None
+            o = K.body_row(number)
+            R = self.data[o : o + 9].reshape(3, 3)
+            own = loads[K.N_LOAD * number : K.N_LOAD * (number + 1)]
+            rate = rates[WIDTH * k : WIDTH * (k + 1)]
+            rate[TURN:CENTRE] = chart_rate(part[:3], self.inverses[k] @ (R.T @ part[SPIN:]))
+            rate[CENTRE:VELOCITY] = part[VELOCITY:SPIN]
+            rate[VELOCITY:SPIN] = self.system.gravity + own[:3] / mass.mass
+            rate[SPIN:] = own[3:]
+        rates[-2:] = loads[-2:]
+        return rates
+
+    def distances(self, t: float, y: Array) -> list[float]:
+        self.place(t, y)
+        found: list[float] = distances(self.system, self.data[None])[0].tolist()
+        return found
+
+    def features(self, t: float, y: Array) -> Features:
+        self.place(t, y)
+        at = K.STATE_HEADER + K.N_BODY * len(self.system.bodies)
+        found = []
+        for number, pair in enumerate(self.system.pairs):
+            row = self.data[at + K.N_PAIR * number + T.N_STATE :]
+            mode = AnswerRows(row[: T.N_OUT]).mode
+            a, b = (self.system.bodies[k].body for k in pair)
+            found.append((str(feature_of(a, int(mode[0]))), str(feature_of(b, int(mode[2])))))
+        return found
+
+    def ends(self) -> list[Callable[[float, Array], float]]:
+        return [_left(k) for k in range(len(self.free))]
+
+    def kept(self, t: float, y: Array) -> Array:
+        """A row of the record, which counts the steps alone, not what was tried between them."""
+        counts = slice(K.S_DEEPEST, K.S_UNCERTIFIED + 1)
+        self.data[counts] = self.so_far
+        self.place(t, y)
+        self.so_far = self.data[counts].copy()
+        row = self.data.copy()
+        row[K.S_LOST], row[K.S_GIVEN] = y[-2:]
+        self.accounts.append(self.account.copy())
+        return row
+
+
+def _left(k: int) -> Callable[[float, Array], float]:
+    """What is left of a body's chart."""
+
+    def left(t: float, y: Array) -> float:
+        f = y[WIDTH * k : WIDTH * k + 3]
+        return CHART - float(np.sqrt(f @ f))
+
+    return left
+
+
+def chart_rate(f: Array, w: Array) -> Array:
+    """J_r(f)⁻¹ w: the rate of f where exp(f) turns at the body rate w; less than a full turn."""
+    square = float(f @ f)
+    half = 0.5 * np.sqrt(square)
+    near = half < CHART_SERIES
+    b = 1.0 / 12.0 + square / 720.0 if near else (1.0 - half / np.tan(half)) / square
+    c = np.cross(f, w)
+    return np.asarray(w + 0.5 * c + b * np.cross(f, c))
