@@ -134,3 +134,7 @@ def test_what_a_system_cannot_be_given_is_refused() -> None:
         sim.solve(system, duration=0.01, method="RK4")
     with pytest.raises(so.StandoffError, match="GeneralisedSystem or a System"):
         sim.solve(7, duration=0.01)  # type: ignore[call-overload]
+    coupler = sim.VirtualCoupler(stiffness=100.0, damping=0.1, max_force=5.0, max_age=3e-3)
+    coupled = sim.System(system.bodies, sim.HuntCrossley(stiffness=1e6), coupler=coupler, tool=1)
+    with pytest.raises(so.StandoffError, match="has a coupler"):
+        sim.solve(coupled, duration=0.01)
