@@ -20,7 +20,6 @@ from standoff.bodies.features import feature_of
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
 from standoff.kernels.entries import simulation as entries
-from standoff.kernels.entries.preparing import prepare_simulation
 from standoff.kernels.state import arrays as T
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation.adaptive_legs import Features, Legs, SystemEvent
@@ -98,7 +97,6 @@ class _Bodies(Legs):
         self.system = system
         law = PredictorCorrector(predictor="none", depth="local").resolved(dt)
         self.packed = pack_system(system, dt, 0, False, pack_options(law))
-        prepare_simulation(loads=True)
         self.data = started(system, law, dt, 0.0, allow_overlap).data.copy()
         self.loads = np.zeros(K.N_LOAD * len(system.bodies) + 2)
         self.free = [k for k, body in enumerate(system.bodies) if body.kind == FREE]

@@ -60,12 +60,10 @@ def prepare(paper: bool, planar: bool, runs: bool = False) -> None:
     ready_for.add((paper, planar, runs))
 
 
-def prepare_simulation(loads: bool = False) -> None:
-    """Have ready what a simulated system runs by; what its contacts do alone, too, if asked for."""
-    needed = [simulation.run_system, *([simulation.load_system] if loads else [])]
-    for each in needed:
-        if isinstance(each, Entry):
-            each.prepare()
+def prepare_simulation() -> None:
+    """Have ready what a simulated system runs by."""
+    if isinstance(simulation.run_system, Entry):
+        simulation.run_system.prepare()
     for name in SCIPY:
         importlib.import_module(name)
 
