@@ -22,6 +22,7 @@ CATALOGUE: tuple[Entry, ...] = (
     _entry("2", "Two patches and ΔR", "Patches", "patches", "witness_pair"),
     _entry("3", "Ψ as a state", "Realisations", "realisations", "figure_3"),
     _entry("4", "Ψ evaluated", "Realisations", "realisations", "figure_4"),
+    _entry("5", "Device, coupler, tracker in one", "In the loop", "in_the_loop", "figure_5"),
     _entry("6", "Witness lines", "Simulation A", "simulation_a", "figure_6"),
     _entry("7", "Errors and gains", "Simulation A", "simulation_a", "figure_7"),
     _entry("8", "Regions and a spiral", "Simulation B", "simulation_b", "figure_8"),

@@ -68,9 +68,9 @@ ITEMS: tuple[Item, ...] = (
     ),
     Item(
         "Fig. 5: dynamics, virtual coupler, device and tracker in one integration",
-        "absent", "",
-        "–",
-        (),
+        "done", "with a simulated device",
+        "[in the loop](in-the-loop.md)",
+        ("5",),
     ),
     Item(
         "other feedbacks, lower gain online",
@@ -188,9 +188,9 @@ ITEMS: tuple[Item, ...] = (
     ),
     Item(
         "haptic device and rendering (application)",
-        "absent", "",
-        "–",
-        (),
+        "partial", "a simulated device",
+        "[the virtual coupler](../coupler.md)",
+        ("5",),
     ),
     Item(
         "bodies that are not convex, broad phase (future work)",

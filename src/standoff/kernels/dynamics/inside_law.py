@@ -4,7 +4,7 @@ Apart the rates are the paper's, w = -M⁻¹(K Psi + b); at contact, where M los
 the contact-regular form, y' = -J⁻¹(K r + r_t), of which the parameters are the first four.
 """
 
-from standoff.kernels.algebra.vectors import dot, norm, sub
+from standoff.kernels.algebra.vectors import dot, norm, scale, sub
 from standoff.kernels.body.features import pair_span
 from standoff.kernels.body.trimming import HIT_LIMIT
 from standoff.kernels.compiler.decorators import kernel, shared, stack_reals
@@ -41,6 +41,20 @@ def normal_at(pair, pose, place, known):
     if not sharp:
         return known, False
     return (n if dot(n, known) >= 0.0 else (-n[0], -n[1], -n[2])), True
+
+
+@kernel
+def stage_normal(pair, pose, place, near, known):
+    """The normal of a contact at a place that the law has come to: near contact what the features
+    give; else the direction between the witness points, as swept bodies touch by it. A certificate
+    has its own, which tells nothing of the points while the law lags behind them.
+    """
+    if near:
+        return normal_at(pair, pose, place, known)[0]
+    jet_a, jet_b = pair_jets(pair, pose, place)
+    gap = sub(jet_b[0], jet_a[0])
+    d = norm(gap)
+    return scale(1.0 / d, gap) if d > 0.0 else known
 
 
 @kernel

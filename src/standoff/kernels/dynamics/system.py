@@ -24,7 +24,12 @@ from standoff.kernels.dynamics.arrays import (
 )
 from standoff.kernels.dynamics.coupled_tool import add_pull, coupled
 from standoff.kernels.dynamics.forces import Witness, touch_pair
-from standoff.kernels.dynamics.inside_law import near_contact, normal_at, place_ahead, stage_rates
+from standoff.kernels.dynamics.inside_law import (
+    near_contact,
+    place_ahead,
+    stage_normal,
+    stage_rates,
+)
 from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
 from standoff.kernels.dynamics.rigid_body import power, write_rates
 from standoff.kernels.state.arrays import POSE_A, POSE_B, TWIST_A, TWIST_B
@@ -52,8 +57,11 @@ def touch_tracked(system, pair, state, rows, first, scratch):
     """A pair's contact at the tracker's own answer, at the start of a tick; the power it loses."""
     before = read_state(pointer(state, pair_row(system, pair)))
     write_motion(system, pair, rows, first, scratch.motion)
-    witness = Witness(before.place, motion_of(scratch).pose, before.normal)
+    pose, n = motion_of(scratch).pose, before.normal
     packed = packed_pair(system, pair)
+    if system.layout[I_INSIDE] and not near_contact(packed, before):
+        n = stage_normal(packed, pose, before.place, False, n)
+    witness = Witness(before.place, pose, n)
     return touch_pair(system, packed, pair, witness, rows, first, scratch.motion, scratch)
 
 
@@ -69,9 +77,7 @@ def touch_ahead(system, pair, state, s, rates, work, scratch):
     o = pair_rates(system, pair)
     place = place_ahead(packed, before.place, s, read_four(rates, o))
     near = near_contact(packed, before)
-    n = before.normal
-    if near:
-        n = normal_at(packed, motion.pose, place, n)[0]
+    n = stage_normal(packed, motion.pose, place, near, before.normal)
     w = stage_rates(packed, motion, place, n, near, system.options, before.integrated, work)
     for k in range(4):
         rates[o + k] = w[k]

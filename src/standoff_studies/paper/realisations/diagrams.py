@@ -28,56 +28,56 @@ def draw_integrated(axes: Axes) -> None:
     """Fig. 3: Psi is a state, integrated from M w + b."""
     _prepare(axes)
     _draw_law(axes)
-    _box(axes, (5.3, 3.0), "M", 0.35)
+    box(axes, (5.3, 3.0), "M", 0.35)
     _sum(axes, (6.5, 3.0))
-    _box(axes, (7.9, 3.0), "∫ dt", 0.5, STATE)
-    _arrow(axes, [(4.15, 3.0), (4.95, 3.0)], "w")
-    _arrow(axes, [(5.65, 3.0), (6.32, 3.0)], "Mw")
-    _arrow(axes, [(6.68, 3.0), (7.4, 3.0)], "Ψ'")
+    box(axes, (7.9, 3.0), "∫ dt", 0.5, STATE)
+    arrow(axes, [(4.15, 3.0), (4.95, 3.0)], "w")
+    arrow(axes, [(5.65, 3.0), (6.32, 3.0)], "Mw")
+    arrow(axes, [(6.68, 3.0), (7.4, 3.0)], "Ψ'")
     _loop(axes, 8.4)
-    _box(axes, (4.55, 1.6), "∫ dt", 0.5, STATE)
-    _arrow(axes, [(4.55, 3.0), (4.55, 1.92)])
-    _arrow(axes, [(4.55, 1.28), (4.55, 0.82)], "q", (0.18, 0.0))
+    box(axes, (4.55, 1.6), "∫ dt", 0.5, STATE)
+    arrow(axes, [(4.55, 3.0), (4.55, 1.92)])
+    arrow(axes, [(4.55, 1.28), (4.55, 0.82)], "q", (0.18, 0.0))
     _draw_matrices(axes, 4.7)
-    _arrow(axes, [(5.3, 0.82), (5.3, 2.68)], "M", (0.17, -0.3), dashed=True)
-    _arrow(axes, [(6.5, 0.82), (6.5, 2.82)], "b", (0.15, -0.5), dashed=True)
+    arrow(axes, [(5.3, 0.82), (5.3, 2.68)], "M", (0.17, -0.3), dashed=True)
+    arrow(axes, [(6.5, 0.82), (6.5, 2.82)], "b", (0.15, -0.5), dashed=True)
 
 
 def draw_evaluated(axes: Axes) -> None:
     """Fig. 4: Psi is evaluated from Eqs. (1)-(4) at the parameters and the poses."""
     _prepare(axes)
     _draw_law(axes)
-    _box(axes, (5.3, 3.0), "∫ dt", 0.5, STATE)
-    _box(axes, (7.5, 3.0), "Ψ(q, poses)\nEqs. (1)–(4)", 0.95, height=0.45)
-    _arrow(axes, [(4.15, 3.0), (4.8, 3.0)], "w")
-    _arrow(axes, [(5.8, 3.0), (6.55, 3.0)], "q")
+    box(axes, (5.3, 3.0), "∫ dt", 0.5, STATE)
+    box(axes, (7.5, 3.0), "Ψ(q, poses)\nEqs. (1)–(4)", 0.95, height=0.45)
+    arrow(axes, [(4.15, 3.0), (4.8, 3.0)], "w")
+    arrow(axes, [(5.8, 3.0), (6.55, 3.0)], "q")
     _loop(axes, 8.45)
-    _arrow(axes, [(6.1, 3.0), (6.1, 0.82)], "q", (0.18, 0.0))
+    arrow(axes, [(6.1, 3.0), (6.1, 0.82)], "q", (0.18, 0.0))
     _draw_matrices(axes, 4.7)
-    _arrow(axes, [(7.9, 0.5), (7.9, 2.55)], "poses", (0.42, 0.0), motion=True)
+    arrow(axes, [(7.9, 0.5), (7.9, 2.55)], "poses", (0.42, 0.0), motion=True)
 
 
 def _draw_law(axes: Axes) -> None:
     """What both share: w = M⁻¹(-K Psi - b)."""
-    _box(axes, (1.0, 3.0), "−K", 0.4)
+    box(axes, (1.0, 3.0), "−K", 0.4)
     _sum(axes, (2.3, 3.0))
-    _box(axes, (3.7, 3.0), "M⁻¹", 0.45)
-    _arrow(axes, [(1.4, 3.0), (2.12, 3.0)], "−KΨ")
-    _arrow(axes, [(2.48, 3.0), (3.25, 3.0)])
+    box(axes, (3.7, 3.0), "M⁻¹", 0.45)
+    arrow(axes, [(1.4, 3.0), (2.12, 3.0)], "−KΨ")
+    arrow(axes, [(2.48, 3.0), (3.25, 3.0)])
 
 
 def _draw_matrices(axes: Axes, x: float) -> None:
     """The box that evaluates M and b, the motion that enters it, and where they go."""
-    _box(axes, (x, 0.5), "M(q, poses),  b(q, poses, twists)\nEqs. (9), (10)", 2.25, height=0.32)
-    _arrow(axes, [(8.8, 0.5), (x + 2.25, 0.5)], motion=True)
+    box(axes, (x, 0.5), "M(q, poses),  b(q, poses, twists)\nEqs. (9), (10)", 2.25, height=0.32)
+    arrow(axes, [(8.8, 0.5), (x + 2.25, 0.5)], motion=True)
     axes.text(8.9, 0.5, "bodies'\nposes\nand\ntwists", ha="left", va="center", color=style.RED)
-    _arrow(axes, [(2.9, 0.82), (2.9, 1.5), (2.3, 1.5), (2.3, 2.82)], "−b", (-0.25, 0.0), True)
-    _arrow(axes, [(3.7, 0.82), (3.7, 2.68)], "M", (-0.18, 0.0), True)
+    arrow(axes, [(2.9, 0.82), (2.9, 1.5), (2.3, 1.5), (2.3, 2.82)], "−b", (-0.25, 0.0), True)
+    arrow(axes, [(3.7, 0.82), (3.7, 2.68)], "M", (-0.18, 0.0), True)
 
 
 def _loop(axes: Axes, x: float) -> None:
     """Psi, fed back from the right end of the row to its left end."""
-    _arrow(axes, [(x, 3.0), (9.2, 3.0), (9.2, 3.85), (0.2, 3.85), (0.2, 3.0), (0.6, 3.0)])
+    arrow(axes, [(x, 3.0), (9.2, 3.0), (9.2, 3.85), (0.2, 3.85), (0.2, 3.0), (0.6, 3.0)])
     axes.text(4.7, 3.98, "Ψ", ha="center", va="bottom")
 
 
@@ -87,7 +87,7 @@ def _prepare(axes: Axes) -> None:
     axes.axis("off")
 
 
-def _box(
+def box(
     axes: Axes,
     centre: Spot,
     text: str,
@@ -95,6 +95,7 @@ def _box(
     colour: str = STRAIGHT,
     height: float = HALF_HEIGHT,
 ) -> None:
+    """A box with its text; one that integrates has a thick rim."""
     corner = centre[0] - half_width, centre[1] - height
     thick = 2.2 if colour == STATE else 1.2
     axes.add_patch(
@@ -117,7 +118,7 @@ def _sum(axes: Axes, centre: Spot) -> None:
     axes.text(*centre, "+", ha="center", va="center", zorder=4)
 
 
-def _arrow(
+def arrow(
     axes: Axes,
     spots: Sequence[Spot],
     text: str = "",
