@@ -151,16 +151,22 @@ def test_a_free_asymmetric_body_keeps_energy_and_momentum(method: str) -> None:
     assert np.abs(R @ R.transpose(0, 2, 1) - np.eye(3)).max() < 1e-15 * 4
 
 
-def pressed(tracker: str, method: str, dt: float, end: float = 0.02) -> np.ndarray:
-    """A tilted ellipsoid pressed into another all the while: every stage has a contact force."""
+TILTED = so.shapes.ellipsoid([0.15, 0.2, 0.1])
+
+
+def pressed(
+    tracker: str, method: str, dt: float, body: so.Body = TILTED, height: float = 0.3
+) -> np.ndarray:
+    """A tilted body pressed into an ellipsoid for 20 ms: every stage has a contact force."""
+    end = 0.02
     contact = sim.HuntCrossley(stiffness=2e4, damping=0.3, friction=0.3, slip_speed=0.5, depth=0.02)
     lower = sim.RigidBody.fixed(so.shapes.ellipsoid([0.4, 0.3, 0.2]))
     turn = so.Pose.exp([0.3, -0.2, 0.4]).rotation
     twist = so.Twist([0.3, 0.2, 0.0], [1.0, -2.0, 0.5])
     upper = sim.RigidBody.free(
-        so.shapes.ellipsoid([0.15, 0.2, 0.1]),
+        body,
         density=1000.0,
-        pose=so.Pose(turn, [0.03, 0.02, 0.3]),
+        pose=so.Pose(turn, [0.03, 0.02, height]),
         twist=twist,
     )
     system = sim.System([lower, upper], contact)
@@ -182,6 +188,16 @@ def test_the_whole_operator_has_its_methods_order(method: str) -> None:
     errors = [np.abs(pressed("inside", method, dt) - exact).max() for dt in STEPS]
     found = np.log2(np.array(errors[:-1]) / errors[1:])
     assert found == pytest.approx(ORDERS[method], abs=0.25), errors
+
+
+@pytest.mark.parametrize("method", ["heun", "rk4"])
+def test_swept_bodies_push_along_their_witness_points_at_every_stage(method: str) -> None:
+    """A capsule's core is a segment, apart from what the capsule touches."""
+    capsule = so.shapes.capsule(0.1, 0.1)
+    exact = pressed("inside", "rk4", 0.02 / 1024, capsule, 0.295)
+    errors = [np.abs(pressed("inside", method, dt, capsule, 0.295) - exact).max() for dt in STEPS]
+    found = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert found == pytest.approx(ORDERS[method], abs=0.4), errors
 
 
 def test_a_tracker_beside_is_of_first_order_whatever_the_method() -> None:
