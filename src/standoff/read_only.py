@@ -21,7 +21,7 @@ class KeepsReadOnly:
     def __getstate__(self) -> Any:
         # With the same arrays named once more: pickles and copies keep what is one object one.
         state = object.__getstate__(self)
-        return state, list(_locked(state))
+        return state, list(locked(state))
 
     def __setstate__(self, stored: Any) -> None:
         state, locked = stored
@@ -33,13 +33,13 @@ class KeepsReadOnly:
             array.flags.writeable = False
 
 
-def _locked(value: Any) -> Iterator[np.ndarray[Any, Any]]:
+def locked(value: Any) -> Iterator[np.ndarray[Any, Any]]:
     """The read-only arrays in a value."""
     if isinstance(value, np.ndarray):
         if not value.flags.writeable:
             yield value
     elif isinstance(value, dict):
-        yield from _locked(tuple(value.values()))
+        yield from locked(tuple(value.values()))
     elif isinstance(value, list | tuple):
         for item in value:
-            yield from _locked(item)
+            yield from locked(item)

@@ -16,7 +16,7 @@ from standoff.kernels.pair import events as N
 from standoff.kernels.paper.voronoi import voronoi_switch
 from standoff.kernels.state.arrays import RESET_FOOT
 from standoff.kernels.values import Pair, Place, Work
-from standoff.tracking.inputs import place
+from standoff.tracking.places import put
 from standoff.tracking.rows import StateRow
 from standoff_studies.paper.bodies import lens_of_patches, planar_body
 
@@ -84,7 +84,7 @@ def test_voronoi_tests_lead_to_the_nearest_feature(name: str) -> None:
         truth = so.distance(body, POINT, REST, pose)
         for feature, parameters in begins:
             state = StateRow()
-            place(state, 0, body, feature, parameters)
+            put(state, 0, body, (feature, parameters))
             mode, q = state.mode.astype(np.int64), state.q.copy()
             counts[:] = 0
             apart = [distance_at(body, mode, q, pose)]

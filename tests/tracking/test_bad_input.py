@@ -242,9 +242,15 @@ def test_a_state_stored_by_another_version():
     """The kernels read and write a state by address: a shorter one would be overrun."""
     tracker = so.Tracker(LENS, POINT)
     state = tracker.start(HOME, AWAY)
-    for data in (state.data[:39].copy(), state.data.astype(np.float32)):
-        with pytest.raises(ValueError, match="stored by another version"):
-            tracker.step(so.TrackerState(data, state.proximity), HOME, AWAY)
+    block = state.proximity._out
+    for data in (block[:39].copy(), block[:120].copy(), block.astype(np.float32)):
+        strange = so.TrackerState(so.Proximity(LENS, tracker.b, data))
+        for ask in (
+            lambda s=strange: tracker.step(s, HOME, AWAY),
+            lambda s=strange: tracker.buffer(s),
+        ):
+            with pytest.raises(ValueError, match="stored by another version"):
+                ask()
 
 
 def test_names_and_numbers_of_another_type():

@@ -172,12 +172,11 @@ def test_an_array_of_the_wrong_kind_is_refused_and_compiles_nothing():
     before = len(kernels.step_predicted.signatures)
     frozen = state.data.copy()
     frozen.flags.writeable = False
-    flat = np.eye(4)[:3].ravel()
-    out, events = np.empty(100), np.empty(1000)
-    with pytest.raises(TypeError, match="state is readonly array"):
-        kernels.step(
-            tracker.packed, np.tile(flat, 3), True, 1e-2, tracker.options, frozen, out, events,
-        )  # fmt: skip
+    with pytest.raises(TypeError, match="block is readonly array"):
+        kernels.step_predicted(tracker.table.address, frozen)
+    with pytest.raises(TypeError):  # of a terse entry, whose caller converts them
+        kernels.value_predicted(tracker.table.address, *[frozen] * 5, 1e-2, frozen)
     with pytest.raises(TypeError, match="reals is array\\(float32"):
         queries.curve_jet(np.zeros(3, dtype=np.float32), 0, 0, 0.5)
     assert len(kernels.step_predicted.signatures) == before
+    assert len(kernels.value_predicted.signatures) == before

@@ -40,6 +40,7 @@ from standoff.tracking.choices import positive_number
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw
 from standoff.tracking.old_spellings import takes_a_law
+from standoff.tracking.rows import Block
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
@@ -347,7 +348,7 @@ class PointTracker(KeepsReadOnly):
 class _Outside(Tracker):
     """The tracker for a point that is known to be outside."""
 
-    def _name_overlap(self, data: Array, out: Array, motion: Array) -> None:
+    def _name_overlap(self, block: Block) -> None:
         """No overlap is to be proven: the boundary has told the side."""
 
 

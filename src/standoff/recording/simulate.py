@@ -32,7 +32,7 @@ from standoff.tracking.inputs import (
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.old_spellings import takes_a_tracker
 from standoff.tracking.proximity import Event, Proximity
-from standoff.tracking.rows import poses_of, twists_of
+from standoff.tracking.rows import Block, poses_of, twists_of
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
@@ -293,10 +293,10 @@ class _Run:
             return state, at
         if stop < end:
             data = self._loop(state, moves, steps, first, at, stop)
-        data.flags.writeable = False
-        a, b = self.tracker.a, self.tracker.b
-        answer = Proximity(a, b, self.answers[stop - 1].copy(), (), float(data[K.TIME]))
-        return TrackerState(data, answer), stop
+        block = Block.empty(data, moves[stop - 1 - first], steps[stop - 1 - first], True)
+        block.out[:] = self.answers[stop - 1]
+        answer = Proximity(self.tracker.a, self.tracker.b, block.kept())
+        return TrackerState(answer), stop
 
     def _loop(
         self,

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.bodies.packing import Ints
 from standoff.kernels.entries import tracker as kernels
-from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
-from standoff.tracking.rows import NO_TWIST, AnswerRows, StateRow, motion_row
+from standoff.kernels.state.options import names_paper_law
+from standoff.tracking.address_table import AddressTable
+from standoff.tracking.rows import NO_TWIST, AnswerRows, Block, StateRow, motion_row
 
 Array = NDArray[np.float64]
 Pair = tuple[Ints, Array, Ints, Array]
@@ -67,7 +68,9 @@ def step(
     pair: Pair, frame: Frame, h: float, options: Array, state: StateRow
 ) -> tuple[AnswerRows, bool]:
     """One frame of the law that the options name, h seconds after the last: as `start`."""
-    answer, log = AnswerRows.empty(), np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
-    motion, has_twist = frame.row, frame.has_twist
-    bad = kernels.step(pair, motion, has_twist, h, options, state.data, answer.data, log)
-    return answer, bad == K.FINE
+    block = Block.empty(state.data, frame.row, h, frame.has_twist)
+    table = AddressTable((*pair, options))
+    in_place = kernels.step_paper if names_paper_law(options) else kernels.step_predicted
+    bad = in_place(table.address, block.data)
+    state.data[:] = block.state
+    return AnswerRows(block.out), bad in (K.FINE, K.UNDECIDED)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError, StandoffTypeError
+from standoff.kernels.state.arrays import NOT_GIVEN
 from standoff.kernels.tolerances import FARTHEST
 from standoff.motion import Pose, PoseLike, Twist, TwistLike
 from standoff.motion.inputs import text
@@ -23,6 +24,45 @@ LAST_ROW = [0.0, 0.0, 0.0, 1.0]
 PLAIN = (np.float64, np.float32)
 # Where R (row-major) and p stand in a 4x4 matrix.
 ROTATION_THEN_POSITION = np.array([0, 1, 2, 4, 5, 6, 8, 9, 10, 3, 7, 11])
+
+
+ABSENT = np.array([NOT_GIVEN])
+"""Stands for a twist that was not given."""
+
+
+def plain(
+    pose_a: Any, pose_b: Any, twist_a: Any, twist_b: Any
+) -> tuple[tuple[Array, Array, Array, Array], int]:
+    """Poses (4, 4) and twists for the compiled step to read and to check, and poses repaired.
+
+    Arrays are given on as they are.
+    """
+    repaired = 0
+    if type(pose_a) is not np.ndarray:
+        pose_a, mark = matrix_and_mark(pose_a)
+        repaired += mark
+    if type(pose_b) is not np.ndarray:
+        pose_b, mark = matrix_and_mark(pose_b)
+        repaired += mark
+    if twist_a is None:
+        twist_a = ABSENT
+    elif type(twist_a) is not np.ndarray:
+        twist_a = flat_twist(twist_a, pose_a)
+    if twist_b is None:
+        twist_b = ABSENT
+    elif type(twist_b) is not np.ndarray:
+        twist_b = flat_twist(twist_b, pose_b)
+    return (pose_a, pose_b, twist_a, twist_b), repaired
+
+
+def matrix_and_mark(pose: PoseLike) -> tuple[Array, bool]:
+    """The matrix (4, 4) of a pose, and whether its rotation was repaired."""
+    pose = Pose.of(pose)
+    matrix = np.empty((4, 4))
+    matrix[:3, :3] = pose.rotation
+    matrix[:3, 3] = pose.translation
+    matrix[3] = LAST_ROW
+    return matrix, pose.repaired
 
 
 def flat_pose(pose: PoseLike) -> Array:

@@ -11,6 +11,7 @@ from standoff.bodies.body import Body
 from standoff.bodies.features import Feature as Feature
 from standoff.bodies.features import feature_of
 from standoff.kernels.pair import events as N
+from standoff.kernels.state import arrays as K
 from standoff.tracking.rows import Answer
 from standoff.tracking.rows import Counts as Counts
 
@@ -91,22 +92,27 @@ class Proximity(Answer):
         one, as `Pose.repaired` tells of each.
     """
 
-    __slots__ = ("events", "repaired", "time")
+    __slots__ = ("repaired",)
 
-    def __init__(
-        self,
-        a: Body,
-        b: Body,
-        out: Array,
-        events: tuple[Event, ...] = (),
-        time: float = 0.0,
-        poses: tuple[Array, Array] | None = None,
-        repaired: int = 0,
-    ) -> None:
-        super().__init__(a, b, out, poses)
-        self.repaired = repaired
-        self.events = events
-        self.time = time
+    def __init__(self, a: Body, b: Body, out: Array, repaired: int = 0) -> None:
+        out.setflags(write=False)
+        self._a, self._b, self._out, self.repaired = a, b, out, repaired
+
+    @property
+    def time(self) -> float:
+        block = self._out
+        return float(block[K.BLOCK_STATE + K.TIME]) if len(block) >= K.BLOCK_EVENTS else 0.0
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        block = self._out
+        count = int(block[K.OUT_COUNTS + N.EVENTS])
+        if not count or len(block) < K.BLOCK_EVENTS:
+            return ()
+        first = K.BLOCK_EVENTS
+        return events_of(
+            self._a, self._b, block[first : first + N.EVENT_COLUMNS * count], self.time
+        )
 
     def witness_set(self) -> WitnessSet:
         """All pairs of witness points that this answer could have named (docs/touching.md)."""

@@ -44,6 +44,57 @@ def twists_of(motion: Array) -> tuple[Array, Array]:
     return motion[..., K.TWIST_A : K.TWIST_B], motion[..., K.TWIST_B :]
 
 
+class Block:
+    """One frame's block of memory by name, views of it: what was given, and what came of it.
+
+    Attributes
+    ----------
+    out : (39,) array
+        The answer.
+    state : (55,) array
+        The state after it.
+    motion : (36,) array
+        Poses and twists.
+    events : (...,) array
+        The switches, flat.
+    """
+
+    __slots__ = ("data",)
+
+    def __init__(self, data: Array) -> None:
+        self.data = data
+
+    @classmethod
+    def empty(cls, state: Array, motion: Array, h: float = 0.0, has_twist: bool = False) -> Block:
+        """A long block before its frame; the state is copied."""
+        block = cls(np.empty(K.N_LONG_BLOCK))
+        block.data[: K.N_OUT] = np.nan
+        block.state[:], block.motion[:] = state, motion
+        block.data[K.BLOCK_TIME_STEP], block.data[K.BLOCK_HAS_TWIST] = h, has_twist
+        return block
+
+    @property
+    def out(self) -> Array:
+        return self.data[: K.N_OUT]
+
+    @property
+    def state(self) -> Array:
+        return self.data[K.BLOCK_STATE : K.BLOCK_MOTION]
+
+    @property
+    def motion(self) -> Array:
+        return self.data[K.BLOCK_MOTION : K.BLOCK_TIME_STEP]
+
+    @property
+    def events(self) -> Array:
+        return self.data[K.BLOCK_EVENTS :]
+
+    def kept(self) -> Array:
+        """A copy as short as its switches allow, for an answer to keep."""
+        count = max(K.KEPT_EVENTS, int(self.data[K.OUT_COUNTS + N.EVENTS]))
+        return self.data[: K.BLOCK_EVENTS + N.EVENT_COLUMNS * count].copy()
+
+
 class Counts(NamedTuple):
     """What an answer took.
 
@@ -230,14 +281,12 @@ class AnswerRows:
 class Answer(KeepsReadOnly):
     """What the kernels answered of two bodies at two poses; `Proximity` describes the fields."""
 
-    __slots__ = ("_a", "_b", "_out", "poses")
+    __slots__ = ("_a", "_b", "_out")
 
-    def __init__(
-        self, a: Body, b: Body, out: Array, poses: tuple[Array, Array] | None = None
-    ) -> None:
-        out.flags.writeable = False
+    def __init__(self, a: Body, b: Body, out: Array) -> None:
+        # the answer's row, or a block, which begins with it; fields are read when asked for
+        out.setflags(write=False)
         self._a, self._b, self._out = a, b, out
-        self.poses = poses
 
     @property
     def bodies(self) -> tuple[Body, Body]:
@@ -247,7 +296,17 @@ class Answer(KeepsReadOnly):
     @property
     def row(self) -> Array:
         """The answer as the kernels write it, read-only; laid out in ``kernels.frame``."""
-        return self._out
+        return self._out[: K.N_OUT]
+
+    @property
+    def poses(self) -> tuple[Array, Array] | None:
+        """World poses (12,) that it holds for; None of an answer that was made by hand."""
+        if (
+            len(self._out) < K.BLOCK_EVENTS
+            or self._out[K.BLOCK_MOTION + K.POSE_A] != self._out[K.BLOCK_MOTION + K.POSE_A]
+        ):
+            return None
+        return poses_of(Block(self._out).motion)
 
     @property
     def distance(self) -> float:

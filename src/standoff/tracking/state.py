@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.kernels.pair import events as N
+from standoff.bodies.body import Body
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.proximity import Proximity
-from standoff.tracking.rows import AnswerRows, StateRow, motion_row, poses_of, twists_of
+from standoff.tracking.rows import Block, StateRow, motion_row, poses_of, twists_of
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
 class TrackerState(KeepsReadOnly):
     """The warm start, as a value: goes into a step and comes out of it, never changed.
+
+    Parameters
+    ----------
+    proximity : Proximity
+        Of a tracker: the block of memory that it reads has the state in it.
 
     Attributes
     ----------
@@ -28,8 +31,18 @@ class TrackerState(KeepsReadOnly):
         The answer at the frame of this state.
     """
 
-    data: Array
-    proximity: Proximity
+    __slots__ = ("_proximity",)
+
+    def __init__(self, proximity: Proximity) -> None:
+        self._proximity = proximity
+
+    @property
+    def proximity(self) -> Proximity:
+        return self._proximity
+
+    @property
+    def data(self) -> Array:
+        return Block(self._proximity._out).state
 
     @property
     def time(self) -> float:
@@ -56,9 +69,8 @@ class TrackerState(KeepsReadOnly):
 class Answering(Protocol):
     """A tracker, as its buffers see it."""
 
-    def _answer(
-        self, data: Array, out: Array, log: Array, motion: Array, repaired: int
-    ) -> tuple[TrackerState, Proximity]: ...
+    a: Body
+    b: Body
 
 
 class FrameBuffer:
@@ -83,14 +95,27 @@ class FrameBuffer:
         self.tracker = tracker
         self.has_twist = True
         self.repaired = 0
-        self._motion = motion_row(*np.zeros((2, 12)))
-        for pose in poses_of(self._motion):
+        block = Block.empty(state.data, motion_row(*np.zeros((2, 12))))
+        block.events[:] = 0.0
+        for pose in poses_of(block.motion):
             pose[[0, 4, 8]] = 1.0
+        self._take(block.data)
+
+    def _take(self, block: Array) -> None:
+        self._block = block
+        named = Block(block)
+        self._motion, self._state, self._out = named.motion, named.state, named.out
         self._pose_a, self._pose_b = poses_of(self._motion)
         self._twist_a, self._twist_b = twists_of(self._motion)
-        self._state = state.data.copy()
-        self._out = np.full(AnswerRows.size, np.nan)
-        self._events = np.zeros(N.MAX_EVENTS * N.EVENT_COLUMNS)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # views of one block, which copies of each would not be
+        kept = ("tracker", "has_twist", "repaired", "_block")
+        return {name: getattr(self, name) for name in kept}
+
+    def __setstate__(self, stored: dict[str, Any]) -> None:
+        self.__dict__.update(stored)
+        self._take(self._block)
 
     pose_a = property(lambda self: self._pose_a, doc="(12,) pose of A.")
     pose_b = property(lambda self: self._pose_b, doc="(12,) pose of B.")
@@ -99,10 +124,8 @@ class FrameBuffer:
     motion = property(lambda self: self._motion, doc="(36,) all four, one behind the other.")
     state = property(lambda self: self._state, doc="The warm start, changed in place.")
     out = property(lambda self: self._out, doc="The answer, as kernels.state.arrays lays it out.")
-    events = property(lambda self: self._events, doc="The log of switches, flat.")
+    events = property(lambda self: Block(self._block).events, doc="The log of switches, flat.")
 
     def proximity(self) -> Proximity:
         """The last answer as a value."""
-        return self.tracker._answer(
-            self.state.copy(), self.out.copy(), self.events, self.motion.copy(), self.repaired
-        )[1]
+        return Proximity(self.tracker.a, self.tracker.b, Block(self._block).kept(), self.repaired)

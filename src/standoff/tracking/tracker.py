@@ -8,46 +8,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.bodies.packing import Ints
 from standoff.errors import StandoffError, StandoffTypeError
+from standoff.kernels.compiler.entry import WrongKind
 from standoff.kernels.entries import tracker as kernels
-from standoff.kernels.entries.preparing import prepare
-from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion import PoseLike, TwistLike
-from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
 from standoff.spellings import no_attribute
 from standoff.tracking.choices import positive_number
 from standoff.tracking.inputs import (
     check_in_plane,
     check_pair,
-    flat_and_mark,
-    flat_twist,
-    refuse_twists,
-    repair,
+    plain,
     same_body,
 )
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, checked_law
 from standoff.tracking.old_spellings import ATTRIBUTES, takes_a_law, takes_places
 from standoff.tracking.options import resolved_options
-from standoff.tracking.overlap_proof import cores_overlap
 from standoff.tracking.places import PlaceLike, put
-from standoff.tracking.proximity import Proximity, events_of
-from standoff.tracking.rows import StateRow, motion_row, poses_of, twists_of
+from standoff.tracking.proximity import Proximity
+from standoff.tracking.reached_pair import UNDECIDED, ReachedPair
+from standoff.tracking.rows import Block, StateRow
 from standoff.tracking.state import FrameBuffer, TrackerState
-from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
 
 
-# Statuses of answers that a proof of overlap may decide.
-UNDECIDED = (float(Status.NOT_CERTIFIED.value),)
-
-
-@hides("check_state", "options", "packed", "planar")
-class Tracker(KeepsReadOnly):
+@hides("check_state", "in_place", "options", "packed", "planar", "table", "value")
+class Tracker(ReachedPair):
     """Keeps the minimum distance of two convex bodies while they move.
 
     Parameters
@@ -81,18 +70,14 @@ class Tracker(KeepsReadOnly):
         self.dt = positive_number(dt, "dt")
         self.law = checked_law(law)
         self.resolved_law, self.options = resolved_options(law, self.dt)
-        self.packed = self._packed()
         self.planar = a.dimension == 2 or b.dimension == 2
+        self._reach()
         self._prepare()
 
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
             raise no_attribute(self, name, ATTRIBUTES)
-
-    def _prepare(self) -> None:
-        """Load, or compile, what the frames can reach: none of them waits for it."""
-        prepare(paper=isinstance(self.law, PaperLaw), planar=self.planar)
 
     def start(
         self,
@@ -195,16 +180,41 @@ class Tracker(KeepsReadOnly):
             A state of another pair; no pose or twist; a time that is not positive, or too long for
             the paper's law; a planar pair out of its plane.
         """
-        self.check_state(state)
-        motion, has_twist, repaired = self._motion(pose_a, pose_b, twist_a, twist_b)
+        given = pose_a, pose_b, twist_a, twist_b
+        if type(state) is not TrackerState:
+            self.check_state(state)
+        before = state.proximity
+        if before._a is not self.a or before._b is not self.b:
+            self.check_state(state)
         h = self.dt if dt is None else self._frame_time(dt)
-        data = state.data.copy()
-        out = np.empty(K.N_OUT)
-        events = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
-        options = self.options
-        while bad := kernels.step(self.packed, motion, has_twist, h, options, data, out, events):
-            repaired += self._repair(bad, motion)
-        return self._answer(data, out, events, motion, repaired)
+        if self.planar:
+            return self._step_anew(state, given, h)
+        arrays = type(pose_a) is type(pose_b) is type(twist_a) is type(twist_b) is np.ndarray
+        numbers, repaired = (given, 0) if arrays else plain(*given)
+        block = np.empty(K.N_BLOCK)
+        try:
+            done = self.value(self.table.address, before._out, *numbers, h, block)
+        except WrongKind:
+            return self._step_anew(state, given, h)
+        if done == K.FINE:
+            answer = Proximity(self.a, self.b, block, repaired)
+            return TrackerState(answer), answer
+        if done == K.UNDECIDED:
+            return self._named(block, repaired)
+        return self._step_anew(state, given, h)
+
+    def _step_anew(
+        self, state: TrackerState, given: tuple[Any, Any, Any, Any], h: float
+    ) -> tuple[TrackerState, Proximity]:
+        """A step of what the compiled one does not read: says what is wrong with it, or mends it.
+
+        Also of one with more switches than its block holds.
+        """
+        self.check_state(state)
+        motion, has_twist, repaired = self._motion(*given)
+        block = Block.empty(state.data, motion, h, has_twist)
+        repaired += self._step_in(block)
+        return self._named(block.kept(), repaired)
 
     def step_into(
         self,
@@ -224,16 +234,17 @@ class Tracker(KeepsReadOnly):
             )
         if self.planar:
             check_in_plane(buffer.pose_a, buffer.pose_b)
-        h = self.dt if dt is None else self._frame_time(dt)
-        written = buffer.state, buffer.out, buffer.events
+        data = buffer._block
+        data[K.BLOCK_TIME_STEP] = self.dt if dt is None else self._frame_time(dt)
+        data[K.BLOCK_HAS_TWIST] = buffer.has_twist
         buffer.repaired = 0
-        while bad := kernels.step(
-            self.packed, buffer.motion, buffer.has_twist, h, self.options, *written
-        ):
-            buffer.repaired += self._repair(bad, buffer.motion)
-        if buffer.out[K.STATUS] in UNDECIDED:
-            self._name_overlap(buffer.state, buffer.out, buffer.motion)
-        return float(buffer.out[K.DISTANCE])
+        done = self.in_place(self.table.address, data)
+        if done != K.FINE:
+            block = Block(data)
+            buffer.repaired = self._step_in(block) if done != K.UNDECIDED else 0
+            if data[K.STATUS] in UNDECIDED:
+                self._name_overlap(block)
+        return data.item(K.DISTANCE)
 
     def buffer(self, state: TrackerState) -> FrameBuffer:
         """Arrays for ``step_into`` that begin at a state."""
@@ -268,29 +279,15 @@ class Tracker(KeepsReadOnly):
                     "state",
                     state,
                 )
-        if state.data.shape != (K.N_STATE,) or state.data.dtype != np.float64:
-            # the kernels write to it by address
+        block = state.proximity._out
+        if len(block) < K.N_BLOCK or block.dtype != np.float64:
+            # the kernels read it by address
             raise StandoffError(
-                f"The state holds {state.data.dtype} {state.data.shape}, not ({K.N_STATE},) "
-                "float64: it was stored by another version; begin with tracker.start.",
+                f"The state's block holds {len(block)} numbers of {block.dtype}, not {K.N_BLOCK} "
+                "or more of float64: it was stored by another version; begin with tracker.start.",
                 "state",
                 state,
             )
-
-    def _motion(
-        self,
-        pose_a: PoseLike,
-        pose_b: PoseLike,
-        twist_a: TwistLike | None,
-        twist_b: TwistLike | None,
-    ) -> tuple[Array, bool, int]:
-        """The poses and twists as the kernels read them; are there twists; poses repaired."""
-        (flat_a, mark_a), (flat_b, mark_b) = flat_and_mark(pose_a), flat_and_mark(pose_b)
-        xi_a, xi_b = flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
-        has_twist = twist_a is not None or twist_b is not None
-        if self.planar:
-            check_in_plane(flat_a, flat_b)
-        return motion_row(flat_a, flat_b, xi_a, xi_b), has_twist, mark_a + mark_b
 
     def _start(
         self,
@@ -302,60 +299,13 @@ class Tracker(KeepsReadOnly):
         given: int,
     ) -> TrackerState:
         motion, has_twist, repaired = self._motion(pose_a, pose_b, twist_a, twist_b)
-        out = np.empty(K.N_OUT)
+        block = Block.empty(data, motion, 0.0, has_twist)
+        state, out, motion = block.state, block.out, block.motion
         while bad := kernels.start_anywhere(
-            self.packed, motion, has_twist, self.options, data, given, out
+            self.packed, motion, has_twist, self.options, state, given, out
         ):
             repaired += self._repair(bad, motion)
-        events = np.empty(0)
-        return self._answer(data, out, events, motion, repaired)[0]
-
-    def _packed(self) -> tuple[Ints, Array, Ints, Array]:
-        """What the kernels read of both bodies."""
-        return self.a.ints, self.a.reals, self.b.ints, self.b.reals
-
-    def __setstate__(self, stored: Any) -> None:
-        super().__setstate__(stored)
-        # the bodies' own: in another process their formulas have other addresses
-        self.packed = self._packed()
-        self._prepare()
-
-    def _repair(self, why: int, motion: Array) -> int:
-        """Repair what the kernel has refused, in place, if it is a rounded pose: 1 of them.
-
-        Raises
-        ------
-        ValueError
-            It is something worse.
-        """
-        if why == K.BAD_TWIST:
-            refuse_twists(*twists_of(motion))
-        first = why == K.BAD_POSE_A
-        flat_a, flat_b = poses_of(motion)
-        repair(flat_a if first else flat_b, "pose_a" if first else "pose_b")
-        return 1
-
-    def _answer(
-        self, data: Array, out: Array, log: Array, motion: Array, repaired: int
-    ) -> tuple[TrackerState, Proximity]:
-        if out[K.STATUS] in UNDECIDED:
-            self._name_overlap(data, out, motion)
-        data.flags.writeable = False
-        time = float(data[K.TIME])
-        count = int(out[K.OUT_COUNTS + N.EVENTS])
-        events = events_of(self.a, self.b, log[: N.EVENT_COLUMNS * count], time) if count else ()
-        proximity = Proximity(self.a, self.b, out, events, time, poses_of(motion), repaired)
-        return TrackerState(data, proximity), proximity
-
-    def _name_overlap(self, data: Array, out: Array, motion: Array) -> None:
-        """Give an uncertified pair without a positive bound the status OVERLAPPING, if proven."""
-        held = isinstance(self.law, PaperLaw) and self.law.left_alone
-        if out[K.DISTANCE] <= 0.0 or out[K.LOWER_BOUND] > 0.0 or held:
-            return
-        if cores_overlap(self.a, self.b, *poses_of(motion)):
-            out[K.DISTANCE] = out[K.UPPER_BOUND] = 0.0
-            out[K.STATUS] = float(Status.OVERLAPPING.value)
-            data[K.LOST] = 1.0
+        return self._named(block.kept(), repaired)[0]
 
 
 class ColdQuery(Tracker):

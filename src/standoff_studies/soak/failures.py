@@ -10,10 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.kernels.entries import tracker as kernels
-from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import ROTATION
+from standoff.tracking.rows import Block
 from standoff.tracking.tracker import Tracker
 from standoff.version import __version__
 from standoff_studies.soak.cases import Case
@@ -110,18 +109,10 @@ def _ready(case: Case) -> tuple[Made, Made, Frames, Tracker]:
 
 def _step(tracker: Tracker, one: Frames, has_twist: bool, state: Array, row: Array) -> int:
     """Answer one frame; FINE, or what was refused."""
-    return int(
-        kernels.step(
-            tracker.packed,
-            one.motions[0],
-            has_twist,
-            float(one.steps[0]),
-            tracker.options,
-            state,
-            row,
-            np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS),
-        )
-    )
+    block = Block.empty(state, one.motions[0], float(one.steps[0]), has_twist)
+    done = int(tracker.in_place(tracker.table.address, block.data))
+    state[:], row[:] = block.state, block.out
+    return K.FINE if done == K.UNDECIDED else done
 
 
 def read_failure(file: Path) -> Facts:

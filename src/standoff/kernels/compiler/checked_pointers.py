@@ -67,13 +67,16 @@ def checked_pointer(typingctx, array, offset):
     return kind(array, types.intp), codegen
 
 
-def checked_stack(count):
-    """Signature and code of an intrinsic: `count` NaN on the caller's stack, as a pointer."""
-    kind = CheckedPointer(types.float64)
+def checked_stack(count, of=types.float64):
+    """Signature and code of an intrinsic: `count` NaN, or zeros of a whole type, on the caller's
+    stack, as a pointer."""
+    kind = CheckedPointer(of)
+    unset = np.nan if of is types.float64 else 0
 
     def codegen(context, builder, signature, args):
-        block = cgutils.alloca_once(builder, ir.ArrayType(ir.DoubleType(), count))
-        builder.store(ir.Constant(ir.ArrayType(ir.DoubleType(), count), [np.nan] * count), block)
+        shape = ir.ArrayType(context.get_data_type(of), count)
+        block = cgutils.alloca_once(builder, shape)
+        builder.store(ir.Constant(shape, [unset] * count), block)
         zero = ir.IntType(64)(0)
         out = cgutils.create_struct_proxy(kind)(context, builder)
         out.data = builder.gep(block, [zero, zero], inbounds=True)
@@ -81,6 +84,19 @@ def checked_stack(count):
         return out._getvalue()
 
     return kind(), codegen
+
+
+def checked_address(address, length, of):
+    """Signature and code of an intrinsic: the pointer to `length` elements at an address."""
+    kind = CheckedPointer(of)
+
+    def codegen(context, builder, signature, args):
+        out = cgutils.create_struct_proxy(kind)(context, builder)
+        out.data = builder.inttoptr(args[0], context.get_value_type(types.CPointer(of)))
+        out.length = args[1]
+        return out._getvalue()
+
+    return kind(address, length), codegen
 
 
 @intrinsic

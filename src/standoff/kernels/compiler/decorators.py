@@ -8,6 +8,7 @@ With STANDOFF_BOUNDS_CHECK=1 in the environment every index of an array or a poi
 several times the cost; see `bounds`. Checked and unchecked code are kept apart in the cache.
 """
 
+import ctypes
 import os
 
 import numpy as np
@@ -57,16 +58,17 @@ def shared(function):
     return made
 
 
-def entry(*signature, work):
+def entry(*signature, work, terse=False):
     """Compile what Python calls, with all below it as one module, for the types of `signature`.
 
-    `work` names, for who waits, what it is needed for: a key of `notices.WORK`.
+    `work` names, for who waits, what it is needed for: a key of `notices.WORK`. Python's lock is
+    released while it runs.
     """
 
     def decorate(function):
         if config.DISABLE_JIT:
             return function
-        return Entry(function, OPTIONS, signature, work)
+        return Entry(function, OPTIONS | {"nogil": True}, signature, work, terse)
 
     return decorate
 
@@ -84,11 +86,15 @@ def _pointer(typingctx, array, offset):  # type: ignore[no-untyped-def]
 STACK_REALS = 32
 # The contact-regular form is 8 x 8.
 MATRIX_REALS = 64
+# The log of switches of a frame, and its counts (pair.events).
+LOG_REALS = 320
+COUNT_INTS = 16
 
 
 if BOUNDS_CHECK:
     from standoff.kernels.compiler.checked_pointers import (
         CheckedArray,
+        checked_address,
         checked_pointer,
         checked_stack,
     )
@@ -100,6 +106,21 @@ if config.DISABLE_JIT:
 
     def stack_matrix():  # type: ignore[no-untyped-def]
         return pointer(np.full(MATRIX_REALS, np.nan), 0)
+
+    def stack_log():  # type: ignore[no-untyped-def]
+        return pointer(np.full(LOG_REALS, np.nan), 0)
+
+    def stack_counts():  # type: ignore[no-untyped-def]
+        return pointer(np.zeros(COUNT_INTS, dtype=np.int64), 0)
+
+    def _at(address, length, kind):  # type: ignore[no-untyped-def]
+        return pointer(np.ctypeslib.as_array((kind * int(length)).from_address(int(address))), 0)
+
+    def reals_at(address, length):  # type: ignore[no-untyped-def]
+        return _at(address, length, ctypes.c_double)
+
+    def ints_at(address, length):  # type: ignore[no-untyped-def]
+        return _at(address, length, ctypes.c_int64)
 
     def pointer(array, offset):  # type: ignore[no-untyped-def]
         rest = array.view(np.ndarray)[offset:]
@@ -117,19 +138,46 @@ elif BOUNDS_CHECK:
         """MATRIX_REALS numbers of the caller's stack, NaN until they are set."""
         return checked_stack(MATRIX_REALS)
 
+    @intrinsic
+    def stack_log(typingctx):  # type: ignore[no-untyped-def]
+        """LOG_REALS numbers of the caller's stack, NaN until they are set."""
+        return checked_stack(LOG_REALS)
+
+    @intrinsic
+    def stack_counts(typingctx):  # type: ignore[no-untyped-def]
+        """COUNT_INTS integers of the caller's stack, 0 until they are set."""
+        return checked_stack(COUNT_INTS, types.int64)
+
+    @intrinsic
+    def reals_at(typingctx, address, length):  # type: ignore[no-untyped-def]
+        """A pointer to the numbers at an address."""
+        return checked_address(address, length, types.float64)
+
+    @intrinsic
+    def ints_at(typingctx, address, length):  # type: ignore[no-untyped-def]
+        """A pointer to the integers at an address."""
+        return checked_address(address, length, types.int64)
+
     @kernel
     def pointer(array, offset):  # type: ignore[no-untyped-def]
         return checked_pointer(array, offset)
 
 else:
 
-    def _stack(count):  # type: ignore[no-untyped-def]
+    def _stack(count, kind=types.float64):  # type: ignore[no-untyped-def]
         def codegen(context, builder, signature, args):  # type: ignore[no-untyped-def]
-            block = cgutils.alloca_once(builder, ir.ArrayType(ir.DoubleType(), count))
+            each = context.get_data_type(kind)
+            block = cgutils.alloca_once(builder, ir.ArrayType(each, count))
             zero = ir.IntType(64)(0)
             return builder.gep(block, [zero, zero], inbounds=True)
 
-        return types.CPointer(types.float64)(), codegen
+        return types.CPointer(kind)(), codegen
+
+    def _address(address, length, kind):  # type: ignore[no-untyped-def]
+        def codegen(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
+
+        return types.CPointer(kind)(address, length), codegen
 
     @intrinsic
     def stack_reals(typingctx):  # type: ignore[no-untyped-def]
@@ -140,6 +188,26 @@ else:
     def stack_matrix(typingctx):  # type: ignore[no-untyped-def]
         """MATRIX_REALS numbers of the caller's stack, not yet set."""
         return _stack(MATRIX_REALS)
+
+    @intrinsic
+    def stack_log(typingctx):  # type: ignore[no-untyped-def]
+        """LOG_REALS numbers of the caller's stack, not yet set."""
+        return _stack(LOG_REALS)
+
+    @intrinsic
+    def stack_counts(typingctx):  # type: ignore[no-untyped-def]
+        """COUNT_INTS integers of the caller's stack, not yet set."""
+        return _stack(COUNT_INTS, types.int64)
+
+    @intrinsic
+    def reals_at(typingctx, address, length):  # type: ignore[no-untyped-def]
+        """A pointer to the `length` numbers at an address; who gave it keeps them alive."""
+        return _address(address, length, types.float64)
+
+    @intrinsic
+    def ints_at(typingctx, address, length):  # type: ignore[no-untyped-def]
+        """A pointer to the `length` integers at an address."""
+        return _address(address, length, types.int64)
 
     @small
     def pointer(array, offset):

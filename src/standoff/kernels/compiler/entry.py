@@ -26,13 +26,27 @@ READ_BLOCKS = types.Array(REAL, 3, "C", readonly=True)
 BLOCKS = types.Array(REAL, 3, "C")
 
 
-class Entry(CPUDispatcher):  # type: ignore[misc]
-    """A function that Python calls, compiled for the types of `signature` alone."""
+class WrongKind(TypeError):
+    """Arguments of a terse entry are of another kind than it is compiled for."""
 
-    def __init__(self, function: Any, options: Any, signature: tuple[Any, ...], work: str) -> None:
+
+class Entry(CPUDispatcher):  # type: ignore[misc]
+    """A function that Python calls, compiled for the types of `signature` alone.
+
+    A terse one refuses other types without a word on which (`WrongKind`): its caller converts them.
+    """
+
+    def __init__(
+        self,
+        function: Any,
+        options: Any,
+        signature: tuple[Any, ...],
+        work: str,
+        terse: bool = False,
+    ) -> None:
         pipeline = {"pipeline_class": modules.EntryCompiler} if modules.AVAILABLE else {}
         super().__init__(function, targetoptions=options, **pipeline)
-        self.signature, self.work = signature, work
+        self.signature, self.work, self.terse = signature, work, terse
         self._cache = ModuleCache(function, work)
 
     @property
@@ -55,6 +69,8 @@ class Entry(CPUDispatcher):  # type: ignore[misc]
 
     def _explain_matching_error(self, *args: Any, **kws: Any) -> None:
         """Called by Numba where the machine code does not fit the arguments."""
+        if self.terse:  # the caller knows what to do, and every microsecond counts
+            raise WrongKind
         self._check(args)
 
     def _check(self, args: tuple[Any, ...]) -> None:

@@ -49,7 +49,12 @@ def prepare(paper: bool, planar: bool, runs: bool = False) -> None:
         return
     names = BODIES + (PLANAR if planar else ()) + (LOCATING if runs else ())
     needed = [getattr(queries, name) for name in names]
-    needed += [tracker.start, tracker.step_paper if paper else tracker.step_predicted]
+    needed += [tracker.start]
+    needed += (
+        [tracker.value_paper, tracker.step_paper]
+        if paper
+        else [tracker.value_predicted, tracker.step_predicted]
+    )
     if runs:
         needed.append(tracker.run_paper if paper else tracker.run_predicted)
     for each in needed:

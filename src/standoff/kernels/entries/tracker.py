@@ -6,20 +6,41 @@ poses it is given; a frame's poses and twists are one row of numbers (``state.ar
 
 import numpy as np
 
-from standoff.kernels.compiler.decorators import entry, kernel, pointer
+from standoff.kernels.compiler.decorators import (
+    entry,
+    ints_at,
+    kernel,
+    pointer,
+    reals_at,
+    stack_counts,
+    stack_log,
+)
 from standoff.kernels.compiler.entry import BOOL, INT, PAIR, READ, REAL, ROWS, WRITE
 from standoff.kernels.entries.frames import Inputs, frame_paper, frame_predicted, start_frame
 from standoff.kernels.frame.restart import anywhere, anywhere_apart
-from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNT_SLOTS
+from standoff.kernels.pair.events import EVENT_COLUMNS, EVENTS, MAX_EVENTS, N_COUNT_SLOTS
 from standoff.kernels.state.arrays import (
+    BAD_ARRAYS,
+    BLOCK_EVENTS,
+    BLOCK_HAS_TWIST,
+    BLOCK_MOTION,
+    BLOCK_STATE,
+    BLOCK_TIME_STEP,
     FINE,
+    MORE_EVENTS,
+    N_BLOCK,
     N_MOTION,
     N_OUT,
+    N_STATE,
+    NOT_CERTIFIED,
+    NOT_GIVEN,
     NOT_KNOWN_APART,
     POSE_A,
     POSE_B,
+    STATUS,
     TWIST_A,
     TWIST_B,
+    UNDECIDED,
     refusal,
 )
 from standoff.kernels.state.options import names_paper_law, read_options
@@ -31,15 +52,35 @@ def pair_pointers(pair):
     return Pair(pointer(pair[0], 0), pointer(pair[1], 0), pointer(pair[2], 0), pointer(pair[3], 0))
 
 
+# What a table of addresses holds: each followed by how many elements lie there.
+TABLE_INTS_A, TABLE_REALS_A, TABLE_INTS_B, TABLE_REALS_B, TABLE_OPTIONS = range(0, 10, 2)
+N_TABLE = 10
+
+
+@kernel
+def tabled_pair(table):
+    return Pair(
+        ints_at(table[TABLE_INTS_A], table[TABLE_INTS_A + 1]),
+        reals_at(table[TABLE_REALS_A], table[TABLE_REALS_A + 1]),
+        ints_at(table[TABLE_INTS_B], table[TABLE_INTS_B + 1]),
+        reals_at(table[TABLE_REALS_B], table[TABLE_REALS_B + 1]),
+    )
+
+
 @kernel
 def input_pointers(motion, row, has_twist):
     """Where a frame's poses and twists stand: row `row` of a flat array of motions."""
-    o = N_MOTION * row
+    return inputs_at(motion, N_MOTION * row, has_twist)
+
+
+@kernel
+def inputs_at(numbers, o, has_twist):
+    """Where a frame's poses and twists stand: from number `o` on."""
     return Inputs(
-        pointer(motion, o + POSE_A),
-        pointer(motion, o + POSE_B),
-        pointer(motion, o + TWIST_A),
-        pointer(motion, o + TWIST_B),
+        pointer(numbers, o + POSE_A),
+        pointer(numbers, o + POSE_B),
+        pointer(numbers, o + TWIST_A),
+        pointer(numbers, o + TWIST_B),
         has_twist,
     )
 
@@ -94,35 +135,103 @@ def start(pair, motion, has_twist, options, state, given, out):
 
 
 @kernel
-def step_by(frame, pair, inputs, h, options, state, out, events):
-    """`step`, with the law's own frame."""
+def answered(frame, table, block):
+    """One frame on a block: the state is changed in place, the answer and its switches written."""
+    inputs = inputs_at(block, BLOCK_MOTION, block[BLOCK_HAS_TWIST] != 0.0)
     why = refused(inputs)
     if why != FINE:
         return why
-    counts = np.empty(N_COUNT_SLOTS, dtype=np.int64)
-    work = Work(pointer(counts, 0), pointer(events, 0))
-    options = read_options(pointer(options, 0))
-    frame(pair_pointers(pair), inputs, h, options, pointer(state, 0), pointer(out, 0), work)
-    counts[0] = 0  # alive until here, see `pointer`
-    return FINE
+    counts, log = stack_counts(), stack_log()
+    tabled = ints_at(table, N_TABLE)
+    options = read_options(reals_at(tabled[TABLE_OPTIONS], tabled[TABLE_OPTIONS + 1]))
+    state, out = pointer(block, BLOCK_STATE), pointer(block, 0)
+    frame(
+        tabled_pair(tabled), inputs, block[BLOCK_TIME_STEP], options, state, out, Work(counts, log)
+    )
+    switches = counts[EVENTS]
+    if BLOCK_EVENTS + EVENT_COLUMNS * switches > len(block):
+        return MORE_EVENTS
+    for k in range(EVENT_COLUMNS * switches):
+        block[BLOCK_EVENTS + k] = log[k]
+    return UNDECIDED if out[STATUS] == NOT_CERTIFIED else FINE
 
 
-@entry(PAIR, WRITE, BOOL, REAL, READ, WRITE, WRITE, WRITE, work="frames")
-def step_predicted(pair, motion, has_twist, h, options, state, out, events):
-    """One frame of the predictor-corrector: the state is changed in place, the answer written to
-    `out`.
+@kernel
+def copy_pose(matrix, block, at):
+    """Copy a (4, 4) pose as 12 numbers. Is its last row 0 0 0 1?"""
+    for i in range(3):
+        for j in range(3):
+            block[at + 3 * i + j] = matrix[i, j]
+        block[at + 9 + i] = matrix[i, 3]
+    last = matrix[3, 0] == 0.0 and matrix[3, 1] == 0.0 and matrix[3, 2] == 0.0
+    return last and matrix[3, 3] == 1.0
 
-    Returns FINE; or, with nothing changed, what of the poses and twists is refused.
+
+@kernel
+def is_given(twist):
+    """Is it more than the mark of a twist that was not given?"""
+    return not (len(twist) == 1 and twist[0] == NOT_GIVEN)
+
+
+@kernel
+def copy_twist(twist, block, at):
+    """Copy a twist: where none was given, the body is at rest. Is it one, or none?"""
+    for k in range(6):
+        block[at + k] = twist[k] if len(twist) == 6 else 0.0
+    return len(twist) == 6 or not is_given(twist)
+
+
+@kernel
+def value_by(frame, table, before, given, h, block):
+    """`value_predicted`, with the law's own frame."""
+    pose_a, pose_b, twist_a, twist_b = given
+    square = pose_a.shape == (4, 4) and pose_b.shape == (4, 4)
+    if not (square and len(before) >= N_BLOCK and len(block) >= N_BLOCK):
+        return BAD_ARRAYS
+    fit = copy_pose(pose_a, block, BLOCK_MOTION + POSE_A)
+    fit = copy_pose(pose_b, block, BLOCK_MOTION + POSE_B) and fit
+    fit = copy_twist(twist_a, block, BLOCK_MOTION + TWIST_A) and fit
+    fit = copy_twist(twist_b, block, BLOCK_MOTION + TWIST_B) and fit
+    if not fit:
+        return BAD_ARRAYS
+    for k in range(N_STATE):
+        block[BLOCK_STATE + k] = before[BLOCK_STATE + k]
+    block[BLOCK_TIME_STEP] = h
+    block[BLOCK_HAS_TWIST] = 1.0 if is_given(twist_a) or is_given(twist_b) else 0.0
+    return answered(frame, table, block)
+
+
+@entry(INT, READ, ROWS, ROWS, WRITE, WRITE, REAL, WRITE, work="frames", terse=True)
+def value_predicted(table, before, pose_a, pose_b, twist_a, twist_b, h, block):
+    """One frame of the predictor-corrector from the state in one block to another block.
+
+    Poses (4, 4) and twists, (6,) or [NOT_GIVEN], are read as they are given. Returns FINE or
+    UNDECIDED; else what is refused, or MORE_EVENTS, and the block is of no worth.
     """
-    inputs = input_pointers(motion, 0, has_twist)
-    return step_by(frame_predicted, pair, inputs, h, options, state, out, events)
+    given = pose_a, pose_b, twist_a, twist_b
+    return value_by(frame_predicted, table, before, given, h, block)
 
 
-@entry(PAIR, WRITE, BOOL, REAL, READ, WRITE, WRITE, WRITE, work="paper")
-def step_paper(pair, motion, has_twist, h, options, state, out, events):
+@entry(INT, READ, ROWS, ROWS, WRITE, WRITE, REAL, WRITE, work="paper", terse=True)
+def value_paper(table, before, pose_a, pose_b, twist_a, twist_b, h, block):
+    """`value_predicted`, of the paper's law."""
+    given = pose_a, pose_b, twist_a, twist_b
+    return value_by(frame_paper, table, before, given, h, block)
+
+
+@entry(INT, WRITE, work="frames")
+def step_predicted(table, block):
+    """One frame of the predictor-corrector in a long block, in place.
+
+    Returns FINE or UNDECIDED; or, with nothing changed, what of the poses and twists is refused.
+    """
+    return answered(frame_predicted, table, block)
+
+
+@entry(INT, WRITE, work="paper")
+def step_paper(table, block):
     """`step_predicted`, of the paper's law."""
-    inputs = input_pointers(motion, 0, has_twist)
-    return step_by(frame_paper, pair, inputs, h, options, state, out, events)
+    return answered(frame_paper, table, block)
 
 
 @kernel
@@ -163,12 +272,6 @@ def run_predicted(pair, motions, has_twist, steps, options, state, outs, events)
 def run_paper(pair, motions, has_twist, steps, options, state, outs, events):
     """`run_predicted`, of the paper's law."""
     return run_by(frame_paper, pair, (motions, has_twist), steps, options, state, outs, events)
-
-
-def step(pair, motion, has_twist, h, options, state, out, events):
-    """One frame of the law that the options name: `step_predicted` or `step_paper`."""
-    one = step_paper if names_paper_law(options) else step_predicted
-    return one(pair, motion, has_twist, h, options, state, out, events)
 
 
 def run(pair, motions, has_twist, steps, options, state, outs, events):

@@ -9,7 +9,7 @@ from math import inf
 from standoff.kernels.algebra.rigid import read_vector
 from standoff.kernels.algebra.vectors import cross, dot
 from standoff.kernels.compiler.decorators import kernel
-from standoff.kernels.pair.events import N_COUNTS
+from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNTS
 from standoff.kernels.tolerances import FARTHEST, ROTATION
 
 # State.
@@ -68,6 +68,17 @@ UPPER_BOUND = 28
 OUT_COUNTS = 29
 N_OUT = OUT_COUNTS + N_COUNTS
 
+# One block of memory holds a frame: its answer, the state after it, what was given (the motion,
+# the time since the frame before, 1 where twists are given), and the switches.
+BLOCK_STATE = N_OUT
+BLOCK_MOTION = BLOCK_STATE + N_STATE
+BLOCK_TIME_STEP = BLOCK_MOTION + N_MOTION
+BLOCK_HAS_TWIST = BLOCK_TIME_STEP + 1
+BLOCK_EVENTS = BLOCK_HAS_TWIST + 1
+KEPT_EVENTS = 4  # of a frame that is a value: one with more is made anew in a longer block
+N_BLOCK = BLOCK_EVENTS + EVENT_COLUMNS * KEPT_EVENTS
+N_LONG_BLOCK = BLOCK_EVENTS + EVENT_COLUMNS * MAX_EVENTS
+
 # Status numbers, those of standoff.tracking.Status.
 CONVERGED, TRACKING, OVERLAPPING, NOT_CERTIFIED, LOCAL, GLOBAL, DEADLINE = range(7)
 
@@ -78,6 +89,12 @@ START_ANYWHERE, START_DESCEND, START_HERE = range(3)
 FINE, BAD_POSE_A, BAD_POSE_B, BAD_TWIST = range(4)
 # Of `start_apart`: the bodies may touch, ask `start`. Nothing is changed either.
 NOT_KNOWN_APART = 4
+# In place of a twist's six numbers: none was given.
+NOT_GIVEN = -1.5e308
+# Of a step whose arrays are not as they must be, or whose switches the block does not hold.
+BAD_ARRAYS, MORE_EVENTS = 5, 6
+# Of a step that is done: its answer is uncertified, and a proof of overlap may decide it.
+UNDECIDED = 7
 
 
 @kernel

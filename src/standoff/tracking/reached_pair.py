@@ -1,0 +1,136 @@
+"""A pair of bodies as the compiled frames reach it, and what they refuse or leave open."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.kernels.entries import tracker as kernels
+from standoff.kernels.entries.preparing import prepare
+from standoff.kernels.state import arrays as K
+from standoff.motion import PoseLike, TwistLike
+from standoff.read_only import KeepsReadOnly, locked
+from standoff.tracking.address_table import AddressTable
+from standoff.tracking.inputs import (
+    check_in_plane,
+    flat_and_mark,
+    flat_twist,
+    refuse_twists,
+    repair,
+)
+from standoff.tracking.law_options import Law
+from standoff.tracking.laws import PaperLaw
+from standoff.tracking.overlap_proof import cores_overlap
+from standoff.tracking.proximity import Proximity
+from standoff.tracking.rows import Block, motion_row, poses_of, twists_of
+from standoff.tracking.state import TrackerState
+from standoff.tracking.status import Status
+
+Array = NDArray[np.float64]
+
+# Statuses of answers that a proof of overlap may decide.
+UNDECIDED = (float(Status.NOT_CERTIFIED.value),)
+
+DONE = (K.FINE, K.UNDECIDED)
+"""What the compiled step returns when it has made an answer."""
+
+
+class ReachedPair(KeepsReadOnly):
+    """Two bodies, a law and its options by address, for single frames.
+
+    Attributes
+    ----------
+    packed : tuple of arrays
+        What the kernels read of both bodies.
+    table : AddressTable
+        Where these and the options lie.
+    value, in_place
+        The law's compiled frames: from block to block, and on one long block.
+    """
+
+    a: Body
+    b: Body
+    law: Law
+    options: Array
+    planar: bool
+
+    def _reach(self) -> None:
+        """What the kernels read of both bodies, and the entries of the law."""
+        self.packed = self.a.ints, self.a.reals, self.b.ints, self.b.reals
+        self.table = AddressTable((*self.packed, self.options))
+        paper = isinstance(self.law, PaperLaw)
+        self.value = kernels.value_paper if paper else kernels.value_predicted
+        self.in_place = kernels.step_paper if paper else kernels.step_predicted
+
+    def _prepare(self) -> None:
+        """Load, or compile, what the frames can reach: none of them waits for it."""
+        prepare(paper=isinstance(self.law, PaperLaw), planar=self.planar)
+
+    def __getstate__(self) -> Any:
+        # in another process the bodies' formulas, and all arrays, have other addresses
+        reached = ("packed", "table", "value", "in_place")
+        state = {name: x for name, x in self.__dict__.items() if name not in reached}
+        return state, list(locked(state))
+
+    def __setstate__(self, stored: Any) -> None:
+        super().__setstate__(stored)
+        self._reach()
+        self._prepare()
+
+    def _repair(self, why: int, motion: Array) -> int:
+        """Repair what the kernel has refused, in place, if it is a rounded pose: 1 of them.
+
+        Raises
+        ------
+        ValueError
+            It is something worse.
+        """
+        if why == K.BAD_TWIST:
+            refuse_twists(*twists_of(motion))
+        first = why == K.BAD_POSE_A
+        flat_a, flat_b = poses_of(motion)
+        repair(flat_a if first else flat_b, "pose_a" if first else "pose_b")
+        return 1
+
+    def _name_overlap(self, block: Block) -> None:
+        """Give an uncertified pair without a positive bound the status OVERLAPPING, if proven."""
+        data, out, motion = block.state, block.out, block.motion
+        held = isinstance(self.law, PaperLaw) and self.law.left_alone
+        if out[K.DISTANCE] <= 0.0 or out[K.LOWER_BOUND] > 0.0 or held:
+            return
+        if cores_overlap(self.a, self.b, *poses_of(motion)):
+            out[K.DISTANCE] = out[K.UPPER_BOUND] = 0.0
+            out[K.STATUS] = float(Status.OVERLAPPING.value)
+            data[K.LOST] = 1.0
+
+    def _motion(
+        self,
+        pose_a: PoseLike,
+        pose_b: PoseLike,
+        twist_a: TwistLike | None,
+        twist_b: TwistLike | None,
+    ) -> tuple[Array, bool, int]:
+        """The poses and twists as the kernels read them; are there twists; poses repaired."""
+        (flat_a, mark_a), (flat_b, mark_b) = flat_and_mark(pose_a), flat_and_mark(pose_b)
+        xi_a, xi_b = flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
+        has_twist = twist_a is not None or twist_b is not None
+        if self.planar:
+            check_in_plane(flat_a, flat_b)
+        return motion_row(flat_a, flat_b, xi_a, xi_b), has_twist, mark_a + mark_b
+
+    def _step_in(self, block: Block) -> int:
+        """One frame in a long block; returns how many poses were repaired in it."""
+        repaired = 0
+        while (done := self.in_place(self.table.address, block.data)) not in DONE:
+            repaired += self._repair(done, block.motion)
+        return repaired
+
+    def _named(self, block: Array, repaired: int) -> tuple[TrackerState, Proximity]:
+        """State and answer of a block that is done, an overlap named where one is proven."""
+        if block[K.STATUS] in UNDECIDED:
+            self._name_overlap(Block(block))
+        answer = Proximity(self.a, self.b, block, repaired)
+        return TrackerState(answer), answer
