@@ -10,8 +10,25 @@ from numpy.typing import ArrayLike, NDArray
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
 from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.resets import (
+    Errors,
+    Reset,
+    draw_projection_errors,
+    reset_statement,
+    reset_table,
+    resets_of,
+)
 from standoff_studies.paper.simulation_b.automaton import FILLS, KINDS
-from standoff_studies.paper.simulation_b.run import CONVERGED, DURATION, GAIN, LAW, Run, run
+from standoff_studies.paper.simulation_b.printed import REST
+from standoff_studies.paper.simulation_b.run import (
+    CONVERGED,
+    DURATION,
+    GAIN,
+    LAW,
+    Run,
+    psi,
+    run,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,14 +54,20 @@ def figure_11() -> Artwork:
             "At 0 and 1 a parameter is held at the curve's ends; a thin line that jumps or shakes "
             "is a tracker whose minimum has vanished. The strip above tells the "
             "mode, inside and outside; orange is a vertex. Vertical lines are the switches, as in "
-            "Fig. 9: dashed jumps, dotted through the boundary, solid Voronoi."
+            "Fig. 9: dashed jumps, dotted through the boundary, solid Voronoi. Last: the "
+            "projection error of the active curve; rings are what each reset "
+            "outside makes of it. At a vertex there is none."
         ),
         text=(
             "Three panels of one curve's parameter each over 4 s, saw-toothed, with heavy "
-            "stretches that follow each other from curve to curve."
+            "stretches that follow each other from curve to curve. A fourth panel of the error, "
+            "which falls from the start, jumps at switches and falls again."
         ),
         draw=lambda: _draw(simulation),
-        tables={"frames": _frames(simulation)},
+        tables={
+            "frames": _frames(simulation),
+            "resets": reset_table(resets(simulation)),
+        },
         statements=_statements(simulation),
     )
 
@@ -70,6 +93,20 @@ def heavy(simulation: Run, curve: int, *, exact: bool = False) -> Array:
     recording = simulation.exact if exact else simulation.paper
     own = [f.kind == "edge" and f.index == curve for f in recording.feature]
     return np.where(own, recording.parameter, np.nan)
+
+
+def resets(simulation: Run) -> list[Reset]:
+    """Return the Voronoi switches outside beside what their resets imply."""
+    return resets_of(simulation.paper.outside, (REST, simulation.path), GAIN)
+
+
+def active_error(simulation: Run) -> Array:
+    """Return the size of the active curve's error by frame [length²], nan at a vertex."""
+    paper, found = simulation.paper, np.full(len(simulation.paper), np.nan)
+    for curve in range(simulation.body.n_edges):
+        own = np.array([f.kind == "edge" and f.index == curve for f in paper.feature])
+        found[own] = np.abs(psi(paper, curve))[own]
+    return found
 
 
 def not_nearest(simulation: Run) -> NDArray[np.int64]:
@@ -119,6 +156,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             LAW,
             constructed=True,
         ),
+        reset_statement(resets(simulation), LAW),
         Statement(
             "Fig. 11",
             "-",
@@ -134,18 +172,25 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
 
 def _draw(simulation: Run) -> Figure:
     with style.settings():
-        figure = style.new_figure(style.WIDTH, 7.6)
-        panels = figure.subplots(4, 1, sharex=True, height_ratios=(0.42, 1.0, 1.0, 1.0))
+        figure = style.new_figure(style.WIDTH, 9.2)
+        panels = figure.subplots(5, 1, sharex=True, height_ratios=(0.42, 1.0, 1.0, 1.0, 1.3))
         _draw_strip(panels[0], simulation)
         for curve in range(3):
             _draw_curve(panels[curve + 1], simulation, curve)
+        _draw_errors(panels[-1], simulation)
         panels[-1].set_xlabel("time [s]")
         panels[-1].set_xlim(0.0, DURATION)
         for name, dashes, colour in KINDS.values():
-            panels[-1].plot([], [], linestyle=dashes, color=colour, linewidth=1.3, label=name)
-        panels[-1].plot([], [], color=style.BLACK, linewidth=0.7, label="library's own law")
+            panels[1].plot([], [], linestyle=dashes, color=colour, linewidth=1.3, label=name)
+        panels[1].plot([], [], color=style.BLACK, linewidth=0.7, label="library's own law")
         figure.legend(loc="outside lower center", ncols=3, frameon=False, handlelength=3.0)
     return figure
+
+
+def _draw_errors(axes: Axes, simulation: Run) -> None:
+    errors = Errors(simulation.paper.time, active_error(simulation))
+    draw_projection_errors(axes, errors, resets(simulation))
+    axes.set_ylabel("|Ψ| [length²]")
 
 
 def _draw_strip(axes: Axes, simulation: Run) -> None:

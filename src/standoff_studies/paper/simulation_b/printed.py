@@ -64,6 +64,8 @@ class PrintedRun:
         In order of time. The value of a jump inside is the point's distance from the medial axis.
     injected : Injected
     body : Body
+    outside : Recording
+        From the frame on in which the point is outside.
     """
 
     time: Array
@@ -78,6 +80,7 @@ class PrintedRun:
     events: tuple[PointEvent, ...]
     injected: Injected
     body: Body = field(repr=False)
+    outside: Recording = field(repr=False)
 
     def __len__(self) -> int:
         return len(self.time)
@@ -188,6 +191,7 @@ class Printed:
             events=(*self._jumps(), self._crossing(runs), *map(_outer, rest.events)),
             injected=_injected([*runs, rest]),
             body=self.body,
+            outside=rest,
         )
 
     def _jumps(self) -> list[PointEvent]:

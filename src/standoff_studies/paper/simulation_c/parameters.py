@@ -13,6 +13,13 @@ from standoff.recording import Recording
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
 from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.resets import (
+    draw_projection_errors,
+    projection_errors,
+    reset_statement,
+    reset_table,
+    resets_of,
+)
 from standoff_studies.paper.simulation_c.kinds import FILLS, KINDS, kind_of, mode_name
 from standoff_studies.paper.simulation_c.run import (
     CONVERGED,
@@ -44,6 +51,8 @@ SETTLING = 5.0 / GAIN
 """After a switch, before which the errors that it leaves are told apart from the others [s]."""
 FOOT = -0.3
 """Where the marks of the snapshots stand, under the parameters."""
+LEAST_ERROR = 1e-10
+"""Errors below this are drawn at it [length]."""
 SLIP = 1e-14
 """A witness point within this of its vertex is at it: roundings of poses [length]."""
 NAMES = {"A": ("u₁", "u₂", "u₃"), "B": ("rₐ", "r_b", "r_c")}
@@ -63,15 +72,21 @@ def figure_15() -> Artwork:
             "from the wrong start; the third goes on where the second ends. Dotted lines are the "
             "switches; their instants [s] and the modes (A's feature, then B's) stand above. "
             "Triangles and letters mark the snapshots of Fig. 14, in the middles of twelve equal "
-            "parts of the motion. Shading tells the kinds of modes apart."
+            "parts of the motion. Shading tells the kinds of modes apart. Last, "
+            "over the whole motion: how far the worse witness point is off, and the projection "
+            "errors |Ψ|; rings are what each reset makes of them, and both fall again as exp(−K t)."
         ),
         text=(
             "Three rows of two panels: on each curve its parameter goes from one end to the other, "
             "is level at vertices, and the next curve's goes on; in the first half second the "
-            "heavy lines come to the thin ones from a wrong start."
+            "heavy lines come to the thin ones from a wrong start. The last panel is of the "
+            "errors: teeth that jump at the switches and fall along straight lines between them."
         ),
         draw=lambda: _draw(simulation),
-        tables={"frames": _frames(simulation)},
+        tables={
+            "frames": _frames(simulation),
+            "resets": reset_table(resets_of(simulation.paper, simulation.paths, GAIN)),
+        },
         statements=_statements(simulation),
     )
 
@@ -124,6 +139,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             LAW,
             constructed=True,
         ),
+        reset_statement(resets_of(simulation.paper, simulation.paths, GAIN), LAW),
         Statement(
             "Fig. 15",
             "-",
@@ -157,8 +173,9 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
 
 def _draw(simulation: Run) -> Figure:
     with style.settings():
-        figure = style.new_figure(style.WIDTH, 11.0)
-        panels = figure.subplots(2 * len(SPANS), 1)
+        figure = style.new_figure(style.WIDTH, 13.2)
+        heights = [1.0] * (2 * len(SPANS)) + [1.6]
+        panels = figure.subplots(len(heights), 1, height_ratios=heights)
         for row, span in enumerate(SPANS):
             upper, lower = panels[2 * row : 2 * row + 2]
             _draw_panel(upper, simulation, "A", span)
@@ -168,8 +185,23 @@ def _draw(simulation: Run) -> Figure:
                 _mark_snapshots(lower, simulation, span)
             upper.tick_params(labelbottom=False)
             lower.set_xlabel("time [s]")
+        _draw_errors(panels[-1], simulation)
         _legend(figure)
     return figure
+
+
+def _draw_errors(axes: Axes, simulation: Run) -> None:
+    """How far the witness points are off, their projection errors, and what resets imply."""
+    paper, paths = simulation.paper, simulation.paths
+    error = np.maximum(witness_error(simulation), LEAST_ERROR)
+    axes.semilogy(paper.time, error, color=style.GREEN, linewidth=1.2, label="witness points")
+    resets = resets_of(paper, paths, GAIN)
+    draw_projection_errors(axes, projection_errors(paper, paths), resets)
+    axes.legend(frameon=False, ncols=3, loc="upper right")
+    axes.set_ylabel("error [length],\n|Ψ| [length²]")
+    axes.set_xlabel("time [s]")
+    axes.set_xlim(0.0, DURATION)
+    axes.set_ylim(0.5 * LEAST_ERROR, 300.0)
 
 
 def _draw_panel(axes: Axes, simulation: Run, letter: str, span: tuple[float, float]) -> None:

@@ -11,6 +11,13 @@ from standoff.recording import Recording
 from standoff.tracking import pair_system
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.resets import (
+    draw_projection_errors,
+    projection_errors,
+    reset_statement,
+    reset_table,
+    resets_of,
+)
 from standoff_studies.paper.simulation_d.runs import (
     GAIN,
     HELIX,
@@ -63,7 +70,8 @@ def figure_18() -> Artwork:
             "boundary: an edge belongs to two faces, a vertex to all three. The modes are named "
             "on top; while the closest point is on an edge (tinted) u stays at exactly 0 or 1, "
             "and at the vertex (grey) v stays at 1 and u has no meaning. Below: how far the law's "
-            "point is from the closest one."
+            "point is from the closest one, and the projection errors |Ψ|; rings are what each "
+            "reset makes of them."
         ),
         text=(
             "Three panels, one a face, with two curves each. The curves of u end in level "
@@ -72,7 +80,10 @@ def figure_18() -> Artwork:
             "thousandth at each switch, from where it falls along such lines again."
         ),
         draw=_draw,
-        tables={"parameters": table},
+        tables={
+            "parameters": table,
+            "resets": reset_table(resets_of(recording, (REST, HELIX), GAIN)),
+        },
         statements=measured_by(OWN_LAW, _statements(runs)),
     )
 
@@ -108,6 +119,7 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             abs(rate - GAIN) < DECAY_PART * GAIN,
             by=LAW,
         ),
+        reset_statement(resets_of(runs.paper[0], (REST, HELIX), GAIN), LAW),
         Statement(
             "Fig. 18",
             "the parameters have constant stretches at 0 or 1 where the point lies on an edge",
@@ -148,8 +160,8 @@ def _draw() -> Figure:
     runs = run()
     recording = runs.paper[0]
     with style.settings():
-        figure = style.new_figure(style.WIDTH, 7.4)
-        panels = figure.subplots(4, 1, sharex=True, height_ratios=[1, 1, 1, 1])
+        figure = style.new_figure(style.WIDTH, 8.2)
+        panels = figure.subplots(4, 1, sharex=True, height_ratios=[1.0, 1.0, 1.0, 1.5])
         for face, axes in enumerate(panels[:3]):
             _shade(axes, runs)
             u, v = face_parameters(recording, face).T
@@ -162,15 +174,26 @@ def _draw() -> Figure:
             axes.set_ylabel(f"F{face}: u, v [–]")
         _name(panels[0], runs)
         _shade(panels[3], runs)
-        panels[3].semilogy(recording.time, errors(runs), color=style.BLACK, linewidth=1.0)
-        panels[3].set_ylabel("error [radius]")
-        panels[3].set_yticks([1e-12, 1e-8, 1e-4, 1.0])
-        panels[3].set_ylim(1e-13, 4.0)
+        _draw_errors(panels[3], runs)
         panels[3].set_xlabel("time [s]")
         panels[3].set_xlim(0.0, recording.time[-1])
         _legend(figure)
         figure.align_ylabels()
     return figure
+
+
+def _draw_errors(axes: Axes, runs: Runs) -> None:
+    """How far the law's point is off, its projection errors, and what each reset makes of them."""
+    recording, paths = runs.paper[0], (REST, HELIX)
+    axes.semilogy(
+        recording.time, errors(runs), color=style.GREEN, linewidth=1.2, label="witness point"
+    )
+    resets = resets_of(recording, paths, GAIN)
+    draw_projection_errors(axes, projection_errors(recording, paths), resets)
+    axes.legend(frameon=False, ncols=3, loc="upper right")
+    axes.set_ylabel("error [radius],\n|Ψ| [radius²]")
+    axes.set_yticks([1e-12, 1e-8, 1e-4, 1.0])
+    axes.set_ylim(1e-13, 300.0)
 
 
 def _shade(axes: Axes, runs: Runs) -> None:

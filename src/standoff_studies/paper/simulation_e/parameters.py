@@ -10,6 +10,13 @@ from numpy.typing import NDArray
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.held_features import CONTINUOUS, greatest_growth, growth
+from standoff_studies.paper.resets import (
+    draw_projection_errors,
+    projection_errors,
+    reset_statement,
+    reset_table,
+    resets_of,
+)
 from standoff_studies.paper.simulation_d.runs import short
 from standoff_studies.paper.simulation_e.own_point import AROUND, POINTS, decisions
 from standoff_studies.paper.simulation_e.runs import (
@@ -55,16 +62,21 @@ def figure_20() -> Artwork:
             "named on top, A's feature first; thin lines mark the switching instants. On an edge "
             "(bar) the point keeps the parameters of the patch that it came from, and u or r stays "
             "at 1; when it leaves to the next patch they jump to that one's. Below: the distance, "
-            "and how far the worse witness point is off, in the radius of A's faces."
+            "how far the worse witness point is off, in the radius of A's faces, and the "
+            "projection errors |Ψ|; rings are what each reset makes of them."
         ),
         text=(
             "Two panels of parameters between 0 and 1, one a body. In each, u rises to 1, stays "
             "there while the point is on an edge, then jumps to 0 on the next patch and rises "
             "again. The third panel shows the distance, a smooth curve through all switches, the "
-            "last the error, which falls from the start and again after each switch."
+            "last the errors, which fall from the start and again after each switch."
         ),
         draw=_draw,
-        tables={"parameters": _parameter_table(runs), "switches": _switch_table(runs)},
+        tables={
+            "parameters": _parameter_table(runs),
+            "switches": _switch_table(runs),
+            "resets": reset_table(resets_of(runs.paper, (PATH_A, PATH_B), GAIN)),
+        },
         statements=measured_by(OWN_LAW, _statements(runs)),
     )
 
@@ -109,6 +121,7 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             LAW,
         ),
         *_as_printed(runs),
+        reset_statement(resets_of(runs.paper, (PATH_A, PATH_B), GAIN), LAW),
         Statement(
             "Section on the hybrid system",
             "the distance between features never grows at a switch",
@@ -227,8 +240,8 @@ def _switch_table(runs: Runs) -> dict[str, Array | list[str]]:
 def _draw() -> Figure:
     runs = run()
     with style.settings():
-        figure = style.new_figure(style.WIDTH, 8.2)
-        panels = figure.subplots(4, 1, sharex=True)
+        figure = style.new_figure(style.WIDTH, 9.0)
+        panels = figure.subplots(4, 1, sharex=True, height_ratios=[1.0, 1.0, 0.8, 1.3])
         for axes, body in zip(panels, "AB", strict=False):
             _shade(axes, runs)
             _draw_parameters(axes, runs, body)
@@ -255,9 +268,14 @@ def _draw() -> Figure:
 def _draw_errors(axes: Axes, runs: Runs) -> None:
     """How far the worse witness point is off: what a switch leaves decays again."""
     _shade(axes, runs)
-    axes.semilogy(runs.paper.time, np.maximum(witness_error(runs), LEAST_DRAWN), color=style.GREEN)
-    axes.set_ylim(0.5 * LEAST_DRAWN, 3.0)
-    axes.set(xlabel="time [s]", ylabel="error [radius]")
+    error = np.maximum(witness_error(runs), LEAST_DRAWN)
+    axes.semilogy(runs.paper.time, error, color=style.GREEN, label="witness points")
+    paths = PATH_A, PATH_B
+    resets = resets_of(runs.paper, paths, GAIN)
+    draw_projection_errors(axes, projection_errors(runs.paper, paths), resets)
+    axes.legend(frameon=False, ncols=3, loc="upper right")
+    axes.set_ylim(0.5 * LEAST_DRAWN, 300.0)
+    axes.set(xlabel="time [s]", ylabel="error [radius], |Ψ| [radius²]")
 
 
 def _draw_parameters(axes: Axes, runs: Runs, body: str) -> None:

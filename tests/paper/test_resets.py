@@ -1,0 +1,111 @@
+"""Each jump of the projection errors at a switch is what its reset implies, in B, C, D and E."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from standoff.motion import Path
+from standoff.recording import Recording
+from standoff.recording.simulate import track_along
+from standoff.recording.times import even_times
+from standoff.tracking import Feature, Tracker
+from standoff.tracking.laws import PaperLaw
+from standoff_studies.paper.bodies import lens_of_patches, planar_body
+from standoff_studies.paper.resets import (
+    ROUNDED,
+    projection_errors,
+    reset_place,
+    reset_statement,
+    resets_of,
+)
+from standoff_studies.paper.simulation_b import run as b
+from standoff_studies.paper.simulation_b.printed import REST
+from standoff_studies.paper.simulation_c import run as c
+from standoff_studies.paper.simulation_d import runs as d
+from standoff_studies.paper.simulation_e import runs as e
+
+Case = tuple[Recording, tuple[Path, Path], float]
+
+
+def of_b() -> Case:
+    return b.run().paper.outside, (REST, b.run().path), b.GAIN
+
+
+def of_c() -> Case:
+    return c.run().paper, c.run().paths, c.GAIN
+
+
+def of_d() -> Case:
+    return d.run().paper[0], (d.REST, d.HELIX), d.GAIN
+
+
+def of_e() -> Case:
+    return e.run().paper, (e.PATH_A, e.PATH_B), e.GAIN
+
+
+@pytest.mark.parametrize(("case", "least"), [(of_b, 9), (of_c, 36), (of_d, 11), (of_e, 4)])
+def test_the_errors_jump_by_what_the_reset_implies(case: Callable[[], Case], least: int) -> None:
+    recording, paths, gain = case()
+    resets = resets_of(recording, paths, gain)
+    assert [r.frame for r in resets] == sorted({event.frame for event in recording.events})
+    assert len(resets) >= least
+    assert max(reset.off for reset in resets) <= ROUNDED
+    # it is a jump that is compared: most resets change the errors by far more
+    jumps = [abs(reset.found - reset.before) for reset in resets]
+    assert np.median(jumps) > 1e-6
+    assert reset_statement(resets, "").holds is True
+    # the drawn curve has the resets' values in their frames
+    errors = projection_errors(recording, paths)
+    at = np.searchsorted(errors.time, [reset.time for reset in resets])
+    assert errors.size[at] == pytest.approx([reset.found for reset in resets], rel=1e-12)
+
+
+def test_an_exact_reset_is_told() -> None:
+    """Entered at the foot point, an edge leaves other errors than the printed reset implies."""
+    runs = e.run()
+    law = replace(PaperLaw.as_printed(gain=e.GAIN), reset="foot")
+    tracker = Tracker(runs.a, runs.b, e.STEP, law=law)
+    times = even_times(0.0, 1.2, e.STEP)
+    other = track_along(tracker, e.PATH_A, e.PATH_B, times, state=e.begin(tracker, *e.START))
+    resets = resets_of(other, (e.PATH_A, e.PATH_B), e.GAIN)
+    assert max(reset.off for reset in resets) > 1e6 * ROUNDED
+    assert reset_statement(resets, "").holds is False
+
+
+def test_resets_of_parameters(rng: np.random.Generator) -> None:
+    """On the lens's straight boundary curves a reset keeps v; back on a face u is 0 or 1."""
+    lens = lens_of_patches()
+    for u, v in rng.uniform(0.05, 0.95, (5, 2)).tolist():
+        for edge in {edge for edge, _ in lens.face_parts[0].loop}:
+            onto, at = reset_place(
+                lens, (Feature("face", 0), np.array([u, v])), Feature("edge", edge)
+            )
+            back, place = reset_place(lens, (onto, at), Feature("face", 0))
+            assert back == Feature("face", 0)
+            assert place[1] == pytest.approx(v, abs=1e-9)
+            assert min(abs(place[0]), abs(place[0] - 1.0)) == 0.0
+
+
+def test_ends_of_curves() -> None:
+    body, point = planar_body(), np.empty(0)
+    for curve in range(3):
+        edge = body.edge_parts[curve]
+        for vertex, t in ((edge.first, edge.curve.first), (edge.last, edge.curve.last)):
+            found = reset_place(body, (Feature("vertex", vertex), point), Feature("edge", curve))
+            assert found[1] == pytest.approx([t])
+            back = reset_place(body, found, Feature("vertex", vertex))
+            assert len(back[1]) == 0
+
+
+def test_features_that_do_not_meet_have_no_reset() -> None:
+    lens = lens_of_patches()
+    held = Feature("face", 0), np.array([0.5, 0.5])
+    far = max(set(range(lens.n_edges)) - {edge for edge, _ in lens.face_parts[0].loop})
+    with pytest.raises(ValueError, match="no boundary curve"):
+        reset_place(lens, held, Feature("edge", far))
+    with pytest.raises(ValueError, match="no reset from face 0 to vertex 0"):
+        reset_place(lens, held, Feature("vertex", 0))
