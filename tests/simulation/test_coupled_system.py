@@ -123,6 +123,27 @@ def test_between_readings_the_handle_stands_and_the_tool_is_pulled() -> None:
     assert found.energy.device[-1] == pytest.approx(work, rel=1e-9)
 
 
+def test_the_device_holds_what_the_coupler_asks_for() -> None:
+    scene = coupled()
+    with scene.device:
+        run = scene.operator.run(scene.state, 900, device=scene.device)
+        held = scene.device.held
+        assert np.linalg.norm(held.force) > 0.5
+        assert (held.force == record(run).on_device[-1, :3]).all()
+        assert (held.torque == record(run).on_device[-1, 3:]).all()
+
+
+def test_force_and_torque_move_the_tool_in_the_tick() -> None:
+    scene, shift, angle = coupled(), 1e-3, 0.1
+    there = so.Pose.exp([0.0, 0.0, angle], HOME.translation + np.array([shift, 0.0, 0.0]))
+    state = scene.operator.step(scene.state, sim.DeviceReading(0.0, 0, there, so.Twist.zero()))
+    inertia = 0.4 * MASS * REACH**2
+    speed = PERIOD * VALUES["stiffness"] * shift / MASS
+    spin = PERIOD * VALUES["rotational_stiffness"] * angle / inertia
+    assert state.twist(1).v == pytest.approx([speed, 0.0, 0.0], rel=1e-9, abs=1e-12)
+    assert state.twist(1).omega == pytest.approx([0.0, 0.0, spin], rel=1e-9, abs=1e-9)
+
+
 def test_a_hand_drags_the_tool_over_face_vertex_and_edge() -> None:
     run = dragged(coupled(), READINGS)
     features = run.answers(0).mode[:, 0].astype(int)
