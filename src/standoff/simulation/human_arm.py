@@ -56,8 +56,9 @@ class HumanArm:
     def fingertip(cls) -> HumanArm:
         """Return a light touch: a mass that hides nothing of the device.
 
-        Translation: rounded from index fingers in extension, Hajian and Howe, J. Biomechanical
-        Engineering 119(1), 1997. A fingertip does not hold the handle's rotation.
+        Chosen values, of the order that Hajian and Howe (J. Biomechanical Engineering 119(1), 1997)
+        report of index fingers in extension, not taken from a table: fit your own for a study of
+        people. A fingertip does not hold the handle's rotation.
         """
         return cls(mass=0.006, damping=5.0, stiffness=400.0)
 
@@ -66,8 +67,9 @@ class HumanArm:
         """Return an arm at rest that holds a knob.
 
         Translation: one trial of van Beek, Bergmann Tiest, Mugge and Kappers, Scientific Reports
-        5:18004, 2015 (M = 0.554 kg, B = 6.45 N s/m, K = 135 N/m). Rotation: the order of a passive
-        wrist, Charles and Hogan, J. Neurophysiology 107(4), 2012.
+        5:18004, 2015 (M = 0.554 kg, B = 6.45 N s/m, K = 135 N/m). Rotation: chosen, the order of a
+        passive wrist at rest; it is stiffer in radial and ulnar deviation than in flexion (Formica
+        et al., J. Neurophysiology 108(4), 2012), which one number cannot say.
         """
         return cls(
             mass=0.554,
