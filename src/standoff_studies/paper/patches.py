@@ -15,7 +15,7 @@ from standoff.motion import Pose
 from standoff.tracking import PairSystem, Proximity
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import PALE, View
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,6 +48,10 @@ SEEN_ABOVE, SEEN_ACROSS = (-62.0, 32.0), (-50.0, 30.0)
 
 ROUNDOFF = 1e-12
 """Most a projection on unit vectors may be off zero and still be called zero: 1e4 roundings."""
+
+
+LAW = "so.distance, a global search: no law"
+"""What the statements say they were measured with."""
 
 
 def _control_points() -> Array:
@@ -130,7 +134,7 @@ def tangents_patch() -> Artwork:
         ),
         draw=_draw_tangents,
         tables={"isoparametric": _curve_table(), "tangents": _system_table(answer, system)},
-        statements=(_quotients(u, v), _perpendicular("Fig. 1", "-", system)),
+        statements=measured_by(LAW, (_quotients(u, v), _perpendicular("Fig. 1", "-", system))),
     )
 
 
@@ -150,13 +154,17 @@ def witness_pair() -> Artwork:
         ),
         draw=_draw_pair,
         tables={"tangents": _system_table(answer, system)},
-        statements=(
-            _perpendicular(
-                "Fig. 2, Eqs. (1)–(4)",
-                "at the closest points ΔR has no projection on the tangents of either patch: Ψ = 0",
-                system,
+        statements=measured_by(
+            LAW,
+            (
+                _perpendicular(
+                    "Fig. 2, Eqs. (1)–(4)",
+                    "at the closest points ΔR has no projection on the tangents of either patch: "
+                    "Ψ = 0",
+                    system,
+                ),
+                _certified(answer),
             ),
-            _certified(answer),
         ),
     )
 

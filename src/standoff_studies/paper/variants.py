@@ -13,7 +13,7 @@ import standoff as so
 from standoff.motion import Pose, Twist
 from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,6 +62,13 @@ VARIANTS: dict[str, dict[str, Any]] = {
     },
 }
 """Name of each: the options of the paper's law in which it differs from the default."""
+
+
+LAW = (
+    "so.PaperLaw with the option named, the others as they are by default (M by the rank rule, "
+    "switches onto edges at foot points), from wrong starts on a face"
+)
+"""What the statements say they were measured with."""
 
 
 class Run(NamedTuple):
@@ -224,7 +231,7 @@ def variants() -> Artwork:
         ),
         draw=draw,
         tables={"variants": variant_table(), "runs": run_table()},
-        statements=statements(),
+        statements=measured_by(LAW, statements()),
         shown=("variants",),
     )
 

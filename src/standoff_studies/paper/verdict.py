@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.law_accuracy import LAWS, STEPS, even, frame_time, measure
 
 if TYPE_CHECKING:
@@ -40,6 +40,13 @@ SPELT = {"PC": "predictor-corrector", "PC2": "predictor-corrector,\ntwo steps"}
 
 FIRST_STYLE = {"Heun": 0, "Euler": 1, "RK4": 2, "one": 3, "two": 4, "secant": 5, "PC": 6}
 """Colour, dashes and marker of a law, by its first word; those without feedforward are hollow."""
+
+
+LAW = (
+    "each law by its name: so.PaperLaw (rank rule, multipliers) at K h = 1, or "
+    "so.PredictorCorrector; two untiled ellipsoids, from the closest points"
+)
+"""What the statements say they were measured with."""
 
 
 class Measured(NamedTuple):
@@ -112,7 +119,7 @@ def verdict() -> Artwork:
             "wrong_twists": wrong_table(),
             "curve": curve_table(),
         },
-        statements=statements(),
+        statements=measured_by(LAW, statements()),
         shown=("accuracy", "wrong_twists"),
     )
 

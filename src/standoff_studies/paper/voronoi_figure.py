@@ -19,7 +19,7 @@ from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches, planar_body
 from standoff_studies.paper.drawing import draw_planar_body, short_name
 from standoff_studies.paper.drawing_3d import View
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions, draw_space_regions
 
 if TYPE_CHECKING:
@@ -38,6 +38,10 @@ SAME = 1e-7
 """Two distances that differ less are equal, where one is to chords of such samples [length]."""
 EXACT = 1e-11
 """Largest error against a closed form [length]."""
+
+
+LAW = "so.voronoi_regions and so.distance, before any run: no law"
+"""What the statements say they were measured with."""
 
 
 class Study(NamedTuple):
@@ -153,7 +157,7 @@ def regions() -> Artwork:
         ),
         draw=_draw,
         tables={"planar_lines": _rays(found.planar), "lens_rays": _rays(found.lens)},
-        statements=_statements(found),
+        statements=measured_by(LAW, _statements(found)),
     )
 
 

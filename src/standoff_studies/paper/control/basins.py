@@ -18,7 +18,7 @@ from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking.places import PlaceLike
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,6 +45,13 @@ POINT_AT = (1.05, 0.75, 0.6)
 """The point beside the ellipsoid [length]."""
 POSE_B = ([0.4, -0.1, 0.2], [1.7, 1.1, 0.6])
 """The second ellipsoid: rotation vector [rad] and position [length]."""
+
+
+LAW = (
+    "the raw law is so.PaperLaw(gain=100, solve='plain'), Newton's the same by Euler at 1000, the "
+    "safeguarded one so.PredictorCorrector(), on untiled ellipsoids at rest; random starts"
+)
+"""What the statements say they were measured with."""
 
 
 @cache
@@ -136,7 +143,7 @@ def attraction() -> Artwork:
         ),
         draw=_draw,
         tables=_tables(),
-        statements=_statements(),
+        statements=measured_by(LAW, _statements()),
     )
 
 

@@ -14,7 +14,7 @@ from standoff.geometry.validation import Array
 from standoff.motion import Pose, Twist
 from standoff.tracking import feedback
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,6 +51,10 @@ LAWS: dict[str, feedback.Feedback] = {
     "finite-time, capped late": feedback.FiniteTime(GAIN, 0.5, 0.1, most=1.98 / STEP),
 }
 """The sign-power law twice: with its greatest gain at 1/h, and nearly at Euler's limit 2/h."""
+
+
+LAW = "so.PaperLaw(integrator='euler') with the feedback named: multipliers, rank rule, wrong start"
+"""What the statements say they were measured with."""
 
 
 class Run(NamedTuple):
@@ -155,7 +159,7 @@ def four_feedbacks() -> Artwork:
         ),
         draw=_draw,
         tables=_tables(),
-        statements=_statements(),
+        statements=measured_by(LAW, _statements()),
     )
 
 

@@ -12,7 +12,7 @@ from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.control.decay import arrival, decays, loops
 from standoff_studies.paper.control.lag import FRAMES, PAIRS, Lag, measured_lags
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,6 +24,13 @@ AGREE = 1e-7
 """Most a measured growth factor may be off its prediction: what Psi's roundoff, 1e-16 of 1e-5,
 and the chart's curvature leave, with room."""
 NAMED = {"euler": "Euler", "heun": "Heun", "midpoint": "midpoint", "rk4": "RK4"}
+
+
+LAW = (
+    "so.PaperLaw (multipliers, rank rule) with the integrator, feedback and gain named: from 1e-5 "
+    "off the minimum at rest; the lower bound by Euler without feedforward, from the closest points"
+)
+"""What the statements say they were measured with."""
 
 
 @cache
@@ -66,7 +73,7 @@ def decay_and_lag() -> Artwork:
         ),
         draw=_draw,
         tables=_tables(),
-        statements=_statements(),
+        statements=measured_by(LAW, _statements()),
     )
 
 

@@ -13,7 +13,7 @@ from standoff.tracking import feedback
 from standoff_studies.paper import style
 from standoff_studies.paper.control.decay import DAMPINGS, PROPORTIONAL, loops
 from standoff_studies.paper.control.gains import AGREE, worst_loop
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,6 +31,12 @@ MARKED = {
 """K h that are named on the real root of proportional feedback, and where it then is."""
 METHODS = ("euler", "heun", "rk4")
 TITLES = {"euler": "Euler", "heun": "Heun and midpoint", "rk4": "RK4"}
+
+
+LAW = (
+    "so.control, linear theory: no tracker; measured roots by so.PaperLaw from 1e-5 off the minimum"
+)
+"""What the statements say they were measured with."""
 
 
 class Locus(NamedTuple):
@@ -97,7 +103,7 @@ def stability() -> Artwork:
         ),
         draw=_draw,
         tables=_tables(),
-        statements=_statements(),
+        statements=measured_by(LAW, _statements()),
     )
 
 
