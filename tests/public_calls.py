@@ -31,6 +31,7 @@ NOT_CALLED = {
     **dict.fromkeys(("Surface", "Curve", "Body"), "abstract, or made by its static methods"),
     **dict.fromkeys(("Apex", "Edge", "Face"), "plain records, checked by `Body.from_brep`"),
     "FrameBuffer": "made from a tracker and a state, which need compiled kernels and check nothing",
+    "Answers": "made by trackers",
     "TrackerState": "made by trackers, which check the states that they are given",
 }
 """Public classes with parameters whose constructors are not tried, and why."""

@@ -348,7 +348,7 @@ class PointTracker(KeepsReadOnly):
 class _Outside(Tracker):
     """The tracker for a point that is known to be outside."""
 
-    def _name_overlap(self, block: Block) -> None:
+    def name_overlap(self, block: Block) -> None:
         """No overlap is to be proven: the boundary has told the side."""
 
 

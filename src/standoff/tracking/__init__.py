@@ -7,6 +7,7 @@ from standoff.on_demand import on_demand
 if TYPE_CHECKING:
     from standoff.bodies.features import Feature
     from standoff.tracking import feedback
+    from standoff.tracking.answers import Answers
     from standoff.tracking.contact.witness_set import WitnessSet, witness_set
     from standoff.tracking.feedback import max_gain
     from standoff.tracking.laws import PaperLaw, PredictorCorrector
@@ -29,6 +30,7 @@ else:
                 "PaperLaw",
                 "PredictorCorrector",
             ),
+            "standoff.tracking.answers": ("Answers",),
             "standoff.tracking.pair_system": (
                 "PairSystem",
                 "pair_system",
@@ -79,6 +81,7 @@ else:
     )
 
 __all__ = [
+    "Answers",
     "Counts",
     "Event",
     "Feature",

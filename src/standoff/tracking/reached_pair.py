@@ -47,8 +47,8 @@ class ReachedPair(KeepsReadOnly):
         What the kernels read of both bodies.
     table : AddressTable
         Where these and the options lie.
-    value, in_place
-        The law's compiled frames: from block to block, and on one long block.
+    value, in_place, values
+        The law's compiled frames: from block to block, on one long block, and many in a row.
     """
 
     a: Body
@@ -64,6 +64,7 @@ class ReachedPair(KeepsReadOnly):
         paper = isinstance(self.law, PaperLaw)
         self.value = kernels.value_paper if paper else kernels.value_predicted
         self.in_place = kernels.step_paper if paper else kernels.step_predicted
+        self.values = kernels.values_paper if paper else kernels.values_predicted
 
     def _prepare(self) -> None:
         """Load, or compile, what the frames can reach: none of them waits for it."""
@@ -71,7 +72,7 @@ class ReachedPair(KeepsReadOnly):
 
     def __getstate__(self) -> Any:
         # in another process the bodies' formulas, and all arrays, have other addresses
-        reached = ("packed", "table", "value", "in_place")
+        reached = ("packed", "table", "value", "in_place", "values")
         state = {name: x for name, x in self.__dict__.items() if name not in reached}
         return state, list(locked(state))
 
@@ -95,7 +96,7 @@ class ReachedPair(KeepsReadOnly):
         repair(flat_a if first else flat_b, "pose_a" if first else "pose_b")
         return 1
 
-    def _name_overlap(self, block: Block) -> None:
+    def name_overlap(self, block: Block) -> None:
         """Give an uncertified pair without a positive bound the status OVERLAPPING, if proven."""
         data, out, motion = block.state, block.out, block.motion
         held = isinstance(self.law, PaperLaw) and self.law.left_alone
@@ -131,6 +132,6 @@ class ReachedPair(KeepsReadOnly):
     def _named(self, block: Array, repaired: int) -> tuple[TrackerState, Proximity]:
         """State and answer of a block that is done, an overlap named where one is proven."""
         if block[K.STATUS] in UNDECIDED:
-            self._name_overlap(Block(block))
+            self.name_overlap(Block(block))
         answer = Proximity(self.a, self.b, block, repaired)
         return TrackerState(answer), answer

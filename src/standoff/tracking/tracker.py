@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError, StandoffTypeError
@@ -15,6 +15,7 @@ from standoff.kernels.state import arrays as K
 from standoff.motion import PoseLike, TwistLike
 from standoff.shown_names import hides
 from standoff.spellings import no_attribute
+from standoff.tracking.answers import Answers
 from standoff.tracking.choices import positive_number
 from standoff.tracking.inputs import (
     check_in_plane,
@@ -30,12 +31,20 @@ from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.reached_pair import UNDECIDED, ReachedPair
 from standoff.tracking.rows import Block, StateRow
+from standoff.tracking.runs import Given, run
 from standoff.tracking.state import FrameBuffer, TrackerState
 
 Array = NDArray[np.float64]
 
 
-@hides("check_state", "in_place", "options", "packed", "planar", "table", "value")
+HIDDEN = (
+    "check_frame_time", "check_state", "in_place", "name_overlap", "options", "packed", "planar",
+    "step_anew", "table", "value", "values",
+)  # fmt: skip
+"""What the run and the studies need and users do not."""
+
+
+@hides(*HIDDEN)
 class Tracker(ReachedPair):
     """Keeps the minimum distance of two convex bodies while they move.
 
@@ -186,24 +195,24 @@ class Tracker(ReachedPair):
         before = state.proximity
         if before._a is not self.a or before._b is not self.b:
             self.check_state(state)
-        h = self.dt if dt is None else self._frame_time(dt)
+        h = self.dt if dt is None else self.check_frame_time(dt)
         if self.planar:
-            return self._step_anew(state, given, h)
+            return self.step_anew(state, given, h)
         arrays = type(pose_a) is type(pose_b) is type(twist_a) is type(twist_b) is np.ndarray
         numbers, repaired = (given, 0) if arrays else plain(*given)
         block = np.empty(K.N_BLOCK)
         try:
             done = self.value(self.table.address, before._out, *numbers, h, block)
         except WrongKind:
-            return self._step_anew(state, given, h)
+            return self.step_anew(state, given, h)
         if done == K.FINE:
             answer = Proximity(self.a, self.b, block, repaired)
             return TrackerState(answer), answer
         if done == K.UNDECIDED:
             return self._named(block, repaired)
-        return self._step_anew(state, given, h)
+        return self.step_anew(state, given, h)
 
-    def _step_anew(
+    def step_anew(
         self, state: TrackerState, given: tuple[Any, Any, Any, Any], h: float
     ) -> tuple[TrackerState, Proximity]:
         """A step of what the compiled one does not read: says what is wrong with it, or mends it.
@@ -215,6 +224,40 @@ class Tracker(ReachedPair):
         block = Block.empty(state.data, motion, h, has_twist)
         repaired += self._step_in(block)
         return self._named(block.kept(), repaired)
+
+    def run(
+        self,
+        state: TrackerState,
+        poses_a: ArrayLike | PoseLike,
+        poses_b: ArrayLike | PoseLike,
+        twists_a: ArrayLike | TwistLike | None = None,
+        twists_b: ArrayLike | TwistLike | None = None,
+        dt: ArrayLike | None = None,
+    ) -> tuple[TrackerState, Answers]:
+        """Many frames in one compiled loop, each from the state of the one before, as by ``step``.
+
+        Parameters
+        ----------
+        state : TrackerState
+            Of this pair; it is not changed.
+        poses_a, poses_b : array_like, shape (n, 4, 4) or (n, 12), or one pose for all frames
+            World poses at the end of each step; rows of 12 are R row-major, p.
+        twists_a, twists_b : array_like, shape (n, 6), or one twist for all frames, optional
+            (v, omega) in world axes, as in ``step``.
+        dt : float or array_like, shape (n,), optional
+            Time since the frame before, s; the tracker's own if not given.
+
+        Returns
+        -------
+        (TrackerState, Answers)
+            The state after the last frame, and all answers as arrays.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As ``step``, with the number of the frame; nothing is answered then.
+        """
+        return run(self, state, Given.of(self, poses_a, poses_b, (twists_a, twists_b), dt))
 
     def step_into(
         self,
@@ -235,7 +278,7 @@ class Tracker(ReachedPair):
         if self.planar:
             check_in_plane(buffer.pose_a, buffer.pose_b)
         data = buffer._block
-        data[K.BLOCK_TIME_STEP] = self.dt if dt is None else self._frame_time(dt)
+        data[K.BLOCK_TIME_STEP] = self.dt if dt is None else self.check_frame_time(dt)
         data[K.BLOCK_HAS_TWIST] = buffer.has_twist
         buffer.repaired = 0
         done = self.in_place(self.table.address, data)
@@ -243,7 +286,7 @@ class Tracker(ReachedPair):
             block = Block(data)
             buffer.repaired = self._step_in(block) if done != K.UNDECIDED else 0
             if data[K.STATUS] in UNDECIDED:
-                self._name_overlap(block)
+                self.name_overlap(block)
         return data.item(K.DISTANCE)
 
     def buffer(self, state: TrackerState) -> FrameBuffer:
@@ -251,7 +294,7 @@ class Tracker(ReachedPair):
         self.check_state(state)
         return FrameBuffer(self, state)
 
-    def _frame_time(self, dt: float) -> float:
+    def check_frame_time(self, dt: float) -> float:
         """A frame's own time, s: positive, and short enough for the paper's law to be stable."""
         dt = positive_number(dt, "dt")
         self.resolved_law.check_step(dt)

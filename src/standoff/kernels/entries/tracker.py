@@ -15,7 +15,7 @@ from standoff.kernels.compiler.decorators import (
     stack_counts,
     stack_log,
 )
-from standoff.kernels.compiler.entry import BOOL, INT, PAIR, READ, REAL, ROWS, WRITE
+from standoff.kernels.compiler.entry import BLOCKS, BOOL, INT, PAIR, READ, REAL, ROWS, WRITE
 from standoff.kernels.entries.frames import Inputs, frame_paper, frame_predicted, start_frame
 from standoff.kernels.frame.restart import anywhere, anywhere_apart
 from standoff.kernels.pair.events import EVENT_COLUMNS, EVENTS, MAX_EVENTS, N_COUNT_SLOTS
@@ -217,6 +217,37 @@ def value_paper(table, before, pose_a, pose_b, twist_a, twist_b, h, block):
     """`value_predicted`, of the paper's law."""
     given = pose_a, pose_b, twist_a, twist_b
     return value_by(frame_paper, table, before, given, h, block)
+
+
+@kernel
+def values_by(frame, table, given, steps, first, blocks):
+    """`values_predicted`, with the law's own frame."""
+    poses_a, poses_b, twists_a, twists_b = given
+    for k in range(first, len(steps)):
+        before, block = blocks[k], blocks[k + 1]
+        one = poses_a[k], poses_b[k], twists_a[k], twists_b[k]
+        done = value_by(frame, table, before, one, steps[k], block)
+        if done != FINE:
+            return k, done
+    return len(steps), FINE
+
+
+@entry(INT, BLOCKS, BLOCKS, ROWS, ROWS, WRITE, INT, ROWS, work="runs")
+def values_predicted(table, poses_a, poses_b, twists_a, twists_b, steps, first, blocks):
+    """`value_predicted` of many frames: frame k goes from block k to block k + 1.
+
+    poses (n, 4, 4), twists (n, 6) or (n, 1) of NOT_GIVEN, steps (n,), blocks (n + 1, N_BLOCK).
+    Begins at frame `first`. Returns the first frame that is not FINE and why; n, FINE at the end.
+    """
+    given = poses_a, poses_b, twists_a, twists_b
+    return values_by(frame_predicted, table, given, steps, first, blocks)
+
+
+@entry(INT, BLOCKS, BLOCKS, ROWS, ROWS, WRITE, INT, ROWS, work="paper runs")
+def values_paper(table, poses_a, poses_b, twists_a, twists_b, steps, first, blocks):
+    """`values_predicted`, of the paper's law."""
+    given = poses_a, poses_b, twists_a, twists_b
+    return values_by(frame_paper, table, given, steps, first, blocks)
 
 
 @entry(INT, WRITE, work="frames")

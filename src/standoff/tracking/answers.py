@@ -1,0 +1,106 @@
+"""Many answers of one pair, as arrays."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.kernels.state import arrays as K
+from standoff.read_only import KeepsReadOnly
+from standoff.shown_names import hides
+from standoff.tracking.proximity import Event, Proximity
+from standoff.tracking.rows import AnswerRows
+from standoff.tracking.status import Status
+
+Array = NDArray[np.float64]
+
+
+def _field(name: str, doc: str) -> Any:
+    def read(answers: Answers) -> Any:
+        values = getattr(AnswerRows(answers.blocks), name)
+        values.flags.writeable = False
+        return values
+
+    return property(read, doc=doc)
+
+
+@hides("blocks")
+class Answers(KeepsReadOnly):
+    """Answers of n frames of two bodies, in arrays of n rows; ``answers[k]`` is one `Proximity`.
+
+    A frame takes 1.2 kB: `standoff.simulate` records longer runs.
+
+    Attributes
+    ----------
+    distance, lower_bound, upper_bound, rate, residual : (n,) arrays
+    point_a, point_b, normal, velocity_a, velocity_b : (n, 3) arrays
+        As in `Proximity`, in world axes.
+    repaired : (n,) array of int
+        How many of a frame's two poses had a rounded rotation and were brought to the nearest.
+    """
+
+    __slots__ = ("_a", "_b", "_longer", "blocks", "repaired")
+
+    def __init__(
+        self,
+        bodies: tuple[Body, Body],
+        blocks: Array,
+        repaired: NDArray[np.int64],
+        longer: dict[int, Proximity],
+    ) -> None:
+        self._a, self._b = bodies
+        self.blocks, self.repaired = blocks, repaired
+        self._longer = longer  # those whose switches a row of `blocks` does not hold
+        for array in (blocks, repaired):
+            array.flags.writeable = False
+
+    distance = _field("distance", "(n,) signed distances, length.")
+    lower_bound = _field("lower_bound", "(n,) certified lower bounds of them.")
+    upper_bound = _field("upper_bound", "(n,) upper bounds of them.")
+    point_a = _field("point_a", "(n, 3) witness points on A.")
+    point_b = _field("point_b", "(n, 3) witness points on B.")
+    normal = _field("normal", "(n, 3) unit vectors from A to B.")
+    rate = _field("rate", "(n,) time derivatives of the distance; nan without twists.")
+    velocity_a = _field("velocity_a", "(n, 3) velocities of the witness points on A.")
+    velocity_b = _field("velocity_b", "(n, 3) velocities of those on B.")
+    residual = _field("residual", "(n,) lengths of the projection errors.")
+
+    @property
+    def time(self) -> Array:
+        """(n,) time since the tracker's start, s."""
+        return self.blocks[:, K.BLOCK_STATE + K.TIME]
+
+    @property
+    def status(self) -> NDArray[np.object_]:
+        """(n,) the status of each frame."""
+        return np.array([Status(int(x)) for x in AnswerRows(self.blocks).status], dtype=object)
+
+    @property
+    def certified(self) -> NDArray[np.bool_]:
+        """(n,) is the answer proven?"""
+        return np.array([status.certified for status in self.status], dtype=bool)
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """The switches of all frames, in their order."""
+        return tuple(event for answer in self for event in answer.events)
+
+    def __len__(self) -> int:
+        return len(self.blocks)
+
+    def __getitem__(self, k: int) -> Proximity:
+        index = range(len(self))[operator.index(k)]
+        if index in self._longer:
+            return self._longer[index]
+        return Proximity(self._a, self._b, self.blocks[index], int(self.repaired[index]))
+
+    def __iter__(self) -> Iterator[Proximity]:
+        return (self[k] for k in range(len(self)))
+
+    def __repr__(self) -> str:
+        return f"Answers of {len(self)} frames of {self._a!r} and {self._b!r}"
