@@ -170,3 +170,12 @@ def test_a_bad_row_is_named_by_its_frame() -> None:
         tracker.run(state, REST, poses, None, twists)
     with pytest.raises(TypeError, match="not a TrackerState"):
         tracker.run(None, REST, poses)
+
+
+def test_a_twist_in_body_axes_turns_with_its_body() -> None:
+    a, b, far = PAIRS["lens, ellipsoid"]
+    poses, _ = motion(far, 10)
+    tracker, twist = so.Tracker(a, b), so.Twist([0.1, 0.2, 0.3], [1.0, -2.0, 3.0], "body")
+    state = tracker.start(REST, poses[0])
+    frames = [(REST, pose, None, twist) for pose in poses]
+    same_as_steps(tracker, state, frames, tracker.run(state, REST, poses, None, twist))
