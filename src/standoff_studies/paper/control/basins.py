@@ -179,7 +179,7 @@ def _statements() -> tuple[Statement, ...]:
         ),
         Statement(
             "Convergence",
-            "a start anywhere on two convex bodies converges to the closest points",
+            "-",
             f"with the safeguards: {share('safeguarded')} of the starts",
             bool(all_found),
             "descent directions, line search, restart on the far side",
