@@ -47,7 +47,7 @@ SAME_LENGTHS = {
 
 
 @once_a_solid
-def _shape(solid: Solid) -> Any:
+def coal_shape(solid: Solid) -> Any:
     """Return Coal's shape; None where it has none. A point is a ball without radius."""
     coal = require("coal")
     lengths = [float(x) for x in solid.values.values() if np.ndim(x) == 0]
@@ -99,7 +99,7 @@ class Coal(Peer):
     def query(self, a: Solid, b: Solid) -> Query | None:
         """The normal is the one that Coal reports."""
         coal = require("coal")
-        shape_a, shape_b = _shape(a), _shape(b)
+        shape_a, shape_b = coal_shape(a), coal_shape(b)
         if shape_a is None or shape_b is None:
             return None
         request, result = coal_request(self.tight), coal.DistanceResult()

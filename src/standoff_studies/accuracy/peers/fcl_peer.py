@@ -25,7 +25,7 @@ from standoff_studies.oracles import Array
 
 
 @once_a_solid
-def _shape(solid: Solid) -> Any:
+def fcl_shape(solid: Solid) -> Any:
     """Return FCL's shape; None where it has none."""
     fcl = require("fcl")
     lengths = [float(x) for x in solid.values.values() if np.ndim(x) == 0]
@@ -67,7 +67,7 @@ class Fcl(Peer):
     def query(self, a: Solid, b: Solid) -> Query | None:
         """It reports no normal: that is the direction between its points."""
         fcl = require("fcl")
-        shape_a, shape_b = _shape(a), _shape(b)
+        shape_a, shape_b = fcl_shape(a), fcl_shape(b)
         if shape_a is None or shape_b is None:
             return None
         request = fcl.DistanceRequest(enable_nearest_points=True, enable_signed_distance=True)

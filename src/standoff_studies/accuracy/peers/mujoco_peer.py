@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from standoff_studies.accuracy.peers.answer import (
@@ -41,6 +43,22 @@ def _geometry(solid: Solid) -> tuple[str, Array] | None:
     return None
 
 
+def mujoco_model(a: Solid, b: Solid, tight: bool = False) -> Any:
+    """Return MuJoCo's model of a pair, its geoms 0 and 1; None where it has no such pair."""
+    mujoco = require("mujoco")
+    pair = (_geometry(a), _geometry(b))
+    if pair[0] is None or pair[1] is None:
+        return None
+    geoms = "".join(f'<geom type="{kind}" size="1 1 1"/>' for kind, _ in (pair[0], pair[1]))
+    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{geoms}</worldbody></mujoco>")
+    # The text form may round; what is measured must be the same bodies.
+    model.geom_size[:] = np.stack([pair[0][1], pair[1][1]])
+    if tight:
+        model.opt.ccd_tolerance = TOLERANCE
+        model.opt.ccd_iterations = ITERATIONS
+    return model
+
+
 class MuJoCo(Peer):
     """MuJoCo at its defaults (1e-6), or at the tightest tolerance that pays."""
 
@@ -53,16 +71,9 @@ class MuJoCo(Peer):
     def query(self, a: Solid, b: Solid) -> Query | None:
         """It reports no normal: that is the direction between its points."""
         mujoco = require("mujoco")
-        pair = (_geometry(a), _geometry(b))
-        if pair[0] is None or pair[1] is None:
+        model = mujoco_model(a, b, self.tight)
+        if model is None:
             return None
-        geoms = "".join(f'<geom type="{kind}" size="1 1 1"/>' for kind, _ in (pair[0], pair[1]))
-        model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{geoms}</worldbody></mujoco>")
-        # The text form may round; what is measured must be the same bodies.
-        model.geom_size[:] = np.stack([pair[0][1], pair[1][1]])
-        if self.tight:
-            model.opt.ccd_tolerance = TOLERANCE
-            model.opt.ccd_iterations = ITERATIONS
         data = mujoco.MjData(model)
         segment = np.zeros(6)
 

@@ -27,7 +27,7 @@ DEGENERATE = 1e-9
 
 
 @once_a_solid
-def _shape(solid: Solid) -> Any:
+def cascade_shape(solid: Solid) -> Any:
     """Return OpenCASCADE's shape; None where there is none here."""
     primitives = require("OCP.BRepPrimAPI")
     gp = require("OCP.gp")
@@ -54,26 +54,37 @@ def _shape(solid: Solid) -> Any:
 
 def _shell(patches: tuple[BezierPatch, ...]) -> Any:
     builder = require("OCP.BRepBuilderAPI")
-    bezier = require("OCP.Geom").Geom_BezierSurface
-    arrays, point = require("OCP.collections"), require("OCP.gp").gp_Pnt
     sewing = builder.BRepBuilderAPI_Sewing(SEWING)
     for patch in patches:
-        n, m = patch.weights.shape
-        poles, weights = arrays.Array2_gp_Pnt(1, n, 1, m), arrays.Array2_double(1, n, 1, m)
-        for i, j in np.ndindex(n, m):
-            poles.SetValue(i + 1, j + 1, point(*map(float, patch.control_points[i, j])))
-            weights.SetValue(i + 1, j + 1, float(patch.weights[i, j]))
-        face = builder.BRepBuilderAPI_MakeFace(bezier(poles, weights), DEGENERATE).Face()
-        sewing.Add(face)
+        surface = bezier_surface(patch)
+        sewing.Add(builder.BRepBuilderAPI_MakeFace(surface, DEGENERATE).Face())
     sewing.Perform()
     return sewing.SewedShape()
 
 
-def _placed(shape: Any, pose: Pose) -> Any:
+def bezier_surface(patch: BezierPatch) -> Any:
+    """Return a patch as OpenCASCADE's surface."""
+    bezier = require("OCP.Geom").Geom_BezierSurface
+    arrays, point = require("OCP.collections"), require("OCP.gp").gp_Pnt
+    n, m = patch.weights.shape
+    poles, weights = arrays.Array2_gp_Pnt(1, n, 1, m), arrays.Array2_double(1, n, 1, m)
+    for i, j in np.ndindex(n, m):
+        poles.SetValue(i + 1, j + 1, point(*map(float, patch.control_points[i, j])))
+        weights.SetValue(i + 1, j + 1, float(patch.weights[i, j]))
+    return bezier(poles, weights)
+
+
+def transform_of(pose: Pose) -> Any:
+    """Return OpenCASCADE's transform of a pose (R, p)."""
     transform = require("OCP.gp").gp_Trsf()
     rotation, position = pose
     transform.SetValues(*map(float, np.column_stack([rotation, position]).ravel()))
-    return shape.Moved(require("OCP.TopLoc").TopLoc_Location(transform))
+    return transform
+
+
+def placed(shape: Any, pose: Pose) -> Any:
+    """Return the shape at a pose (R, p)."""
+    return shape.Moved(require("OCP.TopLoc").TopLoc_Location(transform_of(pose)))
 
 
 class OpenCascade(Peer):
@@ -88,12 +99,12 @@ class OpenCascade(Peer):
         extrema = require("OCP.BRepExtrema").BRepExtrema_DistShapeShape
         if NURBS not in (a.kind.name, b.kind.name):
             return None
-        shape_a, shape_b = _shape(a), _shape(b)
+        shape_a, shape_b = cascade_shape(a), cascade_shape(b)
         if shape_a is None or shape_b is None:
             return None
 
         def query(pose_a: Pose, pose_b: Pose) -> PeerAnswer:
-            found = extrema(_placed(shape_a, pose_a), _placed(shape_b, pose_b))
+            found = extrema(placed(shape_a, pose_a), placed(shape_b, pose_b))
             if not found.IsDone() or found.NbSolution() == 0:
                 nothing = np.full(3, np.nan)
                 return PeerAnswer(np.nan, nothing, nothing, nothing)

@@ -1,0 +1,1 @@
+"""The table of times and errors beside other packages: ``make bench``."""

@@ -1,0 +1,1 @@
+"""What other packages do of the same frames: one file a package."""

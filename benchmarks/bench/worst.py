@@ -1,0 +1,126 @@
+"""The worst frame of very many, with contact and switching, against the median.
+
+A box and an ellipsoid whose distance swings through 0, frames one by one in `tracker.step_into`'s
+kernel. The worst frames are run again from the state before them: only what takes long again is
+the frame's own doing; what does not was the machine's.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+import standoff as so
+from benchmarks.bench.library import motions_of
+from benchmarks.bench.motion import DT, Pair, all_pairs, motion
+from standoff.kernels.entries import tracker as kernels
+from standoff.kernels.pair import events as logs
+from standoff.kernels.state import arrays as rows
+
+Array = NDArray[np.float64]
+
+PAIR = "box, ellipsoid"
+CENTRE, SWING = 0.62, 0.1
+"""The distance of the centres, and how far it swings, over that of the pair in the table."""
+PERIOD = 1700
+"""Frames of one swing."""
+TOLD = 5
+"""So many of the worst are told."""
+AGAIN = 7
+"""So often each of them is run again; the least is the frame's own time."""
+BLOCK = 20_000
+"""Frames whose poses are made at once."""
+
+
+@dataclass(frozen=True)
+class Slow:
+    """A frame, its time in the run and its least time when run again, s, and its answer's row."""
+
+    frame: int
+    seconds: float
+    again: float
+    out: Array
+
+
+def _frames(pair: Pair, first: int, count: int) -> Array:
+    """Motions (count, 36) of a swinging distance, from a frame number on."""
+    whole = motion(pair.far, first + count)
+    k = np.arange(first + count + 1)
+    angle = 2 * np.pi * k / PERIOD
+    share = CENTRE + SWING * np.sin(angle)
+    rate = SWING * 2 * np.pi / PERIOD / DT * np.cos(angle)
+    centre = whole.poses_b[:, :3, 3].copy()
+    whole.twists_b[:, :3] = share[:, None] * whole.twists_b[:, :3] + rate[:, None] * centre
+    whole.poses_b[:, :3, 3] = share[:, None] * centre
+    return motions_of(whole, first, first + count)
+
+
+class _Stepping:
+    """One frame at a time through the kernel of ``step_into``."""
+
+    def __init__(self, tracker: so.Tracker) -> None:
+        self.tracker = tracker
+        self.out = np.empty(rows.N_OUT)
+        self.events = np.empty(logs.MAX_EVENTS * logs.EVENT_COLUMNS)
+
+    def __call__(self, state: Array, motion: Array) -> float:
+        """The time of a frame, s; the state is written."""
+        packed, options = self.tracker.packed, self.tracker.options
+        begun = time.perf_counter()
+        kernels.step(packed, motion, True, DT, options, state, self.out, self.events)
+        return time.perf_counter() - begun
+
+
+def _told(step: _Stepping, slow: Slow, median: float) -> str:
+    status = so.Status(int(slow.out[rows.STATUS])).name
+    counts = slow.out[rows.OUT_COUNTS :].astype(int)
+    named = ", ".join(
+        f"{name.lower()} {counts[getattr(logs, name)]}"
+        for name in ("EVALUATIONS", "EVENTS", "RESTARTS")
+    )
+    return (
+        f"| {slow.frame} | {1e6 * slow.seconds:.1f} | {1e6 * slow.again:.1f} "
+        f"| {slow.again / median:.1f} | {status} | {slow.out[rows.DISTANCE]:.3g} | {named} |"
+    )
+
+
+def worst_frames(count: int) -> str:
+    """The worst of ``count`` frames as Markdown."""
+    pair = next(p for p in all_pairs() if p.name == PAIR)
+    tracker = so.Tracker(pair.a.body, pair.b.body, DT)
+    step, again = _Stepping(tracker), _Stepping(tracker)
+    state = _begun(tracker, _frames(pair, 0, 1)[0])
+    times = np.empty(count)
+    slowest: list[Slow] = []
+    for first in range(0, count, BLOCK):
+        length = min(BLOCK, count - first)
+        # the motion repeats itself: angles stay small
+        motions = _frames(pair, 1, BLOCK)[:length]
+        before = np.empty((length, rows.N_STATE))
+        for k in range(length):
+            before[k] = state
+            times[first + k] = step(state, motions[k])
+        for k in np.argsort(times[first : first + length])[-TOLD:]:
+            least = min(again(before[k].copy(), motions[k]) for _ in range(AGAIN))
+            found = Slow(first + int(k), times[first + k], least, again.out.copy())
+            slowest = sorted([*slowest, found], key=lambda s: -s.again)[:TOLD]
+    median = float(np.median(times))
+    told = [
+        f"{count} frames of {PAIR}, the distance swinging through 0: median {1e6 * median:.2f} µs, "
+        f"greatest {1e6 * times.max():.1f} µs as it ran.",
+        "",
+        "| frame | as it ran, µs | run again, µs | over the median | status | distance | counts |",
+        "|---|---|---|---|---|---|---|",
+        *(_told(step, slow, median) for slow in slowest),
+    ]
+    return "\n".join(told)
+
+
+def _begun(tracker: so.Tracker, row: Array) -> Array:
+    poses = [row[at : at + 12] for at in (rows.POSE_A, rows.POSE_B)]
+    placed = [(p[:9].reshape(3, 3), p[9:]) for p in poses]
+    twists = [row[at : at + 6] for at in (rows.TWIST_A, rows.TWIST_B)]
+    return tracker.start(*placed, *twists).data.copy()
