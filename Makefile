@@ -7,7 +7,7 @@ CLI := .venv/.installed-cli
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 DECLARED := pyproject.toml constraints.txt
 
-.PHONY: venv demo paper wheel check test lint types layers docs clean
+.PHONY: venv demo paper bench wheel check test lint types layers docs clean
 
 venv: $(ALL)
 
@@ -32,6 +32,10 @@ demo: $(CLI)
 
 paper: $(CLI)
 	$(BIN)/standoff paper all -o build/paper
+
+# Times and errors beside other packages: up to ten minutes on a quiet machine (docs/benchmarks.md).
+bench: $(ALL)
+	$(BIN)/python -m benchmarks.bench -o build/bench
 
 # A wheel with compiled kernels for this Python, platform and Numba (docs/wheels.md).
 wheel: $(CLI)

@@ -15,6 +15,7 @@ from importlib.metadata import version
 import numpy as np
 
 import standoff as so
+from benchmarks.nurbs_ellipsoids import Axes, elevated
 from benchmarks.speed import (
     FRAMES,
     RUNS,
@@ -29,9 +30,8 @@ from benchmarks.speed import (
     timed,
 )
 from standoff.geometry import FormulaSurface
-from standoff.geometry.ellipsoid_patches import ellipsoid_octants, ellipsoid_patches
+from standoff.geometry.ellipsoid_patches import ellipsoid_octants
 
-Axes = tuple[float, float, float]
 QUADRIC = "quadric, gnomonic charts"
 WHOLE_SIDE = (-1.0, 1.0, -1.0, 1.0)
 """The part of a gnomonic chart that is a side of the cube around the ball."""
@@ -39,17 +39,6 @@ WHOLE_SIDE = (-1.0, 1.0, -1.0, 1.0)
 
 def octants(axes: Axes) -> so.Body:
     return so.Body.from_patches(ellipsoid_octants(*axes))
-
-
-def elevated(degree: int) -> Callable[[Axes], so.Body]:
-    """The six rational biquartic patches of an ellipsoid, or octants below degree 4."""
-
-    def make(axes: Axes) -> so.Body:
-        patches = ellipsoid_patches(*axes) if degree >= 4 else ellipsoid_octants(*axes)
-        raised = [p.elevated(degree, degree) for p in patches]
-        return so.Body.from_patches(raised)
-
-    return make
 
 
 def formula(axes: Axes) -> so.Body:

@@ -1,8 +1,8 @@
 """The worst frame of very many, with contact and switching, against the median.
 
-A box and an ellipsoid whose distance swings through 0, frames one by one in `tracker.step_into`'s
-kernel. The worst frames are run again from the state before them: only what takes long again is
-the frame's own doing; what does not was the machine's.
+A box and an ellipsoid whose distance swings through 0, frame by frame by ``tracker.step_into``.
+The worst frames are run again from the state before them: only what takes long again is the
+frame's own doing; the rest was the machine's.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 import standoff as so
 from benchmarks.bench.library import motions_of
 from benchmarks.bench.motion import DT, Pair, all_pairs, motion
-from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair import events as logs
 from standoff.kernels.state import arrays as rows
 
@@ -59,22 +58,30 @@ def _frames(pair: Pair, first: int, count: int) -> Array:
 
 
 class _Stepping:
-    """One frame at a time through the kernel of ``step_into``."""
+    """One frame at a time by ``step_into``."""
 
-    def __init__(self, tracker: so.Tracker) -> None:
+    def __init__(self, tracker: so.Tracker, begin: so.TrackerState) -> None:
         self.tracker = tracker
-        self.out = np.empty(rows.N_OUT)
-        self.events = np.empty(logs.MAX_EVENTS * logs.EVENT_COLUMNS)
+        self.buffer = tracker.buffer(begin)
 
-    def __call__(self, state: Array, motion: Array) -> float:
-        """The time of a frame, s; the state is written."""
-        packed, options = self.tracker.packed, self.tracker.options
+    def __call__(self, motion: Array) -> float:
+        """The time of a frame, s; what the buffer holds goes on by it."""
+        buffer, step_into = self.buffer, self.tracker.step_into
+        buffer.pose_a[:] = motion[rows.POSE_A : rows.POSE_A + 12]
+        buffer.pose_b[:] = motion[rows.POSE_B : rows.POSE_B + 12]
+        buffer.twist_a[:] = motion[rows.TWIST_A : rows.TWIST_A + 6]
+        buffer.twist_b[:] = motion[rows.TWIST_B : rows.TWIST_B + 6]
         begun = time.perf_counter()
-        kernels.step(packed, motion, True, DT, options, state, self.out, self.events)
+        step_into(buffer)
         return time.perf_counter() - begun
 
+    def again(self, state: Array, motion: Array) -> float:
+        """The same from a given state."""
+        self.buffer.state[:] = state
+        return self(motion)
 
-def _told(step: _Stepping, slow: Slow, median: float) -> str:
+
+def _told(slow: Slow, median: float) -> str:
     status = so.Status(int(slow.out[rows.STATUS])).name
     counts = slow.out[rows.OUT_COUNTS :].astype(int)
     named = ", ".join(
@@ -91,8 +98,8 @@ def worst_frames(count: int) -> str:
     """The worst of ``count`` frames as Markdown."""
     pair = next(p for p in all_pairs() if p.name == PAIR)
     tracker = so.Tracker(pair.a.body, pair.b.body, DT)
-    step, again = _Stepping(tracker), _Stepping(tracker)
-    state = _begun(tracker, _frames(pair, 0, 1)[0])
+    begin = _begun(tracker, _frames(pair, 0, 1)[0])
+    step, other = _Stepping(tracker, begin), _Stepping(tracker, begin)
     times = np.empty(count)
     slowest: list[Slow] = []
     for first in range(0, count, BLOCK):
@@ -101,11 +108,11 @@ def worst_frames(count: int) -> str:
         motions = _frames(pair, 1, BLOCK)[:length]
         before = np.empty((length, rows.N_STATE))
         for k in range(length):
-            before[k] = state
-            times[first + k] = step(state, motions[k])
+            before[k] = step.buffer.state
+            times[first + k] = step(motions[k])
         for k in np.argsort(times[first : first + length])[-TOLD:]:
-            least = min(again(before[k].copy(), motions[k]) for _ in range(AGAIN))
-            found = Slow(first + int(k), times[first + k], least, again.out.copy())
+            least = min(other.again(before[k], motions[k]) for _ in range(AGAIN))
+            found = Slow(first + int(k), times[first + k], least, other.buffer.out.copy())
             slowest = sorted([*slowest, found], key=lambda s: -s.again)[:TOLD]
     median = float(np.median(times))
     told = [
@@ -114,13 +121,13 @@ def worst_frames(count: int) -> str:
         "",
         "| frame | as it ran, µs | run again, µs | over the median | status | distance | counts |",
         "|---|---|---|---|---|---|---|",
-        *(_told(step, slow, median) for slow in slowest),
+        *(_told(slow, median) for slow in slowest),
     ]
     return "\n".join(told)
 
 
-def _begun(tracker: so.Tracker, row: Array) -> Array:
+def _begun(tracker: so.Tracker, row: Array) -> so.TrackerState:
     poses = [row[at : at + 12] for at in (rows.POSE_A, rows.POSE_B)]
     placed = [(p[:9].reshape(3, 3), p[9:]) for p in poses]
     twists = [row[at : at + 6] for at in (rows.TWIST_A, rows.TWIST_B)]
-    return tracker.start(*placed, *twists).data.copy()
+    return tracker.start(*placed, *twists)

@@ -1,0 +1,51 @@
+"""The table beside other packages: rows, our errors, files, what is missing; no time is judged."""
+
+import sys
+
+import pyarrow.parquet as pq
+import pytest
+from benchmarks.bench import __main__ as bench
+from benchmarks.bench import goals, library
+from benchmarks.bench.motion import all_pairs
+from benchmarks.bench.race import Effort, raced
+
+OURS = 1e-12
+"""Greatest error of a row of the library, over the size."""
+TINY = Effort(frames=12, contact_frames=6, rounds=1, budget=1e-3, finest=1e-3)
+ALWAYS = ("SciPy SLSQP, warm", *(f"{library.RUN}, {law}" for law in library.WARM))
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("bench")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(bench, "QUICK", TINY)
+        bench.main(["--quick", "-o", str(folder)])
+    return folder
+
+
+def test_files_hold_every_row(written):
+    text = (written / "bench.md").read_text()
+    table = pq.read_table(written / "bench.parquet").to_pylist()
+    assert (written / "bench.png").read_bytes().startswith(b"\x89PNG")
+    for pair in all_pairs():
+        assert f"### {pair.name}\n" in text
+        rows = {row["contender"]: row for row in table if row["pair"] == pair.name}
+        for name in library.OURS:
+            assert rows[name]["distance_error"] < OURS, (pair.name, name)
+            assert rows[name]["witness_error"] < OURS or pair.name == "boxes", (pair.name, name)
+            assert rows[name]["seconds"] > 0.0
+    names = {row["contender"] for row in table}
+    assert set(ALWAYS) <= names
+    for goal in goals.GOALS:
+        assert f"| {goal.pair}: {goal.work} | {goal.against} |" in text
+
+
+def test_a_missing_peer_is_told(monkeypatch):
+    for package in ("coal", "mujoco", "fcl", "OCP"):
+        monkeypatch.setitem(sys.modules, package, None)
+    rows, _ = raced(all_pairs()[0], TINY)
+    missing = {row.contender: row.missing for row in rows if row.missing}
+    assert len(missing) >= 5
+    for name in ("Coal", "MuJoCo", "python-fcl", "OpenCASCADE"):
+        assert "standoff[peers]" in missing[name]
