@@ -10,7 +10,10 @@ from benchmarks.bench.motion import all_pairs
 from benchmarks.bench.race import Effort, raced
 
 OURS = 1e-12
-"""Greatest error of a row of the library, over the size."""
+"""Greatest error of a distance of the library, over the size."""
+WITNESS = 1e-9
+"""That of a witness point: a distance is flat about its least, so a gap of 1e-12 leaves them 1e-6
+of a radius in theory; a Newton step, which leaves such a gap, reaches 1e-10."""
 TINY = Effort(frames=12, contact_frames=6, rounds=1, budget=1e-3, finest=1e-3)
 ALWAYS = ("SciPy SLSQP, warm", *(f"{library.RUN}, {law}" for law in library.WARM))
 
@@ -33,7 +36,7 @@ def test_files_hold_every_row(written):
         rows = {row["contender"]: row for row in table if row["pair"] == pair.name}
         for name in library.OURS:
             assert rows[name]["distance_error"] < OURS, (pair.name, name)
-            assert rows[name]["witness_error"] < OURS or pair.name == "boxes", (pair.name, name)
+            assert rows[name]["witness_error"] < WITNESS, (pair.name, name)
             assert rows[name]["seconds"] > 0.0
     names = {row["contender"] for row in table}
     assert set(ALWAYS) <= names
