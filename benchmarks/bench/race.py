@@ -8,13 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.bench import library
-from benchmarks.bench.contender import Contender, Missing, timed
+from benchmarks.bench.contender import FEWEST, Contender, Missing, timed
 from benchmarks.bench.motion import Frames, Pair, motion
 from benchmarks.bench.peers import coal, coal_cpp, coal_mesh, fcl, mujoco, opencascade, slsqp
 from benchmarks.bench.truth import doubt, errors, truths
-
-FEWEST = 2
-"""Frames of one run of the slowest contenders."""
 
 
 @dataclass(frozen=True)
@@ -106,10 +103,7 @@ def raced(pair: Pair, effort: Effort) -> tuple[list[Row], float]:
     able = [c for c in all_of if isinstance(c, Contender)]
     counts = [_count(contender, effort, count) for contender in able]
     known = truths(pair, frames, count)
-    judged = [
-        errors(pair, c, {k: x for k, x in known.items() if k <= most} or truths(pair, frames, most))
-        for c, most in zip(able, counts, strict=True)
-    ]
+    judged = [errors(pair, contender, known) for contender in able]
     times = np.array(
         [[timed(c, n) for c, n in zip(able, counts, strict=True)] for _ in range(effort.rounds)]
     )
@@ -126,10 +120,10 @@ def raced(pair: Pair, effort: Effort) -> tuple[list[Row], float]:
 
 
 def _count(contender: Contender, effort: Effort, count: int) -> int:
-    """Frames of one run: all of them where they cost little; it is warm after that."""
+    """Frames of one run: all of them where a state is carried on; it is warm after that."""
+    if contender.whole:
+        contender.run(count)  # its answers are judged
+        return count
     contender.run(FEWEST)
-    one = timed(contender, FEWEST)
-    fitting = int(effort.budget / max(one, 1e-9))
-    chosen = min(max(fitting, FEWEST), count)
-    contender.run(chosen)  # its answers are judged
-    return chosen
+    fitting = int(effort.budget / max(timed(contender, FEWEST), 1e-9))
+    return min(max(fitting, FEWEST), count)

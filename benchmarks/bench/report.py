@@ -105,7 +105,7 @@ def parquet(rows: list[Row], facts: dict[str, str]) -> pa.Table:
 
 def colour_of(contender: str) -> str:
     """One colour a package; the library's is the first."""
-    return next((c for name, c in COLOURS.items() if name.split()[0] in contender), "C0")
+    return next((c for name, c in COLOURS.items() if contender.startswith(name)), "C0")
 
 
 def drawn(rows: list[Row]) -> plt.Figure:
@@ -113,7 +113,7 @@ def drawn(rows: list[Row]) -> plt.Figure:
     pairs = list(dict.fromkeys(row.pair for row in rows))
     height = math.ceil(len(pairs) / COLUMNS)
     figure, axes = plt.subplots(
-        height, COLUMNS, figsize=(15, 3.6 * height), sharex=True, sharey=True, squeeze=False
+        height, COLUMNS, figsize=(20, 3.8 * height), sharex=True, sharey=True, squeeze=False
     )
     for axis, pair in zip(axes.flat, pairs, strict=False):
         _draw_pair(axis, pair, [row for row in rows if row.pair == pair and row.times])
@@ -131,15 +131,16 @@ def _draw_pair(axis: plt.Axes, pair: str, rows: list[Row]) -> None:
     axis.set_title(pair)
     axis.set(xscale="log", yscale="log")
     axis.grid(alpha=0.3)
-    for row in rows:
+    for number_of, row in enumerate(rows, 1):
         if not math.isfinite(row.witness_error):
             continue
-        colour = colour_of(row.contender if "distance, cold" not in row.contender else "")
+        colour = colour_of(row.contender)
         at = MICRO * row.median, max(row.witness_error, FLOOR)
         reach = [[at[0] - MICRO * row.spread[0]], [MICRO * row.spread[3] - at[0]]]
         axis.errorbar(*at, xerr=reach, fmt="o", color=colour, markersize=4)
-        name = row.contender.replace(", all pairs of patches", "")
-        axis.annotate(name, at, xytext=(4, 4), textcoords="offset points", fontsize=6, color=colour)
+        axis.annotate(str(number_of), at, xytext=(4, 4), textcoords="offset points", fontsize=7)
+        axis.plot([], [], "o", color=colour, markersize=4, label=f"{number_of} {row.contender}")
+    axis.legend(fontsize=5.5, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
 
 def write(folder: Path, text: str, rows: list[Row], facts: dict[str, str]) -> list[Path]:

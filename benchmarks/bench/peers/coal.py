@@ -11,8 +11,8 @@ from benchmarks.bench.motion import Frames, Pair
 from standoff_studies.accuracy.peers.answer import require
 from standoff_studies.accuracy.peers.coal_peer import coal_request, coal_shape
 
-DISTANCE = "coal.distance"
-GUESS = "ComputeDistance, cached guess"
+DISTANCE = "Coal, distance"
+GUESS = "Coal, ComputeDistance, cached guess"
 
 
 def read(result: Any) -> Found:
