@@ -22,29 +22,36 @@ from hand_made import (
 )
 
 import standoff as so
-from standoff.kernels.body.features import feature_jet
 from standoff.kernels.pair.certificate import (
     between,
     certify,
     certify_along,
     edge_cone,
+    nearest_normal,
     overhang,
     vertex_cone,
 )
+from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.values import Side
 
 INTS, REALS = BOX.ints, BOX.reals
 NO_HINT = (0.0, 0.0, 0.0)
+ALONG_EDGE = (0.0, 1.0, 0.0)
 ROUNDOFF = 1e-13
+
+
+def jets_at(pair, pose, side):
+    """Both jets, in A's frame: at a side of the body, and of the point."""
+    return pair_jets(pair, pose, place_of(side))
 
 
 def certified(x, side, body=BOX, hint=NO_HINT):
     """(distance of the witness points, lower bound, normal) with the point at x."""
     pair, pose = beside(x, body)
-    x_a = feature_jet(body.ints, body.reals, side.feature, side.chart, side.p, side.q)[0]
-    d, bound, normal, blur = certify(pair, pose, place_of(side), x_a, pose.p, hint)
+    jets = jets_at(pair, pose, side)
+    d, bound, normal, blur = certify(pair, pose, place_of(side), jets, hint)
     assert blur == 0.0
-    assert d == pytest.approx(math.dist(x_a, x), rel=1e-15)
+    assert d == pytest.approx(math.dist(jets[0][0], x), rel=1e-15)
     return d, bound, normal
 
 
@@ -93,10 +100,9 @@ def test_beside_the_witness_point_the_face_s_own_normal_is_tight():
 def test_a_hint_that_is_better_is_taken():
     """Witness points that nearly meet: their direction is of no use, the hint is."""
     pair, pose = beside((0.2, 0.1, 1.0 + 1e-9))
-    place = place_of(at_vertex(CORNER_AT))
-    x_a = (1.0, 1.0, 1.0)
-    _, plain, _, _ = certify(pair, pose, place, x_a, pose.p, NO_HINT)
-    _, bound, n, _ = certify(pair, pose, place, x_a, pose.p, (0.0, 0.0, 1.0))
+    place, jets = place_of(at_vertex(CORNER_AT)), jets_at(pair, pose, at_vertex(CORNER_AT))
+    _, plain, _, _ = certify(pair, pose, place, jets, NO_HINT)
+    _, bound, n, _ = certify(pair, pose, place, jets, (0.0, 0.0, 1.0))
     assert bound == pytest.approx(1e-9, abs=ROUNDOFF)
     assert bound >= plain
     assert n == (0.0, 0.0, 1.0)
@@ -120,9 +126,8 @@ def test_along_a_direction_it_is_the_separation():
     pair, pose = beside((0.0, 0.0, 3.0))
     for n in ((0.0, 0.0, 1.0), unit(0.1, 0.0, 1.0), unit(1, 1, 1), (0.0, 0.0, -1.0)):
         exact = 3.0 * n[2] - float(np.abs(n).sum())
-        bound, blur = certify_along(
-            pair, pose, place_of(at_vertex(CORNER_AT)), (1, 1, 1), pose.p, n
-        )
+        corner = at_vertex(CORNER_AT)
+        bound, blur = certify_along(pair, pose, place_of(corner), jets_at(pair, pose, corner), n)
         assert blur == 0.0
         assert bound <= exact
         if min(n) >= 0.0:  # in the corner's cone nothing hangs over
@@ -151,7 +156,10 @@ def test_between_is_the_nearest_of_the_cone():
 def test_cones_of_an_edge_and_a_corner():
     """The edge's: between +x and +z; the corner's: the octant, or its face or edge nearest by."""
     for n, nearest in ((unit(1, 4, 3), unit(1, 0, 3)), (unit(-1, 0, 1), (0.0, 0.0, 1.0))):
-        assert edge_cone(INTS, REALS, EDGE, 0.5, n)[0] == pytest.approx(nearest, abs=1e-15)
+        cone = edge_cone(INTS, REALS, EDGE, 0.5, ALONG_EDGE)
+        near, noise = nearest_normal(INTS, REALS, EDGE, cone, n)
+        assert near == pytest.approx(nearest, abs=1e-15)
+        assert noise == 0.0
     inside = unit(1, 2, 3)
     for n, nearest in (
         (inside, inside),

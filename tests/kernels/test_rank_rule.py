@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from standoff.kernels.pair.newton import law
+from standoff.kernels.pair.newton import (
+    law,
+    ldl,
+    metric_norm,
+    pair_metric,
+    plainly_definite,
+    ranked_law,
+)
 from standoff.kernels.pair.system import gradient, hessian, projection_errors
 
 ZERO = (0.0, 0.0, 0.0)
@@ -36,7 +43,9 @@ def solve(jet_a, jet_b, g_t=NOTHING):
     """(p, w_ff, slope, regularised, flat) and the g and H that they are of."""
     g = gradient(projection_errors(jet_a, jet_b))
     H = hessian(jet_a, jet_b)
-    p, w, slope, regularised, flat, _ = law(jet_a, jet_b, g, H, g_t, 4.0)
+    metrics = pair_metric(jet_a, jet_b)
+    p, w, regularised, flat, _ = law(metrics, jet_a, jet_b, g, H, g_t, 4.0)
+    slope = metric_norm(metrics, g)
     return np.array(p), np.array(w), slope, regularised, flat, np.array(g), full(H)
 
 
@@ -84,3 +93,53 @@ def test_what_does_not_exist_stays():
     p, _, _, regularised, _, _, _ = solve(vertex, edge)
     assert regularised == 0
     np.testing.assert_allclose(p, [0.0, 0.0, 0.2, 0.0], atol=1e-15)
+
+
+def tilted_pair(rng):
+    """Two shallow bowls, from parallel to tilted, with skew charts of any scale."""
+    bends = 10.0 ** rng.uniform(-13, 3, 2) * rng.choice([-1.0, 1.0], 2)
+    below = bowl(0.0, tuple(rng.uniform(-0.3, 0.3, 2)), bends[0])
+    above = bowl(1.0, tuple(rng.uniform(-0.3, 0.3, 2)), bends[1])
+    return rechart(below, rng), rechart(above, rng)
+
+
+def rechart(jet, rng):
+    """The same surface in linearly mapped parameters: scaled, and skew."""
+    skew = np.array([[1.0, 1.0 - 10.0 ** rng.uniform(-1, 0)], [0.0, 1.0]])
+    T = skew @ np.diag(10.0 ** rng.uniform(-4, 4, 2))
+    x, xu, xv, xuu, xuv, xvv = np.asarray(jet, dtype=float)
+    first = np.array([xu, xv]).T @ T
+    second = np.einsum(
+        "aij,ik,jl->akl", np.array([[xuu, xuv], [xuv, xvv]]).transpose(2, 0, 1), T, T
+    )
+    columns = (x, first[:, 0], first[:, 1], second[:, 0, 0], second[:, 0, 1], second[:, 1, 1])
+    return tuple(tuple(column.tolist()) for column in columns)
+
+
+def on_bodies(jet_a, jet_b, step):
+    """How far a step of the parameters takes both points."""
+    way_a = np.array(jet_a[1:3]).T @ step[:2]
+    way_b = np.array(jet_b[1:3]).T @ step[2:]
+    return np.hypot(np.linalg.norm(way_a), np.linalg.norm(way_b))
+
+
+def test_the_pivots_of_H_itself_tell_no_more_than_the_rank_rule(rng):
+    """Where `law` takes the plain factor of H the rule in the metric does too, with its step."""
+    safe_seen = ruled_seen = 0
+    for _ in range(3000):
+        jet_a, jet_b = tilted_pair(rng)
+        g, H = gradient(projection_errors(jet_a, jet_b)), hessian(jet_a, jet_b)
+        metrics = pair_metric(jet_a, jet_b)
+        safe, stiff = plainly_definite(metrics, H, ldl(H)[0])
+        p, _, regularised, flat, _ = ranked_law(jet_a, jet_b, g, H, NOTHING, 4.0)
+        if not safe:
+            ruled_seen += regularised
+            continue
+        safe_seen += 1
+        assert regularised == 0
+        assert flat == (0 if stiff else 1)
+        lean = np.array(law(metrics, jet_a, jet_b, g, H, NOTHING, 4.0)[0])
+        # as lengths on the bodies; H may have factors 1e6 apart, the charts' tangents lose 1e2
+        off, along = on_bodies(jet_a, jet_b, lean - p), on_bodies(jet_a, jet_b, p)
+        assert off <= 1e-6 * along
+    assert min(safe_seen, ruled_seen) > 300

@@ -135,6 +135,7 @@ def pack(
         low, high = box
         w.reals[L.SIZE] = float(np.linalg.norm(high - low))
         w.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3] = list(0.5 * (low + high))
+        w.reals[L.OFFSET] = float(np.linalg.norm(0.5 * (low + high)))
         w.reals[L.BOX_HALF : L.BOX_HALF + 3] = list(0.5 * (high - low))
     _pack_faces(w, body)
     _pack_edges(w, body)

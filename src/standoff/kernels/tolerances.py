@@ -11,6 +11,10 @@ PIVOT = 1e-10
 # Roundings (eps) that a pivot may have lost, times what the elimination has multiplied them by.
 PIVOT_ROUNDINGS = 64.0
 
+# Pivots all above LEAN (relative, in the same metric) pass that rule: no l² is then more than
+# 1 / LEAN, and PIVOT_ROUNDINGS eps (1 + 3 / LEAN) is 4e-8, PIVOT less.
+LEAN = 1e-6
+
 # Eigenvalues below -NEGATIVE take their magnitude (dimensionless, relative to the largest).
 NEGATIVE = 1e-10
 

@@ -1,7 +1,8 @@
 """Relative rigid motion: the pair is seen from A's frame, where A is at rest."""
 
-from math import atan2, cos, sin, sqrt
+from math import atan2, cos, sin
 
+from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import (
     add,
     axpy,

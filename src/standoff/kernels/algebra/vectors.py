@@ -1,7 +1,6 @@
 """3-vectors as tuples and rotations as row-major 9-tuples: the alphabet of the kernels."""
 
-from math import sqrt
-
+from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.compiler.decorators import small
 
 
@@ -41,8 +40,20 @@ def cross(a, b):
 
 
 @small
+def active(f):
+    """1 where the parameter of tangent column f exists (the column is not zero), else 0."""
+    return 1.0 if f[0] != 0.0 or f[1] != 0.0 or f[2] != 0.0 else 0.0
+
+
+@small
 def norm(a):
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+
+
+@small
+def taxicab(a):
+    """|a_0| + |a_1| + |a_2|: at least the length."""
+    return abs(a[0]) + abs(a[1]) + abs(a[2])
 
 
 @small

@@ -4,9 +4,20 @@ A body in the kernels is the pair (ints, reals) of ``layout``. A *mode* of one b
 (feature, chart); the chart matters for faces only and is an absolute chart number.
 """
 
-from math import sqrt
-
-from standoff.kernels.algebra.vectors import add, axpy, cross, dot, norm, rotate, scale, unit
+from standoff.kernels.algebra.roots import sqrt
+from standoff.kernels.algebra.vectors import (
+    active,
+    add,
+    axpy,
+    cross,
+    dot,
+    norm,
+    rotate,
+    rotate_back,
+    scale,
+    sub,
+    unit,
+)
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.jets import chart_parameters, curve_jet, pcurve_jet, surface_jet
 from standoff.kernels.compiler.decorators import kernel, shared
@@ -24,7 +35,7 @@ def pair_span(pair, p, d):
     stands counts instead.
     """
     ra, rb = pair.reals_a, pair.reals_b
-    span = ra[L.SIZE] + rb[L.SIZE] + d + offset(ra) + offset(rb)
+    span = ra[L.SIZE] + rb[L.SIZE] + d + ra[L.OFFSET] + rb[L.OFFSET]
     if pair.ints_a[L.UNBOUNDED] or pair.ints_b[L.UNBOUNDED]:
         span += norm(p)
     return span
@@ -34,12 +45,6 @@ def pair_span(pair, p, d):
 def pair_slack(pair):
     """What the certificate subtracts for both bodies, wherever the witness points are: length."""
     return pair.reals_a[L.SLACK] + pair.reals_b[L.SLACK]
-
-
-@kernel
-def offset(reals):
-    """Distance of a body's box centre from its origin."""
-    return norm((reals[L.BOX_CENTRE], reals[L.BOX_CENTRE + 1], reals[L.BOX_CENTRE + 2]))
 
 
 # Where the records of features stand is plain Python in `layout`, for the layers above too.
@@ -128,6 +133,20 @@ def moved_jet(pose, jet):
 
 
 @kernel
+def jet_moved_back(pose, jet):
+    """The jet that `moved_jet` has moved, but for roundoff."""
+    R = pose.R
+    return (
+        rotate_back(R, sub(jet[0], pose.p)),
+        rotate_back(R, jet[1]),
+        rotate_back(R, jet[2]),
+        rotate_back(R, jet[3]),
+        rotate_back(R, jet[4]),
+        rotate_back(R, jet[5]),
+    )
+
+
+@kernel
 def chart_normal(ints, reals, chart, u, v):
     """Outward unit normal; zero where the chart has collapsed."""
     jet = chart_jet(ints, reals, chart, u, v)
@@ -152,19 +171,26 @@ def normal_noise(ints, reals, chart, jet):
 
 
 @kernel
-def noisy_normal(ints, reals, chart, u, v):
-    """(outward unit normal, bound on its roundoff) of a chart."""
-    jet = chart_jet(ints, reals, chart, u, v)
+def noisy_normal(ints, reals, chart, jet):
+    """(outward unit normal, bound on its roundoff) of a chart's jet, in the body's frame."""
     o = ints[chart_record(ints, chart) + L.CHART_REALS]
     normal = scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
     return normal, normal_noise(ints, reals, chart, jet)
 
 
 @kernel
-def planar_edge_normal(ints, reals, feature, t):
-    """Outward in-plane unit normal of a planar body's edge."""
+def face_normal(ints, reals, side, jet):
+    """`noisy_normal` at a witness point; its jet, in the body's frame, is `feature_jet`'s."""
+    if active(jet[1]) == 0.0 or active(jet[2]) == 0.0:
+        # left out there as collapsed; what is left of it still has a direction, of great noise
+        jet = chart_jet(ints, reals, side.chart, side.p, side.q)
+    return noisy_normal(ints, reals, side.chart, jet)
+
+
+@kernel
+def planar_edge_normal(ints, feature, tangent):
+    """Outward in-plane unit normal of a planar body's edge with the unit tangent given."""
     flags = ints[edge_record(ints, feature) + L.EDGE_FLAGS]
-    tangent = unit(edge_jet(ints, reals, feature, t)[1])
     if flags & L.OUTWARD_RIGHT:
         return (tangent[1], -tangent[0], 0.0)
     return (-tangent[1], tangent[0], 0.0)
@@ -242,8 +268,8 @@ def coedge_conormal(ints, reals, coedge, tangent, t):
     chart = ints[c + L.COEDGE_CHART]
     jet = chart_jet(ints, reals, chart, u, v)
     o = ints[chart_record(ints, chart) + L.CHART_REALS]
-    normal = scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
+    normal, noise = noisy_normal(ints, reals, chart, jet)
     inward = cross(normal, tangent)
     # left in (u, v) is left on the surface where f_u x f_v points outward
     side = ints[c + L.COEDGE_SIDE] * reals[o + L.OUTWARD]
-    return scale(side, inward), normal, normal_noise(ints, reals, chart, jet)
+    return scale(side, inward), normal, noise

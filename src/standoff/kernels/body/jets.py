@@ -5,8 +5,9 @@ is one function, one number in ``layout`` and one line in a chain here: of ``can
 is inlined wherever a jet is taken and so holds the small kinds, or of ``patch_jet``, a call.
 """
 
-from math import cos, sin, sqrt
+from math import cos, sin
 
+from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.formulas import formula_curve_jet, formula_jet
 from standoff.kernels.body.layout import AFFINE, CONE, CYLINDER, PLANE, SPHERE, SURFACE_DATA

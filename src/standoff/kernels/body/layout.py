@@ -29,7 +29,8 @@ SIZE = 1  # diameter of the core, length
 SLACK = 2  # sewing tolerance and convexity defect, length
 BOX_CENTRE = 3  # 3 numbers, body frame
 BOX_HALF = 6  # 3 numbers
-REAL_HEADER = 9
+OFFSET = 9  # distance of the box's centre from the body's origin
+REAL_HEADER = 10
 
 # A face: first chart, number of charts.
 FACE_STRIDE = 2

@@ -4,8 +4,9 @@ Lines and conics in closed form; a Bezier piece turns by less than 180 degrees, 
 at most twice, on both sides of the one point that is farthest along the line's normal.
 """
 
-from math import atan2, hypot, pi, sqrt
+from math import atan2, hypot, pi
 
+from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.jets import pcurve_jet
 from standoff.kernels.compiler.decorators import kernel

@@ -1,7 +1,8 @@
 """Walking on a feature until its boundary: trimming loops, ends of edges, limits of charts."""
 
-from math import hypot, inf, pi, sqrt
+from math import hypot, inf, pi
 
+from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_record,

@@ -8,8 +8,9 @@ of s over features of both bodies, whose fixed points are the stationary ones. N
 the contact-regular form ends it.
 """
 
-from math import inf, nan, sqrt
+from math import inf, nan
 
+from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import (
     add,
     cross,
@@ -25,7 +26,7 @@ from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_jet, chart_normal, pair_slack, pair_span
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.pair.certificate import certify_along
-from standoff.kernels.pair.certified import UNCERTIFIED, on_feature, weigh_jets
+from standoff.kernels.pair.certified import UNCERTIFIED, on_feature, weigh
 from standoff.kernels.pair.cold_start import FIRST, at_samples, farthest_along, global_query
 from standoff.kernels.pair.contact_newton import newton
 from standoff.kernels.pair.descent import pair_jets, settle
@@ -182,7 +183,7 @@ def shifted(pair, pose, start, gap, work):
     out = Pose(pose.R, add(pose.p, shift))
     settled = settle(pair, resting(out), start.place, 0.0, 0.0, work)
     place, jets = settled.place, settled.jets
-    outcome = weigh_jets(pair, out, place, jets, ORIGIN, START_GAP).outcome
+    outcome = weigh(pair, out, place, jets, ORIGIN, START_GAP).outcome
     if outcome == UNCERTIFIED and exhausted(work):
         return False, Depth(False, d, n, place)  # cut off: the next frame goes on from there
     if outcome == UNCERTIFIED and work.counts[RESTARTS] < MAX_RESTARTS:
@@ -217,7 +218,7 @@ def stationary_along(pair, pose, start, tolerance, work):
         if plane:  # any other n, be it by roundoff, bounds nothing
             n_new = normal
             d_new = dot(n_new, sub(jet_b[0], jet_a[0]))
-        lower, blur = certify_along(pair, pose, place, jet_a[0], jet_b[0], n_new)
+        lower, blur = certify_along(pair, pose, place, (jet_a, jet_b), n_new)
         allowed = min(tolerance, BLUR) * span + pair_slack(pair) + min(blur, BLUR * span)
         if d_new - lower <= allowed and on_feature(pair, place):
             # the focal depth: beyond it a stationary direction is no minimum

@@ -119,16 +119,10 @@ def overlap_shown(pair, pose):
 
 
 @kernel
-def witness_points(pair, pose, place):
-    jet_a, jet_b = pair_jets(pair, pose, place)
-    return jet_a[0], jet_b[0]
-
-
-@kernel
 def difference(pair, pose, place):
     """x_a - x_b of witness points, a point of A - B."""
-    x_a, x_b = witness_points(pair, pose, place)
-    return sub(x_a, x_b)
+    jet_a, jet_b = pair_jets(pair, pose, place)
+    return sub(jet_a[0], jet_b[0])
 
 
 @kernel
@@ -160,8 +154,8 @@ def deepest_below(pair, pose, start, tolerance, work):
     end = descend(pair, pose, start, tolerance, work)
     if end.found:
         return Depth(end.distance > -inf, end.distance, end.normal, end.place)
-    x_a, x_b = witness_points(pair, pose, end.place)
-    d, _ = certify_along(pair, pose, end.place, x_a, x_b, end.normal)
+    jets = pair_jets(pair, pose, end.place)
+    d, _ = certify_along(pair, pose, end.place, jets, end.normal)
     return Depth(d > -inf, d, end.normal, end.place)
 
 

@@ -14,7 +14,7 @@ from standoff.kernels.pair.certified import (
     NOT_APART,
     UNCERTIFIED,
     settle_and_weigh,
-    weigh_jets,
+    weigh,
 )
 from standoff.kernels.pair.contact_newton import contact_rates
 from standoff.kernels.pair.descent import pair_jets
@@ -44,9 +44,11 @@ from standoff.kernels.state.state import (
     read_state,
     write_state,
 )
-from standoff.kernels.state.tracked import Shown, Tracked
+from standoff.kernels.state.tracked import Shown, Tracked, without_rates
 from standoff.kernels.tolerances import START_GAP
 from standoff.kernels.values import NO_RATES, ORIGIN, Found, Motion
+
+NOT_INTEGRATED = Integrated(NO_RATES, NO_RATES, 0.0)
 
 
 class Inputs(NamedTuple):
@@ -71,16 +73,15 @@ def answer_frame(pair, inputs, motion, shown, solve, status, out, work):
     """Write the answer of a frame. Returns the rates of its parameters, which are found here where
     no evaluation of the frame belongs to its witness points.
     """
-    found, rates = shown.found, shown.rates
-    jets = pair_jets(pair, motion.pose, found.place)
+    found, jets, rates = shown.found, shown.jets, shown.rates
     n_rate = ORIGIN
     if inputs.has_twist:
         if shown.inside:
             n_rate, rates = contact_rates(pair, motion, jets, found.normal, found.distance, work)
         elif not shown.fresh and found.distance > 0.0:
             rates = feedforward_now(pair, motion, found.place, solve, work)
-    known = Shown(found, shown.inside, shown.fresh, rates)
-    write_answer(pair, inputs, motion, jets, known, n_rate, status, out)
+    known = Shown(found, jets, shown.inside, shown.fresh, rates)
+    write_answer(pair, inputs, motion, known, n_rate, status, out)
     return rates
 
 
@@ -96,7 +97,7 @@ def begin_at(pair, motion, place, given, goal, work):
     pose = motion.pose
     if given == START_HERE:
         jets = pair_jets(pair, pose, place)
-        outcome, d, lower, normal = weigh_jets(pair, pose, place, jets, ORIGIN, goal)
+        outcome, d, lower, normal = weigh(pair, pose, place, jets, ORIGIN, goal)
         return Found(outcome, place, d, lower, d, normal)
     return settle_and_weigh(pair, motion, place, 0.0, 0.0, goal, work).found
 
@@ -118,13 +119,13 @@ def start_frame(query_from, pair, inputs, options, state, given, out, work):
         if found.outcome == NOT_APART:
             return NOT_KNOWN_APART
     status = judge(pair, motion.pose.p, found, given == START_HERE, goal, False)
-    shown = Shown(found, inside, False, NO_RATES)
+    shown = without_rates(pair, motion.pose, found, inside, NOT_INTEGRATED).shown
     rates = answer_frame(pair, inputs, motion, shown, options.solve, status, out, work)
-    integrated = Integrated(NO_RATES, NO_RATES, 0.0)
+    integrated = NOT_INTEGRATED
     if options.paper:
         integrated = begun(pair, motion.pose, found.place, 0.0)
     work.counts[EVENTS] = 0
-    known = Tracked(Shown(found, inside, False, rates), integrated)
+    known = Tracked(Shown(found, shown.jets, inside, False, rates), integrated)
     before = fresh_state(found.place, integrated)
     feed = feeds(options.predictor, inputs.has_twist)
     write_state(next_state(pair, before, motion, 0.0, known, feed, status), state)
@@ -152,7 +153,7 @@ def step_frame(track, pair, inputs, steps, options, state, out, work):
     old, new = before.place, found.place
     if work.counts[EVENTS] > 0 or old.feature_a != new.feature_a or old.feature_b != new.feature_b:
         tidy_events(work, old.feature_a, old.feature_b, new.feature_a, new.feature_b)
-    known = Tracked(Shown(found, shown.inside, shown.fresh, rates), integrated)
+    known = Tracked(Shown(found, shown.jets, shown.inside, shown.fresh, rates), integrated)
     feed = feeds(options.predictor, inputs.has_twist)
     write_state(next_state(pair, before, motion, h, known, feed, status), state)
     copy_counts(work, out)

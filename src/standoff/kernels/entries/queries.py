@@ -5,6 +5,7 @@ all that it calls. These are the few that the layers above ask for.
 """
 
 from standoff.kernels.algebra.rigid import relative_pose, relative_twist
+from standoff.kernels.algebra.vectors import unit
 from standoff.kernels.body import features, jets, trimming
 from standoff.kernels.compiler.decorators import entry, pointer
 from standoff.kernels.compiler.entry import INT, INTS, PAIR, READ, REAL, VECTOR, WRITE
@@ -48,7 +49,9 @@ def chart_normal(ints, reals, chart, u, v):
 
 @entry(INTS, READ, INT, REAL, work="bodies")
 def planar_edge_normal(ints, reals, feature, t):
-    return features.planar_edge_normal(pointer(ints, 0), pointer(reals, 0), feature, t)
+    ints, reals = pointer(ints, 0), pointer(reals, 0)
+    tangent = unit(features.edge_jet(ints, reals, feature, t)[1])
+    return features.planar_edge_normal(ints, feature, tangent)
 
 
 @entry(INTS, READ, INT, REAL, work="bodies")

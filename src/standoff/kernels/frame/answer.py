@@ -95,13 +95,13 @@ def normal_rate(turn, found):
 
 
 @kernel
-def write_rates(pair, inputs, motion, jets, shown, n_rate, out):
+def write_rates(pair, inputs, motion, shown, n_rate, out):
     """Rate of the distance and velocities of the witness points, from the feedforward.
 
     V_A is added in world. n_rate is that of n in contact, where it does not follow from the
     points' rates.
     """
-    jet_a, jet_b = jets
+    jet_a, jet_b = shown.jets
     n, rates = shown.found.normal, shown.rates
     carried = add(motion.v, cross(motion.w, sub(jet_b[0], motion.pose.p)))
     slide_a = axpy(rates[0], jet_a[1], scale(rates[1], jet_a[2]))
@@ -120,12 +120,12 @@ def write_rates(pair, inputs, motion, jets, shown, n_rate, out):
 
 
 @kernel
-def write_answer(pair, inputs, motion, jets, shown, n_rate, status, out):
+def write_answer(pair, inputs, motion, shown, n_rate, status, out):
     """The whole answer."""
     place = shown.found.place
-    write_points(pair, inputs, jets, shown.found, out)
+    write_points(pair, inputs, shown.jets, shown.found, out)
     if inputs.has_twist:
-        write_rates(pair, inputs, motion, jets, shown, n_rate, out)
+        write_rates(pair, inputs, motion, shown, n_rate, out)
     else:
         for k in range(OUT_RATE, RESIDUAL):
             out[k] = np.nan

@@ -7,7 +7,13 @@ from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.depth.penetration import contact_scale
 from standoff.kernels.frame.contact import NEAR, WARM, contact_query
 from standoff.kernels.frame.prediction import apply_step, predict
-from standoff.kernels.frame.restart import cut_off, polished, restart, start_due
+from standoff.kernels.frame.restart import (
+    cut_off,
+    in_need_of_polish,
+    polish_along,
+    restart,
+    start_due,
+)
 from standoff.kernels.pair.certified import (
     CERTIFIED,
     UNCERTIFIED,
@@ -39,10 +45,10 @@ def follow(pair, motion, before, options, h, work):
     tolerance = options.tolerance
     place = apply_step(pair, before.place, predict(before, options.predictor, h), work)
     if before.distance < SHIFTED_GAP * contact_scale(pair):
-        jet_a, jet_b = pair_jets(pair, motion.pose, place)
-        if dot(before.normal, sub(jet_b[0], jet_a[0])) <= 0.0:
+        jets = pair_jets(pair, motion.pose, place)
+        if dot(before.normal, sub(jets[1][0], jets[0][0])) <= 0.0:
             passed = Found(UNCERTIFIED, place, 0.0, -inf, 0.0, before.normal)
-            return Followed(passed, False, NO_RATES), False
+            return Followed(passed, jets, False, NO_RATES), False
     followed = settle_and_weigh(pair, motion, place, 1.0, tolerance, tolerance, work)
     if followed.found.outcome == UNCERTIFIED:
         place = followed.found.place
@@ -55,18 +61,22 @@ def apart(pair, motion, before, options, h, work):
     """(what next, tracked): one step of the law, outside contact."""
     pose = motion.pose
     followed, stay = follow(pair, motion, before, options, h, work)
-    found, kept = followed.found, before.integrated
+    (found, jets, fresh, rates), kept = followed, before.integrated
     if found.outcome == CERTIFIED:
-        found = polished(pair, pose, found, options.tolerance, work)
-        return ANSWERED, Tracked(Shown(found, False, followed.fresh, followed.rates), kept)
+        if in_need_of_polish(pair, found, work):
+            found = polish_along(pair, pose, found, options.tolerance, work)
+            jets = pair_jets(pair, pose, found.place)
+        return ANSWERED, Tracked(Shown(found, jets, False, fresh, rates), kept)
     if exhausted(work) and stay:
         found, inside = cut_off(pair, pose, found)
         cut = Found(
             UNCERTIFIED, found.place, found.distance, found.lower, found.upper, found.normal
         )
-        return ANSWERED, Tracked(Shown(cut, inside, followed.fresh, followed.rates), kept)
+        jets = pair_jets(pair, pose, cut.place)
+        return ANSWERED, Tracked(Shown(cut, jets, inside, fresh, rates), kept)
     near = before.distance < SHIFTED_GAP * contact_scale(pair)
-    return TRY_CONTACT if near or not stay else TRY_RESTART, without_rates(found, False, kept)
+    unanswered = Tracked(Shown(found, jets, False, False, NO_RATES), kept)
+    return TRY_CONTACT if near or not stay else TRY_RESTART, unanswered
 
 
 @kernel
@@ -80,7 +90,7 @@ def contact(pair, pose, before, depth, tolerance, work):
         pair, pose, before.place, before.normal, begin, everywhere, tolerance, work
     )
     answered = found.outcome != UNCERTIFIED or exhausted(work)
-    tracked = without_rates(found, found.outcome != CERTIFIED, before.integrated)
+    tracked = without_rates(pair, pose, found, found.outcome != CERTIFIED, before.integrated)
     return ANSWERED if answered else TRY_RESTART, tracked
 
 

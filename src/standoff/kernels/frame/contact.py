@@ -14,7 +14,7 @@ from standoff.kernels.depth.penetration import (
     from_last,
     plane_normal,
 )
-from standoff.kernels.depth.search import search, witness_points
+from standoff.kernels.depth.search import search
 from standoff.kernels.pair.certificate import certify_along
 from standoff.kernels.pair.certified import CERTIFIED, PENETRATING, UNCERTIFIED
 from standoff.kernels.pair.descent import pair_jets
@@ -69,8 +69,7 @@ def some_direction(n):
 @kernel
 def bound_along(pair, pose, place, n):
     """What a plane square to n is known to keep the cores apart by, less than 0 in overlap."""
-    x_a, x_b = witness_points(pair, pose, place)
-    bound, _ = certify_along(pair, pose, place, x_a, x_b, n)
+    bound, _ = certify_along(pair, pose, place, pair_jets(pair, pose, place), n)
     return max(bound, -box_depth(pair, pose, n) - pair_slack(pair))
 
 
@@ -88,10 +87,10 @@ def conclude(pair, pose, at, least, tolerance, work):
     `least` bounds every depth from below, -inf where no overlap was shown.
     """
     found, _, n, place = at
-    jet_a, jet_b = pair_jets(pair, pose, place)
-    gap = sub(jet_b[0], jet_a[0])
+    jets = pair_jets(pair, pose, place)
+    gap = sub(jets[1][0], jets[0][0])
     d = dot(n, gap)
-    bound, blur = certify_along(pair, pose, place, jet_a[0], jet_b[0], n)
+    bound, blur = certify_along(pair, pose, place, jets, n)
     upper = norm(gap)
     if exhausted(work):
         bound = max(bound, -box_depth(pair, pose, n) - pair_slack(pair))

@@ -22,18 +22,23 @@ def polish_along(pair, pose, found, tolerance, work):
     if kind == NOTHING:
         return found
     place, n, d = ended.place, ended.normal, ended.distance
-    jet_a, jet_b = pair_jets(pair, pose, place)
-    lower, _ = certify_along(pair, pose, place, jet_a[0], jet_b[0], n)
+    lower, _ = certify_along(pair, pose, place, pair_jets(pair, pose, place), n)
     return Found(found.outcome, place, d, lower, d, n)
 
 
 @kernel
+def in_need_of_polish(pair, found, work):
+    """Is a certified pair so near contact that the direction between its witness points has lost
+    its digits?"""
+    return found.distance <= POLISHED * contact_scale(pair) and not exhausted(work)
+
+
+@kernel
 def polished(pair, pose, found, tolerance, work):
-    """A certified pair, very near contact after Newton's method in the contact-regular form: the
-    direction between its witness points has lost its digits."""
-    if found.distance > POLISHED * contact_scale(pair) or exhausted(work):
-        return found
-    return polish_along(pair, pose, found, tolerance, work)
+    """A certified pair, very near contact after Newton's method in the contact-regular form."""
+    if in_need_of_polish(pair, found, work):
+        return polish_along(pair, pose, found, tolerance, work)
+    return found
 
 
 @kernel
@@ -105,4 +110,4 @@ def restart(pair, pose, first, tolerance, integrated, work):
     found, inside = anywhere_from(pair, pose, first, tolerance, work)
     if exhausted(work) and found.outcome != CERTIFIED and not inside:
         found, inside = cut_off(pair, pose, found)
-    return without_rates(found, inside, integrated)
+    return without_rates(pair, pose, found, inside, integrated)

@@ -1,8 +1,12 @@
 """The certificate: a lower bound of the true distance from supporting planes."""
 
 from math import inf
+from typing import NamedTuple
+
+import numpy as np
 
 from standoff.kernels.algebra.vectors import (
+    add,
     axpy,
     cross,
     dot,
@@ -11,6 +15,7 @@ from standoff.kernels.algebra.vectors import (
     rotate_back,
     scale,
     sub,
+    taxicab,
     unit,
 )
 from standoff.kernels.body import layout as L
@@ -19,9 +24,9 @@ from standoff.kernels.body.features import (
     chart_normal,
     coedge_conormal,
     dimension,
-    edge_jet,
     edge_record,
-    noisy_normal,
+    face_normal,
+    jet_moved_back,
     planar_edge_normal,
     vertex_point,
     vertex_record,
@@ -29,7 +34,11 @@ from standoff.kernels.body.features import (
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.switching import apex_normal, end_direction, steepest_in_sector
 from standoff.kernels.tolerances import BOUND_ROUNDINGS, EPS, FRONT
-from standoff.kernels.values import side_of
+from standoff.kernels.values import Vector, side_of
+
+# What normals a cone has: one, those between two faces', all square to an edge without faces, or a
+# vertex's, which are found when they are asked for.
+SINGLE, ARC, CIRCLE, FAN = np.int64(0), np.int64(1), np.int64(2), np.int64(3)
 
 
 @kernel
@@ -45,18 +54,46 @@ def between(n, a, b):
     return a if dot(n, a) > dot(n, b) else b
 
 
+class NormalCone(NamedTuple):
+    """The unit outward normals at a witness point, in its body's frame."""
+
+    kind: int
+    first: Vector  # the only one, or the first face's of an edge
+    last: Vector  # the other face's
+    tangent: Vector  # of an edge
+    noise: float  # bound on what roundoff turns a face's normal by (chord)
+
+
 @kernel
-def edge_cone(ints, reals, feature, t, n):
-    """(nearest unit outward normal to n at an edge's point, bound on its roundoff)."""
+def edge_cone(ints, reals, feature, t, tangent):
+    """The normal cone at an edge's point with the unit tangent given."""
     e = edge_record(ints, feature)
     if ints[L.DIMENSION] == 2:
-        return planar_edge_normal(ints, reals, feature, t), 0.0
-    tangent = unit(edge_jet(ints, reals, feature, t)[1])
+        normal = planar_edge_normal(ints, feature, tangent)
+        return NormalCone(SINGLE, normal, normal, tangent, 0.0)
     if ints[e + L.EDGE_COEDGE_0] < 0:
-        return unit(axpy(-dot(n, tangent), tangent, n)), 0.0
+        return NormalCone(CIRCLE, ZERO, ZERO, tangent, 0.0)
     _, a, noise_a = coedge_conormal(ints, reals, ints[e + L.EDGE_COEDGE_0], tangent, t)
     _, b, noise_b = coedge_conormal(ints, reals, ints[e + L.EDGE_COEDGE_1], tangent, t)
-    noise = max(noise_a, noise_b)
+    return NormalCone(ARC, a, b, tangent, max(noise_a, noise_b))
+
+
+@kernel
+def normal_cone(ints, reals, side, jet):
+    """The normal cone at a witness point; its jet in the body's frame."""
+    dim = dimension(ints, side.feature)
+    if dim == 2:
+        normal, noise = face_normal(ints, reals, side, jet)
+        return NormalCone(SINGLE, normal, normal, ZERO, noise)
+    if dim == 1:
+        return edge_cone(ints, reals, side.feature, side.p, unit(jet[1]))
+    return NormalCone(FAN, ZERO, ZERO, ZERO, 0.0)
+
+
+@kernel
+def nearest_on_arc(cone, n):
+    """(nearest unit normal to n at a point of an edge with faces, bound on its roundoff)."""
+    _, a, b, tangent, noise = cone
     if noise > 0.0:
         # well within the cone the nearest normal is n less its part along the tangent, whose
         # digits are whole: the faces' normals need only be known to lie on either side
@@ -65,6 +102,21 @@ def edge_cone(ints, reals, feature, t, n):
         if min(dot(cross(a, flat), axis), dot(cross(flat, b), axis)) > noise:
             return flat, 0.0
     return between(n, a, b), noise
+
+
+@kernel
+def nearest_normal(ints, reals, feature, cone, n):
+    """(unit vector of a normal cone as near to the unit vector n as found, bound on its roundoff).
+
+    Any member of the cone gives a valid bound; the nearest gives the tightest.
+    """
+    if cone.kind == SINGLE:
+        return cone.first, cone.noise
+    if cone.kind == ARC:
+        return nearest_on_arc(cone, n)
+    if cone.kind == CIRCLE:
+        return unit(axpy(-dot(n, cone.tangent), cone.tangent, n)), 0.0
+    return vertex_cone(ints, reals, feature, n), 0.0
 
 
 @kernel
@@ -127,21 +179,6 @@ def vertex_cone(ints, reals, feature, n):
 
 
 @kernel
-def cone_normal(ints, reals, feature, chart, p, q, n):
-    """(unit vector of the normal cone at a witness point, as near to the unit vector n as found,
-    bound on its roundoff).
-
-    Any member of the cone gives a valid bound; the nearest gives the tightest.
-    """
-    dim = dimension(ints, feature)
-    if dim == 2:
-        return noisy_normal(ints, reals, chart, p, q)
-    if dim == 1:
-        return edge_cone(ints, reals, feature, p, n)
-    return vertex_cone(ints, reals, feature, n), 0.0
-
-
-@kernel
 def overhang(ints, reals, x, e, noise):
     """A bound on e.(y - x) over the points y of the body: the support of its box.
 
@@ -166,115 +203,136 @@ def into_b(R, n):
     return scale(-1.0, rotate_back(R, n))
 
 
-@kernel
-def cone_of_a(pair, place, n):
-    """`cone_normal` of A at its witness point."""
-    a = side_of(place, 0)
-    return cone_normal(pair.ints_a, pair.reals_a, a.feature, a.chart, a.p, a.q, n)
+class Cones(NamedTuple):
+    """What the certificate asks of a pair's witness points."""
+
+    a: NormalCone  # in A's frame
+    b: NormalCone  # in B's
+    x_a: Vector  # A's point
+    y_b: Vector  # B's, in B's frame
+    gap: Vector  # x_b - x_a, in A's frame
 
 
 @kernel
-def cone_of_b(pair, place, m):
-    """`cone_normal` of B at its witness point, in B's frame."""
-    b = side_of(place, 1)
-    return cone_normal(pair.ints_b, pair.reals_b, b.feature, b.chart, b.p, b.q, m)
-
-
-@kernel
-def plane_bound(pair, pose, place, x_a, y_b, gap, n):
-    """(lower bound that the unit vector n gives, what roundoff in normals takes from it).
-
-    gap is x_b - x_a, y_b the point in B's frame. It bounds the signed distance, so it holds in
-    penetration too, where it is negative.
-    """
-    ia, ra, ib, rb = pair
-    m = into_b(pose.R, n)
-    cone_a, miss_a = cone_of_a(pair, place, n)
-    cone_b, miss_b = cone_of_b(pair, place, m)
-    bound = dot(n, gap) - overhang(ia, ra, x_a, sub(n, cone_a), miss_a)
-    blur = overhang(ia, ra, x_a, ZERO, miss_a) + overhang(ib, rb, y_b, ZERO, miss_b)
-    return bound - overhang(ib, rb, y_b, sub(m, cone_b), miss_b), blur
-
-
-@kernel
-def bound_roundoff(pair, pose, x_a, x_b, y_b):
-    reach = (
-        pair.reals_a[L.SIZE]
-        + pair.reals_b[L.SIZE]
-        + norm(x_a)
-        + norm(x_b)
-        + norm(y_b)
-        + norm(pose.p)
+def cones_at(pair, pose, place, jets):
+    """The normal cones at both witness points, from the jets there."""
+    jet_a, jet_b = jets
+    own = jet_moved_back(pose, jet_b)
+    return Cones(
+        normal_cone(pair.ints_a, pair.reals_a, side_of(place, 0), jet_a),
+        normal_cone(pair.ints_b, pair.reals_b, side_of(place, 1), own),
+        jet_a[0],
+        own[0],
+        sub(jet_b[0], jet_a[0]),
     )
-    return BOUND_ROUNDINGS * EPS * reach
 
 
 @kernel
-def certify_along(pair, pose, place, x_a, x_b, n):
+def nearest_of_a(pair, place, cones, n):
+    """`nearest_normal` of A."""
+    return nearest_normal(pair.ints_a, pair.reals_a, place.feature_a, cones.a, n)
+
+
+@kernel
+def nearest_of_b(pair, place, cones, m):
+    """`nearest_normal` of B, in B's frame."""
+    return nearest_normal(pair.ints_b, pair.reals_b, place.feature_b, cones.b, m)
+
+
+@kernel
+def over_a(pair, cones, e, noise):
+    """`overhang` of A from its witness point."""
+    return overhang(pair.ints_a, pair.reals_a, cones.x_a, e, noise)
+
+
+@kernel
+def over_b(pair, cones, e, noise):
+    """`overhang` of B from its witness point, in B's frame."""
+    return overhang(pair.ints_b, pair.reals_b, cones.y_b, e, noise)
+
+
+@kernel
+def hangs_over_a(pair, place, cones, n):
+    """(what hangs over A's side of the plane square to n, what roundoff may add)."""
+    cone, miss = nearest_of_a(pair, place, cones, n)
+    return over_a(pair, cones, sub(n, cone), miss), over_a(pair, cones, ZERO, miss)
+
+
+@kernel
+def hangs_over_b(pair, pose, place, cones, n):
+    """`hangs_over_a` of B."""
+    m = into_b(pose.R, n)
+    cone, miss = nearest_of_b(pair, place, cones, m)
+    return over_b(pair, cones, sub(m, cone), miss), over_b(pair, cones, ZERO, miss)
+
+
+@kernel
+def lowered(pair, pose, cones, bound):
+    """A bound less both bodies' slack and what roundoff may have added to it.
+
+    The coordinates' taxicab lengths are at least their lengths, and cost no roots.
+    """
+    x_b = add(cones.x_a, cones.gap)
+    reach = pair.reals_a[L.SIZE] + pair.reals_b[L.SIZE]
+    reach += taxicab(cones.x_a) + taxicab(x_b) + taxicab(cones.y_b) + taxicab(pose.p)
+    slack = pair.reals_a[L.SLACK] + pair.reals_b[L.SLACK]
+    return bound - slack - BOUND_ROUNDINGS * EPS * reach
+
+
+@kernel
+def certify_along(pair, pose, place, jets, n):
     """(lower bound of the cores' signed distance from the plane square to n alone, blur).
 
-    n must be the plane's own normal where one body is a half-space: nothing hangs over that one.
+    It holds in penetration too, where it is negative. n must be the plane's own normal where one
+    body is a half-space: nothing hangs over that one. jets: those of the witness points.
     """
-    ia, ra, ib, rb = pair
-    y_b = rotate_back(pose.R, sub(x_b, pose.p))
-    if ia[L.UNBOUNDED] or ib[L.UNBOUNDED]:
-        bound, blur = dot(n, sub(x_b, x_a)), 0.0
-        if not ia[L.UNBOUNDED]:
-            cone, miss = cone_of_a(pair, place, n)
-            bound -= overhang(ia, ra, x_a, sub(n, cone), miss)
-            blur = overhang(ia, ra, x_a, ZERO, miss)
-        if not ib[L.UNBOUNDED]:
-            m = into_b(pose.R, n)
-            cone, miss = cone_of_b(pair, place, m)
-            bound -= overhang(ib, rb, y_b, sub(m, cone), miss)
-            blur = overhang(ib, rb, y_b, ZERO, miss)
-        slack = ra[L.SLACK] + rb[L.SLACK]
-        return bound - slack - bound_roundoff(pair, pose, x_a, x_b, y_b), blur
-    bound, blur = plane_bound(pair, pose, place, x_a, y_b, sub(x_b, x_a), n)
-    slack = pair.reals_a[L.SLACK] + pair.reals_b[L.SLACK]
-    return bound - slack - bound_roundoff(pair, pose, x_a, x_b, y_b), blur
+    cones = cones_at(pair, pose, place, jets)
+    bound, blur = dot(n, cones.gap), 0.0
+    if not pair.ints_a[L.UNBOUNDED]:
+        hangs, miss = hangs_over_a(pair, place, cones, n)
+        bound -= hangs
+        blur += miss
+    if not pair.ints_b[L.UNBOUNDED]:
+        hangs, miss = hangs_over_b(pair, pose, place, cones, n)
+        bound -= hangs
+        blur += miss
+    return lowered(pair, pose, cones, bound), blur
 
 
 @kernel
-def certify(pair, pose, place, x_a, x_b, hint):
+def certify(pair, pose, place, jets, hint):
     """(distance of the cores, lower bound of it, best plane normal, blur) at witness points.
 
     The blur (length) is what roundoff in the bodies' own normals may take from the bound.
 
-    x_a and x_b in A's frame. The normal is the one of the candidates n_A, -n_B, the direction of
-    x_b - x_a and the unit vector `hint` (zero: none) that gives the greatest bound: near contact
-    the direction loses its digits.
+    jets: those of the witness points, in A's frame. The normal is the one of the candidates n_A,
+    -n_B, the direction of x_b - x_a and the unit vector `hint` (zero: none) that gives the greatest
+    bound: near contact the direction loses its digits.
     """
-    ia, ra, ib, rb = pair
-    gap = sub(x_b, x_a)
+    cones = cones_at(pair, pose, place, jets)
+    gap = cones.gap
     d = norm(gap)
-    direction = unit(gap)
-    y_b = rotate_back(pose.R, sub(x_b, pose.p))
+    direction = scale(1.0 / d, gap) if d > 0.0 else ZERO
     m_b = into_b(pose.R, direction)
-    n_a, noise_a = cone_of_a(pair, place, direction)
-    n_b, noise_b = cone_of_b(pair, place, m_b)
-    over_a = overhang(ia, ra, x_a, sub(direction, n_a), noise_a)
-    over_b = overhang(ib, rb, y_b, sub(m_b, n_b), noise_b)
-    best, normal = d - over_a - over_b, direction
+    n_a, noise_a = nearest_of_a(pair, place, cones, direction)
+    n_b, noise_b = nearest_of_b(pair, place, cones, m_b)
+    hangs_a = over_a(pair, cones, sub(direction, n_a), noise_a)
+    hangs_b = over_b(pair, cones, sub(m_b, n_b), noise_b)
+    blur_a, blur_b = over_a(pair, cones, ZERO, noise_a), over_b(pair, cones, ZERO, noise_b)
+    best, normal = d - hangs_a - hangs_b, direction
     if dot(hint, hint) > 0.5:
-        bound, _ = plane_bound(pair, pose, place, x_a, y_b, gap, hint)
+        bound = dot(hint, gap) - hangs_over_a(pair, place, cones, hint)[0]
+        bound -= hangs_over_b(pair, pose, place, cones, hint)[0]
         if bound > best:
             best, normal = bound, hint
     # A's own normal: nothing hangs over at A. A zero normal (collapsed chart) bounds nothing.
     if dot(n_a, n_a) > 0.5:
-        m = into_b(pose.R, n_a)
-        cone, miss = cone_of_b(pair, place, m)
-        bound = dot(n_a, gap) - overhang(ib, rb, y_b, sub(m, cone), miss)
-        bound -= overhang(ia, ra, x_a, ZERO, noise_a)
+        bound = dot(n_a, gap) - hangs_over_b(pair, pose, place, cones, n_a)[0] - blur_a
         if bound > best:
             best, normal = bound, n_a
     if dot(n_b, n_b) > 0.5:
         n = scale(-1.0, rotate(pose.R, n_b))
-        cone, miss = cone_of_a(pair, place, n)
-        bound = dot(n, gap) - overhang(ia, ra, x_a, sub(n, cone), miss)
-        bound -= overhang(ib, rb, y_b, ZERO, noise_b)
+        bound = dot(n, gap) - hangs_over_a(pair, place, cones, n)[0] - blur_b
         if bound > best:
             best, normal = bound, n
-    best -= ra[L.SLACK] + rb[L.SLACK] + bound_roundoff(pair, pose, x_a, x_b, y_b)
-    blur = overhang(ia, ra, x_a, ZERO, noise_a) + overhang(ib, rb, y_b, ZERO, noise_b)
-    return d, best, normal, blur
+    return d, lowered(pair, pose, cones, best), normal, blur_a + blur_b

@@ -1,6 +1,6 @@
 """A descent with its certificate, polished where contact is very near."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from standoff.kernels.body.features import dimension, pair_slack, pair_span
 from standoff.kernels.body.trimming import on_face
@@ -32,18 +32,19 @@ class Followed(NamedTuple):
     """A frame's descent, and the rates of the parameters by its last evaluation."""
 
     found: Found
+    jets: Any  # both, of the place found, in A's frame
     fresh: bool  # do the rates belong to the place's features and charts?
     rates: tuple[float, ...]  # feedforward, 1/s
 
 
 @shared
-def weigh(pair, pose, place, points, hint, tolerance):
-    """Certify witness points, given in A's frame.
+def weigh(pair, pose, place, jets, hint, tolerance):
+    """Certify witness points by their jets, in A's frame.
 
     The bodies' own slack lowers the bound but is no fault of the answer, nor is the roundoff of a
     normal beside a collapsed side: the gap beyond both counts.
     """
-    d, lower, normal, blur = certify(pair, pose, place, points[0], points[1], hint)
+    d, lower, normal, blur = certify(pair, pose, place, jets, hint)
     span = pair_span(pair, pose.p, d)
     if not on_feature(pair, place):
         return Weighed(UNCERTIFIED, d, lower, normal)
@@ -55,12 +56,6 @@ def weigh(pair, pose, place, points, hint, tolerance):
     if lower <= 0.0 and d <= TOUCHING * span:
         return Weighed(TOUCHING_OR_OVERLAPPING, d, lower, normal)
     return Weighed(UNCERTIFIED, d, lower, normal)
-
-
-@kernel
-def weigh_jets(pair, pose, place, jets, hint, tolerance):
-    """`weigh` of the points of two jets."""
-    return weigh(pair, pose, place, (jets[0][0], jets[1][0]), hint, tolerance)
 
 
 @kernel
@@ -83,24 +78,22 @@ def settle_and_weigh(pair, motion, place, least, goal, tolerance, work):
     once more where that shows a feature to release.
     """
     pose = motion.pose
-    settled = settle(pair, motion, place, least, goal, work)
-    place, fresh, rates = settled.place, settled.fresh, settled.rates
-    answer = weigh_jets(pair, pose, place, settled.jets, ORIGIN, tolerance)
+    _, place, jets, fresh, rates = settle(pair, motion, place, least, goal, work)
+    answer = weigh(pair, pose, place, jets, ORIGIN, tolerance)
     for _ in range(MAX_STALLS):
         if answer.outcome != UNCERTIFIED:
             break
         sharp, n, place = polish(pair, pose, place, work)
         if not sharp:
             break
-        fresh = False
-        answer = weigh_jets(pair, pose, place, pair_jets(pair, pose, place), n, tolerance)
+        fresh, jets = False, pair_jets(pair, pose, place)
+        answer = weigh(pair, pose, place, jets, n, tolerance)
         if answer.outcome != UNCERTIFIED:
             break
         released, place = release_along(pair, pose, place, n, answer.distance, SLOPE, work)
         if not released:
             break
-        settled = settle(pair, motion, place, 0.0, 0.0, work)
-        place, fresh, rates = settled.place, settled.fresh, settled.rates
-        answer = weigh_jets(pair, pose, place, settled.jets, n, tolerance)
+        _, place, jets, fresh, rates = settle(pair, motion, place, 0.0, 0.0, work)
+        answer = weigh(pair, pose, place, jets, n, tolerance)
     outcome, d, lower, normal = answer
-    return Followed(Found(outcome, place, d, lower, d, normal), fresh, rates)
+    return Followed(Found(outcome, place, d, lower, d, normal), jets, fresh, rates)

@@ -5,16 +5,16 @@ and in penetration. It is used there, and where an answer very near contact is n
 otherwise; the feature pair is held.
 """
 
-from math import sqrt
 from typing import NamedTuple
 
 from standoff.kernels.algebra.lapack import least_squares
+from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import cross, dot, norm, rotate, scale, sub, unit
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_normal, dimension, pair_span
 from standoff.kernels.body.trimming import NO_HIT
 from standoff.kernels.compiler.decorators import kernel, shared, stack_matrix, stack_reals
-from standoff.kernels.pair.certificate import cone_of_a, cone_of_b
+from standoff.kernels.pair.certificate import cones_at, nearest_of_a, nearest_of_b
 from standoff.kernels.pair.descent import pair_jets, recentre, walk_pair
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, exhausted
 from standoff.kernels.pair.system import contact_feedforward, contact_jacobian, contact_residual
@@ -40,12 +40,12 @@ def common_normal(pair, pose, place, jets):
     perpendicular = cross(unit(jet_a[1]), unit(jet_b[1]))
     if ia[L.DIMENSION] == 3 and dot(perpendicular, perpendicular) > PIVOT:
         n = unit(perpendicular)
-        m, _ = cone_of_a(pair, place, n)
+        m, _ = nearest_of_a(pair, place, cones_at(pair, pose, place, jets), n)
         return n if dot(n, m) >= 0.0 else scale(-1.0, n), True
     if ia[L.DIMENSION] == 2 and dimension(ia, a.feature) == 1:
-        return cone_of_a(pair, place, unit(gap))[0], True
+        return nearest_of_a(pair, place, cones_at(pair, pose, place, jets), unit(gap))[0], True
     if ib[L.DIMENSION] == 2 and dimension(ib, b.feature) == 1:
-        m, _ = cone_of_b(pair, place, unit(gap))
+        m, _ = nearest_of_b(pair, place, cones_at(pair, pose, place, jets), unit(gap))
         return scale(-1.0, rotate(pose.R, m)), True
     return unit(gap), False
 

@@ -23,7 +23,7 @@ from standoff.kernels.pair.events import (
     exhausted,
     log_event,
 )
-from standoff.kernels.pair.newton import gradient_norm, law, stiff_step
+from standoff.kernels.pair.newton import law, metric_norm, pair_metric, stiff_step
 from standoff.kernels.pair.switching import (
     NONE_TRIED,
     in_best_chart,
@@ -257,7 +257,7 @@ def line_search(pair, pose, place, step, s):
 
 
 @kernel
-def correction(jets, motion, g, span, work):
+def correction(jets, metrics, motion, g, span, work):
     """(step, g.step, flat, sharp, rates): the Newton step, and the feedforward of the same
     factorisation.
 
@@ -266,7 +266,7 @@ def correction(jets, motion, g, span, work):
     jet_a, jet_b = jets
     H = hessian(jet_a, jet_b)
     b = feedforward(jet_a, jet_b, STILL, of_origin(motion))
-    step, rates, _, regularised, flat, sharp = law(jet_a, jet_b, g, H, gradient(b), span)
+    step, rates, regularised, flat, sharp = law(metrics, jet_a, jet_b, g, H, gradient(b), span)
     work.counts[EVALUATIONS] += 1
     work.counts[REGULARISED] += regularised
     descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
@@ -319,10 +319,11 @@ def settle(pair, motion, place, least, tolerance, work):
         E = 0.5 * d * d
         noise = ENERGY_NOISE * EPS * span * d
         g = gradient(projection_errors(jet_a, jet_b))
-        slope = gradient_norm(jet_a, jet_b, g)
+        metrics = pair_metric(jet_a, jet_b)
+        slope = metric_norm(metrics, g)
         floor = max(AT_REST * EPS * span, tolerance * d)
         if slope > 0.0 and (slope > floor or corrections < least):
-            change, descent, flat, sharp, rates = correction(jets, motion, g, span, work)
+            change, descent, flat, sharp, rates = correction(jets, metrics, motion, g, span, work)
             fresh = True
             in_noise = -0.5 * descent <= noise
             polish += in_noise

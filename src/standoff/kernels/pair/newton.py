@@ -5,14 +5,17 @@ factor D = L L', whitened coordinates measure lengths on the bodies, so threshol
 units and of the parametrisation.
 """
 
-from math import inf, sqrt
+from math import inf
+from typing import NamedTuple
 
 from standoff.kernels.algebra.lapack import symmetric_eigen
+from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import dot
-from standoff.kernels.compiler.decorators import kernel, stack_reals
+from standoff.kernels.compiler.decorators import kernel, shared, stack_reals
 from standoff.kernels.tolerances import (
     EPS,
     GRADIENT_NOISE,
+    LEAN,
     NEGATIVE,
     PIVOT,
     PIVOT_ROUNDINGS,
@@ -35,6 +38,39 @@ def metric_inverse(f1, f2):
     # f_v along f_u is no chart; the floor only keeps a division finite at the chart's very rim
     a22 = sqrt(max(rest, EPS * g))
     return 1.0 / a11, -a21 / (a11 * a22), 1.0 / a22
+
+
+class Metric(NamedTuple):
+    """D = F'F of one body's tangents, factored: its pivots are the squares of L's diagonal."""
+
+    first: float  # 1 / (f_u.f_u)
+    across: float  # f_u.f_v / f_u.f_u
+    second: float  # 1 / the second pivot
+
+
+@kernel
+def metric(f1, f2):
+    """The factored F'F; 1 for a masked parameter."""
+    e, g, c = dot(f1, f1), dot(f2, f2), dot(f1, f2)
+    first = 1.0 / e if e > 0.0 else 1.0
+    across = c * first
+    # f_v along f_u is no chart; the floor only keeps a division finite at the chart's very rim
+    second = 1.0 / max(g - across * c, EPS * g) if g > 0.0 else 1.0
+    return Metric(first, across, second)
+
+
+@kernel
+def pair_metric(jet_a, jet_b):
+    return metric(jet_a[1], jet_a[2]), metric(jet_b[1], jet_b[2])
+
+
+@kernel
+def metric_norm(metrics, g):
+    """|g| in the metric D: a length² per length, the slope of E on the bodies."""
+    a, b = metrics
+    along_a, along_b = g[1] - a.across * g[0], g[3] - b.across * g[2]
+    of_a = g[0] * g[0] * a.first + along_a * along_a * a.second
+    return sqrt(of_a + g[2] * g[2] * b.first + along_b * along_b * b.second)
 
 
 @kernel
@@ -85,7 +121,10 @@ def whiten_hessian(ia, ib, H):
 
 @kernel
 def ldl(H):
-    """H = L D L' without pivoting: (d0..d3, l10, l20, l30, l21, l31, l32); a pivot may be <= 0."""
+    """H = L D L' without pivoting: (pivots, their reciprocals, (l10, l20, l30, l21, l31, l32)).
+
+    A pivot may be <= 0; of 0 the reciprocal is given as 0.
+    """
     h00, h01, h02, h03, h11, h12, h13, h22, h23, h33 = H
     d0 = h00
     i0 = 1.0 / d0 if d0 != 0.0 else 0.0
@@ -100,20 +139,22 @@ def ldl(H):
     c32 = h23 - l30 * h02 - l31 * c21
     l32 = c32 * i2
     d3 = h33 - l30 * h03 - l31 * c31 - l32 * c32
-    return d0, d1, d2, d3, l10, l20, l30, l21, l31, l32
+    i3 = 1.0 / d3 if d3 != 0.0 else 0.0
+    return (d0, d1, d2, d3), (i0, i1, i2, i3), (l10, l20, l30, l21, l31, l32)
 
 
 @kernel
-def ldl_solve(f, g):
-    d0, d1, d2, d3, l10, l20, l30, l21, l31, l32 = f
+def ldl_solve(factors, g):
+    """H⁻¹ g, where no pivot is 0."""
+    _, (i0, i1, i2, i3), (l10, l20, l30, l21, l31, l32) = factors
     y0 = g[0]
     y1 = g[1] - l10 * y0
     y2 = g[2] - l20 * y0 - l21 * y1
     y3 = g[3] - l30 * y0 - l31 * y1 - l32 * y2
-    x3 = y3 / d3
-    x2 = y2 / d2 - l32 * x3
-    x1 = y1 / d1 - l21 * x2 - l31 * x3
-    x0 = y0 / d0 - l10 * x1 - l20 * x2 - l30 * x3
+    x3 = y3 * i3
+    x2 = y2 * i2 - l32 * x3
+    x1 = y1 * i1 - l21 * x2 - l31 * x3
+    x0 = y0 * i0 - l10 * x1 - l20 * x2 - l30 * x3
     return x0, x1, x2, x3
 
 
@@ -209,39 +250,67 @@ def levelled(inverse, first, second):
 
 
 @kernel
-def law(jet_a, jet_b, g, H, g_t, scale):
-    """(p, w_ff, slope, regularised, flat, sharp): p = -H⁻¹ g, w_ff = -H⁻¹ g_t, |g| in the metric D.
+def plainly_definite(metrics, H, pivots):
+    """(is the law's rank rule passed by far, is every direction stiff): by the pivots of H itself.
+
+    L⁻¹ H L⁻ᵀ with a lower triangular L has the pivots of H over those of D. Where they are all
+    above LEAN of its greatest diagonal, no factor's square exceeds 1 / LEAN, and the bound of the
+    rank rule is far below; where not, the rule itself decides.
+    """
+    a, b = metrics
+    least = min(
+        min(pivots[0] * a.first, pivots[1] * a.second),
+        min(pivots[2] * b.first, pivots[3] * b.second),
+    )
+    h_a = (H[4] - 2.0 * a.across * H[1] + a.across * a.across * H[0]) * a.second
+    h_b = (H[9] - 2.0 * b.across * H[8] + b.across * b.across * H[7]) * b.second
+    top = max(max(H[0] * a.first, h_a), max(H[7] * b.first, h_b))
+    return top <= SHARP and least > LEAN * top, least > STIFF * top
+
+
+@kernel
+def law(metrics, jet_a, jet_b, g, H, g_t, scale):
+    """(p, w_ff, regularised, flat, sharp): p = -H⁻¹ g, w_ff = -H⁻¹ g_t.
 
     Eq. (12) is w = K p + w_ff. `regularised` is 1 where H had to be decomposed, `flat` 1 where
     it has a direction that is not stiff, `sharp` where one is curved as beside a crease.
     """
+    factors = ldl(H)
+    safe, stiff = plainly_definite(metrics, H, factors[0])
+    if safe:
+        p, w = negate(ldl_solve(factors, g)), negate(ldl_solve(factors, g_t))
+        return p, w, 0, 0 if stiff else 1, False
+    return ranked_law(jet_a, jet_b, g, H, g_t, scale)
+
+
+@shared
+def ranked_law(jet_a, jet_b, g, H, g_t, scale):
+    """`law` by its rank rule."""
     ia = metric_inverse(jet_a[1], jet_a[2])
     ib = metric_inverse(jet_b[1], jet_b[2])
-    gw = whiten_gradient(ia, ib, g)
-    tw = whiten_gradient(ia, ib, g_t)
     Hw = whiten_hessian(ia, ib, H)
-    slope = sqrt(gw[0] * gw[0] + gw[1] * gw[1] + gw[2] * gw[2] + gw[3] * gw[3])
     top = max(max(Hw[0], Hw[4]), max(Hw[7], Hw[9]))
     sharp = top > SHARP
     if sharp:
         # a direction of great curvature must not make the others look flat
         ia, ib = levelled(ia, Hw[0], Hw[4]), levelled(ib, Hw[7], Hw[9])
-        gw, tw = whiten_gradient(ia, ib, g), whiten_gradient(ia, ib, g_t)
         Hw = whiten_hessian(ia, ib, H)
         top = 1.0
-    f = ldl(Hw)
-    least = min(min(f[0], f[1]), min(f[2], f[3]))
+    gw, tw = whiten_gradient(ia, ib, g), whiten_gradient(ia, ib, g_t)
+    factors = ldl(Hw)
+    pivots, _, lower = factors
+    least = min(min(pivots[0], pivots[1]), min(pivots[2], pivots[3]))
     # a pivot that ought to vanish keeps the roundings of those before it, times l²
     growth = 1.0
-    for k in range(4, 10):
-        growth += f[k] * f[k]
+    for k in range(6):
+        growth += lower[k] * lower[k]
     if least > max(PIVOT, PIVOT_ROUNDINGS * EPS * growth) * top:
-        p, w = negate(ldl_solve(f, gw)), negate(ldl_solve(f, tw))
+        p, w = negate(ldl_solve(factors, gw)), negate(ldl_solve(factors, tw))
         flat = 0 if least > STIFF * top else 1
-        return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), slope, 0, flat, sharp
+        return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), 0, flat, sharp
     noise = GRADIENT_NOISE * EPS * scale
     p, w = decomposed_solve(Hw, gw, tw, noise, scale)
-    return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), slope, 1, 1, sharp
+    return unwhiten_step(ia, ib, p), unwhiten_step(ia, ib, w), 1, 1, sharp
 
 
 @kernel
@@ -252,9 +321,12 @@ def plain_law(jet_a, jet_b, g, H, g_t):
     """
     ia = metric_inverse(jet_a[1], jet_a[2])
     ib = metric_inverse(jet_b[1], jet_b[2])
-    f = ldl(whiten_hessian(ia, ib, H))
-    p = unwhiten_step(ia, ib, negate(ldl_solve(f, whiten_gradient(ia, ib, g))))
-    w = unwhiten_step(ia, ib, negate(ldl_solve(f, whiten_gradient(ia, ib, g_t))))
+    factors = ldl(whiten_hessian(ia, ib, H))
+    d = factors[0]
+    if d[0] == 0.0 or d[1] == 0.0 or d[2] == 0.0 or d[3] == 0.0:
+        return (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), 0
+    p = unwhiten_step(ia, ib, negate(ldl_solve(factors, whiten_gradient(ia, ib, g))))
+    w = unwhiten_step(ia, ib, negate(ldl_solve(factors, whiten_gradient(ia, ib, g_t))))
     total = 0.0
     for k in range(4):
         total += abs(p[k]) + abs(w[k])
@@ -265,8 +337,5 @@ def plain_law(jet_a, jet_b, g, H, g_t):
 
 @kernel
 def gradient_norm(jet_a, jet_b, g):
-    """|g| in the metric D: a length² per length, the slope of E on the bodies."""
-    ia = metric_inverse(jet_a[1], jet_a[2])
-    ib = metric_inverse(jet_b[1], jet_b[2])
-    gw = whiten_gradient(ia, ib, g)
-    return sqrt(gw[0] * gw[0] + gw[1] * gw[1] + gw[2] * gw[2] + gw[3] * gw[3])
+    """|g| in the metric D of the jets' tangents."""
+    return metric_norm(pair_metric(jet_a, jet_b), g)

@@ -6,10 +6,11 @@ slope along an edge at its end is the vertex-edge Voronoi plane, the sign along 
 conormal the edge-face Voronoi surface. No Voronoi boundary is ever built.
 """
 
-from math import cos, exp, log, sin, sqrt
+from math import cos, exp, log, sin
 
 import numpy as np
 
+from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import add, axpy, cross, dot, scale, sub, unit
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (

@@ -8,14 +8,8 @@ All quantities of one call are in one frame. Notation as in the paper: x_f on A,
 F = [f_u f_v], G = [h_r h_s], dR = x_f - x_h. S = diag(1, 1, -1, -1).
 """
 
-from standoff.kernels.algebra.vectors import add, cross, dot, scale, sub
+from standoff.kernels.algebra.vectors import active, add, cross, dot, scale, sub
 from standoff.kernels.compiler.decorators import small
-
-
-@small
-def active(f):
-    """1 where the parameter of tangent column f exists (the column is not zero), else 0."""
-    return 1.0 if f[0] != 0.0 or f[1] != 0.0 or f[2] != 0.0 else 0.0
 
 
 @small

@@ -4,11 +4,10 @@ Every feedback is written as v = K e, with a gain K and *commanded errors* e of 
 so that one solve of `law` serves all; for the paper's full-state linear law e is Psi.
 """
 
-from math import sqrt
-
+from standoff.kernels.algebra.roots import sqrt
+from standoff.kernels.algebra.vectors import active
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.newton import metric_inverse, whiten_gradient
-from standoff.kernels.pair.system import active
 from standoff.kernels.state.arrays import (
     FEEDBACK_MATRIX,
     FEEDBACK_MOTION,

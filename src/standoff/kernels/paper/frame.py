@@ -7,7 +7,7 @@ from standoff.kernels.depth.penetration import contact_scale
 from standoff.kernels.depth.search import overlap_shown
 from standoff.kernels.frame.apart import contact
 from standoff.kernels.frame.restart import cut_off, restart, start_due
-from standoff.kernels.pair.certified import CERTIFIED, PENETRATING, UNCERTIFIED, weigh_jets
+from standoff.kernels.pair.certified import CERTIFIED, PENETRATING, UNCERTIFIED, weigh
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import exhausted
 from standoff.kernels.paper.law import begun, carry_and_switch, integrate_and_switch
@@ -35,7 +35,7 @@ def follow_paper(advance, pair, motion, before, options, step, work):
     pose = motion.pose
     place, integrated = advance(pair, motion, before, options, step, work)
     jets = pair_jets(pair, pose, place)
-    outcome, d, lower, normal = weigh_jets(pair, pose, place, jets, ORIGIN, options.tolerance)
+    outcome, d, lower, normal = weigh(pair, pose, place, jets, ORIGIN, options.tolerance)
     # while it still converges from a wrong start the normal tells nothing
     settled = before.lower > 0.5 * before.distance
     apart = dot(before.normal, sub(jets[1][0], jets[0][0])) > 0.0 or not settled
@@ -53,7 +53,7 @@ def outside(advance, pair, motion, before, options, step, work):
     lags = apart and found.outcome == UNCERTIFIED
     # behind the motion, or no longer apart?
     doubted = lags and found.lower <= 0.0 and (near or overlap_shown(pair, pose)[0])
-    tracked = without_rates(found, False, integrated)
+    tracked = without_rates(pair, pose, found, False, integrated)
     if found.outcome == CERTIFIED or alone or (lags and not doubted):
         return ANSWERED, False, tracked
     if exhausted(work) and apart:
@@ -61,7 +61,7 @@ def outside(advance, pair, motion, before, options, step, work):
         cut = Found(
             UNCERTIFIED, found.place, found.distance, found.lower, found.upper, found.normal
         )
-        return ANSWERED, False, without_rates(cut, inside, integrated)
+        return ANSWERED, False, without_rates(pair, pose, cut, inside, integrated)
     return TRY_CONTACT if near or not apart or doubted else TRY_RESTART, doubted, tracked
 
 
@@ -94,7 +94,11 @@ def track_by(advance, pair, motion, before, options, step, work):
     if alone or (not before.lost and (inside or not due)):
         then, doubted = TRY_CONTACT, False
         outside_contact = without_rates(
-            Found(UNCERTIFIED, before.place, 0.0, 0.0, 0.0, before.normal), False, kept
+            pair,
+            pose,
+            Found(UNCERTIFIED, before.place, 0.0, 0.0, 0.0, before.normal),
+            False,
+            kept,
         )
         if not inside:
             then, doubted, outside_contact = outside(
@@ -115,7 +119,7 @@ def track_by(advance, pair, motion, before, options, step, work):
                     found.distance,
                     found.normal,
                 )
-                return without_rates(lagging, False, kept)
+                return without_rates(pair, pose, lagging, False, kept)
             if then == ANSWERED:
                 return anew(pair, pose, touching, kept.gain)
     tracked = restart(pair, pose, first, options.tolerance, kept, work)

@@ -14,7 +14,7 @@ from standoff.kernels.body.features import pair_span
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import EVALUATIONS, REGULARISED
-from standoff.kernels.pair.newton import law, plain_law
+from standoff.kernels.pair.newton import law, pair_metric, plain_law
 from standoff.kernels.pair.system import feedforward, gradient, hessian, projection_errors
 from standoff.kernels.paper.feedback import commanded_errors, gain_now
 from standoff.kernels.state.arrays import INTEGRATED, PREDICT_NONE, SOLVE_PLAIN
@@ -62,7 +62,8 @@ def times_hessian(H, w):
 @kernel
 def solve_law(jet_a, jet_b, g, H, fed, span, work):
     """(p, w_ff) by the rank rule."""
-    step, w_ff, _, regularised, _, _ = law(jet_a, jet_b, g, H, fed, span)
+    metrics = pair_metric(jet_a, jet_b)
+    step, w_ff, regularised, _, _ = law(metrics, jet_a, jet_b, g, H, fed, span)
     work.counts[REGULARISED] += regularised
     return step, w_ff
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.state.state import Four, Integrated
 from standoff.kernels.values import NO_RATES, Found
 
@@ -18,6 +19,7 @@ class Shown(NamedTuple):
     """What a frame's answer shows."""
 
     found: Found
+    jets: Any  # both, of the place found, in A's frame
     inside: bool  # solved in contact
     fresh: bool  # are the rates the feedforward at these very points?
     rates: Four  # 1/s
@@ -31,5 +33,7 @@ class Tracked(NamedTuple):
 
 
 @kernel
-def without_rates(found, inside, integrated):
-    return Tracked(Shown(found, inside, False, NO_RATES), integrated)
+def without_rates(pair, pose, found, inside, integrated):
+    """What a frame makes of witness points found without the law."""
+    jets = pair_jets(pair, pose, found.place)
+    return Tracked(Shown(found, jets, inside, False, NO_RATES), integrated)
