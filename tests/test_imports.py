@@ -342,7 +342,7 @@ LOOP = so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (1, 0), (0, 1))])
     [
         (
             so.Tracker(BOX, BOX),
-            "a b buffer dt law resolved_law run start start_from step step_into",
+            "a b buffer dt law resolved_law run specialise start start_from step step_into",
         ),
         (so.PointTracker(LOOP), "body dt law start start_from step tolerance"),
         (so.points.SpatialPointTracker(BOX), "body dt start step"),

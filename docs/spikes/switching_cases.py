@@ -197,7 +197,7 @@ class Case:
     def certify(self, place):
         """(accepted, distance, normal) by the library's certificate."""
         jet_a, jet_b = pair_jets(self.pair, self.pose, place)
-        d, bound, n, _ = certify(self.pair, self.pose, place, jet_a[0], jet_b[0], ORIGIN)
+        d, bound, n, _ = certify(self.pair, self.pose, place, (jet_a, jet_b), ORIGIN)
         return bound > 0.0 and d - bound <= GOAL * (self.size + d), d, n
 
     def restart(self):

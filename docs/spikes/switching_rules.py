@@ -37,6 +37,7 @@ from standoff.kernels.pair.newton import (
     gradient_norm,
     law,
     metric_inverse,
+    pair_metric,
     unwhiten_step,
     whiten_gradient,
     whiten_hessian,
@@ -123,7 +124,8 @@ def newton_step(rule, jets, p, g, span, tally):
     jet_a, jet_b = jets
     H = hessian(jet_a, jet_b)
     still = gradient(feedforward(jet_a, jet_b, STILL, (p, ORIGIN, ORIGIN)))
-    change, _, _, flat, valley, _ = law(jet_a, jet_b, g, H, still, span)
+    metrics = pair_metric(jet_a, jet_b)
+    change, _, flat, valley, _ = law(metrics, jet_a, jet_b, g, H, still, span)
     tally[SOLVES] += 1
     tally[FLAT] += flat
     if flat and rule in (FLOOR, DROP):

@@ -12,9 +12,9 @@ from standoff.kernels.body.features import (
     chart_jet,
     chart_normal,
     coedge_parameters,
-    planar_edge_normal,
 )
 from standoff.kernels.body.trimming import on_face
+from standoff.kernels.entries.queries import planar_edge_normal
 from standoff_studies.oracles import Affine, unit
 
 MAKERS = {maker.__name__: maker for maker in (*shapes.SOLIDS, shapes.half_space, shapes.loop)}

@@ -115,14 +115,19 @@ def test_a_patch_that_is_flat_in_one_span():
     found = so.witness_set(so.distance(PLATE, body, HOME, over), HOME, over)
     flat = np.array([[x, y, 0.0] for x in (1.0, 2.0) for y in (1.0, 2.0)])
     assert found.dimension == 2
-    # beside the flat span the roof falls with the third power: no more digits
-    assert same_points(found.points_b, over.apply(flat), 1e-7)
+    # beside the flat span the roof falls with the third power: no more digits, and a witness point
+    # on the span's rim may be one more corner of the set
+    corners = over.apply(flat)
+    off = np.linalg.norm(found.points_b[:, None] - corners, axis=2)
+    assert off.min(axis=0).max() < 1e-7
+    assert (found.points_b >= corners.min(axis=0) - 1e-7).all()
+    assert (found.points_b <= corners.max(axis=0) + 1e-7).all()
     # rolled by as much as the roof slopes at x = 2.1: it lies on the ruling there
     rolled = so.Pose.exp([np.pi, 0, 0]) @ so.Pose.exp([0, -np.arctan(3 * 0.1**2), 0], [0, 0, -1])
     found = so.witness_set(so.distance(PLATE, body, HOME, rolled), HOME, rolled)
     ruling = np.array([[2.1, y, -(0.1**3)] for y in (1.0, 2.0)])
     assert found.dimension == 1
-    assert same_points(found.points_b, rolled.apply(ruling), 1e-8)
+    assert same_points(found.points_b, rolled.apply(ruling), 1e-7)
 
 
 def cube_of_patches() -> so.Body:

@@ -9,6 +9,7 @@ import numpy as np
 from standoff.bodies.angles import EdgeTurns, check_vertices, dihedral, edge_turns, refined
 from standoff.bodies.assembly import Joined
 from standoff.bodies.convexity import Convexity, Known, convexity
+from standoff.bodies.inner_boxes import inner_boxes
 from standoff.bodies.packing import Assembled, Ints, pack, without_charts
 from standoff.bodies.planar_convexity import planar_convexity
 from standoff.bodies.report import BodyReport
@@ -80,7 +81,8 @@ def finish(
         seen = check_convex(samples, size, allowed)
         found = replace(found, defect=max(found.defect, seen, 0.0))
     slack = _slack(found, joined.residual, _moved(parts), max(ROUNDOFF * size, roundoff))
-    ints, reals = pack(parts, samples, box, radius, slack)
+    inner = inner_boxes(parts, ints, reals)
+    ints, reals = pack(parts, samples, box, radius, slack, inner)
     report = _report(parts, joined, turns, found, size + 2.0 * radius, share, slack, roundoff)
     return Packed(parts, ints, reals, report)
 

@@ -119,8 +119,11 @@ def pack(
     box: tuple[Array, Array] | None,
     radius: float,
     slack: float,
+    inner: Sequence[Sequence[float]] | None = None,
 ) -> tuple[Ints, Array]:
-    """The (ints, reals) of a body. `box` is (low, high) of its core, None when unbounded."""
+    """The (ints, reals) of a body. `box` is (low, high) of its core, None when unbounded; `inner`
+    are its charts' rectangles of parameters (``inner_boxes``), None while none is known.
+    """
     w = Writer()
     w.ints[L.DIMENSION] = body.dimension
     w.ints[L.N_FACES] = len(body.faces)
@@ -137,7 +140,7 @@ def pack(
         w.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3] = list(0.5 * (low + high))
         w.reals[L.OFFSET] = float(np.linalg.norm(0.5 * (low + high)))
         w.reals[L.BOX_HALF : L.BOX_HALF + 3] = list(0.5 * (high - low))
-    _pack_faces(w, body)
+    _pack_faces(w, body, inner)
     _pack_edges(w, body)
     _pack_vertices(w, body)
     w.table(L.SAMPLES, [(s.feature, s.chart) for s in samples])
@@ -147,7 +150,7 @@ def pack(
     return w.arrays()
 
 
-def _pack_faces(w: Writer, body: Assembled) -> None:
+def _pack_faces(w: Writer, body: Assembled, inner: Sequence[Sequence[float]] | None) -> None:
     owned: list[list[int]] = [[] for _ in body.faces]
     for k, chart in enumerate(body.charts):
         owned[chart.face].append(k)
@@ -159,6 +162,8 @@ def _pack_faces(w: Writer, body: Assembled) -> None:
         reals = chart.surface.reals.copy()
         reals[L.OUTWARD] = chart.outward
         reals[L.LIMIT] = chart.limit
+        if inner is not None:
+            reals[L.INNER : L.INNER + 4] = inner[k]
         offset = w.real_block(reals)
         chart_rows.append(
             (

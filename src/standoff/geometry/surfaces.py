@@ -98,6 +98,7 @@ class Surface(KeepsReadOnly, ABC):
         reals[L.INVERSE : L.INVERSE + 9] = np.linalg.inv(linear).ravel()
         reals[L.OUTWARD] = 1.0
         reals[L.LIMIT] = np.inf
+        reals[L.INNER : L.INNER + 4] = L.NO_INNER
         reals.flags.writeable = False
         object.__setattr__(self, "reals", reals)
 

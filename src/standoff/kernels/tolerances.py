@@ -80,6 +80,16 @@ RECHART = 1.2
 # A point of a body this far (in sizes) in front of a plane at one of its vertices is no roundoff.
 FRONT = 1e-9
 
+# Points of each coedge, and of a grid over the loop's bounds, among which the middle of a face is
+# looked for; halvings of a side of the rectangle about it: to 1e-6 of the face's parameters.
+INNER_SAMPLES = 8
+INNER_GRID = 9
+INNER_HALVINGS = 20
+
+# Corrections (steps) that the smooth frame makes before it leaves a frame to the general one: the
+# first ends a frame that was predicted by twists, the second most others.
+SMOOTH_CORRECTIONS = 3
+
 # Surfaces closer than TOUCHING scales, with no positive lower bound, touch or overlap.
 TOUCHING = 1e-13
 

@@ -43,6 +43,14 @@ def pack_options(law: Law) -> NDArray[np.float64]:
     return options
 
 
+def with_smooth_frame(options: NDArray[np.float64], address: int) -> NDArray[np.float64]:
+    """The options with the address of the frame that is tried first; 0 for none."""
+    given = options.copy()
+    given[K.O_SMOOTH] = address
+    given.flags.writeable = False
+    return given
+
+
 def _pack_feedback(feedback: Any, options: NDArray[np.float64]) -> None:
     options[K.O_FEEDBACK], options[K.O_GAIN], data = feedback.packed()
     options[K.O_DATA : K.O_DATA + len(data)] = data

@@ -23,9 +23,11 @@ from standoff.tracking.inputs import (
 )
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw
+from standoff.tracking.options import with_smooth_frame
 from standoff.tracking.overlap_proof import cores_overlap
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.rows import Block, motion_row, poses_of, twists_of
+from standoff.tracking.specialised import smooth_address
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
 
@@ -56,12 +58,15 @@ class ReachedPair(KeepsReadOnly):
     law: Law
     options: Array
     planar: bool
+    specialise: bool | None
 
     def _reach(self) -> None:
         """What the kernels read of both bodies, and the entries of the law."""
         self.packed = self.a.ints, self.a.reals, self.b.ints, self.b.reals
-        self.table = AddressTable((*self.packed, self.options))
         paper = isinstance(self.law, PaperLaw)
+        smooth = 0 if paper else smooth_address(self.a, self.b, self.specialise)
+        self.options = with_smooth_frame(self.options, smooth)
+        self.table = AddressTable((*self.packed, self.options))
         self.value = kernels.value_paper if paper else kernels.value_predicted
         self.in_place = kernels.step_paper if paper else kernels.step_predicted
         self.values = kernels.values_paper if paper else kernels.values_predicted

@@ -124,6 +124,9 @@ class Counts(NamedTuple):
     solved_parameters : int
         Parameters that a switch has taken from such a search: none with ``reset="nearest"``, as
         the paper prints it.
+    refusals : int
+        1 where the frame that is compiled for this pair's kinds of faces was tried and left the
+        answer to the general one: at a boundary, in contact, on an edge or a vertex.
     """
 
     evaluations: int
@@ -136,6 +139,7 @@ class Counts(NamedTuple):
     searches: int
     foot_points: int
     solved_parameters: int
+    refusals: int = 0
 
 
 # Where the fields of Counts stand in the kernels' own counts.
@@ -152,6 +156,7 @@ COUNT_SLOTS = [
         N.SEARCHES,
         N.FOOT_POINTS,
         N.SOLVED_PARAMETERS,
+        N.REFUSALS,
     )
 ]
 

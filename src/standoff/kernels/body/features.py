@@ -20,7 +20,7 @@ from standoff.kernels.algebra.vectors import (
 )
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.jets import chart_parameters, curve_jet, pcurve_jet, surface_jet
-from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.compiler.decorators import kernel, shared, small
 from standoff.kernels.tolerances import COLLAPSED, EPS, NORMAL_NOISE
 
 ZERO = (0.0, 0.0, 0.0)
@@ -100,16 +100,22 @@ def vertex_point(ints, reals, feature):
     return (reals[o], reals[o + 1], reals[o + 2])
 
 
+@small
+def has_collapsed(reals, tangent):
+    """Is a chart's tangent too short to be one?"""
+    tiny = COLLAPSED * reals[L.SIZE]
+    return dot(tangent, tangent) <= tiny * tiny
+
+
 @kernel
 def feature_jet(ints, reals, feature, chart, p, q):
     """Jet of any feature at its parameters (p, q); columns that it lacks are zero."""
     dim = dimension(ints, feature)
     if dim == 2:
         x, xu, xv, xuu, xuv, xvv = chart_jet(ints, reals, chart, p, q)
-        tiny = COLLAPSED * reals[L.SIZE]
-        if dot(xu, xu) <= tiny * tiny:
+        if has_collapsed(reals, xu):
             return x, ZERO, xv, ZERO, ZERO, xvv
-        if dot(xv, xv) <= tiny * tiny:
+        if has_collapsed(reals, xv):
             return x, xu, ZERO, xuu, ZERO, ZERO
         return x, xu, xv, xuu, xuv, xvv
     if dim == 1:
@@ -154,15 +160,14 @@ def chart_normal(ints, reals, chart, u, v):
     return scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
 
 
-@kernel
-def normal_noise(ints, reals, chart, jet):
+@small
+def normal_noise(kind, reals, jet):
     """A bound on how far (chord of the unit sphere, at most 2) roundoff turns the chart's normal.
 
     Beside a collapsed side one tangent is a small difference of greater numbers: its direction
     loses its digits, and its roundoff is that of the mixed derivative times a parameter's. The
     quadrics' tangents are products and keep theirs.
     """
-    kind = ints[chart_record(ints, chart) + L.CHART_KIND]
     if kind != L.NURBS and kind != L.REVOLUTION and kind != L.EXTRUSION and kind != L.FORMULA:
         return 0.0
     product = sqrt(dot(jet[1], jet[1]) * dot(jet[2], jet[2]))
@@ -170,12 +175,19 @@ def normal_noise(ints, reals, chart, jet):
     return lost / product if lost < 2.0 * product else 2.0
 
 
+@small
+def normal_of_kind(kind, reals, o, jet):
+    """(outward unit normal, bound on its roundoff) of a jet, in the body's frame, of the chart
+    whose reals begin at o."""
+    normal = scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
+    return normal, normal_noise(kind, reals, jet)
+
+
 @kernel
 def noisy_normal(ints, reals, chart, jet):
-    """(outward unit normal, bound on its roundoff) of a chart's jet, in the body's frame."""
-    o = ints[chart_record(ints, chart) + L.CHART_REALS]
-    normal = scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
-    return normal, normal_noise(ints, reals, chart, jet)
+    """`normal_of_kind` of any chart."""
+    c = chart_record(ints, chart)
+    return normal_of_kind(ints[c + L.CHART_KIND], reals, ints[c + L.CHART_REALS], jet)
 
 
 @kernel

@@ -213,7 +213,13 @@ def canonical_jet(reals, kind, o, u, v):
 @small
 def surface_jet(reals, kind, o, u, v):
     """(x, x_u, x_v, x_uu, x_uv, x_vv) of the chart whose reals begin at o."""
-    x, xu, xv, xuu, xuv, xvv = canonical_jet(reals, kind, o + SURFACE_DATA, u, v)
+    return mapped_jet(reals, o, canonical_jet(reals, kind, o + SURFACE_DATA, u, v))
+
+
+@small
+def mapped_jet(reals, o, canonical):
+    """The jet of a chart whose reals begin at o, from that of its canonical form."""
+    x, xu, xv, xuu, xuv, xvv = canonical
     m = o + AFFINE
     return (
         affine_map(reals, m, x),

@@ -39,13 +39,18 @@ FACE_STRIDE = 2
 # an angle.
 CHART_STRIDE = 6
 CHART_KIND, CHART_REALS, CHART_COEDGE, CHART_N_COEDGES, CHART_FACE, CHART_PERIODIC = range(6)
-# Its reals: affine map (3x3 row-major, shift), inverse of the 3x3, then the two below, then
+# Its reals: affine map (3x3 row-major, shift), inverse of the 3x3, then the three below, then
 # what the surface kind needs.
 AFFINE = 0
 INVERSE = 12
 OUTWARD = 21  # +1 where f_u x f_v points outward, else -1
 LIMIT = 22  # |u|, |v| where an atlas's chart ends; inf for a chart that stands alone
-SURFACE_DATA = 23
+INNER = (
+    23  # u0, u1, v0, v1: a rectangle of parameters on the face (see `inner_box`); empty: u0 > u1
+)
+SURFACE_DATA = 27
+
+NO_INNER = (1.0, -1.0, 1.0, -1.0)
 
 # A coedge: edge (or -1 - vertex for a collapsed side), pcurve kind, offset in reals, side, chart.
 COEDGE_STRIDE = 5

@@ -9,7 +9,7 @@ from math import atan2, hypot, pi
 from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.jets import pcurve_jet
-from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.compiler.decorators import uncontracted
 from standoff.kernels.tolerances import BRACKET_ROUNDINGS, EPS, NEAR_TANGENT, PCURVE_OVERLAP
 
 HALF_TURN = pi
@@ -20,7 +20,7 @@ TOUCHING_LINE = -1
 ROOT_STEPS = 80
 
 
-@kernel
+@uncontracted
 def line_roots(reals, kind, o, u, v, du, dv, noise):
     """(count, t1, t2): parameters where the pcurve meets the line through (u, v) along (du, dv).
 
@@ -53,7 +53,7 @@ def line_roots(reals, kind, o, u, v, du, dv, noise):
     return 2, middle + half, middle - half
 
 
-@kernel
+@uncontracted
 def level(reals, o, line, t):
     """(f, slope): height over the line of the pcurve's homogeneous point, and h_2² d(f/h_2)/dt."""
     a, b, c = line
@@ -63,7 +63,7 @@ def level(reals, o, line, t):
     return f, ft * h[2] - f * ht[2]
 
 
-@kernel
+@uncontracted
 def bracketed(reals, o, line, which, start, end):
     """Root of `level`'s value (which 0) or slope (1) between two points (t, value), where its signs
     differ."""
@@ -91,7 +91,7 @@ def bracketed(reals, o, line, which, start, end):
     return t1
 
 
-@kernel
+@uncontracted
 def bezier_roots(reals, o, line, noise):
     a, b, _ = line
     first, last = reals[o - 2], reals[o - 1]

@@ -7,8 +7,8 @@ and weight. Points are homogeneous, (w x, w y, w z, w).
 from standoff.kernels.compiler.decorators import kernel, small, stack_reals
 
 
-@kernel
-def bernstein_basis(n, t, out):
+@small
+def unrolled_basis(n, t, out):
     """The n + 1 Bernstein polynomials at t, their first and their second derivatives, in turn.
 
     By raising the degree from 0: on [0, 1] every sum is of one sign, so nothing cancels. The
@@ -36,6 +36,12 @@ def bernstein_basis(n, t, out):
         for i in range(k - 1, 0, -1):
             out[i] = s * out[i] + t * out[i - 1]
         out[0] = s * out[0]
+
+
+@kernel
+def bernstein_basis(n, t, out):
+    """`unrolled_basis`, whose loops are unrolled where the degree is a constant, as a call."""
+    unrolled_basis(n, t, out)
 
 
 @kernel
@@ -103,12 +109,20 @@ def nurbs_curve_jet(reals, o, t):
 
 
 @kernel
-def net_jet(reals, o, p, q, s, t, ru, rv):
-    """Jet of a rational Bezier net at local (s, t); ru and rv are ds/du and dt/dv."""
+def net_jet(reals, o, degrees, at, rates):
+    """`net_jet_of` any degrees."""
+    return net_jet_of(bernstein_basis, reals, o, degrees, at, rates)
+
+
+@small
+def net_jet_of(basis, reals, o, degrees, at, rates):
+    """Jet of a rational Bezier net at local (s, t), by a function that gives the polynomials; the
+    rates are ds/du and dt/dv."""
+    (p, q), (s, t), (ru, rv) = degrees, at, rates
     bu = stack_reals()
     bv = stack_reals()
-    bernstein_basis(p, s, bu)
-    bernstein_basis(q, t, bv)
+    basis(p, s, bu)
+    basis(q, t, bv)
     m, n = p + 1, q + 1
     h = stack_reals()  # H, H_s, H_t, H_ss, H_st, H_tt: four numbers each
     for k in range(24):
@@ -158,6 +172,13 @@ def net_jet(reals, o, p, q, s, t, ru, rv):
 @kernel
 def nurbs_jet(reals, o, u, v):
     """Jet of a NURBS surface kept as its grid of Bezier nets (see ``layout.NURBS``)."""
+    net, at, rates = net_at(reals, o, u, v)
+    return net_jet(reals, net, (int(reals[o]), int(reals[o + 1])), at, rates)
+
+
+@small
+def net_at(reals, o, u, v):
+    """(where the Bezier net begins that holds (u, v), its own parameters there, their rates)."""
     p, q = int(reals[o]), int(reals[o + 1])
     spans_u, spans_v = int(reals[o + 2]), int(reals[o + 3])
     breaks_u, breaks_v = o + 4, o + 5 + spans_u
@@ -167,4 +188,4 @@ def nurbs_jet(reals, o, u, v):
     ru = 1.0 / (reals[breaks_u + i + 1] - u0)
     rv = 1.0 / (reals[breaks_v + j + 1] - v0)
     net = breaks_v + spans_v + 1 + 4 * (p + 1) * (q + 1) * (i * spans_v + j)
-    return net_jet(reals, net, p, q, (u - u0) * ru, (v - v0) * rv, ru, rv)
+    return net, ((u - u0) * ru, (v - v0) * rv), (ru, rv)

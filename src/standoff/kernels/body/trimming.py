@@ -13,7 +13,7 @@ from standoff.kernels.body.features import (
     is_creased,
 )
 from standoff.kernels.body.line_roots import TOUCHING_LINE, line_roots
-from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.compiler.decorators import shared, uncontracted
 from standoff.kernels.tolerances import (
     AIM_FIRST,
     AIM_STEP,
@@ -32,12 +32,12 @@ HIT_LIMIT = 3  # the chart's limit: change charts
 TURN = 2.0 * pi
 
 
-@kernel
+@uncontracted
 def wrapped(t, t0):
     return t0 + (t - t0) % TURN
 
 
-@kernel
+@uncontracted
 def in_range(ints, reals, coedge, t):
     """(inside, t) with t brought into the pcurve's range, periods included."""
     c = coedge_record(ints, coedge)
@@ -55,7 +55,7 @@ def in_range(ints, reals, coedge, t):
     return True, min(max(t, t0), t1)
 
 
-@kernel
+@uncontracted
 def crossings(ints, reals, coedge, u, v, du, dv, noise):
     """Both crossings of a step with a coedge: (count, s, outward, t, s, outward, t).
 
@@ -111,7 +111,14 @@ def crossings(ints, reals, coedge, u, v, du, dv, noise):
     return count, s1, out1, t1, s2, out2, t2
 
 
-@kernel
+@uncontracted
+def well_inside(reals, o, u, v):
+    """Do parameters lie in the rectangle on the face of the chart whose reals begin at o?"""
+    b = o + L.INNER
+    return reals[b] <= u <= reals[b + 1] and reals[b + 2] <= v <= reals[b + 3]
+
+
+@uncontracted
 def walk_face(ints, reals, chart, u, v, du, dv):
     """(s, hit, index, t): how much of the step fits on the face, s <= 1, and what it hits."""
     r = chart_record(ints, chart)
@@ -153,6 +160,9 @@ def walk(ints, reals, feature, chart, p, q, dp, dq):
     """How much of a step from parameters (p, q) of any feature fits, and what stops it."""
     dim = dimension(ints, feature)
     if dim == 2:
+        o = ints[chart_record(ints, chart) + L.CHART_REALS]
+        if well_inside(reals, o, p, q) and well_inside(reals, o, p + dp, q + dq):
+            return Hit(1.0, NO_HIT, -1, 0.0)
         s, kind, index, t = walk_face(ints, reals, chart, p, q, dp, dq)
         return Hit(s, kind, index, t)
     if dim == 1 and dp != 0.0:
@@ -166,14 +176,17 @@ def walk(ints, reals, feature, chart, p, q, dp, dq):
     return Hit(1.0, NO_HIT, -1, 0.0)
 
 
-@kernel
+@uncontracted
 def on_face(ints, reals, chart, u, v):
     """Is (u, v) on the face? From inside a ray leaves at the first boundary it meets."""
     r = chart_record(ints, chart)
     first = ints[r + L.CHART_COEDGE]
     n = ints[r + L.CHART_N_COEDGES]
     noise = PARAMETER_NOISE * (1.0 + abs(u) + abs(v))
-    limit = reals[ints[r + L.CHART_REALS] + L.LIMIT]
+    o = ints[r + L.CHART_REALS]
+    if well_inside(reals, o, u, v):
+        return True
+    limit = reals[o + L.LIMIT]
     if abs(u) > limit or abs(v) > limit:
         return False
     # Rays are aimed at points of the boundary, so that they meet it.

@@ -51,20 +51,34 @@ class _CheckedPointerModel(models.StructModel):
 
 @intrinsic
 def checked_pointer(typingctx, array, offset):
-    """The pointer to array[offset], for a 1-D array; `offset` is not checked."""
-    if not isinstance(array, types.Array) or array.ndim != 1:
-        raise TypingError(f"a pointer to {array}: give a 1-D array")
+    """The pointer to element `offset` of an array in C order; `offset` is not checked."""
+    if not isinstance(array, types.Array) or array.layout != "C":
+        raise TypingError(f"a pointer to {array}: give an array in C order")
     kind = CheckedPointer(array.dtype)
 
     def codegen(context, builder, signature, args):
         view = context.make_array(signature.args[0])(context, builder, args[0])
-        (size,) = cgutils.unpack_tuple(builder, view.shape, 1)
+        size = view.nitems
         out = cgutils.create_struct_proxy(kind)(context, builder)
         out.data = builder.gep(view.data, [args[1]])
         out.length = builder.sub(size, args[1])
         return out._getvalue()
 
     return kind(array, types.intp), codegen
+
+
+@intrinsic
+def checked_ahead(typingctx, pointer, offset):
+    """The pointer `offset` elements farther; `offset` is not checked."""
+
+    def codegen(context, builder, signature, args):
+        old = cgutils.create_struct_proxy(signature.args[0])(context, builder, args[0])
+        out = cgutils.create_struct_proxy(signature.return_type)(context, builder)
+        out.data = builder.gep(old.data, [args[1]])
+        out.length = builder.sub(old.length, args[1])
+        return out._getvalue()
+
+    return pointer(pointer, types.intp), codegen
 
 
 def checked_stack(count, of=types.float64):

@@ -25,10 +25,21 @@ BOUNDS_CHECK = os.environ.get("STANDOFF_BOUNDS_CHECK", "0") not in ("", "0")
 
 OPTIONS = {"nopython": True, "error_model": "numpy", "boundscheck": BOUNDS_CHECK or None}
 
+# A product and a sum become one operation where the processor has it. That rounds once in place of
+# twice, so an error bound that counts roundings (BOUND_ROUNDINGS) holds as it did; a b - b a need
+# no longer be 0, which `uncontracted` kernels rely on.
+CONTRACTED = {**OPTIONS, "fastmath": {"contract"}}
+
 
 def kernel(function):
     """Compile what other kernels call."""
     return _part(function)
+
+
+def uncontracted(function):
+    """`kernel` in which each product is rounded before it is added: where exact zeros tell that a
+    line touches a boundary, or that it has met a corner."""
+    return _part(function, fastmath=False)
 
 
 def small(function):
@@ -40,7 +51,7 @@ def small(function):
 def _part(function, **options):
     if config.DISABLE_JIT:
         return function
-    options = {**OPTIONS, **options}
+    options = {**CONTRACTED, **options}
     if not modules.AVAILABLE:
         return njit(**options)(function)
     made = modules.Part(function, targetoptions=options, pipeline_class=modules.PartCompiler)
@@ -52,7 +63,7 @@ def shared(function):
     """Compile a large kernel, which several entries call, as a module of its own."""
     if config.DISABLE_JIT or not modules.AVAILABLE:
         return _part(function)
-    made = modules.Part(function, targetoptions=OPTIONS, pipeline_class=modules.SharedCompiler)
+    made = modules.Part(function, targetoptions=CONTRACTED, pipeline_class=modules.SharedCompiler)
     made._cache = ModuleCache(function)
     made.cache_of_calls = ModuleCache(function, called=True)
     return made
@@ -68,18 +79,9 @@ def entry(*signature, work, terse=False):
     def decorate(function):
         if config.DISABLE_JIT:
             return function
-        return Entry(function, OPTIONS | {"nogil": True}, signature, work, terse)
+        return Entry(function, CONTRACTED | {"nogil": True}, signature, work, terse)
 
     return decorate
-
-
-@intrinsic
-def _pointer(typingctx, array, offset):  # type: ignore[no-untyped-def]
-    def codegen(context, builder, signature, args):  # type: ignore[no-untyped-def]
-        view = context.make_array(signature.args[0])(context, builder, args[0])
-        return builder.gep(view.data, [args[1]])
-
-    return types.CPointer(array.dtype)(array, types.intp), codegen
 
 
 # Three rows of ten Bernstein polynomials: NURBS have degrees up to 9.
@@ -95,6 +97,7 @@ if BOUNDS_CHECK:
     from standoff.kernels.compiler.checked_pointers import (
         CheckedArray,
         checked_address,
+        checked_ahead,
         checked_pointer,
         checked_stack,
     )
@@ -123,8 +126,10 @@ if config.DISABLE_JIT:
         return _at(address, length, ctypes.c_int64)
 
     def pointer(array, offset):  # type: ignore[no-untyped-def]
-        rest = array.view(np.ndarray)[offset:]
+        rest = array.view(np.ndarray).reshape(-1)[offset:]
         return rest.view(CheckedArray) if BOUNDS_CHECK else rest
+
+    ahead = pointer
 
 elif BOUNDS_CHECK:
 
@@ -161,6 +166,10 @@ elif BOUNDS_CHECK:
     @kernel
     def pointer(array, offset):  # type: ignore[no-untyped-def]
         return checked_pointer(array, offset)
+
+    @kernel
+    def ahead(pointer, offset):  # type: ignore[no-untyped-def]
+        return checked_ahead(pointer, offset)
 
 else:
 
@@ -209,12 +218,26 @@ else:
         """A pointer to the `length` integers at an address."""
         return _address(address, length, types.int64)
 
-    @small
-    def pointer(array, offset):
+    @intrinsic
+    def pointer(typingctx, array, offset):  # type: ignore[no-untyped-def]
         """The address of array[offset], to be indexed like the array itself.
 
         A compiled function takes an array as seven numbers and counts a reference to it at every
         call; a pointer is one number. Kernels below an entry get pointers: measured, a step takes
         half the time. The entry must keep the array alive until the last use.
         """
-        return _pointer(array, offset)
+
+        def codegen(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            view = context.make_array(signature.args[0])(context, builder, args[0])
+            return builder.gep(view.data, [args[1]])
+
+        return types.CPointer(array.dtype)(array, types.intp), codegen
+
+    @intrinsic
+    def ahead(typingctx, pointer, offset):  # type: ignore[no-untyped-def]
+        """The pointer `offset` elements farther."""
+
+        def codegen(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            return builder.gep(args[0], [args[1]])
+
+        return pointer(pointer, types.intp), codegen

@@ -28,6 +28,7 @@ WORK = {
     "query": Work("queries of bodies that are apart", 20, 25),
     "contact": Work("queries in contact and penetration", 12, 35),
     "frames": Work("frames of the predictor-corrector", 7, 25),
+    "smooth": Work("frames on faces of this pair's kinds", 3, 5),
     "runs": Work("runs of many frames", 1, 2),
     "paper": Work("frames of the paper's law", 8, 25),
     "paper runs": Work("runs of the paper's law", 1, 2),

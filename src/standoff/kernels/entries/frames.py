@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
-from standoff.kernels.algebra.rigid import mean_motion, relative_pose, relative_twist
-from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.algebra.rigid import relative_pose
+from standoff.kernels.compiler.calls import address_of, call_frame
+from standoff.kernels.compiler.decorators import kernel, shared, stack_counts
 from standoff.kernels.frame.answer import judge, write_answer
 from standoff.kernels.frame.apart import track_predicted
+from standoff.kernels.frame.inputs import moving, twisted
 from standoff.kernels.frame.prediction import feeds, next_state
+from standoff.kernels.frame.smooth import (
+    CALL_HAS_TWIST,
+    CALL_INTS_A,
+    CALL_INTS_B,
+    CALL_OPTIONS,
+    CALL_OUT,
+    CALL_POSE_A,
+    CALL_POSE_B,
+    CALL_REALS_A,
+    CALL_REALS_B,
+    CALL_STATE,
+    CALL_TWIST_A,
+    CALL_TWIST_B,
+)
 from standoff.kernels.pair.certified import (
     CERTIFIED,
     NOT_APART,
@@ -23,6 +37,7 @@ from standoff.kernels.pair.events import (
     LIMIT,
     N_COUNTS,
     NO_LIMIT,
+    REFUSALS,
     RESTARTS,
     exhausted,
     tidy_events,
@@ -46,26 +61,9 @@ from standoff.kernels.state.state import (
 )
 from standoff.kernels.state.tracked import Shown, Tracked, without_rates
 from standoff.kernels.tolerances import START_GAP
-from standoff.kernels.values import NO_RATES, ORIGIN, Found, Motion
+from standoff.kernels.values import NO_RATES, ORIGIN, Found
 
 NOT_INTEGRATED = Integrated(NO_RATES, NO_RATES, 0.0)
-
-
-class Inputs(NamedTuple):
-    """What a frame is given, in world axes, as pointers."""
-
-    pose_a: Any  # R (9, row-major), p (3)
-    pose_b: Any
-    twist_a: Any  # 6 numbers
-    twist_b: Any
-    has_twist: bool
-
-
-@kernel
-def twisted(inputs, pose):
-    """B's motion seen from A, by the twists given."""
-    v, w = relative_twist(inputs.pose_a, inputs.pose_b, inputs.twist_a, inputs.twist_b)
-    return Motion(pose, v, w)
 
 
 @shared
@@ -136,19 +134,16 @@ def start_frame(query_from, pair, inputs, options, state, given, out, work):
 @kernel
 def step_frame(track, pair, inputs, steps, options, state, out, work):
     """A frame of the law that is given: the state is changed in place, the answer written. `steps`
-    are the time h, and what `track` goes by: h, or a change of the parameters over it.
+    are the time h, and what `track` goes by: h, or a change of the parameters over it. The counts
+    are 0 before it.
     """
     h, step = steps
     before = read_state(state)
-    for k in range(N_COUNTS):
-        work.counts[k] = 0
     work.counts[LIMIT] = options.deadline
-    pose = relative_pose(inputs.pose_a, inputs.pose_b)
-    given = inputs.has_twist
-    motion = twisted(inputs, pose) if given else mean_motion(before.motion.pose, pose, h)
+    motion = moving(inputs, before, h)
     shown, integrated = track(pair, motion, before, options, step, work)
     found = shown.found
-    status = judge(pair, pose.p, found, options.paper, options.tolerance, exhausted(work))
+    status = judge(pair, motion.pose.p, found, options.paper, options.tolerance, exhausted(work))
     rates = answer_frame(pair, inputs, motion, shown, options.solve, status, out, work)
     old, new = before.place, found.place
     if work.counts[EVENTS] > 0 or old.feature_a != new.feature_a or old.feature_b != new.feature_b:
@@ -159,19 +154,48 @@ def step_frame(track, pair, inputs, steps, options, state, out, work):
     copy_counts(work, out)
 
 
+@kernel
+def clear_counts(work):
+    for k in range(N_COUNTS):
+        work.counts[k] = 0
+
+
+@kernel
+def answered_smoothly(pair, inputs, h, options, state, out):
+    """Has the smooth frame, whose address is among the options, made the answer? If not nothing has
+    been written.
+    """
+    call = stack_counts()
+    call[CALL_INTS_A], call[CALL_REALS_A] = address_of(pair.ints_a), address_of(pair.reals_a)
+    call[CALL_INTS_B], call[CALL_REALS_B] = address_of(pair.ints_b), address_of(pair.reals_b)
+    call[CALL_POSE_A], call[CALL_POSE_B] = address_of(inputs.pose_a), address_of(inputs.pose_b)
+    call[CALL_TWIST_A], call[CALL_TWIST_B] = address_of(inputs.twist_a), address_of(inputs.twist_b)
+    call[CALL_HAS_TWIST] = 1 if inputs.has_twist else 0
+    call[CALL_OPTIONS] = address_of(options.numbers)
+    call[CALL_STATE], call[CALL_OUT] = address_of(state), address_of(out)
+    return call_frame(options.smooth, address_of(call), h) != 0
+
+
 @shared
 def frame_predicted(pair, inputs, h, options, state, out, work):
     """A frame of the predictor-corrector, for single steps and for runs."""
+    clear_counts(work)
+    if options.smooth != 0:
+        if answered_smoothly(pair, inputs, h, options, state, out):
+            return
+        work.counts[REFUSALS] = 1
     step_frame(track_predicted, pair, inputs, (h, h), options, state, out, work)
 
 
 @shared
 def frame_paper(pair, inputs, h, options, state, out, work):
     """A frame of the paper's law, for single steps and for runs."""
+    clear_counts(work)
     step_frame(track_paper, pair, inputs, (h, h), options, state, out, work)
 
 
 @shared
 def frame_carried(pair, inputs, h, change, options, state, out, work):
     """A frame whose parameters were integrated together with the bodies' motion."""
+    clear_counts(work)
     step_frame(track_carried, pair, inputs, (h, change), options, state, out, work)

@@ -13,12 +13,13 @@ from standoff.kernels.entries import queries, simulation, tracker
 MODULES = (
     "standoff.kernels.entries.queries",
     "standoff.kernels.entries.tracker",
+    "standoff.kernels.entries.smooth",
     "standoff.kernels.entries.simulation",
     "standoff.kernels.pair.normals_system",
 )
 """Where entries stand."""
 
-BODIES = ("on_face", "chart_normal", "surface_jet", "curve_jet")
+BODIES = ("on_face", "inner_box", "chart_normal", "surface_jet", "curve_jet")
 """What places a start, and builds the half-space against which an overlap is proven."""
 
 PLANAR = ("pcurve_jet", "planar_edge_normal")

@@ -7,6 +7,7 @@ all that it calls. These are the few that the layers above ask for.
 from standoff.kernels.algebra.rigid import relative_pose, relative_twist
 from standoff.kernels.algebra.vectors import unit
 from standoff.kernels.body import features, jets, trimming
+from standoff.kernels.body import inner_box as inner_boxes
 from standoff.kernels.compiler.decorators import entry, pointer
 from standoff.kernels.compiler.entry import INT, INTS, PAIR, READ, REAL, VECTOR, WRITE
 from standoff.kernels.entries.tracker import input_pointers, pair_pointers
@@ -72,6 +73,11 @@ def end_direction(ints, reals, edge, end):
 @entry(INTS, READ, INT, REAL, REAL, work="bodies")
 def on_face(ints, reals, chart, u, v):
     return trimming.on_face(pointer(ints, 0), pointer(reals, 0), chart, u, v)
+
+
+@entry(INTS, READ, INT, REAL, work="bodies")
+def inner_box(ints, reals, chart, reach):
+    return inner_boxes.inner_box(pointer(ints, 0), pointer(reals, 0), chart, reach)
 
 
 # What `pair_system` writes, and how many numbers.

@@ -4,9 +4,12 @@ The state goes in and comes out as one float64 array, so that it is a value. A s
 poses it is given; a frame's poses and twists are one row of numbers (``state.arrays``).
 """
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from standoff.kernels.compiler.decorators import (
+    ahead,
     entry,
     ints_at,
     kernel,
@@ -16,7 +19,8 @@ from standoff.kernels.compiler.decorators import (
     stack_log,
 )
 from standoff.kernels.compiler.entry import BLOCKS, BOOL, INT, PAIR, READ, REAL, ROWS, WRITE
-from standoff.kernels.entries.frames import Inputs, frame_paper, frame_predicted, start_frame
+from standoff.kernels.entries.frames import frame_paper, frame_predicted, start_frame
+from standoff.kernels.frame.inputs import Inputs
 from standoff.kernels.frame.restart import anywhere, anywhere_apart
 from standoff.kernels.pair.events import EVENT_COLUMNS, EVENTS, MAX_EVENTS, N_COUNT_SLOTS
 from standoff.kernels.state.arrays import (
@@ -70,17 +74,17 @@ def tabled_pair(table):
 @kernel
 def input_pointers(motion, row, has_twist):
     """Where a frame's poses and twists stand: row `row` of a flat array of motions."""
-    return inputs_at(motion, N_MOTION * row, has_twist)
+    return inputs_at(pointer(motion, N_MOTION * row), has_twist)
 
 
 @kernel
-def inputs_at(numbers, o, has_twist):
-    """Where a frame's poses and twists stand: from number `o` on."""
+def inputs_at(motion, has_twist):
+    """Where a frame's poses and twists stand, from the first of them on."""
     return Inputs(
-        pointer(numbers, o + POSE_A),
-        pointer(numbers, o + POSE_B),
-        pointer(numbers, o + TWIST_A),
-        pointer(numbers, o + TWIST_B),
+        ahead(motion, POSE_A),
+        ahead(motion, POSE_B),
+        ahead(motion, TWIST_A),
+        ahead(motion, TWIST_B),
         has_twist,
     )
 
@@ -135,50 +139,83 @@ def start(pair, motion, has_twist, options, state, given, out):
 
 
 @kernel
-def answered(frame, table, block):
-    """One frame on a block: the state is changed in place, the answer and its switches written."""
-    inputs = inputs_at(block, BLOCK_MOTION, block[BLOCK_HAS_TWIST] != 0.0)
+def answered(frame, table, block, room):
+    """One frame on a block of `room` numbers: the state is changed in place, the answer and its
+    switches written."""
+    inputs = inputs_at(ahead(block, BLOCK_MOTION), block[BLOCK_HAS_TWIST] != 0.0)
     why = refused(inputs)
     if why != FINE:
         return why
     counts, log = stack_counts(), stack_log()
     tabled = ints_at(table, N_TABLE)
     options = read_options(reals_at(tabled[TABLE_OPTIONS], tabled[TABLE_OPTIONS + 1]))
-    state, out = pointer(block, BLOCK_STATE), pointer(block, 0)
+    state, out = ahead(block, BLOCK_STATE), block
     frame(
         tabled_pair(tabled), inputs, block[BLOCK_TIME_STEP], options, state, out, Work(counts, log)
     )
     switches = counts[EVENTS]
-    if BLOCK_EVENTS + EVENT_COLUMNS * switches > len(block):
+    if BLOCK_EVENTS + EVENT_COLUMNS * switches > room:
         return MORE_EVENTS
     for k in range(EVENT_COLUMNS * switches):
         block[BLOCK_EVENTS + k] = log[k]
     return UNDECIDED if out[STATUS] == NOT_CERTIFIED else FINE
 
 
+class Given(NamedTuple):
+    """Poses and twists as Python gives them."""
+
+    pose_a: Any  # pointers to 16 numbers, (4, 4) by rows
+    pose_b: Any
+    twist_a: Any  # pointers to 6 numbers, or to NOT_GIVEN
+    twist_b: Any
+    has_a: bool  # is there a twist?
+    has_b: bool
+
+
 @kernel
-def copy_pose(matrix, block, at):
+def copy_pose(matrix, motion):
     """Copy a (4, 4) pose as 12 numbers. Is its last row 0 0 0 1?"""
     for i in range(3):
         for j in range(3):
-            block[at + 3 * i + j] = matrix[i, j]
-        block[at + 9 + i] = matrix[i, 3]
-    last = matrix[3, 0] == 0.0 and matrix[3, 1] == 0.0 and matrix[3, 2] == 0.0
-    return last and matrix[3, 3] == 1.0
+            motion[3 * i + j] = matrix[4 * i + j]
+        motion[9 + i] = matrix[4 * i + 3]
+    last = matrix[12] == 0.0 and matrix[13] == 0.0 and matrix[14] == 0.0
+    return last and matrix[15] == 1.0
 
 
 @kernel
-def is_given(twist):
+def is_given(twist, length):
     """Is it more than the mark of a twist that was not given?"""
-    return not (len(twist) == 1 and twist[0] == NOT_GIVEN)
+    return not (length == 1 and twist[0] == NOT_GIVEN)
 
 
 @kernel
-def copy_twist(twist, block, at):
-    """Copy a twist: where none was given, the body is at rest. Is it one, or none?"""
+def copy_twist(twist, given, motion):
+    """Copy a twist: where none was given, the body is at rest."""
     for k in range(6):
-        block[at + k] = twist[k] if len(twist) == 6 else 0.0
-    return len(twist) == 6 or not is_given(twist)
+        motion[k] = twist[k] if given else 0.0
+
+
+@kernel
+def fit(length_a, has_a, length_b, has_b):
+    """Are two twists of six numbers, where they are given?"""
+    return (length_a == 6 or not has_a) and (length_b == 6 or not has_b)
+
+
+@kernel
+def value_at(frame, table, before, given, h, block):
+    """One frame from the state in one block to another block, both of N_BLOCK numbers."""
+    motion = ahead(block, BLOCK_MOTION)
+    square = copy_pose(given.pose_a, ahead(motion, POSE_A))
+    if not (copy_pose(given.pose_b, ahead(motion, POSE_B)) and square):
+        return BAD_ARRAYS
+    copy_twist(given.twist_a, given.has_a, ahead(motion, TWIST_A))
+    copy_twist(given.twist_b, given.has_b, ahead(motion, TWIST_B))
+    for k in range(N_STATE):
+        block[BLOCK_STATE + k] = before[BLOCK_STATE + k]
+    block[BLOCK_TIME_STEP] = h
+    block[BLOCK_HAS_TWIST] = 1.0 if given.has_a or given.has_b else 0.0
+    return answered(frame, table, block, N_BLOCK)
 
 
 @kernel
@@ -186,19 +223,19 @@ def value_by(frame, table, before, given, h, block):
     """`value_predicted`, with the law's own frame."""
     pose_a, pose_b, twist_a, twist_b = given
     square = pose_a.shape == (4, 4) and pose_b.shape == (4, 4)
-    if not (square and len(before) >= N_BLOCK and len(block) >= N_BLOCK):
+    has_a, has_b = is_given(twist_a, len(twist_a)), is_given(twist_b, len(twist_b))
+    long_enough = len(before) >= N_BLOCK and len(block) >= N_BLOCK
+    if not (square and long_enough and fit(len(twist_a), has_a, len(twist_b), has_b)):
         return BAD_ARRAYS
-    fit = copy_pose(pose_a, block, BLOCK_MOTION + POSE_A)
-    fit = copy_pose(pose_b, block, BLOCK_MOTION + POSE_B) and fit
-    fit = copy_twist(twist_a, block, BLOCK_MOTION + TWIST_A) and fit
-    fit = copy_twist(twist_b, block, BLOCK_MOTION + TWIST_B) and fit
-    if not fit:
-        return BAD_ARRAYS
-    for k in range(N_STATE):
-        block[BLOCK_STATE + k] = before[BLOCK_STATE + k]
-    block[BLOCK_TIME_STEP] = h
-    block[BLOCK_HAS_TWIST] = 1.0 if is_given(twist_a) or is_given(twist_b) else 0.0
-    return answered(frame, table, block)
+    at = Given(
+        pointer(pose_a, 0),
+        pointer(pose_b, 0),
+        pointer(twist_a, 0),
+        pointer(twist_b, 0),
+        has_a,
+        has_b,
+    )
+    return value_at(frame, table, pointer(before, 0), at, h, pointer(block, 0))
 
 
 @entry(INT, READ, ROWS, ROWS, WRITE, WRITE, REAL, WRITE, work="frames", terse=True)
@@ -223,13 +260,25 @@ def value_paper(table, before, pose_a, pose_b, twist_a, twist_b, h, block):
 def values_by(frame, table, given, steps, first, blocks):
     """`values_predicted`, with the law's own frame."""
     poses_a, poses_b, twists_a, twists_b = given
-    for k in range(first, len(steps)):
-        before, block = blocks[k], blocks[k + 1]
-        one = poses_a[k], poses_b[k], twists_a[k], twists_b[k]
-        done = value_by(frame, table, before, one, steps[k], block)
+    n, of_a, of_b = len(steps), twists_a.shape[1], twists_b.shape[1]
+    at_a, at_b = pointer(poses_a, 0), pointer(poses_b, 0)
+    way_a, way_b = pointer(twists_a, 0), pointer(twists_b, 0)
+    block, h = pointer(blocks, 0), pointer(steps, 0)
+    square = poses_a.shape == (n, 4, 4) and poses_b.shape == (n, 4, 4)
+    rows = len(twists_a) == n and len(twists_b) == n and blocks.shape == (n + 1, N_BLOCK)
+    if not (square and rows):
+        return first, BAD_ARRAYS
+    for k in range(first, n):
+        twist_a, twist_b = ahead(way_a, of_a * k), ahead(way_b, of_b * k)
+        has_a, has_b = is_given(twist_a, of_a), is_given(twist_b, of_b)
+        if not fit(of_a, has_a, of_b, has_b):
+            return k, BAD_ARRAYS
+        one = Given(ahead(at_a, 16 * k), ahead(at_b, 16 * k), twist_a, twist_b, has_a, has_b)
+        old, new = ahead(block, N_BLOCK * k), ahead(block, N_BLOCK * (k + 1))
+        done = value_at(frame, table, old, one, h[k], new)
         if done != FINE:
             return k, done
-    return len(steps), FINE
+    return n, FINE
 
 
 @entry(INT, BLOCKS, BLOCKS, ROWS, ROWS, WRITE, INT, ROWS, work="runs")
@@ -256,13 +305,13 @@ def step_predicted(table, block):
 
     Returns FINE or UNDECIDED; or, with nothing changed, what of the poses and twists is refused.
     """
-    return answered(frame_predicted, table, block)
+    return answered(frame_predicted, table, pointer(block, 0), len(block))
 
 
 @entry(INT, WRITE, work="paper")
 def step_paper(table, block):
     """`step_predicted`, of the paper's law."""
-    return answered(frame_paper, table, block)
+    return answered(frame_paper, table, pointer(block, 0), len(block))
 
 
 @kernel
@@ -271,20 +320,21 @@ def run_by(frame, pair, given, steps, options, state, outs, events):
     has_twist).
     """
     motions, has_twist = given
-    rows = motions.ravel()
+    numbers, answers, length = motions.ravel(), outs.ravel(), len(motions)
+    motion, out = pointer(numbers, 0), pointer(answers, 0)
     counts = np.empty(N_COUNT_SLOTS, dtype=np.int64)
     work = Work(pointer(counts, 0), pointer(events, 0))
     pointers = pair_pointers(pair)
     options = read_options(pointer(options, 0))
+    h, kept = pointer(steps, 0), pointer(state, 0)
     at, why = -1, FINE
-    for k in range(motions.shape[0]):
-        inputs = input_pointers(rows, k, has_twist)
+    for k in range(length):
+        inputs = inputs_at(ahead(motion, N_MOTION * k), has_twist)
         why = refused(inputs)
         if why != FINE:
             at = k
             break
-        out = pointer(outs.ravel(), N_OUT * k)
-        frame(pointers, inputs, steps[k], options, pointer(state, 0), out, work)
+        frame(pointers, inputs, h[k], options, kept, ahead(out, N_OUT * k), work)
     counts[0] = 0  # alive until here, see `pointer`
     return at, why
 

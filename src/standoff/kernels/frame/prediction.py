@@ -97,9 +97,16 @@ def secant(old, new, h):
 @kernel
 def next_state(pair, before, motion, h, tracked, feed, status):
     """What is kept of a frame. `feed`: its rates are a feedforward, which predicts the next."""
+    carried = carry_over(pair, before, tracked.shown.found.place)
+    return kept_state(carried, before, motion, h, tracked, feed, status)
+
+
+@kernel
+def kept_state(carried, before, motion, h, tracked, feed, status):
+    """`next_state`, with what `carry_over` returns."""
     shown = tracked.shown
     found = shown.found
-    same, old, old_rates = carry_over(pair, before, found.place)
+    same, old, old_rates = carried
     rates, last_rates, history = old_rates, before.last_rates, 0
     if feed:
         two = same and before.history >= 1 and before.fed

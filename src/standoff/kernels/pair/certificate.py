@@ -31,7 +31,7 @@ from standoff.kernels.body.features import (
     vertex_point,
     vertex_record,
 )
-from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.pair.switching import apex_normal, end_direction, steepest_in_sector
 from standoff.kernels.tolerances import BOUND_ROUNDINGS, EPS, FRONT
 from standoff.kernels.values import Vector, side_of
@@ -104,7 +104,7 @@ def nearest_on_arc(cone, n):
     return between(n, a, b), noise
 
 
-@kernel
+@small
 def nearest_normal(ints, reals, feature, cone, n):
     """(unit vector of a normal cone as near to the unit vector n as found, bound on its roundoff).
 
@@ -178,7 +178,7 @@ def vertex_cone(ints, reals, feature, n):
     return best
 
 
-@kernel
+@small
 def overhang(ints, reals, x, e, noise):
     """A bound on e.(y - x) over the points y of the body: the support of its box.
 
@@ -197,7 +197,7 @@ def overhang(ints, reals, x, e, noise):
     return max(total, 0.0) + noise * reach
 
 
-@kernel
+@small
 def into_b(R, n):
     """A direction of A's frame seen from B, reversed: what is outward there."""
     return scale(-1.0, rotate_back(R, n))
@@ -227,38 +227,38 @@ def cones_at(pair, pose, place, jets):
     )
 
 
-@kernel
+@small
 def nearest_of_a(pair, place, cones, n):
     """`nearest_normal` of A."""
     return nearest_normal(pair.ints_a, pair.reals_a, place.feature_a, cones.a, n)
 
 
-@kernel
+@small
 def nearest_of_b(pair, place, cones, m):
     """`nearest_normal` of B, in B's frame."""
     return nearest_normal(pair.ints_b, pair.reals_b, place.feature_b, cones.b, m)
 
 
-@kernel
+@small
 def over_a(pair, cones, e, noise):
     """`overhang` of A from its witness point."""
     return overhang(pair.ints_a, pair.reals_a, cones.x_a, e, noise)
 
 
-@kernel
+@small
 def over_b(pair, cones, e, noise):
     """`overhang` of B from its witness point, in B's frame."""
     return overhang(pair.ints_b, pair.reals_b, cones.y_b, e, noise)
 
 
-@kernel
+@small
 def hangs_over_a(pair, place, cones, n):
     """(what hangs over A's side of the plane square to n, what roundoff may add)."""
     cone, miss = nearest_of_a(pair, place, cones, n)
     return over_a(pair, cones, sub(n, cone), miss), over_a(pair, cones, ZERO, miss)
 
 
-@kernel
+@small
 def hangs_over_b(pair, pose, place, cones, n):
     """`hangs_over_a` of B."""
     m = into_b(pose.R, n)
@@ -266,7 +266,7 @@ def hangs_over_b(pair, pose, place, cones, n):
     return over_b(pair, cones, sub(m, cone), miss), over_b(pair, cones, ZERO, miss)
 
 
-@kernel
+@small
 def lowered(pair, pose, cones, bound):
     """A bound less both bodies' slack and what roundoff may have added to it.
 
@@ -309,7 +309,12 @@ def certify(pair, pose, place, jets, hint):
     -n_B, the direction of x_b - x_a and the unit vector `hint` (zero: none) that gives the greatest
     bound: near contact the direction loses its digits.
     """
-    cones = cones_at(pair, pose, place, jets)
+    return certify_cones(pair, pose, place, cones_at(pair, pose, place, jets), hint)
+
+
+@small
+def certify_cones(pair, pose, place, cones, hint):
+    """`certify`, by the normal cones at the witness points."""
     gap = cones.gap
     d = norm(gap)
     direction = scale(1.0 / d, gap) if d > 0.0 else ZERO

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 from standoff.kernels.body.features import dimension, pair_slack, pair_span
 from standoff.kernels.body.trimming import on_face
-from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.compiler.decorators import kernel, shared, small
 from standoff.kernels.pair.certificate import certify
 from standoff.kernels.pair.contact_newton import polish
 from standoff.kernels.pair.descent import pair_jets, release_along, settle
@@ -45,17 +45,23 @@ def weigh(pair, pose, place, jets, hint, tolerance):
     normal beside a collapsed side: the gap beyond both counts.
     """
     d, lower, normal, blur = certify(pair, pose, place, jets, hint)
-    span = pair_span(pair, pose.p, d)
     if not on_feature(pair, place):
         return Weighed(UNCERTIFIED, d, lower, normal)
+    return Weighed(outcome_of(pair, pose, d, lower, blur, tolerance), d, lower, normal)
+
+
+@small
+def outcome_of(pair, pose, d, lower, blur, tolerance):
+    """What a bound proves of witness points that lie on their features."""
+    span = pair_span(pair, pose.p, d)
     # a body's own slack may reach over the gap: the points are apart all the same
     slack = pair_slack(pair)
     apart = lower > 0.0 or (slack > 0.0 and d > TOUCHING * span)
     if apart and d - lower <= tolerance * span + slack + min(blur, BLUR * span):
-        return Weighed(CERTIFIED, d, lower, normal)
+        return CERTIFIED
     if lower <= 0.0 and d <= TOUCHING * span:
-        return Weighed(TOUCHING_OR_OVERLAPPING, d, lower, normal)
-    return Weighed(UNCERTIFIED, d, lower, normal)
+        return TOUCHING_OR_OVERLAPPING
+    return UNCERTIFIED
 
 
 @kernel

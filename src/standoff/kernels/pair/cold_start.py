@@ -1,9 +1,9 @@
 """The global start: sampled pairs, descent, certificate, and another start where it fails.
 
 A stationary point on the far side of a body is no minimum; its certificate fails and the next
-start is taken. Starts: the nearest sampled pair whose normals face each other, then the support
-samples along the direction found by Gilbert's iteration on the samples, then those along the
-directions of earlier failures.
+start is taken. Starts: samples of which either is the nearest to the other, found in turn; the
+nearest of all sampled pairs whose normals face each other; the support samples along the direction
+found by Gilbert's iteration on the samples; then those along the directions of earlier failures.
 """
 
 from math import inf
@@ -19,8 +19,9 @@ from standoff.kernels.pair.events import RESTARTS, exhausted
 from standoff.kernels.tolerances import LEAST_DIVISOR, MIXING
 from standoff.kernels.values import ORIGIN, Found, Place, Side, resting, together
 
-MAX_STARTS = 12
+MAX_STARTS = 13
 GILBERT_STEPS = 40
+ALTERNATIONS = 6  # two or three are the rule
 FIRST = np.int64(0)  # the start that is tried first; of the type of a count
 NOWHERE = Place(FIRST, FIRST, FIRST, FIRST, 0.0, 0.0, 0.0, 0.0)
 
@@ -90,6 +91,40 @@ def nearest_facing(pair, pose):
 
 
 @kernel
+def nearest_to(ints, reals, z, normal):
+    """The nearest of a body's samples to a point, of those that it faces and that face it; `normal`
+    is the outward one at the point, zero where it has none. All in the body's frame.
+    """
+    best, at = inf, 0
+    for k in range(ints[L.N_SAMPLES]):
+        gap = sub(z, sample_point(ints, reals, k))
+        d2 = dot(gap, gap)
+        if d2 < best and dot(gap, sample_normal(ints, reals, k)) >= 0.0 and dot(gap, normal) <= 0.0:
+            best, at = d2, k
+    return at
+
+
+@kernel
+def alternating(pair, pose):
+    """(i, j): samples of which either is the nearest to the other that faces it, from the middle of
+    A's box on. `nearest_facing` compares all with all, and is seldom better.
+    """
+    ia, ra, ib, rb = pair
+    R, p = pose
+    centre = (ra[L.BOX_CENTRE], ra[L.BOX_CENTRE + 1], ra[L.BOX_CENTRE + 2])
+    j = nearest_to(ib, rb, rotate_back(R, sub(centre, p)), ORIGIN)
+    i = 0
+    for _ in range(ALTERNATIONS):
+        y, m = add(rotate(R, sample_point(ib, rb, j)), p), rotate(R, sample_normal(ib, rb, j))
+        i = nearest_to(ia, ra, y, m)
+        z = rotate_back(R, sub(sample_point(ia, ra, i), p))
+        last, j = j, nearest_to(ib, rb, z, rotate_back(R, sample_normal(ia, ra, i)))
+        if j == last:
+            break
+    return i, j
+
+
+@kernel
 def gilbert(pair, pose):
     """Direction from A to B of nearly least distance between the samples' convex hulls."""
     ia, ra, ib, rb = pair
@@ -121,10 +156,13 @@ def global_query(pair, pose, first, tolerance, work):
     direction = ORIGIN
     for attempt in range(first, MAX_STARTS):
         if attempt == 0:
+            i, j = alternating(pair, pose)
+        elif attempt == 1:
+            work.counts[RESTARTS] += 1
             i, j = nearest_facing(pair, pose)
         else:
             work.counts[RESTARTS] += 1
-            if attempt == 1:
+            if attempt == 2:
                 direction = gilbert(pair, pose)
             i, j = farthest_along(pair, pose, direction)
         start = at_samples(pair, i, j)

@@ -19,6 +19,7 @@ from standoff.kernels.state.arrays import (
     O_RESET,
     O_RESTARTS,
     O_SATURATION,
+    O_SMOOTH,
     O_SOLVE,
     O_SWITCHING,
     O_TOLERANCE,
@@ -42,6 +43,7 @@ class Options(NamedTuple):
     restarts: bool
     depth: int
     deadline: int  # most evaluations a frame
+    smooth: int  # address of the frame that is tried first, 0 for none
     numbers: Any  # pointer to all of them, see `feedback_number`
 
 
@@ -62,6 +64,7 @@ def read_options(numbers):
         numbers[O_RESTARTS] != 0.0,
         int(numbers[O_DEPTH]),
         int(numbers[O_DEADLINE]),
+        int(numbers[O_SMOOTH]),
         numbers,
     )
 

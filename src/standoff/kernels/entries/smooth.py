@@ -1,0 +1,162 @@
+"""The smooth frames that are compiled for kinds of surfaces, for `answered_smoothly` to call.
+
+Those of this file are compiled ahead; `made_for` writes others in the same words.
+"""
+
+from functools import lru_cache
+from typing import Any
+
+from standoff.kernels.body import layout as L
+from standoff.kernels.compiler.decorators import entry, ints_at, kernel, reals_at, small
+from standoff.kernels.compiler.entry import INT, REAL
+from standoff.kernels.frame.inputs import Inputs
+from standoff.kernels.frame.smooth import (
+    CALL_HAS_TWIST,
+    CALL_INTS_A,
+    CALL_INTS_B,
+    CALL_OPTIONS,
+    CALL_OUT,
+    CALL_POSE_A,
+    CALL_POSE_B,
+    CALL_REALS_A,
+    CALL_REALS_B,
+    CALL_STATE,
+    CALL_TWIST_A,
+    CALL_TWIST_B,
+    N_CALL,
+    seen_as,
+    seen_as_nurbs,
+    smooth_frame,
+)
+from standoff.kernels.state.arrays import N_OPTIONS, N_OUT, N_STATE
+from standoff.kernels.state.options import read_options
+from standoff.kernels.values import Pair
+
+N_POSE, N_TWIST = 12, 6
+
+
+@small
+def on_plane(ints, reals, chart, u, v):
+    return seen_as(L.PLANE, ints, reals, chart, u, v)
+
+
+@small
+def on_sphere(ints, reals, chart, u, v):
+    return seen_as(L.SPHERE, ints, reals, chart, u, v)
+
+
+@small
+def on_nurbs_2(ints, reals, chart, u, v):
+    return seen_as_nurbs(2, ints, reals, chart, u, v)
+
+
+@small
+def on_nurbs_3(ints, reals, chart, u, v):
+    return seen_as_nurbs(3, ints, reals, chart, u, v)
+
+
+@small
+def on_nurbs_4(ints, reals, chart, u, v):
+    return seen_as_nurbs(4, ints, reals, chart, u, v)
+
+
+@small
+def on_nurbs_5(ints, reals, chart, u, v):
+    return seen_as_nurbs(5, ints, reals, chart, u, v)
+
+
+@kernel
+def called(look_a, look_b, record, h):
+    """`smooth_frame` of a record of addresses. Bodies' lengths are not known here, nor asked."""
+    call = ints_at(record, N_CALL)
+    pair = Pair(
+        ints_at(call[CALL_INTS_A], 0),
+        reals_at(call[CALL_REALS_A], 0),
+        ints_at(call[CALL_INTS_B], 0),
+        reals_at(call[CALL_REALS_B], 0),
+    )
+    inputs = Inputs(
+        reals_at(call[CALL_POSE_A], N_POSE),
+        reals_at(call[CALL_POSE_B], N_POSE),
+        reals_at(call[CALL_TWIST_A], N_TWIST),
+        reals_at(call[CALL_TWIST_B], N_TWIST),
+        call[CALL_HAS_TWIST] != 0,
+    )
+    options = read_options(reals_at(call[CALL_OPTIONS], N_OPTIONS))
+    state, out = reals_at(call[CALL_STATE], N_STATE), reals_at(call[CALL_OUT], N_OUT)
+    return smooth_frame(look_a, look_b, pair, inputs, h, options, state, out)
+
+
+@entry(INT, REAL, work="smooth")
+def sphere_sphere(record, h):
+    """Ellipsoids, lenses and all that is made of their patches."""
+    return called(on_sphere, on_sphere, record, h)
+
+
+@entry(INT, REAL, work="smooth")
+def plane_sphere(record, h):
+    """A polytope and one of these."""
+    return called(on_plane, on_sphere, record, h)
+
+
+@entry(INT, REAL, work="smooth")
+def sphere_plane(record, h):
+    return called(on_sphere, on_plane, record, h)
+
+
+@entry(INT, REAL, work="smooth")
+def nurbs_2(record, h):
+    """Two NURBS solids of degree 2."""
+    return called(on_nurbs_2, on_nurbs_2, record, h)
+
+
+@entry(INT, REAL, work="smooth")
+def nurbs_3(record, h):
+    """Two NURBS solids of degree 3."""
+    return called(on_nurbs_3, on_nurbs_3, record, h)
+
+
+@entry(INT, REAL, work="smooth")
+def nurbs_4(record, h):
+    """Two NURBS solids of degree 4."""
+    return called(on_nurbs_4, on_nurbs_4, record, h)
+
+
+@entry(INT, REAL, work="smooth")
+def nurbs_5(record, h):
+    """Two NURBS solids of degree 5."""
+    return called(on_nurbs_5, on_nurbs_5, record, h)
+
+
+ONE_KIND = """
+def {name}(ints, reals, chart, u, v):
+    return {seen}({constant}, ints, reals, chart, u, v)
+"""
+FRAME = """
+def {name}(record, h):
+    return called({a}, {b}, record, h)
+"""
+
+
+def _look_at(kind: int, degree: int) -> tuple[str, Any]:
+    """A function as `on_sphere`, and its name; the degree is that of a NURBS."""
+    nurbs = kind == L.NURBS
+    name = f"on_kind_{kind}_{degree}"
+    seen, constant = ("seen_as_nurbs", degree) if nurbs else ("seen_as", kind)
+    return name, _written(ONE_KIND.format(name=name, seen=seen, constant=constant), name, globals())
+
+
+def _written(source: str, name: str, known: dict[str, Any]) -> Any:
+    space = dict(known)
+    exec(source, space)
+    return space[name]
+
+
+@lru_cache(maxsize=64)
+def made_for(kind_a: int, degree_a: int, kind_b: int, degree_b: int) -> Any:
+    """The entry for two kinds that are not compiled ahead: `sphere_sphere` with other constants."""
+    looks = dict([_look_at(kind_a, degree_a), _look_at(kind_b, degree_b)])
+    known = globals() | {name: small(each) for name, each in looks.items()}
+    (a, _), (b, _) = _look_at(kind_a, degree_a), _look_at(kind_b, degree_b)
+    name = f"smooth_{a}_{b}"
+    return entry(INT, REAL, work="smooth")(_written(FRAME.format(name=name, a=a, b=b), name, known))
