@@ -14,8 +14,8 @@ from standoff.simulation.rigid_body import DRIVEN
 from standoff.simulation.system import System
 from standoff.simulation.system_state import SystemState
 from standoff.simulation.tolerances import TOUCHING_START
+from standoff.tracking.cold_query import ColdQuery
 from standoff.tracking.law_options import Law
-from standoff.tracking.tracker import ColdQuery
 
 Array = NDArray[np.float64]
 

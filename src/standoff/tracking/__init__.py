@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from standoff.bodies.features import Feature
     from standoff.tracking import feedback
     from standoff.tracking.answers import Answers
+    from standoff.tracking.cold_query import distance
     from standoff.tracking.contact.witness_set import WitnessSet, witness_set
     from standoff.tracking.feedback import max_gain
     from standoff.tracking.laws import PaperLaw, PredictorCorrector
@@ -15,12 +16,13 @@ if TYPE_CHECKING:
     from standoff.tracking.proximity import Counts, Event, Proximity
     from standoff.tracking.state import FrameBuffer, TrackerState
     from standoff.tracking.status import Status
-    from standoff.tracking.tracker import Tracker, distance
+    from standoff.tracking.tracker import Tracker
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
         {
             "standoff.bodies.features": ("Feature",),
+            "standoff.tracking.cold_query": ("distance",),
             "standoff.tracking.contact.witness_set": (
                 "WitnessSet",
                 "witness_set",
@@ -45,10 +47,7 @@ else:
                 "TrackerState",
             ),
             "standoff.tracking.status": ("Status",),
-            "standoff.tracking.tracker": (
-                "Tracker",
-                "distance",
-            ),
+            "standoff.tracking.tracker": ("Tracker",),
         },
         modules=("feedback",),
         moved={
