@@ -15,7 +15,7 @@ WITNESS = 1e-9
 """That of a witness point: a distance is flat about its least, so a gap of 1e-12 leaves them 1e-6
 of a radius in theory; a Newton step, which leaves such a gap, reaches 1e-10."""
 TINY = Effort(frames=12, contact_frames=6, rounds=1, budget=1e-3, finest=1e-3)
-ALWAYS = ("SciPy SLSQP, warm", *(f"{library.RUN}, {law}" for law in library.WARM))
+ALWAYS = ("SciPy SLSQP, warm", *(f"{library.COMPILED}, {law}" for law in library.WARM))
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,8 @@ Array = NDArray[np.float64]
 
 STEP = "tracker.step"
 STEP_INTO = "tracker.step_into"
-RUN = "compiled run"
+RUN = "tracker.run"
+COMPILED = "compiled run"
 COLD = "so.distance, cold"
 OURS = (STEP, STEP_INTO, RUN, COLD)
 """Those that the library is judged by."""
@@ -109,9 +110,24 @@ def motions_of(frames: Frames, first: int, last: int, passes: int = 1) -> Array:
     return found.reshape(-1, rows.N_MOTION)
 
 
-def compiled_run(pair: Pair, frames: Frames, law: str = "") -> Contender:
-    """All frames in one compiled loop; a law other than the default by its name in the studies."""
-    followed = LAWS[law] if law else Followed(so.PredictorCorrector())
+def runs(pair: Pair, frames: Frames) -> Contender:
+    """All frames in one call from Python."""
+    tracker, begin = begun(pair, frames)
+    answers: list[so.tracking.Answers] = []
+
+    def run(count: int) -> None:
+        part = slice(1, count + 1)
+        poses, twists = (frames.poses_a, frames.poses_b), (frames.twists_a, frames.twists_b)
+        _, found = tracker.run(begin, *(p[part] for p in poses), *(t[part] for t in twists))
+        answers[:] = [found]
+
+    most = len(frames.poses_a) - 1
+    return Contender(RUN, run, lambda k: of_proximity(answers[0][k - 1]), most, memory_of(pair))
+
+
+def compiled_run(pair: Pair, frames: Frames, law: str) -> Contender:
+    """All frames in one compiled loop of a law by its name in the studies."""
+    followed = LAWS[law]
     tracker, begin = begun(pair, frames, followed)
     passes, most = followed.passes, len(frames.poses_a) - 1
     outs = np.empty((most * passes, rows.N_OUT))
@@ -128,8 +144,9 @@ def compiled_run(pair: Pair, frames: Frames, law: str = "") -> Contender:
         if bad >= 0:
             raise RuntimeError(f"frame {bad} of {pair.name} was refused")
 
-    name = f"{RUN}, {law}" if law else RUN
-    return Contender(name, run, lambda k: of_row(outs[k * passes - 1]), most, memory_of(pair))
+    return Contender(
+        f"{COMPILED}, {law}", run, lambda k: of_row(outs[k * passes - 1]), most, memory_of(pair)
+    )
 
 
 def cold(pair: Pair, frames: Frames) -> Contender:
@@ -149,7 +166,7 @@ def memory_of(pair: Pair) -> int:
 
 def ours(pair: Pair, frames: Frames) -> list[Contender]:
     """All contenders of the library on a pair."""
-    found = [steps(pair, frames), steps_in_place(pair, frames), compiled_run(pair, frames)]
+    found = [steps(pair, frames), steps_in_place(pair, frames), runs(pair, frames)]
     found.append(cold(pair, frames))
     if "laws" in pair.more:
         found += [compiled_run(pair, frames, law) for law in WARM]
