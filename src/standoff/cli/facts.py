@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -11,16 +9,26 @@ from typing import Any
 import numpy as np
 
 from standoff import __version__
+from standoff.bodies import plain_data
 from standoff.impact import Impact
 from standoff.recording import RecordedEvent, Recording
 from standoff.scene import Scene, TrackSettings
-from standoff.scene.reader import Array
 from standoff.tracking import Proximity
+
+INDENT = 2
+"""Spaces a level of the JSON text."""
+
+ANSWERED = (
+    *("time", "distance", "lower_bound", "upper_bound", "point_a", "point_b", "normal"),
+    *("feature_a", "feature_b", "parameters_a", "parameters_b", "rate", "residual", "status"),
+    *("certified", "counts"),
+)
+"""Attributes of an answer that are printed, in their order."""
 
 
 def json_text(facts: Mapping[str, Any]) -> str:
     """Return strict JSON: numbers without a value, such as the distance of an overlap, are null."""
-    return json.dumps(_finite(facts), indent=2, ensure_ascii=False, allow_nan=False)
+    return plain_data.json_text(facts, INDENT)
 
 
 def pairs_text(scene: Scene, results: Sequence[Mapping[str, Any]]) -> str:
@@ -51,24 +59,7 @@ def scene_facts(scene: Scene) -> dict[str, Any]:
 
 def answer_facts(scene: Scene, time: float, answer: Proximity) -> dict[str, Any]:
     """Return one answer."""
-    return scene_facts(scene) | {
-        "time": time,
-        "distance": answer.distance,
-        "lower_bound": answer.lower_bound,
-        "upper_bound": answer.upper_bound,
-        "point_a": _numbers(answer.point_a),
-        "point_b": _numbers(answer.point_b),
-        "normal": _numbers(answer.normal),
-        "feature_a": str(answer.feature_a),
-        "feature_b": str(answer.feature_b),
-        "parameters_a": list(answer.parameters_a),
-        "parameters_b": list(answer.parameters_b),
-        "rate": answer.rate,
-        "residual": answer.residual,
-        "status": answer.status.name,
-        "certified": answer.certified,
-        "counts": answer.counts._asdict(),
-    }
+    return scene_facts(scene) | {name: getattr(answer, name) for name in ANSWERED} | {"time": time}
 
 
 def impact_facts(scene: Scene, found: Impact) -> dict[str, Any]:
@@ -94,9 +85,9 @@ def frame_facts(recording: Recording, frame: int | None) -> dict[str, Any] | Non
         "distance": float(recording.distance[frame]),
         "lower_bound": float(recording.lower_bound[frame]),
         "upper_bound": float(recording.upper_bound[frame]),
-        "point_a": _numbers(recording.point_a[frame]),
-        "point_b": _numbers(recording.point_b[frame]),
-        "normal": _numbers(recording.normal[frame]),
+        "point_a": recording.point_a[frame],
+        "point_b": recording.point_b[frame],
+        "normal": recording.normal[frame],
         "feature_a": str(recording.feature_a[frame]),
         "feature_b": str(recording.feature_b[frame]),
         "status": recording.status[frame].name,
@@ -131,17 +122,3 @@ def recording_facts(
         "events": event_facts(recording.events),
         "files": [str(path) for path in written],
     }
-
-
-def _numbers(vector: Array) -> list[float]:
-    return [float(value) for value in vector]
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import Enum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.bodies.plain_data import PlainData, plain, without_roundoff
 from standoff.read_only import KeepsReadOnly
-from standoff.tracking.proximity import Proximity
+from standoff.tracking.proximity import Proximity, shown_size
 
 Array = NDArray[np.float64]
 
@@ -54,7 +56,7 @@ _ADVICE = {
 
 
 @dataclass(frozen=True, eq=False)
-class Impact(KeepsReadOnly):
+class Impact(KeepsReadOnly, PlainData):
     """The first time at which two bodies come to a clearance, bracketed.
 
     Attributes
@@ -113,8 +115,14 @@ class Impact(KeepsReadOnly):
         """Witness point on B at ``time``, world, (3,) [length]."""
         return self.proximity.point_b
 
+    def as_dict(self) -> dict[str, Any]:
+        """Return the answer as plain data, as `Proximity.as_dict` does; ``error`` is with it."""
+        own = {part.name: plain(getattr(self, part.name)) for part in fields(self)}
+        return own | {"error": plain(self.error), "proximity": self.proximity.as_dict()}
+
     def __repr__(self) -> str:
+        (distance,) = without_roundoff([self.proximity.distance], shown_size(self.proximity))
         return (
-            f"Impact(time={self.time:.12g}, latest={self.latest:.12g}, {self.status.name}, "
-            f"distance={self.proximity.distance:.6g}, steps={self.steps})"
+            f"Impact(time={self.time + 0.0:.12g}, latest={self.latest + 0.0:.12g}, "
+            f"{self.status.name}, distance={distance:.6g})"
         )

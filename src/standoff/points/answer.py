@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from dataclasses import dataclass, fields
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
+from standoff.bodies.plain_data import PlainData, plain, without_roundoff
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.status import Status
 
@@ -92,8 +93,8 @@ class PointCounts(NamedTuple):
     samples: int
 
 
-@dataclass(frozen=True, eq=False)
-class PointDistance(KeepsReadOnly):
+@dataclass(frozen=True, eq=False, repr=False)
+class PointDistance(KeepsReadOnly, PlainData):
     """What the answers of both kinds of point tracker begin with; they say what each field is."""
 
     distance: float
@@ -105,8 +106,19 @@ class PointDistance(KeepsReadOnly):
     feature: Feature
     parameters: tuple[float, ...]
 
+    def as_dict(self) -> dict[str, Any]:
+        """Return the answer as plain data, by the attributes' names; as `Proximity.as_dict`."""
+        return {part.name: plain(getattr(self, part.name)) for part in fields(self)}
 
-@dataclass(frozen=True, eq=False)
+    def __repr__(self) -> str:
+        numbers = [self.distance, self.distance - self.lower_bound]
+        distance, gap = without_roundoff(numbers, float(np.abs(self.witness).max()))
+        side = "inside" if self.inside else "outside"
+        kind = type(self).__name__
+        return f"{kind}(distance={distance:.12g}, gap={gap:.2g}, {self.feature}, {side})"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class PointProximity(PointDistance):
     """The signed distance of a point to a body, and how it was proven. Vectors in world axes.
 

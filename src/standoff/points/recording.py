@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
+from standoff.bodies.plain_data import counted, short_name
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.tolerances import SLOPE
 from standoff.motion import PoseLike, inputs
@@ -48,7 +49,7 @@ class PointVisit(NamedTuple):
     end: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PointRecording(KeepsReadOnly):
     """Answers of a run, by frame; row k of every array belongs to ``time[k]``.
 
@@ -93,6 +94,11 @@ class PointRecording(KeepsReadOnly):
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def __repr__(self) -> str:
+        start, end = self.time[[0, -1]] + 0.0
+        frames, name = counted(len(self), "frame"), short_name(self.body.name)
+        return f"<PointRecording of {frames}: {name}, {start:g} to {end:g} s>"
 
     def modes(self) -> list[PointVisit]:
         """Return the visited modes in order of time; a stay of no length is left out."""

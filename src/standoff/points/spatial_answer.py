@@ -44,7 +44,7 @@ class DepthMinimum(NamedTuple):
     key: int
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SpatialPointProximity(PointDistance):
     """The signed distance of a point to a spatial body. Vectors in the body's frame.
 

@@ -80,13 +80,25 @@ def write_table(recording: RecordedFrames, file: BinaryIO) -> None:
     ValueError
         If ``info`` is nested too deeply.
     """
+    pq.write_table(table_of(recording), file)
+
+
+def table_of(recording: RecordedFrames) -> Any:
+    """Return a recording as a table of PyArrow, with its metadata.
+
+    Raises
+    ------
+    TypeError
+        If ``info`` holds what JSON cannot.
+    ValueError
+        If ``info`` is nested too deeply.
+    """
     facts = _metadata(recording.info)
     problem, keys = value_problem(facts)
     if problem:
         raise StandoffError(f"the recording's info ({'.'.join(keys[:NAMED])}) {problem}")
     metadata = json.dumps(facts, ensure_ascii=False, allow_nan=False)
-    table = pa.table(_columns(recording))
-    pq.write_table(table.replace_schema_metadata({METADATA: metadata}), file)
+    return pa.table(_columns(recording)).replace_schema_metadata({METADATA: metadata})
 
 
 def _metadata(info: RunInfo) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from standoff.automaton.visits import Visit
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
+from standoff.bodies.plain_data import counted, short_name
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import every_option, law_of_facts
@@ -103,7 +104,7 @@ class RunInfo:
         return law_of_facts({name: self.options[name] for name in known if name in self.options})
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RecordedFrames(KeepsReadOnly):
     """The arrays of a run; `Recording` describes them and draws, stores and marks them."""
 
@@ -130,6 +131,11 @@ class RecordedFrames(KeepsReadOnly):
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def __repr__(self) -> str:
+        names = " and ".join(map(short_name, self.info.bodies))
+        start, end = self.time[[0, -1]] + 0.0
+        return f"<Recording of {counted(len(self), 'frame')}: {names}, {start:g} to {end:g} s>"
 
     @property
     def certified(self) -> NDArray[np.bool_]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Recording(RecordedFrames):
     """Answers of a run, by frame; row k of every array belongs to ``time[k]``.
 
@@ -151,6 +151,45 @@ class Recording(RecordedFrames):
         figure = recording_plot.draw(self)
         write_whole({target: lambda file: figure.savefig(file, format=ending)})
         return figure
+
+    def to_arrow(self) -> Any:
+        """Return a table of PyArrow: what `save` writes, with the same columns and metadata.
+
+        Returns
+        -------
+        pyarrow.Table
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If pyarrow is not installed; the message names the extra.
+        ValueError
+            If ``info.source`` is nested too deeply.
+        """
+        from standoff.recording.file import table_of
+
+        return table_of(self)
+
+    def to_pandas(self) -> Any:
+        """Return a data frame of pandas: one row a frame, columns of plain numbers and words.
+
+        The columns are those of the Parquet file, but that the parameters have a column each,
+        ``parameters_a_0`` to ``parameters_b_2``, NaN where a feature has fewer, and that the events
+        are left out: ``pandas.DataFrame(recording.events)`` is a table of them. The facts of
+        ``info`` are in ``attrs["standoff"]``.
+
+        Returns
+        -------
+        pandas.DataFrame
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If pandas is not installed; the message names the extra.
+        """
+        from standoff.recording.data_frame import data_frame
+
+        return data_frame(self)
 
     def save(self, path: str | Path) -> None:
         """Write a Parquet file, whole or not at all; `open_recording` reads it.

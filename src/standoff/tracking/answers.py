@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.bodies.plain_data import counted, short_name
 from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
@@ -103,4 +104,5 @@ class Answers(KeepsReadOnly):
         return (self[k] for k in range(len(self)))
 
     def __repr__(self) -> str:
-        return f"Answers of {len(self)} frames of {self._a!r} and {self._b!r}"
+        names = " and ".join(short_name(body.name) for body in (self._a, self._b))
+        return f"<Answers of {counted(len(self), 'frame')}: {names}>"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature as Feature
 from standoff.bodies.features import feature_of
+from standoff.bodies.plain_data import PlainData, plain, without_roundoff
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.tracking.rows import Answer
@@ -45,7 +46,7 @@ class Event(NamedTuple):
     slope: float
 
 
-class Proximity(Answer):
+class Proximity(Answer, PlainData):
     """Witness points of two bodies and their certified distance; all vectors in world axes.
 
     Attributes
@@ -125,11 +126,45 @@ class Proximity(Answer):
         """Are the witness points and the normal the only ones? Found anew at each call."""
         return self.witness_set().unique
 
+    def as_dict(self) -> dict[str, Any]:
+        """Return the answer as plain data: numbers, texts, lists and dictionaries of these.
+
+        The keys are the attributes' names; ``poses`` are two 4×4 matrices, or None. Features are
+        texts such as ``"face 2"``, the status its name. The numbers are the same to the last bit,
+        but that no zero has a sign; NaN stays NaN.
+        """
+        facts = {name: plain(getattr(self, name)) for name in _PLAIN}
+        poses = self.poses
+        return facts | {"poses": None if poses is None else [_matrix(pose) for pose in poses]}
+
     def __repr__(self) -> str:
+        shown = [self.distance, self.distance - self.lower_bound]
+        distance, gap = without_roundoff(shown, shown_size(self))
         return (
-            f"Proximity(distance={self.distance:.12g}, lower_bound={self.lower_bound:.12g}, "
+            f"Proximity(distance={distance:.12g}, gap={gap:.2g}, "
             f"{self.feature_a} - {self.feature_b}, {self.status.name})"
         )
+
+
+_PLAIN = (
+    *("distance", "lower_bound", "upper_bound", "depth", "point_a", "point_b", "normal"),
+    *("feature_a", "feature_b", "parameters_a", "parameters_b", "rate", "velocity_a"),
+    *("velocity_b", "residual", "status", "certified", "counts", "events", "time", "repaired"),
+)
+"""Attributes that an answer's plain data has under their own names."""
+
+
+def shown_size(answer: Proximity) -> float:
+    """Length beside which numbers of an answer are roundoff: of a body, or of a far point."""
+    sizes = [body.size for body in answer.bodies if body.bounded]
+    return float(np.nanmax([*sizes, *np.abs(answer.point_a), *np.abs(answer.point_b), 0.0]))
+
+
+def _matrix(pose: Array) -> list[list[float]]:
+    """A flat pose (12,), R by rows and p, as the rows of a 4×4 matrix."""
+    top = np.column_stack([pose[:9].reshape(3, 3), pose[9:]])
+    rows: list[list[float]] = plain(np.vstack([top, [0.0, 0.0, 0.0, 1.0]]))
+    return rows
 
 
 def events_of(a: Body, b: Body, log: Array, time: float) -> tuple[Event, ...]:
