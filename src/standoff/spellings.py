@@ -1,16 +1,41 @@
-"""Keywords and attributes that have changed their names: the old one raises an error that says the
-new one."""
+"""Names that are not there: the nearest one that is, and what has changed its name since 0.1."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import difflib
+from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from typing import ParamSpec, TypeVar
 
 from standoff.errors import StandoffTypeError
+from standoff.real_numbers import shown
+
+NEAREST_CUTOFF = 0.5
+"""Least likeness (difflib ratio, 0 to 1) at which a known name is suggested for an unknown one.
+
+Half catches swapped, missing and doubled letters in short keys, and stays silent on a word that
+has nothing to do with any known key.
+"""
+
+LONGEST = 60
+"""Longest piece of a misspelt command that is repeated, in characters."""
 
 P = ParamSpec("P")
 R = TypeVar("R")
+
+
+def nearest(name: str, known: Iterable[str], cutoff: float = NEAREST_CUTOFF) -> str | None:
+    """Return the known name most like `name`, or None when none is like it."""
+    folded = {candidate.casefold(): candidate for candidate in known}
+    found = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=cutoff)
+    return folded[found[0]] if found else None
+
+
+def unknown_command(name: str, known: Iterable[str]) -> str:
+    """Return the sentence that refuses a command, with the nearest one that there is."""
+    likely = nearest(name, known)
+    said = f"did you mean '{likely}'? " if likely is not None else ""
+    return f"unknown command {shown(name, LONGEST)}; {said}standoff --help lists the commands"
 
 
 def renamed(**new: str) -> Callable[[Callable[P, R]], Callable[P, R]]:

@@ -30,7 +30,7 @@ def test_track_sums_up_the_run(standoff: Standoff, passing: Path) -> None:
     assert lines["scene"] == "Tool past a box: A = tool (ellipsoid), B = part (box)"
     assert lines["law"] == "predictor-corrector, predictor feedforward-2"
     assert lines["frames"] == "101 from 0 s to 2 s, 20 ms apart"
-    assert lines["certified"] == "101 of 101 frames, 100 %"
+    assert lines["certified"] == ("101 of 101 frames, 100 %, tolerance 1e-10 of the pair's size")
     assert lines["closest"].startswith(f"{recording.distance[closest]:.12g} cm at ")
     assert f"part {recording.feature_b[closest]}" in lines["closest"]
     assert lines["worst gap"].startswith(f"{recording.gap.max():.3g} cm")
@@ -125,7 +125,7 @@ def test_distance(standoff: Standoff, passing: Path) -> None:
     assert ended.code == 0
     _, first = query(load_scene(passing))
     assert f"distance      {first.distance:.15g} cm" in ended.out
-    assert "certified     yes" in ended.out
+    assert "certified     yes, tolerance 1e-10 of the pair's size" in ended.out
 
 
 def test_impact(standoff: Standoff, passing: Path) -> None:

@@ -52,6 +52,11 @@ PLACEMENTS: list[tuple[str, Pose]] = [
     ("quaternion_wxyz = [0.8, 0.6, 0, 0]", Pose.from_wxyz((0.8, 0.6, 0.0, 0.0))),
     ("quaternion_xyzw = [0.8, 0.6, 0, 0]", Pose.from_xyzw((0.8, 0.6, 0.0, 0.0))),
     ("rotation_vector = [0.1, 0.2, 0.3]", Pose.exp((0.1, 0.2, 0.3))),
+    (
+        "rotation_vector_degrees = [0, 90, -30]",
+        Pose.exp((0.0, np.radians(90.0), np.radians(-30.0))),
+    ),
+    ("angle_degrees = 30", Pose.exp((0.0, 0.0, np.pi / 6.0))),
     ("angle = 0.4\nposition = [1, 2]", Pose.exp((0.0, 0.0, 0.4), (1.0, 2.0, 0.0))),
     (
         "matrix = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]\nposition = [1, 2, 3]",
@@ -72,6 +77,19 @@ MOTION_CASES: list[tuple[str, MotionPath]] = [
     (
         f'{PLACEMENT}[motions.a]\nkind = "twist"\nangular = [0.1, 0.2, 0.3]\nframe = "body"\n',
         ConstantTwist(PLACED, Twist((0.0, 0.0, 0.0), (0.1, 0.2, 0.3), "body")),
+    ),
+    (
+        f'{PLACEMENT}[motions.a]\nkind = "twist"\nlinear = [1, 2]\nangular_degrees = [0, 0, 90]',
+        ConstantTwist(PLACED, Twist((1.0, 2.0, 0.0), (0.0, 0.0, np.radians(90.0)))),
+    ),
+    (
+        f'{PLACEMENT}[motions.a]\nkind = "screw"\naxis = [1, 1, 0]\nangular_rate_degrees = 45.0',
+        Screw(PLACED, (1.0, 1.0, 0.0), (0.0, 0.0, 0.0), np.radians(45.0), 0.0),
+    ),
+    (
+        '[motions.a]\nkind = "helix"\nradius = 2\npitch = 0.5\nrate_degrees = 90\n'
+        "phase_degrees = 10",
+        Helix(2.0, 0.5, np.radians(90.0), phase=np.radians(10.0)),
     ),
     (
         f'{PLACEMENT}[motions.a]\nkind = "screw"\naxis = [1, 1, 0]\npoint = [0, 1, 0]\n'

@@ -10,71 +10,136 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
-from tyro.conf import FlagCreatePairsOff, Positional, arg, subcommand
+from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes, Positional, arg, subcommand
 
 from standoff.cli.added import AddedCommand, added
+from standoff.cli.errors import CommandError
+from standoff.cli.overview import overview
 from standoff.tracking.law_options import Option
 from standoff.tracking.laws import every_option, laws_with
 
 
 def _flag(option: Option) -> tuple[str, Any, None]:
     """The field of a law's option: a text that is read as a scene's value is."""
-    laws = laws_with(option.name)
-    whose = "" if len(laws) > 1 else f", for the law {laws[0].name}"
-    told = f"In place of the scene's{whose}: {option.kind.words()}. {option.help}"
+    laws = [law.name for law in laws_with(option.name)]
+    # The group of the paper's law says of itself whose it is.
+    whose = f"For the law {laws[0]}: " if len(laws) == 1 and laws != ["paper"] else ""
+    told = f"{whose}{option.kind.words()}. {option.help}"
     name = option.metavar or option.name.upper()
     hint = Annotated[str | None, arg(metavar=name, help=told, help_behavior_hint="")]
     return option.name, hint, None
 
 
+LAW_TOLD = (
+    "predictor-corrector or paper. Options of the scene that this law does not have are dropped."
+)
+
+
+def _of_paper_alone(option: Option) -> bool:
+    return [law.name for law in laws_with(option.name)] == ["paper"]
+
+
 if TYPE_CHECKING:
 
     class LawFlags:
-        """Of the laws' options, by name, the texts that were given, or None."""
-else:
-    LawFlags = make_dataclass("LawFlags", map(_flag, every_option().values()), frozen=True)
+        """The law, and the options of both laws: by name the texts that were given, or None."""
 
-NO_FLAGS = LawFlags()
+        law: str | None
+
+    class PaperFlags:
+        """Of those of the paper's law alone."""
+else:
+    _OPTIONS = every_option().values()
+    _WHICH = (
+        "law",
+        Annotated[str | None, arg(metavar="LAW", help=LAW_TOLD, help_behavior_hint="")],
+        None,
+    )
+    LawFlags = make_dataclass(
+        "LawFlags", [_WHICH, *(_flag(x) for x in _OPTIONS if not _of_paper_alone(x))], frozen=True
+    )
+    PaperFlags = make_dataclass(
+        "PaperFlags", [_flag(x) for x in _OPTIONS if _of_paper_alone(x)], frozen=True
+    )
+
+NO_FLAGS, NO_PAPER_FLAGS = LawFlags(), PaperFlags()
+
+
+@dataclass(frozen=True)
+class ReportFlags:
+    """How the result is printed."""
+
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """As JSON, with all there is to know."""
+    verbose: Annotated[bool, arg(help_behavior_hint="")] = False
+    """With every count of the work, also those that are zero."""
+
+
+@dataclass(frozen=True)
+class FileFlags:
+    """What is written besides; of several pairs each to its own file, OUT-NAME."""
+
+    output: Annotated[
+        Path | None, arg(aliases=["-o"], metavar="OUT.parquet", help_behavior_hint="")
+    ] = None
+    """Write every frame to this Parquet file."""
+    plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
+    """Plot distance, certificate gap and active features (.png, .svg or .pdf)."""
+
+
+@dataclass(frozen=True)
+class SpanFlags:
+    """In place of the scene's own."""
+
+    start: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
+    """When to begin, s."""
+    duration: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
+    """How long to go on, s."""
+
+
+@dataclass(frozen=True)
+class FrameFlags(SpanFlags):
+    """In place of the scene's own."""
+
+    step: Annotated[str | None, arg(metavar="SECONDS|samples", help_behavior_hint="")] = None
+    """Time from frame to frame, s, or 'samples'."""
+
+
+def _group(name: str, told: str = "") -> Any:
+    """A group of options, which help tells under its name; no option's own name has it."""
+    return arg(name=name, help=told or None)
+
 
 SceneFile = Annotated[Positional[Path], arg(metavar="SCENE.toml")]
 
 
 @dataclass(frozen=True)
 class TrackCommand:
-    """Track a scene's pairs over time and sum up what was seen.
+    """Track a scene's pairs over time.
+
+    Example: standoff track examples/helix.toml -o run.parquet --plot run.png
 
     Exit codes: 0 done, 1 results could not be written, 2 bad input, 3 finished but not certified.
     """
 
     scene: SceneFile
     """Scene file; docs/scene-format.md describes the format."""
-    output: Annotated[
-        Path | None, arg(aliases=["-o"], metavar="OUT.parquet", help_behavior_hint="")
-    ] = None
-    """Write every frame to this Parquet file; of several pairs each to its own,
-    OUT-NAME.parquet."""
-    plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
-    """Plot distance, certificate gap and active features to this file (.png, .svg or .pdf); of
-    several pairs each to its own, OUT-NAME.png."""
-    json: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Print the summary as JSON, with all events."""
     pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """Only this one of the scene's [[pairs]]."""
-    law: Annotated[str | None, arg(metavar="LAW", help_behavior_hint="")] = None
-    """In place of the scene's: predictor-corrector or paper. Options of the scene that this law
-    has not are dropped."""
-    options: Annotated[LawFlags, arg(name="")] = NO_FLAGS
-    step: Annotated[str | None, arg(metavar="SECONDS|samples", help_behavior_hint="")] = None
-    """In place of the scene's: time from frame to frame in s, or 'samples'."""
-    start: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
-    """In place of the scene's: time of the first frame, s."""
-    duration: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
-    """In place of the scene's: time from the first frame to the last, s."""
+    files: Annotated[FileFlags, _group("file")] = FileFlags()
+    report: Annotated[ReportFlags, _group("report")] = ReportFlags()
+    times: Annotated[FrameFlags, _group("time")] = FrameFlags()
+    options: Annotated[LawFlags, _group("law", "In place of the scene's own.")] = NO_FLAGS
+    paper_options: Annotated[
+        PaperFlags, _group("paper law", "For the paper's law alone, in place of the scene's own.")
+    ] = NO_PAPER_FLAGS
 
 
 @dataclass(frozen=True)
 class DistanceCommand:
     """Find the certified distance of a scene's pairs at one instant.
+
+    Example: standoff distance examples/helix.toml --time 2.5
 
     Exit codes: 0 done, 2 bad input, 3 finished but not certified.
     """
@@ -85,13 +150,14 @@ class DistanceCommand:
     """Scene time in s, from the scene's start to its end; the first frame's if not given."""
     pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """Only this one of the scene's [[pairs]]."""
-    json: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Print the answer as JSON."""
+    report: Annotated[ReportFlags, _group("report")] = ReportFlags()
 
 
 @dataclass(frozen=True)
 class ImpactCommand:
-    """Find the first time at which a scene's pairs touch or come to a clearance.
+    """Find the first time of contact, or of a clearance.
+
+    Example: standoff impact examples/lenses.toml --clearance 0.1
 
     Exit codes: 0 done, 2 bad input, 3 finished but undecided.
     """
@@ -100,19 +166,17 @@ class ImpactCommand:
     """Scene file; docs/scene-format.md describes the format."""
     clearance: Annotated[float, arg(metavar="LENGTH", help_behavior_hint="")] = 0.0
     """Distance that counts as impact, in the scene's unit; 0, contact, if not given."""
-    start: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
-    """In place of the scene's: time at which the search begins, s."""
-    duration: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
-    """In place of the scene's: time to search, s."""
     pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """Only this one of the scene's [[pairs]]."""
-    json: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Print the answer as JSON."""
+    times: Annotated[SpanFlags, _group("time")] = SpanFlags()
+    report: Annotated[ReportFlags, _group("report")] = ReportFlags()
 
 
 @dataclass(frozen=True)
 class CheckCommand:
-    """Tell what a body's checks at construction found and proved.
+    """Tell what the checks of a body found and proved, and draw it.
+
+    Example: standoff check 'shape = "box", size = [1, 2, 3]' --plot box.png
 
     Exit codes: 0 done, 1 the picture could not be written, 2 bad input: also a body that is
     refused.
@@ -132,7 +196,9 @@ class CheckCommand:
 
 @dataclass(frozen=True)
 class AutomatonCommand:
-    """List or draw the modes, switching functions and resets of a scene's pairs.
+    """List or draw the modes and switches of a scene's pairs.
+
+    Example: standoff automaton examples/helix.toml --visited -o helix.svg
 
     Exit codes: 0 done, 1 the file could not be written, 2 bad input, 3 with --visited: finished
     but not certified.
@@ -155,7 +221,9 @@ class AutomatonCommand:
 
 @dataclass(frozen=True)
 class SimulateCommand:
-    """Let a scene's bodies fall, roll, slide and bounce, and sum up what was seen.
+    """Simulate bodies that fall, roll, slide and bounce.
+
+    Example: standoff simulate examples/simulation/rattleback.toml --plot run.png
 
     Exit codes: 0 done, 1 results could not be written, 2 bad input, 3 finished but not certified.
     """
@@ -182,10 +250,10 @@ class SimulateCommand:
 
 @dataclass(frozen=True)
 class WarmupCommand:
-    """Compile all kernels ahead, once for this installation, so that no later use waits for it.
+    """Compile all kernels ahead, so that no later use waits for it.
 
-    What is compiled already is only loaded. Bodies of formulas bring code of their own, which each
-    process compiles where it makes them: that is no part of this.
+    Once for an installation: what is compiled already is only loaded. Bodies made of formulas bring
+    code of their own, which each process compiles when it makes them; that is not done here.
 
     Exit codes: 0 done, 1 the machine code could not be kept, 3 finished, but a kernel could not be
     compiled.
@@ -217,10 +285,6 @@ OWN: dict[str, type] = {
 }
 """The library's own commands, by name."""
 
-DESCRIPTION = """Exact, certified minimum distance of curved convex bodies in motion.
-
-standoff --version prints the version."""
-
 
 def parse(arguments: Sequence[str]) -> Command:
     """Return the command that the arguments give.
@@ -230,18 +294,26 @@ def parse(arguments: Sequence[str]) -> Command:
     SystemExit
         With code 0 after help was printed, 2 after a complaint on stderr.
     CommandError
-        If they name a command of another package that is not installed or cannot be loaded.
+        If they name no command, or one of another package that is not installed or cannot be
+        loaded.
     """
     first = arguments[0] if arguments else ""
     # The library's own commands wait for nobody else's, and nobody replaces them.
     commands = OWN if first in OWN else OWN | added(first) | OWN
+    if first in ("-h", "--help"):
+        print(overview(commands, len(OWN)))
+        raise SystemExit(0)
+    if not first.startswith("-") and first not in commands:
+        from standoff.spellings import unknown_command
+
+        raise CommandError(unknown_command(first, commands))
     each = [Annotated[command, subcommand(name)] for name, command in commands.items()]
     any_of_them: Any = reduce(or_, each)
     found: Command = tyro.cli(
         any_of_them,
         prog="standoff",
-        description=DESCRIPTION,
+        description="standoff --help lists the commands.",
         args=arguments,
-        config=(FlagCreatePairsOff,),
+        config=(FlagCreatePairsOff, OmitArgPrefixes),
     )
     return found

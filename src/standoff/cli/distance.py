@@ -23,10 +23,11 @@ def run_distance(command: DistanceCommand) -> int:
     # All are asked before any is told: a pair that is refused ends the command.
     answers = [query(scene, command.time) for scene in scenes]
     told = list(zip(scenes, answers, strict=True))
-    if command.json:
+    if command.report.json:
         print(pairs_text(whole, [answer_facts(scene, *answer) for scene, answer in told]))
     else:
-        texts = ["\n".join(answer_lines(scene, *answer)) for scene, answer in told]
+        verbose = command.report.verbose
+        texts = ["\n".join(answer_lines(scene, *answer, verbose=verbose)) for scene, answer in told]
         print("\n\n".join(texts))
     certified = all(answer.certified for _, answer in answers)
     return ExitCode.DONE if certified else ExitCode.NOT_CERTIFIED

@@ -25,16 +25,18 @@ def run_impact(command: ImpactCommand) -> int:
     scenes = chosen(whole, command.pair)
     # All are asked before any is told: a pair that is refused ends the command.
     told = [(scene, _found(scene, command)) for scene in scenes]
-    if command.json:
+    if command.report.json:
         print(pairs_text(whole, [impact_facts(*found) for found in told]))
     else:
-        print("\n\n".join("\n".join(impact_lines(*found)) for found in told))
+        verbose = command.report.verbose
+        texts = ["\n".join(impact_lines(*found, verbose=verbose)) for found in told]
+        print("\n\n".join(texts))
     decided = all(found.status is not ImpactStatus.UNDECIDED for _, found in told)
     return ExitCode.DONE if decided else ExitCode.NOT_CERTIFIED
 
 
 def _found(scene: Scene, command: ImpactCommand) -> Impact:
-    given = {"start": command.start, "duration": command.duration}
+    given = vars(command.times)
     try:
         settings = scene.settings.overridden(given)
     except SceneError as error:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from standoff import __version__
+from standoff.bodies.plain_data import counted
 from standoff.cli.arguments import SimulateCommand
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
@@ -172,50 +173,74 @@ def _body_facts(run: SystemRun, number: int) -> dict[str, Any]:
     }
 
 
+class _Units(NamedTuple):
+    """What stands after the numbers: in metres and kilograms the names that everybody knows."""
+
+    length: str
+    force: str
+    torque: str
+    energy: str
+
+    @classmethod
+    def of(cls, length: str) -> _Units:
+        if length == "m":
+            return cls("m", "N", "N m", "J")
+        force, energy = f"mass·{length}/s²", f"mass·{length}²/s²"
+        return cls(length, force, energy, energy)
+
+
 def _lines(scene: SimulationScene, run: SystemRun, written: list[Path]) -> list[str]:
-    operator, unit, energy = scene.operator, scene.length_unit, run.energy
+    operator, unit = scene.operator, _Units.of(scene.length_unit)
+    end, records = run.times[-1] + 0.0, counted(len(run.times), "record")
     lines = [
         line("scene", scene.title),
         line("operator", f"{operator.method}, tracker {operator.tracker}, step {operator.dt:g} s"),
-        line("ticks", f"{scene.ticks} to {run.times[-1]:g} s, {len(run.times)} records"),
+        line("ticks", f"{scene.ticks} to {end:g} s, {records}"),
     ]
     for number, name in enumerate(scene.names):
         if run.system.bodies[number].kind == FREE:
             x, v = run.positions(number)[-1], run.velocities(number)[-1]
-            lines.append(line(name, f"at {_vector(x)} {unit}, speed {np.linalg.norm(v):.6g}"))
+            speed = f"speed {np.linalg.norm(v):.6g} {unit.length}/s"
+            lines.append(line(name, f"at {_vector(x)} {unit.length}, {speed}"))
     for number in range(len(run.system.pairs)):
         force = np.linalg.norm(run.forces[:, number], axis=1).max()
-        lines.append(
-            line(
-                scene.pair_name(number),
-                f"closest {run.distances[:, number].min():.6g} {unit}, greatest force {force:.6g}",
-            )
-        )
+        closest = run.distances[:, number].min() + 0.0
+        told = f"closest {closest:.6g} {unit.length}, greatest force {force:.6g} {unit.force}"
+        lines.append(line(scene.pair_name(number), told))
     if run.coupler is not None:
-        lines += _coupler_lines(_coupler_facts(scene, run.coupler))
-    lines.append(
-        line(
-            "energy",
-            f"kinetic {energy.kinetic[-1]:.6g}, stored {energy.stored[-1]:.6g}, dissipated "
-            f"{energy.dissipated[-1]:.6g}, supplied {energy.supplied[-1]:.6g}",
-        )
-    )
-    drift = np.abs(energy.balance - energy.balance[0]).max()
-    lines.append(line("", f"its balance drifted by {drift:.3g}"))
-    lines.append(line("deepest", f"{run.deepest:.6g} {unit}"))
-    lines.append(line("certified", "all" if run.uncertified == 0 else f"but {run.uncertified}"))
+        lines += _coupler_lines(_coupler_facts(scene, run.coupler), unit)
+    lines += _energy_lines(run, unit)
+    lines.append(line("deepest", f"{run.deepest + 0.0:.6g} {unit.length}"))
+    lines.append(line("certified", _certified_text(run.uncertified)))
     return [*lines, *(line("wrote", str(path)) for path in written)]
 
 
-def _coupler_lines(facts: dict[str, Any]) -> list[str]:
+def _energy_lines(run: SystemRun, unit: _Units) -> list[str]:
+    energy = run.energy
+    told = ", ".join(
+        f"{name} {getattr(energy, name)[-1] + 0.0:.6g} {unit.energy}"
+        for name in ("kinetic", "stored", "dissipated", "supplied")
+    )
+    drift = np.abs(energy.balance - energy.balance[0]).max()
+    return [line("energy", told), line("", f"its balance drifted by {drift:.3g} {unit.energy}")]
+
+
+def _certified_text(uncertified: int) -> str:
+    return "all distances" if uncertified == 0 else f"all distances but {uncertified}"
+
+
+def _coupler_lines(facts: dict[str, Any], unit: _Units) -> list[str]:
     ended = "engaged" if facts["engaged"] else f"let go: {facts['fault']}"
-    force, torque = facts["greatest_force"], facts["greatest_torque"]
-    works = f"the hand gave {facts['device_work']:.6g}, the tool {facts['tool_work']:.6g}"
+    force = f"greatest force {facts['greatest_force']:.6g} {unit.force}"
+    torque = f"torque {facts['greatest_torque']:.6g} {unit.torque}"
+    hand, tool, damper = (
+        f"{facts[name]:.6g} {unit.energy}" for name in ("device_work", "tool_work", "damped")
+    )
     return [
-        line("coupler", f"greatest force {force:.6g}, torque {torque:.6g}, {ended}"),
-        line("", f"{works}; its damper took {facts['damped']:.6g}"),
+        line("coupler", f"{force}, {torque}, {ended}"),
+        line("", f"the hand gave {hand}, the tool {tool}; its damper took {damper}"),
     ]
 
 
 def _vector(x: Any) -> str:
-    return "(" + ", ".join(f"{value:.6g}" for value in x) + ")"
+    return "(" + ", ".join(f"{value + 0.0:.6g}" for value in x) + ")"

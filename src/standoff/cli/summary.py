@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from standoff.bodies.plain_data import counted, without_roundoff
 from standoff.impact import Impact
 from standoff.recording import RecordedEvent, Recording
 from standoff.scene import Scene
@@ -15,7 +16,8 @@ from standoff.scene.reader import Array
 from standoff.tracking import Counts, Proximity, Status
 from standoff.tracking.feedback_facts import feedback_text
 from standoff.tracking.law_options import OfFeedback, Option, options_of
-from standoff.tracking.laws import LAWS
+from standoff.tracking.laws import LAWS, PredictorCorrector
+from standoff.tracking.proximity import shown_size
 
 FIRST_EVENTS = 8
 """How many switching events the summary lists: they fit on a screen with the rest. All of them are
@@ -23,6 +25,16 @@ in the Parquet file and in ``--json``."""
 
 ALWAYS_TOLD = ("predictor", "integrator", "gain")
 """Options of a law that the summary tells also where they are the default."""
+
+NOUNS = {
+    "switches": ("switch", "switches"),
+    "searches": ("search", "searches"),
+    "regularised": ("regularised solve",),
+}
+"""What is counted, one and many, where the count's name with or without its s does not say it."""
+
+COLD_TOLERANCE = float(PredictorCorrector().tolerance)
+"""That of a cold query, in sizes of the pair: the law's default."""
 
 MARGIN = 14
 """Width of the column of names, in characters."""
@@ -33,32 +45,36 @@ def line(name: str, text: str) -> str:
     return f"{name:<{MARGIN}}{text}"
 
 
-def answer_lines(scene: Scene, time: float, answer: Proximity) -> list[str]:
+def answer_lines(
+    scene: Scene, time: float, answer: Proximity, *, verbose: bool = False
+) -> list[str]:
     """Return the lines that tell one answer."""
-    unit = scene.length_unit
+    unit, size = scene.length_unit, shown_size(answer)
+    numbers = [answer.distance, answer.lower_bound, answer.upper_bound]
+    distance, lower, upper = without_roundoff(numbers, size).tolist()
+    on_a, on_b = _vector(answer.point_a, size), _vector(answer.point_b, size)
+    certified = f"yes, {_tolerance_text(COLD_TOLERANCE)}" if answer.certified else "no"
     return [
         *_scene_lines(scene),
         *(line("", note) for note in scene.notes),
         line("time", f"{_time(time)}"),
-        line("distance", f"{answer.distance:.15g} {unit}"),
-        line("lower bound", f"{answer.lower_bound:.15g} {unit}"),
-        line("upper bound", f"{answer.upper_bound:.15g} {unit}"),
-        line(
-            f"on {scene.pair[0]}"[:MARGIN], f"{_vector(answer.point_a)} {unit}, {answer.feature_a}"
-        ),
-        line(
-            f"on {scene.pair[1]}"[:MARGIN], f"{_vector(answer.point_b)} {unit}, {answer.feature_b}"
-        ),
-        line("normal", f"{_vector(answer.normal)} from {scene.pair[0]} to {scene.pair[1]}"),
-        line("certified", "yes" if answer.certified else "no"),
-        *_advice({answer.status: 1}, 1),
-        line("work", _work(answer.counts)),
+        line("distance", f"{distance:.15g} {unit}"),
+        line("lower bound", f"{lower:.15g} {unit}"),
+        line("upper bound", f"{upper:.15g} {unit}"),
+        line(_on(scene.pair[0]), f"{on_a} {unit}, {answer.feature_a}"),
+        line(_on(scene.pair[1]), f"{on_b} {unit}, {answer.feature_b}"),
+        line("normal", f"{_vector(answer.normal, 1.0)} from {scene.pair[0]} to {scene.pair[1]}"),
+        line("certified", certified),
+        *([] if answer.certified else [line("", f"{answer.status.name}: {answer.status.advice}")]),
+        line("work", _work(answer.counts, verbose=verbose)),
     ]
 
 
-def impact_lines(scene: Scene, found: Impact) -> list[str]:
+def impact_lines(scene: Scene, found: Impact, *, verbose: bool = False) -> list[str]:
     """Return the lines that tell a time of impact and the answer at that time."""
-    lines = answer_lines(scene, found.time, found.proximity)
+    lines = answer_lines(scene, found.time, found.proximity, verbose=verbose)
+    instants = counted(found.evaluations, "instant")
+    queries = counted(found.queries, "query", "queries")
     latest = "none" if np.isnan(found.latest) else f"{found.latest:.12g} s"
     at = next(k for k, text in enumerate(lines) if text.startswith("time"))
     lines[at : at + 1] = [
@@ -67,24 +83,28 @@ def impact_lines(scene: Scene, found: Impact) -> list[str]:
         line("", found.status.advice),
         line("time", f"{found.time:.12g} s"),
         line("latest", latest),
-        line("looked at", f"{found.evaluations} instants, {found.queries} queries"),
+        line("looked at", f"{instants}, {queries}"),
     ]
     return lines
 
 
-def recording_lines(scene: Scene, recording: Recording, written: Sequence[Path]) -> list[str]:
+def recording_lines(
+    scene: Scene, recording: Recording, written: Sequence[Path], *, verbose: bool = False
+) -> list[str]:
     """Return the lines that sum up a run."""
     frames, certified = len(recording.time), int(np.count_nonzero(recording.certified))
+    share = _share(certified, frames)
+    tolerance = _tolerance_text(float(recording.info.options["tolerance"]))
     return [
         *_scene_lines(scene),
         *(line("", note) for note in scene.notes),
         line("law", _law_text(recording)),
         line("frames", _frames_text(recording)),
         line("closest", _closest_text(scene, recording)),
-        line("certified", f"{certified} of {frames} frames, {_share(certified, frames)}"),
+        line("certified", f"{certified} of {counted(frames, 'frame')}, {share}, {tolerance}"),
         *_advice(recording.status_frames(), frames),
         line("worst gap", _gap_text(scene, recording)),
-        line("work", _work(recording.total_counts())),
+        line("work", _work(recording.total_counts(), verbose=verbose)),
         *_event_lines(scene, recording.events),
         *(line("wrote" if k == 0 else "", str(path)) for k, path in enumerate(written)),
     ]
@@ -162,14 +182,31 @@ def _share(part: int, whole: int) -> str:
 
 def _advice(statuses: dict[Status, int], frames: int) -> list[str]:
     return [
-        line("", f"{status.name} in {count} of {frames}: {status.advice}")
+        line("", f"{status.name} in {count} of {counted(frames, 'frame')}: {status.advice}")
         for status, count in statuses.items()
         if not status.certified
     ]
 
 
-def _work(counts: Counts) -> str:
-    return ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts._asdict().items())
+def _work(counts: Counts, *, verbose: bool) -> str:
+    told = [
+        counted(n, *NOUNS.get(name, (name.removesuffix("s").replace("_", " "),)))
+        for name, n in counts._asdict().items()
+        if n or verbose
+    ]
+    return ", ".join(told) or "none"
+
+
+def _tolerance_text(tolerance: float) -> str:
+    if np.isinf(tolerance):
+        return "no tolerance given"
+    return f"tolerance {tolerance:g} of the pair's size"
+
+
+def _on(name: str) -> str:
+    """The name of the line of a witness point, with a space before what it says."""
+    text = f"on {name}"
+    return text if len(text) < MARGIN else f"{text[: MARGIN - 2]}…"
 
 
 def _event_lines(scene: Scene, events: Sequence[RecordedEvent]) -> list[str]:
@@ -186,5 +223,5 @@ def _event_lines(scene: Scene, events: Sequence[RecordedEvent]) -> list[str]:
     return [*lines, *(line("", text) for text in told)]
 
 
-def _vector(vector: Array) -> str:
-    return "(" + ", ".join(f"{value:.9g}" for value in vector) + ")"
+def _vector(vector: Array, size: float) -> str:
+    return "(" + ", ".join(f"{value:.9g}" for value in without_roundoff(vector, size)) + ")"

@@ -50,7 +50,7 @@ def run_track(command: TrackCommand) -> int:
         recordings = [record(run.scene, run.settings, progress) for run in runs]
     done = list(zip(runs, recordings, strict=True))
     write_whole({path: write for run, told in done for path, write in run.files(told).items()})
-    if command.json:
+    if command.report.json:
         print(
             pairs_text(
                 whole,
@@ -61,7 +61,11 @@ def run_track(command: TrackCommand) -> int:
             )
         )
     else:
-        texts = ["\n".join(recording_lines(run.scene, told, run.written())) for run, told in done]
+        verbose = command.report.verbose
+        texts = [
+            "\n".join(recording_lines(run.scene, told, run.written(), verbose=verbose))
+            for run, told in done
+        ]
         print("\n\n".join(texts))
     certified = all(recording.certified.all() for recording in recordings)
     return ExitCode.DONE if certified else ExitCode.NOT_CERTIFIED
@@ -77,8 +81,8 @@ class _Run(NamedTuple):
 
     @classmethod
     def of(cls, scene: Scene, command: TrackCommand, scenes: tuple[Scene, ...]) -> _Run:
-        output = target_of(command.output, "-o", scene, scenes)
-        plot = target_of(command.plot, "--plot", scene, scenes)
+        output = target_of(command.files.output, "-o", scene, scenes)
+        plot = target_of(command.files.plot, "--plot", scene, scenes)
         return cls(scene, settings_of(scene, command), output, plot)
 
     def check_files(self) -> None:
@@ -120,9 +124,10 @@ def settings_of(scene: Scene, command: TrackCommand) -> TrackSettings:
     CommandError
         If an option is not one that a scene could have.
     """
-    texts = vars(command.options) | {"step": command.step}
+    times = vars(command.times)
+    texts = vars(command.options) | vars(command.paper_options) | {"step": times["step"]}
     given = {name: None if text is None else _value(text) for name, text in texts.items()}
-    given |= {name: getattr(command, name) for name in ("law", "start", "duration")}
+    given |= {"law": command.options.law, "start": times["start"], "duration": times["duration"]}
     try:
         return scene.settings.overridden(given)
     except SceneError as error:

@@ -25,6 +25,7 @@ from standoff.motion import (
     Twist,
     read_pose_samples,
 )
+from standoff.scene.degrees import ENDING, in_radians, with_degrees
 from standoff.scene.files import existing_file
 from standoff.scene.placements import in_space, read_pose
 from standoff.scene.reader import Array, Table
@@ -133,6 +134,10 @@ def _orientation(table: Table) -> Orientation:
     return cast(Orientation, table.choice("orientation", get_args(Orientation), "fixed"))
 
 
+ANGLES = ("angular_rate", "rate", "phase")
+ANGLE_VECTORS = ("angular", "spin")
+"""Keys in rad or rad/s, which may be given in degrees under another."""
+
 _WINDING = ("centre", "rate", "phase", "orientation")
 
 MOTIONS: Mapping[str, MotionKind] = {
@@ -162,7 +167,9 @@ def read_motion(table: Table, placement: Pose | None) -> Motion:
         to be read, or a placement beside a motion that gives the whole pose itself.
     """
     kind = MOTIONS[table.choice("kind", list(MOTIONS))]
-    table.expect("kind", "offset", "spin", *kind.keys)
+    own = [key + ENDING for key in kind.keys if key in (*ANGLES, *ANGLE_VECTORS)]
+    table = in_radians(table, ANGLES, ANGLE_VECTORS)
+    table.expect("kind", "offset", *with_degrees(["spin"]), *kind.keys, *own)
     if placement is not None and not kind.placed:
         raise table.error(
             "this kind of motion gives the whole pose, and the body has a placement too; "

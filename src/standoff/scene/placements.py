@@ -7,7 +7,10 @@ import numpy as np
 from standoff.motion import Pose
 from standoff.scene.reader import Array, Table
 
-ORIENTATIONS = ("quaternion_wxyz", "quaternion_xyzw", "rotation_vector", "angle", "matrix")
+ORIENTATIONS = (
+    *("quaternion_wxyz", "quaternion_xyzw", "rotation_vector", "rotation_vector_degrees"),
+    *("angle", "angle_degrees", "matrix"),
+)
 """The ways to write an orientation; a pose uses at most one of them."""
 
 
@@ -45,8 +48,12 @@ def _oriented(table: Table, given: str, position: Array) -> Pose:
         return Pose.from_xyzw(table.vector(given, 4), position)
     if given == "rotation_vector":
         return Pose.exp(table.vector(given, 3), position)
+    if given == "rotation_vector_degrees":
+        return Pose.exp(np.radians(table.vector(given, 3)), position)
     if given == "angle":
         return Pose.exp((0.0, 0.0, table.number(given)), position)
+    if given == "angle_degrees":
+        return Pose.exp((0.0, 0.0, np.radians(table.number(given))), position)
     return _from_matrix(table, position)
 
 

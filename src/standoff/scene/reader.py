@@ -5,7 +5,6 @@ A `Table` knows its file and its dotted key path, so that each complaint names t
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -17,16 +16,10 @@ import numpy.typing as npt
 from standoff import real_numbers
 from standoff.errors import StandoffError
 from standoff.scene.errors import SceneError
+from standoff.spellings import nearest
 
 Array = npt.NDArray[np.float64]
 Value = TypeVar("Value")
-
-NEAREST_CUTOFF = 0.5
-"""Least likeness (difflib ratio, 0 to 1) at which a known name is suggested for an unknown one.
-
-Half catches swapped, missing and doubled letters in short keys, and stays silent on a word that
-has nothing to do with any known key.
-"""
 
 SHOWN_CHARACTERS = 60
 """Longest piece of an offending value that a message repeats, in characters: one terminal line."""
@@ -41,13 +34,6 @@ def one_of(names: Iterable[str]) -> str:
     """Return names as a sentence lists them: ``'a', 'b' or 'c'``."""
     quoted = [f"'{name}'" for name in names]
     return " or ".join(filter(None, [", ".join(quoted[:-1]), *quoted[-1:]]))
-
-
-def nearest(name: str, known: Iterable[str], cutoff: float = NEAREST_CUTOFF) -> str | None:
-    """Return the known name most like `name`, or None when none is like it."""
-    folded = {candidate.casefold(): candidate for candidate in known}
-    found = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=cutoff)
-    return folded[found[0]] if found else None
 
 
 def unknown_name(name: str, known: Iterable[str], noun: str) -> str:

@@ -9,7 +9,7 @@ from standoff_studies.accuracy.options import AccuracyOptions
 
 @dataclass(frozen=True)
 class AccuracyCommand(AccuracyOptions):
-    """Measure the errors of distance, witness points and normal by pair of shapes.
+    """Measure the errors of the answers, by pair of shapes.
 
     The pairs are exact by construction, at gaps of 1e-6, 1e-3 and 1 and depths of 1e-6, 1e-3 and
     1e-1 of their size.

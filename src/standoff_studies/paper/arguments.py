@@ -9,7 +9,7 @@ from standoff_studies.paper.options import PaperOptions
 
 @dataclass(frozen=True)
 class PaperCommand(PaperOptions):
-    """Make the figures of the paper, their data, and a report that sets it beside the measured.
+    """Make the paper's figures, their data, and a report.
 
     Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 finished, but a figure failed.
     """

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from importlib import import_module
 
-from standoff.scene.reader import nearest
+from standoff.spellings import nearest
 from standoff_studies.paper.figure import Artwork, Entry
 
 

@@ -9,7 +9,9 @@ from standoff_studies.soak.options import SoakOptions
 
 @dataclass(frozen=True)
 class SoakCommand(SoakOptions):
-    """Track random pairs, check every answer by support functions, and stop at the first failure.
+    """Track random pairs and check every answer.
+
+    By support functions; it stops at the first failure.
 
     Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 a check failed.
     """

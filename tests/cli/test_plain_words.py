@@ -1,0 +1,88 @@
+"""What the command line says: help that can be read, counts in words, units, misspelt commands."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from standoff.bodies.plain_data import counted
+from standoff.cli.arguments import OWN
+
+Standoff = Callable[..., Any]
+WIDTH = 100
+
+
+def test_help_has_one_line_a_command_and_examples(standoff: Standoff) -> None:
+    helped = standoff("--help")
+    assert helped.code == 0
+    for name in (*OWN, "paper", "soak", "accuracy"):
+        (found,) = re.findall(rf"^  {name} +(.*)$", helped.out, re.MULTILINE)
+        assert found.endswith(".")
+    assert max(map(len, helped.out.splitlines())) <= WIDTH
+    assert "\nExamples:\n  standoff distance " in helped.out
+    assert standoff().out == standoff("-h").out == helped.out
+
+
+@pytest.mark.parametrize("name", sorted(set(OWN) - {"warmup"}))
+def test_help_of_a_command_has_an_example(standoff: Standoff, name: str) -> None:
+    assert f"Example: standoff {name} " in standoff(name, "--help").out
+
+
+def test_options_of_track_are_in_groups(standoff: Standoff) -> None:
+    told = standoff("track", "--help").out
+    places = [told.index(f" {group} options ") for group in ("file", "report", "time", "law")]
+    paper = told.index(" paper law options ")
+    assert sorted(places) == places
+    assert told.index("--deadline") < paper < told.index("--integrator")
+
+
+@pytest.mark.parametrize(
+    ("given", "meant"), [("trak", "track"), ("distanc", "distance"), ("sok", "soak")]
+)
+def test_a_misspelt_command_gets_a_suggestion(standoff: Standoff, given: str, meant: str) -> None:
+    ended = standoff(given, "x.toml")
+    assert (ended.code, ended.out) == (2, "")
+    assert ended.err == (
+        f"standoff: unknown command '{given}'; did you mean '{meant}'? "
+        "standoff --help lists the commands\n"
+    )
+
+
+def test_a_word_like_no_command_gets_none(standoff: Standoff) -> None:
+    ended = standoff("zzzz")
+    assert ended.err == ("standoff: unknown command 'zzzz'; standoff --help lists the commands\n")
+
+
+def test_counts_are_told_where_they_are_not_zero(standoff: Standoff, passing: Path) -> None:
+    def work(*options: str) -> dict[str, int]:
+        told = standoff("distance", passing, *options).out
+        (line,) = re.findall(r"^work +(.*)$", told, re.MULTILINE)
+        return {name: int(n) for n, name in re.findall(r"(\d+) ([a-z ]+)", line)}
+
+    few, every = work(), work("--verbose")
+    assert 0 < len(few) < len(every) == 11
+    assert few == {name: n for name, n in every.items() if n}
+    assert "regularised solves" in every
+
+
+def test_one_is_no_plural() -> None:
+    told = [counted(n, "query", "queries") for n in (0, 1, 2)]
+    assert told == ["0 queries", "1 query", "2 queries"]
+    assert counted(1, "frame") == "1 frame"
+
+
+def test_no_tolerance_is_told_as_none(standoff: Standoff, passing: Path) -> None:
+    told = standoff("track", passing, "--tolerance", "inf").out
+    assert ", no tolerance given\n" in told
+
+
+def test_coordinates_at_roundoff_are_zeros(standoff: Standoff, passing: Path) -> None:
+    text = passing.read_text().replace("-1.0, 0.2, 0.9", "-1.0, 1e-18, -1e-19")
+    passing.write_text(text)
+    told = standoff("distance", passing).out
+    assert re.search(r"^normal +\(1, 0, 0\) from tool to part$", told, re.MULTILINE)
+    assert "e-1" not in told.replace("1e-10 of the pair", "")
