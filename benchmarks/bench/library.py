@@ -77,16 +77,9 @@ def steps_in_place(pair: Pair, frames: Frames) -> Contender:
     kept: dict[int, Found] = {}
 
     def run(count: int, keep: bool = False) -> None:
-        buffer = tracker.buffer(begin)
-        turn_a, place_a = buffer.pose_a[:9].reshape(3, 3), buffer.pose_a[9:]
-        turn_b, place_b = buffer.pose_b[:9].reshape(3, 3), buffer.pose_b[9:]
-        rate_a, rate_b = buffer.twist_a, buffer.twist_b
-        step_into = tracker.step_into
+        buffer, step_into = tracker.buffer(begin), tracker.step_into
         for pose_a, pose_b, twist_a, twist_b in columns[1 : count + 1]:
-            turn_a[:], place_a[:] = pose_a[:3, :3], pose_a[:3, 3]
-            turn_b[:], place_b[:] = pose_b[:3, :3], pose_b[:3, 3]
-            rate_a[:], rate_b[:] = twist_a, twist_b
-            step_into(buffer)
+            step_into(buffer, pose_a, pose_b, twist_a, twist_b)
             if keep:
                 kept[len(kept) + 1] = of_proximity(buffer.proximity())
 

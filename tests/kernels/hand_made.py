@@ -7,6 +7,7 @@ import numpy as np
 
 import standoff as so
 from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, new_counts
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.values import NO_CHART, Pair, Place, Pose, Side, Work, together
 
 BOX, POINT = so.shapes.box(2.0, 2.0, 2.0), so.shapes.point()
@@ -56,7 +57,8 @@ def place_of(side: Side) -> Place:
 
 
 def new_work() -> Work:
-    return Work(new_counts(), np.zeros(MAX_EVENTS * EVENT_COLUMNS))
+    polytope = np.zeros(N_POLYTOPE)
+    return Work(new_counts(), np.zeros(MAX_EVENTS * EVENT_COLUMNS), polytope, polytope)
 
 
 def unit(*x: float) -> tuple[float, float, float]:

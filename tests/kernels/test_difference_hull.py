@@ -8,19 +8,18 @@ from itertools import product
 
 import numpy as np
 import pytest
+from hull_making import SIZE, alone, assert_closed, hull_of, seeded
 from scipy.spatial import ConvexHull
 
 from draws import draws
 from standoff.kernels.depth.difference_hull import (
     BROKEN,
-    CLOSED,
     FACETS,
     GREW,
     NO_GAIN,
     POINTS,
     add_facet,
-    begin_hull,
-    empty_hull,
+    close_facet,
     facet_normal,
     farthest_from,
     grow,
@@ -32,38 +31,13 @@ from standoff.kernels.tolerances import PRISM
 
 CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
 CROSS = np.vstack([np.eye(3), -np.eye(3)])
-SIZE = 4.0
-
-
-def seeded(points, planar=0, size=SIZE):
-    """(hull, solid, direction) over points."""
-    hull = empty_hull(planar)
-    hull[1][: len(points)] = points
-    return hull, *begin_hull(hull, len(points), size)
-
-
-def assert_closed(hull):
-    """Every directed side has its reverse once, all points lie below all facets, Euler holds."""
-    sizes, points, corners, facets = hull
-    sides = [
-        (int(corners[m, k]), int(corners[m, (k + 1) % 3]))
-        for m in range(sizes[FACETS])
-        for k in range(3)
-    ]
-    assert len(set(sides)) == len(sides)
-    assert {side[::-1] for side in sides} == set(sides)
-    used = {i for side in sides for i in side}
-    assert len(used) - len(sides) // 2 + sizes[FACETS] == 2
-    for m in range(sizes[FACETS]):
-        heights = (points[: sizes[POINTS]] - points[corners[m, 0]]) @ facets[m, :3]
-        assert heights.max() <= 1e-9 * SIZE
 
 
 @pytest.mark.parametrize(("points", "facets", "radius"), [(CUBE, 12, 1.0), (CROSS, 8, 3**-0.5)])
 def test_a_hull_of_points(points, facets, radius):
     hull, solid, _ = seeded(points)
     assert solid
-    assert hull[0][FACETS] == facets
+    assert hull.sizes[FACETS] == facets
     assert_closed(hull)
     at, offset = nearest_facet(hull, False)
     assert radius - 1e-13 <= offset <= radius
@@ -72,16 +46,16 @@ def test_a_hull_of_points(points, facets, radius):
 
 def test_it_grows_by_points_outside_alone():
     hull, _, _ = seeded(CUBE)
-    assert grow(hull, (0.5, 0.5, 0.9), SIZE) == NO_GAIN
-    assert grow(hull, (0.3, -0.2, 1.0), SIZE) == NO_GAIN  # in a facet
-    assert hull[0][FACETS] == 12
-    before = hull[0][POINTS]
-    assert grow(hull, (0.0, 0.0, 2.0), SIZE) == GREW
-    assert (hull[0][POINTS], hull[0][FACETS]) == (before + 1, 14)
+    assert grow(hull, alone((0.5, 0.5, 0.9)), SIZE) == NO_GAIN
+    assert grow(hull, alone((0.3, -0.2, 1.0)), SIZE) == NO_GAIN  # in a facet
+    assert hull.sizes[FACETS] == 12
+    before = hull.sizes[POINTS]
+    assert grow(hull, alone((0.0, 0.0, 2.0)), SIZE) == GREW
+    assert (hull.sizes[POINTS], hull.sizes[FACETS]) == (before + 1, 14)
     assert_closed(hull)
     assert nearest_facet(hull, False)[1] == pytest.approx(1.0, abs=1e-13)
     for x in CROSS * 2.0:
-        grow(hull, tuple(x), SIZE)
+        grow(hull, alone(x), SIZE)
     # every side of the cube is raised: its edges are now ridges in line with pairs of peaks
     assert nearest_facet(hull, False)[1] == pytest.approx(math.sqrt(2.0), abs=1e-13)
 
@@ -92,11 +66,11 @@ def test_random_points_have_the_radius_of_another_hull(number):
     hull, solid, _ = seeded(points[:8], size=10.0)
     assert solid
     for x in points[8:]:
-        assert grow(hull, tuple(x.tolist()), 10.0) != BROKEN
+        assert grow(hull, alone(x), 10.0) != BROKEN
     assert_closed(hull)
     other = ConvexHull(points)
     assert nearest_facet(hull, False)[1] == pytest.approx(-other.equations[:, 3].max(), abs=1e-12)
-    assert hull[0][FACETS] == len(other.simplices)
+    assert hull.sizes[FACETS] == len(other.simplices)
 
 
 @pytest.mark.parametrize(
@@ -112,7 +86,7 @@ def test_flat_points_give_a_direction_square_to_them(points):
     assert not solid
     assert np.linalg.norm(way) == pytest.approx(1.0, abs=1e-15)
     np.testing.assert_allclose((points - points[0]) @ way, 0.0, atol=1e-14)
-    assert hull[0][FACETS] == 0
+    assert hull.sizes[FACETS] == 0
 
 
 def test_a_planar_pair_s_hull_is_a_prism():
@@ -122,13 +96,13 @@ def test_a_planar_pair_s_hull_is_a_prism():
     hull, solid, _ = seeded(points, planar=1)
     assert solid
     assert nearest_facet(hull, False)[1] == pytest.approx(1.0, abs=1e-13)
-    assert grow_difference(hull, (0.5, 0.5, 0.0), SIZE) == NO_GAIN
-    before = hull[0][POINTS]
-    assert grow_difference(hull, (3.0, 0.0, 0.0), SIZE) == GREW
-    assert hull[0][POINTS] == before + 2
+    assert grow_difference(hull, alone((0.5, 0.5, 0.0)), SIZE) == NO_GAIN
+    before = hull.sizes[POINTS]
+    assert grow_difference(hull, alone((3.0, 0.0, 0.0)), SIZE) == GREW
+    assert hull.sizes[POINTS] == before + 2
     assert_closed(hull)
     for x in ((-3.0, 0.0, 0.0), (0.0, 3.0, 0.0), (0.0, -3.0, 0.0)):
-        assert grow_difference(hull, x, SIZE) == GREW
+        assert grow_difference(hull, alone(x), SIZE) == GREW
     # the square is now inside |x| + |y| = 3
     assert nearest_facet(hull, False)[1] == pytest.approx(3.0 / math.sqrt(2.0), abs=1e-12)
 
@@ -136,35 +110,35 @@ def test_a_planar_pair_s_hull_is_a_prism():
 def test_facets_that_are_closed_are_passed_over():
     hull, _, _ = seeded(CROSS)
     first, _ = nearest_facet(hull, False)
-    hull[3][first, CLOSED] = 1.0
+    close_facet(hull, first)
     second, offset = nearest_facet(hull, True)
     assert second != first
     assert offset == pytest.approx(3**-0.5, abs=1e-13)
     assert nearest_facet(hull, False)[0] == first
-    hull[3][: hull[0][FACETS], CLOSED] = 1.0
+    for m in range(hull.sizes[FACETS]):
+        close_facet(hull, m)
     assert nearest_facet(hull, True) == (-1, math.inf)
 
 
 def test_points_in_line_make_no_facet():
-    hull = empty_hull(0)
-    hull[1][:3] = np.outer([0.0, 1.0, 2.0], [1.0, 1.0, 0.0])
+    hull = hull_of(np.outer([0.0, 1.0, 2.0], [1.0, 1.0, 0.0]))
     assert not add_facet(hull, 0, 1, 2, SIZE)
-    assert hull[0][FACETS] == 0
+    assert hull.sizes[FACETS] == 0
 
 
 def test_a_rim_in_two_loops_is_none():
     """Two facets without a side in common have no one horizon; two that share one have."""
-    corners = np.array([[0, 1, 2], [3, 4, 5], [0, 2, 3]])
-    rim = np.empty((9, 2), dtype=np.int64)
+    corners = np.array([0, 1, 2, 3, 4, 5, 0, 2, 3])
+    rim = np.empty(18, dtype=np.int64)
     assert horizon(corners, np.array([0, 1]), 2, rim) == 0
     assert horizon(corners, np.array([0, 2]), 2, rim) == 4
-    loop = rim[:4].tolist()
+    loop = rim.reshape(-1, 2)[:4].tolist()
     assert [side[1] for side in loop] == [side[0] for side in loop[1:] + loop[:1]]
     assert sorted(map(sorted, loop)) == [[0, 1], [0, 3], [1, 2], [2, 3]]
 
 
 def test_the_farthest_from_a_point_a_line_and_a_plane():
-    points = np.array([[0.0, 0, 0], [5, 0, 0], [4, 3, 0], [1, 1, 2]])
+    points = hull_of([[0.0, 0, 0], [5, 0, 0], [4, 3, 0], [1, 1, 2]]).points
     zero, x, y = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
     assert farthest_from(points, 4, 1, zero, zero, zero) == (1, 5.0)
     assert farthest_from(points, 4, 2, zero, x, zero) == (2, 3.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import shutil
 import subprocess
 import sys
@@ -136,4 +137,15 @@ def test_a_damaged_file_of_the_cache_is_told_and_compiled_anew(
         file.write_bytes(file.read_bytes()[:100])
     for file in copied.rglob("queries.pcurve_jet*.nbi"):
         file.write_bytes(b"nothing of use")
+    assert jets(copied) == ("True", compiled[1])
+
+
+def test_an_index_of_other_sources_is_passed_over(compiled: tuple[Path, str], copied: Path) -> None:
+    """It may name a class that those sources had: unpickling it would end the first call."""
+    for file in copied.rglob("queries.curve_jet*.nbi"):
+        with file.open("rb") as index:
+            version = pickle.load(index)
+        gone = b"cstandoff.kernels.entries.queries\nGone\n."
+        older = version.rsplit(" ", 1)[0] + " another digest"
+        file.write_bytes(pickle.dumps(older, protocol=-1) + gone)
     assert jets(copied) == ("True", compiled[1])

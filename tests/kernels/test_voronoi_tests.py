@@ -43,7 +43,8 @@ def switch(
 ) -> bool:
     body = pointer(ints, 0), pointer(reals, 0)
     place = Place(mode[0], mode[1], mode[2], mode[3], q[0], q[1], q[2], q[3])
-    work = Work(pointer(counts, 0), pointer(log, 0))
+    none = pointer(log, 0)
+    work = Work(pointer(counts, 0), pointer(log, 0), none, none)
     pair = Pair(body[0], body[1], body[0], body[1])
     switched, place = voronoi_switch(pair, 0, (x[0], x[1], x[2]), span, place, RESET_FOOT, work)
     mode[0], mode[1], q[0], q[1] = place.feature_a, place.chart_a, place.u, place.v

@@ -159,3 +159,68 @@ def test_one_tracker_in_several_threads() -> None:
         thread.join()
     assert len(told[0]) == 399
     assert all(each == told[0] for each in told)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("twisted", [True, False])
+def test_a_buffer_takes_poses_in_any_form_as_a_step_does(form: str, twisted: bool) -> None:
+    tracker = so.Tracker(LENS, TOOL)
+    state = tracker.start(REST, placed(0))
+    buffer = tracker.buffer(state)
+    for k in range(1, 6):
+        pose = FORMS[form](placed(k))
+        twists = (STILL, np.array([0.1, 0.2, -0.3, 1.0, 2.0, 0.5])) if twisted else ()
+        state, answer = tracker.step(state, REST, pose, *twists)
+        assert tracker.step_into(buffer, REST, pose, *twists) == answer.distance
+        np.testing.assert_array_equal(buffer.out, answer.row)
+        np.testing.assert_array_equal(buffer.state, state.data)
+        assert buffer.repaired == 0
+
+
+def test_planar_poses_given_to_a_buffer_are_looked_at() -> None:
+    disc = so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (1, 0), (0, 1))])
+    tracker = so.Tracker(disc, so.shapes.point())
+    away = np.eye(4)
+    away[0, 3] = 2.0
+    buffer = tracker.buffer(tracker.start(np.eye(4), away))
+    assert tracker.step_into(buffer, np.eye(4), away) == pytest.approx(1.0, abs=1e-15)
+    away[2, 3] = 0.5
+    with pytest.raises(ValueError, match="planar body out of z = 0"):
+        tracker.step_into(buffer, np.eye(4), away)
+
+
+def test_what_a_buffer_refuses_leaves_its_state() -> None:
+    tracker = so.Tracker(LENS, TOOL)
+    buffer = tracker.buffer(tracker.start(REST, placed(0)))
+    tracker.step_into(buffer, REST, placed(1))
+    before, out = buffer.state.copy(), buffer.out.copy()
+    mirrored, last_row, short = placed(2), placed(2), placed(2)[:3]
+    mirrored[:3, 0] *= -1.0
+    last_row[3, 0] = 1.0
+    twist = np.full(6, np.nan)
+    refused = {
+        "mirrored": (REST, mirrored),
+        "last row": (REST, last_row),
+        "pose": (short, REST),
+        "finite": (REST, placed(2), twist),
+    }
+    for why, given in refused.items():
+        with pytest.raises(ValueError, match=why):
+            tracker.step_into(buffer, *given)
+        np.testing.assert_array_equal(buffer.state, before)
+        np.testing.assert_array_equal(buffer.out, out)
+    with pytest.raises((TypeError, ValueError)):
+        tracker.step_into(buffer, REST)  # one pose alone
+
+
+def test_a_rounded_pose_given_to_a_buffer_is_repaired_and_counted() -> None:
+    tracker, rounded = so.Tracker(LENS, TOOL), placed(1)
+    turned = np.array([[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]])
+    rounded[:3, :3] = turned + 1e-8
+    state = tracker.start(REST, placed(0))
+    buffer = tracker.buffer(state)
+    _, answer = tracker.step(state, REST, rounded)
+    assert tracker.step_into(buffer, REST, rounded) == answer.distance
+    assert buffer.repaired == answer.repaired == 1
+    tracker.step_into(buffer, REST, placed(2))
+    assert buffer.repaired == 0

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 import standoff as so
-from standoff.kernels.entries import queries
-from standoff.kernels.entries import tracker as kernels
+from standoff.kernels.entries import blocks, queries
 
 JITTED = os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
 pytestmark = pytest.mark.skipif(not JITTED, reason="nothing is compiled under NUMBA_DISABLE_JIT")
@@ -169,14 +168,14 @@ def test_a_first_formula_body_compiles_its_own_formula_before_the_loop():
 def test_an_array_of_the_wrong_kind_is_refused_and_compiles_nothing():
     tracker = so.Tracker(so.shapes.sphere(0.3), so.shapes.sphere(0.2), 1e-2)
     state = tracker.start(np.eye(4), so.Pose(np.eye(3), [2.0, 0.0, 0.0]))
-    before = len(kernels.step_predicted.signatures)
+    before = len(blocks.step_predicted.signatures)
     frozen = state.data.copy()
     frozen.flags.writeable = False
     with pytest.raises(TypeError, match="block is readonly array"):
-        kernels.step_predicted(tracker.table.address, frozen)
+        blocks.step_predicted(tracker.table.address, frozen)
     with pytest.raises(TypeError):  # of a terse entry, whose caller converts them
-        kernels.value_predicted(tracker.table.address, *[frozen] * 5, 1e-2, frozen)
+        blocks.value_predicted(tracker.table.address, *[frozen] * 5, 1e-2, frozen)
     with pytest.raises(TypeError, match="reals is array\\(float32"):
         queries.curve_jet(np.zeros(3, dtype=np.float32), 0, 0, 0.5)
-    assert len(kernels.step_predicted.signatures) == before
-    assert len(kernels.value_predicted.signatures) == before
+    assert len(blocks.step_predicted.signatures) == before
+    assert len(blocks.value_predicted.signatures) == before

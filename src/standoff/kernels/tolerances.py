@@ -211,6 +211,8 @@ MAX_PROBES = 320
 POLISHED = 1e-5
 # Other minima that a proven search still tries, where one might be less by DEPTH_PROOF.
 MAX_RIVALS = 8
+# Other minima that a frame tries which goes on from the polytope of the last: more were before.
+KEPT_RIVALS = 2
 # Minima nearer to each other than this (chord) are one.
 SAME_MINIMUM = 0.06
 # A point is above a facet from here on (in contact scales): below it is coplanar.
@@ -236,3 +238,9 @@ STANDSTILL = 1e-12
 # Radians between level and tilted, where a flat contact of simulated bodies ends: far above the
 # tilt of bodies at rest on each other (depth over size), far below that of one that has tipped.
 FLAT_TILT = 0.02
+
+# Jacobi's sweeps end where the squares off the diagonal sum to this part of those on it: by then a
+# rotation changes no digit.
+JACOBI_REST = 1e-36
+# At most so many sweeps: 4 x 4 and 8 x 8 matrices take five to nine.
+JACOBI_SWEEPS = 30

@@ -76,10 +76,13 @@ class Hit(NamedTuple):
 
 
 class Work(NamedTuple):
-    """What is written on the way: counts and log of ``events``, as pointers."""
+    """What is written on the way: counts and log of ``events``, as pointers; and the polytope that
+    the frame before has kept, and the one that this frame keeps (``pair.polytope_layout``)."""
 
     counts: Any
     events: Any
+    last_polytope: Any
+    polytope: Any  # may be the same
 
 
 class Found(NamedTuple):

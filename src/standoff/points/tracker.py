@@ -36,11 +36,11 @@ from standoff.points.tolerances import ENTRY_INSTANT, TIE
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.shown_names import hides
+from standoff.tracking.block import Block
 from standoff.tracking.choices import positive_number
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw
 from standoff.tracking.old_spellings import takes_a_law
-from standoff.tracking.rows import Block
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker

@@ -14,6 +14,7 @@ from standoff.errors import StandoffTypeError
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.entries.preparing import prepare
 from standoff.kernels.pair import events as N
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
 from standoff.motion import Fixed, Pose, PoseLike, TwistLike
 from standoff.motion.pose_function import path_of
@@ -21,6 +22,7 @@ from standoff.real_numbers import shown
 from standoff.recording.instants import Motion, Step, located_events
 from standoff.recording.recording import RecordedEvent, Recording, RunInfo
 from standoff.recording.times import even_times
+from standoff.tracking.block import Block
 from standoff.tracking.choices import positive_number
 from standoff.tracking.inputs import (
     check_in_plane,
@@ -32,7 +34,7 @@ from standoff.tracking.inputs import (
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.old_spellings import takes_a_tracker
 from standoff.tracking.proximity import Event, Proximity
-from standoff.tracking.rows import Block, poses_of, twists_of
+from standoff.tracking.rows import poses_of, twists_of
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
@@ -309,7 +311,10 @@ class _Run:
     ) -> Array:
         """Answer frames at .. end - 1 in compiled code; returns the last one's state."""
         tracker, part = self.tracker, slice(at - first, end - first)
-        data, log = state.data.copy(), np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
+        data = np.zeros(K.N_STATE + N_POLYTOPE)
+        known = state.warm_start
+        data[: len(known)] = known
+        log = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
         rows = self.answers[at:end]
         refused, _ = kernels.run(
             tracker.packed,

@@ -16,7 +16,7 @@ class AddressTable:
     Parameters
     ----------
     arrays : tuple of arrays
-        In the order of ``TABLE_...`` in ``standoff.kernels.entries.tracker``.
+        In the order of ``TABLE_...`` in ``standoff.kernels.entries.blocks``.
 
     Attributes
     ----------

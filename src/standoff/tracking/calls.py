@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.packing import Ints
+from standoff.kernels.entries import blocks
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.state import arrays as K
 from standoff.kernels.state.options import names_paper_law
 from standoff.tracking.address_table import AddressTable
-from standoff.tracking.rows import NO_TWIST, AnswerRows, Block, StateRow, motion_row
+from standoff.tracking.block import Block
+from standoff.tracking.rows import NO_TWIST, AnswerRows, StateRow, motion_row
 
 Array = NDArray[np.float64]
 Pair = tuple[Ints, Array, Ints, Array]
@@ -70,7 +72,7 @@ def step(
     """One frame of the law that the options name, h seconds after the last: as `start`."""
     block = Block.empty(state.data, frame.row, h, frame.has_twist)
     table = AddressTable((*pair, options))
-    in_place = kernels.step_paper if names_paper_law(options) else kernels.step_predicted
+    in_place = blocks.step_paper if names_paper_law(options) else blocks.step_predicted
     bad = in_place(table.address, block.data)
     state.data[:] = block.state
     return AnswerRows(block.out), bad in (K.FINE, K.UNDECIDED)

@@ -8,16 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.kernels.entries import tracker as kernels
+from standoff.kernels.compiler.entry import WrongKind
+from standoff.kernels.entries import blocks
 from standoff.kernels.entries.preparing import prepare
 from standoff.kernels.state import arrays as K
 from standoff.motion import PoseLike, TwistLike
 from standoff.read_only import KeepsReadOnly, locked
 from standoff.tracking.address_table import AddressTable
+from standoff.tracking.block import Block
 from standoff.tracking.inputs import (
     check_in_plane,
     flat_and_mark,
     flat_twist,
+    plain,
     refuse_twists,
     repair,
 )
@@ -26,15 +29,18 @@ from standoff.tracking.laws import PaperLaw
 from standoff.tracking.options import with_smooth_frame
 from standoff.tracking.overlap_proof import cores_overlap
 from standoff.tracking.proximity import Proximity
-from standoff.tracking.rows import Block, motion_row, poses_of, twists_of
+from standoff.tracking.rows import motion_row, poses_of, twists_of
 from standoff.tracking.specialised import smooth_address
-from standoff.tracking.state import TrackerState
+from standoff.tracking.state import FrameBuffer, TrackerState
 from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
 
 # Statuses of answers that a proof of overlap may decide.
 UNDECIDED = (float(Status.NOT_CERTIFIED.value),)
+
+Given = tuple[Any, Any, Any, Any]
+"""Poses and twists of both bodies, in any form."""
 
 DONE = (K.FINE, K.UNDECIDED)
 """What the compiled step returns when it has made an answer."""
@@ -49,8 +55,9 @@ class ReachedPair(KeepsReadOnly):
         What the kernels read of both bodies.
     table : AddressTable
         Where these and the options lie.
-    value, in_place, values
-        The law's compiled frames: from block to block, on one long block, and many in a row.
+    value, in_place, moved, values
+        The law's compiled frames: from block to block, on one long block, on one whose poses are
+        given, and many in a row.
     """
 
     a: Body
@@ -67,9 +74,10 @@ class ReachedPair(KeepsReadOnly):
         smooth = 0 if paper else smooth_address(self.a, self.b, self.specialise)
         self.options = with_smooth_frame(self.options, smooth)
         self.table = AddressTable((*self.packed, self.options))
-        self.value = kernels.value_paper if paper else kernels.value_predicted
-        self.in_place = kernels.step_paper if paper else kernels.step_predicted
-        self.values = kernels.values_paper if paper else kernels.values_predicted
+        self.value = blocks.value_paper if paper else blocks.value_predicted
+        self.in_place = blocks.step_paper if paper else blocks.step_predicted
+        self.moved = blocks.moved_paper if paper else blocks.moved_predicted
+        self.values = blocks.values_paper if paper else blocks.values_predicted
 
     def _prepare(self) -> None:
         """Load, or compile, what the frames can reach: none of them waits for it."""
@@ -77,7 +85,7 @@ class ReachedPair(KeepsReadOnly):
 
     def __getstate__(self) -> Any:
         # in another process the bodies' formulas, and all arrays, have other addresses
-        reached = ("packed", "table", "value", "in_place", "values")
+        reached = ("packed", "table", "value", "in_place", "moved", "values")
         state = {name: x for name, x in self.__dict__.items() if name not in reached}
         return state, list(locked(state))
 
@@ -133,6 +141,58 @@ class ReachedPair(KeepsReadOnly):
         while (done := self.in_place(self.table.address, block.data)) not in DONE:
             repaired += self._repair(done, block.motion)
         return repaired
+
+    def _put_in(self, buffer: FrameBuffer, given: Given, h: float) -> float:
+        """A frame in place, of poses and twists in any form, or of those in the buffer."""
+        pose_a, pose_b = given[:2]
+        if pose_a is None and pose_b is None:
+            return self._in_place(buffer, h)
+        if self.planar:
+            return self._put_anew(buffer, given, h)
+        numbers, repaired = plain(*given)
+        moved, table, block = buffer._call
+        try:
+            distance: float = moved(table, *numbers, h, block)
+        except WrongKind:
+            return self._put_anew(buffer, given, h)
+        buffer.repaired = repaired
+        return distance if distance == distance else self._mended(buffer, given, h)
+
+    def _put_anew(self, buffer: FrameBuffer, given: Given, h: float) -> float:
+        """A frame in place of what the compiled one does not read: says what is wrong with it, or
+        mends it."""
+        motion, buffer.has_twist, repaired = self._motion(*given)
+        buffer.motion[:] = motion
+        distance = self._in_place(buffer, h)
+        buffer.repaired += repaired
+        return distance
+
+    def _in_place(self, buffer: FrameBuffer, h: float) -> float:
+        """A frame of the poses that stand in the buffer."""
+        data = buffer._block
+        if self.planar:
+            check_in_plane(buffer.pose_a, buffer.pose_b)
+        data[K.BLOCK_TIME_STEP], data[K.BLOCK_HAS_TWIST] = h, buffer.has_twist
+        buffer.repaired = 0
+        done = self.in_place(self.table.address, data)
+        if done not in DONE:
+            buffer.repaired = self._step_in(Block(data))
+        return self._named_in(data)
+
+    def _mended(self, buffer: FrameBuffer, given: Given, h: float) -> float:
+        """The distance of a frame in place that was refused at first, or is undecided."""
+        data = buffer._block
+        if data[K.BLOCK_DONE] == K.BAD_ARRAYS:
+            return self._put_anew(buffer, given, h)
+        if data[K.BLOCK_DONE] not in DONE:
+            buffer.repaired += self._step_in(Block(data))
+        return self._named_in(data)
+
+    def _named_in(self, data: Array) -> float:
+        """The distance in a block that is done, an overlap named where one is proven."""
+        if data[K.STATUS] in UNDECIDED:
+            self.name_overlap(Block(data))
+        return data.item(K.DISTANCE)
 
     def _named(self, block: Array, repaired: int) -> tuple[TrackerState, Proximity]:
         """State and answer of a block that is done, an overlap named where one is proven."""

@@ -17,6 +17,7 @@ from standoff.bodies.features import Feature, charts_of, feature_of
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
+from standoff.tracking.block import Block
 from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
@@ -44,57 +45,6 @@ def twists_of(motion: Array) -> tuple[Array, Array]:
     return motion[..., K.TWIST_A : K.TWIST_B], motion[..., K.TWIST_B :]
 
 
-class Block:
-    """One frame's block of memory by name, views of it: what was given, and what came of it.
-
-    Attributes
-    ----------
-    out : (39,) array
-        The answer.
-    state : (55,) array
-        The state after it.
-    motion : (36,) array
-        Poses and twists.
-    events : (...,) array
-        The switches, flat.
-    """
-
-    __slots__ = ("data",)
-
-    def __init__(self, data: Array) -> None:
-        self.data = data
-
-    @classmethod
-    def empty(cls, state: Array, motion: Array, h: float = 0.0, has_twist: bool = False) -> Block:
-        """A long block before its frame; the state is copied."""
-        block = cls(np.empty(K.N_LONG_BLOCK))
-        block.data[: K.N_OUT] = np.nan
-        block.state[:], block.motion[:] = state, motion
-        block.data[K.BLOCK_TIME_STEP], block.data[K.BLOCK_HAS_TWIST] = h, has_twist
-        return block
-
-    @property
-    def out(self) -> Array:
-        return self.data[: K.N_OUT]
-
-    @property
-    def state(self) -> Array:
-        return self.data[K.BLOCK_STATE : K.BLOCK_MOTION]
-
-    @property
-    def motion(self) -> Array:
-        return self.data[K.BLOCK_MOTION : K.BLOCK_TIME_STEP]
-
-    @property
-    def events(self) -> Array:
-        return self.data[K.BLOCK_EVENTS :]
-
-    def kept(self) -> Array:
-        """A copy as short as its switches allow, for an answer to keep."""
-        count = max(K.KEPT_EVENTS, int(self.data[K.OUT_COUNTS + N.EVENTS]))
-        return self.data[: K.BLOCK_EVENTS + N.EVENT_COLUMNS * count].copy()
-
-
 class Counts(NamedTuple):
     """What an answer took.
 
@@ -118,7 +68,8 @@ class Counts(NamedTuple):
         paper's law also components of a PI feedback's integral that were cut, and frames whose
         integration overflowed and so changed nothing.
     searches : int
-        Searches over all directions of depth in penetration.
+        Searches over all directions of depth in penetration that began with nothing. None where
+        the polytope of the frame before proved the depth.
     foot_points : int
         Points of edges closest to the opposing witness point that Voronoi tests have looked for.
     solved_parameters : int

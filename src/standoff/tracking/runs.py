@@ -10,14 +10,16 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError
 from standoff.kernels.compiler.entry import Entry
+from standoff.kernels.pair import events as N
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
 from standoff.motion import Pose, Twist
 from standoff.real_numbers import check_unmasked, shown
 from standoff.tracking.address_table import AddressTable
 from standoff.tracking.answers import Answers
+from standoff.tracking.block import Block, with_polytope
 from standoff.tracking.inputs import ABSENT, flat_twist, matrix_and_mark
 from standoff.tracking.proximity import Proximity
-from standoff.tracking.rows import Block
 from standoff.tracking.state import TrackerState
 
 Array = NDArray[np.float64]
@@ -168,8 +170,9 @@ def run(tracker: Steps, state: TrackerState, given: Given) -> tuple[TrackerState
     if isinstance(tracker.values, Entry):
         tracker.values.prepare()
     n = len(given.steps)
-    blocks = np.empty((n + 1, K.N_BLOCK))
+    blocks, polytopes = np.empty((n + 1, K.N_BLOCK)), np.zeros((2, N_POLYTOPE))
     blocks[0] = state.proximity._out[: K.N_BLOCK]
+    _take(polytopes[0], state.proximity)
     repaired = np.full(n, given.repaired)
     longer: dict[int, Proximity] = {}
     at = 0
@@ -177,19 +180,29 @@ def run(tracker: Steps, state: TrackerState, given: Given) -> tuple[TrackerState
         # planar bodies: whether they stay in their plane is looked at in Python
         done = K.BAD_ARRAYS
         if not tracker.planar:
-            at, done = tracker.values(tracker.table.address, *given[:5], at, blocks)
+            at, done = tracker.values(tracker.table.address, *given[:5], at, (blocks, polytopes))
         if done == K.UNDECIDED:
             tracker.name_overlap(Block(blocks[at + 1]))
         elif done != K.FINE:
-            before = TrackerState(Proximity(tracker.a, tracker.b, blocks[at].copy()))
+            kept = with_polytope(blocks[at], polytopes[at % 2])
+            before = TrackerState(Proximity(tracker.a, tracker.b, kept))
             answer = _single(tracker, before, given, at)
             blocks[at + 1] = answer._out[: K.N_BLOCK]
+            blocks[at + 1, K.BLOCK_POLYTOPE] = 0.0
+            _take(polytopes[(at + 1) % 2], answer)
             repaired[at] += answer.repaired
-            if len(answer._out) > K.N_BLOCK:
+            if answer._out[K.OUT_COUNTS + N.EVENTS] > K.KEPT_EVENTS:
                 longer[at] = answer
         at += 1
-    last = longer.get(n - 1) or Proximity(tracker.a, tracker.b, blocks[n].copy(), repaired[-1])
+    kept = with_polytope(blocks[n], polytopes[n % 2])
+    last = longer.get(n - 1) or Proximity(tracker.a, tracker.b, kept, repaired[-1])
     return TrackerState(last), Answers((tracker.a, tracker.b), blocks[1:], repaired, longer)
+
+
+def _take(polytope: Array, answer: Proximity) -> None:
+    """Take over the polytope that an answer has kept, or none."""
+    kept = Block(answer._out).polytope
+    polytope[:] = kept if len(kept) else 0.0
 
 
 def _single(tracker: Steps, before: TrackerState, given: Given, k: int) -> Proximity:

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.read_only import KeepsReadOnly
+from standoff.tracking.block import Block
 from standoff.tracking.proximity import Proximity
-from standoff.tracking.rows import Block, StateRow, motion_row, poses_of, twists_of
+from standoff.tracking.rows import StateRow, motion_row, poses_of, twists_of
 
 Array = NDArray[np.float64]
 
@@ -45,6 +46,12 @@ class TrackerState(KeepsReadOnly):
         return Block(self._proximity._out).state
 
     @property
+    def warm_start(self) -> Array:
+        """``data``, and behind it what a frame in penetration has kept of its proof: a polytope
+        that the next frame moves with the bodies and asks first, (565,) then."""
+        return Block(self._proximity._out).warm_start
+
+    @property
     def time(self) -> float:
         """Time since ``start``, s."""
         return float(StateRow(self.data).time)
@@ -71,6 +78,8 @@ class Answering(Protocol):
 
     a: Body
     b: Body
+    moved: Any
+    table: Any
 
 
 class FrameBuffer:
@@ -95,7 +104,7 @@ class FrameBuffer:
         self.tracker = tracker
         self.has_twist = True
         self.repaired = 0
-        block = Block.empty(state.data, motion_row(*np.zeros((2, 12))))
+        block = Block.empty(state.warm_start, motion_row(*np.zeros((2, 12))))
         block.events[:] = 0.0
         for pose in poses_of(block.motion):
             pose[[0, 4, 8]] = 1.0
@@ -103,6 +112,8 @@ class FrameBuffer:
 
     def _take(self, block: Array) -> None:
         self._block = block
+        # what a frame of given poses calls, in one look
+        self._call = self.tracker.moved, self.tracker.table.address, block
         named = Block(block)
         self._motion, self._state, self._out = named.motion, named.state, named.out
         self._pose_a, self._pose_b = poses_of(self._motion)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,9 +17,9 @@ from standoff.motion import PoseLike, TwistLike
 from standoff.shown_names import hides
 from standoff.spellings import no_attribute
 from standoff.tracking.answers import Answers
+from standoff.tracking.block import Block
 from standoff.tracking.choices import positive_number
 from standoff.tracking.inputs import (
-    check_in_plane,
     check_pair,
     plain,
     same_body,
@@ -29,18 +30,20 @@ from standoff.tracking.old_spellings import ATTRIBUTES, takes_a_law, takes_place
 from standoff.tracking.options import resolved_options
 from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.proximity import Proximity
-from standoff.tracking.reached_pair import UNDECIDED, ReachedPair
-from standoff.tracking.rows import Block, StateRow
+from standoff.tracking.reached_pair import ReachedPair
+from standoff.tracking.rows import StateRow
 from standoff.tracking.runs import Given, run
 from standoff.tracking.specialised import checked_choice
 from standoff.tracking.state import FrameBuffer, TrackerState
 
 Array = NDArray[np.float64]
+ARRAY = np.ndarray
 
+INSIDE = K.BLOCK_STATE + K.INSIDE  # was a block's frame solved in contact?
 
 HIDDEN = (
-    "check_frame_time", "check_state", "in_place", "name_overlap", "options", "packed", "planar",
-    "step_anew", "table", "value", "values",
+    "check_frame_time", "check_state", "in_place", "moved", "name_overlap", "options", "packed",
+    "planar", "step_anew", "table", "value", "values",
 )  # fmt: skip
 """What the run and the studies need and users do not."""
 
@@ -216,10 +219,11 @@ class Tracker(ReachedPair):
             return self.step_anew(state, given, h)
         arrays = type(pose_a) is type(pose_b) is type(twist_a) is type(twist_b) is np.ndarray
         numbers, repaired = (given, 0) if arrays else plain(*given)
-        block = np.empty(K.N_BLOCK)
+        last = before._out
         try:
-            done = self.value(self.table.address, before._out, *numbers, h, block)
-        except WrongKind:
+            block = np.empty(K.N_BLOCK if last.item(INSIDE) == 0.0 else K.N_KEEPING_BLOCK)
+            done = self.value(self.table.address, last, *numbers, h, block)
+        except (WrongKind, IndexError):
             return self.step_anew(state, given, h)
         if done == K.FINE:
             answer = Proximity(self.a, self.b, block, repaired)
@@ -237,7 +241,7 @@ class Tracker(ReachedPair):
         """
         self.check_state(state)
         motion, has_twist, repaired = self._motion(*given)
-        block = Block.empty(state.data, motion, h, has_twist)
+        block = Block.empty(state.warm_start, motion, h, has_twist)
         repaired += self._step_in(block)
         return self._named(block.kept(), repaired)
 
@@ -278,32 +282,53 @@ class Tracker(ReachedPair):
     def step_into(
         self,
         buffer: FrameBuffer,
+        pose_a: PoseLike | None = None,
+        pose_b: PoseLike | None = None,
+        twist_a: TwistLike | None = None,
+        twist_b: TwistLike | None = None,
         dt: float | None = None,
     ) -> float:
-        """One frame on preallocated arrays, for loops that must not allocate.
+        """One frame in place, for loops that must not allocate.
 
-        Reads ``buffer.pose_a`` and the others, writes ``buffer.out`` (laid out in
-        ``standoff.kernels.state.arrays``) and ``buffer.state`` in place. A rounded rotation is
-        repaired in the buffer, which ``buffer.repaired`` counts. Returns the distance; where
-        the answer is uncertified, ``buffer.proximity()`` says why.
+        Writes ``buffer.out`` (laid out in ``standoff.kernels.state.arrays``) and ``buffer.state``.
+
+        Parameters
+        ----------
+        buffer : FrameBuffer
+            Of this tracker. Without poses the frame reads ``buffer.pose_a`` and the others.
+        pose_a, pose_b, twist_a, twist_b
+            As in ``step``. Arrays (4, 4) and (6,) of float64 are read as they are; anything else is
+            converted first.
+        dt : float, optional
+            Time since the frame before, s; the tracker's own if not given.
+
+        Returns
+        -------
+        float
+            The distance; where the answer is uncertified ``buffer.proximity()`` says why.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As ``step``.
         """
         if buffer.tracker is not self:
             raise StandoffError(
                 "The buffer belongs to another tracker: make one with tracker.buffer.", "buffer"
             )
-        if self.planar:
-            check_in_plane(buffer.pose_a, buffer.pose_b)
-        data = buffer._block
-        data[K.BLOCK_TIME_STEP] = self.dt if dt is None else self.check_frame_time(dt)
-        data[K.BLOCK_HAS_TWIST] = buffer.has_twist
+        h = self.dt if dt is None else self.check_frame_time(dt)
+        arrays = type(pose_a) is type(pose_b) is type(twist_a) is type(twist_b) is ARRAY
+        if not arrays or self.planar:
+            return self._put_in(buffer, (pose_a, pose_b, twist_a, twist_b), h)
+        moved, table, block = buffer._call
+        try:
+            distance: float = moved(table, pose_a, pose_b, twist_a, twist_b, h, block)
+        except WrongKind:
+            distance, block[K.BLOCK_DONE] = math.nan, K.BAD_ARRAYS
         buffer.repaired = 0
-        done = self.in_place(self.table.address, data)
-        if done != K.FINE:
-            block = Block(data)
-            buffer.repaired = self._step_in(block) if done != K.UNDECIDED else 0
-            if data[K.STATUS] in UNDECIDED:
-                self.name_overlap(block)
-        return data.item(K.DISTANCE)
+        if distance == distance:
+            return distance
+        return self._mended(buffer, (pose_a, pose_b, twist_a, twist_b), h)
 
     def buffer(self, state: TrackerState) -> FrameBuffer:
         """Arrays for ``step_into`` that begin at a state."""

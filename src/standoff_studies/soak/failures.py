@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import ROTATION
-from standoff.tracking.rows import Block
+from standoff.tracking.block import Block
 from standoff.tracking.tracker import Tracker
 from standoff.version import __version__
 from standoff_studies.soak.cases import Case

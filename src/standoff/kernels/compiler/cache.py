@@ -34,7 +34,10 @@ from standoff.kernels.compiler.machine import KERNELS, bounds_checked, source_di
 from standoff.kernels.compiler.notices import say
 from standoff.kernels.compiler.trust import others_can_write
 
-DAMAGED = (EOFError, pickle.UnpicklingError, ValueError, TypeError, KeyError, IndexError)
+DAMAGED = (
+    *(EOFError, pickle.UnpicklingError, ValueError, TypeError, KeyError, IndexError),
+    *(AttributeError, ImportError),
+)
 """What reading a truncated or overwritten file of pickles raises."""
 
 
@@ -155,6 +158,9 @@ class ModuleCache(Cache):  # type: ignore[misc]
     def _begin(self) -> None:
         if not self._ready:
             super().__init__(self._function)
+            # an index of other sources is not unpickled: it may name a class that is gone
+            index = self._cache_file
+            index._version = f"{index._version} {source_digest()}"
             self._ready = True
 
     def load_overload(self, signature: Any, target_context: Any) -> Any:

@@ -100,6 +100,24 @@ def checked_stack(count, of=types.float64):
     return kind(), codegen
 
 
+def checked_scratch(count, of):
+    """Signature and code of an intrinsic: a constant count of numbers on the caller's stack."""
+    if not isinstance(count, types.IntegerLiteral):
+        return None
+    kind, length = CheckedPointer(of), count.literal_value
+
+    def codegen(context, builder, signature, args):
+        with builder.goto_entry_block():
+            block = builder.alloca(ir.ArrayType(context.get_data_type(of), length))
+        zero = ir.IntType(64)(0)
+        out = cgutils.create_struct_proxy(kind)(context, builder)
+        out.data = builder.gep(block, [zero, zero], inbounds=True)
+        out.length = ir.IntType(64)(length)
+        return out._getvalue()
+
+    return kind(count), codegen
+
+
 def checked_address(address, length, of):
     """Signature and code of an intrinsic: the pointer to `length` elements at an address."""
     kind = CheckedPointer(of)

@@ -14,7 +14,6 @@ import os
 import numpy as np
 from llvmlite import ir
 from numba import config, njit, types
-from numba.core import cgutils
 from numba.extending import intrinsic
 
 from standoff.kernels.compiler import modules
@@ -99,6 +98,7 @@ if BOUNDS_CHECK:
         checked_address,
         checked_ahead,
         checked_pointer,
+        checked_scratch,
         checked_stack,
     )
 
@@ -112,6 +112,12 @@ if config.DISABLE_JIT:
 
     def stack_log():  # type: ignore[no-untyped-def]
         return pointer(np.full(LOG_REALS, np.nan), 0)
+
+    def reals_on_stack(count):  # type: ignore[no-untyped-def]
+        return pointer(np.full(count, np.nan), 0)
+
+    def ints_on_stack(count):  # type: ignore[no-untyped-def]
+        return pointer(np.zeros(count, dtype=np.int64), 0)
 
     def stack_counts():  # type: ignore[no-untyped-def]
         return pointer(np.zeros(COUNT_INTS, dtype=np.int64), 0)
@@ -153,6 +159,16 @@ elif BOUNDS_CHECK:
         """COUNT_INTS integers of the caller's stack, 0 until they are set."""
         return checked_stack(COUNT_INTS, types.int64)
 
+    @intrinsic(prefer_literal=True)
+    def reals_on_stack(typingctx, count):  # type: ignore[no-untyped-def]
+        """`count` numbers, a constant, of the caller's stack, not yet set."""
+        return checked_scratch(count, types.float64)
+
+    @intrinsic(prefer_literal=True)
+    def ints_on_stack(typingctx, count):  # type: ignore[no-untyped-def]
+        """`count` integers, a constant, of the caller's stack, not yet set."""
+        return checked_scratch(count, types.int64)
+
     @intrinsic
     def reals_at(typingctx, address, length):  # type: ignore[no-untyped-def]
         """A pointer to the numbers at an address."""
@@ -175,8 +191,9 @@ else:
 
     def _stack(count, kind=types.float64):  # type: ignore[no-untyped-def]
         def codegen(context, builder, signature, args):  # type: ignore[no-untyped-def]
-            each = context.get_data_type(kind)
-            block = cgutils.alloca_once(builder, ir.ArrayType(each, count))
+            # `cgutils.alloca_once` would fill it with zeros
+            with builder.goto_entry_block():
+                block = builder.alloca(ir.ArrayType(context.get_data_type(kind), count))
             zero = ir.IntType(64)(0)
             return builder.gep(block, [zero, zero], inbounds=True)
 
@@ -207,6 +224,22 @@ else:
     def stack_counts(typingctx):  # type: ignore[no-untyped-def]
         """COUNT_INTS integers of the caller's stack, not yet set."""
         return _stack(COUNT_INTS, types.int64)
+
+    def _scratch(count, kind):  # type: ignore[no-untyped-def]
+        if not isinstance(count, types.IntegerLiteral):
+            return None
+        signature, codegen = _stack(count.literal_value, kind)
+        return signature.return_type(count), codegen
+
+    @intrinsic(prefer_literal=True)
+    def reals_on_stack(typingctx, count):  # type: ignore[no-untyped-def]
+        """`count` numbers, a constant, of the caller's stack, not yet set."""
+        return _scratch(count, types.float64)
+
+    @intrinsic(prefer_literal=True)
+    def ints_on_stack(typingctx, count):  # type: ignore[no-untyped-def]
+        """`count` integers, a constant, of the caller's stack, not yet set."""
+        return _scratch(count, types.int64)
 
     @intrinsic
     def reals_at(typingctx, address, length):  # type: ignore[no-untyped-def]

@@ -6,151 +6,204 @@ triangles, counter-clockwise seen from outside; a facet that goes is replaced by
 planar bodies the polytope is a prism over their difference, long enough that its ends bound no
 depth.
 
-Any closed surface of triangles about the origin bounds the depth, so roundoff in which facets a
-point sees costs tightness only.
+Any closed surface of triangles about the origin bounds the depth, convex or not
+(docs/penetration.md), so roundoff in which facets a point sees costs tightness only.
+
+Of each vertex the points of both bodies are known, in their own frames: when the bodies move, the
+vertex moves with them and stays inside A - B (`kept_polytope`).
 """
 
 from math import inf
+from typing import Any, NamedTuple
 
-import numpy as np
-
+from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import cross, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.tolerances import COPLANAR, EPS, FACET_ROUNDINGS, MAX_PROBES, PRISM
+from standoff.kernels.values import Vector
 
 # Seeds, probes, minima; two points each for a planar pair.
 MAX_POINTS = 2 * (MAX_PROBES + 64)
 MAX_FACETS = 2 * MAX_POINTS
+# A vertex's numbers: itself, in A's frame, and the points of A and of B that it is the difference
+# of, each in its own body's frame.
+OF_A, OF_B = 3, 6
+POINT_REALS = 9
 # A facet's numbers: unit normal, distance from the origin less its roundoff, and 1 where it is
 # known to lie on the boundary of A - B.
 NORMAL, OFFSET, CLOSED = 0, 3, 4
 FACET_REALS = 5
 # Sizes of a polytope, in one array.
 POINTS, FACETS, PLANAR = range(3)
+N_SIZES = 3
+# Sizes of the arrays that a hull is made in.
+ALL_POINTS, ALL_FACETS = POINT_REALS * MAX_POINTS, FACET_REALS * MAX_FACETS
+ALL_CORNERS, ALL_RIMS = 3 * MAX_FACETS, 2 * MAX_FACETS
 
 GREW, NO_GAIN, BROKEN = range(3)
 
 
+class Hull(NamedTuple):
+    """A polytope, in flat arrays or pointers."""
+
+    sizes: Any  # N_SIZES integers
+    points: Any  # POINT_REALS numbers a vertex
+    corners: Any  # three vertices a facet
+    facets: Any  # FACET_REALS numbers a facet
+    seen: Any  # of `grow`: the facets that a point sees
+    rim: Any  # and their rim, from and to, for each of its sides
+
+
+class Vertex(NamedTuple):
+    """A point of A - B, and the points of both bodies that it is the difference of."""
+
+    x: Vector  # in A's frame
+    of_a: Vector
+    of_b: Vector  # in B's frame
+
+
 @kernel
-def empty_hull(planar):
-    """(sizes, points, corners, facets) of a polytope without points."""
-    sizes = np.empty(3, dtype=np.int64)
-    sizes[POINTS], sizes[FACETS], sizes[PLANAR] = 0, 0, planar
-    return (
-        sizes,
-        np.empty((MAX_POINTS, 3)),
-        np.empty((MAX_FACETS, 3), dtype=np.int64),
-        np.empty((MAX_FACETS, FACET_REALS)),
-    )
+def empty_hull(hull, planar):
+    """A polytope without points, in arrays that may hold anything."""
+    sizes = hull.sizes
+    sizes[POINTS], sizes[FACETS], sizes[PLANAR] = 0, 0, 1 if planar else 0
 
 
 @kernel
 def point_of(points, k):
-    return (points[k, 0], points[k, 1], points[k, 2])
+    o = POINT_REALS * k
+    return (points[o], points[o + 1], points[o + 2])
+
+
+@kernel
+def put_vertex(points, k, vertex):
+    o = POINT_REALS * k
+    for i in range(3):
+        points[o + i] = vertex.x[i]
+        points[o + OF_A + i] = vertex.of_a[i]
+        points[o + OF_B + i] = vertex.of_b[i]
+
+
+@kernel
+def vertex_of(points, k):
+    o = POINT_REALS * k
+    return Vertex(
+        point_of(points, k),
+        (points[o + OF_A], points[o + OF_A + 1], points[o + OF_A + 2]),
+        (points[o + OF_B], points[o + OF_B + 1], points[o + OF_B + 2]),
+    )
 
 
 @kernel
 def add_facet(hull, i, j, k, size):
     """Append the facet of three points. False where they are in line, or no room is left."""
-    sizes, points, corners, facets = hull
+    sizes, points, corners, facets = hull.sizes, hull.points, hull.corners, hull.facets
     m = sizes[FACETS]
     a, b, c = point_of(points, i), point_of(points, j), point_of(points, k)
     along, other, third = sub(b, a), sub(c, b), sub(a, c)
-    normal = cross(along, sub(c, a))
-    area = norm(normal)
-    if norm(other) > norm(along):
-        along = other
-    if norm(third) > norm(along):
-        along = third
-    length = norm(along)
-    if m >= MAX_FACETS or not area > EPS * size * length:
+    across = cross(along, sub(c, a))  # the normal, twice the area long
+    square, length = dot(across, across), dot(along, along)
+    if dot(other, other) > length:
+        along, length = other, dot(other, other)
+    if dot(third, third) > length:
+        along, length = third, dot(third, third)
+    thin = EPS * size
+    if m >= MAX_FACETS or not square > thin * thin * length:
         return False
-    normal = scale(1.0 / area, normal)
+    normal = scale(1.0 / sqrt(square), across)
     # roundoff turns the plane about its longest side by eps size / height, and about the height
     # less
-    along = scale(1.0 / length, along)
-    lean = abs(dot(a, cross(normal, along))) * length / area + abs(dot(a, along)) / length
+    lean = abs(dot(a, cross(across, along))) / square + abs(dot(a, along)) / length
     noise = FACET_ROUNDINGS * EPS * size * (1.0 + lean)
-    corners[m, 0], corners[m, 1], corners[m, 2] = i, j, k
-    facets[m, 0], facets[m, 1], facets[m, 2] = normal
-    facets[m, OFFSET] = dot(normal, a) - noise
-    facets[m, CLOSED] = 0.0
+    corners[3 * m], corners[3 * m + 1], corners[3 * m + 2] = i, j, k
+    o = FACET_REALS * m
+    facets[o], facets[o + 1], facets[o + 2] = normal
+    facets[o + OFFSET] = dot(normal, a) - noise
+    facets[o + CLOSED] = 0.0
     sizes[FACETS] = m + 1
     return True
 
 
 @kernel
 def remove_facet(hull, m):
-    sizes, _, corners, facets = hull
-    last = sizes[FACETS] - 1
-    # by elements: a slice would compile Numba's messages about shapes
+    corners, facets = hull.corners, hull.facets
+    last = hull.sizes[FACETS] - 1
     for k in range(3):
-        corners[m, k] = corners[last, k]
+        corners[3 * m + k] = corners[3 * last + k]
     for k in range(FACET_REALS):
-        facets[m, k] = facets[last, k]
-    sizes[FACETS] = last
+        facets[FACET_REALS * m + k] = facets[FACET_REALS * last + k]
+    hull.sizes[FACETS] = last
 
 
 @kernel
 def has_edge(corners, facet, i, j):
     """Does a facet run from i to j?"""
-    a, b, c = corners[facet, 0], corners[facet, 1], corners[facet, 2]
+    a, b, c = corners[3 * facet], corners[3 * facet + 1], corners[3 * facet + 2]
     return (a == i and b == j) or (b == i and c == j) or (c == i and a == j)
 
 
 @kernel
 def horizon(corners, seen, n_seen, rim):
-    """The rim of the facets seen, in order, into rim (n, 2). Its length, 0 where it is no loop."""
+    """The rim of the facets seen, in order, into `rim`. Its length, 0 where it is no loop."""
     n = 0
     for s in range(n_seen):
         for e in range(3):
-            i, j = corners[seen[s], e], corners[seen[s], (e + 1) % 3]
+            i, j = corners[3 * seen[s] + e], corners[3 * seen[s] + (e + 1) % 3]
             shared = False
             for other in range(n_seen):
                 shared = shared or has_edge(corners, seen[other], j, i)
             if not shared:
-                rim[n, 0], rim[n, 1] = i, j
+                if n == MAX_FACETS:
+                    return 0
+                rim[2 * n], rim[2 * n + 1] = i, j
                 n += 1
     for k in range(1, n):
         at = k
-        while at < n and rim[at, 0] != rim[k - 1, 1]:
+        while at < n and rim[2 * at] != rim[2 * k - 1]:
             at += 1
         if at == n:
             return 0
-        i, j = rim[at, 0], rim[at, 1]
-        rim[at, 0], rim[at, 1] = rim[k, 0], rim[k, 1]
-        rim[k, 0], rim[k, 1] = i, j
-    return n if n >= 3 and rim[n - 1, 1] == rim[0, 0] else 0
+        i, j = rim[2 * at], rim[2 * at + 1]
+        rim[2 * at], rim[2 * at + 1] = rim[2 * k], rim[2 * k + 1]
+        rim[2 * k], rim[2 * k + 1] = i, j
+    return n if n >= 3 and rim[2 * n - 1] == rim[0] else 0
 
 
-@shared
-def grow(hull, x, size):
-    """Take a point in: GREW, NO_GAIN where no facet is below it, or BROKEN (nothing changed)."""
-    sizes, points, corners, facets = hull
-    if sizes[POINTS] >= MAX_POINTS:
-        return NO_GAIN
-    seen, n_seen = np.empty(MAX_FACETS, dtype=np.int64), 0
-    above = False
-    a_point = sizes[POINTS]
+@kernel
+def look_from(hull, x, size):
+    """(how many facets a point sees, is it above any); they are listed in `hull.seen`."""
+    sizes, points, corners, facets, seen, _ = hull
+    n_seen, above = 0, False
     for m in range(sizes[FACETS]):
-        corner = point_of(points, corners[m, 0])
-        normal = (facets[m, 0], facets[m, 1], facets[m, 2])
-        height = dot(normal, sub(x, corner))
+        o = FACET_REALS * m
+        height = dot(
+            (facets[o], facets[o + 1], facets[o + 2]), sub(x, point_of(points, corners[3 * m]))
+        )
         # a coplanar facet goes too: no new one is then in line with its edges
         if height > -COPLANAR * size:
             seen[n_seen] = m
             n_seen += 1
             above = above or height > COPLANAR * size
+    return n_seen, above
+
+
+@shared
+def grow(hull, vertex, size):
+    """Take a point in: GREW, NO_GAIN where no facet is below it, or BROKEN (nothing changed)."""
+    sizes, points, corners, _, seen, rim = hull
+    a_point = sizes[POINTS]
+    if a_point >= MAX_POINTS:
+        return NO_GAIN
+    n_seen, above = look_from(hull, vertex.x, size)
     if not above:
         return NO_GAIN
-    rim = np.empty((3 * n_seen, 2), dtype=np.int64)
     n = horizon(corners, seen, n_seen, rim)
     if n == 0 or sizes[FACETS] - n_seen + n > MAX_FACETS:
         return BROKEN
-    points[a_point, 0], points[a_point, 1], points[a_point, 2] = x
+    put_vertex(points, a_point, vertex)
     first = sizes[FACETS]
     for k in range(n):
-        if not add_facet(hull, rim[k, 0], rim[k, 1], a_point, size):
+        if not add_facet(hull, rim[2 * k], rim[2 * k + 1], a_point, size):
             sizes[FACETS] = first
             return BROKEN
     sizes[POINTS] = a_point + 1
@@ -160,12 +213,19 @@ def grow(hull, x, size):
 
 
 @kernel
-def grow_difference(hull, x, size):
+def lifted(vertex, height):
+    """A vertex of a planar pair at a height of the prism over it."""
+    x, a = vertex.x, vertex.of_a
+    return Vertex((x[0], x[1], height), (a[0], a[1], height), vertex.of_b)
+
+
+@kernel
+def grow_difference(hull, vertex, size):
     """`grow` by a point of A - B: for planar bodies by both ends of the prism over it."""
-    if hull[0][PLANAR] == 0:
-        return grow(hull, x, size)
-    high = grow(hull, (x[0], x[1], PRISM * size), size)
-    low = grow(hull, (x[0], x[1], -PRISM * size), size)
+    if hull.sizes[PLANAR] == 0:
+        return grow(hull, vertex, size)
+    high = grow(hull, lifted(vertex, PRISM * size), size)
+    low = grow(hull, lifted(vertex, -PRISM * size), size)
     return min(high, low)
 
 
@@ -195,7 +255,7 @@ def begin_hull(hull, n, size):
 
     Returns (solid, direction): where they lie in a plane, or a line, `direction` is square to it.
     """
-    sizes, points, _, _ = hull
+    sizes, points = hull.sizes, hull.points
     sizes[POINTS], sizes[FACETS] = n, 0
     origin = point_of(points, 0)
     tiny = COPLANAR * size
@@ -225,25 +285,31 @@ def begin_hull(hull, n, size):
         and add_facet(hull, k, m, i, size)
     )
     for point in range(n):
-        if point != i and point != j and point != k and point != m:
-            x = point_of(points, point)
-            if sizes[POINTS] < MAX_POINTS:
-                grow(hull, x, size)
+        taken = point in (i, j, k, m)
+        if not taken and sizes[POINTS] < MAX_POINTS:
+            grow(hull, vertex_of(points, point), size)
     return solid, scale(1.0 / norm(w), w)
 
 
 @kernel
 def nearest_facet(hull, skip_closed):
     """(facet, distance from the origin): the least; -1 and inf where there is none."""
-    sizes, _, _, facets = hull
+    facets = hull.facets
     best, at = inf, -1
-    for m in range(sizes[FACETS]):
-        if facets[m, OFFSET] < best and not (skip_closed and facets[m, CLOSED] != 0.0):
-            best, at = facets[m, OFFSET], m
+    for m in range(hull.sizes[FACETS]):
+        o = FACET_REALS * m
+        if facets[o + OFFSET] < best and not (skip_closed and facets[o + CLOSED] != 0.0):
+            best, at = facets[o + OFFSET], m
     return at, best
 
 
 @kernel
 def facet_normal(hull, m):
-    facets = hull[3]
-    return (facets[m, 0], facets[m, 1], facets[m, 2])
+    o = FACET_REALS * m
+    return (hull.facets[o], hull.facets[o + 1], hull.facets[o + 2])
+
+
+@kernel
+def close_facet(hull, m):
+    """Mark a facet as known to lie on the boundary of A - B."""
+    hull.facets[FACET_REALS * m + CLOSED] = 1.0

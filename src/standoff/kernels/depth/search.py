@@ -7,20 +7,31 @@ boundary. The search ends when no facet is nearer than the least depth found.
 
 from math import inf, nan
 
-from standoff.kernels.algebra.vectors import add, norm, rotate, scale, sub, unit
+from standoff.kernels.algebra.vectors import add, norm, rotate, rotate_back, scale, sub, unit
 from standoff.kernels.body import layout as L
-from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.compiler.decorators import ints_on_stack, kernel, reals_on_stack, shared
 from standoff.kernels.depth.descent import descend
 from standoff.kernels.depth.difference_hull import (
+    ALL_CORNERS,
+    ALL_FACETS,
+    ALL_POINTS,
+    ALL_RIMS,
     BROKEN,
-    CLOSED,
     GREW,
+    MAX_FACETS,
+    N_SIZES,
+    Hull,
+    Vertex,
     begin_hull,
+    close_facet,
     empty_hull,
     facet_normal,
     grow_difference,
+    lifted,
     nearest_facet,
+    put_vertex,
 )
+from standoff.kernels.depth.kept_polytope import keep, recall
 from standoff.kernels.depth.penetration import (
     begin_along,
     box_depth,
@@ -31,8 +42,9 @@ from standoff.kernels.depth.penetration import (
 from standoff.kernels.pair.certificate import certify_along
 from standoff.kernels.pair.cold_start import farthest_along, sample_point
 from standoff.kernels.pair.descent import pair_jets
-from standoff.kernels.pair.events import SEARCHES, exhausted
+from standoff.kernels.pair.events import KEEPING, KEPT, SEARCHES, exhausted
 from standoff.kernels.tolerances import (
+    KEPT_RIVALS,
     MAX_PROBES,
     PRISM,
     SAME_MINIMUM,
@@ -74,12 +86,12 @@ def seed(pair, pose, points, n, way, size):
     i, j = farthest_along(pair, pose, way)
     x = sample_point(pair.ints_a, pair.reals_a, i)
     y = sample_point(pair.ints_b, pair.reals_b, j)
-    x = sub(x, add(rotate(pose.R, y), pose.p))
+    vertex = Vertex(sub(x, add(rotate(pose.R, y), pose.p)), x, y)
     if is_planar(pair):
-        points[n, 0], points[n, 1], points[n, 2] = x[0], x[1], PRISM * size
-        points[n + 1, 0], points[n + 1, 1], points[n + 1, 2] = x[0], x[1], -PRISM * size
+        put_vertex(points, n, lifted(vertex, PRISM * size))
+        put_vertex(points, n + 1, lifted(vertex, -PRISM * size))
         return n + 2
-    points[n, 0], points[n, 1], points[n, 2] = x
+    put_vertex(points, n, vertex)
     return n + 1
 
 
@@ -87,7 +99,8 @@ def seed(pair, pose, points, n, way, size):
 def seed_hull(pair, pose, hull, size):
     """(solid, direction): facets over differences of samples; see `begin_hull`."""
     planar = is_planar(pair)
-    points = hull[1]
+    empty_hull(hull, planar)
+    points = hull.points
     n = 0
     for k in range(8 if planar else SEEDS):
         n = seed(pair, pose, points, n, seed_direction(planar, k), size)
@@ -107,7 +120,14 @@ def overlap_shown(pair, pose):
     """(shown, n, least): is the origin inside the polytope of the seeds, which lies in A - B? n is
     the normal of its nearest facet, `least` how far that is. No evaluation is made.
     """
-    hull = empty_hull(is_planar(pair))
+    hull = Hull(
+        ints_on_stack(N_SIZES),
+        reals_on_stack(ALL_POINTS),
+        ints_on_stack(ALL_CORNERS),
+        reals_on_stack(ALL_FACETS),
+        ints_on_stack(MAX_FACETS),
+        ints_on_stack(ALL_RIMS),
+    )
     size = contact_scale(pair)
     solid, n = seed_hull(pair, pose, hull, size)
     if not solid:
@@ -120,9 +140,10 @@ def overlap_shown(pair, pose):
 
 @kernel
 def difference(pair, pose, place):
-    """x_a - x_b of witness points, a point of A - B."""
+    """The witness points' difference x_a - x_b, a point of A - B."""
     jet_a, jet_b = pair_jets(pair, pose, place)
-    return sub(jet_a[0], jet_b[0])
+    of_b = rotate_back(pose.R, sub(jet_b[0], pose.p))
+    return Vertex(sub(jet_a[0], jet_b[0]), jet_a[0], of_b)
 
 
 @kernel
@@ -171,24 +192,13 @@ def settles(pair, best, least, proof):
     )
 
 
-@shared
-def search(pair, pose, best, tolerance, proof, rivals, work):
-    """(depth, least): the least depth of the cores, from the local minimum given (if found).
-
-    `least` bounds every depth from below: -inf where the origin is not known to lie in A - B.
-    `proof` is the part of the depth that another one may be less by: 1 asks only whether the
-    bodies overlap. `rivals` is how many other minima a proven search still tries. A descent that
-    ends uncertified still gives a depth that parts the bodies: its bound.
+@kernel
+def narrow(pair, pose, hull, best, how, work):
+    """(depth, least) of `search`, by probes beyond the nearest facets of a polytope about the
+    origin. `how` is (tolerance, proof, rivals).
     """
+    tolerance, proof, rivals = how
     size = contact_scale(pair)
-    work.counts[SEARCHES] += 1
-    hull = empty_hull(is_planar(pair))
-    solid, way = seed_hull(pair, pose, hull, size)
-    if not solid:
-        return search_flat(pair, pose, way, best, tolerance, work)
-    if best.found:
-        grow_difference(hull, difference(pair, pose, best.place), size)
-    facets = hull[3]
     tried = 0
     for _ in range(MAX_PROBES):
         if exhausted(work):
@@ -202,17 +212,17 @@ def search(pair, pose, best, tolerance, proof, rivals, work):
         if proven and (least >= -best.distance - TOUCHING * size or tried >= rivals):
             break
         if proven and norm(sub(nu, best.normal)) <= SAME_MINIMUM:
-            facets[at, CLOSED] = 1.0
+            close_facet(hull, at)
             continue
         tried += 1 if proven else 0
         outer = Depth(False, -box_depth(pair, pose, nu), nu, begin_along(pair, pose, nu))
         apart, probe = shifted(pair, pose, outer, SHIFTED_GAP, work)
         if not apart:
-            facets[at, CLOSED] = 1.0
+            close_facet(hull, at)
             continue
         grown = grow_difference(hull, difference(pair, pose, probe.place), size)
         if grown != GREW:
-            facets[at, CLOSED] = 1.0
+            close_facet(hull, at)
         if proven or not best.found or probe.distance > best.distance + TOUCHING * size:
             end = deepest_below(pair, pose, probe, tolerance, work)
             best = less_deep(end, best)
@@ -220,3 +230,55 @@ def search(pair, pose, best, tolerance, proof, rivals, work):
         if grown == BROKEN:
             break
     return best, nearest_facet(hull, False)[1]
+
+
+@kernel
+def narrow_kept(pair, pose, hull, best, how, work):
+    """`narrow`, of the polytope that the frame before has kept: it is asked first whether it proves
+    the depth as it is, or with the witness points' own difference taken in.
+    """
+    tolerance, proof, rivals = how
+    if best.found and not settles(pair, best, nearest_facet(hull, False)[1], proof):
+        grow_difference(hull, difference(pair, pose, best.place), contact_scale(pair))
+    return narrow(pair, pose, hull, best, (tolerance, proof, min(rivals, KEPT_RIVALS)), work)
+
+
+@shared
+def search(pair, pose, best, tolerance, proof, rivals, work):
+    """(depth, least): the least depth of the cores, from the local minimum given (if found).
+
+    `least` bounds every depth from below: -inf where the origin is not known to lie in A - B.
+    `proof` is the part of the depth that another one may be less by: 1 asks only whether the
+    bodies overlap. `rivals` is how many other minima a proven search still tries. A descent that
+    ends uncertified still gives a depth that parts the bodies: its bound.
+
+    In a frame that is KEEPING its polytope the one of the frame before, moved with the bodies, is
+    tried first. Where that proves no depth the polytope is made anew.
+    """
+    hull = Hull(
+        ints_on_stack(N_SIZES),
+        reals_on_stack(ALL_POINTS),
+        ints_on_stack(ALL_CORNERS),
+        reals_on_stack(ALL_FACETS),
+        ints_on_stack(MAX_FACETS),
+        ints_on_stack(ALL_RIMS),
+    )
+    size = contact_scale(pair)
+    how = tolerance, proof, rivals
+    keeping = work.counts[KEEPING] != 0
+    least, settled = -inf, False
+    if keeping and recall(hull, pose, is_planar(pair), work.last_polytope, size):
+        best, least = narrow_kept(pair, pose, hull, best, how, work)
+        settled = settles(pair, best, least, proof) or (exhausted(work) and least > 0.0)
+    if not settled:
+        work.counts[SEARCHES] += 1
+        solid, way = seed_hull(pair, pose, hull, size)
+        if not solid:
+            return search_flat(pair, pose, way, best, tolerance, work)
+        if best.found:
+            grow_difference(hull, difference(pair, pose, best.place), size)
+        best, least = narrow(pair, pose, hull, best, how, work)
+    if keeping and least > 0.0:
+        keep(hull, work.polytope)
+        work.counts[KEPT] = 1
+    return best, least

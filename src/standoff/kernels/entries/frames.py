@@ -34,6 +34,8 @@ from standoff.kernels.pair.contact_newton import contact_rates
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import (
     EVENTS,
+    KEEPING,
+    KEPT,
     LIMIT,
     N_COUNTS,
     NO_LIMIT,
@@ -42,6 +44,7 @@ from standoff.kernels.pair.events import (
     exhausted,
     tidy_events,
 )
+from standoff.kernels.pair.polytope_layout import N_VERTICES
 from standoff.kernels.paper.frame import track_carried, track_paper
 from standoff.kernels.paper.integrators import feedforward_now
 from standoff.kernels.paper.law import begun
@@ -158,6 +161,14 @@ def step_frame(track, pair, inputs, steps, options, state, out, work):
 def clear_counts(work):
     for k in range(N_COUNTS):
         work.counts[k] = 0
+    work.counts[KEEPING], work.counts[KEPT] = 0, 0
+
+
+@kernel
+def forget_polytope(work):
+    """Leave the next frame no polytope where this one has kept none."""
+    if work.counts[KEPT] == 0:
+        work.polytope[N_VERTICES] = 0.0
 
 
 @kernel
@@ -182,9 +193,11 @@ def frame_predicted(pair, inputs, h, options, state, out, work):
     clear_counts(work)
     if options.smooth != 0:
         if answered_smoothly(pair, inputs, h, options, state, out):
+            forget_polytope(work)
             return
         work.counts[REFUSALS] = 1
     step_frame(track_predicted, pair, inputs, (h, h), options, state, out, work)
+    forget_polytope(work)
 
 
 @shared
@@ -192,6 +205,7 @@ def frame_paper(pair, inputs, h, options, state, out, work):
     """A frame of the paper's law, for single steps and for runs."""
     clear_counts(work)
     step_frame(track_paper, pair, inputs, (h, h), options, state, out, work)
+    forget_polytope(work)
 
 
 @shared
@@ -199,3 +213,4 @@ def frame_carried(pair, inputs, h, change, options, state, out, work):
     """A frame whose parameters were integrated together with the bodies' motion."""
     clear_counts(work)
     step_frame(track_carried, pair, inputs, (h, change), options, state, out, work)
+    forget_polytope(work)

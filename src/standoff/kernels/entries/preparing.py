@@ -8,11 +8,12 @@ from pathlib import Path
 
 from standoff.kernels.compiler import cache
 from standoff.kernels.compiler.entry import Entry
-from standoff.kernels.entries import queries, simulation, tracker
+from standoff.kernels.entries import blocks, queries, simulation, tracker
 
 MODULES = (
     "standoff.kernels.entries.queries",
     "standoff.kernels.entries.tracker",
+    "standoff.kernels.entries.blocks",
     "standoff.kernels.entries.smooth",
     "standoff.kernels.entries.simulation",
     "standoff.kernels.pair.normals_system",
@@ -28,8 +29,8 @@ PLANAR = ("pcurve_jet", "planar_edge_normal")
 LOCATING = ("feature_jet", "edge_jet", "coedge_conormal", "end_direction")
 """What locates the instant of a switch in a recorded run."""
 
-SCIPY = ("scipy.linalg.cython_lapack", "scipy.optimize")
-"""Imported by Numba in the first frame that decomposes a matrix, and by a proof of overlap."""
+SCIPY = ("scipy.optimize",)
+"""Imported by a proof of overlap."""
 
 ready_for: set[tuple[bool, bool, bool]] = set()
 
@@ -52,9 +53,9 @@ def prepare(paper: bool, planar: bool, runs: bool = False) -> None:
     needed = [getattr(queries, name) for name in names]
     needed += [tracker.start]
     needed += (
-        [tracker.value_paper, tracker.step_paper]
+        [blocks.value_paper, blocks.step_paper, blocks.moved_paper]
         if paper
-        else [tracker.value_predicted, tracker.step_predicted]
+        else [blocks.value_predicted, blocks.step_predicted, blocks.moved_predicted]
     )
     if runs:
         needed.append(tracker.run_paper if paper else tracker.run_predicted)

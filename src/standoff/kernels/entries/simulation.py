@@ -5,7 +5,7 @@ one tick of a virtual coupler by itself.
 import numpy as np
 from numba import types
 
-from standoff.kernels.compiler.decorators import entry, kernel, pointer
+from standoff.kernels.compiler.decorators import entry, kernel, pointer, reals_on_stack
 from standoff.kernels.compiler.entry import INT, INTS, READ, REAL, ROWS, WRITE
 from standoff.kernels.dynamics.arrays import (
     FREE,
@@ -42,6 +42,7 @@ from standoff.kernels.dynamics.system import clear_loads, touch_tracked
 from standoff.kernels.entries.frames import frame_carried, frame_paper, frame_predicted
 from standoff.kernels.entries.tracker import input_pointers, refused
 from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNT_SLOTS
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
 from standoff.kernels.paper.integrators import Change
 from standoff.kernels.state.arrays import (
     CONVERGED,
@@ -180,7 +181,10 @@ def run_system(packed, state, drives, every, records):
     scratch = pointed(arrays)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
-    work = Work(pointer(counts, 0), pointer(log, 0))
+    # the system's state is the whole warm start: no polytope goes from tick to tick
+    none, own = reals_on_stack(N_POLYTOPE), reals_on_stack(N_POLYTOPE)
+    none[N_VERTICES] = 0.0
+    work = Work(pointer(counts, 0), pointer(log, 0), none, own)
     h = system.numbers[STEP]
     begun = state[S_TIME]
     states[0, :] = state
@@ -222,7 +226,10 @@ def load_system(packed, state, loads, row):
     scratch = pointed(arrays)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
-    work = Work(pointer(counts, 0), pointer(log, 0))
+    # the system's state is the whole warm start: no polytope goes from tick to tick
+    none, own = reals_on_stack(N_POLYTOPE), reals_on_stack(N_POLYTOPE)
+    none[N_VERTICES] = 0.0
+    work = Work(pointer(counts, 0), pointer(log, 0), none, own)
     for pair in range(n_pairs(system)):
         why = track_pair(system, pair, state, system.numbers[STEP], work, scratch)
         if why != FINE:

@@ -4,47 +4,25 @@ The state goes in and comes out as one float64 array, so that it is a value. A s
 poses it is given; a frame's poses and twists are one row of numbers (``state.arrays``).
 """
 
-from typing import Any, NamedTuple
-
 import numpy as np
 
-from standoff.kernels.compiler.decorators import (
-    ahead,
-    entry,
-    ints_at,
-    kernel,
-    pointer,
-    reals_at,
-    stack_counts,
-    stack_log,
-)
-from standoff.kernels.compiler.entry import BLOCKS, BOOL, INT, PAIR, READ, REAL, ROWS, WRITE
+from standoff.kernels.compiler.decorators import ahead, entry, kernel, pointer, reals_on_stack
+from standoff.kernels.compiler.entry import BOOL, INT, PAIR, READ, ROWS, WRITE
 from standoff.kernels.entries.frames import frame_paper, frame_predicted, start_frame
 from standoff.kernels.frame.inputs import Inputs
 from standoff.kernels.frame.restart import anywhere, anywhere_apart
-from standoff.kernels.pair.events import EVENT_COLUMNS, EVENTS, MAX_EVENTS, N_COUNT_SLOTS
+from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNT_SLOTS
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
 from standoff.kernels.state.arrays import (
-    BAD_ARRAYS,
-    BLOCK_EVENTS,
-    BLOCK_HAS_TWIST,
-    BLOCK_MOTION,
-    BLOCK_STATE,
-    BLOCK_TIME_STEP,
     FINE,
-    MORE_EVENTS,
-    N_BLOCK,
     N_MOTION,
     N_OUT,
     N_STATE,
-    NOT_CERTIFIED,
-    NOT_GIVEN,
     NOT_KNOWN_APART,
     POSE_A,
     POSE_B,
-    STATUS,
     TWIST_A,
     TWIST_B,
-    UNDECIDED,
     refusal,
 )
 from standoff.kernels.state.options import names_paper_law, read_options
@@ -54,21 +32,6 @@ from standoff.kernels.values import Pair, Work
 @kernel
 def pair_pointers(pair):
     return Pair(pointer(pair[0], 0), pointer(pair[1], 0), pointer(pair[2], 0), pointer(pair[3], 0))
-
-
-# What a table of addresses holds: each followed by how many elements lie there.
-TABLE_INTS_A, TABLE_REALS_A, TABLE_INTS_B, TABLE_REALS_B, TABLE_OPTIONS = range(0, 10, 2)
-N_TABLE = 10
-
-
-@kernel
-def tabled_pair(table):
-    return Pair(
-        ints_at(table[TABLE_INTS_A], table[TABLE_INTS_A + 1]),
-        reals_at(table[TABLE_REALS_A], table[TABLE_REALS_A + 1]),
-        ints_at(table[TABLE_INTS_B], table[TABLE_INTS_B + 1]),
-        reals_at(table[TABLE_REALS_B], table[TABLE_REALS_B + 1]),
-    )
 
 
 @kernel
@@ -105,6 +68,7 @@ def start_by(query_from, pair, inputs, options, state, given, out):
     for k in range(N_COUNT_SLOTS):
         counts[k] = 0
     log = np.empty(MAX_EVENTS * EVENT_COLUMNS)
+    none = reals_on_stack(N_POLYTOPE)  # a start has none, and keeps none
     answered = start_frame(
         query_from,
         pair_pointers(pair),
@@ -113,7 +77,7 @@ def start_by(query_from, pair, inputs, options, state, given, out):
         pointer(state, 0),
         given,
         pointer(out, 0),
-        Work(pointer(counts, 0), pointer(log, 0)),
+        Work(pointer(counts, 0), pointer(log, 0), none, none),
     )
     counts[0], log[0] = 0, 0.0  # alive until here, see `pointer`
     return answered
@@ -139,182 +103,6 @@ def start(pair, motion, has_twist, options, state, given, out):
 
 
 @kernel
-def answered(frame, table, block, room):
-    """One frame on a block of `room` numbers: the state is changed in place, the answer and its
-    switches written."""
-    inputs = inputs_at(ahead(block, BLOCK_MOTION), block[BLOCK_HAS_TWIST] != 0.0)
-    why = refused(inputs)
-    if why != FINE:
-        return why
-    counts, log = stack_counts(), stack_log()
-    tabled = ints_at(table, N_TABLE)
-    options = read_options(reals_at(tabled[TABLE_OPTIONS], tabled[TABLE_OPTIONS + 1]))
-    state, out = ahead(block, BLOCK_STATE), block
-    frame(
-        tabled_pair(tabled), inputs, block[BLOCK_TIME_STEP], options, state, out, Work(counts, log)
-    )
-    switches = counts[EVENTS]
-    if BLOCK_EVENTS + EVENT_COLUMNS * switches > room:
-        return MORE_EVENTS
-    for k in range(EVENT_COLUMNS * switches):
-        block[BLOCK_EVENTS + k] = log[k]
-    return UNDECIDED if out[STATUS] == NOT_CERTIFIED else FINE
-
-
-class Given(NamedTuple):
-    """Poses and twists as Python gives them."""
-
-    pose_a: Any  # pointers to 16 numbers, (4, 4) by rows
-    pose_b: Any
-    twist_a: Any  # pointers to 6 numbers, or to NOT_GIVEN
-    twist_b: Any
-    has_a: bool  # is there a twist?
-    has_b: bool
-
-
-@kernel
-def copy_pose(matrix, motion):
-    """Copy a (4, 4) pose as 12 numbers. Is its last row 0 0 0 1?"""
-    for i in range(3):
-        for j in range(3):
-            motion[3 * i + j] = matrix[4 * i + j]
-        motion[9 + i] = matrix[4 * i + 3]
-    last = matrix[12] == 0.0 and matrix[13] == 0.0 and matrix[14] == 0.0
-    return last and matrix[15] == 1.0
-
-
-@kernel
-def is_given(twist, length):
-    """Is it more than the mark of a twist that was not given?"""
-    return not (length == 1 and twist[0] == NOT_GIVEN)
-
-
-@kernel
-def copy_twist(twist, given, motion):
-    """Copy a twist: where none was given, the body is at rest."""
-    for k in range(6):
-        motion[k] = twist[k] if given else 0.0
-
-
-@kernel
-def fit(length_a, has_a, length_b, has_b):
-    """Are two twists of six numbers, where they are given?"""
-    return (length_a == 6 or not has_a) and (length_b == 6 or not has_b)
-
-
-@kernel
-def value_at(frame, table, before, given, h, block):
-    """One frame from the state in one block to another block, both of N_BLOCK numbers."""
-    motion = ahead(block, BLOCK_MOTION)
-    square = copy_pose(given.pose_a, ahead(motion, POSE_A))
-    if not (copy_pose(given.pose_b, ahead(motion, POSE_B)) and square):
-        return BAD_ARRAYS
-    copy_twist(given.twist_a, given.has_a, ahead(motion, TWIST_A))
-    copy_twist(given.twist_b, given.has_b, ahead(motion, TWIST_B))
-    for k in range(N_STATE):
-        block[BLOCK_STATE + k] = before[BLOCK_STATE + k]
-    block[BLOCK_TIME_STEP] = h
-    block[BLOCK_HAS_TWIST] = 1.0 if given.has_a or given.has_b else 0.0
-    return answered(frame, table, block, N_BLOCK)
-
-
-@kernel
-def value_by(frame, table, before, given, h, block):
-    """`value_predicted`, with the law's own frame."""
-    pose_a, pose_b, twist_a, twist_b = given
-    square = pose_a.shape == (4, 4) and pose_b.shape == (4, 4)
-    has_a, has_b = is_given(twist_a, len(twist_a)), is_given(twist_b, len(twist_b))
-    long_enough = len(before) >= N_BLOCK and len(block) >= N_BLOCK
-    if not (square and long_enough and fit(len(twist_a), has_a, len(twist_b), has_b)):
-        return BAD_ARRAYS
-    at = Given(
-        pointer(pose_a, 0),
-        pointer(pose_b, 0),
-        pointer(twist_a, 0),
-        pointer(twist_b, 0),
-        has_a,
-        has_b,
-    )
-    return value_at(frame, table, pointer(before, 0), at, h, pointer(block, 0))
-
-
-@entry(INT, READ, ROWS, ROWS, WRITE, WRITE, REAL, WRITE, work="frames", terse=True)
-def value_predicted(table, before, pose_a, pose_b, twist_a, twist_b, h, block):
-    """One frame of the predictor-corrector from the state in one block to another block.
-
-    Poses (4, 4) and twists, (6,) or [NOT_GIVEN], are read as they are given. Returns FINE or
-    UNDECIDED; else what is refused, or MORE_EVENTS, and the block is of no worth.
-    """
-    given = pose_a, pose_b, twist_a, twist_b
-    return value_by(frame_predicted, table, before, given, h, block)
-
-
-@entry(INT, READ, ROWS, ROWS, WRITE, WRITE, REAL, WRITE, work="paper", terse=True)
-def value_paper(table, before, pose_a, pose_b, twist_a, twist_b, h, block):
-    """`value_predicted`, of the paper's law."""
-    given = pose_a, pose_b, twist_a, twist_b
-    return value_by(frame_paper, table, before, given, h, block)
-
-
-@kernel
-def values_by(frame, table, given, steps, first, blocks):
-    """`values_predicted`, with the law's own frame."""
-    poses_a, poses_b, twists_a, twists_b = given
-    n, of_a, of_b = len(steps), twists_a.shape[1], twists_b.shape[1]
-    at_a, at_b = pointer(poses_a, 0), pointer(poses_b, 0)
-    way_a, way_b = pointer(twists_a, 0), pointer(twists_b, 0)
-    block, h = pointer(blocks, 0), pointer(steps, 0)
-    square = poses_a.shape == (n, 4, 4) and poses_b.shape == (n, 4, 4)
-    rows = len(twists_a) == n and len(twists_b) == n and blocks.shape == (n + 1, N_BLOCK)
-    if not (square and rows):
-        return first, BAD_ARRAYS
-    for k in range(first, n):
-        twist_a, twist_b = ahead(way_a, of_a * k), ahead(way_b, of_b * k)
-        has_a, has_b = is_given(twist_a, of_a), is_given(twist_b, of_b)
-        if not fit(of_a, has_a, of_b, has_b):
-            return k, BAD_ARRAYS
-        one = Given(ahead(at_a, 16 * k), ahead(at_b, 16 * k), twist_a, twist_b, has_a, has_b)
-        old, new = ahead(block, N_BLOCK * k), ahead(block, N_BLOCK * (k + 1))
-        done = value_at(frame, table, old, one, h[k], new)
-        if done != FINE:
-            return k, done
-    return n, FINE
-
-
-@entry(INT, BLOCKS, BLOCKS, ROWS, ROWS, WRITE, INT, ROWS, work="runs")
-def values_predicted(table, poses_a, poses_b, twists_a, twists_b, steps, first, blocks):
-    """`value_predicted` of many frames: frame k goes from block k to block k + 1.
-
-    poses (n, 4, 4), twists (n, 6) or (n, 1) of NOT_GIVEN, steps (n,), blocks (n + 1, N_BLOCK).
-    Begins at frame `first`. Returns the first frame that is not FINE and why; n, FINE at the end.
-    """
-    given = poses_a, poses_b, twists_a, twists_b
-    return values_by(frame_predicted, table, given, steps, first, blocks)
-
-
-@entry(INT, BLOCKS, BLOCKS, ROWS, ROWS, WRITE, INT, ROWS, work="paper runs")
-def values_paper(table, poses_a, poses_b, twists_a, twists_b, steps, first, blocks):
-    """`values_predicted`, of the paper's law."""
-    given = poses_a, poses_b, twists_a, twists_b
-    return values_by(frame_paper, table, given, steps, first, blocks)
-
-
-@entry(INT, WRITE, work="frames")
-def step_predicted(table, block):
-    """One frame of the predictor-corrector in a long block, in place.
-
-    Returns FINE or UNDECIDED; or, with nothing changed, what of the poses and twists is refused.
-    """
-    return answered(frame_predicted, table, pointer(block, 0), len(block))
-
-
-@entry(INT, WRITE, work="paper")
-def step_paper(table, block):
-    """`step_predicted`, of the paper's law."""
-    return answered(frame_paper, table, pointer(block, 0), len(block))
-
-
-@kernel
 def run_by(frame, pair, given, steps, options, state, outs, events):
     """Many frames in one compiled loop, with the law that they are to follow. `given` is (motions,
     has_twist).
@@ -323,7 +111,11 @@ def run_by(frame, pair, given, steps, options, state, outs, events):
     numbers, answers, length = motions.ravel(), outs.ravel(), len(motions)
     motion, out = pointer(numbers, 0), pointer(answers, 0)
     counts = np.empty(N_COUNT_SLOTS, dtype=np.int64)
-    work = Work(pointer(counts, 0), pointer(events, 0))
+    scratch = reals_on_stack(N_POLYTOPE)
+    scratch[N_VERTICES] = 0.0
+    behind = ahead(pointer(state, 0), N_STATE)
+    kept = behind if len(state) >= N_STATE + N_POLYTOPE else scratch
+    work = Work(pointer(counts, 0), pointer(events, 0), kept, kept)
     pointers = pair_pointers(pair)
     options = read_options(pointer(options, 0))
     h, kept = pointer(steps, 0), pointer(state, 0)
@@ -343,8 +135,9 @@ def run_by(frame, pair, given, steps, options, state, outs, events):
 def run_predicted(pair, motions, has_twist, steps, options, state, outs, events):
     """Many frames in one compiled loop; row k of `outs` answers for row k of `motions`.
 
-    motions (n, N_MOTION), steps (n,), outs (n, N_OUT). Returns (-1, FINE), or the frame
-    that was refused and why; the frames before it are answered.
+    motions (n, N_MOTION), steps (n,), outs (n, N_OUT). Behind the state there may be N_POLYTOPE
+    numbers more, for a polytope that is kept from run to run. Returns (-1, FINE), or the frame that
+    was refused and why; the frames before it are answered.
     """
     return run_by(frame_predicted, pair, (motions, has_twist), steps, options, state, outs, events)
 

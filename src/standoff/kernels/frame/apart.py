@@ -21,7 +21,7 @@ from standoff.kernels.pair.certified import (
     settle_and_weigh,
 )
 from standoff.kernels.pair.descent import pair_jets
-from standoff.kernels.pair.events import exhausted
+from standoff.kernels.pair.events import KEEPING, exhausted
 from standoff.kernels.state.arrays import DEPTH_GLOBAL
 from standoff.kernels.state.tracked import (
     ANSWERED,
@@ -86,6 +86,9 @@ def contact(pair, pose, before, depth, tolerance, work):
     newton = before.inside and (before.cut // CUT_TURN) % 2 == 0
     begin = NEAR if newton else WARM
     everywhere = depth == DEPTH_GLOBAL
+    # a frame that is the first in contact has no block to keep a polytope in; one that asks for no
+    # proof would let it go slack
+    work.counts[KEEPING] = 1 if before.inside and everywhere else 0
     found = contact_query(
         pair, pose, before.place, before.normal, begin, everywhere, tolerance, work
     )

@@ -8,7 +8,7 @@ from standoff.kernels.pair.certificate import certify_along
 from standoff.kernels.pair.certified import CERTIFIED, NOT_APART, PENETRATING
 from standoff.kernels.pair.cold_start import FIRST, global_query
 from standoff.kernels.pair.descent import pair_jets
-from standoff.kernels.pair.events import LIMIT, RESTARTS, exhausted
+from standoff.kernels.pair.events import KEEPING, LIMIT, RESTARTS, exhausted
 from standoff.kernels.state.tracked import without_rates
 from standoff.kernels.tolerances import PATIENCE, POLISHED
 from standoff.kernels.values import Depth, Found
@@ -107,6 +107,7 @@ def cut_off(pair, pose, found):
 def restart(pair, pose, first, tolerance, integrated, work):
     """A frame by a global start."""
     work.counts[RESTARTS] += 1
+    work.counts[KEEPING] = 0  # what the frame before knew has led nowhere
     found, inside = anywhere_from(pair, pose, first, tolerance, work)
     if exhausted(work) and found.outcome != CERTIFIED and not inside:
         found, inside = cut_off(pair, pose, found)

@@ -7,8 +7,8 @@ otherwise; the feature pair is held.
 
 from typing import NamedTuple
 
-from standoff.kernels.algebra.lapack import least_squares
 from standoff.kernels.algebra.roots import sqrt
+from standoff.kernels.algebra.symmetric import least_norm_solve
 from standoff.kernels.algebra.vectors import cross, dot, norm, rotate, scale, sub, unit
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_normal, dimension, pair_span
@@ -119,11 +119,9 @@ def solve_contact(jet_a, jet_b, n, d, span, scales, r, x):
     if factor_and_solve(J, x, 8):
         return
     scaled_jacobian(jet_a, jet_b, n, d, span, scales, J)
-    for i in range(8):
-        x[i] = r[i]
-        for j in range(i):
-            J[8 * i + j], J[8 * j + i] = J[8 * j + i], J[8 * i + j]
-    if not least_squares(J, x, 8, PIVOT):
+    for k in range(8):
+        x[k] = r[k]
+    if not least_norm_solve(J, x, 8, PIVOT):
         for k in range(8):
             x[k] = 0.0
 

@@ -10,7 +10,9 @@ SEARCHES, FOOT_POINTS, SOLVED_PARAMETERS, REFUSALS = range(7, 11)
 N_COUNTS = 11
 # Behind them, the evaluations after which the frame must end (its deadline).
 LIMIT = N_COUNTS
-N_COUNT_SLOTS = N_COUNTS + 1
+# May the frame begin with the polytope that was kept, and keep its own; has it kept one?
+KEEPING, KEPT = N_COUNTS + 1, N_COUNTS + 2
+N_COUNT_SLOTS = N_COUNTS + 3
 NO_LIMIT = 1 << 40
 
 # Columns of the log, a flat array of MAX_EVENTS rows: body (0 A, 1 B), from, to, value of the

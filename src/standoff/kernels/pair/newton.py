@@ -8,8 +8,8 @@ units and of the parametrisation.
 from math import inf
 from typing import NamedTuple
 
-from standoff.kernels.algebra.lapack import symmetric_eigen
 from standoff.kernels.algebra.roots import sqrt
+from standoff.kernels.algebra.symmetric import symmetric_eigen
 from standoff.kernels.algebra.vectors import dot
 from standoff.kernels.compiler.decorators import kernel, shared, stack_reals
 from standoff.kernels.tolerances import (

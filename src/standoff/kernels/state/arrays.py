@@ -10,6 +10,7 @@ from standoff.kernels.algebra.rigid import read_vector
 from standoff.kernels.algebra.vectors import cross, dot
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNTS
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.tolerances import FARTHEST, ROTATION
 
 # State.
@@ -70,15 +71,20 @@ OUT_COUNTS = 29
 N_OUT = OUT_COUNTS + N_COUNTS
 
 # One block of memory holds a frame: its answer, the state after it, what was given (the motion,
-# the time since the frame before, 1 where twists are given), and the switches.
+# the time since the frame before, 1 where twists are given), where its polytope begins (0: it has
+# none), what came of a frame in place, the switches, and the polytope.
 BLOCK_STATE = N_OUT
 BLOCK_MOTION = BLOCK_STATE + N_STATE
 BLOCK_TIME_STEP = BLOCK_MOTION + N_MOTION
 BLOCK_HAS_TWIST = BLOCK_TIME_STEP + 1
-BLOCK_EVENTS = BLOCK_HAS_TWIST + 1
+BLOCK_POLYTOPE = BLOCK_HAS_TWIST + 1
+BLOCK_DONE = BLOCK_POLYTOPE + 1
+BLOCK_EVENTS = BLOCK_DONE + 1
 KEPT_EVENTS = 4  # of a frame that is a value: one with more is made anew in a longer block
 N_BLOCK = BLOCK_EVENTS + EVENT_COLUMNS * KEPT_EVENTS
-N_LONG_BLOCK = BLOCK_EVENTS + EVENT_COLUMNS * MAX_EVENTS
+N_KEEPING_BLOCK = N_BLOCK + N_POLYTOPE  # of a frame that may keep one
+FIRST_POLYTOPE = BLOCK_EVENTS + EVENT_COLUMNS * MAX_EVENTS
+N_LONG_BLOCK = FIRST_POLYTOPE + N_POLYTOPE
 
 # Status numbers, those of standoff.tracking.Status.
 CONVERGED, TRACKING, OVERLAPPING, NOT_CERTIFIED, LOCAL, GLOBAL, DEADLINE = range(7)
