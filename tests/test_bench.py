@@ -5,7 +5,7 @@ import sys
 import pyarrow.parquet as pq
 import pytest
 from benchmarks.bench import __main__ as bench
-from benchmarks.bench import goals, library
+from benchmarks.bench import goals, library, operations
 from benchmarks.bench.motion import all_pairs
 from benchmarks.bench.race import Effort, raced
 
@@ -42,6 +42,18 @@ def test_files_hold_every_row(written):
     assert set(ALWAYS) <= names
     for goal in goals.GOALS:
         assert f"| {goal.pair}: {goal.work} | {goal.against} |" in text
+
+
+def test_operations_and_bytes_are_counted(written):
+    operations.done.clear()
+    x, y = (operations.Numbers([operations.Counted(k) for k in (1.0, 2.0, 3.0)]) for _ in "xy")
+    x[1] = x[0] * y[0] + x[1] * y[1] - x[2] / y[2]
+    told = {"products": 2, "sums": 2, "divisions": 1, "reads": 6, "writes": 1}
+    assert dict(operations.done) == told
+    cost = operations.counted()
+    assert cost == operations.counted()
+    assert cost.products > 500
+    assert f"{cost.products} products" in (written / "bench.md").read_text()
 
 
 def test_a_missing_peer_is_told(monkeypatch):

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from benchmarks.bench import limits, report
+from benchmarks.bench import goals, library, limits, operations, report
 from benchmarks.bench.motion import all_pairs
 from benchmarks.bench.race import QUICK, Effort, Row, raced
 from benchmarks.bench.worst import worst_frames
@@ -44,6 +44,19 @@ def facts(effort: Effort) -> dict[str, str]:
     }
 
 
+def reached(rows: list[Row]) -> dict[str, str]:
+    """What a frame computes, and how much of the machine's peak that is."""
+    cost, peak = operations.counted(), limits.peak()
+    run = next(r for r in rows if r.pair == goals.ELLIPSOIDS and r.contender == library.RUN)
+    rate = cost.operations / run.median
+    return {
+        "a frame of two ellipsoids": f"{cost.sums} sums, {cost.products} products, "
+        f"{cost.divisions} divisions and roots; {cost.bytes_read} bytes read, "
+        f"{cost.bytes_written} written",
+        "of that peak, in `tracker.run`": f"{rate / 1e9:.1f} GFLOP/s, {100.0 * rate / peak:.1f} %",
+    }
+
+
 def told(known: dict[str, str]) -> list[str]:
     """The header of the page."""
     return ["| | |", "|---|---|", *(f"| {name} | {value} |" for name, value in known.items())]
@@ -65,7 +78,7 @@ def main(given: Sequence[str] | None = None) -> None:
     for pair in all_pairs():
         found, doubts[pair.name] = raced(pair, effort)
         rows += found
-    known = facts(effort)
+    known = facts(effort) | reached(rows)
     text = report.markdown(told(known), rows, doubts)
     print(text)
     for path in report.write(asked.out, text, rows, known):
