@@ -248,3 +248,13 @@ def test_foreign_files_are_refused(run, tmp_path):
     facts = {"standoff": "0.0", "seed": SEED, "frames": 30, "done": [], "sums": {}, "worst": {}}
     (tmp_path / "soak.json").write_text(json.dumps(facts | {"examples": []}))
     assert "standoff 0.0" in run(*arguments)[2]
+
+
+@pytest.mark.parametrize("file", sorted(Path(__file__).with_name("mended").glob("*.json")))
+def test_what_a_soak_once_found_is_mended(file):
+    """The very step, from the state before it: in the whole run roundoff may lead elsewhere."""
+    facts = json.loads(file.read_text())
+    assert facts["step"]["state"]
+    found = replay(facts)
+    assert found.step is None
+    assert found.failure is None

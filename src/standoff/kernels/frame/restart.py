@@ -1,5 +1,6 @@
 """A global start: of a first frame, and of one that the last frame does not lead to."""
 
+from standoff.kernels.body.features import pair_span
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.depth.penetration import NOTHING, begin_along, contact_scale, minimum_along
 from standoff.kernels.depth.search import overlap_shown
@@ -10,7 +11,7 @@ from standoff.kernels.pair.cold_start import FIRST, global_query
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import KEEPING, LIMIT, RESTARTS, exhausted
 from standoff.kernels.state.tracked import without_rates
-from standoff.kernels.tolerances import PATIENCE, POLISHED
+from standoff.kernels.tolerances import PATIENCE, POLISHED, TOUCHING
 from standoff.kernels.values import Depth, Found
 
 
@@ -90,10 +91,14 @@ def cut_off(pair, pose, found):
     """(found, inside) of a frame that ran out of evaluations outside contact.
 
     Where samples alone show that the bodies overlap, the next frame follows the depth from their
-    least direction, and this one answers with what that parts them by.
+    least direction, and this one answers with what that parts them by. So it does from the last
+    direction where both witness points have come to lie on one another: such a pair is no distance
+    apart, and a distance of 0 would tell nothing of its depth.
     """
     n = some_direction(found.normal)
     shown, way, least = overlap_shown(pair, pose)
+    if not shown and found.distance <= TOUCHING * pair_span(pair, pose.p, 0.0):
+        shown, way, least = True, n, 0.0
     if not shown or found.lower > 0.0:
         return Found(found.outcome, found.place, found.distance, found.lower, found.upper, n), False
     place = begin_along(pair, pose, way)
