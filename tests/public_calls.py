@@ -422,6 +422,7 @@ def pair_calls() -> list[Call]:
         "SpatialPointTracker": (so.points, {"body": BOX, "dt": 1e-3, "tolerance": 1e-9}),
         "distance": (so, posed),
         "open_recording": (so, {"path": "no_such_file.parquet"}),
+        "plot": (so, {**pair, "answer": so.distance(*posed.values()), "view": (20.0, 30.0)}),
         "pair_system": (
             so.tracking,
             {**posed, "place_a": (so.Feature("vertex", 0), ()), "place_b": (("face", 0), (0, 0))},

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
         distance,
         feedback,
         max_gain,
+        plot,
         witness_set,
     )
 else:
@@ -65,6 +66,7 @@ else:
                 "distance",
                 "feedback",
                 "max_gain",
+                "plot",
                 "witness_set",
             ),
             "standoff.impact": ("time_of_impact",),
@@ -155,6 +157,7 @@ __all__ = [
     "max_gain",
     "min_gain",
     "open_recording",
+    "plot",
     "shapes",
     "simulate",
     "time_of_impact",

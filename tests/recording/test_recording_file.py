@@ -55,7 +55,7 @@ def test_a_recording_comes_back_as_it_was(recordings: list[so.Recording], tmp_pa
         recording.save(tmp_path / "run.parquet")
         again = so.open_recording(tmp_path / "run.parquet")
         for field in fields(so.Recording):
-            if field.name != "pair":
+            if field.name not in ("pair", "paths"):
                 was, read = getattr(recording, field.name), getattr(again, field.name)
                 assert same(was, read), field.name
         assert again.pair is None

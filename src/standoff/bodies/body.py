@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -34,6 +35,9 @@ from standoff.geometry.validation import (
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of
 from standoff.spellings import renamed
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,6 +250,42 @@ class Body(KeepsReadOnly):
     def check(self) -> BodyReport:
         """What construction found and turned."""
         return self.report
+
+    def plot(self, path: str | Path | None = None, *, unit: str = "") -> Figure:
+        """Draw the body from two opposite sides, or in its plane: its features and their names.
+
+        Faces, edges, vertices, smooth seams and outward normals, in equal scales.
+
+        Parameters
+        ----------
+        path : str or path, optional
+            Also write the picture there, whole or not at all: .png, .svg or .pdf.
+        unit : str
+            Label of lengths.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If matplotlib is not installed; the message names the extra.
+        TypeError
+            If `path` is neither a text nor a Path.
+        ValueError
+            If it is empty, or the file's ending is another.
+        OSError
+            If the file cannot be written.
+        """
+        from standoff.bodies.drawing.body_picture import draw_body
+        from standoff.bodies.drawing.files import checked_file, write_picture
+
+        target = None if path is None else checked_file(path)
+        figure = draw_body(self, self.name, str(unit))
+        if target is not None:
+            write_picture(figure, target)
+        return figure
 
     @property
     def digest(self) -> str:

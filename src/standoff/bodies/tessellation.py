@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
+from standoff.bodies.drawn import Drawn
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
@@ -22,8 +22,8 @@ from standoff.kernels.entries.queries import (
 # Points along each coedge, and along each edge: a drawn line of a whole turn shows no corners.
 ALONG = 33
 ALONG_EDGE = 97
-# Grid points along each side of a chart: of a body of few charts, and of one of many.
-GRID, COARSE_GRID = 21, 7
+# Grid points along each side of a chart: of a body of few charts, finer, and of one of many.
+GRID, FINE_GRID, COARSE_GRID = 21, 41, 7
 FEW_CHARTS = 20
 # An unbounded face is shown over this half width, in units of its own parameters.
 UNBOUNDED_HALF = 1.0
@@ -71,20 +71,25 @@ class EdgeLine:
     smooth: bool
 
 
-def face_meshes(body: Body) -> list[FaceMesh]:
-    """Return the triangles of every chart of every face, as far as the face reaches."""
+def face_meshes(body: Drawn, *, fine: bool = False) -> list[FaceMesh]:
+    """Return the triangles of every chart of every face, as far as the face reaches.
+
+    `fine` ones serve pictures whose outlines should look smooth.
+    """
+    few = body.ints[L.N_CHARTS] <= FEW_CHARTS
+    grid = (FINE_GRID if fine else GRID) if few else COARSE_GRID
     meshes = []
     for face, part in enumerate(body.face_parts):
         row = int(body.ints[L.FACES]) + L.FACE_STRIDE * face
         first, count = (int(n) for n in body.ints[row : row + 2])
         for chart in range(first, first + count):
-            mesh = _chart_mesh(body, face, chart, surface_of(body, part.charts, chart))
+            mesh = _chart_mesh(body, face, chart, surface_of(body, part.charts, chart), grid)
             if mesh is not None:
                 meshes.append(mesh)
     return meshes
 
 
-def edge_lines(body: Body) -> list[EdgeLine]:
+def edge_lines(body: Drawn) -> list[EdgeLine]:
     """Return points along every edge."""
     coedges: list[dict[int, int]] = [{} for _ in range(body.n_edges)]
     for k, chart, edge in coedges_of(body):
@@ -93,13 +98,13 @@ def edge_lines(body: Body) -> list[EdgeLine]:
     return [_edge_line(body, edge, list(found.values())) for edge, found in enumerate(coedges)]
 
 
-def chart_row(body: Body, chart: int) -> NDArray[np.int64]:
+def chart_row(body: Drawn, chart: int) -> NDArray[np.int64]:
     """The packed record of a chart, laid out in ``kernels.layout``."""
     start = int(body.ints[L.CHARTS]) + L.CHART_STRIDE * chart
     return body.ints[start : start + L.CHART_STRIDE]
 
 
-def coedges_of(body: Body) -> list[tuple[int, int, int]]:
+def coedges_of(body: Drawn) -> list[tuple[int, int, int]]:
     """(number, chart, edge) of every coedge; a collapsed side has -1 - vertex for its edge."""
     found = []
     for chart in range(int(body.ints[L.N_CHARTS])):
@@ -111,7 +116,7 @@ def coedges_of(body: Body) -> list[tuple[int, int, int]]:
     return found
 
 
-def surface_of(body: Body, charts: tuple[Surface, ...], chart: int) -> Surface:
+def surface_of(body: Drawn, charts: tuple[Surface, ...], chart: int) -> Surface:
     """The surface of a packed chart: charts that see nothing of their face were left out."""
     offset = int(chart_row(body, chart)[L.CHART_REALS])
     packed = body.reals[offset : offset + L.INVERSE]
@@ -119,7 +124,7 @@ def surface_of(body: Body, charts: tuple[Surface, ...], chart: int) -> Surface:
     return charts[int(np.argmin(misses))]
 
 
-def chart_outline(body: Body, chart: int) -> Array:
+def chart_outline(body: Drawn, chart: int) -> Array:
     """Points of a chart's trimming curves in (u, v), (n, 2), as far as the chart shows them."""
     row = chart_row(body, chart)
     first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
@@ -135,13 +140,14 @@ def chart_outline(body: Body, chart: int) -> Array:
     return np.array(spots).reshape(-1, 2)
 
 
-def _chart_mesh(body: Body, face: int, chart: int, surface: Surface) -> FaceMesh | None:
+def _chart_mesh(
+    body: Drawn, face: int, chart: int, surface: Surface, count: int
+) -> FaceMesh | None:
     outline = chart_outline(body, chart)
     low, high = chart_box(body, chart, outline)
     tiled = _is_tile(body, chart)
     if tiled:
         outline = outline[np.abs(outline).max(axis=1, initial=0.0) <= TILE]
-    count = GRID if body.ints[L.N_CHARTS] <= FEW_CHARTS else COARSE_GRID
     step = (high - low) / (count - 1)
     u, v = np.meshgrid(*(np.linspace(low[k], high[k], count) for k in (0, 1)), indexing="ij")
     grid = np.column_stack([u.ravel(), v.ravel()])
@@ -162,12 +168,12 @@ def _chart_mesh(body: Body, face: int, chart: int, surface: Surface) -> FaceMesh
     return FaceMesh(face, points, normals, triangles.astype(np.int64), inner)
 
 
-def _is_tile(body: Body, chart: int) -> bool:
+def _is_tile(body: Drawn, chart: int) -> bool:
     offset = int(chart_row(body, chart)[L.CHART_REALS])
     return bool(np.isfinite(body.reals[offset + L.LIMIT]))
 
 
-def chart_box(body: Body, chart: int, outline: Array) -> tuple[Array, Array]:
+def chart_box(body: Drawn, chart: int, outline: Array) -> tuple[Array, Array]:
     """The rectangle of (u, v) that holds a chart's part of its face."""
     if _is_tile(body, chart):
         return np.full(2, -TILE), np.full(2, TILE)
@@ -176,7 +182,7 @@ def chart_box(body: Body, chart: int, outline: Array) -> tuple[Array, Array]:
     return outline.min(axis=0), outline.max(axis=0)
 
 
-def _edge_line(body: Body, edge: int, coedges: list[int]) -> EdgeLine:
+def _edge_line(body: Drawn, edge: int, coedges: list[int]) -> EdgeLine:
     curve = body.edge_parts[edge].curve
     times = np.linspace(curve.first, curve.last, ALONG_EDGE)
     points = np.array([curve.point(float(t)) for t in times])

@@ -185,6 +185,10 @@ NEAREST_SPOT: Final = 1e-12
 """Width (parameter units) to which the arc's point nearest to the witness is sought: the distance's
 square is level to roundoff over far more."""
 
+FLAT_CLOUD: Final = 1e-9
+"""Points within this part of the body's size of a common plane span no volume: their hull is not
+drawn."""
+
 SHOWN_ROUNDOFF: Final = 1e-15
 """Part of the size at which a number is shown as zero: a few roundings of a sum of that size. What
 is computed keeps it."""

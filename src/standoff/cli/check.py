@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -13,7 +13,7 @@ from rich.table import Table
 from standoff import __version__
 from standoff.cli.arguments import CheckCommand
 from standoff.cli.body_report import report_rows
-from standoff.cli.errors import CommandError, ExitCode
+from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
 from standoff.cli.output import Writer, check_named, check_target, write_whole
 from standoff.cli.subject import Subject, subjects
@@ -77,9 +77,15 @@ def _files(found: list[Subject], targets: list[Path | None]) -> dict[Path, Write
 
 
 def _writer(subject: Subject, ending: str) -> Writer:
-    from standoff.cli.body_picture import write_body
+    try:
+        from standoff.bodies.drawing.body_picture import draw_body
+    except ModuleNotFoundError as error:
+        raise MissingExtra(str(error.name)) from error
 
-    return lambda file: write_body(file, ending, subject.body, subject.name, subject.unit)
+    def write(file: BinaryIO) -> None:
+        draw_body(subject.body, subject.name, subject.unit).savefig(file, format=ending)
+
+    return write
 
 
 def _json(found: list[Subject], files: list[Path]) -> str:

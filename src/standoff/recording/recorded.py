@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from standoff.automaton.visits import Visit
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.bodies.plain_data import counted, short_name
+from standoff.motion import PoseLike
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import every_option, law_of_facts
@@ -21,6 +22,17 @@ from standoff.tracking.rows import Counts
 from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
+
+
+class Placing(Protocol):
+    """What a recording asks of a path."""
+
+    def pose(self, t: float, /) -> PoseLike:
+        """The world pose at a time [s]."""
+
+
+Paths: TypeAlias = tuple[Placing, Placing]
+"""Of A and of B."""
 
 
 class RecordedEvent(NamedTuple):
@@ -128,6 +140,12 @@ class RecordedFrames(KeepsReadOnly):
     events: tuple[RecordedEvent, ...]
     info: RunInfo
     pair: tuple[Body, Body] | None = field(default=None, repr=False)
+    paths: Paths | None = field(default=None, repr=False)
+
+    def __getstate__(self) -> Any:
+        # A path may be a function, which cannot be stored.
+        state, locked = super().__getstate__()
+        return {**state, "paths": None}, locked
 
     def __len__(self) -> int:
         return len(self.time)

@@ -14,14 +14,17 @@ from standoff.bodies.body import Body
 from standoff.bodies.features import charts_of, feature_of
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.real_numbers import shown
+from standoff.recording.recorded import Paths, RecordedFrames
 from standoff.recording.recorded import RecordedEvent as RecordedEvent
-from standoff.recording.recorded import RecordedFrames
 from standoff.recording.recorded import RunInfo as RunInfo
+from standoff.tracking.choices import whole_number
+from standoff.tracking.pair_plot import view_angles
 from standoff.tracking.rows import AnswerRows
 from standoff.tracking.status import Status
 from standoff.whole_files import file_name, write_whole
 
 if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure
 
     from standoff.automaton.graph import Automaton
@@ -55,6 +58,9 @@ class Recording(RecordedFrames):
     info : RunInfo
     pair : (Body, Body) or None
         A and B; None in a recording opened from a file, which keeps their digests only.
+    paths : (path, path) or None
+        Those of A and B, as `animate` asks them for poses; None in a recording opened from a file,
+        and in a copy or a pickle, as a path may be a function.
     """
 
     @classmethod
@@ -65,6 +71,7 @@ class Recording(RecordedFrames):
         events: tuple[RecordedEvent, ...],
         pair: tuple[Body, Body],
         info: RunInfo,
+        paths: Paths | None = None,
     ) -> Recording:
         """Return the recording of a run's flat answers, (n, N_OUT) as ``kernels.frame`` has it."""
         a, b = pair
@@ -91,6 +98,7 @@ class Recording(RecordedFrames):
             events=events,
             info=info,
             pair=pair,
+            paths=paths,
         )
 
     def automaton(self) -> Automaton:
@@ -151,6 +159,44 @@ class Recording(RecordedFrames):
         figure = recording_plot.draw(self)
         write_whole({target: lambda file: figure.savefig(file, format=ending)})
         return figure
+
+    def animate(
+        self, pictures: int = 60, *, view: tuple[float, float] | None = None
+    ) -> FuncAnimation:
+        """Return an animation of both bodies, their active features and the witness line.
+
+        Show it, or save it: ``recording.animate().save("run.gif", writer="pillow")``.
+
+        Parameters
+        ----------
+        pictures : int
+            Most frames of the recording that are drawn, evenly chosen from the first to the last.
+        view : (float, float), optional
+            Elevation and azimuth of the viewer, degrees. If not given, the view is across the
+            normal of the closest frame.
+
+        Returns
+        -------
+        matplotlib.animation.FuncAnimation
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If matplotlib is not installed; the message names the extra.
+        ValueError
+            In a recording opened from a file or copied, which does not hold bodies or paths; fewer
+            than one picture; a view that is not two finite numbers.
+        """
+        if self.pair is None or self.paths is None:
+            raise StandoffError(
+                "A recording that was opened from a file, copied or unpickled does not hold what "
+                "moved: animate the one that so.simulate returned."
+            )
+        count = whole_number(pictures, "pictures")
+        angles = view_angles(view)
+        from standoff.recording.animation import animation
+
+        return animation(self, self.pair, self.paths, count, angles)
 
     def to_arrow(self) -> Any:
         """Return a table of PyArrow: what `save` writes, with the same columns and metadata.

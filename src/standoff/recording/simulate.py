@@ -190,7 +190,7 @@ def track_along(
     run.go(progress, state)
     pair = tracker.a, tracker.b
     info = replace(_run_info(tracker, locate), repaired=run.repaired)
-    return Recording.of_answers(times, run.answers, tuple(run.events), pair, info)
+    return Recording.of_answers(times, run.answers, tuple(run.events), pair, info, (path_a, path_b))
 
 
 def _run_info(tracker: Tracker, locate: bool) -> RunInfo:

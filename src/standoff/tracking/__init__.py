@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from standoff.tracking.contact.witness_set import WitnessSet, witness_set
     from standoff.tracking.feedback import max_gain
     from standoff.tracking.laws import PaperLaw, PredictorCorrector
+    from standoff.tracking.pair_plot import plot
     from standoff.tracking.pair_system import PairSystem, pair_system
     from standoff.tracking.proximity import Counts, Event, Proximity
     from standoff.tracking.state import FrameBuffer, TrackerState
@@ -33,6 +34,7 @@ else:
                 "PredictorCorrector",
             ),
             "standoff.tracking.answers": ("Answers",),
+            "standoff.tracking.pair_plot": ("plot",),
             "standoff.tracking.pair_system": (
                 "PairSystem",
                 "pair_system",
@@ -97,5 +99,6 @@ __all__ = [
     "feedback",
     "max_gain",
     "pair_system",
+    "plot",
     "witness_set",
 ]

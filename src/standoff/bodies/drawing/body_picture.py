@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import BinaryIO
-
 import numpy as np
 
-from standoff.bodies.body import Body
-from standoff.bodies.tessellation import edge_lines, face_meshes
-from standoff.cli.body_view import (
+from standoff.bodies.drawing.body_view import (
     FACE_COLOURS,
     NORMAL_COLOUR,
     NORMAL_LENGTH,
@@ -21,7 +17,9 @@ from standoff.cli.body_view import (
     draw_view,
     shows,
 )
-from standoff.cli.errors import MissingExtra
+from standoff.bodies.drawn import Drawn
+from standoff.bodies.tessellation import edge_lines, face_meshes
+from standoff.errors import not_installed
 
 try:
     from matplotlib.artist import Artist
@@ -31,27 +29,19 @@ try:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 except ModuleNotFoundError as error:
-    raise MissingExtra("matplotlib") from error
+    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 
-def write_body(file: BinaryIO, ending: str, body: Body, name: str, unit: str) -> None:
-    """Draw a body to a stream.
+def draw_body(body: Drawn, name: str, unit: str) -> Figure:
+    """Draw a body from two opposite sides, or in its plane.
 
     Parameters
     ----------
-    file : binary stream
-    ending : str
-        The format: ``png``, ``svg`` or ``pdf``.
     body : Body
     name : str
         What it is called.
     unit : str
-        Label of lengths.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
+        Label of lengths; empty for none.
     """
     parts = Parts(body, face_meshes(body), edge_lines(body))
     planar = body.dimension == 2
@@ -73,10 +63,10 @@ def write_body(file: BinaryIO, ending: str, body: Body, name: str, unit: str) ->
         frameon=False,
         fontsize="small",
     )
-    figure.savefig(file, format=ending)
+    return figure
 
 
-def _title(body: Body, name: str) -> str:
+def _title(body: Drawn, name: str) -> str:
     report = body.check()
     counts = [(report.faces, "face", "faces"), (report.edges, "edge", "edges")]
     counts += [(report.vertices, "vertex", "vertices")]
@@ -142,6 +132,6 @@ def _draw_planar(axes: Axes, parts: Parts, unit: str) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.06)
     axes.autoscale_view()
-    axes.set_xlabel(f"x ({unit})")
-    axes.set_ylabel(f"y ({unit})")
+    axes.set_xlabel(f"x ({unit})" if unit else "x")
+    axes.set_ylabel(f"y ({unit})" if unit else "y")
     axes.grid(alpha=0.3)

@@ -11,17 +11,17 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
+from standoff.bodies.drawn import Drawn
 from standoff.bodies.tessellation import EdgeLine, FaceMesh
-from standoff.cli.errors import MissingExtra
-from standoff.cli.tolerances import FLAT_CLOUD
-from standoff.scene.reader import Array
+from standoff.bodies.tolerances import FLAT_CLOUD
+from standoff.errors import not_installed
+from standoff.geometry.validation import Array
 
 try:
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 except ModuleNotFoundError as error:
-    raise MissingExtra("matplotlib") from error
+    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 Space: TypeAlias = Any  # Axes3D, whose stubs lack half of what it has
 
@@ -65,6 +65,10 @@ LEAST_NAMED = 0.015
 ZOOM = 1.5
 """Of a 3-D panel: a body's bounding ball then fills it."""
 
+SHORT_AXIS = 0.45
+"""An axis of which the viewer sees less than this part is not named: the name would cover
+another's."""
+
 NAME_LIFT = 0.035
 """How far a feature's name stands off it along the normal, over the body's size."""
 
@@ -76,7 +80,7 @@ SKIN_POINTS = 400
 class Parts:
     """What is drawn of a body."""
 
-    body: Body
+    body: Drawn
     meshes: list[FaceMesh]
     lines: list[EdgeLine]
 
@@ -117,7 +121,8 @@ def draw_view(axes: Space, parts: Parts, view: tuple[float, float], unit: str) -
     if parts.body.radius:
         _draw_skin(axes, parts, towards)
     _name_features(axes, parts, towards)
-    _frame(axes, parts, towards, unit)
+    margin = parts.body.radius + 0.3 * NORMAL_LENGTH * parts.size
+    frame(axes, parts.cloud, margin, towards, unit)
     where = f"seen from azimuth {view[1]:g}°, elevation {view[0]:g}°"
     axes.text2D(0.5, 0.98, where, transform=axes.transAxes, fontsize="small", ha="center")
 
@@ -129,7 +134,7 @@ def _draw_face(axes: Space, mesh: FaceMesh, towards: Array) -> None:
     if not seen.any():
         return
     colour = np.array(to_rgb(FACE_COLOURS[mesh.face % len(FACE_COLOURS)]))
-    right, up = _across(towards)
+    right, up = across(towards)
     lamp = LIGHT @ np.array([right, towards, up])
     bright = DARKEST + (1.0 - DARKEST) * np.clip(normals[seen] @ lamp, 0.0, 1.0)
     shaded = bright[:, None] * colour
@@ -144,14 +149,14 @@ def _draw_face(axes: Space, mesh: FaceMesh, towards: Array) -> None:
     )
 
 
-def _across(towards: Array) -> tuple[Array, Array]:
+def across(towards: Array) -> tuple[Array, Array]:
     """The viewer's right and up."""
     right = np.cross([0.0, 0.0, 1.0], towards)
     right /= np.linalg.norm(right)
     return right, np.cross(towards, right)
 
 
-def _seen(normals: Array, towards: Array) -> NDArray[np.bool_]:
+def seen_points(normals: Array, towards: Array) -> NDArray[np.bool_]:
     """Of each point, whether any of its faces faces the viewer; (k, n, 3) to (n,)."""
     if not len(normals):
         return np.ones(normals.shape[1], dtype=bool)
@@ -160,7 +165,7 @@ def _seen(normals: Array, towards: Array) -> NDArray[np.bool_]:
 
 def _draw_edges(axes: Space, parts: Parts, towards: Array) -> None:
     for line in parts.lines:
-        seen = _seen(line.normals, towards)
+        seen = seen_points(line.normals, towards)
         axes.plot(
             *np.where(seen[:, None], line.points, np.nan).T,
             color=SEAM_COLOUR if line.smooth else "black",
@@ -170,7 +175,7 @@ def _draw_edges(axes: Space, parts: Parts, towards: Array) -> None:
         )
 
 
-def _vertex_normals(parts: Parts) -> list[Array]:
+def vertex_normals(parts: Parts) -> list[Array]:
     """Normals of the faces around each vertex, each (k, 3), from the ends of its edges."""
     found: list[list[Array]] = [[] for _ in range(parts.body.n_vertices)]
     for line, edge in zip(parts.lines, parts.body.edge_parts, strict=True):
@@ -185,7 +190,7 @@ def _vertex_normals(parts: Parts) -> list[Array]:
 
 
 def _draw_vertices(axes: Space, parts: Parts, towards: Array) -> None:
-    seen = [not len(n) or bool(_seen(n[:, None], towards)[0]) for n in _vertex_normals(parts)]
+    seen = [not len(n) or bool(seen_points(n[:, None], towards)[0]) for n in vertex_normals(parts)]
     points = parts.body.vertex_points[np.array(seen, dtype=bool)]
     if len(points):
         axes.plot(*points.T, "o", color="black", markersize=4.5, zorder=3)
@@ -263,13 +268,13 @@ def _name_features(axes: Space, parts: Parts, towards: Array) -> None:
                 _name(axes, spot + lift * towards, f"face {face}", framed=True)
     if body.n_edges <= MOST_NAMED["edge"]:
         for line in parts.lines:
-            seen = np.flatnonzero(_seen(line.normals, towards))
+            seen = np.flatnonzero(seen_points(line.normals, towards))
             if len(seen) > 2:
                 middle = line.points[seen[len(seen) // 2]]
                 _name(axes, middle + lift * towards, f"e{line.edge}", framed=False)
     if body.n_vertices <= MOST_NAMED["vertex"]:
-        for number, normals in enumerate(_vertex_normals(parts)):
-            if not len(normals) or _seen(normals[:, None], towards)[0]:
+        for number, normals in enumerate(vertex_normals(parts)):
+            if not len(normals) or seen_points(normals[:, None], towards)[0]:
                 outward = normals.mean(axis=0) if len(normals) else np.array([0.0, 0.0, 1.0])
                 spot = body.vertex_points[number] + 1.2 * lift * outward
                 _name(axes, spot + lift * towards, f"v{number}", framed=False)
@@ -306,20 +311,20 @@ def _name(axes: Space, spot: Array, text: str, *, framed: bool) -> None:
     )
 
 
-def _frame(axes: Space, parts: Parts, towards: Array, unit: str) -> None:
-    """Equal scales around everything that is drawn; the body's axes and a scale in a corner."""
-    cloud = parts.cloud
+def frame(axes: Space, cloud: Array, margin: float, towards: Array, unit: str) -> None:
+    """Equal scales around points, (n, 3), and a margin; the axes and a scale in a corner."""
     middle = 0.5 * (cloud.min(axis=0) + cloud.max(axis=0))
-    reach = float(np.linalg.norm(cloud - middle, axis=1).max()) + parts.body.radius
-    half = (reach or 1.0) + 0.3 * NORMAL_LENGTH * parts.size
+    half = (float(np.linalg.norm(cloud - middle, axis=1).max()) + margin) or 1.0
     for k, axis in enumerate("xyz"):
         getattr(axes, f"set_{axis}lim")(middle[k] - half, middle[k] + half)
     axes.set_box_aspect((1.0, 1.0, 1.0), zoom=ZOOM)
     axes.set_axis_off()
-    right, up = _across(towards)
+    right, up = across(towards)
     corner = middle - 0.98 * half * right - 0.86 * half * up + half * towards
     for axis, direction in zip("xyz", np.eye(3), strict=True):
         axes.plot(*np.stack([corner, corner + 0.13 * half * direction]).T, color="black", zorder=7)
+        if np.linalg.norm([direction @ right, direction @ up]) < SHORT_AXIS:
+            continue
         axes.text(
             *(corner + 0.18 * half * direction), axis, fontsize="small", ha="center", va="center"
         )
@@ -327,7 +332,8 @@ def _frame(axes: Space, parts: Parts, towards: Array, unit: str) -> None:
     end = middle + 0.98 * half * right - 0.98 * half * up + half * towards
     axes.plot(*np.stack([end - length * right, end]).T, color="black", linewidth=2.0, zorder=7)
     label = end - 0.5 * length * right + 0.04 * half * up
-    axes.text(*label, f"{length:g} {unit}", fontsize="small", ha="center", va="bottom")
+    scale = f"{length:g} {unit}".rstrip()
+    axes.text(*label, scale, fontsize="small", ha="center", va="bottom")
 
 
 def _round_length(half: float) -> float:

@@ -1,0 +1,126 @@
+"""A picture of two bodies and the answer of a query."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from standoff.bodies.body import Body
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.geometry.validation import finite
+from standoff.real_numbers import shown
+from standoff.tracking.proximity import Proximity
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def plot(
+    a: Body,
+    b: Body,
+    answer: Proximity,
+    path: str | Path | None = None,
+    *,
+    view: tuple[float, float] | None = None,
+    unit: str = "",
+) -> Figure:
+    """Draw two bodies where an answer holds, their active features, and the witness line.
+
+    In equal scales. The active face or edge of each body is drawn in a stronger colour, and the
+    legend names it. Where the bodies overlap, both are drawn through.
+
+    Parameters
+    ----------
+    a, b : Body
+    answer : Proximity
+        Of these bodies; it knows their poses.
+    path : str or path, optional
+        Also write the picture there, whole or not at all: .png, .svg or .pdf.
+    view : (float, float), optional
+        Elevation and azimuth of the viewer, degrees. If not given, the view is across the normal,
+        so that the witness line is seen in its full length.
+    unit : str
+        Label of lengths.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If matplotlib is not installed; the message names the extra.
+    TypeError
+        No bodies, no answer, or a path that is neither a text nor a Path.
+    ValueError
+        The answer is of other bodies, or holds no poses; the view is not two numbers; the file's
+        ending is another.
+    OSError
+        If the file cannot be written.
+    """
+    bodies: tuple[Any, Any] = (a, b)
+    for name, body in zip("ab", bodies, strict=True):
+        if not isinstance(body, Body):
+            raise StandoffTypeError(
+                f"{name} = {shown(body)} is no body: give one of so.shapes.", name, body
+            )
+    angles = view_angles(view)
+    poses = _poses(bodies, answer)
+    from standoff.bodies.drawing.files import checked_file, write_picture
+    from standoff.bodies.drawing.pair_picture import Shown, pair_figure
+    from standoff.bodies.drawing.solids import solid_of
+
+    target = None if path is None else checked_file(path)
+    drawn = Shown(
+        poses,
+        (answer.point_a, answer.point_b),
+        answer.normal,
+        answer.distance,
+        (answer.feature_a, answer.feature_b),
+        answer.status.name,
+    )
+    figure = pair_figure((solid_of(a), solid_of(b)), drawn, angles, str(unit))
+    if target is not None:
+        write_picture(figure, target)
+    return figure
+
+
+def view_angles(view: Any) -> tuple[float, float] | None:
+    """Return a viewer's elevation and azimuth, degrees, as given.
+
+    Raises
+    ------
+    ValueError
+        If they are not two finite numbers.
+    """
+    if view is None:
+        return None
+    elevation, azimuth = finite(view, "view", (2,)).tolist()
+    return elevation, azimuth
+
+
+def _poses(bodies: tuple[Body, Body], answer: Any) -> tuple[Any, Any]:
+    if not isinstance(answer, Proximity):
+        raise StandoffTypeError(
+            f"answer = {shown(answer)} is no answer: give one of so.distance or a Tracker.",
+            "answer",
+            answer,
+        )
+    same = all(
+        one is own or one.digest == own.digest
+        for one, own in zip(bodies, answer.bodies, strict=True)
+    )
+    if not same:
+        raise StandoffError(
+            f"The answer is of {answer.bodies[0]!r} and {answer.bodies[1]!r}, not of these bodies: "
+            "give a and b as they were asked, in their order.",
+            "answer",
+            answer,
+        )
+    if answer.poses is None:
+        raise StandoffError(
+            "The answer does not hold its poses: give one of so.distance or a Tracker.",
+            "answer",
+            answer,
+        )
+    return answer.poses
