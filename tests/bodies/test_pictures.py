@@ -68,6 +68,15 @@ def test_both_bodies_are_seen_in_equal_scales(tmp_path: Path) -> None:
     assert np.mean(red - blue > 0.1) > 0.01  # the capsule
 
 
+def test_the_body_in_front_is_drawn_last() -> None:
+    answer = so.distance(BOX, CAPSULE, HOME, placed(1.0))
+    np.testing.assert_allclose(answer.normal, [1.0, 0.0, 0.0], atol=1e-9)
+    for azimuth, b_in_front in ((0.0, True), (180.0, False)):
+        figure = so.plot(BOX, CAPSULE, answer, view=(20.0, azimuth))
+        of_a, of_b = (skin.get_zorder() for skin in figure.axes[0].collections[:2])
+        assert (of_b > of_a) is b_in_front
+
+
 def test_the_active_face_has_the_stronger_colour() -> None:
     answer = so.distance(LENS, so.shapes.sphere(0.2), HOME, placed(-0.3, -1.5, 0.2))
     assert answer.feature_a.kind == "face"

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from standoff.bodies.plain_data import counted
 from standoff.cli.arguments import OWN
+from standoff.wording import counted
 
 Standoff = Callable[..., Any]
 WIDTH = 100

@@ -35,6 +35,7 @@ from standoff.geometry.validation import (
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of
 from standoff.spellings import renamed
+from standoff.wording import counted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -337,7 +338,8 @@ class Body(KeepsReadOnly):
         return bool(np.abs(np.concatenate(spots)[:, 2]).max() == 0.0)
 
     def __repr__(self) -> str:
-        parts = f"{self.n_faces} faces, {self.n_edges} edges, {self.n_vertices} vertices"
+        faces, edges = counted(self.n_faces, "face"), counted(self.n_edges, "edge")
+        parts = f"{faces}, {edges}, {counted(self.n_vertices, 'vertex', 'vertices')}"
         skin = f", radius {self.radius:g}" if self.radius else ""
         return f"<Body {self.name}: {parts}{skin}, size {self.size:g}>"
 

@@ -14,9 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from standoff.bodies.features import Feature
 from standoff.bodies.tolerances import SHOWN_ROUNDOFF
 
-NAME_SHOWN = 20
-"""Longest name of a body that the line of an answer or a recording repeats, in characters."""
-
 
 class PlainData:
     """A base of answers: they travel as dictionaries of plain data, and as JSON."""
@@ -88,13 +85,3 @@ def without_roundoff(values: ArrayLike, size: float) -> NDArray[np.float64]:
     """
     numbers = np.array(values, dtype=np.float64)
     return np.where(np.abs(numbers) <= SHOWN_ROUNDOFF * size, 0.0, numbers)
-
-
-def short_name(name: str) -> str:
-    """Return a body's name as it stands in a line with others."""
-    return name if len(name) <= NAME_SHOWN else name[: NAME_SHOWN - 1] + "…"
-
-
-def counted(number: int, one: str, many: str = "") -> str:
-    """Return a number with its noun, such as "1 frame" and "2 frames"."""
-    return f"{number} {one if number == 1 else many or one + 's'}"

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from standoff import __version__
-from standoff.bodies.plain_data import counted
 from standoff.cli.arguments import SimulateCommand
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
@@ -24,6 +23,7 @@ from standoff.simulation.device import Fault
 from standoff.simulation.rigid_body import FREE
 from standoff.simulation.system_run import SystemRun
 from standoff.simulation.system_state import SystemState
+from standoff.wording import counted
 
 TABLE_ENDINGS = (".parquet",)
 PLOT_ENDINGS = (".png", ".svg", ".pdf")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from standoff.bodies.plain_data import counted, without_roundoff
+from standoff.bodies.plain_data import without_roundoff
 from standoff.impact import Impact
 from standoff.recording import RecordedEvent, Recording
 from standoff.scene import Scene
@@ -18,6 +18,7 @@ from standoff.tracking.feedback_facts import feedback_text
 from standoff.tracking.law_options import OfFeedback, Option, options_of
 from standoff.tracking.laws import LAWS, PredictorCorrector
 from standoff.tracking.proximity import shown_size
+from standoff.wording import counted
 
 FIRST_EVENTS = 8
 """How many switching events the summary lists: they fit on a screen with the rest. All of them are

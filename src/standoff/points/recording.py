@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
-from standoff.bodies.plain_data import counted, short_name
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.tolerances import SLOPE
 from standoff.motion import PoseLike, inputs
@@ -27,6 +26,7 @@ from standoff.real_numbers import shape_of, shown
 from standoff.recording.simulate import Moving
 from standoff.recording.tolerances import INSTANT_RESOLUTION, INSTANT_ROUNDINGS
 from standoff.tracking.inputs import flat_pose, flat_twist
+from standoff.wording import counted, short_name
 
 Array = NDArray[np.float64]
 

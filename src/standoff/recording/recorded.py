@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from standoff.automaton.visits import Visit
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
-from standoff.bodies.plain_data import counted, short_name
 from standoff.motion import PoseLike
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import every_option, law_of_facts
 from standoff.tracking.rows import Counts
 from standoff.tracking.status import Status
+from standoff.wording import counted, short_name
 
 Array = NDArray[np.float64]
 

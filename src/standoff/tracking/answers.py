@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.bodies.plain_data import counted, short_name
 from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
 from standoff.tracking.proximity import Event, Proximity
 from standoff.tracking.rows import AnswerRows
 from standoff.tracking.status import Status
+from standoff.wording import counted, short_name
 
 Array = NDArray[np.float64]
 

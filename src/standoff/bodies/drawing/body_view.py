@@ -65,7 +65,7 @@ LEAST_NAMED = 0.015
 ZOOM = 1.5
 """Of a 3-D panel: a body's bounding ball then fills it."""
 
-SHORT_AXIS = 0.45
+SHORT_AXIS = 0.6
 """An axis of which the viewer sees less than this part is not named: the name would cover
 another's."""
 

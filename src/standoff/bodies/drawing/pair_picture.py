@@ -9,9 +9,10 @@ import numpy as np
 from standoff.bodies.drawing.body_view import Space, across, direction_to_viewer, frame
 from standoff.bodies.drawing.solids import Look, Solid, draw_solid
 from standoff.bodies.features import Feature
-from standoff.bodies.plain_data import short_name, without_roundoff
+from standoff.bodies.plain_data import without_roundoff
 from standoff.errors import not_installed
 from standoff.geometry.validation import Array
+from standoff.wording import short_name
 
 try:
     from matplotlib.artist import Artist
