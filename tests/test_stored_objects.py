@@ -53,7 +53,8 @@ def tracked(a: so.Body, b: so.Body, law: Any) -> dict[str, Any]:
 
 
 def same(value: Any) -> None:
-    fresh = writable(value)
+    # a recording's paths, which may be functions, are not stored
+    fresh = {name: flag for name, flag in writable(value).items() if ".paths[" not in name}
     for how, stored in STORED.items():
         assert writable(stored(value)) == fresh, how
 
