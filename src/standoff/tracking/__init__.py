@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from standoff.tracking.answers import Answers
     from standoff.tracking.cold_query import distance
     from standoff.tracking.contact.witness_set import WitnessSet, witness_set
+    from standoff.tracking.derivatives import Derivatives, Smoothness
     from standoff.tracking.feedback import max_gain
     from standoff.tracking.laws import PaperLaw, PredictorCorrector
     from standoff.tracking.pair_plot import plot
@@ -27,6 +28,10 @@ else:
             "standoff.tracking.contact.witness_set": (
                 "WitnessSet",
                 "witness_set",
+            ),
+            "standoff.tracking.derivatives": (
+                "Derivatives",
+                "Smoothness",
             ),
             "standoff.tracking.feedback": ("max_gain",),
             "standoff.tracking.laws": (
@@ -84,6 +89,7 @@ else:
 __all__ = [
     "Answers",
     "Counts",
+    "Derivatives",
     "Event",
     "Feature",
     "FrameBuffer",
@@ -91,6 +97,7 @@ __all__ = [
     "PaperLaw",
     "PredictorCorrector",
     "Proximity",
+    "Smoothness",
     "Status",
     "Tracker",
     "TrackerState",

@@ -18,6 +18,7 @@ from standoff.tracking.rows import Counts as Counts
 
 if TYPE_CHECKING:
     from standoff.tracking.contact.witness_set import WitnessSet
+    from standoff.tracking.derivatives import Derivatives
 
 Array = NDArray[np.float64]
 
@@ -125,6 +126,41 @@ class Proximity(Answer, PlainData):
     def unique(self) -> bool:
         """Are the witness points and the normal the only ones? Found anew at each call."""
         return self.witness_set().unique
+
+    def derivatives(self) -> Derivatives:
+        """All derivatives by the poses, with a flag where they are one-sided or undefined
+        (docs/derivatives.md). Found anew at each call."""
+        from standoff.tracking.derivatives import derivatives
+
+        return derivatives(self)
+
+    @property
+    def gradient(self) -> Array:
+        """(12,) of the distance by unit twists (v_A, omega_A, v_B, omega_B), world axes.
+
+        This and the next three raise StandoffError where they are undefined.
+        """
+        return self._defined().gradient
+
+    @property
+    def hessian(self) -> Array:
+        """(12, 12) of the distance, in the chart R <- exp(omega) R, p <- p + v."""
+        return self._defined().hessian
+
+    @property
+    def normal_jacobian(self) -> Array:
+        """(3, 12) of the normal."""
+        return self._defined().normal_jacobian
+
+    @property
+    def point_jacobians(self) -> tuple[Array, Array]:
+        """Two (3, 12), of the witness points on A and on B."""
+        return self._defined().point_jacobians
+
+    def _defined(self) -> Derivatives:
+        from standoff.tracking.derivatives import defined
+
+        return defined(self.derivatives())
 
     def as_dict(self) -> dict[str, Any]:
         """Return the answer as plain data: numbers, texts, lists and dictionaries of these.

@@ -37,3 +37,14 @@ tilt across has no digits."""
 PLANE_TILT: Final = 1e-12
 """Dimensionless, entries of R: a planar body's pose may be tilted by this, the roundoff of
 composing rotations."""
+
+SINGULAR_SYSTEM: Final = 1e-9
+"""Least over greatest singular value of the contact-regular system, in lengths over the size and
+parameters by arc length: below it fewer than seven digits of a derivative would be left."""
+
+SETTLED: Final = 1e-4
+"""Residual of that system, dimensionless: Newton's method from here ends at the same optimum, and
+answers of a law that still converges are told apart."""
+
+BESIDE_FEATURE: Final = 1e-9
+"""Radians, and of the body's size: a witness point this near another feature lies on both."""
