@@ -274,9 +274,13 @@ def coedge_conormal(ints, reals, coedge, tangent, t):
 
     tangent is the edge's unit tangent, in the body's frame.
     """
-    k = best_coedge(ints, reals, coedge, t)
-    c = coedge_record(ints, k)
-    u, v, _, _, _ = coedge_parameters(ints, reals, k, t)
+    c = coedge_record(ints, coedge)
+    u, v = 0.0, 0.0
+    if ints[chart_record(ints, ints[c + L.COEDGE_CHART]) + L.CHART_KIND] != L.PLANE:
+        # a plane's normal is one everywhere
+        k = best_coedge(ints, reals, coedge, t)
+        c = coedge_record(ints, k)
+        u, v, _, _, _ = coedge_parameters(ints, reals, k, t)
     chart = ints[c + L.COEDGE_CHART]
     jet = chart_jet(ints, reals, chart, u, v)
     o = ints[chart_record(ints, chart) + L.CHART_REALS]
