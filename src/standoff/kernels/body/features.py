@@ -275,16 +275,18 @@ def coedge_conormal(ints, reals, coedge, tangent, t):
     tangent is the edge's unit tangent, in the body's frame.
     """
     c = coedge_record(ints, coedge)
-    u, v = 0.0, 0.0
-    if ints[chart_record(ints, ints[c + L.COEDGE_CHART]) + L.CHART_KIND] != L.PLANE:
-        # a plane's normal is one everywhere
+    chart = ints[c + L.COEDGE_CHART]
+    o = ints[chart_record(ints, chart) + L.CHART_REALS]
+    if ints[chart_record(ints, chart) + L.CHART_KIND] == L.PLANE:
+        # one normal everywhere, and no other chart
+        normal, noise = normal_of_kind(L.PLANE, reals, o, surface_jet(reals, L.PLANE, o, 0.0, 0.0))
+    else:
         k = best_coedge(ints, reals, coedge, t)
         c = coedge_record(ints, k)
         u, v, _, _, _ = coedge_parameters(ints, reals, k, t)
-    chart = ints[c + L.COEDGE_CHART]
-    jet = chart_jet(ints, reals, chart, u, v)
-    o = ints[chart_record(ints, chart) + L.CHART_REALS]
-    normal, noise = noisy_normal(ints, reals, chart, jet)
+        chart = ints[c + L.COEDGE_CHART]
+        o = ints[chart_record(ints, chart) + L.CHART_REALS]
+        normal, noise = noisy_normal(ints, reals, chart, chart_jet(ints, reals, chart, u, v))
     inward = cross(normal, tangent)
     # left in (u, v) is left on the surface where f_u x f_v points outward
     side = ints[c + L.COEDGE_SIDE] * reals[o + L.OUTWARD]

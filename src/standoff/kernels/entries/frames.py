@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from standoff.kernels.algebra.rigid import relative_pose
+from standoff.kernels.body.features import dimension
 from standoff.kernels.compiler.calls import address_of, call_frame
 from standoff.kernels.compiler.decorators import kernel, shared, stack_counts
 from standoff.kernels.frame.answer import judge, write_answer
@@ -187,12 +188,20 @@ def answered_smoothly(pair, inputs, h, options, state, out):
     return call_frame(options.smooth, address_of(call), h) != 0
 
 
+@kernel
+def on_faces(pair, state):
+    """Were both witness points on faces? Elsewhere the smooth frame need not be asked."""
+    place = read_place(state)
+    a, b = dimension(pair.ints_a, place.feature_a), dimension(pair.ints_b, place.feature_b)
+    return a == 2 and b == 2
+
+
 @shared
 def frame_predicted(pair, inputs, h, options, state, out, work):
     """A frame of the predictor-corrector, for single steps and for runs."""
     clear_counts(work)
     if options.smooth != 0:
-        if answered_smoothly(pair, inputs, h, options, state, out):
+        if on_faces(pair, state) and answered_smoothly(pair, inputs, h, options, state, out):
             forget_polytope(work)
             return
         work.counts[REFUSALS] = 1
