@@ -268,8 +268,9 @@ class _Checks:
             reach_b = np.abs(dot(n, self.rows[:, K.POINT_B : K.POINT_B + 3]) + height_b)
             resting = np.maximum(reach_a, reach_b) <= self.noise
             resting &= apart_of(self.status) | deep_of(self.status)
+            radii = self.a.body.radius, self.b.body.radius
             with np.errstate(invalid="ignore"):  # numbers that are not finite are told above
-                for check in rate_checks(self.frames, self.rows, resting):
+                for check in rate_checks(self.frames, self.rows, resting, radii):
                     self.expect(*check)
 
     def _gap(self, tolerance: float) -> Array:

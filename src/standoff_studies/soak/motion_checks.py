@@ -89,13 +89,16 @@ def residual_check(a: Made, b: Made, rows: Array, noise: Array) -> Check:
     )
 
 
-def rate_checks(frames: Frames, rows: Array, resting: Where) -> Iterator[Check]:
+def rate_checks(
+    frames: Frames, rows: Array, resting: Where, radii: tuple[float, float]
+) -> Iterator[Check]:
     """The rate is n·(V_B - V_A), V the velocity of a body's point by the twists it was told.
 
     For a distance or depth is the least or greatest over what its points and normal could be, so
     none of their own motion counts: this is its derivative exactly, whatever the answer's status,
     and needs no step. Where the points rest (``resting``), their velocities differ from those of
-    the bodies' points by a slide, and that is along the surface.
+    the bodies' points by a slide, and that is along the surface. A swept body's point turns with
+    the direction between the cores, which has the roundoff of their points over their distance.
     """
     n = rows[:, K.NORMAL : K.NORMAL + 3]
     x_a = rows[:, K.POINT_A : K.POINT_A + 3]
@@ -108,9 +111,11 @@ def rate_checks(frames: Frames, rows: Array, resting: Where) -> Iterator[Check]:
     off = np.abs(rows[:, K.OUT_RATE] - dot(n, v_b - v_a))
     yield Check("the rate is not that of the bodies' motion", off, ROUNDOFF * speed)
     v_a = _velocity(frames.twists_a, frames.poses_a, x_a)
-    for name, v, at in (("a", v_a, K.VELOCITY_A), ("b", v_b, K.VELOCITY_B)):
+    core = np.maximum(np.abs(rows[:, K.DISTANCE] + sum(radii)), np.finfo(float).tiny)
+    moved = (("a", v_a, K.VELOCITY_A, radii[0]), ("b", v_b, K.VELOCITY_B, radii[1]))
+    for name, v, at, radius in moved:
         slide = rows[:, at : at + 3] - v
-        allowed = ALONG * lengths(slide) + ROUNDOFF * speed
+        allowed = ALONG * lengths(slide) + ROUNDOFF * speed * (1.0 + radius / core)
         what = f"point_{name} leaves its body"
         yield Check(what, np.abs(dot(n, slide)), allowed, resting)
 
