@@ -15,6 +15,7 @@ from standoff.kernels.pair.certified import CERTIFIED
 from standoff.kernels.pair.cold_start import FIRST, at_samples, global_query
 from standoff.kernels.pair.descent import pair_jets, settle
 from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, RESTARTS, new_counts
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.values import ORIGIN, Pair, Pose, Side, Work, resting, together
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
@@ -162,7 +163,8 @@ def faces_away(pair, pose, place):
 
 
 def new_work():
-    return Work(new_counts(), np.empty(EVENT_COLUMNS * MAX_EVENTS))
+    none = np.zeros(N_POLYTOPE)
+    return Work(new_counts(), np.empty(EVENT_COLUMNS * MAX_EVENTS), none, none)
 
 
 class Case:
