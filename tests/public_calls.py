@@ -32,6 +32,7 @@ NOT_CALLED = {
     **dict.fromkeys(("Apex", "Edge", "Face"), "plain records, checked by `Body.from_brep`"),
     "FrameBuffer": "made from a tracker and a state, which need compiled kernels and check nothing",
     "Answers": "made by trackers",
+    "Distances": "made by distances",
     "TrackerState": "made by trackers, which check the states that they are given",
 }
 """Public classes with parameters whose constructors are not tried, and why."""
@@ -421,6 +422,7 @@ def pair_calls() -> list[Call]:
         "PointTracker": (so, {"body": DISC, "dt": 1e-3, "law": so.PaperLaw()}),
         "SpatialPointTracker": (so.points, {"body": BOX, "dt": 1e-3, "tolerance": 1e-9}),
         "distance": (so, posed),
+        "distances": (so, {**pair, "poses_a": np.eye(4), "poses_b": np.eye(4)[None], "workers": 1}),
         "open_recording": (so, {"path": "no_such_file.parquet"}),
         "plot": (so, {**pair, "answer": so.distance(*posed.values()), "view": (20.0, 30.0)}),
         "pair_system": (

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from standoff.tracking.derivatives import Derivatives, Smoothness
     from standoff.tracking.feedback import max_gain
     from standoff.tracking.laws import PaperLaw, PredictorCorrector
+    from standoff.tracking.many_distances import Distances, distances
     from standoff.tracking.pair_plot import plot
     from standoff.tracking.pair_system import PairSystem, pair_system
     from standoff.tracking.proximity import Counts, Event, Proximity
@@ -25,6 +26,7 @@ else:
         {
             "standoff.bodies.features": ("Feature",),
             "standoff.tracking.cold_query": ("distance",),
+            "standoff.tracking.many_distances": ("Distances", "distances"),
             "standoff.tracking.contact.witness_set": (
                 "WitnessSet",
                 "witness_set",
@@ -90,6 +92,7 @@ __all__ = [
     "Answers",
     "Counts",
     "Derivatives",
+    "Distances",
     "Event",
     "Feature",
     "FrameBuffer",
@@ -103,6 +106,7 @@ __all__ = [
     "TrackerState",
     "WitnessSet",
     "distance",
+    "distances",
     "feedback",
     "max_gain",
     "pair_system",

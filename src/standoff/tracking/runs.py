@@ -74,8 +74,8 @@ class Given(NamedTuple):
         StandoffError
             A shape that is none of those named, or different numbers of frames.
         """
-        a, mark_a = _poses(poses_a, "poses_a")
-        b, mark_b = _poses(poses_b, "poses_b")
+        a, mark_a = read_poses(poses_a, "poses_a")
+        b, mark_b = read_poses(poses_b, "poses_b")
         counts = {"poses_a": len(a), "poses_b": len(b)}
         given = [
             _twists(twist, name, poses)
@@ -116,7 +116,7 @@ def _numbers(value: Any, name: str, forms: str) -> Array:
         raise StandoffError(f"{name} = {shown(value)}: give {forms}.", name, value) from error
 
 
-def _poses(value: Any, name: str) -> tuple[Array, int]:
+def read_poses(value: Any, name: str) -> tuple[Array, int]:
     """Poses (n, 4, 4), or one of them (1, 4, 4), and was it repaired?"""
     forms = "an array of shape (n, 4, 4) or (n, 12), or one pose"
     if isinstance(value, Pose | tuple):

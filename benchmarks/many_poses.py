@@ -1,0 +1,81 @@
+"""``python -m benchmarks.many_poses``: `so.distances` beside the kernels it calls, and threads."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+import standoff as so
+from standoff.kernels.entries import batch
+from standoff.kernels.state import arrays as K
+
+ROWS = 100_000
+ROUNDS = 5
+
+
+def drawn(n: int) -> NDArray[np.float64]:
+    """Random poses, about a tenth of which let the bodies overlap."""
+    rng = np.random.default_rng(0)
+    poses = np.tile(np.eye(4), (n, 1, 1))
+    poses[:, :3, :3] = Rotation.random(n, random_state=rng).as_matrix()
+    poses[:, :3, 3] = rng.uniform(-2.0, 2.0, size=(n, 3))
+    return poses
+
+
+def along(n: int) -> NDArray[np.float64]:
+    """Poses of a motion: 2 mrad and a thousandth of the size from row to row."""
+    poses = np.tile(np.eye(4), (n, 1, 1))
+    angles = 2e-3 * np.arange(n)
+    poses[:, :3, :3] = Rotation.from_rotvec(np.outer(angles, [0.0, 0.0, 1.0])).as_matrix()
+    poses[:, 0, 3], poses[:, 1, 3] = 1.6 * np.cos(angles), 1.6 * np.sin(angles)
+    return poses
+
+
+def taken(calls: dict[str, Callable[[], object]]) -> dict[str, float]:
+    """Seconds of each call, medians of rounds in turn."""
+    times: dict[str, list[float]] = {name: [] for name in calls}
+    for call in calls.values():
+        call()
+    for _ in range(ROUNDS):
+        for name, call in calls.items():
+            begun = time.perf_counter()
+            call()
+            times[name].append(time.perf_counter() - begun)
+    return {name: statistics.median(found) for name, found in times.items()}
+
+
+def main() -> None:
+    """Print microseconds a row, and ratios."""
+    a, b = so.shapes.lens(1.0, 0.45), so.shapes.ellipsoid(0.15, 0.30, 0.20)
+    rest, random, motion = np.eye(4)[None], drawn(ROWS), along(ROWS)
+    tracker = so.Tracker(a, b)
+    rows, done = np.empty((ROWS, K.N_OUT)), np.zeros(ROWS, dtype=np.int64)
+    begin = tracker.start(rest[0], motion[0])
+    found = taken(
+        {
+            "cold kernel": lambda: batch.starts(
+                tracker.packed, rest, random, 0, ROWS, tracker.options, rows, done
+            ),
+            "so.distances": lambda: so.distances(a, b, rest, random),
+            "so.distances, two workers": lambda: so.distances(a, b, rest, random, workers=2),
+            "tracker.run": lambda: tracker.run(begin, rest, motion[1:]),
+            "so.distances, warm": lambda: so.distances(a, b, rest, motion, warm=True),
+        }
+    )
+    for name, seconds in found.items():
+        print(f"{name}: {1e6 * seconds / ROWS:.2f} us a row")
+    for one, other in (
+        ("so.distances", "cold kernel"),
+        ("so.distances", "so.distances, two workers"),
+        ("so.distances, warm", "tracker.run"),
+    ):
+        print(f"{one} over {other}: {found[one] / found[other]:.2f}")
+
+
+if __name__ == "__main__":
+    main()
