@@ -47,8 +47,8 @@ def test_files_hold_every_row(written):
 def test_operations_and_bytes_are_counted(written):
     operations.done.clear()
     x, y = (operations.Numbers([operations.Counted(k) for k in (1.0, 2.0, 3.0)]) for _ in "xy")
-    x[1] = x[0] * y[0] + x[1] * y[1] - x[2] / y[2]
-    told = {"products": 2, "sums": 2, "divisions": 1, "reads": 6, "writes": 1}
+    x[1] = x[0] * y[0] + 2.0 * y[1] - x[2] / y[2]
+    told = {"products": 2, "sums": 2, "divisions": 1, "reads": 5, "writes": 1}
     assert dict(operations.done) == told
     cost = operations.counted()
     assert cost == operations.counted()

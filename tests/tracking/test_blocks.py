@@ -213,14 +213,28 @@ def test_what_a_buffer_refuses_leaves_its_state() -> None:
         tracker.step_into(buffer, REST)  # one pose alone
 
 
-def test_a_rounded_pose_given_to_a_buffer_is_repaired_and_counted() -> None:
+@pytest.mark.parametrize("form", ["as it is", "read-only", "Pose"])
+def test_a_rounded_pose_given_to_a_buffer_is_repaired_and_counted(form: str) -> None:
     tracker, rounded = so.Tracker(LENS, TOOL), placed(1)
     turned = np.array([[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]])
     rounded[:3, :3] = turned + 1e-8
     state = tracker.start(REST, placed(0))
     buffer = tracker.buffer(state)
-    _, answer = tracker.step(state, REST, rounded)
-    assert tracker.step_into(buffer, REST, rounded) == answer.distance
+    _, answer = tracker.step(state, REST, FORMS[form](rounded))
+    assert tracker.step_into(buffer, REST, FORMS[form](rounded)) == answer.distance
     assert buffer.repaired == answer.repaired == 1
     tracker.step_into(buffer, REST, placed(2))
     assert buffer.repaired == 0
+
+
+def test_a_rounded_planar_pose_given_to_a_buffer_is_counted_too() -> None:
+    disc = so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (1, 0), (0, 1))])
+    tracker = so.Tracker(disc, so.shapes.point())
+    rounded = np.eye(4)
+    rounded[:2, :2] = np.array([[0.8, -0.6], [0.6, 0.8]]) + 1e-8
+    rounded[0, 3] = 2.0
+    buffer = tracker.buffer(tracker.start(np.eye(4), rounded))
+    # a Pose has been repaired when it was made, an array is repaired by the frame
+    for form in (so.Pose(rounded[:3, :3], rounded[:3, 3]), rounded):
+        assert tracker.step_into(buffer, np.eye(4), form) == pytest.approx(1.0, abs=1e-15)
+        assert buffer.repaired == 1

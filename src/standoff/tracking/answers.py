@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+from abc import abstractmethod
 from collections.abc import Iterator
 from typing import Any
 
@@ -22,16 +23,34 @@ Array = NDArray[np.float64]
 
 
 def _field(name: str, doc: str) -> Any:
-    def read(answers: Answers) -> Any:
-        values = getattr(AnswerRows(answers.blocks), name)
+    def read(answers: AnswerArrays) -> Any:
+        values = getattr(AnswerRows(answers._numbers), name)
         values.flags.writeable = False
         return values
 
     return property(read, doc=doc)
 
 
+class AnswerArrays(KeepsReadOnly):
+    """What every table of answers has, in arrays of n rows."""
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def _numbers(self) -> Array:
+        """Rows that begin with the kernels' answers."""
+
+    distance = _field("distance", "(n,) signed distances, length.")
+    lower_bound = _field("lower_bound", "(n,) certified lower bounds of them.")
+    upper_bound = _field("upper_bound", "(n,) upper bounds of them.")
+    point_a = _field("point_a", "(n, 3) witness points on A.")
+    point_b = _field("point_b", "(n, 3) witness points on B.")
+    normal = _field("normal", "(n, 3) unit vectors from A to B.")
+
+
 @hides("blocks")
-class Answers(KeepsReadOnly):
+class Answers(AnswerArrays):
     """Answers of n frames of two bodies, in arrays of n rows; ``answers[k]`` is one `Proximity`.
 
     A frame takes 1.2 kB: `standoff.simulate` records longer runs.
@@ -60,12 +79,10 @@ class Answers(KeepsReadOnly):
         for array in (blocks, repaired):
             array.flags.writeable = False
 
-    distance = _field("distance", "(n,) signed distances, length.")
-    lower_bound = _field("lower_bound", "(n,) certified lower bounds of them.")
-    upper_bound = _field("upper_bound", "(n,) upper bounds of them.")
-    point_a = _field("point_a", "(n, 3) witness points on A.")
-    point_b = _field("point_b", "(n, 3) witness points on B.")
-    normal = _field("normal", "(n, 3) unit vectors from A to B.")
+    @property
+    def _numbers(self) -> Array:
+        return self.blocks
+
     rate = _field("rate", "(n,) time derivatives of the distance; nan without twists.")
     velocity_a = _field("velocity_a", "(n, 3) velocities of the witness points on A.")
     velocity_b = _field("velocity_b", "(n, 3) velocities of those on B.")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import operator
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,13 +15,12 @@ from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import FARTHEST, ROTATION
 from standoff.motion import Pose, PoseLike
-from standoff.read_only import KeepsReadOnly
+from standoff.tracking.answers import AnswerArrays
 from standoff.tracking.choices import whole_number, yes_or_no
 from standoff.tracking.cold_query import ColdQuery
 from standoff.tracking.inputs import check_in_plane, flat_pose
 from standoff.tracking.overlap_proof import cores_overlap
 from standoff.tracking.proximity import Proximity
-from standoff.tracking.rows import AnswerRows
 from standoff.tracking.runs import read_poses
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
@@ -31,20 +29,9 @@ from standoff.wording import counted, short_name
 Array = NDArray[np.float64]
 FEATURE = np.dtype([("kind", "U6"), ("index", np.int64)])
 """A feature in an array: "face", "edge" or "vertex", and its number among those."""
-REFUSED = -1
-"""In place of a status: the row's poses are none."""
 
 
-def _field(name: str, doc: str) -> Any:
-    def read(found: Distances) -> Any:
-        values = getattr(AnswerRows(found.rows), name)
-        values.flags.writeable = False
-        return values
-
-    return property(read, doc=doc)
-
-
-class Distances(KeepsReadOnly):
+class Distances(AnswerArrays):
     """Signed distances of two bodies at n pairs of poses, as arrays of n rows.
 
     ``found[k]`` is row k as a `Proximity`. A row whose poses are none is nan in all arrays, and
@@ -76,12 +63,9 @@ class Distances(KeepsReadOnly):
         for array in (rows, repaired, *origins):
             array.flags.writeable = False
 
-    distance = _field("distance", "(n,) signed distances, length.")
-    lower_bound = _field("lower_bound", "(n,) certified lower bounds of them.")
-    upper_bound = _field("upper_bound", "(n,) upper bounds of them.")
-    point_a = _field("point_a", "(n, 3) witness points on A.")
-    point_b = _field("point_b", "(n, 3) witness points on B.")
-    normal = _field("normal", "(n, 3) unit vectors from A to B.")
+    @property
+    def _numbers(self) -> Array:
+        return self.rows
 
     @property
     def status(self) -> NDArray[np.object_]:
@@ -203,8 +187,10 @@ def distances(
         for poses, name in ((of_a, "poses_a"), (of_b, "poses_b"))
     )
     rows = np.full((n, K.N_OUT), np.nan)
-    answer = _warm if warm else _cold
-    answer(query, (of_a, of_b), rows, errors, workers)
+    if warm:
+        _warm(query, (of_a, of_b), rows, errors)
+    else:
+        _cold(query, (of_a, of_b), rows, workers)
     for k in np.flatnonzero(rows[:, K.STATUS] == Status.NOT_CERTIFIED.value).tolist():
         _name_overlap(query, rows[k], _row(of_a, k), _row(of_b, k))
     rows[list(errors)] = np.nan
@@ -255,13 +241,7 @@ def _checked(
     return np.require(mended, requirements=["C"])
 
 
-def _cold(
-    query: Tracker,
-    poses: tuple[Array, Array],
-    rows: Array,
-    errors: dict[int, StandoffError],
-    workers: int,
-) -> None:
+def _cold(query: Tracker, poses: tuple[Array, Array], rows: Array, workers: int) -> None:
     """Answer every row by itself."""
     n, done = len(rows), np.zeros(len(rows), dtype=np.int64)
     ends = np.linspace(0, n, workers + 1).astype(int).tolist()
@@ -277,11 +257,7 @@ def _cold(
 
 
 def _warm(
-    query: Tracker,
-    poses: tuple[Array, Array],
-    rows: Array,
-    errors: dict[int, StandoffError],
-    workers: int,
+    query: Tracker, poses: tuple[Array, Array], rows: Array, errors: dict[int, StandoffError]
 ) -> None:
     """Answer each row from the one before; the first, and one behind a refused row, cold."""
     good = [k for k in range(len(rows)) if k not in errors]
