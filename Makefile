@@ -7,7 +7,7 @@ CLI := .venv/.installed-cli
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 DECLARED := pyproject.toml constraints.txt
 
-.PHONY: venv demo paper bench wheel check test lint types layers docs clean
+.PHONY: venv torch demo paper bench wheel check test lint types layers docs clean
 
 venv: $(ALL)
 
@@ -18,13 +18,17 @@ $(BIN)/python:
 
 $(ALL): $(DECLARED) | $(BIN)/python
 	@echo "Installing Standoff, all its extras and the tools into .venv: once, some minutes ..."
-	$(PIP) install -q -c constraints.txt -e ".[cli,test,dev,peers,docs]"
+	$(PIP) install -q -c constraints.txt -e ".[cli,test,dev,peers,docs,pandas,jax,casadi,devices,view,rerun,video]"
 	@touch $(ALL) $(CLI)
 
 $(CLI): $(DECLARED) | $(BIN)/python
 	@echo "Installing Standoff and what its commands need into .venv: once, about a minute ..."
 	$(PIP) install -q -c constraints.txt -e ".[cli]"
 	@touch $(CLI)
+
+# Not in `venv`: from PyPI it comes with gigabytes of CUDA. Without it its tests are skipped.
+torch: $(ALL)
+	$(PIP) install -q -c constraints.txt -e ".[torch]"
 
 demo: $(CLI)
 	@mkdir -p build
