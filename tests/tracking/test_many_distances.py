@@ -188,3 +188,65 @@ def test_uncertified_rows_with_a_proven_overlap_say_so(monkeypatch):
     found = so.distances(BOX, BOX, np.eye(4), poses)
     assert found.status.tolist() == [Status.OVERLAPPING, Status.NOT_CERTIFIED]
     assert found.distance.tolist() == [0.0, 0.1]
+
+
+def boxed():
+    """Poses above a box: face to face, over an edge, apart, and inside at equal depths."""
+    poses = np.tile(np.eye(4), (4, 1, 1))
+    poses[:, 2, 3] = 3.0
+    poses[1:, :3, :3] = Rotation.from_rotvec([0.3, 0.4, 0.5]).as_matrix()
+    poses[2, :3, 3] = 3.0, 0.2, 0.1
+    poses[3, :3, 3] = 0.0
+    return poses
+
+
+@pytest.mark.parametrize("warm", [False, True])
+def test_derivatives_of_rows_are_those_of_single_answers(warm, rng):
+    for a, b in PAIRS.values():
+        found = so.distances(a, b, np.eye(4), drawn(rng, 30), warm=warm)
+        arrays, both = found.derivatives(), found.derivatives(workers=3)
+        for k in range(30):
+            single = found[k].derivatives()
+            assert arrays.smoothness[k] is single.smoothness is both.smoothness[k]
+            assert arrays.reasons.get(k, "") == single.reason == both.reasons.get(k, "")
+            pairs = zip(single[2:5], arrays[2:5], both[2:5], strict=True)
+            for one, row, threaded in [
+                *pairs,
+                *zip(single[5], arrays[5], both[5], strict=True),
+            ]:
+                np.testing.assert_array_equal(one, row[k])
+                np.testing.assert_array_equal(one, threaded[k])
+        np.testing.assert_array_equal(found.gradient, arrays.gradient)
+        np.testing.assert_array_equal(found.hessian, arrays.hessian)
+        np.testing.assert_array_equal(found.normal_jacobian, arrays.normal_jacobian)
+        np.testing.assert_array_equal(found.point_jacobians, arrays.point_jacobians)
+
+
+def test_rows_without_derivatives_have_flags_and_nan():
+    box = so.shapes.box(1, 1, 1)
+    found = so.distances(box, box, np.eye(4), boxed())
+    flat, single = so.distance(box, box, np.eye(4), boxed()[0]), found.derivatives()
+    assert [flag.name for flag in single.smoothness] == [
+        "UNDEFINED",
+        "SMOOTH",
+        "SMOOTH",
+        "UNDEFINED",
+    ]
+    assert set(single.reasons) == {0, 3}
+    assert flat.derivatives().smoothness is single.smoothness[0]
+    assert np.isnan(single.gradient[[0, 3]]).all()
+    assert np.isnan(found.gradient[[0, 3]]).all()
+    assert np.isfinite(single.hessian[[1, 2]]).all()
+
+
+def test_a_refused_row_has_no_derivatives_and_a_changed_array_changes_none():
+    poses = boxed()[:3]
+    poses[1, 0, 0] = np.nan
+    found = so.distances(BOX, TOOL, np.eye(4), poses)
+    before = found.gradient
+    poses[2, 0, 3] = 7.0
+    np.testing.assert_array_equal(found.gradient, before)
+    assert np.isnan(before[1]).all()
+    assert np.isfinite(before[[0, 2]]).all()
+    assert "no distance" in found.derivatives().reasons[1]
+    assert not found.poses[1].flags.writeable

@@ -244,3 +244,27 @@ FLAT_TILT = 0.02
 JACOBI_REST = 1e-36
 # At most so many sweeps: 4 x 4 and 8 x 8 matrices take five to nine.
 JACOBI_SWEEPS = 30
+
+# Derivatives: least over greatest pivot of the contact-regular system, in lengths over the span and
+# parameters by arc length. Below it fewer than seven digits of a derivative would be left.
+SINGULAR_SYSTEM = 1e-9
+# Residual of that system (dimensionless): Newton's method from here ends at the same optimum, and
+# answers of a law that still converges are told apart.
+SETTLED = 1e-4
+# Newton's corrections (steps) of a converged answer: two reach roundoff.
+NEWTON_ROUNDS = 3
+# A correction below this (dimensionless, scaled as the system) changes no digit that counts.
+SETTLED_STEP = 1e-13
+# Radians, and of the body's size: a witness point this near another feature lies on both.
+BESIDE_FEATURE = 1e-9
+# Second partials of a surface that change by more than this (relative) over BESIDE_FEATURE jump:
+# third partials would change them by some 1e-9.
+CURVATURE_JUMP = 1e-6
+# Of the span: cores that are nearer than this touch, and the normal may not be unique.
+TOUCHING_CORES = 1e-12
+# Radians: normals nearer to each other than this are one. Normal cones narrower than this, as of
+# polytopes with thousands of facets, are not seen.
+AROUND = 1e-3
+# Of the size: widths of overlap (support sums) closer than this are the same. At AROUND one that
+# grows with a radius of curvature of 2e-4 of the size differs by more.
+SAME_WIDTH = 1e-10

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from standoff.tracking.answers import Answers
     from standoff.tracking.cold_query import distance
     from standoff.tracking.contact.witness_set import WitnessSet, witness_set
-    from standoff.tracking.derivatives import Derivatives, Smoothness
+    from standoff.tracking.derivatives import DerivativeArrays, Derivatives, Smoothness
     from standoff.tracking.feedback import max_gain
     from standoff.tracking.laws import PaperLaw, PredictorCorrector
     from standoff.tracking.many_distances import Distances, distances
@@ -32,6 +32,7 @@ else:
                 "witness_set",
             ),
             "standoff.tracking.derivatives": (
+                "DerivativeArrays",
                 "Derivatives",
                 "Smoothness",
             ),
@@ -91,6 +92,7 @@ else:
 __all__ = [
     "Answers",
     "Counts",
+    "DerivativeArrays",
     "Derivatives",
     "Distances",
     "Event",

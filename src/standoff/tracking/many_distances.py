@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,10 +22,14 @@ from standoff.tracking.cold_query import ColdQuery
 from standoff.tracking.inputs import check_in_plane, flat_pose
 from standoff.tracking.overlap_proof import cores_overlap
 from standoff.tracking.proximity import Proximity
+from standoff.tracking.rows import motion_row
 from standoff.tracking.runs import read_poses
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
 from standoff.wording import counted, short_name
+
+if TYPE_CHECKING:
+    from standoff.tracking.derivatives import DerivativeArrays
 
 Array = NDArray[np.float64]
 FEATURE = np.dtype([("kind", "U6"), ("index", np.int64)])
@@ -46,26 +51,33 @@ class Distances(AnswerArrays):
         How many of a row's two poses had a rounded rotation and were brought to the nearest.
     errors : dict of int to StandoffError
         Of the rows that were refused.
+    poses : pair of (n, 4, 4) arrays
+        World poses of A and B that the rows hold for; (1, 4, 4) where one was given for all.
     """
 
-    __slots__ = ("_a", "_b", "_origins", "errors", "repaired", "rows")
+    __slots__ = ("_a", "_b", "errors", "poses", "repaired", "rows")
 
     def __init__(
         self,
         bodies: tuple[Body, Body],
         rows: Array,
-        origins: tuple[Array, Array],
+        poses: tuple[Array, Array],
         repaired: NDArray[np.int64],
         errors: dict[int, StandoffError],
     ) -> None:
         self._a, self._b = bodies
-        self.rows, self._origins, self.repaired, self.errors = rows, origins, repaired, errors
-        for array in (rows, repaired, *origins):
+        self.rows, self.poses, self.repaired, self.errors = rows, poses, repaired, errors
+        for array in (rows, repaired, *poses):
             array.flags.writeable = False
 
     @property
     def _numbers(self) -> Array:
         return self.rows
+
+    @property
+    def bodies(self) -> tuple[Body, Body]:
+        """(A, B)."""
+        return self._a, self._b
 
     @property
     def status(self) -> NDArray[np.object_]:
@@ -90,22 +102,42 @@ class Distances(AnswerArrays):
         """(n,) B's."""
         return _features(self._b, self.rows[:, K.OUT_MODE + 2])
 
+    def derivatives(self, *, workers: int = 1) -> DerivativeArrays:
+        """All derivatives of all rows by the poses, with flags (docs/derivatives.md).
+
+        Parameters
+        ----------
+        workers : int
+            Threads that share the rows; the numbers are the same for any number.
+        """
+        from standoff.tracking.derivatives import derivative_arrays
+
+        return derivative_arrays(self, at_least_one(workers, "workers"))
+
     @property
     def gradient(self) -> Array:
-        """(n, 12) derivative of the distance by the unit twists (v_A, omega_A, v_B, omega_B).
+        """(n, 12) derivatives of the distance by unit twists (v_A, omega_A, v_B, omega_B).
 
-        (-n, -a x n, n, c x n), a and c being the arms of the witness points about their bodies'
-        origins. It is the derivative where the normal is unique; nan where the row is not proven.
-        ``found[k].derivatives()`` asks about that too.
+        nan where they are undefined; found anew at each call, as those below.
         """
-        n = self.normal
-        arms = [
-            point - origin
-            for point, origin in zip((self.point_a, self.point_b), self._origins, strict=True)
-        ]
-        found = np.hstack([-n, -np.cross(arms[0], n), n, np.cross(arms[1], n)])
-        found[~self.certified] = np.nan
-        return found
+        from standoff.tracking.derivatives import gradients
+
+        return gradients(self)
+
+    @property
+    def hessian(self) -> Array:
+        """(n, 12, 12) of the distance."""
+        return self.derivatives().hessian
+
+    @property
+    def normal_jacobian(self) -> Array:
+        """(n, 3, 12) of the normal."""
+        return self.derivatives().normal_jacobian
+
+    @property
+    def point_jacobians(self) -> tuple[Array, Array]:
+        """Two (n, 3, 12), of the witness points on A and on B."""
+        return self.derivatives().point_jacobians
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -114,7 +146,12 @@ class Distances(AnswerArrays):
         index = range(len(self))[operator.index(k)]
         if index in self.errors:
             raise self.errors[index]
-        return Proximity(self._a, self._b, self.rows[index], int(self.repaired[index]))
+        block = np.zeros(K.N_BLOCK)
+        block[: K.N_OUT] = self.rows[index]
+        block[K.BLOCK_MOTION : K.BLOCK_TIME_STEP] = motion_row(
+            *(_flat(_row(poses, index)) for poses in self.poses)
+        )
+        return Proximity(self._a, self._b, block, int(self.repaired[index]))
 
     def __repr__(self) -> str:
         names = " and ".join(short_name(body.name) for body in (self._a, self._b))
@@ -169,8 +206,7 @@ def distances(
         Arrays of another shape, or of different lengths; no positive number of workers; a planar
         body with a spatial one; two half-spaces.
     """
-    if whole_number(workers, "workers") < 1:
-        raise StandoffError(f"workers = {workers}: give 1 or more.", "workers", workers)
+    at_least_one(workers, "workers")
     query = Tracker(a, b) if yes_or_no(warm, "warm") else ColdQuery(a, b)
     (of_a, mark_a), (of_b, mark_b) = read_poses(poses_a, "poses_a"), read_poses(poses_b, "poses_b")
     n = max(len(of_a), len(of_b))
@@ -194,8 +230,14 @@ def distances(
     for k in np.flatnonzero(rows[:, K.STATUS] == Status.NOT_CERTIFIED.value).tolist():
         _name_overlap(query, rows[k], _row(of_a, k), _row(of_b, k))
     rows[list(errors)] = np.nan
-    origins = tuple(np.broadcast_to(x[:, :3, 3], (n, 3)).copy() for x in (of_a, of_b))
-    return Distances((a, b), rows, (origins[0], origins[1]), repaired, errors)
+    return Distances((a, b), rows, (of_a, of_b), repaired, errors)
+
+
+def at_least_one(value: int, name: str) -> int:
+    """A number of threads."""
+    if whole_number(value, name) < 1:
+        raise StandoffError(f"{name} = {value}: give 1 or more.", name, value)
+    return int(value)
 
 
 def _row(poses: Array, k: int) -> Array:
@@ -224,7 +266,7 @@ def _checked(
         sound &= (poses[:, 3] == (0.0, 0.0, 0.0, 1.0)).all(axis=1)
         sound &= np.abs(poses[:, :3, 3]).sum(axis=1) < FARTHEST
     suspects = range(len(poses)) if planar else np.flatnonzero(~sound).tolist()
-    mended = poses.copy() if len(suspects) else poses
+    mended = np.array(poses, order="C")  # kept by the answers: the caller may change his own
     for k in suspects:
         places = range(n) if len(poses) == 1 else (k,)
         try:
@@ -238,7 +280,7 @@ def _checked(
             mended[k] = np.eye(4)
             told = StandoffError(f"Row {k} of {name}: {error}", name, error.value)
             errors.update(dict.fromkeys(places, told))
-    return np.require(mended, requirements=["C"])
+    return mended
 
 
 def _cold(query: Tracker, poses: tuple[Array, Array], rows: Array, workers: int) -> None:

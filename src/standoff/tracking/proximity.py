@@ -140,7 +140,9 @@ class Proximity(Answer, PlainData):
 
         This and the next three raise StandoffError where they are undefined.
         """
-        return self._defined().gradient
+        from standoff.tracking.derivatives import gradient
+
+        return gradient(self)
 
     @property
     def hessian(self) -> Array:

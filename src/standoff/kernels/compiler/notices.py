@@ -32,6 +32,7 @@ WORK = {
     "runs": Work("runs of many frames", 1, 2),
     "paper": Work("frames of the paper's law", 8, 25),
     "paper runs": Work("runs of the paper's law", 1, 2),
+    "derivatives": Work("derivatives by the poses", 3, 25),
     "simulation": Work("simulations of bodies", 12, 45),
     "coupler": Work("the virtual coupler", 2, 3),
     "study": Work("the paper's studies", 2, 3),

@@ -15,6 +15,7 @@ MODULES = (
     "standoff.kernels.entries.tracker",
     "standoff.kernels.entries.blocks",
     "standoff.kernels.entries.batch",
+    "standoff.kernels.entries.derivatives",
     "standoff.kernels.entries.smooth",
     "standoff.kernels.entries.simulation",
     "standoff.kernels.pair.normals_system",

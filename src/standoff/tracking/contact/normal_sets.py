@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.kernels.body import layout as L
+from standoff.kernels.tolerances import AROUND, SAME_WIDTH
 from standoff.motion import Pose
 from standoff.tracking.support import support_point
-from standoff.tracking.tolerances import AROUND, LEAST_WIDTH_ANGLE, SAME_WIDTH
+from standoff.tracking.tolerances import LEAST_WIDTH_ANGLE
 
 Array = NDArray[np.float64]
 

@@ -1,0 +1,145 @@
+"""Derivatives of one answer or of many, and normals of equal depth."""
+
+from math import inf
+
+from standoff.kernels.algebra.rigid import read_rotation, read_vector, relative_pose
+from standoff.kernels.algebra.vectors import rotate_back
+from standoff.kernels.body import layout as L
+from standoff.kernels.body.features import pair_span
+from standoff.kernels.compiler.decorators import (
+    ahead,
+    entry,
+    kernel,
+    pointer,
+    reals_on_stack,
+    stack_counts,
+    stack_log,
+)
+from standoff.kernels.compiler.entry import (
+    INT,
+    PAIR,
+    READ,
+    READ_BLOCKS,
+    READ_ROWS,
+    REAL,
+    ROWS,
+    VECTOR,
+    WRITE,
+    WRITE_INTS,
+)
+from standoff.kernels.depth.rivals import N_STARTS, equally_deep
+from standoff.kernels.entries.blocks import copy_pose
+from standoff.kernels.entries.frames import clear_counts
+from standoff.kernels.entries.tracker import pair_pointers
+from standoff.kernels.pair.derivatives import (
+    EQUALLY_DEEP,
+    NO_DISTANCE,
+    SMOOTH,
+    differentiate,
+)
+from standoff.kernels.pair.events import LIMIT, NO_LIMIT
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE
+from standoff.kernels.state.arrays import (
+    BLOCK_MOTION,
+    DISTANCE,
+    N_OUT,
+    NORMAL,
+    OUT_MODE,
+    OUT_Q,
+    POSE_A,
+    POSE_B,
+)
+from standoff.kernels.tolerances import TOUCHING_CORES
+from standoff.kernels.values import Place, Work
+
+N_NORMALS = 1 + N_STARTS
+N_NUMBERS = 3 * N_NORMALS
+
+
+@kernel
+def place_of(answer):
+    """The features and parameters that an answer names."""
+    return Place(
+        int(answer[OUT_MODE]),
+        int(answer[OUT_MODE + 1]),
+        int(answer[OUT_MODE + 2]),
+        int(answer[OUT_MODE + 3]),
+        answer[OUT_Q],
+        answer[OUT_Q + 1],
+        answer[OUT_Q + 2],
+        answer[OUT_Q + 3],
+    )
+
+
+@kernel
+def rivals(pair, pose, n, d, most, found):
+    """`equally_deep`, with work of its own."""
+    none = reals_on_stack(N_POLYTOPE)
+    work = Work(stack_counts(), stack_log(), none, none)
+    clear_counts(work)
+    work.counts[LIMIT] = NO_LIMIT
+    return equally_deep(pair, pose, n, d, most, found, work)
+
+
+@kernel
+def derive_at(pair, pose_a, pose_b, answer, everything, to):
+    """Derivatives of an answer at poses (12 numbers) into `to`; what came of it."""
+    d = answer[DISTANCE] + pair.reals_a[L.RADIUS] + pair.reals_b[L.RADIUS]
+    if not abs(d) < inf:
+        return NO_DISTANCE
+    Ra, pose = read_rotation(pose_a, 0), relative_pose(pose_a, pose_b)
+    n = read_vector(answer, NORMAL)
+    kind = differentiate(pair, Ra, pose, place_of(answer), n, d, everything, to)
+    if kind == SMOOTH and d <= TOUCHING_CORES * pair_span(pair, pose.p, abs(d)):
+        normals = reals_on_stack(N_NUMBERS)
+        if rivals(pair, pose, rotate_back(Ra, n), d, 2, normals) > 1:
+            return EQUALLY_DEEP
+    return kind
+
+
+@entry(PAIR, READ, WRITE, work="derivatives")
+def derive(pair, block, to):
+    """Derivatives of the answer in a block, at the poses in it, into N_DERIVATIVES numbers, or into
+    12 for the gradient alone."""
+    at = pointer(block, 0)
+    motion = ahead(at, BLOCK_MOTION)
+    pose_a, pose_b = ahead(motion, POSE_A), ahead(motion, POSE_B)
+    return derive_at(pair_pointers(pair), pose_a, pose_b, at, len(to) > 12, pointer(to, 0))
+
+
+@entry(
+    PAIR,
+    READ_BLOCKS,
+    READ_BLOCKS,
+    INT,
+    INT,
+    READ_ROWS,
+    ROWS,
+    WRITE_INTS,
+    work="derivatives",
+)
+def derive_many(pair, poses_a, poses_b, first, end, answers, outs, kinds):
+    """`derive` of rows `first` to `end` - 1 of answers (n, N_OUT) at poses (n, 4, 4), or (1, 4, 4)
+    for all; row k into outs (n, N_DERIVATIVES), or (n, 12) for the gradients alone."""
+    pointers = pair_pointers(pair)
+    at_a, at_b = poses_a.reshape(poses_a.size), poses_b.reshape(poses_b.size)
+    rows, to = answers.reshape(answers.size), outs.reshape(outs.size)
+    way_a, way_b, row, out = pointer(at_a, 0), pointer(at_b, 0), pointer(rows, 0), pointer(to, 0)
+    one_a, one_b = len(poses_a) == 1, len(poses_b) == 1
+    width = outs.shape[1]
+    flat_a, flat_b = reals_on_stack(12), reals_on_stack(12)
+    for k in range(first, end):
+        copy_pose(ahead(way_a, 0 if one_a else 16 * k), flat_a)
+        copy_pose(ahead(way_b, 0 if one_b else 16 * k), flat_b)
+        kinds[k] = derive_at(
+            pointers, flat_a, flat_b, ahead(row, N_OUT * k), width > 12, ahead(out, width * k)
+        )
+
+
+@entry(PAIR, WRITE, VECTOR, REAL, ROWS, work="derivatives")
+def equal_depths(pair, motion, n, d, normals):
+    """How many normals serve cores that overlap by -d along n, and they, as rows of `normals`
+    (N_NORMALS, 3): n first; all in world axes but n and they, which are in A's frame."""
+    given, to = pointer(motion, 0), normals.reshape(normals.size)
+    pose = relative_pose(ahead(given, POSE_A), ahead(given, POSE_B))
+    return rivals(pair_pointers(pair), pose, n, d, N_NORMALS, pointer(to, 0))
