@@ -176,3 +176,110 @@ def test_a_feature_boundary_has_a_flag(x: float, flag: str) -> None:
     assert bool(found.reason) is (flag == "ONE_SIDED")
     if flag == "ONE_SIDED":
         np.testing.assert_allclose(found.gradient[6:9], [0.0, 0.0, 1.0], atol=1e-9)
+
+
+def hill() -> so.Body:
+    """x, y from 0 to 2; its roof, of degree 2 in x, is level up to 1, then falls by (x - 1)²/4."""
+    knots = [0.0, 0, 0, 1, 2, 2, 2]
+    net = np.array(
+        [[[x, y, z] for y in (0, 2)] for x, z in ((0, 0), (0.5, 0), (1.5, 0), (2, -0.25))]
+    )
+    low = net * [1, 1, 0] + [0, 0, -1.0]
+    flat = [0.0, 0, 1, 1]
+    walls = [
+        so.geometry.NurbsSurface(np.stack([net[:, k], low[:, k]], axis=1), knots, flat)
+        for k in (0, 1)
+    ]
+    ends = [so.geometry.BezierPatch(np.stack([net[k], low[k]], axis=1)) for k in (0, -1)]
+    floor = so.geometry.BezierPatch(low[[0, -1]])
+    return so.Body.from_patches([so.geometry.NurbsSurface(net, knots, flat), floor, *walls, *ends])
+
+
+@pytest.mark.parametrize(("x", "flag"), [(1.0, "ONE_SIDED"), (1.001, "SMOOTH"), (0.5, "SMOOTH")])
+def test_a_jump_of_the_curvature_has_a_flag(x: float, flag: str) -> None:
+    roof, point = hill(), SHAPES.sphere(0.1)
+    found = so.distance(roof, point, np.eye(4), so.Pose(np.eye(3), [x, 0.7, 1.0])).derivatives()
+    assert found.smoothness is Smoothness[flag]
+
+
+@pytest.mark.parametrize(("turn", "flag"), [(0.0, "SMOOTH"), (0.5, "SMOOTH"), (1.0, "ONE_SIDED")])
+def test_an_apex_has_derivatives_inside_its_normal_cone(turn: float, flag: str) -> None:
+    """The cone's sides rise by 2 to 1, so their normals are at atan(2) to the axis."""
+    cone, point = SHAPES.cone(0.5, 1.0), SHAPES.point()
+    angle = turn * np.arctan(2.0)
+    place = [np.sin(angle), 0.0, 0.5 + np.cos(angle)]
+    answer = so.distance(cone, point, np.eye(4), so.Pose(np.eye(3), place))
+    assert answer.feature_a.kind == "vertex"
+    assert answer.derivatives().smoothness is Smoothness[flag]
+
+
+def test_an_edge_of_an_atlas_has_a_flag() -> None:
+    """The rim of a lens, seen along a face's own normal there."""
+    lens, point = SHAPES.lens(1.0, 0.45), SHAPES.point()
+    away = so.Pose(np.eye(3), [-1.5, 0.3, 0.1])
+    first = so.distance(lens, point, np.eye(4), away)
+    assert first.feature_a.kind == "edge"
+    # the edge's faces are spheres of radius 1: their normals at x are x less their centres
+    centres = [
+        -0.45 * np.array([np.cos(k), np.sin(k), 0.0]) for k in 2.0 * np.pi / 3.0 * np.arange(3)
+    ]
+    ways = [first.point_a - c for c in centres]
+    own = [way for way in ways if abs(np.linalg.norm(way) - 1.0) < 1e-12]
+    assert len(own) == 2
+    for way, flag in ((own[0], "ONE_SIDED"), (own[0] + 0.01 * own[1], "SMOOTH")):
+        pose = so.Pose(np.eye(3), first.point_a + 0.4 * way)
+        answer = so.distance(lens, point, np.eye(4), pose)
+        assert np.linalg.norm(answer.point_a - first.point_a) < 1e-9
+        assert answer.derivatives().smoothness is Smoothness[flag]
+
+
+EQUAL = {
+    "an ellipsoid about another's centre": (*PAIRS["ellipsoids"], (0.0, 0.0, 0.0), 0.0),
+    "a cube, turned about its diagonal, in a cube": (
+        SHAPES.box(2, 2, 2),
+        SHAPES.box(1, 1, 1),
+        (0, 0, 0),
+        0.0,
+    ),
+    "as near to two sides": (
+        SHAPES.box(2, 2, 2),
+        SHAPES.ellipsoid(0.1, 0.1, 0.2),
+        (0.5, 0.5, 0),
+        0,
+    ),
+    "as near to two sides, turned": (
+        SHAPES.box(2, 2, 2),
+        SHAPES.sphere(0.2),
+        (0.6, 0.1, -0.6),
+        0.7,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", EQUAL)
+@pytest.mark.parametrize("off", [0.0, 1e-6])
+def test_equal_depths_are_found_and_others_are_not(name: str, off: float) -> None:
+    a, b, place, turn = EQUAL[name]
+    diagonal = 0.3 if "diagonal" in name else 0.0
+    pose_a = moved(np.eye(4), np.array([0.3, 0.1, 0.2, turn, -turn, 0.5 * turn]), 1.0)
+    pose_b = pose_a.copy()
+    pose_b[:3, :3] = pose_a[:3, :3] @ Rotation.from_rotvec(diagonal * np.ones(3)).as_matrix()
+    pose_b[:3, 3] += pose_a[:3, :3] @ (np.array(place) + off * np.array([3.0, 2.0, 1.0]))
+    answer = so.distance(a, b, pose_a, pose_b)
+    assert answer.distance < 0.0
+    flag = answer.derivatives().smoothness
+    assert flag is (Smoothness.SMOOTH if off else Smoothness.UNDEFINED)
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_depths_alone_are_those_of_one_normal(name: str, rng: np.random.Generator) -> None:
+    """The flag and `witness_set`, which descends from 53 directions, agree."""
+    a, b = PAIRS[name]
+    for _ in range(12):
+        poses = [
+            moved(np.eye(4), np.r_[0.2, 0.2, 0.2, 2, 2, 2] * rng.normal(size=6), 1.0) for _ in "ab"
+        ]
+        answer = so.distance(a, b, *poses)
+        if answer.distance < 0.0 and answer.derivatives().smoothness is not Smoothness.ONE_SIDED:
+            alone = answer.derivatives().smoothness is Smoothness.SMOOTH
+            assert alone is answer.unique

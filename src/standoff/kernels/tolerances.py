@@ -257,9 +257,6 @@ NEWTON_ROUNDS = 3
 SETTLED_STEP = 1e-13
 # Radians, and of the body's size: a witness point this near another feature lies on both.
 BESIDE_FEATURE = 1e-9
-# Second partials of a surface that change by more than this (relative) over BESIDE_FEATURE jump:
-# third partials would change them by some 1e-9.
-CURVATURE_JUMP = 1e-6
 # Of the span: cores that are nearer than this touch, and the normal may not be unique.
 TOUCHING_CORES = 1e-12
 # Radians: normals nearer to each other than this are one. Normal cones narrower than this, as of

@@ -4,10 +4,33 @@ from math import nan
 
 from standoff.kernels.algebra.vectors import norm, rotate, scale, sub, unit
 from standoff.kernels.body import layout as L
-from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.compiler.decorators import ints_on_stack, kernel, reals_on_stack
 from standoff.kernels.depth.descent import descend
-from standoff.kernels.depth.penetration import begin_along, contact_scale
-from standoff.kernels.tolerances import AROUND, SAME_WIDTH, START_GAP
+from standoff.kernels.depth.difference_hull import (
+    ALL_CORNERS,
+    ALL_FACETS,
+    ALL_POINTS,
+    ALL_RIMS,
+    BROKEN,
+    GREW,
+    MAX_FACETS,
+    N_SIZES,
+    Hull,
+    close_facet,
+    facet_normal,
+    grow_difference,
+    nearest_facet,
+)
+from standoff.kernels.depth.penetration import begin_along, box_depth, contact_scale, shifted
+from standoff.kernels.depth.search import difference, seed_hull
+from standoff.kernels.tolerances import (
+    AROUND,
+    MAX_PROBES,
+    SAME_MINIMUM,
+    SAME_WIDTH,
+    SHIFTED_GAP,
+    START_GAP,
+)
 from standoff.kernels.values import Depth
 
 # Descents start against the normal, and along each of a cube's faces, edges and corners (and from
@@ -40,10 +63,16 @@ def is_new(n, found, count):
 
 
 @kernel
-def equally_deep(pair, pose, n, d, most, found, work):
+def least_below(pair, pose, way, work):
+    """The local minimum of the depth below a direction."""
+    at = Depth(False, nan, way, begin_along(pair, pose, way))
+    return descend(pair, pose, at, START_GAP, work)
+
+
+@kernel
+def equally_deep(pair, pose, n, d, found, work):
     """How many normals there are along which the cores are as deep in each other, and they into
-    `found` (3 numbers each): n itself, and others until `most`. All in A's frame; d is the signed
-    distance of the cores.
+    `found` (3 numbers each), n first. All in A's frame; d is the signed distance of the cores.
     """
     found[0], found[1], found[2] = n
     count = 1
@@ -52,13 +81,61 @@ def equally_deep(pair, pose, n, d, most, found, work):
     same = SAME_WIDTH * contact_scale(pair)
     for k in range(N_STARTS):
         way = start_direction(pair, pose, n, k)
-        if count >= most or norm(way) < AROUND:
+        if norm(way) < AROUND:
             continue
-        way = unit(way)
-        at = Depth(False, nan, way, begin_along(pair, pose, way))
-        ended = descend(pair, pose, at, START_GAP, work)
+        ended = least_below(pair, pose, unit(way), work)
         if ended.found and abs(ended.distance - d) <= same and is_new(ended.normal, found, count):
             o = 3 * count
             found[o], found[o + 1], found[o + 2] = ended.normal
             count += 1
     return count
+
+
+# Is a least depth the only one?
+ALONE, NOT_ALONE, NOT_KNOWN = range(3)
+
+
+@kernel
+def alone(pair, pose, best, work):
+    """Whether no other direction is as little deep: by a polytope within A - B, whose facets are
+    farther from the origin than the depth, but for those around its normal.
+
+    A facet that is not, and on whose other side there is nothing of A - B, points along a direction
+    that is as little deep. Minima nearer to each other than SAME_MINIMUM are not told apart.
+    """
+    hull = Hull(
+        ints_on_stack(N_SIZES),
+        reals_on_stack(ALL_POINTS),
+        ints_on_stack(ALL_CORNERS),
+        reals_on_stack(ALL_FACETS),
+        ints_on_stack(MAX_FACETS),
+        ints_on_stack(ALL_RIMS),
+    )
+    size = contact_scale(pair)
+    same = SAME_WIDTH * size
+    if not seed_hull(pair, pose, hull, size)[0]:
+        return NOT_KNOWN
+    grow_difference(hull, difference(pair, pose, best.place), size)
+    for _ in range(MAX_PROBES):
+        at, least = nearest_facet(hull, True)
+        if at < 0 or least > same - best.distance:
+            return ALONE
+        nu = facet_normal(hull, at)
+        if norm(sub(nu, best.normal)) <= SAME_MINIMUM:
+            close_facet(hull, at)
+            continue
+        outer = Depth(False, -box_depth(pair, pose, nu), nu, begin_along(pair, pose, nu))
+        apart, probe = shifted(pair, pose, outer, SHIFTED_GAP, work)
+        grown = (
+            grow_difference(hull, difference(pair, pose, probe.place), size) if apart else BROKEN
+        )
+        if grown == GREW:
+            continue
+        ended = least_below(pair, pose, nu, work)
+        other = norm(sub(ended.normal, best.normal)) > AROUND
+        if ended.found and other and abs(ended.distance - best.distance) <= same:
+            return NOT_ALONE
+        if apart and grown == BROKEN:
+            return NOT_KNOWN
+        close_facet(hull, at)
+    return NOT_KNOWN

@@ -27,7 +27,7 @@ from standoff.kernels.compiler.entry import (
     WRITE,
     WRITE_INTS,
 )
-from standoff.kernels.depth.rivals import N_STARTS, equally_deep
+from standoff.kernels.depth.rivals import N_STARTS, NOT_ALONE, NOT_KNOWN, alone, equally_deep
 from standoff.kernels.entries.blocks import copy_pose
 from standoff.kernels.entries.frames import clear_counts
 from standoff.kernels.entries.tracker import pair_pointers
@@ -50,7 +50,7 @@ from standoff.kernels.state.arrays import (
     POSE_B,
 )
 from standoff.kernels.tolerances import TOUCHING_CORES
-from standoff.kernels.values import Place, Work
+from standoff.kernels.values import Depth, Place, Work
 
 N_NORMALS = 1 + N_STARTS
 N_NUMBERS = 3 * N_NORMALS
@@ -72,13 +72,23 @@ def place_of(answer):
 
 
 @kernel
-def rivals(pair, pose, n, d, most, found):
-    """`equally_deep`, with work of its own."""
-    none = reals_on_stack(N_POLYTOPE)
-    work = Work(stack_counts(), stack_log(), none, none)
+def without_limit(work):
+    """Work that begins, and ends when it is done."""
     clear_counts(work)
     work.counts[LIMIT] = NO_LIMIT
-    return equally_deep(pair, pose, n, d, most, found, work)
+    return work
+
+
+@kernel
+def has_rivals(pair, pose, n, d, place):
+    """Are overlapping cores as deep in each other along another normal?"""
+    none = reals_on_stack(N_POLYTOPE)
+    work = without_limit(Work(stack_counts(), stack_log(), none, none))
+    known = alone(pair, pose, Depth(True, d, n, place), work)
+    if known != NOT_KNOWN:
+        return known == NOT_ALONE
+    normals = reals_on_stack(N_NUMBERS)
+    return equally_deep(pair, pose, n, d, normals, without_limit(work)) > 1
 
 
 @kernel
@@ -90,11 +100,10 @@ def derive_at(pair, pose_a, pose_b, answer, everything, to):
     Ra, pose = read_rotation(pose_a, 0), relative_pose(pose_a, pose_b)
     n = read_vector(answer, NORMAL)
     kind = differentiate(pair, Ra, pose, place_of(answer), n, d, everything, to)
-    if kind == SMOOTH and d <= TOUCHING_CORES * pair_span(pair, pose.p, abs(d)):
-        normals = reals_on_stack(N_NUMBERS)
-        if rivals(pair, pose, rotate_back(Ra, n), d, 2, normals) > 1:
-            return EQUALLY_DEEP
-    return kind
+    if kind != SMOOTH or d > TOUCHING_CORES * pair_span(pair, pose.p, abs(d)):
+        return kind
+    shared = has_rivals(pair, pose, rotate_back(Ra, n), d, place_of(answer))
+    return EQUALLY_DEEP if shared else SMOOTH
 
 
 @entry(PAIR, READ, WRITE, work="derivatives")
@@ -142,4 +151,6 @@ def equal_depths(pair, motion, n, d, normals):
     (N_NORMALS, 3): n first; all in world axes but n and they, which are in A's frame."""
     given, to = pointer(motion, 0), normals.reshape(normals.size)
     pose = relative_pose(ahead(given, POSE_A), ahead(given, POSE_B))
-    return rivals(pair_pointers(pair), pose, n, d, N_NORMALS, pointer(to, 0))
+    none = reals_on_stack(N_POLYTOPE)
+    work = without_limit(Work(stack_counts(), stack_log(), none, none))
+    return equally_deep(pair_pointers(pair), pose, n, d, pointer(to, 0), work)

@@ -1,11 +1,13 @@
-"""Does a witness point lie where its feature gives way to another, or to another polynomial?"""
+"""Does a witness point lie where its feature gives way to another?
+
+A face is C2: patches are cut where they are not, so the curvature jumps at edges alone.
+"""
 
 from standoff.kernels.algebra.roots import sqrt
-from standoff.kernels.algebra.vectors import dot, sub, unit
+from standoff.kernels.algebra.vectors import dot, unit
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_jet,
-    chart_record,
     coedge_conormal,
     dimension,
     edge_jet,
@@ -15,7 +17,7 @@ from standoff.kernels.body.features import (
 from standoff.kernels.body.trimming import on_face
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.switching import end_direction, steepest_in_sector
-from standoff.kernels.tolerances import BESIDE_FEATURE, CURVATURE_JUMP
+from standoff.kernels.tolerances import BESIDE_FEATURE
 
 
 @kernel
@@ -34,7 +36,7 @@ def beside_another(ints, reals, side, n):
 
 @kernel
 def beside_loop(ints, reals, side):
-    """Of a face: is a point around this one off it, or of another piece of its surface?"""
+    """Of a face: is a point around this one off it?"""
     if ints[L.UNBOUNDED]:
         return False
     jet = chart_jet(ints, reals, side.chart, side.p, side.q)
@@ -47,22 +49,7 @@ def beside_loop(ints, reals, side):
         for j in range(-1, 2):
             if not on_face(ints, reals, side.chart, side.p + i * du, side.q + j * dv):
                 return True
-    kind = ints[chart_record(ints, side.chart) + L.CHART_KIND]
-    if kind != L.NURBS and kind != L.REVOLUTION and kind != L.EXTRUSION:
-        return False
-    return between_pieces(ints, reals, side, du, 0.0) or between_pieces(ints, reals, side, 0.0, dv)
-
-
-@kernel
-def between_pieces(ints, reals, side, du, dv):
-    """Do the second partials jump between the points before and after this one?"""
-    before = chart_jet(ints, reals, side.chart, side.p - du, side.q - dv)
-    after = chart_jet(ints, reals, side.chart, side.p + du, side.q + dv)
-    jump = most = 0.0
-    for k in range(3, 6):
-        change = sub(after[k], before[k])
-        jump, most = max(jump, dot(change, change)), max(most, dot(after[k], after[k]))
-    return jump > CURVATURE_JUMP * CURVATURE_JUMP * most
+    return False
 
 
 @kernel
