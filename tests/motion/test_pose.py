@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
-from standoff.motion import Pose
+from standoff.motion import Pose, Twist
 
 ROTATION = Rotation.from_rotvec([0.7, -0.5, 0.9]).as_matrix()
 SHIFT = np.array([1.75, -2.0, 0.5])
@@ -196,3 +196,14 @@ def test_composing_with_something_else_is_a_type_error() -> None:
 def test_a_homogeneous_matrix_is_sent_to_where_it_is_read():
     with pytest.raises(ValueError, match=r"(?s)rotation has shape.*Pose\.of\(matrix\)"):
         Pose(np.eye(4))
+
+
+def test_a_pose_and_a_twist_are_written_on_one_line_that_makes_them_again() -> None:
+    pose = Pose.exp([0.1, -2.0, 1e-17], [1234.5678, 0.0, -1e-30])
+    assert repr(pose) == "Pose.exp([0.1, -2, 0], [1234.57, 0, 0])"
+    assert repr(Pose.identity()) == "Pose.exp([0, 0, 0], [0, 0, 0])"
+    again = eval(repr(pose), {"Pose": Pose})
+    assert np.abs(again.matrix - pose.matrix).max() < 1e-2
+    assert np.abs(again.rotation - pose.rotation).max() < 1e-5
+    assert repr(Twist([1, 2, 1e-20], [0, 0, 0.5])) == "Twist([1, 2, 0], [0, 0, 0.5])"
+    assert repr(Twist([0, 0, 0], [0, 0, 1e-20], "body")).endswith('[0, 0, 1e-20], "body")')

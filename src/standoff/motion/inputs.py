@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.errors import MaskedNumbers, StandoffError, StandoffTypeError
+from standoff.motion.tolerances import SHOWN_DIGITS
 from standoff.real_numbers import check_unmasked, real_array, shown
 
 FloatArray = NDArray[np.float64]
@@ -116,3 +117,10 @@ def _numbers(shape: tuple[int, ...]) -> str:
     if len(shape) == 1:
         return f"{shape[0]} numbers"
     return f"an array of {' by '.join(map(str, shape))} numbers"
+
+
+def written(values: FloatArray, scale: float = 0.0) -> str:
+    """Return numbers as a list with six digits each; what is roundoff beside the greatest of them,
+    or beside `scale` in their unit, as 0."""
+    size = max(scale, float(np.abs(values).max(initial=0.0)))
+    return f"[{', '.join(f'{x:.6g}' if abs(x) > SHOWN_DIGITS * size else '0' for x in values)}]"

@@ -23,7 +23,7 @@ LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Of every homogeneous matrix."""
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Pose(KeepsReadOnly):
     """A rigid placement of a body in the world.
 
@@ -225,6 +225,11 @@ class Pose(KeepsReadOnly):
             scipy.spatial.transform.Rotation.from_rotvec(vector.copy()).as_matrix(),
             inputs.array(translation, "translation", (3,)),
         )
+
+    def __repr__(self) -> str:
+        """One line that makes the same pose, to six digits."""
+        turn = scipy.spatial.transform.Rotation.from_matrix(self.rotation).as_rotvec()
+        return f"Pose.exp({inputs.written(turn, 1.0)}, {inputs.written(self.translation)})"
 
     @property
     def matrix(self) -> FloatArray:

@@ -34,3 +34,7 @@ HALF_TURN_ANGLE: Final = 1e-9
 #: No unit. Trace of a turn that may be a half one, whose trace is −1: rotations have a defect, of
 #: up to ``ORTHONORMALITY``, and the trace rises with the square of the angle that is missing.
 NEAR_HALF_TURN: Final = -1.0 + 1e-6
+
+#: No unit. Part of the greatest of a few numbers that are shown together below which one is shown
+#: as 0: the roundoff of composing rotations.
+SHOWN_DIGITS: Final = 1e-15

@@ -21,7 +21,7 @@ Frame: TypeAlias = Literal["world", "body"]
 """The axes in which a twist's components are given."""
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Twist(KeepsReadOnly):
     """The velocity of a rigid body: linear part first.
 
@@ -58,6 +58,10 @@ class Twist(KeepsReadOnly):
         object.__setattr__(self, "v", inputs.array(v, "v", (3,)))
         object.__setattr__(self, "omega", inputs.array(omega, "omega", (3,)))
         object.__setattr__(self, "frame", frame)
+
+    def __repr__(self) -> str:
+        frame = "" if self.frame == "world" else f', "{self.frame}"'
+        return f"Twist({inputs.written(self.v)}, {inputs.written(self.omega)}{frame})"
 
     @classmethod
     def of(cls, value: TwistLike) -> Twist:
