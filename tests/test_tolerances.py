@@ -30,7 +30,7 @@ NO_TOLERANCE = {
 UNITS = re.compile(
     r"""\b(lengths? | radians? | rad | chord | cosines? | sine | s\] | relative | dimensionless
     | no\ unit | ratio | parts? | fraction | share | sizes? | scales? | spans? | eps | roundings?
-    | times | gnomonic | parameter\ units?
+    | times | bytes | gnomonic | parameter\ units?
     | steps? | evaluations | points | minima | directions | frames | rays | restarts | releases
     | bisections | samples | halvings | iterations | so\ many | passes)\b | 1\ /\ size""",
     re.VERBOSE | re.IGNORECASE,

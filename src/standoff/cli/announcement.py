@@ -10,6 +10,7 @@ from standoff.cli.arguments import (
     ImpactCommand,
     SimulateCommand,
     TrackCommand,
+    ViewCommand,
     WarmupCommand,
 )
 from standoff.kernels.compiler.notices import ALL_SECONDS, say
@@ -39,6 +40,8 @@ def _doing(command: Command) -> str:
             return f"finding the modes of {_pairs(command.pair)} of {shown(command.scene)}"
         case SimulateCommand():
             return f"simulating {shown(command.scene)}"
+        case ViewCommand():
+            return f"making the page of {shown(command.scene)}"
         case WarmupCommand():
             return f"loading all kernels; what must be compiled takes about {ALL_SECONDS} s in all"
         case _:

@@ -249,6 +249,27 @@ class SimulateCommand:
 
 
 @dataclass(frozen=True)
+class ViewCommand:
+    """Show a scene in the browser: drag a body, and watch witness points and distance.
+
+    Example: standoff view examples/lenses.toml --open
+
+    Exit codes: 0 closed, 2 bad input.
+    """
+
+    scene: SceneFile
+    """Scene file; docs/scene-format.md describes the format."""
+    pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
+    """This one of the scene's [[pairs]]; the first if not given."""
+    host: Annotated[str, arg(metavar="HOST", help_behavior_hint="")] = "127.0.0.1"
+    """Name or address to serve the page at; 127.0.0.1, this machine alone, if not given."""
+    port: Annotated[int | None, arg(metavar="PORT", help_behavior_hint="")] = None
+    """Port to serve the page at; any that is free, if not given."""
+    open: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Open the page in the usual browser."""
+
+
+@dataclass(frozen=True)
 class WarmupCommand:
     """Compile all kernels ahead, so that no later use waits for it.
 
@@ -270,6 +291,7 @@ Command = (
     | CheckCommand
     | AutomatonCommand
     | SimulateCommand
+    | ViewCommand
     | WarmupCommand
     | AddedCommand
 )
@@ -281,6 +303,7 @@ OWN: dict[str, type] = {
     "check": CheckCommand,
     "automaton": AutomatonCommand,
     "simulate": SimulateCommand,
+    "view": ViewCommand,
     "warmup": WarmupCommand,
 }
 """The library's own commands, by name."""

@@ -10,6 +10,7 @@ from standoff.cli.arguments import (
     ImpactCommand,
     SimulateCommand,
     TrackCommand,
+    ViewCommand,
     WarmupCommand,
 )
 
@@ -50,6 +51,10 @@ def run(command: Command) -> int:
             from standoff.cli.simulate import run_simulate
 
             return run_simulate(command)
+        case ViewCommand():
+            from standoff.cli.view import run_view
+
+            return run_view(command)
         case WarmupCommand():
             from standoff.cli.warmup import run_warmup
 

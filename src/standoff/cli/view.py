@@ -1,0 +1,46 @@
+"""``standoff view``: a scene in the browser."""
+
+from __future__ import annotations
+
+import webbrowser
+
+from standoff.cli.arguments import ViewCommand
+from standoff.cli.errors import CommandError, ExitCode
+from standoff.errors import StandoffError
+from standoff.scene import SceneError, load_scene
+
+
+def run_view(command: ViewCommand) -> int:
+    """Serve the page until it is interrupted.
+
+    Raises
+    ------
+    CommandError
+        If viser is not installed, or the port cannot be had.
+    SceneError
+        If the scene is not usable.
+    """
+    try:
+        from standoff.view.page import Page
+    except ModuleNotFoundError as error:
+        raise CommandError(str(error)) from error
+    scene = load_scene(command.scene)
+    if command.pair is not None:
+        try:
+            scene = scene.select(command.pair)
+        except SceneError as error:
+            raise CommandError(f"--pair: {error.problem}") from error
+    try:
+        page = Page(scene, host=command.host, port=command.port)
+    except StandoffError as error:
+        raise CommandError(str(error)) from error
+    with page:
+        print(f"{scene.title}: open {page.address}", flush=True)
+        print("The address holds the token of this run. Ctrl+C ends it.", flush=True)
+        if command.open:
+            webbrowser.open(page.address)
+        try:
+            page.wait()
+        except KeyboardInterrupt:
+            print("closed")
+    return ExitCode.DONE

@@ -1,0 +1,199 @@
+"""Bodies and answers as nodes of viser's scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from standoff.bodies.features import Feature
+from standoff.motion import Pose
+from standoff.tracking import Status
+from standoff.view.shapes import Mesh, Shape
+
+Array = NDArray[np.float64]
+Colour = tuple[int, int, int]
+
+# Light and strong, after Okabe and Ito's blue and vermilion; stronger than in the pictures of
+# `so.plot`, as the light of a browser's scene pales them.
+COLOURS: tuple[tuple[Colour, Colour], ...] = (
+    ((110, 185, 235), (0, 80, 160)),
+    ((240, 170, 90), (200, 70, 0)),
+)
+EDGE_COLOUR: Colour = (60, 60, 60)
+WITNESS_COLOUR: Colour = (20, 20, 20)
+BOUND_COLOUR: Colour = (0, 158, 115)
+
+OPACITY = 0.85
+"""Of a body's surface: witness points inside a body that overlaps are seen through it."""
+
+POINT_SIZE = 0.012
+"""Diameter of a drawn vertex over the body's size."""
+
+WITNESS_RADIUS = 0.006
+"""Of the balls at the witness points, over the scene's size."""
+
+ARROW = 0.2
+"""Length of the drawn normal over the scene's size."""
+
+
+def quaternion(pose: Pose) -> tuple[float, float, float, float]:
+    """Return a pose's rotation as viser has it, scalar first."""
+    x, y, z, w = scipy.spatial.transform.Rotation.from_matrix(pose.rotation).as_quat()
+    return float(w), float(x), float(y), float(z)
+
+
+class BodyNodes:
+    """The nodes of one body: surface, edges, vertices, and its active feature.
+
+    Parameters
+    ----------
+    scene : viser.SceneApi
+    name : str
+        Of the node that all others hang from.
+    shape : Shape
+    which : int
+        0 of A, 1 of B.
+    """
+
+    def __init__(self, scene: Any, name: str, shape: Shape, which: int) -> None:
+        self._scene, self.name, self._shape = scene, name, shape
+        self._plain, self._strong = COLOURS[which]
+        self._active: tuple[Feature | None, Any] = (None, None)
+        self.frame = scene.add_frame(name, show_axes=False)
+        if shape.skin is not None:
+            self._mesh("skin", shape.skin, self._plain, OPACITY)
+        if len(shape.drawn):
+            self._lines("edges", shape.segments(), EDGE_COLOUR, 1.5)
+        if len(shape.vertices) and not shape.body.radius:
+            self._points("vertices", shape.vertices, EDGE_COLOUR, 1.0)
+
+    def place(self, pose: Pose) -> None:
+        """Put the body at a pose."""
+        self.frame.wxyz, self.frame.position = quaternion(pose), tuple(pose.translation)
+
+    def highlight(self, feature: Feature, outward: Array) -> None:
+        """Draw a feature in the strong colour.
+
+        Parameters
+        ----------
+        feature : Feature
+        outward : (3,) array
+            Unit normal of the surface there, body frame: an edge or vertex of a swept body is
+            shown on its skin.
+        """
+        known, node = self._active
+        if feature != known:
+            if node is not None:
+                node.remove()
+            node = self._drawn(feature)
+            self._active = feature, node
+        if node is not None and feature.kind != "face":
+            node.position = tuple(self._shape.body.radius * outward)
+
+    def _drawn(self, feature: Feature) -> Any:
+        part = self._shape.of(feature)
+        if isinstance(part, Mesh):
+            return self._mesh("active", part, self._strong, 0.9) if len(part.points) else None
+        if feature.kind == "edge":
+            return self._lines("active", part, self._strong, 5.0)
+        return self._points("active", part[None], self._strong, 2.0)
+
+    def _mesh(self, name: str, mesh: Mesh, colour: Colour, opacity: float) -> Any:
+        return self._scene.add_mesh_simple(
+            f"{self.name}/{name}",
+            mesh.points,
+            mesh.triangles,
+            color=colour,
+            opacity=opacity,
+            side="double",
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+    def _lines(self, name: str, pieces: Array, colour: Colour, width: float) -> Any:
+        return self._scene.add_line_segments(
+            f"{self.name}/{name}",
+            pieces.astype(np.float32),
+            colour,
+            thickness=width,
+            thickness_units="screen",
+        )
+
+    def _points(self, name: str, points: Array, colour: Colour, times: float) -> Any:
+        return self._scene.add_point_cloud(
+            f"{self.name}/{name}",
+            points.astype(np.float32),
+            colour,
+            point_size=times * POINT_SIZE * self._shape.size,
+            point_shape="circle",
+            precision="float32",
+        )
+
+
+class AnswerNodes:
+    """The nodes of an answer: witness points and line, normal, distance and lower bound.
+
+    Parameters
+    ----------
+    scene : viser.SceneApi
+    size : float
+        Of the scene [length].
+    """
+
+    def __init__(self, scene: Any, size: float) -> None:
+        self._size = size
+        scene.add_frame("/answer", show_axes=False)
+        nothing = np.zeros((1, 2, 3), dtype=np.float32)
+        self._points = [
+            scene.add_icosphere(f"/answer/point_{which}", WITNESS_RADIUS * size, WITNESS_COLOUR)
+            for which in "ab"
+        ]
+        self._line = scene.add_line_segments(
+            "/answer/line", nothing, WITNESS_COLOUR, thickness=3.0, thickness_units="screen"
+        )
+        self._normal = scene.add_arrows(
+            "/answer/normal",
+            nothing,
+            BOUND_COLOUR,
+            shaft_radius=0.015 * ARROW * size,
+            head_radius=0.05 * ARROW * size,
+            head_length=0.2 * ARROW * size,
+        )
+        self._label = scene.add_label("/answer/label", "", anchor="bottom-left")
+
+    def show(self, points: tuple[Array, Array], normal: Array, text: str) -> None:
+        """Draw an answer.
+
+        Parameters
+        ----------
+        points : two (3,) arrays
+            Witness points, world axes; nothing is drawn where they are not known.
+        normal : (3,) array
+            From A to B.
+        text : str
+            Stands beside the witness line.
+        """
+        known = bool(np.isfinite([*points, normal]).all())
+        for node in (*self._points, self._line, self._normal):
+            node.visible = known
+        self._label.text = text
+        if not known:
+            return
+        for node, point in zip(self._points, points, strict=True):
+            node.position = tuple(point)
+        self._line.points = np.array([points], dtype=np.float32)
+        tip = points[0] + ARROW * self._size * normal
+        self._normal.points = np.array([[points[0], tip]], dtype=np.float32)
+        self._label.position = tuple(0.5 * (points[0] + points[1]))
+
+
+def answer_text(distance: float, lower_bound: float, status: Status, unit: str) -> str:
+    """Return what stands beside the witness line."""
+    if not np.isfinite(distance):
+        return status.name.lower().replace("_", " ")
+    length = f"{distance:.6g} {unit}".rstrip()
+    bound = f"≥ {lower_bound:.6g}" if np.isfinite(lower_bound) else "no lower bound"
+    return f"{length} ({bound})"

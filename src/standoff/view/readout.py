@@ -1,0 +1,56 @@
+"""The numbers of an answer as the page's panel shows them."""
+
+from __future__ import annotations
+
+from html import escape
+
+import numpy as np
+
+from standoff.tracking import Proximity
+
+DIGITS = 9
+"""Decimal digits that the panel shows."""
+
+ROW = '<tr><td style="opacity:.65;padding-right:.8em">{}</td><td data-of="{}">{}</td></tr>'
+TABLE = (
+    '<table style="font-size:.875em;margin:.3em .9em;font-variant-numeric:tabular-nums">{}</table>'
+)
+
+
+def length(value: float, unit: str) -> str:
+    """Return a length as the panel shows it."""
+    return f"{value:.{DIGITS}g} {unit}".rstrip() if np.isfinite(value) else "not known"
+
+
+def readout(answer: Proximity, names: tuple[str, str], unit: str) -> str:
+    """Return the table of an answer, as HTML.
+
+    Parameters
+    ----------
+    answer : Proximity
+    names : (str, str)
+        Of A and B.
+    unit : str
+        Label of lengths.
+
+    Returns
+    -------
+    str
+    """
+    normal = ", ".join(f"{value:+.4f}" for value in answer.normal)
+    rows = [
+        ("distance", length(answer.distance, unit)),
+        ("lower bound", length(answer.lower_bound, unit)),
+        ("gap", f"{answer.distance - answer.lower_bound:.2e} {unit}".rstrip()),
+        ("status", answer.status.name.lower().replace("_", " ")),
+        (names[0], str(answer.feature_a)),
+        (names[1], str(answer.feature_b)),
+        ("normal", normal),
+    ]
+    keys = ("distance", "bound", "gap", "status", "a", "b", "normal")
+    return TABLE.format(
+        "".join(
+            ROW.format(escape(name), key, escape(text))
+            for key, (name, text) in zip(keys, rows, strict=True)
+        )
+    )

@@ -1,0 +1,29 @@
+"""Limits of the live page, each with its unit and reason."""
+
+from __future__ import annotations
+
+from typing import Final
+
+MAX_MESSAGE: Final = 16384
+"""Longest message that a page may send, bytes: a pose, a camera or a value is below 1000."""
+
+MESSAGE_RATE: Final = 240.0
+"""Messages that a page may send for long, so many a second: its camera and one dragged frame are
+each sent up to 50 times a second."""
+
+MESSAGE_BURST: Final = 480.0
+"""Messages that a page may send at once, so many: two seconds of `MESSAGE_RATE`, for a machine that
+slept."""
+
+MAX_PAGES: Final = 8
+"""Pages that may be open at the same time, so many: each is sent the whole scene."""
+
+MAX_TEXT: Final = 200
+"""Longest text among the values of a message, so many characters: names of scenes and laws."""
+
+MAX_DEPTH: Final = 4
+"""Deepest nesting of a message that is read, so many levels: viser's own have three."""
+
+LIFT: Final = 2e-3
+"""How far the active feature is drawn off the body, over its size: drawn in the same place, the
+two would flicker through each other."""
