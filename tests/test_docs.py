@@ -51,6 +51,18 @@ def test_code_of_a_page_prints_what_the_page_says(
         assert printed == promised, f"{page.name}:\n{code}"
 
 
+def test_each_of_the_ten_tasks_takes_ten_lines() -> None:
+    tasks = [code for language, code in blocks(DOCS / "ten-tasks.md") if language == "python"]
+    assert len(tasks) == 10
+    for code in tasks:
+        lines = [line for line in code.splitlines() if line.strip()]
+        assert len(lines) <= 10, code
+        assert max(len(line) for line in lines) <= 100, code
+        alone: dict[str, Any] = {}
+        exec(compile("\n".join(x for x in lines if "import " in x), "imports", "exec"), alone)
+        assert "so" in alone, code  # each can be copied as it stands
+
+
 def documented(page: str) -> Iterator[str]:
     """Full names that a page of the reference lists."""
     for kind, name, options in DIRECTIVE.findall((DOCS / "api" / page).read_text("utf-8")):
