@@ -35,8 +35,9 @@ def chromium() -> Iterator[Any]:
 class Tab:
     """A page of the browser and what it asked for."""
 
-    def __init__(self, browser: Any, width: int, height: int) -> None:
-        self.page = browser.new_page(viewport={"width": width, "height": height})
+    def __init__(self, browser: Any, width: int, height: int, scale: float = 1.0) -> None:
+        size = {"width": width, "height": height}
+        self.page = browser.new_page(viewport=size, device_scale_factor=scale)
         self.requests: list[str] = []
         self.failed: list[str] = []
         self.errors: list[str] = []
@@ -82,8 +83,9 @@ class Tab:
 def tab(chromium: Any) -> Iterator[Any]:
     opened: list[Tab] = []
 
-    def make(width: int = 1280, height: int = 800) -> Tab:
-        opened.append(Tab(chromium, width, height))
+    def make(width: int, height: int) -> Tab:
+        # A quarter of the pixels: they are drawn without a graphics card.
+        opened.append(Tab(chromium, width, height, 0.5))
         return opened[-1]
 
     yield make

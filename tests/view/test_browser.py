@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from standoff.scene import load_scene
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 HALF = np.array([0.5, 0.4, 0.3])
 RADIUS = 0.2
 SCENE = """
@@ -55,9 +56,25 @@ def on_screen(page: Any, point: Any) -> tuple[float, float]:
     )
 
 
+def colours(picture: Path) -> int:
+    """How many the scene of a saved run has, above its buttons: an empty one has one."""
+    import matplotlib.image
+
+    pixels = matplotlib.image.imread(picture)
+    pixels = pixels[: 8 * len(pixels) // 10]
+    return len(np.unique(pixels.reshape(-1, pixels.shape[-1]), axis=0))
+
+
 def from_box(centre: Any) -> float:
     """The ball's distance from the box, in closed form."""
     return float(np.linalg.norm(np.maximum(np.abs(centre) - HALF, 0.0))) - RADIUS
+
+
+@pytest.fixture(autouse=True)
+def slowly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a browser that draws without a graphics card keep up."""
+    pytest.importorskip("viser", reason="viser is not installed (extra 'view')")
+    monkeypatch.setattr("standoff.view.page.PERIOD", 0.15)
 
 
 @pytest.fixture
@@ -81,8 +98,8 @@ def opened(page: Any, tab: Any) -> Any:
 
 def pull(page: Any, tab: Any, axis: int, length: float, release: bool = True) -> None:
     """Drag the ball by an arrow of its handle."""
-    grip = page._grips[0]
-    start = page.pair.poses[0].translation.copy()
+    grip = page.stage.picture.handles[0]
+    start = page.stage.pair.poses[0].translation.copy()
     start[axis] += 0.8 * grip.scale
     along = np.eye(3)[axis]
     mouse = tab.page.mouse
@@ -99,11 +116,11 @@ def pull(page: Any, tab: Any, axis: int, length: float, release: bool = True) ->
 def test_a_dragged_ball_s_distance_is_that_of_the_closed_form(
     page: Any, tab: Callable[..., Any]
 ) -> None:
-    desk = opened(page, tab(900, 560))
+    desk = opened(page, tab(980, 420))
     assert desk.number("distance") == pytest.approx(0.3, abs=1e-8)
     assert desk.shown("b") == "face 5"
     pull(page, desk, 0, -0.8)
-    centre = page.pair.poses[0].translation
+    centre = page.stage.pair.poses[0].translation
     assert centre[0] == pytest.approx(-0.7, abs=0.15)
     until(lambda: desk.number("distance") == pytest.approx(from_box(centre), rel=1e-8))
     assert desk.shown("b").startswith("edge")
@@ -111,3 +128,38 @@ def test_a_dragged_ball_s_distance_is_that_of_the_closed_form(
     assert desk.foreign(page.address) == []
     assert desk.failed == []
     assert desk.errors == []
+
+
+def test_a_run_is_played_saved_and_opened_from_its_file(
+    chromium: Any, tab: Callable[..., Any], tmp_path: Path
+) -> None:
+    from standoff.view.page import Page
+
+    with Page(load_scene(EXAMPLES / "twist.toml")) as page:
+        desk = opened(page, tab(760, 420))
+        begin = desk.shown("distance")
+        desk.page.get_by_role("button", name="Play").click()
+        until(lambda: desk.shown("distance") != begin)
+        player = page.stage.player
+        until(lambda: player.time > 0.3)
+        desk.page.get_by_role("button", name="Pause").click()
+        until(lambda: not player.playing)
+        shown = player.recording.distance[player.frame]
+        until(lambda: desk.number("distance") == pytest.approx(shown, rel=1e-8))
+        with desk.page.expect_download() as saved:
+            desk.page.get_by_role("button", name="Save the run as a page").click()
+        file = tmp_path / saved.value.suggested_filename
+        saved.value.save_as(file)
+        assert desk.foreign(page.address) == []
+        assert (desk.failed, desk.errors) == ([], [])
+    assert file.name == "twist.html"
+    opened_file = tab(420, 300)
+    opened_file.page.goto(file.as_uri())
+    clock = opened_file.page.locator("input").first
+    first = clock.input_value(timeout=20_000)
+    until(lambda: clock.input_value() != first)
+    opened_file.page.wait_for_timeout(300)
+    until(lambda: colours(opened_file.shot("saved-run")) > 100)
+    assert opened_file.page.title() == "Capsule tumbling past a rounded box"
+    assert [url for url in opened_file.requests if not url.startswith(("file:", "blob:"))] == []
+    assert (opened_file.failed, opened_file.errors) == ([], [])

@@ -47,7 +47,7 @@ def open_socket(page: Page, *, origin: str | None = "own", path: str | None = No
     given = urlsplit(page.address).path.rstrip("/") if path is None else path
     own = f"http://{here}" if origin == "own" else origin
     protocol = f"viser-v{viser.__version__}"
-    return connect(f"ws://{here}{given}", origin=own, subprotocols=[protocol], proxy=None)
+    return connect(f"ws://{here}{given}", origin=own, subprotocols=[protocol], close_timeout=0.1)
 
 
 def send(connection: ClientConnection, message: Any) -> None:
@@ -144,7 +144,10 @@ def test_too_many_messages_close_the_socket_and_no_other(page: Page) -> None:
 
 
 def test_more_pages_than_allowed_are_refused(page: Page) -> None:
-    time.sleep(0.2)  # those of other tests are closing
+    end = time.monotonic() + 10.0
+    while page.server._websock_server._live_connections:  # those of other tests are closing
+        assert time.monotonic() < end
+        time.sleep(0.05)
     opened = [open_socket(page) for _ in range(MAX_PAGES)]
     try:
         for each in opened:

@@ -265,6 +265,8 @@ class ViewCommand:
     """Name or address to serve the page at; 127.0.0.1, this machine alone, if not given."""
     port: Annotated[int | None, arg(metavar="PORT", help_behavior_hint="")] = None
     """Port to serve the page at; any that is free, if not given."""
+    gallery: Annotated[Path | None, arg(metavar="FOLDER", help_behavior_hint="")] = None
+    """Folder whose scenes the page can open too; that of SCENE, if not given."""
     open: Annotated[bool, arg(help_behavior_hint="")] = False
     """Open the page in the usual browser."""
 

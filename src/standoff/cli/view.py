@@ -8,6 +8,7 @@ from standoff.cli.arguments import ViewCommand
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.errors import StandoffError
 from standoff.scene import SceneError, load_scene
+from standoff.view.gallery import scenes_in
 
 
 def run_view(command: ViewCommand) -> int:
@@ -31,7 +32,8 @@ def run_view(command: ViewCommand) -> int:
         except SceneError as error:
             raise CommandError(f"--pair: {error.problem}") from error
     try:
-        page = Page(scene, host=command.host, port=command.port)
+        others = scenes_in(command.gallery or scene.file.parent)
+        page = Page(scene, host=command.host, port=command.port, others=others)
     except StandoffError as error:
         raise CommandError(str(error)) from error
     with page:

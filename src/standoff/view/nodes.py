@@ -35,6 +35,9 @@ POINT_SIZE = 0.012
 WITNESS_RADIUS = 0.006
 """Of the balls at the witness points, over the scene's size."""
 
+DOT_RADIUS, DOTS = 0.003, 15
+"""Radius of the dots between them, over the scene's size, and their number."""
+
 ARROW = 0.2
 """Length of the drawn normal over the scene's size."""
 
@@ -144,19 +147,21 @@ class AnswerNodes:
     """
 
     def __init__(self, scene: Any, size: float) -> None:
-        self._size = size
         scene.add_frame("/answer", show_axes=False)
-        nothing = np.zeros((1, 2, 3), dtype=np.float32)
+        # Straight up; turned to where it belongs.
+        upright = np.array([[[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]]], dtype=np.float32)
         self._points = [
             scene.add_icosphere(f"/answer/point_{which}", WITNESS_RADIUS * size, WITNESS_COLOUR)
             for which in "ab"
         ]
-        self._line = scene.add_line_segments(
-            "/answer/line", nothing, WITNESS_COLOUR, thickness=3.0, thickness_units="screen"
-        )
+        # Dots, as viser moves nodes at once, while a line that grows comes some pictures later.
+        self._line = [
+            scene.add_icosphere(f"/answer/dot_{k}", DOT_RADIUS * size, WITNESS_COLOUR)
+            for k in range(DOTS)
+        ]
         self._normal = scene.add_arrows(
             "/answer/normal",
-            nothing,
+            ARROW * size * upright,
             BOUND_COLOUR,
             shaft_radius=0.015 * ARROW * size,
             head_radius=0.05 * ARROW * size,
@@ -177,17 +182,26 @@ class AnswerNodes:
             Stands beside the witness line.
         """
         known = bool(np.isfinite([*points, normal]).all())
-        for node in (*self._points, self._line, self._normal):
+        for node in (*self._points, *self._line, self._normal):
             node.visible = known
         self._label.text = text
         if not known:
             return
         for node, point in zip(self._points, points, strict=True):
             node.position = tuple(point)
-        self._line.points = np.array([points], dtype=np.float32)
-        tip = points[0] + ARROW * self._size * normal
-        self._normal.points = np.array([[points[0], tip]], dtype=np.float32)
+        self._normal.position, self._normal.wxyz = tuple(points[0]), upright_to(normal)
+        for node, share in zip(self._line, np.linspace(0.0, 1.0, DOTS + 2)[1:-1], strict=True):
+            node.position = tuple((1.0 - share) * points[0] + share * points[1])
         self._label.position = tuple(0.5 * (points[0] + points[1]))
+
+
+def upright_to(direction: Array) -> tuple[float, float, float, float]:
+    """Return a rotation, scalar first, that takes the z axis to a unit vector (3,)."""
+    x, y, z = direction.tolist()
+    if z <= -1.0 + np.finfo(float).eps:
+        return 0.0, 1.0, 0.0, 0.0
+    w = np.sqrt(0.5 * (1.0 + z))
+    return float(w), float(-0.5 * y / w), float(0.5 * x / w), 0.0
 
 
 def answer_text(distance: float, lower_bound: float, status: Status, unit: str) -> str:

@@ -6,12 +6,17 @@ from html import escape
 
 import numpy as np
 
-from standoff.tracking import Proximity
+from standoff.view.shown import Shown
 
 DIGITS = 9
 """Decimal digits that the panel shows."""
 
-ROW = '<tr><td style="opacity:.65;padding-right:.8em">{}</td><td data-of="{}">{}</td></tr>'
+COLOURS = ("#0072B2", "#009E73")
+"""Of distance and lower bound in the plot."""
+
+MARK = '<span style="color:{}">■</span> '
+NAME = "opacity:.65;padding-right:.8em;white-space:nowrap"
+ROW = f'<tr><td style="{NAME}">{{}}</td><td data-of="{{}}">{{}}</td></tr>'
 TABLE = (
     '<table style="font-size:.875em;margin:.3em .9em;font-variant-numeric:tabular-nums">{}</table>'
 )
@@ -22,12 +27,12 @@ def length(value: float, unit: str) -> str:
     return f"{value:.{DIGITS}g} {unit}".rstrip() if np.isfinite(value) else "not known"
 
 
-def readout(answer: Proximity, names: tuple[str, str], unit: str) -> str:
+def readout(answer: Shown, names: tuple[str, str], unit: str) -> str:
     """Return the table of an answer, as HTML.
 
     Parameters
     ----------
-    answer : Proximity
+    answer : Shown
     names : (str, str)
         Of A and B.
     unit : str
@@ -37,20 +42,21 @@ def readout(answer: Proximity, names: tuple[str, str], unit: str) -> str:
     -------
     str
     """
-    normal = ", ".join(f"{value:+.4f}" for value in answer.normal)
+    normal = ", ".join(f"{value:+.3f}" for value in answer.normal)
     rows = [
         ("distance", length(answer.distance, unit)),
         ("lower bound", length(answer.lower_bound, unit)),
         ("gap", f"{answer.distance - answer.lower_bound:.2e} {unit}".rstrip()),
         ("status", answer.status.name.lower().replace("_", " ")),
-        (names[0], str(answer.feature_a)),
-        (names[1], str(answer.feature_b)),
+        (names[0], str(answer.features[0])),
+        (names[1], str(answer.features[1])),
         ("normal", normal),
     ]
     keys = ("distance", "bound", "gap", "status", "a", "b", "normal")
+    marks = (*(MARK.format(colour) for colour in COLOURS), *[""] * 5)
     return TABLE.format(
         "".join(
-            ROW.format(escape(name), key, escape(text))
-            for key, (name, text) in zip(keys, rows, strict=True)
+            ROW.format(mark + escape(name), key, escape(text))
+            for key, mark, (name, text) in zip(keys, marks, rows, strict=True)
         )
     )

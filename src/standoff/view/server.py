@@ -18,7 +18,7 @@ from standoff.view.tolerances import MAX_MESSAGE, MAX_PAGES
 
 try:
     import msgspec
-    import viser
+    import viser as viser
     import websockets
     import websockets.asyncio.server
     from viser import infra
@@ -127,7 +127,7 @@ class GuardedServer(VISERS):  # type: ignore[misc]
         self.guarded = True
         pages = options.pop("process_request")
         connection = type("Connection", (_Connection,), {"guard": self})
-        options |= {"max_size": MAX_MESSAGE, "server_header": None}
+        options |= {"max_size": MAX_MESSAGE, "server_header": None, "close_timeout": 1.0}
         return websockets.asyncio.server.serve(
             self._bounded(handler),
             host,
@@ -228,7 +228,7 @@ def guarded_server(access: Access, port: int | None = None) -> viser.ViserServer
     """
     check_free(access.host, port or 0)
     kind = type("GuardedServer", (GuardedServer,), {"access": access})
-    with _made_by(kind):
+    with made_by(kind):
         server = viser.ViserServer(host=access.host, port=port or 0, verbose=False)
     if not isinstance(server._websock_server, GuardedServer):
         stop(server)
@@ -267,7 +267,7 @@ def stop(server: viser.ViserServer) -> None:
 
 
 @contextlib.contextmanager
-def _made_by(kind: type) -> Iterator[None]:
+def made_by(kind: type) -> Iterator[None]:
     """While viser makes a server: of this kind, and without a word on an address without token."""
     with _making, contextlib.redirect_stdout(io.StringIO()):
         infra.WebsockServer = kind

@@ -1,0 +1,229 @@
+"""The page's panel: numbers, plot, and what a user can ask for."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from html import escape
+from typing import Any, Protocol
+
+import numpy as np
+
+from standoff.view.laws import INTEGRATORS, NAMES
+from standoff.view.player import SPEEDS, Player
+from standoff.view.readout import COLOURS, readout
+from standoff.view.shown import Shown
+
+SPAN = 10.0
+"""Time that the plot shows [s]."""
+
+MOST_POINTS = 240
+"""Points of a curve in the plot: more are not told apart at its width."""
+
+LOGGED = 12
+"""Newest switches that the log shows."""
+
+PLOT_EVERY = 5
+"""Looks between two plots: ten a second, as all of it is sent anew."""
+
+HANDS = ("A", "B", "nothing")
+
+ROW = "<tr><td>{:.3f} s</td><td>{}</td><td>{} → {}</td></tr>"
+LOG = '<table style="font-size:.8em;margin:.3em .9em;border-spacing:.6em 0">{}</table>'
+NONE_YET = '<div style="font-size:.8em;margin:.5em .9em;opacity:.65">no switch yet</div>'
+
+
+class Asks(Protocol):
+    """What a user of the page can ask for; each is done between two looks of the page's thread."""
+
+    def play(self, playing: bool) -> None: ...
+    def seek(self, time: float) -> None: ...
+    def speed(self, factor: float) -> None: ...
+    def hand(self, which: str) -> None: ...
+    def law(self, name: str, integrator: str, share: float) -> None: ...
+    def open(self, title: str) -> None: ...
+    def export(self, client: Any) -> None: ...
+
+
+class Panel:
+    """All elements of the panel, for the life of a page.
+
+    Parameters
+    ----------
+    server : viser.ViserServer
+    later : callable
+        Takes what is to be done in the page's thread.
+    asks : Asks
+    titles : sequence of str
+        Of the scenes that can be opened.
+    """
+
+    def __init__(
+        self,
+        server: Any,
+        later: Callable[[Callable[[], None]], None],
+        asks: Asks,
+        titles: Sequence[str],
+    ) -> None:
+        self._gui, self._later, self._asks = server.gui, later, asks
+        self._trace: deque[tuple[float, float, float]] = deque(maxlen=4 * MOST_POINTS)
+        self._log: deque[str] = deque(maxlen=LOGGED)
+        self._looks = 0
+        gui = server.gui
+        gui.configure_theme(show_logo=False, show_share_button=False)
+        self._readout = gui.add_html("")
+        self._plot = self._make_plot()
+        tabs = gui.add_tab_group()
+        with tabs.add_tab("Move"):
+            self._make_motion()
+        with tabs.add_tab("Law"):
+            self._make_law()
+        with tabs.add_tab("Switches"):
+            self._switches = gui.add_html(NONE_YET)
+        with tabs.add_tab("Scenes"):
+            self._make_scenes(titles)
+
+    def _make_plot(self) -> Any:
+        empty = np.array([0.0, 1.0])
+        label = {"stroke": "gray", "grid": {"stroke": "rgba(128,128,128,.2)"}}
+        return self._gui.add_uplot(
+            (empty, empty * 0.0, empty * 0.0),
+            (
+                {"label": "s"},
+                {"label": "distance", "stroke": COLOURS[0], "width": 2},
+                {"label": "lower bound", "stroke": COLOURS[1], "width": 1, "dash": (4, 4)},
+            ),
+            scales={"x": {"time": False, "auto": True}},
+            axes=({**label, "size": 30}, {**label, "size": 56}),
+            legend={"show": False},
+            height=140,
+        )
+
+    def _make_motion(self) -> None:
+        gui = self._gui
+        self._play = gui.add_button("Play")
+        self._time = gui.add_slider("time, s", 0.0, 1.0, 0.001, 0.0)
+        self._speed = gui.add_dropdown("speed", tuple(SPEEDS), initial_value="×1")
+        self._hand = gui.add_dropdown("drag", HANDS, initial_value="A")
+        self._export = gui.add_button("Save the run as a page")
+        self._playing = False
+
+        @self._play.on_click
+        async def _(_: Any) -> None:
+            playing = not self._playing
+            self._later(lambda: self._asks.play(playing))
+
+        @self._time.on_update
+        async def _(event: Any) -> None:
+            if event.client is not None:
+                time = float(event.target.value)
+                self._later(lambda: self._asks.seek(time))
+
+        @self._speed.on_update
+        async def _(event: Any) -> None:
+            factor = SPEEDS.get(event.target.value, 1.0)
+            self._later(lambda: self._asks.speed(factor))
+
+        @self._hand.on_update
+        async def _(event: Any) -> None:
+            which = str(event.target.value)
+            if event.client is not None:
+                self._later(lambda: self._asks.hand(which))
+
+        @self._export.on_click
+        async def _(event: Any) -> None:
+            client = event.client
+            self._later(lambda: self._asks.export(client))
+
+    def _make_law(self) -> None:
+        gui = self._gui
+        self._law = gui.add_dropdown("law", NAMES, initial_value=NAMES[0])
+        self._integrator = gui.add_dropdown("integrator", INTEGRATORS, initial_value="heun")
+        self._share = gui.add_slider("gain / greatest", 0.01, 0.99, 0.01, 0.5)
+        self._told_law = gui.add_html("")
+        for element in (self._law, self._integrator, self._share):
+
+            @element.on_update
+            async def _(event: Any) -> None:
+                if event.client is None:
+                    return
+                wanted = (
+                    str(self._law.value),
+                    str(self._integrator.value),
+                    float(self._share.value),
+                )
+                self._later(lambda: self._asks.law(*wanted))
+
+    def _make_scenes(self, titles: Sequence[str]) -> None:
+        chosen = self._gui.add_dropdown("scene", tuple(titles), initial_value=titles[0])
+        self._scenes = chosen
+        button = self._gui.add_button("Open")
+
+        @button.on_click
+        async def _(_: Any) -> None:
+            title = str(chosen.value)
+            self._later(lambda: self._asks.open(title))
+
+    def begin(self, title: str, player: Player | None, which: str) -> None:
+        """Set the panel up for a scene."""
+        self._gui.set_panel_label(title)
+        for element in (self._play, self._time, self._speed, self._export):
+            element.visible = player is not None
+        if player is not None:
+            self._time.min, self._time.max = player.first, player.last
+            self._time.step = (player.last - player.first) / 1000.0
+            self._time.value = player.time
+        self._hand.value = which
+        self.forget()
+
+    def law_is(self, name: str, integrator: str, share: float, gain: float | None) -> None:
+        """Tell the law that is followed; `gain` [1/s] of the paper's."""
+        self._law.value, self._integrator.value, self._share.value = name, integrator, share
+        self._integrator.visible = self._share.visible = gain is not None
+        text = "" if gain is None else f"K = {gain:.4g} / s"
+        self._told_law.content = (
+            f'<div style="font-size:.8em;margin:.3em .9em" data-of="gain">{text}</div>'
+        )
+
+    def forget(self) -> None:
+        """Empty plot and log."""
+        self._trace.clear()
+        self._log.clear()
+        self._switches.content = NONE_YET
+        self._looks = 0
+
+    def switched(self, time: float, body: str, source: object, target: object) -> None:
+        """Note a switch of a body's feature."""
+        row = ROW.format(time, escape(body), escape(str(source)), escape(str(target)))
+        self._log.appendleft(row)
+        self._switches.content = LOG.format("".join(self._log))
+
+    def show(self, shown: Shown, names: tuple[str, str], unit: str) -> None:
+        """Show the numbers of an instant."""
+        self._readout.content = readout(shown, names, unit)
+
+    def plays(self, player: Player) -> None:
+        """Show where a recording stands, and its frames up to there."""
+        if self._playing != player.playing:
+            self._playing = player.playing
+            self._play.label = "Pause" if player.playing else "Play"
+        self._time.value = round(player.time, 4)
+        if self._due():
+            rows, run = player.behind(SPAN, MOST_POINTS), player.recording
+            self._draw(run.time[rows], run.distance[rows], run.lower_bound[rows])
+
+    def traces(self, time: float, shown: Shown) -> None:
+        """Add an instant of a body that is moved by hand to the plot."""
+        self._trace.append((time, shown.distance, shown.lower_bound))
+        if self._due():
+            rows = np.array([row for row in self._trace if row[0] >= time - SPAN])
+            self._draw(*rows[:: -(-len(rows) // MOST_POINTS)].T)
+
+    def _due(self) -> bool:
+        self._looks += 1
+        return self._looks % PLOT_EVERY == 1
+
+    def _draw(self, time: Any, distance: Any, bound: Any) -> None:
+        known = np.isfinite(distance) & np.isfinite(bound)
+        if known.sum() > 1:
+            self._plot.data = (time[known], distance[known], bound[known])

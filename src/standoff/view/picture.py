@@ -1,0 +1,137 @@
+"""Both bodies with their answer in viser's scene, seen from a camera that is aimed at them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from standoff.bodies.body import Body
+from standoff.motion import Pose
+from standoff.view.nodes import AnswerNodes, BodyNodes, answer_text, quaternion
+from standoff.view.shapes import Shape, shape_of
+from standoff.view.shown import Shown
+
+GRIP = 0.5
+"""Size of the handle that drags a body, over the body's own."""
+
+AWAY = 2.5
+"""Distance of a new page's camera, over half the width of what it should see."""
+
+FIELD = 0.8
+"""Angle that the camera sees from below to above, radians: bodies look little distorted."""
+
+
+NARROW = 0.7
+"""Width over height of a window, below which viser's panel lies over its lower half."""
+
+LOWER = 0.28
+"""How much lower the camera looks then, over the height that it sees."""
+
+
+class Picture:
+    """What a server shows of a pair; all else in its scene is taken away.
+
+    Parameters
+    ----------
+    server : viser.ViserServer
+    bodies : (Body, Body)
+    unit : str
+        Label of lengths.
+    handles : bool
+        Whether bodies have handles to drag them by.
+
+    Attributes
+    ----------
+    handles : list
+        Viser's, of A and B; empty where there are none.
+    planar : bool
+    """
+
+    def __init__(
+        self, server: Any, bodies: tuple[Body, Body], unit: str, *, handles: bool = True
+    ) -> None:
+        self._server, self._unit = server, unit
+        scene = server.scene
+        scene.reset()
+        scene.configure_default_lights(cast_shadow=False)
+        self.planar = any(body.dimension == 2 for body in bodies)
+        self.shapes: tuple[Shape, Shape] = shape_of(bodies[0]), shape_of(bodies[1])
+        self._bodies = [
+            BodyNodes(scene, f"/{which}", shape, number)
+            for number, (which, shape) in enumerate(zip("AB", self.shapes, strict=True))
+        ]
+        self._answer = AnswerNodes(scene, max(shape.size for shape in self.shapes))
+        self.handles = [self._handle(number) for number in (0, 1)] if handles else []
+
+    def _handle(self, number: int) -> Any:
+        return self._server.scene.add_transform_controls(
+            f"/handle_{'AB'[number]}",
+            scale=GRIP * self.shapes[number].size,
+            active_axes=(True, True, not self.planar),
+            depth_test=False,
+            opacity=0.6,
+            visible=False,
+        )
+
+    def aim(self, poses: tuple[Pose, Pose]) -> None:
+        """Point the camera of each new page at bodies at these poses."""
+        middles = [pose.apply(shape.middle) for pose, shape in zip(poses, self.shapes, strict=True)]
+        middle = 0.5 * (middles[0] + middles[1])
+        reach = 0.5 * float(np.linalg.norm(middles[1] - middles[0]))
+        reach += 0.6 * max(shape.size for shape in self.shapes)
+        # A plane is seen from above, its y upwards.
+        self._server.scene.set_up_direction("+y" if self.planar else "+z")
+        towards = np.array([0.0, 0.0, 1.0] if self.planar else [0.6, -1.0, 0.6])
+        camera = self._server.initial_camera
+        camera.fov = FIELD
+        camera.near, camera.far = 1e-2 * reach, 1e2 * reach
+        camera.position = middle + AWAY * reach * towards / np.linalg.norm(towards)
+        camera.look_at = middle
+        for client in self._server.get_clients().values():
+            self.aim_one(client)
+
+    def aim_one(self, client: Any) -> None:
+        """Put one page's camera where new ones begin."""
+        step_back(client.camera, self._server.initial_camera)
+
+    def show(self, shown: Shown, note: str = "", *, held: int | None = None) -> None:
+        """Draw what is shown at an instant.
+
+        Parameters
+        ----------
+        shown : Shown
+        note : str
+            Stands before the distance.
+        held : int, optional
+            Number of the handle that is in a user's hand: it is left there.
+        """
+        sides = zip(self._bodies, shown.poses, shown.features, (1.0, -1.0), strict=True)
+        for nodes, pose, feature, sign in sides:
+            nodes.place(pose)
+            nodes.highlight(feature, sign * (pose.rotation.T @ shown.normal))
+        for number, handle in enumerate(self.handles):
+            if number != held:
+                pose = shown.poses[number]
+                handle.wxyz, handle.position = quaternion(pose), tuple(pose.translation)
+        text = answer_text(shown.distance, shown.lower_bound, shown.status, self._unit)
+        self._answer.show(shown.points, shown.normal, f"{note}{text}")
+
+
+def step_back(camera: Any, usual: Any) -> None:
+    """Put a page's camera where new ones begin.
+
+    Where the window is narrow, as on a phone, it stands farther off, and looks lower: the panel
+    covers the lower half there.
+    """
+    camera.near, camera.far, camera.fov = usual.near, usual.far, usual.fov
+    towards = (usual.position - usual.look_at) / min(1.0, camera.aspect)
+    target = usual.look_at
+    if camera.aspect < NARROW:
+        distance = float(np.linalg.norm(towards))
+        ahead = -towards / distance
+        up = camera.up_direction - (camera.up_direction @ ahead) * ahead
+        height = 2.0 * distance * np.tan(0.5 * usual.fov)
+        target = target - LOWER * height * up / max(float(np.linalg.norm(up)), 0.1)
+    camera.position = target + towards
+    camera.look_at = target  # setting a position carries it along

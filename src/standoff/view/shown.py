@@ -1,0 +1,74 @@
+"""What is shown at one instant, of a live answer or of a frame of a recording."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.features import Feature
+from standoff.motion import Pose
+from standoff.recording import Recording
+from standoff.tracking import Proximity, Status
+
+Array = NDArray[np.float64]
+
+
+class Shown(NamedTuple):
+    """Where both bodies are and what is known of their distance there.
+
+    Attributes
+    ----------
+    poses : (Pose, Pose)
+    points : two (3,) arrays
+        Witness points, world axes.
+    normal : (3,) array
+    distance, lower_bound : float
+    features : (Feature, Feature)
+    status : Status
+    """
+
+    poses: tuple[Pose, Pose]
+    points: tuple[Array, Array]
+    normal: Array
+    distance: float
+    lower_bound: float
+    features: tuple[Feature, Feature]
+    status: Status
+
+
+def of_answer(answer: Proximity, poses: tuple[Pose, Pose]) -> Shown:
+    """Return what is shown of an answer.
+
+    Parameters
+    ----------
+    answer : Proximity
+    poses : (Pose, Pose)
+        That it was asked for.
+    """
+    return Shown(
+        poses,
+        (answer.point_a, answer.point_b),
+        answer.normal,
+        answer.distance,
+        answer.lower_bound,
+        (answer.feature_a, answer.feature_b),
+        answer.status,
+    )
+
+
+def of_frame(recording: Recording, frame: int) -> Shown:
+    """Return what is shown of a frame of a recording that still has its paths."""
+    assert recording.paths is not None
+    time = float(recording.time[frame])
+    pose_a, pose_b = (Pose.of(path.pose(time)) for path in recording.paths)
+    return Shown(
+        (pose_a, pose_b),
+        (recording.point_a[frame], recording.point_b[frame]),
+        recording.normal[frame],
+        float(recording.distance[frame]),
+        float(recording.lower_bound[frame]),
+        (recording.feature_a[frame], recording.feature_b[frame]),
+        recording.status[frame],
+    )

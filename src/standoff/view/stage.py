@@ -1,0 +1,218 @@
+"""One scene on the page: its recording and its live pair, and which of the two is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from standoff.errors import StandoffError
+from standoff.motion import Fixed, Pose
+from standoff.scene import Scene
+from standoff.scene.run import record
+from standoff.tracking import PaperLaw
+from standoff.view import laws
+from standoff.view.live_pair import LivePair
+from standoff.view.panel import Panel
+from standoff.view.picture import Picture
+from standoff.view.player import Player
+from standoff.view.shown import Shown, of_answer, of_frame
+
+
+class Stage:
+    """A scene as a page shows it.
+
+    Parameters
+    ----------
+    server : viser.ViserServer
+    panel : Panel
+    later : callable
+        Takes what is to be done in the page's thread.
+    scene : Scene
+
+    Attributes
+    ----------
+    pair : LivePair
+        What is dragged.
+    player : Player or None
+        What is played; None where nothing moves by itself.
+    picture : Picture
+
+    Raises
+    ------
+    StandoffError
+        What tracking the scene raises; nothing on the page is changed then.
+    """
+
+    def __init__(
+        self,
+        server: Any,
+        panel: Panel,
+        later: Callable[[Callable[[], None]], None],
+        scene: Scene,
+    ) -> None:
+        self.scene, self.panel, self._server = scene, panel, server
+        self._settings = scene.settings
+        self._dt = laws.frame_time(scene)
+        start = scene.instant()
+        poses = [Pose.of(motion.path.pose(start)) for motion in scene.pair_motions]
+        self.pair = LivePair(*scene.pair_bodies, (poses[0], poses[1]), scene.settings.law, self._dt)
+        self.player = Player(record(scene)) if laws.moves(scene) else None
+        self._wanted = self.pair.poses
+        self._by_hand = self.player is None
+        self._clock = 0.0
+        self._held: int | None = None
+        # All that may be refused has been asked: now the page changes.
+        self.picture = Picture(server, self.pair.bodies, scene.length_unit)
+        for number, handle in enumerate(self.picture.handles):
+            self._listen(number, handle, later)
+        self.picture.aim(self.pair.poses)
+        which = "AB"[moving_body(scene)]
+        panel.begin(scene.title, self.player, which)
+        self._tell_law()
+        self.hand(which)
+        self._show(of_answer(self.pair.answer, self.pair.poses))
+
+    def _listen(
+        self, number: int, handle: Any, later: Callable[[Callable[[], None]], None]
+    ) -> None:
+        @handle.on_update
+        async def _(event: Any) -> None:
+            held, phase = event.target, event.phase
+            wxyz, position = np.array(held.wxyz), np.array(held.position)
+            later(lambda: self._drag(number, wxyz, position, held=phase != "end"))
+
+    def play(self, playing: bool) -> None:
+        """Play the motion, or pause."""
+        if self.player is not None:
+            self.player.playing = playing
+            self._play_on()
+            self.panel.plays(self.player)
+
+    def seek(self, time: float) -> None:
+        """Show the motion at a time [s]."""
+        if self.player is not None:
+            self.player.seek(time)
+            self._play_on()
+            self._show_frame(self.player)
+
+    def speed(self, factor: float) -> None:
+        """Play so many times as fast as the motion is."""
+        if self.player is not None:
+            self.player.speed = factor
+
+    def hand(self, which: str) -> None:
+        """Give the handle to A, to B or to nothing."""
+        for name, handle in zip("AB", self.picture.handles, strict=True):
+            handle.visible = name == which
+
+    def law(self, name: str, integrator: str, share: float) -> None:
+        """Follow another law, with a share of the greatest stable gain.
+
+        Raises
+        ------
+        StandoffError
+            If the pair cannot be tracked by it; all is as it was then.
+        """
+        try:
+            settings = laws.with_law(self._settings, name, integrator, share, self._dt)
+            recording = None if self.player is None else record(self.scene, settings)
+            self.pair.follow(settings.law)
+        except StandoffError:
+            self._tell_law()
+            raise
+        self._settings = settings
+        if self.player is not None and recording is not None:
+            self.player.recording = recording
+        self._tell_law()
+        self.panel.forget()
+
+    def look(self, elapsed: float) -> None:
+        """Let a time pass [s], and show what has changed."""
+        if self._by_hand:
+            self._follow(elapsed)
+        elif self.player is not None and self.player.playing:
+            before = self.player.frame
+            self.player.advance(elapsed)
+            self._note_switches(self.player, before)
+            self._show_frame(self.player)
+
+    def _follow(self, elapsed: float) -> None:
+        """Move the dragged body on; a law that has not settled goes on settling."""
+        self._clock += elapsed
+        settled = self.pair.answer.certified or self.pair.answer.status.penetrating
+        if self._wanted is self.pair.poses and settled:
+            return
+        try:
+            events = self.pair.move(self._wanted, elapsed)
+        except StandoffError:
+            self._wanted = self.pair.poses
+            raise
+        for event in events:
+            self.panel.switched(self._clock, self._name(event.body), event.source, event.target)
+        shown = of_answer(self.pair.answer, self.pair.poses)
+        self._show(shown)
+        self.panel.traces(self._clock, shown)
+
+    def _drag(self, number: int, wxyz: Any, position: Any, *, held: bool = False) -> None:
+        self._held = number if held else None
+        if not self._by_hand:
+            self._take_in_hand()
+        poses = list(self._wanted)
+        poses[number] = placed(wxyz, position, self.picture.planar)
+        self._wanted = poses[0], poses[1]
+
+    def _take_in_hand(self) -> None:
+        """Go from the motion to the hand, where the motion stands."""
+        if self.player is not None:
+            self.player.playing = False
+            self.panel.plays(self.player)
+            self.pair.restart(of_frame(self.player.recording, self.player.frame).poses)
+            self._wanted = self.pair.poses
+        self.panel.forget()
+        self._by_hand, self._clock = True, 0.0
+
+    def _play_on(self) -> None:
+        """Go from the hand to the motion."""
+        if self._by_hand:
+            self._by_hand = False
+            self.panel.forget()
+
+    def _note_switches(self, player: Player, before: int) -> None:
+        for event in player.recording.events:
+            if before < event.frame <= player.frame:
+                name = self._name(event.body)
+                self.panel.switched(event.time, name, event.source, event.target)
+
+    def _name(self, body: str) -> str:
+        return self.scene.pair["AB".index(body)]
+
+    def _show_frame(self, player: Player) -> None:
+        self._show(of_frame(player.recording, player.frame))
+        self.panel.plays(player)
+
+    def _show(self, shown: Shown) -> None:
+        with self._server.atomic():
+            self.picture.show(shown, held=self._held)
+            self.panel.show(shown, self.scene.pair, self.scene.length_unit)
+
+    def _tell_law(self) -> None:
+        resolved = self.pair.tracker.resolved_law
+        gain = resolved.gain if isinstance(resolved, PaperLaw) else None
+        self.panel.law_is(*laws.chosen(self._settings, self._dt), gain)
+
+
+def moving_body(scene: Scene) -> int:
+    """Return the number of the body that a scene moves: 1 where it moves B alone."""
+    still = [isinstance(motion.path, Fixed) for motion in scene.pair_motions]
+    return 1 if still[0] and not still[1] else 0
+
+
+def placed(wxyz: Any, position: Any, planar: bool) -> Pose:
+    """Return the pose of a handle; of a planar pair its part in the plane."""
+    pose = Pose.from_wxyz(np.asarray(wxyz) / np.linalg.norm(wxyz), position)
+    if not planar:
+        return pose
+    turn = np.arctan2(pose.rotation[1, 0], pose.rotation[0, 0])
+    return Pose.exp([0.0, 0.0, turn], [pose.translation[0], pose.translation[1], 0.0])
