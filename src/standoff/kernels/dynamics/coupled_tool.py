@@ -33,12 +33,15 @@ def tool_motion(system, rows, first):
 
 
 @kernel
-def pull_tool(system, state, readings, tick, h, scratch):
-    """The coupler's part of a tick: its wrenches, by a reading if one is due."""
+def pull_tool(system, state, readings, tick, h, clock, scratch):
+    """The coupler's part of a tick: its wrenches, by a reading if one is due.
+
+    `clock` is the time on the clock of the readings, nan where the coupler's own serves.
+    """
     every = system.layout[I_READING]
     rows = readings.shape[0] // N_READING
     row = N_READING * min(tick // every, rows - 1)
-    moment = Moment(h, float("nan"), tick % every == 0, every * h)
+    moment = Moment(h, clock, tick % every == 0, every * h)
     put_motion(tool_motion(system, state, body_row(0)), scratch.motion, 0)
     own = pointer(state, coupler_row(system))
     couple(system.coupler, own, pointer(readings, row), pointer(scratch.motion, 0), moment)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from standoff.kernels.compiler import cache
 from standoff.kernels.compiler.entry import Entry
-from standoff.kernels.entries import blocks, queries, simulation, tracker
+from standoff.kernels.entries import blocks, queries, servo, simulation, tracker
 
 MODULES = (
     "standoff.kernels.entries.queries",
@@ -18,6 +18,7 @@ MODULES = (
     "standoff.kernels.entries.derivatives",
     "standoff.kernels.entries.smooth",
     "standoff.kernels.entries.simulation",
+    "standoff.kernels.entries.servo",
     "standoff.kernels.pair.normals_system",
 )
 """Where entries stand."""
@@ -75,6 +76,14 @@ def prepare_simulation() -> None:
         simulation.run_system.prepare()
     for name in SCIPY:
         importlib.import_module(name)
+
+
+def prepare_servo() -> None:
+    """Have ready what a servo loop runs by, and what the slower side calls meanwhile."""
+    prepare_simulation()
+    for each in (servo.serve, servo.put_row, servo.take_row):
+        if isinstance(each, Entry):
+            each.prepare()
 
 
 def every_entry() -> Iterator[Entry]:

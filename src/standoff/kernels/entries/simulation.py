@@ -93,6 +93,16 @@ def pointed(arrays):
 
 
 @kernel
+def keep_alive(arrays, counts, log):
+    """Named after the last use of what points into them: Numba frees an array after its own last
+    use, which a pointer is not."""
+    total = len(counts) + len(log)
+    for k in range(8):
+        total += len(arrays[k])
+    return total
+
+
+@kernel
 def track_pair(system, pair, state, h, work, scratch):
     """The tracker's frame of a pair at the end of a tick; FINE, or what it refuses."""
     o = pair_row(system, pair)
@@ -140,11 +150,12 @@ def account(system, state, row, scratch):
 
 @kernel
 def tick_bodies(system, state, h, drives, tick, work, scratch):
-    """One tick of coupler, bodies and energies; `drives` are driven motions and readings."""
-    table, readings = drives
+    """One tick of coupler, bodies and energies; `drives` are driven motions, readings, and the time
+    on the clock of these (`pull_tool`)."""
+    table, readings, clock = drives
     power = 0.0
     if coupled(system):
-        pull_tool(system, state, readings, tick, h, scratch)
+        pull_tool(system, state, readings, tick, h, clock, scratch)
         power = power_of_pull(system, state)
     step_bodies(system, state, h, table, tick, work, scratch)
     if coupled(system):
@@ -189,18 +200,20 @@ def run_system(packed, state, drives, every, records):
     begun = state[S_TIME]
     states[0, :] = state
     account(system, state, accounts[0], scratch)
+    table, readings = drives
     for tick in range(every * (states.shape[0] - 1)):
-        tick_bodies(system, state, h, drives, tick, work, scratch)
+        tick_bodies(system, state, h, (table, readings, np.nan), tick, work, scratch)
         state[S_TIME] = begun + (tick + 1) * h
         for pair in range(n_pairs(system)):
             why = track_pair(system, pair, state, h, work, scratch)
             if why != FINE:
+                keep_alive(arrays, counts, log)
                 return tick, why
         if (tick + 1) % every == 0:
             row = (tick + 1) // every
             states[row, :] = state
             account(system, state, accounts[row], scratch)
-    counts[0] = 0  # alive until here, see `pointer`
+    keep_alive(arrays, counts, log)
     return -1, FINE
 
 
@@ -246,5 +259,5 @@ def load_system(packed, state, loads, row):
     for k in range(end):
         loads[k] = scratch.loads[k]
     loads[end], loads[end + 1] = lost, given
-    counts[0] = 0  # alive until here, see `pointer`
+    keep_alive(arrays, counts, log)
     return FINE

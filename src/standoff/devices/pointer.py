@@ -1,0 +1,106 @@
+"""A pointer as a device: whoever has it, such as a page in a browser, puts where it is."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+from standoff.devices.port import Port
+from standoff.errors import DeviceError, StandoffError
+from standoff.motion import inputs
+from standoff.motion.pose import Pose, PoseLike
+from standoff.simulation.device import DeviceReading, Fault
+
+
+class PointerDevice:
+    """A handle that is put where somebody's pointer is; it feels no force.
+
+    Any thread may call it. What it is given is a value: nothing of it is kept but the last pose.
+    Positions are put as they come, at 60 Hz or so; the loop that takes them needs a `max_age` above
+    the longest pause between two, or a pointer that is put again while it rests.
+
+    Parameters
+    ----------
+    pose : Pose or what `Pose.of` reads, optional
+        Where it is before the first `put`: its turn is kept where only positions are put.
+
+    Attributes
+    ----------
+    problem : str
+        Why it gives no readings any more.
+
+    Raises
+    ------
+    StandoffError
+        What is no pose.
+    """
+
+    def __init__(self, pose: PoseLike | None = None) -> None:
+        self._pose = Pose.identity() if pose is None else Pose.of(pose)
+        self._lock = threading.Lock()
+        self._port: Port | None = None
+        self._sequence = 0
+        self._stamp = -1.0
+        self.problem = ""
+
+    def attach(self, port: Port) -> None:
+        """Begin to give readings to a port.
+
+        Raises
+        ------
+        DeviceError
+            It gives them to another one.
+        """
+        with self._lock:
+            if self._port is not None:
+                raise DeviceError("the pointer moves another loop's handle; stop that loop first")
+            self._port, self.problem = port, ""
+
+    def detach(self) -> None:
+        """Give no readings any more."""
+        with self._lock:
+            self._port = None
+
+    def put(self, at: PoseLike, stamp: float | None = None) -> None:
+        """Tell where the pointer is.
+
+        Parameters
+        ----------
+        at : array_like, shape (3,), Pose or what `Pose.of` reads
+            A position in the world [length], with the turn that it has, or a pose.
+        stamp : float, optional
+            When it was there, on the clock of `time.monotonic()` [s]; now if not given. One that
+            is not newer than the last counts as a repetition of it, and is dropped.
+
+        Raises
+        ------
+        StandoffError
+            What is no position and no pose, or is not finite. The handle stays where it was, and
+            its reading grows old.
+        """
+        pose = self._read(at)
+        when = time.monotonic() if stamp is None else inputs.number(stamp, "stamp")
+        with self._lock:
+            if when <= self._stamp:
+                return
+            self._pose, self._stamp = pose, when
+            self._sequence += 1
+            if self._port is not None:
+                self._port.put(DeviceReading(when, self._sequence, pose))
+
+    def lost(self) -> None:
+        """Tell that whoever has the pointer is gone: no force until the loop is engaged again."""
+        with self._lock:
+            self.problem = "whoever had the pointer is gone; connect again, then engage again"
+            if self._port is not None:
+                self._port.fail(Fault.MISSING)
+
+    def _read(self, at: PoseLike) -> Pose:
+        try:
+            position = inputs.array(at, "at", (3,))
+        except StandoffError:
+            return Pose.of(at)
+        return Pose.from_checked(self._pose.rotation, position)
+
+    def __repr__(self) -> str:
+        return f"<PointerDevice, {self._sequence} readings>"

@@ -1,0 +1,28 @@
+"""Limits on what a device may say and how long it may take: each with its unit and its reason."""
+
+from typing import Final
+
+FARTHEST_CURSOR: Final = 1.0
+"""Length [m], from a device's origin: an Inverse3 reaches a fifth of a metre, and what says more is
+broken."""
+
+FASTEST_CURSOR: Final = 20.0
+"""Length a second [m/s]: a thrown ball leaves a hand faster, a handle that is held does not move at
+half of it; a cursor that jumps farther in the time between two frames is broken."""
+
+JUMP_ALLOWED: Final = 5e-3
+"""Length [m] by which a cursor may move between two frames however soon they follow each other:
+the service samples by its own clock."""
+
+LONGEST_FRAME: Final = 65_536
+"""So many bytes of one message: an inventory of several devices has five thousand."""
+
+CONNECTED_WITHIN: Final = 3.0
+"""Seconds, a time to wait, times over what a service on the same machine takes to answer."""
+
+SHORTEST_PERIOD: Final = 1e-4
+"""Seconds, parts of one: the shortest period of a device, that of the fastest servo."""
+
+PERIOD_ROUNDING: Final = 1e-9
+"""Relative: by this part a trace may fall short of whole periods and still has its last reading:
+the roundoff of its stamps."""

@@ -1,0 +1,100 @@
+"""The loop as its device sees it."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels.dynamics import coupler_arrays as K
+from standoff.kernels.dynamics import servo_arrays as V
+from standoff.kernels.entries import servo as entries
+from standoff.servo.exchange import Box
+from standoff.simulation.arrivals import reading_row
+from standoff.simulation.device import DeviceReading, Fault
+from standoff.simulation.wrench import Wrench
+
+Array = NDArray[np.float64]
+
+NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+TICKS_TO_SEE = 2
+"""Ticks after the one that was told last, at the end of which a reading was surely taken in: the
+next one may have begun before it came."""
+
+
+class LoopPort:
+    """The end of a servo loop that a device holds; see `standoff.devices.Port`.
+
+    A reading at fault stays the newest until the loop has taken it in, whatever comes after it, and
+    until then the wrench is zero here already.
+
+    Parameters
+    ----------
+    inbox, outbox : Box
+        Of the loop.
+    at : int
+        Where the coupler's state begins in a row of the outbox.
+    period : float
+        Of the loop [s].
+    max_age : float
+        Greatest age of a reading [s].
+    """
+
+    def __init__(self, inbox: Box, outbox: Box, at: int, period: float, max_age: float) -> None:
+        self._inbox, self._outbox = inbox, outbox
+        self._at = at + K.C_ON_DEVICE
+        self._told = np.zeros(self._at + 6)
+        self._lock = threading.Lock()
+        self._until: float | None = None
+        self.max_age = max_age
+        self._longest = max(max_age, TICKS_TO_SEE * period)
+
+    def put(self, reading: DeviceReading | None) -> None:
+        """Give the newest reading; None where there is none."""
+        row = reading_row(reading)
+        with self._lock:
+            if self._waits():
+                return
+            self._put(row)
+
+    def fail(self, fault: Fault) -> None:
+        """Tell that the device cannot be trusted."""
+        row = np.zeros(K.N_READING)
+        row[K.G_FAULT] = fault
+        with self._lock:
+            self._put(row)
+
+    def wrench(self) -> Wrench:
+        """Return what to hold on the handle now."""
+        with self._lock:
+            if self._waits() or self._look() == 0:
+                return Wrench.zero()
+            six = tuple(self._told[self._at : self._at + 6].tolist())
+            old = time.monotonic() - self._told[V.O_CLOCK] > self._longest
+            if old or self._told[V.O_ENDED] != V.RUNNING or not all(map(math.isfinite, six)):
+                six = NOTHING
+        return Wrench.from_checked(six)
+
+    def _put(self, row: Array) -> None:
+        if row[K.G_FAULT] != K.NO_FAULT:
+            ticks = self._told[V.O_TICK] if self._look() else 0.0
+            self._until = ticks + TICKS_TO_SEE
+        self._inbox.put(row)
+
+    def _waits(self) -> bool:
+        """Is a reading at fault still to be taken in?"""
+        if self._until is not None and self._look() and self._told[V.O_TICK] >= self._until:
+            self._until = None
+        return self._until is not None
+
+    def _look(self) -> int:
+        """Copy what the loop told last; 0 where it told nothing yet."""
+        newest, rows = self._outbox.arrays
+        number = entries.take_row(newest, rows, 0, self._told)
+        while number < 0:
+            number = entries.take_row(newest, rows, 0, self._told)
+        return int(number)

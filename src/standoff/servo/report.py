@@ -1,0 +1,96 @@
+"""How a servo loop ended, and what it kept."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels.dynamics import servo_arrays as V
+from standoff.read_only import KeepsReadOnly
+from standoff.servo.statistics import NANO, ServoStatistics
+from standoff.simulation.device import Fault
+from standoff.simulation.system_state import SystemState
+
+Array = NDArray[np.float64]
+
+
+class Ended(IntEnum):
+    """Why a servo loop ended; in any case without a force."""
+
+    STOPPED = V.STOPPED
+    DONE = V.DONE
+    BROKEN = V.BROKEN
+    JUMPED = V.JUMPED
+    STALLED = V.STALLED
+    SUSPENDED = V.SUSPENDED
+
+    @property
+    def sound(self) -> bool:
+        """Did it end as it was asked to?"""
+        return self in (Ended.STOPPED, Ended.DONE)
+
+
+_TOLD = {
+    Ended.STOPPED: "stopped as it was asked to",
+    Ended.DONE: "done: its time is over",
+    Ended.BROKEN: "a body's motion was no longer finite: take a shorter step or less stiffness",
+    Ended.JUMPED: "the clock went back by {away:.3g} s: look after the machine's clock",
+    Ended.STALLED: "nothing ran for {away:.3g} s: the clock jumped ahead, or the machine was held "
+    "up; look after its load, its power saving, and a virtual machine's host",
+    Ended.SUSPENDED: "the machine was suspended for {away:.3g} s",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class ServoReport(KeepsReadOnly):
+    """How a servo loop ended.
+
+    Attributes
+    ----------
+    ended : Ended
+    message : str
+        The same in words, with what to do.
+    rate : float
+        Ticks a second that were meant.
+    statistics : ServoStatistics
+    state : SystemState
+        At the end; its coupler is at rest.
+    fault : Fault
+        Why the coupler let go last; `Fault.NONE` where it never did.
+    notes : tuple of str
+        What the system refused: a real-time priority, locked memory.
+    problem : str
+        What the device said was wrong with it.
+    log : (n, m) array
+        The last ticks, oldest first, laid out in ``standoff.kernels.dynamics.servo_arrays``.
+    """
+
+    ended: Ended
+    message: str
+    rate: float
+    statistics: ServoStatistics
+    state: SystemState
+    fault: Fault
+    notes: tuple[str, ...]
+    problem: str
+    log: Array
+
+    def __repr__(self) -> str:
+        return f"<ServoReport {self.ended.name}, {self.statistics.ticks} ticks>"
+
+
+def told(ended: Ended, away: int) -> str:
+    """Return in words why a loop ended; `away` in nanoseconds."""
+    return _TOLD[ended].format(away=away / NANO) + "; no force is on the handle"
+
+
+def in_order(log: Array, ticks: int) -> Array:
+    """Return the rows of a log that goes round, oldest first, read-only."""
+    count = len(log)
+    rows = log[:ticks] if ticks <= count else np.roll(log, -(ticks % count), axis=0)
+    kept: Array = rows.copy()
+    kept.flags.writeable = False
+    return kept
