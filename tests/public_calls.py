@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import standoff as so
-from standoff import control, geometry, motion, simulation
+from standoff import control, devices, geometry, motion, servo, simulation
 from standoff.geometry import Line
 
 MODULES: dict[str, ModuleType] = {
@@ -26,6 +26,8 @@ MODULES: dict[str, ModuleType] = {
     "standoff.motion": motion,
     "standoff.control": control,
     "standoff.simulation": simulation,
+    "standoff.devices": devices,
+    "standoff.servo": servo,
 }
 NOT_CALLED = {
     **dict.fromkeys(("Surface", "Curve", "Body"), "abstract, or made by its static methods"),
@@ -33,6 +35,7 @@ NOT_CALLED = {
     "FrameBuffer": "made from a tracker and a state, which need compiled kernels and check nothing",
     "Answers": "made by trackers",
     "Distances": "made by distances",
+    "ServoReport": "made by servos",
     "TrackerState": "made by trackers, which check the states that they are given",
 }
 """Public classes with parameters whose constructors are not tried, and why."""
@@ -378,6 +381,44 @@ SIMULATION: dict[str, dict[str, Any]] = {
     "MassProperties.of": WEIGHED,
 }
 
+LEASH = simulation.System(
+    [simulation.RigidBody.fixed(BOX), HEAVY],
+    simulation.HuntCrossley(stiffness=1e3),
+    coupler=COUPLER,
+    tool=1,
+)
+
+DEVICES: dict[str, dict[str, Any]] = {
+    "Inverse3": {
+        "url": "ws://localhost:10001",
+        "device_id": "049D",
+        "period": 1e-3,
+        "placement": HOME,
+    },
+    "PointerDevice": {"pose": HOME},
+    "Polled": {
+        "device": simulation.SimulatedDevice(
+            simulation.Mechanism(mass=0.1, damping=1.0), period=1e-3
+        ),
+        "period": 1e-3,
+        "stamped": False,
+    },
+    "Trace": {"path": motion.Fixed(HOME), "start": 0.0, "end": 1.0, "there_and_back": True},
+}
+
+SERVO: dict[str, dict[str, Any]] = {
+    "Servo": {
+        "operator": simulation.Operator(LEASH, dt=1e-3),
+        "state": None,
+        "device": None,
+        "rate": 1000.0,
+        "seconds": 1.0,
+        "max_age": 0.1,
+        "real_time": True,
+        "log_ticks": 10,
+    },
+}
+
 
 class Call(NamedTuple):
     """A public name, what it names, and arguments with which it works."""
@@ -396,6 +437,8 @@ def calls() -> list[Call]:
         (so, BODIES),
         (control, CONTROL),
         (simulation, SIMULATION),
+        (devices, DEVICES),
+        (servo, SERVO),
     )
     found = []
     for module, table in tables:

@@ -42,6 +42,8 @@ UNUSED = (
     "points",
     "recording",
     "simulation",
+    "devices",
+    "servo",
     "tracking.contact",
     "tracking.pair_system",
 )
@@ -182,6 +184,7 @@ def test_every_package_that_should_imports_on_demand() -> None:
     names = (
         *("standoff", "bodies", "bodies.shapes", "geometry", "motion", "tracking"),
         *("automaton", "impact", "points", "recording", "simulation", "voronoi"),
+        *("devices", "servo"),
     )
     assert set(FILES) == {name if name == "standoff" else f"standoff.{name}" for name in names}
 
@@ -311,8 +314,8 @@ def test_the_front_is_small() -> None:
     assert len(so.__all__) <= 28
     shown = {name for name in dir(so) if not name.startswith("__")}
     modules = (
-        *("automaton", "bodies", "control", "geometry", "impact", "motion"),
-        *("points", "recording", "scene", "simulation", "tracking", "voronoi"),
+        *("automaton", "bodies", "control", "devices", "geometry", "impact", "motion"),
+        *("points", "recording", "scene", "servo", "simulation", "tracking", "voronoi"),
     )
     assert shown == {*so.__all__, *modules}
     assert {name for name in dir(so.shapes) if not name.startswith("__")} == set(so.shapes.__all__)

@@ -2,7 +2,7 @@
 
 The names of every day; the rest is in modules that load when asked for: `so.points`, `so.voronoi`,
 `so.impact`, `so.recording`, `so.automaton`, `so.bodies`, `so.geometry`, `so.motion`, `so.tracking`,
-`so.control`, `so.simulation`, `so.scene`.
+`so.control`, `so.simulation`, `so.devices`, `so.servo`, `so.scene`.
 """
 
 from typing import TYPE_CHECKING
@@ -79,12 +79,14 @@ else:
             "automaton",
             "bodies",
             "control",
+            "devices",
             "geometry",
             "impact",
             "motion",
             "points",
             "recording",
             "scene",
+            "servo",
             "simulation",
             "tracking",
             "voronoi",

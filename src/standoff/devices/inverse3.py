@@ -76,8 +76,9 @@ class Inverse3:
         period: float = 1e-3,
         placement: PoseLike | None = None,
     ) -> None:
-        for name, given in (("url", url), ("device_id", device_id)):
-            if not isinstance(given, str) and (given is not None or name == "url"):
+        texts: dict[str, Any] = {"url": url, "device_id": device_id}
+        for name, given in texts.items():
+            if not isinstance(given, str) and (name == "url" or given is not None):
                 raise StandoffTypeError(f"{name} is {shown(given)}: give a text.", name, given)
         self._url, self._wanted = url, device_id
         self._period = non_negative(period, "period", above_zero=True)

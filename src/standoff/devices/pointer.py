@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import threading
 import time
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
 
 from standoff.devices.port import Port
-from standoff.errors import DeviceError, StandoffError
+from standoff.errors import DeviceError
 from standoff.motion import inputs
 from standoff.motion.pose import Pose, PoseLike
 from standoff.simulation.device import DeviceReading, Fault
@@ -61,7 +65,7 @@ class PointerDevice:
         with self._lock:
             self._port = None
 
-    def put(self, at: PoseLike, stamp: float | None = None) -> None:
+    def put(self, at: PoseLike | ArrayLike, stamp: float | None = None) -> None:
         """Tell where the pointer is.
 
         Parameters
@@ -95,12 +99,14 @@ class PointerDevice:
             if self._port is not None:
                 self._port.fail(Fault.MISSING)
 
-    def _read(self, at: PoseLike) -> Pose:
+    def _read(self, at: Any) -> Pose:
         try:
-            position = inputs.array(at, "at", (3,))
-        except StandoffError:
+            a_position = not isinstance(at, Pose) and np.shape(at) == (3,)
+        except (TypeError, ValueError):  # a rotation beside a position has no one shape
+            a_position = False
+        if not a_position:
             return Pose.of(at)
-        return Pose.from_checked(self._pose.rotation, position)
+        return Pose.from_checked(self._pose.rotation, inputs.array(at, "at", (3,)))
 
     def __repr__(self) -> str:
         return f"<PointerDevice, {self._sequence} readings>"

@@ -6,9 +6,11 @@ import threading
 import time
 
 from standoff.devices.port import Port
-from standoff.errors import DeviceError
+from standoff.errors import DeviceError, StandoffTypeError
+from standoff.real_numbers import shown
 from standoff.simulation.device import Device, Fault
 from standoff.simulation.passivity import non_negative
+from standoff.tracking.choices import yes_or_no
 
 
 class Polled:
@@ -32,12 +34,20 @@ class Polled:
 
     Raises
     ------
+    StandoffTypeError
+        What is no device.
     StandoffError
-        A period that is not above zero.
+        A period that is not above zero; what is neither true nor false.
     """
 
     def __init__(self, device: Device, *, period: float, stamped: bool = True) -> None:
-        self._inner, self._stamped = device, stamped
+        if not isinstance(device, Device):
+            raise StandoffTypeError(
+                f"device is {shown(device)}: give one with the calls of simulation.Device.",
+                "device",
+                device,
+            )
+        self._inner, self._stamped = device, yes_or_no(stamped, "stamped")
         self._period = non_negative(period, "period", above_zero=True)
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None

@@ -23,6 +23,7 @@ from standoff.simulation.arrivals import reading_row
 from standoff.simulation.device import DeviceReading
 from standoff.simulation.device_readings import MOST_MADE
 from standoff.simulation.passivity import non_negative
+from standoff.tracking.choices import yes_or_no
 
 Array = NDArray[np.float64]
 
@@ -49,7 +50,7 @@ class Trace(KeepsReadOnly):
     StandoffTypeError
         What is no path.
     StandoffError
-        An end that is not after the start.
+        An end that is not after the start; what is neither true nor false.
     """
 
     path: Path
@@ -72,7 +73,7 @@ class Trace(KeepsReadOnly):
             raise StandoffError(
                 f"end is {self.end:g}: give a time after the start, {self.start:g}.", "end", end
             )
-        self.there_and_back = bool(there_and_back)
+        self.there_and_back = yes_or_no(there_and_back, "there_and_back")
 
     @classmethod
     def read(cls, file: str | os.PathLike[str], *, there_and_back: bool = False) -> Trace:

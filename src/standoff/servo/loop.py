@@ -32,6 +32,7 @@ from standoff.simulation.passivity import non_negative
 from standoff.simulation.simulated_device import SimulatedDevice
 from standoff.simulation.system_state import SystemState, coupler_at
 from standoff.simulation.wrench import Wrench
+from standoff.tracking.choices import yes_or_no
 
 LOG_TICKS: Final = 100_000
 """Ticks that are logged if nothing is said: 24 MB, the last 100 s at 1 kHz."""
@@ -152,7 +153,7 @@ class Servo:
         self._script = np.zeros((0, K.N_READING))
         if isinstance(device, Trace):
             self._script = device.rows(self._period).copy()
-        self._real_time = bool(real_time)
+        self._real_time = yes_or_no(real_time, "real_time")
         self._numbers = operator.packed[1].copy()
         coupler = int(operator.packed[0][A.I_COUPLER])
         if max_age is not None:

@@ -82,7 +82,8 @@ def spread_of(bins: Ints, worst: int) -> Spread:
         min(end_of_bin(int(np.searchsorted(counts, np.ceil(share * total)))), worst)
         for share in QUANTILES
     ]
-    return Spread(*(end / NANO for end in ends), worst / NANO)
+    median, p99, p999, p9999 = (end / NANO for end in ends)
+    return Spread(median, p99, p999, p9999, worst / NANO)
 
 
 def statistics_of(bins: Ints, tallies: Ints) -> ServoStatistics:
