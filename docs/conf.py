@@ -102,7 +102,7 @@ def _one_name_an_attribute(
 def _plain_bars(
     _app: Sphinx, _kind: str, _name: str, _what: Any, _options: Any, lines: list[str]
 ) -> None:
-    """A magnitude, |v|, is no substitution of reStructuredText; within ``code`` it is left."""
+    """A magnitude, |v|, is not a substitution of reStructuredText; within ``code`` it is left."""
     for number, line in enumerate(lines):
         parts = re.split(r"(``.*?``)", line)
         lines[number] = "".join(p if p[:2] == "``" else p.replace("|", "\\|") for p in parts)

@@ -79,7 +79,7 @@ def test_an_error_about_a_body_names_the_part() -> None:
 
 
 def test_a_scene_names_the_key_at_fault_by_the_error_and_not_by_its_words(tmp_path: Path) -> None:
-    """The message begins with "FormulaSurface.domain", which is no key."""
+    """The message begins with "FormulaSurface.domain", which is not a key."""
     scene = tmp_path / "scene.toml"
     patch = '{kind = "formula", x = "u", y = "v", z = "u*v", domain = [1.0, 0.0, 0.0, 1.0]}'
     scene.write_text(f'version = 1\n[bodies.a]\nshape = "patches"\npatches = [{patch}]\n')

@@ -134,7 +134,7 @@ def test_the_longest_name_of_a_file_is_written(tmp_path: Path) -> None:
     [
         ("no/file", r"the folder .*no does not exist; create it"),
         ("taken/file", r"taken is a file, no folder; name a folder"),
-        ("a\0b", "is no name of a file"),
+        ("a\0b", "is not a name of a file"),
     ],
 )
 def test_names_that_no_file_can_have(tmp_path: Path, name: str, words: str) -> None:

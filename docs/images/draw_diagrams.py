@@ -102,7 +102,7 @@ def before_the_ways(d: Drawing) -> None:
         d, 270, 48, 420, "poses and twists become 36 numbers in a row", "tracking/inputs.py", PYTHON
     )
     border(d, 116, "Python", "compiled by Numba: kernels/")
-    stage(d, 270, 136, 420, "what is no pose is refused", "state/arrays.py")
+    stage(d, 270, 136, 420, "invalid poses are refused", "state/arrays.py")
     stage(d, 270, 204, 420, "B is seen from A: one pose, one twist", "algebra/rigid.py")
     for top, bottom in ((34, 48), (96, 136), (184, 204)):
         d.arrow([(480, top), (480, bottom)])
@@ -278,7 +278,7 @@ def touching() -> str:
     for k in range(12):
         way = math.cos(math.pi * k / 6), math.sin(math.pi * k / 6)
         d.arrow([ray((610.0, 105.0), way, 75), ray((610.0, 105.0), way, 98)], RED)
-    panel(d, 500, "normal_dimension", "any direction parts them")
+    panel(d, 500, "normal_dimension", "any direction separates them")
     return d.svg()
 
 

@@ -77,7 +77,7 @@ def real_array(value: Any) -> NDArray[np.float64]:
     MaskedNumbers
         Some of them are masked.
     TypeError
-        Something in it is no real number.
+        Something in it is not a real number.
     ValueError
         Its rows differ in length, or it is nested too deeply.
     """
@@ -90,7 +90,7 @@ def real_array(value: Any) -> NDArray[np.float64]:
     if given.dtype.kind == "O":
         for item in given.flat:
             if isinstance(item, bool | np.bool_ | str | bytes) or item is None:
-                raise StandoffTypeError(f"{shown(item)} is no number")
+                raise StandoffTypeError(f"{shown(item)} is not a number")
     try:
         return np.array(given, dtype=np.float64)
     except OverflowError as error:

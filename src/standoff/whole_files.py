@@ -75,7 +75,7 @@ def destination(target: Path) -> Path:
     except (FileNotFoundError, NotADirectoryError):
         return _new(target)
     except ValueError as error:  # a null character, or half of a surrogate pair
-        raise UnfitTarget(f"{shown(str(target))} is no name of a file: {error}") from error
+        raise UnfitTarget(f"{shown(str(target))} is not a name of a file: {error}") from error
     if not stat.S_ISREG(mode):
         cure = "a file in it" if stat.S_ISDIR(mode) else "a regular file or a new one"
         raise UnfitTarget(f"{target}: is {kind_of(mode)}; name {cure}")

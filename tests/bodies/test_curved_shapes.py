@@ -82,7 +82,7 @@ def test_hull_bridges_a_hollow():
     body = so.shapes.hull_of_revolution(waist)
     assert (body.n_faces, body.n_edges, body.n_vertices) == (3, 2, 2)
     assert body.check().smooth_edges == 2
-    assert body.check().notes == ()  # the pole at the end of the profile is no reason to turn
+    assert body.check().notes == ()  # the pole at the end of the profile is not a reason to turn
     kinds = {type(face.charts[0]).__name__ for face in body.face_parts}
     assert kinds == {"Revolution", "Cylinder"}
     slanted = RationalBezier([(0, 0, -1), (2.5, 0, -1), (-0.9, 0, 0), (1.5, 0, 1), (0, 0, 1)])

@@ -117,9 +117,9 @@ def test_a_body_draws_itself(tmp_path: Path) -> None:
 
 def test_wrong_arguments_are_named(tmp_path: Path) -> None:
     answer = so.distance(BOX, CAPSULE, HOME, placed(1.0))
-    with pytest.raises(TypeError, match="a = 3 is no body"):
+    with pytest.raises(TypeError, match="a = 3 is not a body"):
         so.plot(3, CAPSULE, answer)  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match=r"answer = 0\.5 is no answer"):
+    with pytest.raises(TypeError, match=r"answer = 0\.5 is not an answer"):
         so.plot(BOX, CAPSULE, 0.5)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"The answer is of <Body box: .* as they were asked"):
         so.plot(CAPSULE, BOX, answer)

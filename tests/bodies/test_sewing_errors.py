@@ -174,7 +174,7 @@ def test_bad_numbers(name, value):
 
 def test_a_tolerance_beyond_reason():
     assert re.search(
-        "tolerance = 1 is no small part of the patches' size",
+        "tolerance = 1 is not a small part of the patches' size",
         refusal(shells.box((1, 1, 1)), tolerance=1),
     )
 

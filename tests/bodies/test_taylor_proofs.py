@@ -179,7 +179,7 @@ def test_pressed_poles_without_exact_algebra(height):
 
 @pytest.mark.parametrize("depth", [1e-9, 1e-3, 0.03])
 def test_waves_whose_sines_are_strangers_to_the_algebra(depth):
-    """r = sin v + d sin 7v: that sin 7v vanishes with sin v is no identity of polynomials."""
+    """r = sin v + d sin 7v: that sin 7v vanishes with sin v is not an identity of polynomials."""
     r = "(sin(v) + d*sin(7*v))"
     surface = FormulaSurface(f"{r}*cos(u)", f"{r}*sin(u)", "cos(v)", (0, 2, 0, HALF), {"d": depth})
     proof = interval.prove(surface)

@@ -97,13 +97,13 @@ def test_the_bodies_of_a_scene(standoff: Standoff, passing: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "piece"),
     [
-        (["nothing"], "'nothing' is no scene (.toml), no file of patches (.json) and no shape"),
+        (["nothing"], "'nothing' is not a scene (.toml), a file of patches (.json) or a shape"),
         (["no.toml"], "no file 'no.toml'"),
         (["no.json"], "no file 'no.json'"),
         (["passing.toml", "--body", "tol"], "--body: unknown body 'tol'; did you mean 'tool'?"),
         (['shape = "bxo"'], "body.shape: unknown shape 'bxo'; did you mean 'box'?"),
         (['shape = "sphere", radius = -1'], "body.radius: must be zero or above, got -1"),
-        (["shape = box"], "is no shape as a scene writes it"),
+        (["shape = box"], "is not a shape in the form that scenes use"),
         (['shape = "lens", radius = 1, offset = 2'], "body.offset: Empty lens"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Every writer refuses what is no regular file, leaves it as it was, and follows links."""
+"""Every writer refuses what is not a regular file, leaves it as it was, and follows links."""
 
 from __future__ import annotations
 

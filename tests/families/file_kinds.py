@@ -1,4 +1,4 @@
-"""What may stand at a path and is no regular file."""
+"""What may stand at a path and is not a regular file."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ def check_pose(pose: Pose) -> str:
     if not np.isfinite(pose.matrix).all():
         raise Broken(f"a pose that is not finite: {pose.matrix}")
     if np.abs(pose.rotation.T @ pose.rotation - np.eye(3)).max() > 1e-8:
-        raise Broken(f"a pose that is no rotation: {pose.rotation}")
+        raise Broken(f"a pose that is not a rotation: {pose.rotation}")
     return "pose"
 
 

@@ -239,7 +239,7 @@ def test_another_process_compiles_anew(tmp_path):
         ("sin", "sin needs its argument in parentheses"),
         ("sin(u, v)", "sin takes 1 argument at"),
         ("atan2(u)", "atan2 takes 2 arguments at"),
-        ("u(v)", "u is no function: write a product"),
+        ("u(v)", "u is not a function: write a product"),
         ("9**9**9*u", "a power beyond float64"),
         ("u**1000", "exponent 1000: at most 64"),
         ("1e999*u", "a number beyond float64"),

@@ -67,7 +67,7 @@ def test_a_knot_is_left_out_as_often_as_it_is_spare(rng):
 @pytest.mark.parametrize("far", [0.0, 1e3])
 @pytest.mark.parametrize("lift", [1e-9, 1e-11])
 def test_a_point_moved_by_little_keeps_its_knots(far, lift, rng):
-    """A change of 1e-9 or 1e-11 of the size is no roundoff, not even far from the origin."""
+    """A change of 1e-9 or 1e-11 of the size is not a roundoff, not even far from the origin."""
     curve = spline(rng, 3).transformed(np.eye(3), np.full(3, far))
     fine = curve.refined([0.41, 0.41 + 1e-4, 0.41 + 2e-4])
     points = fine.control_points.copy()

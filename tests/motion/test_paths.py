@@ -181,7 +181,7 @@ def test_offset_follows_any_path_and_its_times() -> None:
     ("make", "message"),
     [
         (lambda: Fixed((1.0, 0.0, 0.0, 0.0)), "from_wxyz"),
-        (lambda: ConstantTwist(PLACED, np.zeros(5)), "no twist"),
+        (lambda: ConstantTwist(PLACED, np.zeros(5)), "not a twist"),
         (lambda: Screw(PLACED, (0.0, 0.0, 0.0)), r"axis is \[0\. 0\. 0\.\]: .*above zero"),
         (lambda: Screw(PLACED, TILTED, pitch=math.nan), "pitch is nan"),
         (lambda: Screw(PLACED, TILTED, angular_rate=math.inf), "angular_rate is inf"),
@@ -194,7 +194,7 @@ def test_offset_follows_any_path_and_its_times() -> None:
         (lambda: Spiral(-0.1, 1.0, 1.0), r"radius is -0\.1: .*zero or above"),
         (lambda: Spiral(1.0, 1.0, 1.0, centre=(0, 0, 0)), r"centre has shape \(3,\).*2 numbers"),
         (lambda: Spiral(1.0, 1.0, 1.0, orientation="loose"), r"'loose': give \"fixed\" or"),
-        (lambda: Offset(Fixed(PLACED), np.eye(3)), "no pose"),
+        (lambda: Offset(Fixed(PLACED), np.eye(3)), "not a pose"),
     ],
 )
 def test_bad_input_is_refused(make: Any, message: str) -> None:

@@ -67,7 +67,7 @@ def test_scipys_rigid_transform_is_a_pose() -> None:
     transform = rigid.RigidTransform.from_components(SHIFT, Rotation.from_matrix(ROTATION))
     np.testing.assert_allclose(Pose.of(transform).matrix, transform.as_matrix(), rtol=0, atol=0)
     stack = rigid.RigidTransform.concatenate([transform, transform.inv()])
-    with pytest.raises(ValueError, match=r"no pose: shape \(2, 4, 4\)"):
+    with pytest.raises(ValueError, match=r"not a pose: shape \(2, 4, 4\)"):
         Pose.of(stack)
 
 
@@ -143,14 +143,14 @@ TRANSPOSED = np.block([[ROTATION.T, np.zeros((3, 1))], [SHIFT, 1.0]])
         ((1.0, 0.0, 0.0, 0.0), r"four numbers .*from_wxyz.*from_xyzw"),
         (np.array([1.0, 0.0, 0.0, 0.0]), r"four numbers .*from_wxyz.*from_xyzw"),
         (((1.0, 0.0, 0.0, 0.0), SHIFT), r"four numbers .*from_wxyz.*from_xyzw"),
-        (ROTATION, r"no pose: shape \(3, 3\).*pair \(R, p\)"),
-        (Rotation.from_matrix(ROTATION), r"no pose: shape \(3, 3\).*pair \(R, p\)"),
-        (Rotation, r"no pose: .*give a Pose"),
+        (ROTATION, r"not a pose: shape \(3, 3\).*pair \(R, p\)"),
+        (Rotation.from_matrix(ROTATION), r"not a pose: shape \(3, 3\).*pair \(R, p\)"),
+        (Rotation, r"not a pose: .*give a Pose"),
         ((Rotation.random(2, rng=0), SHIFT), r"rotation has shape \(2, 3, 3\).*3 by 3"),
-        (OfAnotherLibrary(ROTATION * NAN), r"no pose: shape \(3, 3\)"),
-        ("here", r"no pose: shape \(\).*give a Pose"),
-        ([[1.0], [2.0, 3.0], [4.0]], r"no pose: \[\[1\.0\].*give a Pose"),
-        (None, r"no pose: .*give a Pose"),
+        (OfAnotherLibrary(ROTATION * NAN), r"not a pose: shape \(3, 3\)"),
+        ("here", r"not a pose: shape \(\).*give a Pose"),
+        ([[1.0], [2.0, 3.0], [4.0]], r"not a pose: \[\[1\.0\].*give a Pose"),
+        (None, r"not a pose: .*give a Pose"),
         (TRANSPOSED, r"last row .*transpose"),
         ((2.0 * ROTATION, SHIFT), r"rotation .*not orthonormal: .* by 3"),
         ((np.zeros((3, 3)), SHIFT), r"rotation .*not orthonormal: .* by 1"),

@@ -160,14 +160,16 @@ def test_bad_input_is_refused(given: Any, error_kind: Any, message: str) -> None
 
 @pytest.mark.parametrize("given", [Fixed, float, 3.0, None, "path", PoseSamples])
 def test_what_is_neither_path_nor_function_is_refused(given: Any) -> None:
-    with pytest.raises(TypeError, match=r"is no path: it needs pose\(t\) and twist\(t\), or to be"):
+    with pytest.raises(
+        TypeError, match=r"is not a path: it needs pose\(t\) and twist\(t\), or to be"
+    ):
         Offset(given, SCREW.pose(0.0))
 
 
 def test_what_the_function_returns_is_named_with_its_time() -> None:
-    with pytest.raises(ValueError, match=r"at t = 0\.25: no pose: .*give a Pose"):
+    with pytest.raises(ValueError, match=r"at t = 0\.25: not a pose: .*give a Pose"):
         PoseFunction(lambda t: None).pose(0.25)  # type: ignore[arg-type, return-value]
-    with pytest.raises(ValueError, match=r"at t = 0\.25: no twist: .*give a Twist"):
+    with pytest.raises(ValueError, match=r"at t = 0\.25: not a twist: .*give a Twist"):
         PoseFunction(SCREW.pose, lambda t: np.zeros(5)).twist(0.25)
     with pytest.raises(ValueError, match="t is nan"):
         PoseFunction(SCREW.pose).pose(math.nan)

@@ -208,7 +208,7 @@ def test_ten_thousand_matrices_are_read_at_once() -> None:
         ([0.0, math.nan, 1.0], POSES, r"times is .*nan.*finite"),
         ([0.0], POSES[:1], "1 samples make no motion"),
         ([], [], "0 samples make no motion"),
-        ([0.0, 1.0], [POSES[0], np.eye(3)], r"pose 1: no pose"),
+        ([0.0, 1.0], [POSES[0], np.eye(3)], r"pose 1: not a pose"),
         ([0.0, 1.0], [POSES[1], Pose.exp([0.0, math.pi, 0.0])], r"poses 0 and 1 .*half turn"),
         ([0.0, 1e-100], [POSES[1], POSES[2]], r"poses 0 and 1 .*too far apart .*beyond 1e\+100"),
         ([0.0, 5e-324], [POSES[1], POSES[2]], r"poses 0 and 1 .*too far apart .*beyond 1e\+100"),

@@ -96,7 +96,7 @@ def test_refused(tmp_path: Path, columns: dict[str, Any], pieces: list[str]) -> 
 def test_a_file_cut_off(tmp_path: Path) -> None:
     file = write(tmp_path, ROWS)
     file.write_bytes(file.read_bytes()[:-20])
-    with pytest.raises(ValueError, match=r"hand\.parquet: is no readable Parquet file"):
+    with pytest.raises(ValueError, match=r"hand\.parquet: is not a readable Parquet file"):
         read_pose_samples(file)
     with pytest.raises(FileNotFoundError, match="no such file"):
         read_pose_samples(tmp_path / "other.parquet")

@@ -89,10 +89,10 @@ def test_carry_in_world_axes_goes_straight_while_turning(v: np.ndarray, omega: n
 @pytest.mark.parametrize(
     ("value", "message"),
     [
-        (np.zeros(5), r"no twist: shape \(5,\).*v first"),
-        (np.zeros((3, 2)), r"no twist: shape \(3, 2\).*v first"),
-        ([[1.0], [2.0, 3.0]], r"no twist: .*v first"),
-        ("fast", r"no twist: .*v first"),
+        (np.zeros(5), r"not a twist: shape \(5,\).*v first"),
+        (np.zeros((3, 2)), r"not a twist: shape \(3, 2\).*v first"),
+        ([[1.0], [2.0, 3.0]], r"not a twist: .*v first"),
+        ("fast", r"not a twist: .*v first"),
         ((V, OMEGA * float("nan")), r"omega is .*nan.*finite"),
         ((V * float("inf"), OMEGA), r"v is .*inf.*finite"),
     ],

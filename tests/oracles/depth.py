@@ -48,7 +48,7 @@ SLOPE = 1e-5
 """Angle of the differences that give the second derivatives of a smooth s(n)."""
 POLISHES = 6
 STATIONARY = 2e-5
-"""Error of the deepest points, over the pair's size, from which a direction is no minimum."""
+"""Error of the deepest points, over the pair's size, from which a direction is not a minimum."""
 ROUNDS = 12
 """Times that a patch is laid anew around the lowest point of its rim."""
 PATCH = 0.08

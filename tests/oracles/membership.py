@@ -42,7 +42,7 @@ def outside(shape: Shape, point: ArrayLike) -> float:
     Raises
     ------
     TypeError
-        The shape is no set of quadratic inequalities, no cone, not swept, nor one that knows.
+        The shape is not a set of quadratic inequalities, no cone, not swept, nor one that knows.
     """
     p = np.asarray(point, dtype=float)
     if isinstance(shape, Curved):

@@ -170,7 +170,7 @@ def test_a_depth_is_judged_by_its_normal_and_by_all_others():
     assert deep_faults(a, b, frames, rows) == []
     assert judge(a, b, frames, rows, TOLERANCE, True).unrest[0] > 1e3
     # balls that are apart, along a normal that does not part them
-    assert "said to overlap, but a plane parts them" in deep_faults(*balls(3.1, turn=0.9))
+    assert "said to overlap, but a plane separates them" in deep_faults(*balls(3.1, turn=0.9))
 
 
 @pytest.mark.parametrize(

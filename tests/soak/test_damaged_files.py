@@ -103,7 +103,7 @@ def test_ten_pairs_without_counts_are_not_ten_pairs(refused, ledger, tmp_path):
 @pytest.mark.parametrize("text", ["", "7", "[]", "null", "[" * 10**5, '{"seed": NaN}', "\x00"])
 def test_files_of_another_kind(refused, tmp_path, text):
     (tmp_path / "soak.json").write_text(text)
-    assert "no ledger" in refused("--pairs", 1, "-o", tmp_path, "--resume")
+    assert "not a ledger" in refused("--pairs", 1, "-o", tmp_path, "--resume")
     assert "soak.json" in refused("--replay", tmp_path / "soak.json")
 
 

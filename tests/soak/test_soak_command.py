@@ -239,12 +239,12 @@ def test_bad_numbers_are_refused(run, tmp_path, monkeypatch, arguments, said):
 def test_foreign_files_are_refused(run, tmp_path):
     file = tmp_path / "other.json"
     file.write_text("{}")
-    assert "no failure of a soak" in run("--replay", file)[2]
+    assert "not a failure of a soak" in run("--replay", file)[2]
     (tmp_path / "soak.json").write_text("{}")
     arguments = ["--pairs", 1, *COMMON, "-o", tmp_path, "--resume"]
     code, _, err = run(*arguments)
     assert code == 2
-    assert "no ledger of a soak" in err
+    assert "not a ledger of a soak" in err
     facts = {"standoff": "0.0", "seed": SEED, "frames": 30, "done": [], "sums": {}, "worst": {}}
     (tmp_path / "soak.json").write_text(json.dumps(facts | {"examples": []}))
     assert "standoff 0.0" in run(*arguments)[2]

@@ -89,7 +89,7 @@ def test_one_twist_given_leaves_the_other_body_at_rest() -> None:
 def test_a_twist_of_another_length_is_none(twist: Any) -> None:
     tracker = so.Tracker(LENS, TOOL)
     state = tracker.start(REST, placed(0))
-    with pytest.raises(ValueError, match="no twist"):
+    with pytest.raises(ValueError, match="not a twist"):
         tracker.step(state, REST, placed(1), np.array(twist), STILL)
 
 

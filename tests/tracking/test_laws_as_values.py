@@ -160,7 +160,7 @@ def test_a_scene_says_each_option(law: Any) -> None:
     assert read_settings(Table(toml_tables(text))).law == law
     assert TrackSettings().overridden(facts).law == law
     assert law_of_facts(json.loads(json.dumps(facts))) == law
-    with pytest.raises(ValueError, match="zzz is no option of the law"):
+    with pytest.raises(ValueError, match="zzz is not an option of the law"):
         law_of_facts(facts | {"zzz": 1})
 
 

@@ -260,7 +260,7 @@ SQUIRCLE = (0.6, 0.8, 0.5, 0.9, 1.1)
 
 @pytest.mark.parametrize("spot", [(0.1, 0, 0), (0, 0, 0.2), (0, 0.1, 0)])
 def test_point_in_a_superellipsoid(spot):
-    """On an axis the far pole's normal is that of the near one reversed: it is no normal there."""
+    """On an axis the far pole's normal is that of the near one reversed: not a normal there."""
     a = Placed(Superellipsoid(*SQUIRCLE), np.eye(3), np.zeros(3))
     depth = least_depth(a, Placed(oracle.Point(), np.eye(3), spot))[1]
     body = so.shapes.superellipsoid(*SQUIRCLE)

@@ -178,7 +178,7 @@ def test_without_velocities_the_rates_are_unknown() -> None:
             lambda t: so.PointTracker(planar_body(), law=so.PaperLaw(switching="none")),
             "multipliers",
         ),
-        (lambda t: so.PointTracker(planar_body(), law=so.shapes), "is no law"),
+        (lambda t: so.PointTracker(planar_body(), law=so.shapes), "is not a law"),
         (lambda t: so.points.record_point(t, Spiral(0, 1, 1), [1.0, 0.0]), "increasing"),
     ],
 )

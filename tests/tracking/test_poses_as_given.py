@@ -98,7 +98,9 @@ def test_a_frame_in_place_repairs_the_buffer_and_counts() -> None:
 
 def test_a_position_beyond_all_lengths_is_named() -> None:
     far = so.Pose(np.eye(3), [9e99, 9e99, 0.0])
-    with pytest.raises(so.StandoffError, match=r"pose_b: its position .* no length below 1e\+100"):
+    with pytest.raises(
+        so.StandoffError, match=r"pose_b: its position .* is not a length below 1e\+100"
+    ):
         so.distance(LENS, TOOL, HOME, far)
 
 
@@ -216,7 +218,7 @@ def test_a_point_follows_a_function() -> None:
 def test_what_is_neither_path_nor_pose_is_refused() -> None:
     with pytest.raises(TypeError, match=r"path_b = 3\.0 is neither a path .* nor a function of"):
         run(3.0)  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match=r"at t = 0\.0: no pose"):
+    with pytest.raises(ValueError, match=r"at t = 0\.0: not a pose"):
         run(lambda t: None)  # type: ignore[arg-type, return-value]
 
 

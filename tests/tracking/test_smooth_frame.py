@@ -138,7 +138,7 @@ def test_a_body_without_faces_has_none() -> None:
 
 
 def test_refusals_are_counted_and_nothing_is_written_before_them() -> None:
-    """A box's edge is no face: the state and the answer are those of the general frame alone."""
+    """A box's edge is not a face: the state and the answer are those of the general frame alone."""
     tracker = so.Tracker(BOX, TOOL, 1e-3)
     pose = np.eye(4)
     pose[:3, 3] = 0.8, 0.6, 0.0

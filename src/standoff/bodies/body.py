@@ -199,7 +199,7 @@ class Body(KeepsReadOnly):
         Raises
         ------
         ValueError
-            Singular map; or a map that is no similarity on a body with a swept radius.
+            Singular map; or a map that is not a similarity on a body with a swept radius.
         """
         try:
             linear, shift = _affine(affine)
@@ -309,7 +309,7 @@ class Body(KeepsReadOnly):
     def __setstate__(self, stored: Any) -> None:
         state, old = stored
         super().__setstate__(state)
-        # formulas are compiled anew in another process, at other addresses
+        # formulas are compiled again in another process, at other addresses
         new = [f.address for f in formulas_of(self.edge_parts, self.face_parts)]
         object.__setattr__(self, "reals", readdressed(self.reals, old, new))
 

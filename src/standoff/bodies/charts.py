@@ -123,7 +123,7 @@ def make_charts(
                     )
                 curve = edges[j].curve
                 pcurve = loop_pcurve(face, k, edges, surface)
-                # the weight of a pcurve that was given is no depth, only positive where it is seen
+                # a given pcurve's weight is not a depth, only positive where it is seen
                 given = len(face.pcurves) > 0 and face.pcurves[k] is not None
                 rim = 0.0 if given else CHART_RIM
                 spans = visible_spans(pcurve, curve.first, curve.last, rim)

@@ -47,7 +47,7 @@ def added(first: str) -> dict[str, type[AddedCommand]]:
     if first in STUDIES:
         raise CommandError(
             f"the command '{first}' belongs to the package standoff_studies, and no entry point of "
-            f"the group '{GROUP}' leads to it; install standoff anew: "
+            f"the group '{GROUP}' leads to it; install standoff again: "
             "pip install --force-reinstall --no-deps standoff"
         )
     commands = {}
@@ -65,6 +65,6 @@ def _imported(point: EntryPoint) -> type[AddedCommand]:
     except Exception as error:
         raise CommandError(
             f"the command '{point.name}' cannot be loaded from {point.value} ({error!r}); install "
-            "the package that adds it anew, or remove it"
+            "the package that adds it again, or remove it"
         ) from error
     return command

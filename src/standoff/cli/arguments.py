@@ -89,7 +89,7 @@ class FileFlags:
 
 @dataclass(frozen=True)
 class SpanFlags:
-    """In place of the scene's own."""
+    """Overrides the scene's own."""
 
     start: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
     """When to begin, s."""
@@ -99,7 +99,7 @@ class SpanFlags:
 
 @dataclass(frozen=True)
 class FrameFlags(SpanFlags):
-    """In place of the scene's own."""
+    """Overrides the scene's own."""
 
     step: Annotated[str | None, arg(metavar="SECONDS|samples", help_behavior_hint="")] = None
     """Time from frame to frame, s, or 'samples'."""
@@ -129,9 +129,9 @@ class TrackCommand:
     files: Annotated[FileFlags, _group("file")] = FileFlags()
     report: Annotated[ReportFlags, _group("report")] = ReportFlags()
     times: Annotated[FrameFlags, _group("time")] = FrameFlags()
-    options: Annotated[LawFlags, _group("law", "In place of the scene's own.")] = NO_FLAGS
+    options: Annotated[LawFlags, _group("law", "Overrides the scene's own.")] = NO_FLAGS
     paper_options: Annotated[
-        PaperFlags, _group("paper law", "For the paper's law alone, in place of the scene's own.")
+        PaperFlags, _group("paper law", "For the paper's law alone; overrides the scene's own.")
     ] = NO_PAPER_FLAGS
 
 
@@ -239,13 +239,13 @@ class SimulateCommand:
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print the summary as JSON."""
     step: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
-    """In place of the scene's: time of a tick, s."""
+    """Time of a tick, s; overrides the scene's."""
     duration: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
-    """In place of the scene's: time that is simulated, s."""
+    """Time that is simulated, s; overrides the scene's."""
     method: Annotated[str | None, arg(metavar="METHOD", help_behavior_hint="")] = None
-    """In place of the scene's: semi-implicit, euler, heun, midpoint or rk4."""
+    """Semi-implicit, euler, heun, midpoint or rk4; overrides the scene's."""
     tracker: Annotated[str | None, arg(metavar="inside|beside", help_behavior_hint="")] = None
-    """In place of the scene's: the tracker inside the operator, or beside it."""
+    """The tracker inside the operator, or beside it; overrides the scene's."""
 
 
 @dataclass(frozen=True)

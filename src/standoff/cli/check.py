@@ -21,7 +21,7 @@ from standoff.cli.subject import Subject, subjects
 PLOT_ENDINGS = (".png", ".svg", ".pdf")
 
 WIDTH = 100
-"""Characters of a table where stdout is no terminal, such as a file."""
+"""Characters of a table where stdout is not a terminal, such as a file."""
 
 
 def run_check(command: CheckCommand) -> int:

@@ -49,7 +49,7 @@ def subjects(what: str, body: str | None) -> list[Subject]:
         found = [Subject(path.stem, read_body(table), DEFAULT_LENGTH_UNIT)]
     else:
         raise CommandError(
-            f"{shown(what)} is no scene (.toml), no file of patches (.json) and no shape such as "
+            f"{shown(what)} is not a scene (.toml), a file of patches (.json) or a shape such as "
             f"{EXAMPLE}"
         )
     if body is None:
@@ -67,8 +67,8 @@ def _shape(text: str) -> Subject:
         content = toml_tables(f"body = {{{text}}}")["body"]
     except SceneError as error:
         raise CommandError(
-            f"{shown(text)} is no shape as a scene writes it: it {error.problem}; write one such "
-            f"as {EXAMPLE}"
+            f"{shown(text)} is not a shape in the form that scenes use: it {error.problem}; write "
+            f"one such as {EXAMPLE}"
         ) from error
     body = read_body(Table(content, path="body"))
     return Subject(body.name, body, DEFAULT_LENGTH_UNIT)

@@ -87,7 +87,7 @@ def _bar(total: int) -> Iterator[Callable[[str, int], None]]:
         yield lambda doing, completed: None
         return
     console = Console(stderr=True)
-    # A stdout that is no terminal stays what it is: the bar would take its lines.
+    # A stdout that is not a terminal stays what it is: the bar would take its lines.
     with Bar(console=console, transient=True, redirect_stdout=sys.stdout.isatty()) as bar:
         task = bar.add_task("starting", total=total)
         yield lambda doing, completed: bar.update(task, description=doing, completed=completed)

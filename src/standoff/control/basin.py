@@ -110,7 +110,7 @@ def basin(
 
 
 def _check_starts(given: Any, steps: int) -> None:
-    """Refuse what is no sequence of pairs of places."""
+    """Refuse what is not a sequence of pairs of places."""
     if not isinstance(given, Sequence) or isinstance(given, str | bytes) or not given:
         raise StandoffError(
             f"starts = {shown(given)} of {steps} steps: give one or more.", "starts", given

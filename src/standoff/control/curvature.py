@@ -95,7 +95,7 @@ def principal_curvatures(surface: Surface, u: float, v: float) -> tuple[float, f
     Raises
     ------
     ValueError
-        Not a surface, or a parameter that is no finite number.
+        Not a surface, or a parameter that is not a finite number.
     """
     if not isinstance(surface, Surface):
         raise StandoffError(f"surface is {shown(surface)}: give a Surface.", "surface", surface)

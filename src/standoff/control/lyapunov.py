@@ -121,9 +121,9 @@ def lyapunov_level(
     TypeError
         Not a body.
     ValueError
-        `directions` or `seed` is no whole number. The pair overlaps or touches, H is not positive
-        definite at its optimum (parallel faces), or the witness points are vertices, which have
-        no parameters.
+        `directions` or `seed` is not a whole number. The pair overlaps or touches; H is not
+        positive definite at its optimum (parallel faces), or the witness points are vertices,
+        which have no parameters.
     """
     directions = whole_number(directions, "directions")
     _check_seed(seed)

@@ -145,7 +145,7 @@ class SurfaceCurve(Curve):
 
 
 def _check_chart(one: Any, name: str) -> None:
-    """Raise ValueError where something given is no pair of a surface and a pcurve."""
+    """Raise ValueError where something given is not a pair of a surface and a pcurve."""
     surface, pcurve = one if isinstance(one, tuple | list) and len(one) == 2 else (one, None)
     if not isinstance(surface, Surface):
         raise StandoffError(

@@ -108,7 +108,7 @@ class Surface(KeepsReadOnly, ABC):
 
     def __setstate__(self, stored: Any) -> None:
         super().__setstate__(stored)
-        # a profile's formula is compiled anew in another process, at another address
+        # a profile's formula is compiled again in another process, at another address
         reals = self.reals.copy()
         reals[L.SURFACE_DATA :] = self._data()
         reals.flags.writeable = False

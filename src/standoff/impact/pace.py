@@ -29,7 +29,7 @@ class Pace:
         self._before: tuple[float, float, float] | None = None
 
     def saw_sag(self, sag: float, span: float) -> None:
-        """Learn from the sag of an interval; nothing from one whose square is no number."""
+        """Learn from the sag of an interval; nothing from one whose square is not a number."""
         square = span * span
         if square > 0.0 and math.isfinite(sag):
             self.sag = max(sag, 0.0) / square

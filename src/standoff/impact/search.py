@@ -127,7 +127,7 @@ def _check_budget(max_evaluations: int) -> None:
 
 
 def _end(paths: tuple[Any, Any], start: float, duration: float) -> float:
-    """The time at which the search ends; a rounding beyond a path's end is no time beyond it.
+    """The time at which the search ends; a rounding beyond a path's end is not a time beyond it.
 
     Raises
     ------

@@ -101,7 +101,7 @@ class Bounded(KeepsReadOnly):
     Raises
     ------
     TypeError
-        If the path has no ``pose`` and ``twist``, and is no function.
+        If the path has no ``pose`` and ``twist``, and is not a function.
     ValueError
         If a bound is negative or not finite, or the breaks are no sequence of finite numbers.
     """

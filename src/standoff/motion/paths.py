@@ -66,7 +66,7 @@ class Fixed(KeepsReadOnly):
     Raises
     ------
     ValueError
-        If that is no pose.
+        If that is not a pose.
     """
 
     start = 0.0
@@ -111,7 +111,7 @@ class ConstantTwist(KeepsReadOnly):
     Raises
     ------
     ValueError
-        If that is no pose or no twist.
+        If that is not a pose or a twist.
     """
 
     start = 0.0
@@ -166,7 +166,7 @@ class Screw(KeepsReadOnly):
     Raises
     ------
     ValueError
-        If that is no pose, the axis is zero, a number is not finite, or a shape is wrong.
+        If that is not a pose, the axis is zero, a number is not finite, or a shape is wrong.
     """
 
     start = 0.0
@@ -226,9 +226,9 @@ class Offset(KeepsReadOnly):
     Raises
     ------
     TypeError
-        If the path has no ``pose`` and ``twist``, and is no function.
+        If the path has no ``pose`` and ``twist``, and is not a function.
     ValueError
-        If that is no pose.
+        If that is not a pose.
     """
 
     def __init__(self, path: Path | Callable[[float], PoseLike], pose: PoseLike) -> None:
@@ -281,7 +281,7 @@ class Carried(KeepsReadOnly):
     Raises
     ------
     TypeError
-        If a path has no ``pose`` and ``twist``, and is no function.
+        If a path has no ``pose`` and ``twist``, and is not a function.
     """
 
     def __init__(

@@ -52,7 +52,7 @@ class Pose(KeepsReadOnly):
     Raises
     ------
     ValueError
-        If a component is not finite, a shape is wrong, or the matrix is no rotation
+        If a component is not finite, a shape is wrong, or the matrix is not a rotation
         (``RᵀR`` is the identity to 1e-5, with determinant +1).
     """
 
@@ -114,7 +114,7 @@ class Pose(KeepsReadOnly):
 
     @classmethod
     def nearest(cls, value: PoseLike) -> Pose:
-        """Make a pose of the rotation nearest to a matrix that is none.
+        """Make a pose of the rotation nearest to a matrix that is not one.
 
         For matrices that are farther off than what `of` repairs, such as those of text with few
         digits, of half precision, or summed up from small turns. A scale and a shear are lost:
@@ -336,12 +336,12 @@ def _parts(value: PoseLike) -> tuple[RotationLike, ArrayLike]:
     try:
         given = np.asarray(given)
     except (ValueError, RecursionError) as error:
-        raise StandoffError(f"no pose: {shown(value)}; {_ACCEPTED}", "value", value) from error
+        raise StandoffError(f"not a pose: {shown(value)}; {_ACCEPTED}", "value", value) from error
     if given.shape == (4,):
         raise StandoffError(_unnamed_quaternion(given), "value", value)
     if given.shape != (4, 4):
         raise StandoffError(
-            f"no pose: shape {given.shape}, value {text(given)}; {_ACCEPTED}", "value", value
+            f"not a pose: shape {given.shape}, value {text(given)}; {_ACCEPTED}", "value", value
         )
     matrix = inputs.array(given, "pose", (4, 4))
     if np.abs(matrix[3] - LAST_ROW).max() > ORTHONORMALITY:
@@ -361,6 +361,6 @@ def _is_pair(value: object) -> TypeGuard[Sequence[ArrayLike]]:
 
 def _unnamed_quaternion(value: ArrayLike) -> str:
     return (
-        f"four numbers {text(value)} are no pose: the order of a quaternion must be named; "
+        f"four numbers {text(value)} are not a pose: the order of a quaternion must be named; "
         "use Pose.from_wxyz(q, p) or Pose.from_xyzw(q, p)"
     )

@@ -169,7 +169,7 @@ def path_of(given: Any, start: float = 0.0, end: float = math.inf) -> Any:
     if known and callable(given):
         return PoseFunction(given, start=start, end=end)
     raise StandoffTypeError(
-        f"{shown(given)} is no path: it needs pose(t) and twist(t), or to be a function of the "
+        f"{shown(given)} is not a path: it needs pose(t) and twist(t), or to be a function of the "
         "time that returns a pose",
         "path",
         given,

@@ -195,7 +195,7 @@ class PoseSamples(KeepsReadOnly):
         index, _ = self._interval(first)
         if not first <= last <= float(self.times[index + 1]):
             raise StandoffError(
-                f"{first!r} to {last!r} is no time within one interval of the samples: "
+                f"{first!r} to {last!r} is not a time within one interval of the samples: "
                 f"the next one is at {float(self.times[index + 1])!r}",
                 "last",
                 last,

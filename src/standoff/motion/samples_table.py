@@ -52,7 +52,7 @@ def parquet_rows(path: Path) -> Iterator[tuple[int, list[float]]]:
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         # Damaged pages are an OSError too; nothing tells them from a disk's failure.
         raise StandoffError(
-            f"{path}: is no readable Parquet file ({error})", "file", path
+            f"{path}: is not a readable Parquet file ({error})", "file", path
         ) from error
     seconds = _seconds(path, chosen[0], table.column(chosen[0]))
     numbers = [_numbers(path, name, table.column(name)) for name in chosen[1:]]

@@ -83,10 +83,14 @@ class Twist(KeepsReadOnly):
         try:
             given = np.asarray(value)
         except (ValueError, RecursionError) as error:
-            raise StandoffError(f"no twist: {shown(value)}; {_ACCEPTED}", "value", value) from error
+            raise StandoffError(
+                f"not a twist: {shown(value)}; {_ACCEPTED}", "value", value
+            ) from error
         if given.shape not in ((6,), (2, 3)):
             raise StandoffError(
-                f"no twist: shape {given.shape}, value {text(given)}; {_ACCEPTED}", "value", value
+                f"not a twist: shape {given.shape}, value {text(given)}; {_ACCEPTED}",
+                "value",
+                value,
             )
         v, omega = given.reshape(2, 3)
         return cls(v, omega)

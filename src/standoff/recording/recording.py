@@ -140,7 +140,7 @@ class Recording(RecordedFrames):
         ValueError
             If it is empty, or the file's ending is another.
         OSError
-            If the file cannot be written, or is no regular file but a folder, a FIFO or a device.
+            If the file cannot be written, or is a folder, a FIFO or a device.
             A link stays: what it leads to is replaced.
         """
         from standoff.recording import plot as recording_plot
@@ -251,7 +251,7 @@ class Recording(RecordedFrames):
         ValueError
             If it is empty, or ``info.source`` is nested too deeply.
         OSError
-            If the file cannot be written, or is no regular file but a folder, a FIFO or a device.
+            If the file cannot be written, or is a folder, a FIFO or a device.
             A link stays: what it leads to is replaced.
         """
         target = file_name(path)
@@ -282,8 +282,8 @@ def open_recording(path: str | Path) -> Recording:
     FileNotFoundError
         If there is no such file.
     ValueError
-        If it is no Parquet file or cut off, is no recording, or is of a format that this Standoff
-        does not read.
+        If it is not a Parquet file or is cut off, is not a recording, or is of a format that this
+        Standoff does not read.
     ModuleNotFoundError
         If pyarrow is not installed; the message names the extra.
     """

@@ -28,7 +28,7 @@ def in_radians(table: Table, numbers: Iterable[str] = (), vectors: Iterable[str]
     Raises
     ------
     SceneError
-        At an angle that is given both ways, or that is no finite number.
+        At an angle that is given both ways, or that is not a finite number.
     """
     found: dict[str, object] = {}
     for key in numbers:

@@ -44,7 +44,7 @@ def file_problem(path: Path, name: str, folder: str = "the scene file") -> str |
         return f"no file {shown(name)}: {reason}; name another"
     if stat.S_ISDIR(mode):
         return f"{shown(name)} is a folder; name a file in it"
-    return None if stat.S_ISREG(mode) else f"{shown(name)} is no file on a disk; name one"
+    return None if stat.S_ISREG(mode) else f"{shown(name)} is not a file on a disk; name one"
 
 
 def _missing(path: Path, name: str, folder: str) -> str:

@@ -100,7 +100,7 @@ def _of_file(file: Path) -> Table:
         ) from error
     except UnicodeDecodeError as error:
         raise SceneError(
-            f"is no text in UTF-8 (byte {error.start}); save it as UTF-8", file=file
+            f"is not text in UTF-8 (byte {error.start}); save it as UTF-8", file=file
         ) from error
     except OSError as error:
         raise SceneError(f"cannot be read: {error.strerror}", file=file) from error

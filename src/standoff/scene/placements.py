@@ -25,7 +25,7 @@ def read_pose(table: Table) -> Pose:
     Raises
     ------
     SceneError
-        At an unknown key, two orientations, or one that is no rotation.
+        At an unknown key, two orientations, or one that is not a rotation.
     """
     table.expect("position", *ORIENTATIONS)
     position = in_space(table, "position") if "position" in table else np.zeros(3)

@@ -57,7 +57,7 @@ def first_impact(
     ----------
     scene : Scene
     settings : TrackSettings, optional
-        In place of the scene's own.
+        Overrides the scene's own.
     clearance : float
         Distance that counts as impact [length].
 
@@ -107,7 +107,7 @@ def record(
     ----------
     scene : Scene
     settings : TrackSettings, optional
-        In place of the scene's own.
+        Overrides the scene's own.
     progress : callable, optional
         Called now and then with the frames done and the frames in all.
 

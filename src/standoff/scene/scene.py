@@ -200,7 +200,7 @@ def text_of(path: Path) -> str:
         return path.read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise SceneError(
-            f"is no text in UTF-8 (byte {error.start}); save it as UTF-8", file=path
+            f"is not text in UTF-8 (byte {error.start}); save it as UTF-8", file=path
         ) from error
     except OSError as error:
         raise SceneError(f"cannot be read: {error.strerror}", file=path) from error

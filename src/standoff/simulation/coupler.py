@@ -147,7 +147,7 @@ class VirtualCoupler:
     def engage(self, state: CouplerState) -> CouplerState:
         """Return the state from which the coupler renders its wrench, growing from zero.
 
-        The account of energy begins anew. A state that is engaged is returned as it is.
+        The account of energy starts again. A state that is engaged is returned as it is.
 
         Raises
         ------
@@ -191,7 +191,7 @@ class VirtualCoupler:
             it, no exception is raised: the wrenches are zero from this tick on, and `state.fault`
             says why.
         tool_pose : Pose or what `Pose.of` reads
-            In the world; a pose that is none, or not finite, is a fault too.
+            In the world; an invalid pose, or one that is not finite, is a fault too.
         tool_twist : Twist or what `Twist.of` reads
         dt : float
             Time since the last tick [s].
@@ -209,7 +209,7 @@ class VirtualCoupler:
         Raises
         ------
         StandoffError
-            A `dt` that is not above zero, a `now` that is not finite, or a state that is none: a
+            A `dt` that is not above zero, a `now` that is not finite, or an invalid state: a
             fault of the calling program, before anything is changed.
         """
         _check_state(state)

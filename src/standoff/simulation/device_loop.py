@@ -26,7 +26,7 @@ NOTHING_READ.flags.writeable = False
 
 
 def check_device(device: Any, coupled: bool) -> None:
-    """Refuse what is no device, and a device where there is no coupler."""
+    """Refuse what is not a device, and a device where there is no coupler."""
     if device is None:
         return
     if not isinstance(device, Device | DeviceReadings):

@@ -88,7 +88,7 @@ class DeviceReadings(KeepsReadOnly):
         StandoffError
             A count below one or beyond a million, a period that is not above zero.
         StandoffTypeError
-            What is no path.
+            Not a path.
         """
         found: Any = path_of(path)
         seconds = non_negative(period, "period", above_zero=True)

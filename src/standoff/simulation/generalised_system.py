@@ -51,7 +51,7 @@ class GeneralisedSystem(KeepsReadOnly):
     Raises
     ------
     StandoffTypeError
-        Something that is no body, no contact or no function.
+        Something that is not a body, a contact or a function.
     StandoffError
         A pair that does not exist, or cannot be one.
     """

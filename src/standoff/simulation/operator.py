@@ -270,14 +270,14 @@ class Operator(KeepsReadOnly):
         ticks, every = whole_number(ticks, "ticks"), whole_number(every, "every")
         if ticks % every:
             raise StandoffError(
-                f"ticks = {ticks} is no multiple of every = {every}: the last tick would not be "
+                f"ticks = {ticks} is not a multiple of every = {every}: the last tick would not be "
                 "recorded.",
                 "every",
                 every,
             )
         if every % self.ticks_a_reading:
             raise StandoffError(
-                f"every = {every} is no multiple of {self.ticks_a_reading}, the ticks from one "
+                f"every = {every} is not a multiple of {self.ticks_a_reading}, the ticks from one "
                 "reading of the device to the next: records are made where readings come.",
                 "every",
                 every,

@@ -66,7 +66,7 @@ def ticks_a_reading(system: System, dt: float) -> int:
     Raises
     ------
     StandoffError
-        The device's period is no whole number of steps.
+        The device's period is not a whole number of steps.
     """
     if system.coupler is None or system.coupler.sampling is None:
         return 1

@@ -69,7 +69,7 @@ def whole_number(value: Any) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Sampling:
-    """What a coupler's passivity hangs on in the device and in the loop that drives it.
+    """What a coupler's passivity depends on in the device and in the loop that drives it.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ class Sampling:
     ------
     StandoffError
         A period that is not above zero, a damping or time constant below zero, or a delay that
-        is no whole number from 0 to 20.
+        is not a whole number from 0 to 20.
     """
 
     period: float

@@ -47,7 +47,7 @@ class PassivityController:
 
     Each tick it dissipates what is missing, as far as its limits allow: at the handle first, the
     rest at the tool. A held damper is passive only up to about the device's own damping, or the
-    mass that moves over the tick, so its limit is no formality.
+    mass that moves over the tick, so its limit is not a formality.
 
     Parameters
     ----------

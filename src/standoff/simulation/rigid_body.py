@@ -170,7 +170,7 @@ class RigidBody(KeepsReadOnly):
 
 
 def check_body(body: object) -> None:
-    """Raise TypeError where something given is no body, ValueError where it is planar."""
+    """Raise TypeError where something given is not a body, ValueError where it is planar."""
     if not isinstance(body, Body):
         raise StandoffTypeError(
             f"body is {shown(body)}: make one with so.shapes or Body.from_brep.", "body", body

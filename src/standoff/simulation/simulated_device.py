@@ -85,7 +85,7 @@ class ScriptedHand:
     Raises
     ------
     StandoffTypeError
-        What is no path, or no arm.
+        Not a path, or no arm.
     """
 
     path: Path | Callable[[float], PoseLike]
@@ -134,7 +134,7 @@ class SimulatedDevice:
     Raises
     ------
     StandoffError
-        A period that is not above zero, a delay that is no whole number from 0 to 20, or no pose;
+        A period that is not above zero, a delay that is not a whole number from 0 to 20, no pose;
         a mass too small for damping, stiffness and period.
     StandoffTypeError
         A part of another kind than named here.

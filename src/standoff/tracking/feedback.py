@@ -320,7 +320,7 @@ class FiniteTime:
     def rates(self) -> Array:
         """That of the layer around zero, the greatest."""
         if self.most is None:
-            raise StandoffError(f"{self}: its greatest gain hangs on the step; use resolved().")
+            raise StandoffError(f"{self}: its greatest gain depends on the step; use resolved().")
         return np.array([-float(self.most)])
 
 

@@ -103,7 +103,7 @@ def repair(flat: Array, name: str) -> None:
         except StandoffError as error:
             raise StandoffError(f"{name}: {error}", name, error.value) from error
         raise StandoffError(
-            f"{name}: its position {text(flat[9:])} is no length below {FARTHEST:g}.",
+            f"{name}: its position {text(flat[9:])} is not a length below {FARTHEST:g}.",
             name,
             flat[9:].copy(),
         )
@@ -163,7 +163,7 @@ def same_body(a: Body, b: Body) -> bool:
 
 
 def check_body(body: object) -> None:
-    """Raise TypeError where something given is no body."""
+    """Raise TypeError where something given is not a body."""
     if not isinstance(body, Body):
         raise StandoffTypeError(
             f"{shown(body)} is not a Body: make one with so.shapes or Body.from_brep.", "body", body

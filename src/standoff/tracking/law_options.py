@@ -130,7 +130,7 @@ class Option:
     ----------
     name : str
     default : object
-        None where it is no value itself: `help` then says what holds.
+        None where it is not a value itself: `help` then says what holds.
     kind : Choice, Positive, Whole, YesNo or OfFeedback
     help : str
         One sentence.

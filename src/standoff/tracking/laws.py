@@ -238,7 +238,7 @@ def checked_law(law: Any) -> Law:
             f"law = {name} is a class: make a law of it, law={name}().", "law", law
         )
     known = " or ".join(f"{name}(...)" for name in PYTHON.values())
-    raise StandoffTypeError(f"law = {shown(law)} is no law: give {known}.", "law", law)
+    raise StandoffTypeError(f"law = {shown(law)} is not a law: give {known}.", "law", law)
 
 
 def law_of_facts(facts: Mapping[str, Any]) -> Law:
@@ -256,6 +256,6 @@ def law_of_facts(facts: Mapping[str, Any]) -> Law:
     known = options_of(LAWS[name])
     for unknown in options.keys() - known.keys():
         raise StandoffError(
-            f"{unknown} is no option of the law '{name}': it has {list(known)}.", unknown
+            f"{unknown} is not an option of the law '{name}': it has {list(known)}.", unknown
         )
     return LAWS[name](**{option: known[option].of_plain(x) for option, x in options.items()})

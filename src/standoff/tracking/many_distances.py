@@ -39,7 +39,7 @@ FEATURE = np.dtype([("kind", "U6"), ("index", np.int64)])
 class Distances(AnswerArrays):
     """Signed distances of two bodies at n pairs of poses, as arrays of n rows.
 
-    ``found[k]`` is row k as a `Proximity`. A row whose poses are none is nan in all arrays, and
+    ``found[k]`` is row k as a `Proximity`. A row whose poses are invalid is nan in all arrays, and
     ``errors`` says why.
 
     Attributes
@@ -118,7 +118,7 @@ class Distances(AnswerArrays):
     def gradient(self) -> Array:
         """(n, 12) derivatives of the distance by unit twists (v_A, omega_A, v_B, omega_B).
 
-        nan where they are undefined; found anew at each call, as those below.
+        nan where they are undefined; computed at each call, as those below.
         """
         from standoff.tracking.derivatives import gradients
 
@@ -196,7 +196,7 @@ def distances(
     Returns
     -------
     Distances
-        Arrays of n rows. A row whose poses are none says so; the others stand.
+        Arrays of n rows. A row with invalid poses says so; the others are not affected.
 
     Raises
     ------
@@ -258,7 +258,7 @@ def _checked(
     errors: dict[int, StandoffError],
     repaired: NDArray[np.int64],
 ) -> Array:
-    """Poses for the kernels: rounded ones mended, and those that are none replaced and noted."""
+    """Poses for the kernels: rounded ones repaired, invalid ones replaced and noted."""
     turns = poses[:, :3, :3]
     with np.errstate(invalid="ignore", over="ignore"):
         off = np.abs(turns @ turns.transpose(0, 2, 1) - np.eye(3)).max(axis=(1, 2))

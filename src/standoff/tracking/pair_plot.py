@@ -62,7 +62,7 @@ def plot(
     for name, body in zip("ab", bodies, strict=True):
         if not isinstance(body, Body):
             raise StandoffTypeError(
-                f"{name} = {shown(body)} is no body: give one of so.shapes.", name, body
+                f"{name} = {shown(body)} is not a body: give one of so.shapes.", name, body
             )
     angles = view_angles(view)
     poses = _poses(bodies, answer)
@@ -102,7 +102,7 @@ def view_angles(view: Any) -> tuple[float, float] | None:
 def _poses(bodies: tuple[Body, Body], answer: Any) -> tuple[Any, Any]:
     if not isinstance(answer, Proximity):
         raise StandoffTypeError(
-            f"answer = {shown(answer)} is no answer: give one of so.distance or a Tracker.",
+            f"answer = {shown(answer)} is not an answer: give one of so.distance or a Tracker.",
             "answer",
             answer,
         )

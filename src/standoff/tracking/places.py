@@ -70,7 +70,7 @@ def _feature_of(body: Body, feature: Any) -> tuple[str, int]:
         index = operator.index(index)
     except (TypeError, ValueError) as error:
         raise StandoffError(
-            f"{shown(feature)} is no feature: give so.Feature('face', 0) or ('face', 0).",
+            f"{shown(feature)} is not a feature: give so.Feature('face', 0) or ('face', 0).",
             "feature",
             feature,
         ) from error

@@ -124,12 +124,12 @@ class Proximity(Answer, PlainData):
 
     @property
     def unique(self) -> bool:
-        """Are the witness points and the normal the only ones? Found anew at each call."""
+        """Are the witness points and the normal the only ones? Computed at each call."""
         return self.witness_set().unique
 
     def derivatives(self) -> Derivatives:
         """All derivatives by the poses, with a flag where they are one-sided or undefined
-        (docs/derivatives.md). Found anew at each call."""
+        (docs/derivatives.md). Computed at each call."""
         from standoff.tracking.derivatives import derivatives
 
         return derivatives(self)

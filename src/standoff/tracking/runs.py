@@ -72,7 +72,7 @@ class Given(NamedTuple):
         Raises
         ------
         StandoffError
-            A shape that is none of those named, or different numbers of frames.
+            A shape that is not one of those named, or different numbers of frames.
         """
         a, mark_a = read_poses(poses_a, "poses_a")
         b, mark_b = read_poses(poses_b, "poses_b")

@@ -52,12 +52,12 @@ _ADVICE = {
         "lower bound holds; loosen the tolerance, or report the pair with its poses."
     ),
     Status.LOCAL: (
-        "The bodies overlap, and moving B by depth * normal parts them; a lesser depth may exist "
+        "The bodies overlap, and moving B by depth * normal separates them; a shorter move may do "
         "in another direction, down to the upper bound: depth='global' searches for it, as far "
         "as a deadline lets it."
     ),
     Status.GLOBAL: (
-        "The bodies overlap, moving B by depth * normal parts them, and it is proven that no "
+        "The bodies overlap, moving B by depth * normal separates them, and it is proven that no "
         "direction needs less than 0.999 of it."
     ),
     Status.DEADLINE: (

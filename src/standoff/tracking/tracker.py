@@ -76,7 +76,7 @@ class Tracker(ReachedPair):
     Raises
     ------
     TypeError
-        Not a body; no law; `specialise` is no choice.
+        Not a body or a law; `specialise` is not one of its choices.
     ValueError
         A number that is not positive, a feedback that is not stable at `dt`, a planar body with a
         spatial one, two half-spaces.
@@ -342,7 +342,7 @@ class Tracker(ReachedPair):
         return dt
 
     def check_state(self, state: TrackerState) -> None:
-        """Refuse what is no state of this pair: it would be read with this one's features.
+        """Refuse what is not a state of this pair: it would be read with this one's features.
 
         Raises
         ------

@@ -167,12 +167,12 @@ def message_fault(message: Any) -> str | None:
         As it was unpacked: a mapping with a `type`.
     """
     if not isinstance(message, Mapping):
-        return "the message is no mapping"
+        return "the message is not a mapping"
     kind = message.get("type")
     if not isinstance(kind, str) or kind not in TYPES:
         return "the message is of a kind that this page does not send"
     if not _plain(message, MAX_DEPTH):
-        return "the message holds what is no short text and no finite number"
+        return "the message holds something that is neither a short text nor a finite number"
     if kind == "GuiUpdateMessage":
         updates = message.get("updates")
         if not isinstance(updates, Mapping) or set(updates) != {"value"}:

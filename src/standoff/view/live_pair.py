@@ -67,7 +67,7 @@ class LivePair:
         self.tracker, self._state, self.answer = changed.tracker, changed._state, changed.answer
 
     def restart(self, poses: tuple[Pose, Pose]) -> None:
-        """Begin anew at poses, as after a leap.
+        """Start again at poses, as after a leap.
 
         Raises
         ------

@@ -240,7 +240,7 @@ def guarded_server(access: Access, port: int | None = None) -> viser.ViserServer
 
 
 def check_free(host: str, port: int) -> None:
-    """Refuse a host that is none of this machine's, or a port that is in use.
+    """Refuse a host that does not belong to this machine, or a port that is in use.
 
     Raises
     ------

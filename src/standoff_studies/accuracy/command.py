@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from standoff_studies.accuracy.options import AccuracyOptions
 
 WIDTH = 140
-"""Characters of a table where stdout is no terminal, such as a file."""
+"""Characters of a table where stdout is not a terminal, such as a file."""
 
 FILES = ("accuracy.parquet", "accuracy.md", "gaps.md", "depths.md", "accuracy.png")
 

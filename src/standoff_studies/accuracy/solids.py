@@ -238,7 +238,7 @@ def named(names: Sequence[str]) -> tuple[Kind, ...]:
     Raises
     ------
     ValueError
-        A name that is no kind.
+        A name that is not a kind.
     """
     known = [kind.name for kind in KINDS]
     for name in names:

@@ -53,7 +53,7 @@ CATALOGUE: tuple[Entry, ...] = (
 # fmt: on
 
 ON_REQUEST: tuple[Entry, ...] = (
-    _entry("convergence", "Which starts arrive, run anew", "Convergence", "convergence", "anew"),
+    _entry("convergence", "Which starts arrive, run again", "Convergence", "convergence", "anew"),
 )
 """What takes minutes, and is made only where it is asked for by its own key."""
 

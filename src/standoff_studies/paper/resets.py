@@ -1,6 +1,6 @@
 """The projection errors at each switch, beside those that its reset implies.
 
-What a reset implies is computed here anew: the law's last step without any switch, then the reset
+What a reset implies is computed here again: the law's last step without any switch, then the reset
 from the new feature's own data. No kernel that switches takes part.
 """
 
@@ -231,7 +231,7 @@ def reset_statement(resets: list[Reset], by: str) -> Statement:
         f"at all {len(resets)} frames with switches they are those of the reset's parameters to "
         f"{off:.0e} length²; they come to {max(after):.1e} at most",
         off <= ROUNDED,
-        "the law's step and the reset are computed anew, without the kernels that switch",
+        "the law's step and the reset are computed again, without the kernels that switch",
         by,
     )
 

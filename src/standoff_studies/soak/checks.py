@@ -2,7 +2,8 @@
 
 With n the reported normal, s(n) = h_A(n) + h_B(-n) in world axes (h_B from B's place), -s(n) is
 how far a plane square to n keeps the bodies apart: never more than the true signed distance. Two
-points of the bodies at that distance prove it; in penetration a push of s(n) along n parts them.
+points of the bodies at that distance prove it; in penetration a push of s(n) along n separates
+them.
 """
 
 from __future__ import annotations
@@ -184,7 +185,7 @@ class _Checks:
         unknown = (self.status == Status.NOT_CERTIFIED.value) & (self.bound == -np.inf)
         told[unknown, K.LOWER_BOUND] = 0.0  # beside a half-space: no bound is known, and it says so
         self.expect("a number that is not finite", (~np.isfinite(told)).sum(axis=1), 0.0)
-        self.expect("the normal is no unit vector", np.abs(lengths(n) - 1.0), UNIT)
+        self.expect("the normal is not a unit vector", np.abs(lengths(n) - 1.0), UNIT)
         known = np.isin(self.status, [s.value for s in Status])
         self.expect("an unknown status", np.where(known, 0.0, self.status), 0.0)
         silent = (self.distance == 0.0) & (np.abs(self.separation) > self.noise)
@@ -224,7 +225,7 @@ class _Checks:
         self.expect("the points are not at the distance", off, allowed + turned, apart)
 
     def certified(self, tolerance: float) -> None:
-        """Apart: the normal separates by the distance. In penetration: the depth parts them."""
+        """Apart: the normal separates by the distance. In penetration: the depth separates them."""
         apart, deep = apart_of(self.status), deep_of(self.status)
         allowed = self._gap(tolerance)
         short = self.distance - self.separation
@@ -297,7 +298,7 @@ def search(
         # a distance above 0 says no such thing, nor does a depth within the bodies' own slack
         limit = noise + slack + max(-depth, 0.0)
         if -least > limit:
-            faults.append(Fault(k, "said to overlap, but a plane parts them", -least, limit))
+            faults.append(Fault(k, "said to overlap, but a plane separates them", -least, limit))
         limit = PROVEN * depth + noise
         if rows[k, K.STATUS] == GLOBAL and depth - least > limit:
             faults.append(Fault(k, "GLOBAL, but a lesser depth exists", depth - least, limit))

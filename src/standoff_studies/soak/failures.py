@@ -127,7 +127,7 @@ def read_failure(file: Path) -> Facts:
     """
     facts = read_facts(file)
     if facts.get("kind") != KIND:
-        raise ValueError(f"it is no failure of a soak: its 'kind' is not '{KIND}'")
+        raise ValueError(f"it is not a failure of a soak: its 'kind' is not '{KIND}'")
     text(entry(facts, "what"), "'what'")
     if "case" not in facts:
         for name, least in (("seed", 0), ("number", 0), ("frames", 1)):
@@ -187,7 +187,7 @@ def replay(facts: Facts) -> Replayed:
             why = f"{why} is missing"
         raise ValueError(f"the file's case is none of this version: {why}") from error
     if not _is_motion(frames):
-        raise ValueError("the file's motion has poses, twists or steps that are none")
+        raise ValueError("the file's motion has invalid poses, twists or steps")
     _, failure = run_case(case, a, b, frames)
     return Replayed(failure, _stepped(facts, case, a, b, tracker))
 

@@ -101,7 +101,7 @@ class Ledger:
             done = _parts(entry(facts, "done"))
             tally = Tally.of(facts)
         except ValueError as error:
-            raise ValueError(f"{file} is no ledger of a soak: {error}") from error
+            raise ValueError(f"{file} is not a ledger of a soak: {error}") from error
         wanted = {"standoff": __version__, "seed": seed, "frames": frames}
         for name, value in wanted.items():
             if known[name] != value:
@@ -112,7 +112,7 @@ class Ledger:
         ledger = cls(seed, frames, done, tally)
         wrong = ledger.inconsistency()
         if wrong:
-            raise ValueError(f"{file} is damaged: {wrong}. Begin anew in another folder.")
+            raise ValueError(f"{file} is damaged: {wrong}. Start again in another folder.")
         return ledger
 
     def inconsistency(self) -> str:

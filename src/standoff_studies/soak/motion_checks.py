@@ -57,7 +57,7 @@ def number_checks(a: Made, b: Made, rows: Array, twists: bool) -> Iterator[Check
         wrong = ~_is_mode(made, rows[:, at], rows[:, at + 1])
         yield Check(f"no feature of {name}", wrong.astype(float), 0.0)
     counts = rows[:, K.OUT_COUNTS :]
-    yield Check("a count that is no number of things", (counts < 0.0).sum(axis=1), 0.0)
+    yield Check("a count that is not a number of things", (counts < 0.0).sum(axis=1), 0.0)
 
 
 def _is_mode(made: Made, feature: Array, chart: Array) -> Where:
@@ -83,7 +83,7 @@ def residual_check(a: Made, b: Made, rows: Array, noise: Array) -> Check:
     radii = a.body.radius + b.body.radius
     longest = lengths(between + radii * rows[:, K.NORMAL : K.NORMAL + 3])
     return Check(
-        "the residual is no projection of the witness vector",
+        "the residual is not a projection of the witness vector",
         np.abs(rows[:, K.RESIDUAL]),
         TURNS * longest + noise,
     )

@@ -30,7 +30,7 @@ def read_facts(file: Path) -> Facts:
 
 
 def _refused(text: str) -> float:
-    raise ValueError(f"{text} is no number that these files hold")
+    raise ValueError(f"{text} is not a number that these files hold")
 
 
 def _finite(text: str) -> float:
@@ -63,7 +63,7 @@ def number(value: Any, what: str) -> float:
 def numbers(values: Any, what: str, count: int | None = None) -> list[float]:
     """Return so many numbers; a ValueError where they are none."""
     if not isinstance(values, list) or (count is not None and len(values) != count):
-        raise ValueError(f"{what} is no list of {'' if count is None else f'{count} '}numbers")
+        raise ValueError(f"{what} is not a list of {'' if count is None else f'{count} '}numbers")
     return [number(value, what) for value in values]
 
 

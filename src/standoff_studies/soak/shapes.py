@@ -56,7 +56,7 @@ def made(shape: Shape) -> Made:
         No such kind, or what the body's constructor refuses.
     """
     if shape.kind not in KINDS:
-        raise ValueError(f"{shape.kind!r} is no kind of shape; there are {', '.join(KINDS)}.")
+        raise ValueError(f"{shape.kind!r} is not a kind of shape; there are {', '.join(KINDS)}.")
     return Made(shape, *KINDS[shape.kind].make(**shape.numbers))
 
 

@@ -42,11 +42,11 @@ def prove_patch(surface: Surface, outward: int | None = None) -> PatchProof:
         return interval.prove(surface, outward)
     if isinstance(surface, Revolution | Extrusion):
         return prove_swept(surface, outward)
-    bulge = getattr(surface, "bulge", None)  # what is no surface has none, and is named below
+    bulge = getattr(surface, "bulge", None)  # what is not a surface has none, and is named below
     if bulge is not None:
         proof = prove_by_kind(surface, bulge)
         if outward is not None and proof.sense == -outward:
-            # hollow: no bound is sought, such a face is no part of a convex body
+            # hollow: no bound is sought, such a face is not a part of a convex body
             return replace(
                 proof, convex=False, defect=np.inf, sense=outward, tilt=np.pi, curvature=-np.inf
             )

@@ -74,7 +74,7 @@ def grid_points(surface: Surface, count: int = GRID) -> Array:
 
 
 def check_patches(patches: Sequence[Any]) -> None:
-    """Raise BodyError where something given is no patch."""
+    """Raise BodyError where something given is not a patch."""
     if not len(patches):
         raise BodyError("No patches: a body needs a closed shell of them.", "patches", patches)
     for k, surface in enumerate(patches):

@@ -75,7 +75,7 @@ def sew(patches: Sequence[Any], tolerance: float | None = None) -> Sewn:
     tolerance = SEWING_TOLERANCE * size if tolerance is None else positive(tolerance, "tolerance")
     if tolerance >= 0.1 * size:
         raise BodyError(
-            f"tolerance = {tolerance:.3g} is no small part of the patches' size {size:.3g}.",
+            f"tolerance = {tolerance:.3g} is not a small part of the patches' size {size:.3g}.",
             "tolerance",
             tolerance,
         )

@@ -48,7 +48,7 @@ def spindle(radius: float, length: float, patches: int = 3, *, rounding: float =
     Raises
     ------
     BodyError
-        The arc is a semicircle or more; `patches` is no whole number from 3 to 1000.
+        The arc is a semicircle or more; `patches` is not a whole number from 3 to 1000.
     ValueError
         A length that is not finite or not positive, a negative rounding.
     """
@@ -92,7 +92,7 @@ def gore(radius: float, height: float, patches: int = 4, *, rounding: float = 0.
     Raises
     ------
     BodyError
-        The arcs are semicircles or more; `patches` is no whole number from 3 to 1000.
+        The arcs are semicircles or more; `patches` is not a whole number from 3 to 1000.
     ValueError
         A length that is not finite or not positive, a negative rounding.
     """

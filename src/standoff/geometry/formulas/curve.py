@@ -120,5 +120,5 @@ def _curve(
 def _rebuilt_curve(
     expressions: tuple[Any, ...], inside: tuple[float, ...], linear: Array, shift: Array
 ) -> FormulaCurve:
-    """A curve in another process: its formula is compiled anew there."""
+    """A curve in another process: its formula is compiled again there."""
     return _curve(compiled(expressions, CURVE_VARIABLES), inside, linear, shift)

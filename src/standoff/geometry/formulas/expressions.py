@@ -26,7 +26,7 @@ FUNCTIONS = {
 }  # fmt: skip
 """Name in a formula: name in SymPy. Only functions that are smooth where they are defined."""
 CONSTANTS = ("pi", "E")
-# Longer text, or more parts of a SymPy expression, is no formula of a patch but a program's
+# Longer text, or more parts of a SymPy expression, is not a formula of a patch but a program's
 # output; differentiating it twice and compiling it could take minutes.
 LONGEST = 4000
 MOST_PARTS = 2000
@@ -76,7 +76,7 @@ def parameter_values(
     Raises
     ------
     FormulaError
-        A name that is no identifier or is taken, a value that is no finite number.
+        A name that is not an identifier or is taken, a value that is not a finite number.
     """
     taken = {*variables, *FUNCTIONS, *CONSTANTS}
     values = {}
@@ -134,7 +134,7 @@ def read_expression(
     ------
     FormulaError
         Unknown symbols (with the nearest known one), bad syntax (with the position), anything
-        that is no arithmetic, numbers beyond float64.
+        that is not arithmetic, numbers beyond float64.
     """
     sympy = sympy_module()
     symbols = {v: sympy.Symbol(v) for v in variables}
@@ -294,7 +294,9 @@ class _Text:
             if isinstance(node.func, ast.Name):
                 at = f" at position {self.place(node)}"
                 if node.func.id in self.known:
-                    raise self.fail(node, f"{node.func.id} is no function: write a product with *")
+                    raise self.fail(
+                        node, f"{node.func.id} is not a function: write a product with *"
+                    )
                 raise _unknown(node.func.id, self.name, self.text, at, [*FUNCTIONS, *self.names])
             raise self.fail(node, "only the named functions may be called:")
         wanted = 2 if node.func.id == "atan2" else 1

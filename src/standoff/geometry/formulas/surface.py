@@ -129,5 +129,5 @@ def _surface(
 def _rebuilt_surface(
     expressions: tuple[Any, ...], domain: Sequence[float], linear: Array, shift: Array
 ) -> FormulaSurface:
-    """A surface in another process: its formula is compiled anew there."""
+    """A surface in another process: its formula is compiled again there."""
     return _surface(compiled(expressions, SURFACE_VARIABLES), domain, linear, shift)

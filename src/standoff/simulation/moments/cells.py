@@ -19,7 +19,7 @@ from standoff.simulation.tolerances import LEAST_SHARE
 # Orders of the rules along either parameter: 2^k - 1 nodes. Past the last a cell is halved.
 FIRST_LEVEL, LAST_LEVEL = 3, 6
 # Values a rule is made of carry so many roundings (eps of the sum of their magnitudes): less than
-# this is no difference between two rules.
+# this is not a difference between two rules.
 ROUNDINGS = 16.0
 # A remainder is this many times what the last two differences foretell.
 SAFETY = 8.0

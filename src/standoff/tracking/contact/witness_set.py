@@ -104,7 +104,7 @@ def witness_set(
     given: Any = proximity
     if not isinstance(given, Answer):
         raise StandoffTypeError(
-            f"{shown(given)} is no answer: give one of so.distance or a Tracker.",
+            f"{shown(given)} is not an answer: give one of so.distance or a Tracker.",
             "proximity",
             given,
         )

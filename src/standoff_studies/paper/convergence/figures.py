@@ -40,7 +40,7 @@ def as_committed() -> Artwork:
 
 
 def anew() -> Artwork:
-    """The study run anew: minutes."""
+    """The study run again: minutes."""
     return _artwork(study())
 
 

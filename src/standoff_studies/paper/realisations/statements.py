@@ -83,7 +83,7 @@ def _gain() -> Statement:
         f"with {c.GAINS[-1]:g}; from K = {c.GAINS[-3]:g} 1/s on, twice the gain at half the step "
         f"leaves them as far apart, within {same:.0%}",
         None,
-        "What the integrated one loses after a wrong start hangs on the product K h.",
+        "What the integrated one loses after a wrong start depends on the product K h.",
     )
 
 

@@ -25,7 +25,7 @@ ARCH_V = ((-1.1, -0.45), (-0.4, 0.22), (0.6, 0.22), (1.1, -0.35))
 
 LIFT = ((0.42, 0.37), (0.38, 0.43))
 """Heights added to the four inner control points, 0.4 to the outer ones [length]. They differ, so
-that the patch is no plain sum of two arches: its f_uv does not vanish."""
+that the patch is not a plain sum of two arches: its f_uv does not vanish."""
 
 FLOOR = -1.0
 """z of the floor [length]."""

@@ -218,7 +218,7 @@ def _pairs(plain: Iterable[Any]) -> dict[tuple[Any, Any], int]:
 
 
 def _collect(e: Any, roots: dict[Any, int], plain: dict[Any, None], seen: dict[Any, Any]) -> None:
-    """Note the radicands with the roots taken of them, and all that is no sum, product or power."""
+    """Note radicands with their roots, and all that is not a sum, product or power."""
     shape, e = e, canonical(e)
     if e.is_Rational:
         return
