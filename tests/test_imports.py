@@ -30,7 +30,10 @@ COMMANDS = (
 STUDIES = ("paper", "soak", "accuracy")
 
 # What draws, writes, reads formulas, or serves the command line alone.
-EXTRAS = {"PIL", "flint", "jinja2", "matplotlib", "pyarrow", "rich", "sympy", "tyro"}
+EXTRAS = {
+    *("PIL", "flint", "jinja2", "matplotlib", "pyarrow", "rich", "sympy", "tyro"),
+    *("casadi", "jax", "torch"),
+}
 # Parts of the library that a query of two ready-made shapes has no use for.
 UNUSED = (
     "bodies.voronoi",
@@ -38,6 +41,7 @@ UNUSED = (
     "control",
     "scene",
     "automaton",
+    "frameworks",
     "impact",
     "points",
     "recording",

@@ -99,6 +99,10 @@ class MaskedNumbers(StandoffTypeError):
     """Some of the numbers given are masked: there is no value to compute with."""
 
 
+class DerivativeWarning(RuntimeWarning):
+    """Derivatives of a distance that are not defined were handed to a framework, as nan."""
+
+
 def not_installed(library: str, extra: str = "cli") -> str:
     """What is said where a library is missing that comes with an extra of this package."""
     return (

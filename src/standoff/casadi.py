@@ -1,0 +1,169 @@
+"""Signed distances in CasADi, with exact Jacobian and Hessian (docs/differentiable.md)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from standoff.bodies.body import Body
+from standoff.errors import StandoffError, not_installed
+from standoff.frameworks import ambient
+
+try:
+    import casadi
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(not_installed("CasADi", "casadi"), name=error.name) from error
+
+__all__ = ["distance"]
+
+_KEPT: list[Any] = []
+"""CasADi does not own its callbacks: one that Python has dropped fails when it is called."""
+
+POSE = casadi.Sparsity.dense(4, 4)
+
+
+def distance(a: Body, b: Body, *, undefined: str = "nan", name: str = "distance") -> Any:
+    """A CasADi function: the signed minimum distance of two bodies at two poses.
+
+    Make it once for a pair of bodies: it is kept until the program ends. Call it with expressions
+    in MX; it is no SX. For n poses use its ``map(n)``.
+
+    Parameters
+    ----------
+    a, b : Body
+    undefined : "nan" or "raise"
+        Where a derivative is not defined: nan with a `DerivativeWarning`, or an error.
+    name : str
+        Of the function, as CasADi takes it.
+
+    Returns
+    -------
+    casadi.Callback
+        (pose_a, pose_b), of 4 x 4, to the distance. Its Jacobian and Hessian by the matrices are
+        those of the distance at the nearest pose.
+
+    Raises
+    ------
+    TypeError
+        No bodies.
+    ValueError
+        An unknown choice, or a name that CasADi does not take. When called, within CasADi's own
+        RuntimeError: a matrix that is no pose; undefined derivatives, if asked; a third derivative.
+    """
+    if not casadi.Function.check_name(name):
+        raise StandoffError(
+            f"name = {name!r}: give a letter, then letters, digits and single underscores.",
+            "name",
+            name,
+        )
+    return _Value(ambient.Pair.of(a, b, undefined), name)
+
+
+class _Callback(casadi.Callback):
+    """A callback with named inputs and outputs of given sizes."""
+
+    def __init__(
+        self,
+        pair: ambient.Pair,
+        name: str,
+        inputs: dict[str, Any],
+        outputs: dict[str, Any],
+        options: Any = None,
+    ) -> None:
+        casadi.Callback.__init__(self)
+        self.pair, self.inputs, self.outputs = pair, inputs, outputs
+        self.construct(name, options or {})
+        _KEPT.append(self)
+
+    def get_n_in(self) -> int:
+        return len(self.inputs)
+
+    def get_n_out(self) -> int:
+        return len(self.outputs)
+
+    def get_name_in(self, k: int) -> str:
+        return list(self.inputs)[k]
+
+    def get_name_out(self, k: int) -> str:
+        return list(self.outputs)[k]
+
+    def get_sparsity_in(self, k: int) -> Any:
+        return list(self.inputs.values())[k]
+
+    def get_sparsity_out(self, k: int) -> Any:
+        return list(self.outputs.values())[k]
+
+    def has_jacobian(self) -> bool:
+        return True
+
+    def jacobian_outputs(self, names: list[str]) -> dict[str, Any]:
+        """Sizes of the Jacobian's blocks, each output by each input."""
+        sizes = [
+            casadi.Sparsity.dense(rows.numel(), columns.numel())
+            for rows in self.outputs.values()
+            for columns in self.inputs.values()
+        ]
+        return dict(zip(names, sizes, strict=True))
+
+
+class _Value(_Callback):
+    """(pose_a, pose_b) to the distance."""
+
+    def __init__(self, pair: ambient.Pair, name: str) -> None:
+        poses = {"pose_a": POSE, "pose_b": POSE}
+        super().__init__(pair, name, poses, {"distance": casadi.Sparsity.dense(1, 1)})
+
+    def eval(self, given: Any) -> Any:
+        return [float(ambient.value(self.pair, *_poses(given)))]
+
+    def get_jacobian(self, name: str, inputs: Any, outputs: Any, options: Any) -> Any:
+        sizes = dict(zip(inputs, [POSE, POSE, casadi.Sparsity(1, 1)], strict=True))
+        return _Gradient(self.pair, name, sizes, self.jacobian_outputs(outputs), options)
+
+
+class _Gradient(_Callback):
+    """(pose_a, pose_b, distance) to the rows of 16 derivatives by each pose."""
+
+    def eval(self, given: Any) -> Any:
+        gradient = ambient.first(self.pair, *_poses(given)).gradient
+        return [_by_columns(gradient[body])[None] for body in range(2)]
+
+    def get_jacobian(self, name: str, inputs: Any, outputs: Any, options: Any) -> Any:
+        empty = [casadi.Sparsity(x.shape) for x in self.outputs.values()]
+        sizes = dict(zip(inputs, [*self.inputs.values(), *empty], strict=True))
+        blocks = self.jacobian_outputs(outputs)
+        # Nothing depends on the value that comes in with the poses.
+        for which in list(blocks)[2::3]:
+            blocks[which] = casadi.Sparsity(blocks[which].shape)
+        return _Hessian(self.pair, name, sizes, blocks, options)
+
+
+class _Hessian(_Callback):
+    """The same and the rows to the blocks of 16 x 16, each row by each input."""
+
+    def eval(self, given: Any) -> Any:
+        hessian = ambient.second(self.pair, *_poses(given)).hessian
+        found: list[Any] = []
+        for row in range(2):
+            for column in range(2):
+                block = hessian[row, :, :, column].transpose(1, 0, 3, 2)
+                found.append(block.reshape(ambient.ENTRIES, ambient.ENTRIES))
+            found.append(casadi.DM(ambient.ENTRIES, self.inputs_of_value()))
+        return found
+
+    def inputs_of_value(self) -> int:
+        """Columns of the empty block: one, the distance."""
+        return int(list(self.inputs.values())[2].numel())
+
+    def get_jacobian(self, name: str, inputs: Any, outputs: Any, options: Any) -> Any:
+        raise StandoffError(ambient.NO_THIRD)
+
+
+def _poses(given: Any) -> list[Any]:
+    return [np.asarray(x.full()) for x in given[:2]]
+
+
+def _by_columns(matrix: Any) -> Any:
+    """(16,) the entries in CasADi's order."""
+    return matrix.T.reshape(ambient.ENTRIES)

@@ -1,0 +1,1 @@
+"""What `standoff.jax`, `standoff.torch` and `standoff.casadi` share, in NumPy."""
