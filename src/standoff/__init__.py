@@ -36,6 +36,7 @@ if TYPE_CHECKING:
         plot,
         witness_set,
     )
+    from standoff.view import view
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -74,6 +75,7 @@ else:
             "standoff.impact": ("time_of_impact",),
             "standoff.points": ("PointTracker",),
             "standoff.recording": ("Recording", "open_recording", "simulate"),
+            "standoff.view": ("view",),
         },
         modules=(
             "automaton",
@@ -166,6 +168,7 @@ __all__ = [
     "shapes",
     "simulate",
     "time_of_impact",
+    "view",
     "voronoi_regions",
     "witness_set",
 ]

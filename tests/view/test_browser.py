@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -74,7 +75,7 @@ def from_box(centre: Any) -> float:
 def slowly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a browser that draws without a graphics card keep up."""
     pytest.importorskip("viser", reason="viser is not installed (extra 'view')")
-    monkeypatch.setattr("standoff.view.page.PERIOD", 0.15)
+    monkeypatch.setattr(import_module("standoff.view.page"), "PERIOD", 0.15)
 
 
 @pytest.fixture

@@ -25,6 +25,7 @@ COLOURS: tuple[tuple[Colour, Colour], ...] = (
 EDGE_COLOUR: Colour = (60, 60, 60)
 WITNESS_COLOUR: Colour = (20, 20, 20)
 BOUND_COLOUR: Colour = (0, 158, 115)
+FORCE_COLOUR: Colour = (204, 121, 167)
 
 OPACITY = 0.85
 """Of a body's surface: witness points inside a body that overlaps are seen through it."""
@@ -167,7 +168,24 @@ class AnswerNodes:
             head_radius=0.05 * ARROW * size,
             head_length=0.2 * ARROW * size,
         )
+        self._force = scene.add_arrows(
+            "/answer/force",
+            2.0 * ARROW * size * upright,
+            FORCE_COLOUR,
+            shaft_radius=0.04 * ARROW * size,
+            head_radius=0.1 * ARROW * size,
+            head_length=0.3 * ARROW * size,
+            visible=False,
+        )
         self._label = scene.add_label("/answer/label", "", anchor="bottom-left")
+
+    def pull(self, at: Array, force: Array, greatest: float) -> None:
+        """Draw the coupler's force (3,) on a tool whose origin is `at` (3,) [N]."""
+        size = float(np.linalg.norm(force))
+        self._force.visible = size > 0.0
+        if size > 0.0:
+            self._force.position, self._force.wxyz = tuple(at), upright_to(force / size)
+            self._force.scale = max(size / greatest, 0.02)
 
     def show(self, points: tuple[Array, Array], normal: Array, text: str) -> None:
         """Draw an answer.

@@ -84,6 +84,13 @@ class Page:
         """Return when the page is closed, as by an interrupt."""
         self._closing.wait()
 
+    def __repr__(self) -> str:
+        return f"<Page of {self.stage.scene.title!r} at {self.address}>"
+
+    def _repr_html_(self) -> str:
+        frame = 'width="100%" height="600" style="border:0"'
+        return f'<iframe src="{self.address}" {frame}></iframe>'
+
     def __enter__(self) -> Page:
         return self
 
@@ -111,6 +118,14 @@ class Page:
         if which in HANDS:
             self.stage.hand(which)
 
+    def pull(self, on: bool) -> None:
+        """Pull the dragged body through the virtual coupler, or carry it."""
+        self.stage.pull(on)
+
+    def limit(self, force: float) -> None:
+        """Lower the coupler's greatest force [N]; it is never raised."""
+        self.stage.limit(force)
+
     def law(self, name: str, integrator: str, share: float) -> None:
         """Follow another law, with a share of the greatest stable gain."""
         self.stage.law(name, integrator, share)
@@ -119,7 +134,8 @@ class Page:
         """Show another scene; where it cannot be shown, the one there is stays."""
         if title in self._others:
             scene = load_scene(self._others[title])
-            self.stage = Stage(self.server, self.panel, self._asked.put, scene)
+            limit = self.stage.max_force
+            self.stage = Stage(self.server, self.panel, self._asked.put, scene, limit)
 
     def export(self, client: Any) -> None:
         """Send the run to a page as a file."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from standoff.view.laws import INTEGRATORS, NAMES
 from standoff.view.player import SPEEDS, Player
+from standoff.view.pull import LEAST_FORCE, MAX_FORCE
 from standoff.view.readout import COLOURS, readout
 from standoff.view.shown import Shown
 
@@ -40,6 +41,8 @@ class Asks(Protocol):
     def seek(self, time: float) -> None: ...
     def speed(self, factor: float) -> None: ...
     def hand(self, which: str) -> None: ...
+    def pull(self, on: bool) -> None: ...
+    def limit(self, force: float) -> None: ...
     def law(self, name: str, integrator: str, share: float) -> None: ...
     def open(self, title: str) -> None: ...
     def export(self, client: Any) -> None: ...
@@ -105,6 +108,10 @@ class Panel:
         self._time = gui.add_slider("time, s", 0.0, 1.0, 0.001, 0.0)
         self._speed = gui.add_dropdown("speed", tuple(SPEEDS), initial_value="×1")
         self._hand = gui.add_dropdown("drag", HANDS, initial_value="A")
+        self._pull = gui.add_checkbox("through a spring", False)
+        self._limit = gui.add_slider(
+            "greatest force, N", LEAST_FORCE, MAX_FORCE, 0.1, MAX_FORCE, visible=False
+        )
         self._export = gui.add_button("Save the run as a page")
         self._playing = False
 
@@ -129,6 +136,18 @@ class Panel:
             which = str(event.target.value)
             if event.client is not None:
                 self._later(lambda: self._asks.hand(which))
+
+        @self._pull.on_update
+        async def _(event: Any) -> None:
+            on = bool(event.target.value)
+            if event.client is not None:
+                self._later(lambda: self._asks.pull(on))
+
+        @self._limit.on_update
+        async def _(event: Any) -> None:
+            force = float(event.target.value)
+            if event.client is not None:
+                self._later(lambda: self._asks.limit(force))
 
         @self._export.on_click
         async def _(event: Any) -> None:
@@ -176,6 +195,11 @@ class Panel:
         self._hand.value = which
         self.forget()
 
+    def pull_is(self, on: bool, limit: float) -> None:
+        """Tell whether the body is pulled through the coupler, and its greatest force [N]."""
+        self._pull.value, self._limit.visible = on, on
+        self._limit.max = self._limit.value = limit
+
     def law_is(self, name: str, integrator: str, share: float, gain: float | None) -> None:
         """Tell the law that is followed; `gain` [1/s] of the paper's."""
         self._law.value, self._integrator.value, self._share.value = name, integrator, share
@@ -198,9 +222,11 @@ class Panel:
         self._log.appendleft(row)
         self._switches.content = LOG.format("".join(self._log))
 
-    def show(self, shown: Shown, names: tuple[str, str], unit: str) -> None:
-        """Show the numbers of an instant."""
-        self._readout.content = readout(shown, names, unit)
+    def show(
+        self, shown: Shown, names: tuple[str, str], unit: str, force: float | None = None
+    ) -> None:
+        """Show the numbers of an instant; `force` [N] of the coupler where it pulls."""
+        self._readout.content = readout(shown, names, unit, force)
 
     def plays(self, player: Player) -> None:
         """Show where a recording stands, and its frames up to there."""

@@ -95,6 +95,10 @@ class Picture:
         """Put one page's camera where new ones begin."""
         step_back(client.camera, self._server.initial_camera)
 
+    def pull(self, at: Any, force: Any, greatest: float) -> None:
+        """Draw the coupler's force on a tool; see `AnswerNodes.pull`."""
+        self._answer.pull(at, force, greatest)
+
     def show(self, shown: Shown, note: str = "", *, held: int | None = None) -> None:
         """Draw what is shown at an instant.
 

@@ -27,7 +27,7 @@ def length(value: float, unit: str) -> str:
     return f"{value:.{DIGITS}g} {unit}".rstrip() if np.isfinite(value) else "not known"
 
 
-def readout(answer: Shown, names: tuple[str, str], unit: str) -> str:
+def readout(answer: Shown, names: tuple[str, str], unit: str, force: float | None = None) -> str:
     """Return the table of an answer, as HTML.
 
     Parameters
@@ -37,6 +37,8 @@ def readout(answer: Shown, names: tuple[str, str], unit: str) -> str:
         Of A and B.
     unit : str
         Label of lengths.
+    force : float, optional
+        Of the coupler [N].
 
     Returns
     -------
@@ -52,8 +54,11 @@ def readout(answer: Shown, names: tuple[str, str], unit: str) -> str:
         (names[1], str(answer.features[1])),
         ("normal", normal),
     ]
-    keys = ("distance", "bound", "gap", "status", "a", "b", "normal")
-    marks = (*(MARK.format(colour) for colour in COLOURS), *[""] * 5)
+    keys = ["distance", "bound", "gap", "status", "a", "b", "normal"]
+    if force is not None:
+        rows.append(("force", f"{force:.2f} N"))
+        keys.append("force")
+    marks = (*(MARK.format(colour) for colour in COLOURS), *[""] * (len(rows) - 2))
     return TABLE.format(
         "".join(
             ROW.format(mark + escape(name), key, escape(text))

@@ -17,6 +17,7 @@ from standoff.view.live_pair import LivePair
 from standoff.view.panel import Panel
 from standoff.view.picture import Picture
 from standoff.view.player import Player
+from standoff.view.pull import LEAST_FORCE, MAX_FORCE, Pull
 from standoff.view.shown import Shown, of_answer, of_frame
 
 
@@ -30,9 +31,13 @@ class Stage:
     later : callable
         Takes what is to be done in the page's thread.
     scene : Scene
+    max_force : float
+        Greatest force of the coupler [N].
 
     Attributes
     ----------
+    max_force : float
+        As it was lowered since [N].
     pair : LivePair
         What is dragged.
     player : Player or None
@@ -51,6 +56,7 @@ class Stage:
         panel: Panel,
         later: Callable[[Callable[[], None]], None],
         scene: Scene,
+        max_force: float = MAX_FORCE,
     ) -> None:
         self.scene, self.panel, self._server = scene, panel, server
         self._settings = scene.settings
@@ -63,12 +69,16 @@ class Stage:
         self._by_hand = self.player is None
         self._clock = 0.0
         self._held: int | None = None
+        self._hand: int | None = moving_body(scene)
+        self._pull: Pull | None = None
+        self.max_force = max_force
         # All that may be refused has been asked: now the page changes.
         self.picture = Picture(server, self.pair.bodies, scene.length_unit)
         for number, handle in enumerate(self.picture.handles):
             self._listen(number, handle, later)
         self.picture.aim(self.pair.poses)
         which = "AB"[moving_body(scene)]
+        panel.pull_is(False, max_force)
         panel.begin(scene.title, self.player, which)
         self._tell_law()
         self.hand(which)
@@ -104,8 +114,47 @@ class Stage:
 
     def hand(self, which: str) -> None:
         """Give the handle to A, to B or to nothing."""
+        self._hand = "AB".index(which) if which in "AB" else None
+        if self._pull is not None and self._pull.number != self._hand:
+            self._let_go()
         for name, handle in zip("AB", self.picture.handles, strict=True):
             handle.visible = name == which
+
+    def pull(self, on: bool) -> None:
+        """Pull the dragged body through the virtual coupler, or carry it.
+
+        Raises
+        ------
+        StandoffError
+            If nothing is dragged, or the pair cannot be simulated.
+        """
+        self._let_go()
+        if not on:
+            return
+        if self._hand is None:
+            raise StandoffError("Nothing is dragged that could be pulled: choose A or B.")
+        if not self._by_hand:
+            self._take_in_hand()
+        size = self.picture.shapes[self._hand].size
+        self._pull = Pull(self.pair, self._hand, size, self.max_force)
+        self._wanted = self.pair.poses
+        self.panel.pull_is(True, self.max_force)
+
+    def limit(self, force: float) -> None:
+        """Lower the coupler's greatest force [N]; a higher one than now is not taken."""
+        lowered = max(min(force, self.max_force), LEAST_FORCE)
+        if lowered < self.max_force:
+            self.max_force = lowered
+            if self._pull is not None:
+                self._pull.lower(lowered)
+        self.panel.pull_is(self._pull is not None, self.max_force)
+
+    def _let_go(self) -> None:
+        if self._pull is not None:
+            self.picture.pull(np.zeros(3), np.zeros(3), 1.0)
+            self._wanted = self.pair.poses
+        self._pull = None
+        self.panel.pull_is(False, self.max_force)
 
     def law(self, name: str, integrator: str, share: float) -> None:
         """Follow another law, with a share of the greatest stable gain.
@@ -142,10 +191,10 @@ class Stage:
         """Move the dragged body on; a law that has not settled goes on settling."""
         self._clock += elapsed
         settled = self.pair.answer.certified or self.pair.answer.status.penetrating
-        if self._wanted is self.pair.poses and settled:
+        if self._pull is None and self._wanted is self.pair.poses and settled:
             return
         try:
-            events = self.pair.move(self._wanted, elapsed)
+            events = self.pair.move(self._next_poses(elapsed), elapsed)
         except StandoffError:
             self._wanted = self.pair.poses
             raise
@@ -154,6 +203,23 @@ class Stage:
         shown = of_answer(self.pair.answer, self.pair.poses)
         self._show(shown)
         self.panel.traces(self._clock, shown)
+
+    def _next_poses(self, elapsed: float) -> tuple[Pose, Pose]:
+        """Where the hand wants the bodies, or where the coupler has pulled the tool."""
+        if self._pull is None:
+            return self._wanted
+        number = self._pull.number
+        try:
+            tool = self._pull.step(self._wanted[number], elapsed)
+        except StandoffError:
+            self._let_go()
+            raise
+        if self._pull.fault:
+            fault = self._pull.fault
+            self._let_go()
+            raise StandoffError(f"The coupler let go: {fault}")
+        self.picture.pull(tool.translation, self._pull.force, MAX_FORCE)
+        return (tool, self._wanted[1]) if number == 0 else (self._wanted[0], tool)
 
     def _drag(self, number: int, wxyz: Any, position: Any, *, held: bool = False) -> None:
         self._held = number if held else None
@@ -176,6 +242,7 @@ class Stage:
     def _play_on(self) -> None:
         """Go from the hand to the motion."""
         if self._by_hand:
+            self._let_go()
             self._by_hand = False
             self.panel.forget()
 
@@ -194,8 +261,11 @@ class Stage:
 
     def _show(self, shown: Shown) -> None:
         with self._server.atomic():
-            self.picture.show(shown, held=self._held)
-            self.panel.show(shown, self.scene.pair, self.scene.length_unit)
+            pull = self._pull
+            held = self._held if pull is None else pull.number
+            force = None if pull is None else float(np.linalg.norm(pull.force))
+            self.picture.show(shown, held=held)
+            self.panel.show(shown, self.scene.pair, self.scene.length_unit, force)
 
     def _tell_law(self) -> None:
         resolved = self.pair.tracker.resolved_law

@@ -27,3 +27,6 @@ MAX_DEPTH: Final = 4
 LIFT: Final = 2e-3
 """How far the active feature is drawn off the body, over its size: drawn in the same place, the
 two would flicker through each other."""
+
+TICK: Final = 1e-3
+"""Time of a tick of coupler, dynamics and contact [s]: the rate of haptic devices."""
