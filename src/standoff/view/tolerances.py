@@ -29,4 +29,4 @@ LIFT: Final = 2e-3
 two would flicker through each other."""
 
 TICK: Final = 1e-3
-"""Time of a tick of coupler, dynamics and contact [s]: the rate of haptic devices."""
+"""Time step of coupler, dynamics and contact [s]: the rate of haptic devices."""
