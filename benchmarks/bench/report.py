@@ -21,8 +21,10 @@ from standoff.whole_files import write_whole
 MICRO = 1e6
 FLOOR = 1e-17
 """Errors of 0 are drawn here."""
-COLUMNS = 3
-"""Plots side by side."""
+COLUMNS = 2
+"""Plots side by side: what a phone still shows."""
+LETTERS = 12
+"""Points of the plot's letters."""
 COLOURS = {"Coal": "C1", "MuJoCo": "C2", "python-fcl": "C3", "OpenCASCADE": "C4", "SciPy": "C5"}
 
 
@@ -108,39 +110,47 @@ def colour_of(contender: str) -> str:
     return next((c for name, c in COLOURS.items() if contender.startswith(name)), "C0")
 
 
+def package_of(contender: str) -> str:
+    return next((name for name in COLOURS if contender.startswith(name)), "Standoff")
+
+
 def drawn(rows: list[Row]) -> plt.Figure:
-    """Time and witness error of every contender, a plot for each pair."""
-    pairs = list(dict.fromkeys(row.pair for row in rows))
+    """Time and witness error of every contender, a plot for each pair that a peer takes part in."""
+    with_peers = {row.pair for row in rows if row.times and package_of(row.contender) != "Standoff"}
+    pairs = [pair for pair in dict.fromkeys(row.pair for row in rows) if pair in with_peers]
     height = math.ceil(len(pairs) / COLUMNS)
     figure, axes = plt.subplots(
-        height, COLUMNS, figsize=(20, 3.8 * height), sharex=True, sharey=True, squeeze=False
+        height, COLUMNS, figsize=(9, 3.2 * height + 0.6), sharex=True, sharey=True, squeeze=False
     )
     for axis, pair in zip(axes.flat, pairs, strict=False):
         _draw_pair(axis, pair, [row for row in rows if row.pair == pair and row.times])
     for axis in list(axes.flat)[len(pairs) :]:
         axis.set_visible(False)
-    for axis in axes[-1]:
-        axis.set_xlabel("a frame, µs")
+    for axis in list(axes.flat)[max(len(pairs) - COLUMNS, 0) : len(pairs)]:
+        axis.set_xlabel("time of a frame, µs", fontsize=LETTERS)
+        axis.tick_params(labelbottom=True)
     for axis in axes[:, 0]:
-        axis.set_ylabel("witness error / size")
-    figure.tight_layout()
+        axis.set_ylabel("error of witness points / size", fontsize=LETTERS)
+    for name, colour in {"Standoff": "C0", **COLOURS}.items():
+        axes[0, 0].plot([], [], "o", color=colour, label=name)
+    names = axes[0, 0].get_legend_handles_labels()
+    figure.legend(*names, loc="lower center", ncols=3, fontsize=LETTERS)
+    figure.tight_layout(rect=(0.0, 0.8 / (3.2 * height + 0.6), 1.0, 1.0))
     return figure
 
 
 def _draw_pair(axis: plt.Axes, pair: str, rows: list[Row]) -> None:
-    axis.set_title(pair)
+    axis.set_title(pair, fontsize=LETTERS + 1)
     axis.set(xscale="log", yscale="log")
     axis.grid(alpha=0.3)
-    for number_of, row in enumerate(rows, 1):
+    axis.tick_params(labelsize=LETTERS - 1)
+    for row in rows:
         if not math.isfinite(row.witness_error):
             continue
-        colour = colour_of(row.contender)
         at = MICRO * row.median, max(row.witness_error, FLOOR)
         reach = [[at[0] - MICRO * row.spread[0]], [MICRO * row.spread[3] - at[0]]]
-        axis.errorbar(*at, xerr=reach, fmt="o", color=colour, markersize=4)
-        axis.annotate(str(number_of), at, xytext=(4, 4), textcoords="offset points", fontsize=7)
-        axis.plot([], [], "o", color=colour, markersize=4, label=f"{number_of} {row.contender}")
-    axis.legend(fontsize=5.5, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+        colour = colour_of(row.contender)
+        axis.errorbar(*at, xerr=reach, fmt="o", color=colour, markersize=7, alpha=0.8)
 
 
 def write(folder: Path, text: str, rows: list[Row], facts: dict[str, str]) -> list[Path]:
