@@ -19,6 +19,7 @@ from standoff.view import laws
 from standoff.view.gallery import scenes_in
 from standoff.view.live_pair import LivePair
 from standoff.view.player import Player
+from standoff.view.pull import Pull
 from standoff.view.shapes import shape_of
 
 pytest.importorskip("viser", reason="viser is not installed (extra 'view')")
@@ -31,7 +32,7 @@ HALF = np.array([0.5, 0.4, 0.3])
 
 
 def until(holds: Callable[[], bool]) -> None:
-    end = time.monotonic() + 90.0  # kernels may have to be compiled
+    end = time.monotonic() + 60.0  # kernels may have to be compiled
     while not holds():
         assert time.monotonic() < end, "it did not come about"
         time.sleep(0.02)
@@ -176,7 +177,7 @@ def test_a_body_pulled_through_the_coupler_rests_on_the_other_and_the_page_lower
             return 200.0 * (0.04 - stage.pair.poses[0].translation[2])
 
         until(lambda: stage._pull.force[2] == pytest.approx(spring(), abs=0.2))
-        assert 0.068 < stage.pair.poses[0].translation[2] < 0.0705
+        assert 0.064 < stage.pair.poses[0].translation[2] < 0.0705
         for asked, kept in ((3.0, 3.0), (9.0, 3.0), (1e9, 3.0), (2.0, 2.0), (-5.0, 0.5)):
             ask(lambda asked=asked: page.limit(asked))
             until(lambda kept=kept: stage.max_force == kept)
@@ -186,6 +187,18 @@ def test_a_body_pulled_through_the_coupler_rests_on_the_other_and_the_page_lower
         assert stage.max_force == 0.5
         assert stage._pull.max_force == 0.5
         until(lambda: 0.3 < np.linalg.norm(stage._pull.force) <= 0.5)
+
+
+@pytest.mark.parametrize("name", ["lenses", "tumbling", "twist"])
+def test_bodies_of_the_examples_can_be_pulled(name: str) -> None:
+    scene = load_scene(EXAMPLES / f"{name}.toml")
+    start = scene.instant()
+    poses = [Pose.of(motion.path.pose(start)) for motion in scene.pair_motions]
+    pair = LivePair(*scene.pair_bodies, (poses[0], poses[1]), so.PredictorCorrector())
+    for number in (0, 1):
+        pull = Pull(pair, number, shape_of(pair.bodies[number]).size, 10.0)
+        pull.step(poses[number], 0.04)
+        assert pull.fault == ""
 
 
 def test_the_page_opens_from_python(tmp_path: Path) -> None:

@@ -31,8 +31,9 @@ LEAST_FORCE = 0.5
 DEPTH = 0.01
 """Depth over the tool's size at which the contact is as stiff as the tick allows."""
 
-STIFF_SHARE = 0.25
-"""The contact's stiffness there, over mass / tick²: half of what stays stable."""
+STIFF_SHARE = 0.01
+"""The contact's stiffness there, over mass / tick²: a tool that is struck at its end turns, and
+resists with a small part of its mass."""
 
 
 class Pull:
