@@ -49,6 +49,10 @@ def test_transforms_of_torch_func(rng: np.random.Generator) -> None:
     q = torch.tensor(APART + 0.1 * rng.normal(size=(4, 12)))
     one_by_one = torch.stack([torch.func.grad(distance)(row) for row in q])
     close(torch.func.vmap(torch.func.grad(distance))(q), one_by_one.numpy(), 1e-13)
+    poses = torch.stack([pose(row[6:]) for row in q], 1)  # the batch in the middle
+    home = pose(q[0, :6])
+    many = torch.func.vmap(lambda p: standoff.torch.distance(LENS, ELLIPSOID, home, p), in_dims=1)
+    close(many(poses), standoff.torch.distance(LENS, ELLIPSOID, home, poses.movedim(1, 0)), 1e-13)
     twice = torch.func.jacrev(torch.func.jacrev(distance))(q[0])
     close(twice, torch.autograd.functional.hessian(distance, q[0]).numpy(), 1e-13)
 
