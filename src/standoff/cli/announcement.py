@@ -8,6 +8,7 @@ from standoff.cli.arguments import (
     Command,
     DistanceCommand,
     ImpactCommand,
+    ServoCommand,
     SimulateCommand,
     TrackCommand,
     ViewCommand,
@@ -42,6 +43,8 @@ def _doing(command: Command) -> str:
             return f"simulating {shown(command.scene)}"
         case ViewCommand():
             return f"making the page of {shown(command.scene)}"
+        case ServoCommand():
+            return f"running {shown(command.scene)} in real time"
         case WarmupCommand():
             return f"loading all kernels; what must be compiled takes about {ALL_SECONDS} s in all"
         case _:

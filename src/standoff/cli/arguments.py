@@ -272,6 +272,36 @@ class ViewCommand:
 
 
 @dataclass(frozen=True)
+class ServoCommand:
+    """Run a scene with a coupler in real time, and tell how the loop kept its time.
+
+    Ends after its seconds, by Ctrl-C, by SIGTERM, or where the coupler lets go; always without a
+    force.
+
+    Example: standoff servo examples/simulation/hand-on-lens.toml --seconds 10
+
+    Exit codes: 0 done, 1 the log could not be written, 2 bad input, 3 the coupler let go, or the
+    loop ended by itself.
+    """
+
+    scene: SceneFile
+    """Scene of a simulation with [coupler] and [device]; docs/servo.md."""
+    rate: Annotated[float | None, arg(metavar="HZ", help_behavior_hint="")] = None
+    """Ticks a second, 10 to 10000; those of the scene's device if not given."""
+    seconds: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
+    """How long to run; until Ctrl-C if not given."""
+    device: Annotated[str, arg(metavar="DEVICE", help_behavior_hint="")] = "path"
+    """path (the scene's, there and back, which feels no force), simulated (the scene's device with
+    its hand, in Python), haply, haply=ws://HOST:PORT, or a trace (.parquet, .csv, .tum)."""
+    output: Annotated[
+        Path | None, arg(aliases=["-o"], metavar="OUT.parquet", help_behavior_hint="")
+    ] = None
+    """Write the last 100 000 ticks to this Parquet file."""
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Print the summary as JSON."""
+
+
+@dataclass(frozen=True)
 class WarmupCommand:
     """Compile all kernels ahead, so that no later use waits for it.
 
@@ -294,6 +324,7 @@ Command = (
     | AutomatonCommand
     | SimulateCommand
     | ViewCommand
+    | ServoCommand
     | WarmupCommand
     | AddedCommand
 )
@@ -306,6 +337,7 @@ OWN: dict[str, type] = {
     "automaton": AutomatonCommand,
     "simulate": SimulateCommand,
     "view": ViewCommand,
+    "servo": ServoCommand,
     "warmup": WarmupCommand,
 }
 """The library's own commands, by name."""

@@ -8,6 +8,7 @@ from standoff.cli.arguments import (
     Command,
     DistanceCommand,
     ImpactCommand,
+    ServoCommand,
     SimulateCommand,
     TrackCommand,
     ViewCommand,
@@ -55,6 +56,10 @@ def run(command: Command) -> int:
             from standoff.cli.view import run_view
 
             return run_view(command)
+        case ServoCommand():
+            from standoff.cli.servo import run_servo
+
+            return run_servo(command)
         case WarmupCommand():
             from standoff.cli.warmup import run_warmup
 

@@ -16,7 +16,12 @@ from standoff.devices.inverse3_messages import (
     leaped,
 )
 from standoff.devices.port import Port
-from standoff.devices.tolerances import CONNECTED_WITHIN, LONGEST_FRAME
+from standoff.devices.tolerances import (
+    ASKED_AGAIN,
+    BETWEEN_LOOKS,
+    CONNECTED_WITHIN,
+    LONGEST_FRAME,
+)
 from standoff.errors import DeviceError, StandoffTypeError, not_installed
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import Twist
@@ -198,14 +203,18 @@ class _Conversation:
         force = device._placement.rotation.T @ port.wrench().force
         sent = time.monotonic()
         self.send((float(force[0]), float(force[1]), float(force[2])))
-        owed = 1
+        owed, heard = 1, sent
         while owed and not device._stopping.is_set():
             frame = self._came(max(port.max_age, device._period))
             if frame is None:
                 self._before = None
                 port.fail(Fault.LATE)
-                if owed == 1:  # so that no force is held once the service is back
-                    owed, sent = 2, time.monotonic()
+                now = time.monotonic()
+                if owed == 1 and sent == heard:  # no force is to be held once the service is back
+                    owed, sent = 2, now
+                    self.send(ZERO)
+                elif now - heard > ASKED_AGAIN:  # an answer was lost
+                    owed, heard, sent = 1, now, now
                     self.send(ZERO)
                 continue
             owed -= 1
@@ -232,12 +241,19 @@ class _Conversation:
             self._port.put(self._reading(cursor, sent))
 
     def _came(self, seconds: float) -> Any:
-        try:
-            frame = self._socket.recv(seconds)
-        except TimeoutError:
-            return None
-        self._device.frames += 1
-        return frame
+        end = time.monotonic() + seconds
+        while True:
+            try:
+                # Never a timed wait: that of Python's queues can outlast its time (a negative rest
+                # of it means for ever), and with it the last force.
+                frame = self._socket.recv(0.0)
+            except TimeoutError:
+                if time.monotonic() >= end:
+                    return None
+                time.sleep(BETWEEN_LOOKS)
+                continue
+            self._device.frames += 1
+            return frame
 
     def _refuse(self, fault: Fault) -> None:
         self._device.refused += 1

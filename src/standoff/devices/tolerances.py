@@ -26,3 +26,10 @@ SHORTEST_PERIOD: Final = 1e-4
 PERIOD_ROUNDING: Final = 1e-9
 """Relative: by this part a trace may fall short of whole periods and still has its last reading:
 the roundoff of its stamps."""
+
+ASKED_AGAIN: Final = 0.25
+"""Seconds without an answer, many times over what one takes, after which it counts as lost and the
+device is asked again, with no force."""
+
+BETWEEN_LOOKS: Final = 5e-5
+"""Seconds, parts of the time that an answer takes, between two looks for it."""

@@ -57,7 +57,7 @@ class Coupled(NamedTuple):
     device: SimulatedDevice
 
 
-def read_coupled(top: Table, names: list[str]) -> Coupled | None:
+def read_coupled(top: Table, names: list[str], period: float | None = None) -> Coupled | None:
     """Return what ``[coupler]`` and ``[device]`` describe; None where there is neither.
 
     Parameters
@@ -66,6 +66,8 @@ def read_coupled(top: Table, names: list[str]) -> Coupled | None:
         The file.
     names : list of str
         Of the free bodies.
+    period : float, optional
+        Of the device [s], in place of the file's.
 
     Raises
     ------
@@ -75,7 +77,8 @@ def read_coupled(top: Table, names: list[str]) -> Coupled | None:
     """
     if "coupler" not in top and "device" not in top:
         return None
-    device = _device(top.table("device", "[device], which moves the coupler's handle"))
+    table = top.table("device", "[device], which moves the coupler's handle")
+    device = _device(table if period is None else table.replaced({"period": period}))
     table = top.table("coupler", "[coupler], which joins the device to a tool")
     table.expect(*COUPLER_KEYS)
     tool = table.choice("tool", names, noun="free body")

@@ -111,7 +111,10 @@ class SimulationScene:
 
 
 def load_simulation(
-    file: str | os.PathLike[str], given: Mapping[str, object] | None = None
+    file: str | os.PathLike[str],
+    given: Mapping[str, object] | None = None,
+    *,
+    rate: float | None = None,
 ) -> SimulationScene:
     """Read, check and build the scene of a simulation.
 
@@ -121,6 +124,9 @@ def load_simulation(
         A TOML file; docs/simulation.md describes the format.
     given : mapping, optional
         Values that stand in place of those of ``[simulate]``; None stands in place of none.
+    rate : float, optional
+        Readings a second of the coupler's device, in place of the file's; the step becomes the
+        longest that is not above the file's and fits into their period.
 
     Raises
     ------
@@ -142,8 +148,12 @@ def load_simulation(
         raise top.error("no bodies; add a table such as [bodies.ball]", "bodies")
     rigid = _rigid_bodies(top, bodies)
     settings = _settings(top, given or {})
+    period = None if rate is None else 1.0 / rate
+    if period is not None:
+        steps = math.ceil(period / settings.positive("step") - WHOLE_STEPS)
+        settings = settings.replaced({"step": period / max(1, steps)})
     free = [name for name, body in zip(bodies, rigid, strict=True) if body.kind == FREE]
-    coupled = read_coupled(top, free)
+    coupled = read_coupled(top, free, period)
     system = _system(top, tuple(bodies), rigid, settings, coupled)
     step, duration = settings.positive("step"), settings.positive("duration")
     operator = settings.build(lambda: _operator(system, step, settings))

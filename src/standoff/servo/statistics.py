@@ -18,7 +18,7 @@ NANO: Final = 1_000_000_000
 class Spread(NamedTuple):
     """How long something took, over all ticks [s].
 
-    Quantiles come from a histogram whose bins are 0.8 % wide or less, and are their upper ends; the
+    Quantiles come from a histogram, and are the middles of bins that are 0.8 % wide or less; the
     worst is exact.
 
     Attributes
@@ -72,17 +72,20 @@ def end_of_bin(number: int) -> int:
     return ((least + 1) << doublings) - 1
 
 
+def middle_of_bin(number: int) -> float:
+    """Return the time [ns] in the middle of those that a bin counts."""
+    before = end_of_bin(number - 1) if number else -1
+    return 0.5 * (before + 1 + end_of_bin(number))
+
+
 def spread_of(bins: Ints, worst: int) -> Spread:
     """Return the quantiles of a histogram, none beyond the worst."""
     counts = np.cumsum(bins)
     total = int(counts[-1])
     if total == 0:
         return Spread(0.0, 0.0, 0.0, 0.0, 0.0)
-    ends = [
-        min(end_of_bin(int(np.searchsorted(counts, np.ceil(share * total)))), worst)
-        for share in QUANTILES
-    ]
-    median, p99, p999, p9999 = (end / NANO for end in ends)
+    found = [int(np.searchsorted(counts, np.ceil(share * total))) for share in QUANTILES]
+    median, p99, p999, p9999 = (min(middle_of_bin(each), worst) / NANO for each in found)
     return Spread(median, p99, p999, p9999, worst / NANO)
 
 

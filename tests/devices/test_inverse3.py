@@ -1,0 +1,176 @@
+"""An Inverse3 by a service that speaks the documented messages, and one that breaks them."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from mangled import kinds
+
+import standoff as so
+from standoff.devices import Inverse3
+from standoff.devices.inverse3_messages import Cursor, cursor_of, device_ids, force_message
+from standoff.errors import DeviceError, StandoffTypeError
+from standoff.servo import Servo
+from standoff.simulation import Fault
+
+pytest.importorskip("websockets", reason="the extra 'devices' is not installed")
+
+import device_soak
+from fake_service import DEVICE, FakeService, hang_up
+
+
+@pytest.fixture(autouse=True)
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A machine that others use holds up a loop without a priority now and then."""
+    monkeypatch.setattr("standoff.servo.loop.LONGEST_GAP", 2.0)
+
+
+@pytest.fixture
+def service() -> Iterator[FakeService]:
+    made = FakeService()
+    yield made
+    made.close()
+
+
+def until(there: object, seconds: float = 10.0) -> bool:
+    assert callable(there)
+    end = time.monotonic() + seconds
+    while not there():
+        if time.monotonic() > end:
+            return False
+        time.sleep(1e-3)
+    return True
+
+
+def engaged(servo: Servo, service: FakeService) -> None:
+    """Engage until the service is sent a force: a late frame of a busy machine ends it."""
+    assert until(lambda: servo.ready)
+
+    def forced() -> bool:
+        if not servo.latest().engaged:
+            servo.engage()
+            time.sleep(2e-3)
+        return bool(service.forces and any(service.forces[-1]))
+
+    assert until(forced)
+
+
+def test_messages_are_those_that_are_documented() -> None:
+    told = json.loads(force_message("049D", (0.0, -1.0, 1.5), first=True))
+    assert told == {
+        "session": {"configure": {"profile": {"name": "standoff"}}},
+        "inverse3": [
+            {
+                "device_id": "049D",
+                "commands": {"set_cursor_force": {"vector": {"x": 0.0, "y": -1.0, "z": 1.5}}},
+            }
+        ],
+    }
+    assert "session" not in json.loads(force_message("049D", (0.0, 0.0, 0.0)))
+    frame = json.dumps(
+        {
+            "session_id": 7,
+            "inverse3": [
+                {
+                    "device_id": "049D",
+                    "state": {
+                        "cursor_position": {"x": 0.0, "y": -0.12, "z": 0.15},
+                        "cursor_velocity": {"x": 0.0, "y": 0.5, "z": 0},
+                    },
+                }
+            ],
+        }
+    )
+    assert device_ids(frame) == ["049D"]
+    assert cursor_of(frame, "049D") == Cursor((0.0, -0.12, 0.15), (0.0, 0.5, 0.0))
+    assert cursor_of(frame.replace("cursor_velocity", "other"), "049D") == Cursor(
+        (0.0, -0.12, 0.15), None
+    )
+    assert cursor_of(frame, "05AB") is Fault.MISSING
+
+
+def test_every_bad_frame_is_refused() -> None:
+    assert device_soak.messages(3000, seed=2) == 0
+
+
+def test_a_hand_s_force_comes_and_ends(service: FakeService) -> None:
+    placement = so.Pose.exp([0.0, 0.0, np.pi / 2.0], [0.0, 0.0, 0.0])
+    device = Inverse3(service.url, placement=placement)
+    with Servo(device_soak.held_ball(2e-3), device=device, max_age=0.2) as servo:
+        engaged(servo, service)
+        handle = servo.latest().state.coupler.handle
+        # the cursor is a centimetre off the ball, which the force pulls to
+        assert handle is None or 0.005 < np.hypot(*handle.p[:2]) < 0.02
+        servo.disengage()
+        assert until(lambda: not any(service.forces[-1]))
+        engaged(servo, service)
+    assert not any(service.forces[-1])
+    assert (service.wrong, service.profiles) == (0, ["standoff"])
+
+
+def test_a_service_that_dies_ends_the_force(service: FakeService) -> None:
+    device = Inverse3(service.url)
+    with Servo(device_soak.held_ball(2e-3), device=device, max_age=0.2) as servo:
+        engaged(servo, service)
+        service.mangle = hang_up
+        assert until(lambda: servo.problem)
+        assert until(lambda: not servo.latest().engaged)
+        assert servo.latest().fault in (Fault.MISSING, Fault.LATE)
+        assert not servo.latest().wrench.force.any()
+        servo.engage()  # the device is gone: it lets go again
+        time.sleep(0.02)
+        assert not servo.latest().wrench.force.any()
+    assert "the Inverse Service" in servo.stop().problem
+
+
+@pytest.mark.parametrize("name", kinds(0.0))
+def test_a_bad_frame_ends_the_force(
+    service: FakeService, name: str, rng: np.random.Generator
+) -> None:
+    make = kinds(0.3)[name]
+    device = Inverse3(service.url)
+    with Servo(device_soak.held_ball(2e-3), device=device, max_age=0.1) as servo:
+        engaged(servo, service)
+        service.clear()
+        broken = []
+
+        def once(number: int, text: str) -> list[str | bytes | float]:
+            if broken:
+                return [text]
+            broken.append(text)
+            return make(text, rng)
+
+        service.mangle = once
+        assert until(lambda: not servo.latest().engaged)
+        assert until(lambda: not any(service.forces[-1]))
+        time.sleep(0.02)
+        assert service.forced_after == 0
+        assert not any(service.forces[-1])
+        service.clear()
+        engaged(servo, service)
+
+
+def test_a_short_soak() -> None:
+    found = device_soak.Soak(1500, seed=3).run()
+    assert found.service.bad > 10
+    assert found.service.greatest_before > 0.0
+    assert found.service.forced_after == 0, found.service.after
+    assert found.service.wrong == 0
+
+
+def test_what_is_not_there_is_told() -> None:
+    with pytest.raises(DeviceError, match=r"no Inverse Service answers at ws://127\.0\.0\.1:1"):
+        Servo(device_soak.held_ball(2e-3), device=Inverse3("ws://127.0.0.1:1")).start()
+    with pytest.raises(StandoffTypeError, match="url is 3: give a text"):
+        Inverse3(3)  # type: ignore[arg-type]
+    service = FakeService(devices=["A", "B"])
+    try:
+        with pytest.raises(DeviceError, match=r"no Inverse3 'C'; it lists 'A', 'B'"):
+            Servo(device_soak.held_ball(2e-3), device=Inverse3(service.url, device_id="C")).start()
+    finally:
+        service.close()
+    assert DEVICE == "049D"
