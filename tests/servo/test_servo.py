@@ -22,10 +22,12 @@ import standoff as so
 from standoff import simulation as sim
 from standoff.devices import PointerDevice, Trace
 from standoff.errors import StandoffError
+from standoff.kernels.dynamics import coupler_arrays as K
 from standoff.kernels.dynamics import servo_arrays as V
 from standoff.kernels.entries import servo as entries
 from standoff.servo import Ended, Servo
 from standoff.servo.exchange import Box
+from standoff.servo.loop_port import LoopPort
 from standoff.servo.statistics import end_of_bin, spread_of
 from standoff.simulation import Fault
 
@@ -229,6 +231,58 @@ print("runs")
         timeout=120,
     )
     assert (ended.returncode, ended.stdout.strip()) == (0, "runs"), ended.stderr
+
+
+def test_a_fault_is_taken_in_though_the_device_is_held_up(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The loop goes on for ten ticks while the device's thread has just looked at it."""
+    inbox, outbox = Box(K.N_READING), Box(V.OUT_HEADER + K.C_HELD + 6)
+    port = LoopPort(inbox, outbox, V.OUT_HEADER, PERIOD, 1.0)
+    seen, told = [], np.zeros(V.OUT_HEADER + K.C_HELD + 6)
+
+    def ten_ticks() -> None:
+        for _ in range(10):
+            row = inbox.newest_row()
+            if row is not None:
+                seen.append(Fault(int(row[K.G_FAULT])))
+            told[V.O_TICK] += 1.0
+            outbox.put(told)
+
+    look = port._look
+    held_up = [True]
+
+    def slow_look() -> int:
+        found = look()
+        if held_up and held_up.pop():
+            ten_ticks()
+        return found
+
+    ten_ticks()
+    monkeypatch.setattr(port, "_look", slow_look)
+    port.fail(Fault.INVALID)
+    port.put(sim.DeviceReading(time.monotonic(), 1, knocking(0.0)))
+    ten_ticks()
+    assert Fault.INVALID in seen
+
+
+def test_a_fault_stays_until_it_is_taken_in() -> None:
+    """A good reading that comes before the loop's next tick does not hide the bad one."""
+    inbox, outbox = Box(K.N_READING), Box(V.OUT_HEADER + K.C_HELD + 6)
+    port = LoopPort(inbox, outbox, V.OUT_HEADER, PERIOD, 1.0)
+    told = np.zeros(V.OUT_HEADER + K.C_HELD + 6)
+    told[V.OUT_HEADER + K.C_ON_DEVICE] = 3.0
+    for tick in range(4):
+        told[V.O_TICK], told[V.O_CLOCK] = tick, time.monotonic()
+        outbox.put(told)
+        if tick == 1:
+            assert port.wrench().force[0] == 3.0
+            port.fail(Fault.INVALID)
+        port.put(sim.DeviceReading(time.monotonic(), tick, knocking(0.0)))
+        row = inbox.newest_row()
+        assert row is not None
+        assert row[K.G_FAULT] == (Fault.INVALID if tick in (1, 2) else Fault.NONE)
+        assert port.wrench().force[0] == (0.0 if tick in (1, 2) else 3.0)
 
 
 def test_rows_are_never_torn() -> None:

@@ -80,10 +80,12 @@ class LoopPort:
         return Wrench.from_checked(six)
 
     def _put(self, row: Array) -> None:
+        self._inbox.put(row)
         if row[K.G_FAULT] != K.NO_FAULT:
+            # Looked at after the row is there: a thread that is held up in between would count
+            # ticks that had not seen it.
             ticks = self._told[V.O_TICK] if self._look() else 0.0
             self._until = ticks + TICKS_TO_SEE
-        self._inbox.put(row)
 
     def _waits(self) -> bool:
         """Is a reading at fault still to be taken in?"""
