@@ -16,6 +16,7 @@ import standoff as so
 from families.array_flags import writable
 from public_calls import Call, calls, pair_calls
 from standoff import geometry
+from standoff.bound_to_run import BoundToRun
 from standoff.geometry import FormulaCurve, Revolution
 
 NO_FILE = ("motion.read_pose_samples", "standoff.open_recording")
@@ -59,9 +60,21 @@ def same(value: Any) -> None:
         assert writable(stored(value)) == fresh, how
 
 
-@pytest.mark.parametrize("call", CALLS, ids=lambda call: call.name)
+def bound(call: Call) -> bool:
+    return isinstance(call.public, type) and issubclass(call.public, BoundToRun)
+
+
+@pytest.mark.parametrize("call", [c for c in CALLS if not bound(c)], ids=lambda call: call.name)
 def test_every_public_object_keeps_what_is_read_only(call: Call) -> None:
     same(call.public(**call.arguments))
+
+
+@pytest.mark.parametrize("call", [c for c in CALLS if bound(c)], ids=lambda call: call.name)
+@pytest.mark.parametrize("how", STORED)
+def test_what_belongs_to_one_run_says_that_it_cannot_be_stored(call: Call, how: str) -> None:
+    live = call.public(**call.arguments)
+    with pytest.raises(so.StandoffError, match=f"make another {type(live).__name__}"):
+        STORED[how](live)
 
 
 @pytest.mark.parametrize(

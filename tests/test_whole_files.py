@@ -18,7 +18,7 @@ from standoff.whole_files import UnfitTarget, file_name, write_whole
 SOURCES = [Path(package.__file__).parent for package in (standoff, standoff_studies)]
 
 WRITES = {"write_text", "write_bytes", "touch", "rename", "symlink_to", "hardlink_to"}
-WRITES |= {"truncate", "tofile", "savetxt", "savez", "copyfile", "move", "NamedTemporaryFile"}
+WRITES |= {"truncate", "tofile", "savetxt", "savez", "copyfile", "NamedTemporaryFile"}
 DRAWN = {"savefig": 0, "write_table": 1, "dump": 1}
 """Calls that write to a path or to a stream, and where it stands among their arguments."""
 
@@ -37,7 +37,12 @@ def inner(file: BinaryIO) -> None:
 def writing(call: ast.Call) -> bool:
     """Does a call open a file for writing, or write to a path?"""
     name = getattr(call.func, "attr", getattr(call.func, "id", ""))
-    if name in WRITES or ast.unparse(call.func) in ("os.replace", "os.link", "shutil.copy"):
+    if name in WRITES or ast.unparse(call.func) in (
+        "os.replace",
+        "os.link",
+        "shutil.copy",
+        "shutil.move",
+    ):
         return True
     if name in DRAWN:
         sink = call.args[DRAWN[name]] if len(call.args) > DRAWN[name] else None

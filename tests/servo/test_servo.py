@@ -246,7 +246,7 @@ def test_a_fault_is_taken_in_though_the_device_is_held_up(
             row = inbox.newest_row()
             if row is not None:
                 seen.append(Fault(int(row[K.G_FAULT])))
-            told[V.O_TICK] += 1.0
+            told[V.TOLD_TICK] += 1.0
             outbox.put(told)
 
     look = port._look
@@ -273,7 +273,7 @@ def test_a_fault_stays_until_it_is_taken_in() -> None:
     told = np.zeros(V.OUT_HEADER + K.C_HELD + 6)
     told[V.OUT_HEADER + K.C_ON_DEVICE] = 3.0
     for tick in range(4):
-        told[V.O_TICK], told[V.O_CLOCK] = tick, time.monotonic()
+        told[V.TOLD_TICK], told[V.TOLD_CLOCK] = tick, time.monotonic()
         outbox.put(told)
         if tick == 1:
             assert port.wrench().force[0] == 3.0

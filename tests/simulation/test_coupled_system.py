@@ -378,7 +378,7 @@ def test_what_does_not_go_together_is_refused() -> None:
     with pytest.raises(so.StandoffError, match="whole number of times"):
         sim.Operator(scene.operator.system, 0.3e-3)
     run = scene.operator.run
-    with pytest.raises(so.StandoffError, match="no multiple of 4"):
+    with pytest.raises(so.StandoffError, match="3 is not a multiple of 4"):
         run(scene.state, 6, 3)
     with pytest.raises(so.StandoffError, match="2 readings, and the run takes 3"):
         run(scene.state, 12, 4, device=sim.DeviceReadings(readings(2)))

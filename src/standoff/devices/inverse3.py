@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from standoff.bound_to_run import BoundToRun
 from standoff.devices.inverse3_messages import (
     Cursor,
     cursor_of,
@@ -35,7 +36,7 @@ URL = "ws://localhost:10001"
 ZERO = (0.0, 0.0, 0.0)
 
 
-class Inverse3:
+class Inverse3(BoundToRun):
     """An Inverse3 of Haply's, by the WebSocket of the Inverse Service (version 3.5).
 
     A thread of its own sends a force and takes the answer, over and over; the loop is never waited

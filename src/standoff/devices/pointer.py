@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from standoff.bound_to_run import BoundToRun
 from standoff.devices.port import Port
 from standoff.errors import DeviceError
 from standoff.motion import inputs
@@ -16,7 +17,7 @@ from standoff.motion.pose import Pose, PoseLike
 from standoff.simulation.device import DeviceReading, Fault
 
 
-class PointerDevice:
+class PointerDevice(BoundToRun):
     """A handle that is put where somebody's pointer is; it feels no force.
 
     Any thread may call it. What it is given is a value: nothing of it is kept but the last pose.

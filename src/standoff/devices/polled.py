@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 
+from standoff.bound_to_run import BoundToRun
 from standoff.devices.port import Port
 from standoff.errors import DeviceError, StandoffTypeError
 from standoff.real_numbers import shown
@@ -13,7 +14,7 @@ from standoff.simulation.passivity import non_negative
 from standoff.tracking.choices import yes_or_no
 
 
-class Polled:
+class Polled(BoundToRun):
     """A `Device` whose readings and wrenches go to and from a loop, once a period.
 
     Python asks it, and is late now and then; what matters is that a late reading is seen as one.

@@ -10,6 +10,7 @@ from typing import Any, Final, NamedTuple, Self
 
 import numpy as np
 
+from standoff.bound_to_run import BoundToRun
 from standoff.devices.polled import Polled
 from standoff.devices.port import LiveDevice
 from standoff.devices.trace import Trace
@@ -86,7 +87,7 @@ class Snapshot(NamedTuple):
         return Wrench.zero() if coupler is None else coupler.wrench_on_device
 
 
-class Servo:
+class Servo(BoundToRun):
     """A system with a coupler, advanced in real time at a fixed rate, and felt by a device.
 
     The loop is one compiled call in a thread of its own: it sleeps, spins, takes the newest
@@ -304,16 +305,16 @@ class Servo:
             at = int(self._operator.packed[0][A.I_COUPLER])
             limits = float(self._numbers[at + K.Q_FORCE]), float(self._numbers[at + K.Q_TORQUE])
             return Snapshot(-1, 0.0, self._first, 0.0, 0.0, 0, *limits, None)
-        ended = int(row[V.O_ENDED])
+        ended = int(row[V.TOLD_ENDED])
         return Snapshot(
-            tick=int(row[V.O_TICK]),
-            clock=float(row[V.O_CLOCK]),
+            tick=int(row[V.TOLD_TICK]),
+            clock=float(row[V.TOLD_CLOCK]),
             state=self._state_of(row[V.OUT_HEADER :].copy()),
-            late=float(row[V.O_LATE]),
-            work=float(row[V.O_WORK]),
-            missed=int(row[V.O_MISSED]),
-            force_limit=float(row[V.O_FORCE_LIMIT]),
-            torque_limit=float(row[V.O_TORQUE_LIMIT]),
+            late=float(row[V.TOLD_LATE]),
+            work=float(row[V.TOLD_WORK]),
+            missed=int(row[V.TOLD_MISSED]),
+            force_limit=float(row[V.TOLD_FORCE_LIMIT]),
+            torque_limit=float(row[V.TOLD_TORQUE_LIMIT]),
             ended=None if ended == V.RUNNING else Ended(ended),
         )
 

@@ -74,8 +74,8 @@ class LoopPort:
             if self._waits() or self._look() == 0:
                 return Wrench.zero()
             six = tuple(self._told[self._at : self._at + 6].tolist())
-            old = time.monotonic() - self._told[V.O_CLOCK] > self._longest
-            if old or self._told[V.O_ENDED] != V.RUNNING or not all(map(math.isfinite, six)):
+            old = time.monotonic() - self._told[V.TOLD_CLOCK] > self._longest
+            if old or self._told[V.TOLD_ENDED] != V.RUNNING or not all(map(math.isfinite, six)):
                 six = NOTHING
         return Wrench.from_checked(six)
 
@@ -84,12 +84,12 @@ class LoopPort:
         if row[K.G_FAULT] != K.NO_FAULT:
             # Looked at after the row is there: a thread that is held up in between would count
             # ticks that had not seen it.
-            ticks = self._told[V.O_TICK] if self._look() else 0.0
+            ticks = self._told[V.TOLD_TICK] if self._look() else 0.0
             self._until = ticks + TICKS_TO_SEE
 
     def _waits(self) -> bool:
         """Is a reading at fault still to be taken in?"""
-        if self._until is not None and self._look() and self._told[V.O_TICK] >= self._until:
+        if self._until is not None and self._look() and self._told[V.TOLD_TICK] >= self._until:
             self._until = None
         return self._until is not None
 

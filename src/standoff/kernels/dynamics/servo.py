@@ -56,15 +56,15 @@ from standoff.kernels.dynamics.servo_arrays import (
     J_WORK,
     L_FORCE,
     L_TORQUE,
-    O_CLOCK,
-    O_ENDED,
-    O_FORCE_LIMIT,
-    O_LATE,
-    O_MISSED,
-    O_TICK,
-    O_TORQUE_LIMIT,
-    O_WORK,
     OUT_HEADER,
+    TOLD_CLOCK,
+    TOLD_ENDED,
+    TOLD_FORCE_LIMIT,
+    TOLD_LATE,
+    TOLD_MISSED,
+    TOLD_TICK,
+    TOLD_TORQUE_LIMIT,
+    TOLD_WORK,
     V_BOOT,
     V_CLOCK,
     V_MONOTONIC,
@@ -210,15 +210,15 @@ def tell(system, numbers, tallies, state, told, ended, box):
     fence_released()
     o = (number % BOX_ROWS) * rows.shape[1]
     tick, clock, late, work = told
-    store_relaxed(rows, o + O_TICK, float(tick))
-    store_relaxed(rows, o + O_CLOCK, clock / BILLION)
-    store_relaxed(rows, o + O_ENDED, float(ended))
-    store_relaxed(rows, o + O_LATE, late / BILLION)
-    store_relaxed(rows, o + O_WORK, work / BILLION)
-    store_relaxed(rows, o + O_MISSED, float(tallies[Y_MISSED]))
+    store_relaxed(rows, o + TOLD_TICK, float(tick))
+    store_relaxed(rows, o + TOLD_CLOCK, clock / BILLION)
+    store_relaxed(rows, o + TOLD_ENDED, float(ended))
+    store_relaxed(rows, o + TOLD_LATE, late / BILLION)
+    store_relaxed(rows, o + TOLD_WORK, work / BILLION)
+    store_relaxed(rows, o + TOLD_MISSED, float(tallies[Y_MISSED]))
     at = system.layout[I_COUPLER]
-    store_relaxed(rows, o + O_FORCE_LIMIT, numbers[at + Q_FORCE])
-    store_relaxed(rows, o + O_TORQUE_LIMIT, numbers[at + Q_TORQUE])
+    store_relaxed(rows, o + TOLD_FORCE_LIMIT, numbers[at + Q_FORCE])
+    store_relaxed(rows, o + TOLD_TORQUE_LIMIT, numbers[at + Q_TORQUE])
     for k in range(state.shape[0]):
         store_relaxed(rows, o + OUT_HEADER + k, state[k])
     store_released(newest, 0, number)

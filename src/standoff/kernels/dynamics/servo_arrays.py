@@ -20,14 +20,14 @@ BOX_ROWS = 4
 
 # What is published each tick, before the whole state.
 (
-    O_TICK,
-    O_CLOCK,
-    O_ENDED,
-    O_LATE,
-    O_WORK,
-    O_MISSED,
-    O_FORCE_LIMIT,
-    O_TORQUE_LIMIT,
+    TOLD_TICK,
+    TOLD_CLOCK,
+    TOLD_ENDED,
+    TOLD_LATE,
+    TOLD_WORK,
+    TOLD_MISSED,
+    TOLD_FORCE_LIMIT,
+    TOLD_TORQUE_LIMIT,
 ) = range(8)
 OUT_HEADER = 8
 
