@@ -8,6 +8,7 @@ from standoff.cli.arguments import (
     Command,
     DistanceCommand,
     ImpactCommand,
+    LibraryCommand,
     ServoCommand,
     SimulateCommand,
     TrackCommand,
@@ -47,6 +48,8 @@ def _doing(command: Command) -> str:
             return f"running {shown(command.scene)} in real time"
         case WarmupCommand():
             return f"loading all kernels; what must be compiled takes about {ALL_SECONDS} s in all"
+        case LibraryCommand():
+            return ""  # told by what builds it, from Python as well
         case _:
             return command.announcement()
 

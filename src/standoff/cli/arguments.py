@@ -316,6 +316,26 @@ class WarmupCommand:
     """Print what was compiled as JSON; what is done meanwhile is told on stderr."""
 
 
+@dataclass(frozen=True)
+class LibraryCommand:
+    """Build the shared library and the header for programs in C and C++.
+
+    Takes about a minute and a C compiler, `cc` or what CC in the environment names. Pairs of bodies
+    go to files for it by standoff.c_interface.save_pair; docs/c-interface.md has a whole program.
+
+    Exit codes: 0 done, 1 not written, 2 the input is not usable or the compiler failed.
+
+    Example: standoff c-library build
+    """
+
+    folder: Annotated[Positional[Path], arg(metavar="FOLDER")]
+    """Folder for libstandoff.so and standoff.h; made where it is missing."""
+    processor: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
+    """What the code is for, in LLVM's words, such as x86-64-v3; this machine if not given."""
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Print where the files are as JSON."""
+
+
 Command = (
     TrackCommand
     | DistanceCommand
@@ -326,6 +346,7 @@ Command = (
     | ViewCommand
     | ServoCommand
     | WarmupCommand
+    | LibraryCommand
     | AddedCommand
 )
 
@@ -339,6 +360,7 @@ OWN: dict[str, type] = {
     "view": ViewCommand,
     "servo": ServoCommand,
     "warmup": WarmupCommand,
+    "c-library": LibraryCommand,
 }
 """The library's own commands, by name."""
 

@@ -8,6 +8,7 @@ from standoff.cli.arguments import (
     Command,
     DistanceCommand,
     ImpactCommand,
+    LibraryCommand,
     ServoCommand,
     SimulateCommand,
     TrackCommand,
@@ -64,5 +65,9 @@ def run(command: Command) -> int:
             from standoff.cli.warmup import run_warmup
 
             return run_warmup(command)
+        case LibraryCommand():
+            from standoff.cli.c_library import run_c_library
+
+            return run_c_library(command)
         case _:
             return command.run()

@@ -1,0 +1,106 @@
+"""The shared library and its header, built by the system's C compiler."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from functools import partial
+from pathlib import Path
+from typing import BinaryIO
+
+from standoff.c_interface.layout import layout_header
+from standoff.errors import StandoffError
+from standoff.kernels.compiler.notices import say
+from standoff.whole_files import MissingFolder, file_name, write_whole
+
+SOURCE = Path(__file__).parent / "source"
+NAMES = {"linux": "libstandoff.so", "darwin": "libstandoff.dylib"}
+HEADER = "standoff.h"
+FLAGS = ("-std=c11", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-Wall", "-Wextra")
+COMPILER = "CC"
+"""The compiler's name in the environment; `cc` if not set."""
+
+SECONDS = 60
+"""About how long one core takes, s."""
+
+
+def build_library(
+    folder: str | Path, *, processor: str | None = None, compiler: str | None = None
+) -> tuple[Path, Path]:
+    """Build the shared library of the C interface; takes about a minute.
+
+    Parameters
+    ----------
+    folder : str or Path
+        There already; gets ``libstandoff.so`` (``.dylib`` on macOS) and ``standoff.h``, both or
+        neither.
+    processor : str, optional
+        What the code is for, in LLVM's words, such as ``"x86-64-v3"``. If not given it is this
+        machine's own, and answers are those of Python here to the last bit.
+    compiler : str, optional
+        The C compiler's command; if not given, what ``CC`` in the environment says, or ``cc``.
+
+    Returns
+    -------
+    (Path, Path)
+        The library and the header.
+
+    Raises
+    ------
+    StandoffError
+        No compiler, or one that fails; a system without such libraries; a processor that LLVM does
+        not know.
+    OSError
+        If a file cannot be written.
+    """
+    target = file_name(folder)
+    if not target.is_dir():
+        raise MissingFolder(f"{target} is not a folder: make it first.")
+    if sys.platform not in NAMES:
+        raise StandoffError(f"The C library is built on Linux and macOS, not on {sys.platform}.")
+    command = _compiler(compiler)
+    from standoff.c_interface import objects  # reads all kernels
+
+    say(f"building {NAMES[sys.platform]}, about {SECONDS} s on one core ...")
+    with tempfile.TemporaryDirectory() as place:
+        work = Path(place)
+        objects.build(work, processor)
+        header = layout_header(objects.smooth_symbols())
+        write_whole({work / "layout.h": partial(_put, header.encode())})
+        made = work / NAMES[sys.platform]
+        _run([*command, *FLAGS, f"-I{work}", f"-I{SOURCE}", "-o", str(made)], work)
+        library, public = target / made.name, target / HEADER
+        write_whole(
+            {
+                library: partial(_put, made.read_bytes()),
+                public: partial(_put, (SOURCE / HEADER).read_bytes()),
+            }
+        )
+    return library, public
+
+
+def _compiler(given: str | None) -> list[str]:
+    """The compiler's command as words."""
+    words = shlex.split(given or os.environ.get(COMPILER) or "cc")
+    if not words or shutil.which(words[0]) is None:
+        raise StandoffError(
+            f"There is no C compiler {' '.join(words)!r}: install one (on Debian: apt install "
+            f"gcc), or name it in {COMPILER}."
+        )
+    return words
+
+
+def _run(command: list[str], work: Path) -> None:
+    """Compile the C file and link it with the kernels' object files."""
+    files = [str(SOURCE / "standoff.c"), *map(str, sorted(work.glob("*.o"))), "-lm"]
+    done = subprocess.run([*command, *files], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise StandoffError(f"{command[0]} failed:\n{done.stderr.strip()}")
+
+
+def _put(content: bytes, file: BinaryIO) -> None:
+    file.write(content)

@@ -1,0 +1,119 @@
+"""Files of pairs: what the C interface loads."""
+
+from __future__ import annotations
+
+import struct
+from functools import partial
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from standoff.bodies.addresses import formulas_of
+from standoff.bodies.body import Body
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.kernels.compiler.machine import source_digest
+from standoff.real_numbers import shown
+from standoff.tracking.laws import PaperLaw
+from standoff.tracking.options import with_smooth_frame
+from standoff.tracking.specialised import COMPILED_AHEAD, smooth_frame_of
+from standoff.tracking.tracker import Tracker
+from standoff.whole_files import file_name, write_whole
+
+MAGIC = b"STANDOF1"
+SMOOTH_FRAMES = tuple(COMPILED_AHEAD.values())
+"""Numbered from 1 in files; 0 is none."""
+
+OFFSET_BASIS, PRIME, BITS_64 = 0xCBF29CE484222325, 0x100000001B3, (1 << 64) - 1
+
+
+def save_pair(path: str | Path, tracker: Tracker) -> None:
+    """Write a tracker's two bodies, its law and its frame time to a file for ``standoff_load``.
+
+    The file fits the library that the same version of Standoff builds. It is written whole or not
+    at all.
+
+    Parameters
+    ----------
+    path : str or Path
+        New, or replaced.
+    tracker : Tracker
+
+    Raises
+    ------
+    StandoffTypeError
+        Not a tracker.
+    StandoffError
+        A body with a surface or curve made of formulas, whose machine code lives in this process;
+        a tracker with ``specialise=True`` for kinds of faces that the library has no frame for.
+    OSError
+        If the file cannot be written.
+    """
+    target = file_name(path)
+    if not isinstance(tracker, Tracker):
+        raise StandoffTypeError(f"tracker is {shown(tracker)}: give a Tracker.", "tracker", tracker)
+    for name, body in (("A", tracker.a), ("B", tracker.b)):
+        _refuse_formulas(name, body)
+    write_whole({target: partial(_put, _content(tracker, _smooth_number(tracker)))})
+
+
+def _refuse_formulas(name: str, body: Body) -> None:
+    formulas = formulas_of(body.edge_parts, body.face_parts)
+    if formulas:
+        raise StandoffError(
+            f"Body {name} is made of formulas ({', '.join(map(str, formulas[0].expressions))}): "
+            "their machine code lives in this process and cannot go to a file. Make the body of "
+            "NURBS, revolved or extruded surfaces whose curves are no formulas.",
+            "tracker",
+            body,
+        )
+
+
+def _smooth_number(tracker: Tracker) -> int:
+    """Which frame is tried first, as files number them."""
+    if isinstance(tracker.law, PaperLaw):
+        return 0
+    frame = smooth_frame_of(tracker.a, tracker.b, tracker.specialise)
+    if frame is None:
+        return 0
+    if frame not in SMOOTH_FRAMES:
+        raise StandoffError(
+            "specialise=True has compiled a frame for these bodies' kinds of faces, which the C "
+            "library does not have: make the tracker without it.",
+            "tracker",
+            tracker,
+        )
+    return SMOOTH_FRAMES.index(frame) + 1
+
+
+def _content(tracker: Tracker, smooth: int) -> bytes:
+    paper = isinstance(tracker.law, PaperLaw)
+    options = with_smooth_frame(tracker.options, 0)
+    arrays = [
+        np.ascontiguousarray(x, "<i8" if x.dtype.kind == "i" else "<f8")
+        for x in (*tracker.packed, options)
+    ]
+    # a shorter step than the paper's law was made for is stable as well
+    longest = tracker.dt if paper else float("inf")
+    checked = struct.pack(
+        "<qqq5qdd",
+        int(paper),
+        smooth,
+        int(tracker.planar),
+        *map(len, arrays),
+        tracker.dt,
+        longest,
+    ) + b"".join(x.tobytes() for x in arrays)
+    return MAGIC + source_digest().encode() + struct.pack("<Q", fnv1a(checked)) + checked
+
+
+def fnv1a(content: bytes) -> int:
+    """The 64-bit Fowler-Noll-Vo hash, 1a."""
+    found = OFFSET_BASIS
+    for byte in content:
+        found = ((found ^ byte) * PRIME) & BITS_64
+    return found
+
+
+def _put(content: bytes, file: BinaryIO) -> None:
+    file.write(content)

@@ -1,0 +1,179 @@
+/* Standoff: certified minimum distance of two moving convex bodies, called from C or C++.
+ *
+ * A pair of bodies and the law that follows them are prepared in Python, saved to a file
+ * (standoff.c_interface.save_pair) and loaded here. Nothing below needs Python.
+ *
+ *   standoff_pair *pair;
+ *   int code = standoff_load("tool_and_part.pair", &pair);
+ *   if (code != STANDOFF_OK) { fputs(standoff_message(code), stderr); exit(1); }
+ *   standoff_state state;
+ *   standoff_answer answer;
+ *   code = standoff_start(pair, &pose_a, &pose_b, NULL, NULL, &state, &answer);
+ *   ... in the loop:
+ *   code = standoff_step(pair, &state, &pose_a, &pose_b, NULL, NULL, 1e-3, &answer);
+ *   ... at the end:
+ *   standoff_free(pair);
+ *
+ * Units are those of the bodies (length) and seconds; all vectors are in world axes. No function
+ * but standoff_load allocates memory, takes a lock or opens a file. A pair is never changed once it
+ * is loaded: threads may share it, each with a state of its own.
+ */
+
+#ifndef STANDOFF_H
+#define STANDOFF_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(_WIN32)
+#define STANDOFF_API
+#else
+#define STANDOFF_API __attribute__((visibility("default")))
+#endif
+
+/* What a call returns. Negative: nothing was changed. */
+enum standoff_code {
+    STANDOFF_OK = 0,
+    STANDOFF_BAD_POSE_A = -1,    /* not a rotation (to 1e-9), or not finite */
+    STANDOFF_BAD_POSE_B = -2,
+    STANDOFF_BAD_TWIST = -3,     /* not finite */
+    STANDOFF_BAD_TIME_STEP = -4, /* not positive, or longer than the law is stable for */
+    STANDOFF_OUT_OF_PLANE = -5,  /* a planar pair moves in z = 0 */
+    STANDOFF_OTHER_STATE = -6,   /* the state was not started with this pair */
+    STANDOFF_NULL = -7,          /* a pointer that must be given is NULL */
+    STANDOFF_NO_FILE = -10,      /* cannot be opened or read */
+    STANDOFF_NOT_A_PAIR = -11,   /* not a file of save_pair */
+    STANDOFF_DAMAGED = -12,      /* cut short, or changed */
+    STANDOFF_OTHER_VERSION = -13,/* saved for another version of this library */
+    STANDOFF_NO_MEMORY = -14,
+    STANDOFF_FAILED = -20        /* a fault of the library: please report it */
+};
+
+/* How an answer ended; the numbers are those of standoff.Status in Python. */
+enum standoff_status {
+    STANDOFF_CONVERGED = 0,     /* apart, and certified */
+    STANDOFF_TRACKING = 1,      /* the law still converges; the lower bound holds */
+    STANDOFF_OVERLAPPING = 2,   /* not given here: see docs/c-interface.md */
+    STANDOFF_NOT_CERTIFIED = 3, /* the distance is an upper bound; the lower bound holds */
+    STANDOFF_LOCAL = 4,         /* overlap: moving B by depth * normal separates the bodies */
+    STANDOFF_GLOBAL = 5,        /* overlap, and no direction needs less than 0.999 of it */
+    STANDOFF_DEADLINE = 6       /* the evaluations allowed for a step ran out */
+};
+
+enum standoff_kind { STANDOFF_FACE = 0, STANDOFF_EDGE = 1, STANDOFF_VERTEX = 2 };
+
+/* Of a body's frame in world: x -> rotation x + position. */
+typedef struct {
+    double rotation[9]; /* by rows, orthonormal to 1e-9 */
+    double position[3]; /* length */
+} standoff_pose;
+
+typedef struct {
+    double linear[3];  /* of the body's origin, length/s */
+    double angular[3]; /* rad/s */
+} standoff_twist;
+
+typedef struct {
+    int32_t kind;  /* enum standoff_kind */
+    int32_t index; /* among the body's features of this kind, from 0, as in Python */
+} standoff_feature;
+
+typedef struct {
+    double distance;    /* signed: less than 0 in penetration */
+    double lower_bound; /* of the true distance, certified */
+    double upper_bound;
+    double point_a[3]; /* the witness points */
+    double point_b[3];
+    double normal[3];        /* unit, from A to B */
+    double velocity_a[3];    /* of the witness points, length/s; nan where no twist is given */
+    double velocity_b[3];
+    double parameters_a[2];  /* (u, v) of a face, (u, 0) of an edge */
+    double parameters_b[2];
+    double residual;         /* largest projection error */
+    standoff_feature feature_a;
+    standoff_feature feature_b;
+    int32_t status;          /* enum standoff_status */
+    int32_t certified;       /* 1: CONVERGED, or GLOBAL in penetration */
+    /* What it took. */
+    int32_t evaluations;
+    int32_t corrections;
+    int32_t switches;        /* changes of feature since the frame before */
+    int32_t restarts;        /* global queries after the first */
+    int32_t regularised;     /* solves whose Hessian had to be decomposed */
+    int32_t saturations;
+    int32_t searches;        /* searches over all directions of depth */
+    int32_t refusals;        /* 1: left to the general frame by the one for these kinds of faces */
+} standoff_answer;
+
+/* A change of a body's feature. */
+typedef struct {
+    int32_t body; /* 0 for A, 1 for B */
+    standoff_feature source;
+    standoff_feature target;
+} standoff_switch;
+
+/* Two bodies and a law. */
+typedef struct standoff_pair standoff_pair;
+
+#define STANDOFF_STATE_NUMBERS 1024
+
+/* The warm start: a value. Copy it to go back to it; it points nowhere. */
+typedef struct {
+    uint64_t pair; /* of which pair */
+    double numbers[STANDOFF_STATE_NUMBERS];
+} standoff_state;
+
+/* Read a pair from a file of save_pair. The file is trusted as a program is: it is checked against
+ * damage, not against malice. */
+STANDOFF_API int standoff_load(const char *path, standoff_pair **pair);
+
+STANDOFF_API void standoff_free(standoff_pair *pair);
+
+/* Find the witness points anywhere, by a global query. Takes as long as a cold query: not for
+ * within a loop. Twists may be NULL: a body without one is at rest, and if neither has one the
+ * predictions come from the last two frames. */
+STANDOFF_API int standoff_start(const standoff_pair *pair, const standoff_pose *pose_a,
+                                const standoff_pose *pose_b, const standoff_twist *twist_a,
+                                const standoff_twist *twist_b, standoff_state *state,
+                                standoff_answer *answer);
+
+/* The witness points at the poses given, a time `step` (s) after the frame before. */
+STANDOFF_API int standoff_step(const standoff_pair *pair, standoff_state *state,
+                               const standoff_pose *pose_a, const standoff_pose *pose_b,
+                               const standoff_twist *twist_a, const standoff_twist *twist_b,
+                               double step, standoff_answer *answer);
+
+/* The switches of the last frame, at most `room` of them into `switches`; returns how many there
+ * were. */
+STANDOFF_API int standoff_switches(const standoff_pair *pair, const standoff_state *state,
+                                   standoff_switch *switches, int room);
+
+/* How many features of a kind a body (0: A, 1: B) has; -1 where there is no such body or kind. */
+STANDOFF_API int standoff_features(const standoff_pair *pair, int body, int kind);
+
+/* The frame time, s, that the pair was saved with. */
+STANDOFF_API double standoff_frame_time(const standoff_pair *pair);
+
+/* Make the nearest rotation of one that is off by rounding, as single precision leaves it (up to
+ * 1e-5). Returns STANDOFF_OK, or STANDOFF_BAD_POSE_A, with nothing changed, where it is farther
+ * off. */
+STANDOFF_API int standoff_orthonormalise(standoff_pose *pose);
+
+/* What a code means and what to do, in one sentence. */
+STANDOFF_API const char *standoff_message(int code);
+
+/* What a status means and what to do, in one sentence. */
+STANDOFF_API const char *standoff_advice(int status);
+
+/* Of Standoff, such as "1.4.0". */
+STANDOFF_API const char *standoff_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

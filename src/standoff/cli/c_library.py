@@ -1,0 +1,37 @@
+"""``standoff c-library``: the shared library for programs in C, and its header."""
+
+from __future__ import annotations
+
+import time
+
+from standoff.c_interface import build_library
+from standoff.cli.arguments import LibraryCommand
+from standoff.cli.errors import CommandError, ExitCode, WriteError
+from standoff.cli.facts import json_text
+from standoff.errors import StandoffError
+
+
+def run_c_library(command: LibraryCommand) -> int:
+    """Build the library into a folder and tell where it is.
+
+    Raises
+    ------
+    CommandError
+        If there is no compiler, or it fails.
+    WriteError
+        If the files could not be written.
+    """
+    started = time.perf_counter()
+    try:
+        command.folder.mkdir(parents=True, exist_ok=True)
+        library, header = build_library(command.folder, processor=command.processor)
+    except StandoffError as error:
+        raise CommandError(str(error)) from error
+    except OSError as error:
+        raise WriteError(str(error)) from error
+    if command.json:
+        print(json_text({"library": str(library), "header": str(header)}))
+        return ExitCode.DONE
+    print(f"{library} and {header}, built in {time.perf_counter() - started:.0f} s")
+    print(f"compile a program with: cc program.c -I{command.folder} -L{command.folder} -lstandoff")
+    return ExitCode.DONE

@@ -1,0 +1,26 @@
+// The header in a C++ program, with the codes that need no pair.
+#include <cmath>
+#include <cstdio>
+
+#include "standoff.h"
+
+int main()
+{
+    standoff_pose pose = {{1, 1e-7f, 0, -1e-7f, 1, 0, 0, 0, 1}, {0, 0, 0}};
+    standoff_pose far = {{2, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+    standoff_pose mirrored = {{-1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+    standoff_pair *pair = nullptr;
+    const bool mended = standoff_orthonormalise(&pose) == STANDOFF_OK &&
+                        std::fabs(pose.rotation[0] * pose.rotation[1] +
+                                  pose.rotation[3] * pose.rotation[4]) < 1e-15;
+    const bool refused = standoff_orthonormalise(&far) == STANDOFF_BAD_POSE_A &&
+                         standoff_orthonormalise(&mirrored) == STANDOFF_BAD_POSE_A &&
+                         far.rotation[0] == 2.0;
+    const bool null = standoff_load(nullptr, &pair) == STANDOFF_NULL &&
+                      standoff_load("nowhere", &pair) == STANDOFF_NO_FILE && pair == nullptr &&
+                      standoff_start(pair, &pose, &pose, nullptr, nullptr, nullptr, nullptr) ==
+                          STANDOFF_NULL;
+    standoff_free(nullptr);
+    std::printf("%s %d %d %d\n", standoff_version(), mended, refused, null);
+    return mended && refused && null ? 0 : 1;
+}

@@ -1,0 +1,159 @@
+"""Files of pairs: what is refused in Python, and what the library makes of damaged ones."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import standoff as so
+from c_interface.test_frames_in_c import DT, FRAMES, motion
+from c_interface.test_frames_in_c import Case as Motion
+from families import formula_bodies
+from standoff.c_interface import build_library, save_pair
+from standoff.geometry import ConicArc
+from standoff.whole_files import MissingFolder
+
+HEADER = Path(__file__).with_name("header.cpp")
+BALL = so.shapes.sphere(0.5)
+OK, NO_FILE, NOT_A_PAIR, DAMAGED, OTHER_VERSION = 0, -10, -11, -12, -13
+
+
+def test_formula_bodies_are_refused(tmp_path: Path, rng: np.random.Generator) -> None:
+    formula = formula_bodies.egg(rng).body
+    target = tmp_path / "pair"
+    for bodies, name in (((formula, BALL), "A"), ((BALL, formula), "B")):
+        with pytest.raises(so.StandoffError, match=f"Body {name} is made of formulas"):
+            save_pair(target, so.Tracker(*bodies))
+    assert not target.exists()
+
+
+def test_what_is_not_a_tracker_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(so.StandoffError, match="tracker is"):
+        save_pair(tmp_path / "pair", BALL)  # type: ignore[arg-type]
+    with pytest.raises(MissingFolder):
+        save_pair(tmp_path / "nowhere" / "pair", so.Tracker(BALL, BALL))
+
+
+def test_a_frame_compiled_for_this_pair_is_refused(tmp_path: Path) -> None:
+    capsule = so.shapes.capsule(0.2, 1.0)
+    save_pair(tmp_path / "pair", so.Tracker(capsule, capsule))
+    if so.Tracker(BALL, BALL).options[-1] != 0.0:  # frames can be called by address here
+        with pytest.raises(so.StandoffError, match="specialise=True"):
+            save_pair(
+                tmp_path / "pair", so.Tracker(so.shapes.cone(0.5, 1.0), BALL, specialise=True)
+            )
+
+
+def test_no_compiler_is_told_before_anything_is_built(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(so.StandoffError, match="no C compiler 'no-such-cc'"):
+        build_library(tmp_path, compiler="no-such-cc")
+    monkeypatch.setenv("CC", "no-cc-either -m64")
+    with pytest.raises(so.StandoffError, match="no C compiler 'no-cc-either -m64'"):
+        build_library(tmp_path)
+    with pytest.raises(MissingFolder, match="make it first"):
+        build_library(tmp_path / "nowhere")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_header_serves_c_plus_plus(program: Callable[..., Path]) -> None:
+    told = subprocess.run([program(HEADER, "c++")], capture_output=True, text=True, check=True)
+    assert told.stdout == f"{so.__version__} 1 1 1\n"
+
+
+def load(program: Path, file: Path) -> int:
+    told = subprocess.run([program, file], capture_output=True, text=True, check=True).stdout
+    code, message = told.split(" ", 1)
+    assert len(message) > 10
+    return int(code)
+
+
+def test_damaged_files_are_refused(
+    program: Callable[..., Path], tmp_path: Path, rng: np.random.Generator
+) -> None:
+    made, file = program(FRAMES), tmp_path / "pair"
+    assert load(made, file) == NO_FILE
+    save_pair(file, so.Tracker(so.shapes.lens(1.0, 0.4), BALL))
+    whole = file.read_bytes()
+    assert load(made, file) == OK
+    for content, code in (
+        (b"", NOT_A_PAIR),
+        (b"solid a\n", NOT_A_PAIR),
+        (whole[:60], DAMAGED),
+        (whole[:200], DAMAGED),
+        (whole[:-8], DAMAGED),
+        (whole[:-1], DAMAGED),
+        (whole + b"\0" * 8, DAMAGED),
+        (whole[:8] + b"0" * 64 + whole[72:], OTHER_VERSION),
+    ):
+        file.write_bytes(content)
+        assert load(made, file) == code, content[:10]
+    for at in rng.integers(72, len(whole), 25):
+        changed = bytearray(whole)
+        changed[at] ^= 1 << rng.integers(8)
+        file.write_bytes(changed)
+        assert load(made, file) == DAMAGED, at
+
+
+def test_refused_frames_change_nothing(
+    program: Callable[..., Path], tmp_path: Path, rng: np.random.Generator
+) -> None:
+    """A frame whose input is bad is told by its code; the next goes on as if it had not been."""
+    case = Motion(so.shapes.box(1.0, 0.8, 0.6), BALL)
+    frames = motion(case, 60)
+    bad = np.repeat(frames[30:31], 6, axis=0)
+    bad[0, 0] = np.nan
+    bad[1, 12:15] *= 1.01
+    bad[2, 31] = np.inf
+    bad[3, 37], bad[4, 37], bad[5, 37] = 0.0, -DT, np.nan
+    tracker = so.Tracker(case.a, case.b, DT)
+    plain = follow(program(FRAMES), tracker, frames, tmp_path)
+    mixed = follow(program(FRAMES), tracker, np.insert(frames, 30, bad, axis=0), tmp_path)
+    np.testing.assert_array_equal(mixed[30:36, 23], [-1, -2, -3, -4, -4, -4])
+    np.testing.assert_array_equal(np.delete(mixed, np.s_[30:36], axis=0), plain)
+
+
+def test_planar_pairs_stay_in_their_plane(program: Callable[..., Path], tmp_path: Path) -> None:
+    disc = so.shapes.planar_loop([ConicArc([0.0, 0.0], [1.0, 0.0], [0.0, 1.0])])
+    tracker = so.Tracker(disc, disc, DT)
+    frames = motion(Motion(disc, disc), 4)
+    frames[:, :9] = frames[:, 12:21] = np.eye(3).ravel()
+    frames[:, 9:12], frames[:, 21:24] = 0.0, [3.0, 0.2, 0.0]
+    frames[:, 24:36] = 0.0
+    frames[2, 23] = 1e-3
+    codes = follow(program(FRAMES), tracker, frames, tmp_path)
+    np.testing.assert_array_equal(codes[:, 23], [0, 0, -5, 0])
+    assert codes[3, 0] == pytest.approx(np.hypot(3.0, 0.2) - 2.0, rel=1e-12)
+
+
+def follow(program: Path, tracker: so.Tracker, frames: np.ndarray, folder: Path) -> np.ndarray:
+    pair, given, told = folder / "pair", folder / "frames", folder / "answers"
+    save_pair(pair, tracker)
+    given.write_bytes(frames.tobytes())
+    subprocess.run([program, pair, given, told], capture_output=True, check=True)
+    return np.frombuffer(told.read_bytes()).reshape(len(frames), -1)
+
+
+def test_no_byte_is_read_that_is_not_there(
+    library: Path, program: Callable[..., Path], tmp_path: Path
+) -> None:
+    if shutil.which("valgrind") is None:
+        pytest.skip("there is no valgrind")
+    file = tmp_path / "pair"
+    save_pair(file, so.Tracker(BALL, BALL))
+    whole = file.read_bytes()
+    for content in (whole, whole[:-16], b"STANDOF1"):
+        file.write_bytes(content)
+        done = subprocess.run(
+            ["valgrind", "--error-exitcode=9", "--leak-check=full", "-q", program(FRAMES), file],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
