@@ -7,6 +7,8 @@ import pickle
 import shutil
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numba
@@ -18,6 +20,7 @@ import standoff as so
 from standoff.kernels.body import features, trimming
 from standoff.kernels.compiler import modules
 from standoff.kernels.compiler.decorators import pointer
+from standoff.kernels.compiler.entry import Entry
 from standoff.kernels.entries import queries
 from standoff.kernels.entries.preparing import every_entry
 
@@ -149,3 +152,24 @@ def test_an_index_of_other_sources_is_passed_over(compiled: tuple[Path, str], co
         older = version.rsplit(" ", 1)[0] + " another digest"
         file.write_bytes(pickle.dumps(older, protocol=-1) + gone)
     assert jets(copied) == ("True", compiled[1])
+
+
+def test_threads_that_call_first_and_at_once_compile_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As those of ``so.distances(..., workers=2)`` in a process that has compiled nothing yet."""
+    known = queries.curve_jet
+    fresh = Entry(known.py_func, dict(known.targetoptions), known.signature, known.work)
+    compiled = []
+
+    def slow(signature: object) -> object:
+        compiled.append(signature)
+        time.sleep(0.05)  # so that the others come meanwhile
+        return compile_it(signature)
+
+    compile_it = fresh.compile
+    monkeypatch.setattr(fresh, "compile", slow)
+    data = np.arange(1.0, 40.0)
+    data.flags.writeable = False
+    with ThreadPoolExecutor(4) as pool:
+        answers = list(pool.map(lambda t: fresh(data, 0, 0, t), [0.3] * 4))
+    assert answers == [known(data, 0, 0, 0.3)] * 4
+    assert len(compiled) == 1

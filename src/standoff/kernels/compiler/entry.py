@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from numba import types
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.core.typing.typeof import Purpose, typeof
 
@@ -55,11 +56,17 @@ class Entry(CPUDispatcher):  # type: ignore[misc]
         return self.signature in self.overloads
 
     def prepare(self) -> None:
-        """Load the machine code, or compile it; nothing is compiled after that."""
-        if not self.ready:
-            with notices.waiting(self.work):
-                self.compile(self.signature)
-            self.disable_compile()
+        """Load the machine code, or compile it; nothing is compiled after that.
+
+        Of threads that call at once, one does it and the others wait.
+        """
+        if self.ready:
+            return
+        with global_compiler_lock:
+            if not self.ready:
+                with notices.waiting(self.work):
+                    self.compile(self.signature)
+                self.disable_compile()
 
     def _compile_for_args(self, *args: Any, **kws: Any) -> Any:
         """Called by Numba at the first call, where nothing was prepared."""
