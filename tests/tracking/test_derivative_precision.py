@@ -48,6 +48,17 @@ DEEP = [
     if "curved face" in pair or ("flat face" in pair and "straight" not in pair)
 ]
 GAPS = (1.0, 1e-3, 1e-6)
+HALF_SPACE = "unbounded face"
+BEFORE_IT = {
+    "curved face": BODIES["curved face"],
+    "curved edge": BODIES["curved edge"],
+    "vertex": BODIES["vertex"],
+    "capsule's vertex": SHAPES.capsule(0.2, 1.0),
+    "sphere's vertex": SHAPES.sphere(0.3),
+}
+ROUNDINGS = {"capsule's vertex": 0.2, "sphere's vertex": 0.3}
+BODIES |= {HALF_SPACE: SHAPES.halfspace(), **BEFORE_IT}
+KINDS |= {kind: kind.split()[-1] for kind in BODIES}
 
 
 def drawn_feature(kind: str, rng: np.random.Generator):
@@ -57,9 +68,10 @@ def drawn_feature(kind: str, rng: np.random.Generator):
         n /= np.linalg.norm(n)
         s = np.square(AXES) * n
         return ellipsoid(AXES, n), s / np.sqrt(s @ n), n
-    if kind == "flat face":
+    if kind in ("flat face", HALF_SPACE):
         u, v = rng.uniform(-0.4, 0.4, size=2)
-        return plane((u, v, 0.5), (1, 0, 0), (0, 1, 0)), (u, v, 0.5), (0.0, 0.0, 1.0)
+        x = u, v, (0.0 if kind == HALF_SPACE else 0.5)
+        return plane(x, (1, 0, 0), (0, 1, 0)), x, (0.0, 0.0, 1.0)
     if kind == "curved edge":
         angle, tilt = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(0.3, 1.2)
         out = np.array([np.cos(angle), np.sin(angle), 0.0])
@@ -72,7 +84,11 @@ def drawn_feature(kind: str, rng: np.random.Generator):
         feature = segment((u, half, half), (1.0, 0.0, 0.0))
         return Feature(*feature[:2], radius), (u, half, half) + radius * n, n
     n = rng.uniform(0.3, 1.0, size=3)
-    return point((0.5, 0.5, 0.5)), (0.5, 0.5, 0.5), n / np.linalg.norm(n)
+    n /= np.linalg.norm(n)
+    if kind in ROUNDINGS:
+        end, radius = np.array([0.0, 0.0, 0.5 * (kind[0] == "c")]), ROUNDINGS[kind]
+        return Feature(*point(end)[:2], radius), end + radius * n, n
+    return point((0.5, 0.5, 0.5)), (0.5, 0.5, 0.5), n
 
 
 def placed(rng: np.random.Generator, x, n, there, towards) -> np.ndarray:
@@ -115,3 +131,11 @@ def test_derivatives_in_fifty_digits(pair, gap: float, rng: np.random.Generator)
 @pytest.mark.parametrize("pair", DEEP, ids=" - ".join)
 def test_derivatives_in_penetration(pair, rng: np.random.Generator) -> None:
     compared(*pair, -0.01, rng)
+
+
+@pytest.mark.parametrize("gap", [1.0, 1e-6, -0.01, -3.0])
+@pytest.mark.parametrize("kind", BEFORE_IT)
+def test_derivatives_against_a_half_space(kind: str, gap: float, rng: np.random.Generator) -> None:
+    """The half-space first and second; deeper than the body is long it is the same formula."""
+    compared(HALF_SPACE, kind, gap, rng)
+    compared(kind, HALF_SPACE, gap, rng)

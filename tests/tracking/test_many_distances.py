@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import time
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
-from standoff.tracking import Status
+from standoff.tracking import Status, threads
 
 LENS, TOOL, BOX = (
     so.shapes.lens(1.0, 0.45),
@@ -220,6 +221,40 @@ def test_derivatives_of_rows_are_those_of_single_answers(warm, rng):
         np.testing.assert_array_equal(found.hessian, arrays.hessian)
         np.testing.assert_array_equal(found.normal_jacobian, arrays.normal_jacobian)
         np.testing.assert_array_equal(found.point_jacobians, arrays.point_jacobians)
+
+
+def test_one_worker_or_one_row_starts_no_thread(monkeypatch, rng):
+    poses = drawn(rng, 3)
+    found, one = (so.distances(LENS, TOOL, np.eye(4), x) for x in (poses, poses[:1]))
+    several = [found.derivatives(workers=k).hessian.tobytes() for k in (2, 3, 5)]
+
+    def refused(workers):
+        raise AssertionError(f"a pool of {workers}")
+
+    monkeypatch.setattr(threads, "ThreadPoolExecutor", refused)
+    assert {*several, found.derivatives().hessian.tobytes()} == {several[0]}
+    np.testing.assert_array_equal(found.gradient[:1], one.derivatives(workers=4).gradient)
+    assert so.distances(LENS, TOOL, np.eye(4), poses[:1], workers=4).distance == one.distance
+    with pytest.raises(AssertionError, match="a pool of 2"):
+        found.derivatives(workers=2)
+
+
+def test_in_a_half_space_derivatives_take_no_search(rng):
+    """It has one normal, so overlapping rows cost what those apart do; a search costs 500 times."""
+    ground, took = so.shapes.halfspace(), {}
+    for height in (3.0, -3.0):
+        poses = drawn(rng, 100)
+        poses[:, 2, 3] = height
+        found = so.distances(ground, TOOL, np.eye(4), poses)
+        assert (np.sign(found.distance) == np.sign(height)).all()
+        times = []
+        for _ in range(5):
+            start = time.perf_counter()
+            given = found.derivatives()
+            times.append(time.perf_counter() - start)
+        assert not given.reasons
+        took[height] = min(times)
+    assert took[-3.0] <= 20.0 * took[3.0]
 
 
 def test_rows_without_derivatives_have_flags_and_nan():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from enum import Enum
 from typing import NamedTuple, Protocol
 
@@ -17,6 +16,7 @@ from standoff.kernels.state import arrays as K
 from standoff.tracking.calls import packed
 from standoff.tracking.contact.witness_set import witness_set
 from standoff.tracking.rows import Answer
+from standoff.tracking.threads import in_parts
 
 Array = NDArray[np.float64]
 
@@ -158,13 +158,11 @@ def _derived_rows(
     """Write derivatives into rows of `numbers`; say of each whether there are any, and why not."""
     pair = packed(*table.bodies)
     kinds = np.zeros(len(numbers), dtype=np.int64)
-    ends = np.linspace(0, len(numbers), workers + 1).astype(int).tolist()
 
     def part(first: int, end: int) -> None:
         kernels.derive_many(pair, *table.poses, first, end, table.rows, numbers, kinds)
 
-    with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(part, ends[:-1], ends[1:]))
+    in_parts(part, len(numbers), workers)
     smoothness = np.full(len(numbers), Smoothness.SMOOTH, dtype=object)
     reasons = {}
     for k in np.flatnonzero(kinds != D.SMOOTH).tolist():

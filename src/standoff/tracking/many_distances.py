@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import operator
-from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,6 +24,7 @@ from standoff.tracking.proximity import Proximity
 from standoff.tracking.rows import motion_row
 from standoff.tracking.runs import read_poses
 from standoff.tracking.status import Status
+from standoff.tracking.threads import in_parts
 from standoff.tracking.tracker import Tracker
 from standoff.wording import counted, short_name
 
@@ -285,17 +285,12 @@ def _checked(
 
 def _cold(query: Tracker, poses: tuple[Array, Array], rows: Array, workers: int) -> None:
     """Answer every row by itself."""
-    n, done = len(rows), np.zeros(len(rows), dtype=np.int64)
-    ends = np.linspace(0, n, workers + 1).astype(int).tolist()
+    done = np.zeros(len(rows), dtype=np.int64)
 
     def part(first: int, end: int) -> None:
         batch.starts(query.packed, *poses, first, end, query.options, rows, done)
 
-    if workers == 1:
-        part(0, n)
-        return
-    with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(part, ends[:-1], ends[1:]))
+    in_parts(part, len(rows), workers)
 
 
 def _warm(

@@ -81,7 +81,12 @@ def without_limit(work):
 
 @kernel
 def has_rivals(pair, pose, n, d, place):
-    """Are overlapping cores as deep in each other along another normal?"""
+    """Are overlapping cores as deep in each other along another normal?
+
+    Not in a half-space: its plane's normal is the only one along which it can be left.
+    """
+    if pair.ints_a[L.UNBOUNDED] or pair.ints_b[L.UNBOUNDED]:
+        return False
     none = reals_on_stack(N_POLYTOPE)
     work = without_limit(Work(stack_counts(), stack_log(), none, none))
     known = alone(pair, pose, Depth(True, d, n, place), work)
