@@ -109,7 +109,7 @@ def test_every_name_of_the_reference_is_there(page: str) -> None:
         *("standoff.automaton", "standoff.bodies", "standoff.bodies.shapes", "standoff.control"),
         *("standoff.geometry", "standoff.impact", "standoff.motion", "standoff.points"),
         *("standoff.recording", "standoff.scene", "standoff.simulation", "standoff.tracking"),
-        *("standoff.voronoi", "standoff.jax", "standoff.casadi"),
+        *("standoff.voronoi", "standoff.jax", "standoff.casadi", "standoff.view"),
     ],
 )
 def test_every_public_name_is_in_the_reference(module: str) -> None:

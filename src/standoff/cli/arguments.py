@@ -85,6 +85,8 @@ class FileFlags:
     """Write every frame to this Parquet file."""
     plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
     """Plot distance, certificate gap and active features (.png, .svg or .pdf)."""
+    export: Annotated[Path | None, arg(metavar="OUT.html", help_behavior_hint="")] = None
+    """Show the motion: a page without a server (.html), a film (.mp4, .gif), or rerun's (.rrd)."""
 
 
 @dataclass(frozen=True)

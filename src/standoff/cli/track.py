@@ -22,6 +22,7 @@ from standoff.scene import (
     record,
 )
 from standoff.scene.files import toml_tables
+from standoff.view.formats import ENDINGS, writer_of
 
 TABLE_ENDINGS = (".parquet",)
 PLOT_ENDINGS = (".png", ".svg", ".pdf")
@@ -78,12 +79,14 @@ class _Run(NamedTuple):
     settings: TrackSettings
     output: Path | None
     plot: Path | None
+    export: Path | None
 
     @classmethod
     def of(cls, scene: Scene, command: TrackCommand, scenes: tuple[Scene, ...]) -> _Run:
         output = target_of(command.files.output, "-o", scene, scenes)
         plot = target_of(command.files.plot, "--plot", scene, scenes)
-        return cls(scene, settings_of(scene, command), output, plot)
+        export = target_of(command.files.export, "--export", scene, scenes)
+        return cls(scene, settings_of(scene, command), output, plot, export)
 
     def check_files(self) -> None:
         if self.output is not None:
@@ -98,6 +101,12 @@ class _Run(NamedTuple):
                 import standoff.recording.plot  # noqa: F401
         except ModuleNotFoundError as error:
             raise MissingExtra(str(error.name)) from error
+        if self.export is not None:
+            check_target(self.export, "--export", ENDINGS)
+            try:
+                writer_of(self.export)
+            except ModuleNotFoundError as error:
+                raise CommandError(str(error)) from error
 
     def files(self, recording: Recording) -> dict[Path, Writer]:
         files: dict[Path, Writer] = {}
@@ -110,10 +119,13 @@ class _Run(NamedTuple):
 
             ending = self.plot.suffix.lower().removeprefix(".")
             files[self.plot] = lambda file: write_plot(recording, file, ending)
+        if self.export is not None:
+            write = writer_of(self.export)
+            files[self.export] = lambda file: write(recording, file)
         return files
 
     def written(self) -> list[Path]:
-        return [path for path in (self.output, self.plot) if path is not None]
+        return [path for path in (self.output, self.plot, self.export) if path is not None]
 
 
 def settings_of(scene: Scene, command: TrackCommand) -> TrackSettings:

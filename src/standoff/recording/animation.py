@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from standoff.tracking.inputs import flat_pose
 
 try:
     from matplotlib.animation import FuncAnimation
+    from matplotlib.figure import Figure
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
@@ -37,6 +39,18 @@ def animation(
     view: tuple[float, float] | None,
 ) -> FuncAnimation:
     """Return the animation; `Recording.animate` describes it."""
+    figure, draw, count = drawing(recording, pair, paths, pictures, view)
+    return FuncAnimation(figure, draw, frames=count, interval=INTERVAL, init_func=list)
+
+
+def drawing(
+    recording: RecordedFrames,
+    pair: tuple[Any, Any],
+    paths: Paths,
+    pictures: int,
+    view: tuple[float, float] | None,
+) -> tuple[Figure, Callable[[int], list[Any]], int]:
+    """Return the figure, what draws picture k in it, and the number of pictures."""
     count = min(pictures, len(recording))
     chosen = np.unique(np.linspace(0, len(recording) - 1, count).round().astype(int)).tolist()
     frames = [_shown(recording, paths, frame) for frame in chosen]
@@ -57,7 +71,7 @@ def animation(
         figure.suptitle(f"{recording.time[chosen[k]] + 0.0:.3f} s", fontsize="medium")
         return []
 
-    return FuncAnimation(figure, draw, frames=len(frames), interval=INTERVAL, init_func=list)
+    return figure, draw, len(frames)
 
 
 def _shown(recording: RecordedFrames, paths: Paths, frame: int) -> Shown:

@@ -14,7 +14,7 @@ from standoff.errors import StandoffError
 from standoff.recording import Recording
 from standoff.view.picture import Picture
 from standoff.view.server import VISERS, made_by, viser
-from standoff.view.shown import of_frame
+from standoff.view.shown import of_frame, what_moved
 from standoff.whole_files import file_name, write_whole
 
 PICTURES_A_SECOND = 30
@@ -64,11 +64,7 @@ def page_of(recording: Recording) -> str:
     StandoffError
         If the recording has no bodies or paths.
     """
-    if recording.pair is None or recording.paths is None:
-        raise StandoffError(
-            "A recording that was opened from a file, copied or unpickled does not hold what "
-            "moved: save the one that so.simulate returned."
-        )
+    what_moved(recording)
     with made_by(_Unheard):
         server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
     try:

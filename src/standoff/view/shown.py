@@ -7,9 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
+from standoff.errors import StandoffError
 from standoff.motion import Pose
 from standoff.recording import Recording
+from standoff.recording.recorded import Paths
 from standoff.tracking import Proximity, Status
 
 Array = NDArray[np.float64]
@@ -72,3 +75,21 @@ def of_frame(recording: Recording, frame: int) -> Shown:
         (recording.feature_a[frame], recording.feature_b[frame]),
         recording.status[frame],
     )
+
+
+def what_moved(recording: Recording) -> tuple[tuple[Body, Body], Paths]:
+    """Return the bodies of a run and their paths.
+
+    Raises
+    ------
+    StandoffError
+        If it was opened from a file or copied: it does not hold them then.
+    """
+    if recording.pair is None or recording.paths is None:
+        raise StandoffError(
+            "A recording that was opened from a file, copied or unpickled does not hold what "
+            "moved: save the one that so.simulate returned.",
+            "recording",
+            recording,
+        )
+    return recording.pair, recording.paths

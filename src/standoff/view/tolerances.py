@@ -30,3 +30,13 @@ two would flicker through each other."""
 
 TICK: Final = 1e-3
 """Time step of coupler, dynamics and contact [s]: the rate of haptic devices."""
+
+FILM_RATE: Final = 25.0
+"""Most pictures of a film, so many a second: motion looks smooth with them, and a GIF, which
+counts in hundredths of a second, shows them exactly."""
+
+LEAST_FILM_RATE: Final = 2.0
+"""Fewest pictures of a film, so many a second: with fewer it looks as if it had stopped."""
+
+MOST_LOGGED: Final = 2000
+"""Most frames of a run that are written for rerun, so many: each takes some 4 kB there."""

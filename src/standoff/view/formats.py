@@ -1,0 +1,41 @@
+"""The kinds of file that show a recorded run, and what writes each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import BinaryIO
+
+from standoff.recording import Recording
+
+ENDINGS = (".html", ".mp4", ".gif", ".rrd")
+
+RunWriter = Callable[[Recording, BinaryIO], object]
+"""Writes a run to a stream."""
+
+
+def writer_of(path: Path) -> RunWriter:
+    """Return what writes a run to a file of one of the `ENDINGS`.
+
+    Parameters
+    ----------
+    path : Path
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If a library is missing that it needs; the message names the extra.
+    """
+    match ending := path.suffix.lower():
+        case ".html":
+            from standoff.view.export import page_of
+
+            return lambda recording, file: file.write(page_of(recording).encode())
+        case ".rrd":
+            from standoff.view.rerun_log import write_rerun
+
+            return write_rerun
+    from standoff.view.video import check_installed, write_video
+
+    check_installed(ending)
+    return lambda recording, file: write_video(recording, file, ending)

@@ -1,0 +1,150 @@
+"""A recorded run as a film: an animated GIF, or an MP4."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from standoff.errors import StandoffError, not_installed
+from standoff.real_numbers import shown
+from standoff.recording import Recording
+from standoff.tracking.choices import positive_number, whole_number
+from standoff.tracking.pair_plot import view_angles
+from standoff.view.shown import what_moved
+from standoff.view.tolerances import FILM_RATE, LEAST_FILM_RATE
+from standoff.whole_files import file_name, write_whole
+
+FORMATS = (".gif", ".mp4")
+
+
+def save_video(
+    recording: Recording,
+    path: str | Path,
+    *,
+    pictures: int = 300,
+    speed: float = 1.0,
+    view: tuple[float, float] | None = None,
+) -> None:
+    """Write a run as a film of both bodies, their active features and the witness line.
+
+    Parameters
+    ----------
+    recording : Recording
+        As `so.simulate` returned it: one from a file does not hold what moved.
+    path : str or path
+        An .mp4 or a .gif file, written whole or not at all.
+    pictures : int
+        Most pictures that are drawn, each in a tenth of a second or so. At most 25 are shown a
+        second; a long run is shown with fewer a second, but at least 2.
+    speed : float
+        Seconds of the motion in a second of the film: 0.1 shows it ten times as slow.
+    view : (float, float), optional
+        Elevation and azimuth of the viewer, degrees. If not given, the view is across the normal of
+        the closest frame.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If matplotlib, or for an MP4 imageio-ffmpeg, is not installed; the message names the extra.
+    TypeError
+        If `path` is neither a text nor a Path.
+    ValueError
+        If the file's ending is another, a number is not one that it may be, or the recording was
+        opened from a file or copied.
+    OSError
+        If the file cannot be written.
+    """
+    target = file_name(path)
+    ending = target.suffix.lower()
+    if ending not in FORMATS:
+        raise StandoffError(
+            f"{target}: the ending {shown(target.suffix)} is not known here; name a file that ends "
+            f"in {' or '.join(FORMATS)}",
+            "path",
+            path,
+        )
+    check_installed(ending)
+    what_moved(recording)
+    count, factor = whole_number(pictures, "pictures"), positive_number(speed, "speed")
+    angles = view_angles(view)
+    write_whole({target: lambda file: write_video(recording, file, ending, count, factor, angles)})
+
+
+def check_installed(ending: str) -> None:
+    """Refuse an ending, .gif or .mp4, whose libraries are missing.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        The message names the extra.
+    """
+    try:
+        import matplotlib  # noqa: F401
+
+        if ending == ".mp4":
+            import imageio_ffmpeg  # noqa: F401
+    except ModuleNotFoundError as error:
+        name = str(error.name).replace("_", "-")
+        raise ModuleNotFoundError(not_installed(name, "video"), name=error.name) from error
+
+
+def write_video(
+    recording: Recording,
+    file: BinaryIO,
+    ending: str,
+    pictures: int = 300,
+    speed: float = 1.0,
+    view: tuple[float, float] | None = None,
+) -> None:
+    """Write a film to a stream; `save_video` describes it, and checks what it is given."""
+    from standoff.recording.animation import drawing
+
+    pair, paths = what_moved(recording)
+    lasts = float(recording.time[-1] - recording.time[0]) / speed
+    wanted = max(2, min(pictures, int(np.ceil(lasts * FILM_RATE)) + 1))
+    figure, draw, count = drawing(recording, pair, paths, wanted, view)
+    usual = (count - 1) / lasts if lasts > 0.0 else FILM_RATE
+    rate = float(np.clip(usual, LEAST_FILM_RATE, FILM_RATE))
+    images = []
+    for number in range(count):
+        draw(number)
+        images.append(_pixels(figure))
+    write = _write_gif if ending == ".gif" else _write_mp4
+    write(images, rate, file)
+
+
+def _pixels(figure: Any) -> Any:
+    """The figure as it is now, (height, width, 3); an MP4 asks for even numbers of both."""
+    figure.canvas.draw()
+    pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+    height, width = pixels.shape[0] // 2 * 2, pixels.shape[1] // 2 * 2
+    return np.ascontiguousarray(pixels[:height, :width])
+
+
+def _write_gif(images: list[Any], rate: float, file: BinaryIO) -> None:
+    from PIL import Image
+
+    first, *others = [Image.fromarray(image).quantize(128) for image in images]
+    # GIF counts in hundredths of a second.
+    shown_for = 10 * max(2, round(100.0 / rate))
+    first.save(file, format="GIF", save_all=True, append_images=others, duration=shown_for, loop=0)
+
+
+def _write_mp4(images: list[Any], rate: float, file: BinaryIO) -> None:
+    import imageio_ffmpeg
+
+    height, width = images[0].shape[:2]
+    with tempfile.TemporaryDirectory() as folder:
+        # The encoder goes back in its file when all is known, so it cannot write to a stream.
+        made = Path(folder) / "run.mp4"
+        film = imageio_ffmpeg.write_frames(
+            str(made), (width, height), fps=rate, macro_block_size=2, ffmpeg_log_level="error"
+        )
+        film.send(None)
+        for image in images:
+            film.send(image)
+        film.close()
+        file.write(made.read_bytes())
