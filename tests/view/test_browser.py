@@ -131,6 +131,28 @@ def test_a_dragged_ball_s_distance_is_that_of_the_closed_form(
     assert desk.errors == []
 
 
+def test_one_browser_goes_in_mid_drag_and_another_goes_on(
+    page: Any, tab: Callable[..., Any]
+) -> None:
+    desk = opened(page, tab(980, 420))
+    pull(page, desk, 0, -0.8, release=False)
+    until(lambda: page.stage._held == 0)
+    phone = tab(390, 844)
+    phone.page.goto(page.address)
+    until(lambda: len(page.server.get_clients()) == 2)
+    distance = from_box(page.stage.pair.poses[0].translation)
+    until(lambda: phone.number("distance") == pytest.approx(distance, rel=1e-8))
+    assert desk.number("distance") == phone.number("distance")
+    desk.page.close()
+    until(lambda: page.stage._held is None)
+    page._asked.put(lambda: page.hand("B"))
+    until(lambda: page.stage._hand == 1)
+    assert phone.number("distance") == pytest.approx(distance, rel=1e-8)
+    phone.shot("phone")
+    assert phone.foreign(page.address) == []
+    assert (phone.failed, phone.errors) == ([], [])
+
+
 def test_a_run_is_played_saved_and_opened_from_its_file(
     chromium: Any, tab: Callable[..., Any], tmp_path: Path
 ) -> None:
