@@ -26,7 +26,8 @@ OPTIONS = {"nopython": True, "error_model": "numpy", "boundscheck": BOUNDS_CHECK
 
 # A product and a sum become one operation where the processor has it. That rounds once in place of
 # twice, so an error bound that counts roundings (BOUND_ROUNDINGS) holds as it did; a b - b a need
-# no longer be 0, which `uncontracted` kernels rely on.
+# no longer be 0, which `uncontracted` kernels rely on. Without `forceinline` a kernel would take it
+# from the caller that is compiled first, and round otherwise where others were compiled before.
 CONTRACTED = {**OPTIONS, "fastmath": {"contract"}, "forceinline": False}
 
 
