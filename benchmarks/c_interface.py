@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 
 import standoff as so  # noqa: E402
-from c_interface import test_frames_in_c as frames_in_c  # noqa: E402
+from c_interface import following  # noqa: E402
 from standoff.c_interface import build_library  # noqa: E402
 
 COUNT, REPEATS = 2000, 7
@@ -50,17 +50,17 @@ def main() -> None:
         build_library(folder)
         program = folder / "follow"
         command = ["cc", "-std=c11", "-O2", "-D_POSIX_C_SOURCE=199309L", f"-I{folder}", "-o"]
-        command += [str(program), str(frames_in_c.FRAMES), f"-L{folder}", "-lstandoff", "-lm"]
+        command += [str(program), str(following.FRAMES), f"-L{folder}", "-lstandoff", "-lm"]
         subprocess.run([*command, "-Wl,-rpath,$ORIGIN"], check=True)
         print("| pair | C, us | `tracker.run`, us | `step_into`, us | C / run | bits |")
         print("|---|---|---|---|---|---|")
-        for name, case in frames_in_c.CASES.items():
-            tracker = so.Tracker(case.a, case.b, frames_in_c.DT, case.law)
-            frames = frames_in_c.motion(case, COUNT)
+        for name, case in following.CASES.items():
+            tracker = so.Tracker(case.a, case.b, following.DT, case.law)
+            frames = following.motion(case, COUNT)
             in_c, in_run, in_python = [], [], []
             for _ in range(REPEATS):
-                answers, seconds = frames_in_c.in_c(program, tracker, frames, folder)
-                expected, called = frames_in_c.in_python(tracker, frames)
+                answers, seconds = following.in_c(program, tracker, frames, folder)
+                expected, called = following.in_python(tracker, frames)
                 in_c.append(seconds)
                 in_run.append(run_seconds(tracker, frames))
                 in_python.append(called)

@@ -1,24 +1,19 @@
-"""Pairs followed by a C program: the answers of Python, to the last bit, without Python."""
+"""Pairs and motions, followed by Python and by a C program."""
 
 from __future__ import annotations
 
 import subprocess
-import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff as so
-from families import nurbs_bodies
 from standoff.c_interface import save_pair
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
-from standoff.tracking.status import Status
 
 FRAMES = Path(__file__).with_name("frames.c")
 N_FRAME, N_ANSWER = 38, 32
@@ -120,52 +115,3 @@ def in_c(
         [program, pair, given, told], capture_output=True, text=True, check=True, env={}
     )
     return np.frombuffer(told.read_bytes()).reshape(-1, N_ANSWER), float(done.stdout)
-
-
-@pytest.mark.parametrize("name", CASES)
-def test_answers_are_those_of_python_to_the_last_bit(
-    name: str, program: Callable[..., Path], tmp_path: Path
-) -> None:
-    case = CASES[name]
-    tracker = so.Tracker(case.a, case.b, DT, case.law)
-    frames = motion(case, 1500)
-    answers, _ = in_c(program(FRAMES), tracker, frames, tmp_path)
-    expected, _ = in_python(tracker, frames)
-    np.testing.assert_array_equal(answers.view(np.int64), expected.view(np.int64))
-    switches, status = answers[:, 30], answers[:, 28]
-    if name == "box and lens, switching":
-        assert switches.sum() > 3
-    if name == "in and out of contact":
-        assert {Status.CONVERGED.value, Status.GLOBAL.value} <= set(status)
-    if name == "ellipsoids on their faces":
-        assert answers[1:, 31].mean() < 0.05  # by the frame for spheres' patches, as in Python
-
-
-def test_nurbs_bodies_go_to_files_too(
-    program: Callable[..., Path], tmp_path: Path, rng: np.random.Generator
-) -> None:
-    a, b = nurbs_bodies.cushion(rng).body, nurbs_bodies.lens(rng).body
-    case = Case(a, b, reach=2.0 * (a.size + b.size))
-    tracker, frames = so.Tracker(a, b, DT), motion(case, 300)
-    answers, _ = in_c(program(FRAMES), tracker, frames, tmp_path)
-    expected, _ = in_python(tracker, frames)
-    np.testing.assert_array_equal(answers.view(np.int64), expected.view(np.int64))
-
-
-def test_no_interpreter_is_in_the_process(library: Path, program: Callable[..., Path]) -> None:
-    if not sys.platform.startswith("linux"):
-        pytest.skip("ldd is a tool of Linux")
-    told = subprocess.run(["ldd", program(FRAMES)], capture_output=True, text=True, check=True)
-    assert "libstandoff" in told.stdout
-    assert "python" not in told.stdout.lower().replace(str(library).lower(), "")
-
-
-def test_a_step_in_c_is_no_slower_than_one_from_python(
-    program: Callable[..., Path], tmp_path: Path
-) -> None:
-    case = CASES["box and lens, switching"]
-    tracker, frames = so.Tracker(case.a, case.b, DT), motion(case, 1500)
-    in_python(tracker, frames[:10])
-    c = min(in_c(program(FRAMES), tracker, frames, tmp_path)[1] for _ in range(3))
-    python = min(in_python(tracker, frames)[1] for _ in range(3))
-    assert c < python, (c, python)
