@@ -185,7 +185,7 @@ def _lines(scene: SimulationScene, report: ServoReport, written: Path | None) ->
         line("ended", report.message),
         line("ticks", f"{found.ticks} at {report.rate:g} Hz, {found.missed} deadlines missed"),
         line("engaged", f"{found.engaged} ticks, fault {report.fault.name}"),
-        line("us", "median, p99, p99.9, p99.99, worst"),
+        line("times, µs", "median, p99, p99.9, p99.99, worst"),
     ]
     for name in ("period", "lateness", "work"):
         values = ", ".join(f"{MICRO * value:.1f}" for value in getattr(found, name))
