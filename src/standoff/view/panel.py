@@ -76,6 +76,7 @@ class Panel:
         gui.configure_theme(show_logo=False, show_share_button=False)
         self._readout = gui.add_html("")
         self._plot = self._make_plot()
+        self._plotted = False
         tabs = gui.add_tab_group()
         with tabs.add_tab("Move"):
             self._make_motion()
@@ -227,6 +228,9 @@ class Panel:
     ) -> None:
         """Show the numbers of an instant; `force` [N] of the coupler where it pulls."""
         self._readout.content = readout(shown, names, unit, force)
+        if not self._plotted:  # a level line until something moves
+            level = np.ones(2)
+            self._draw(np.array([0.0, 1.0]), level * shown.distance, level * shown.lower_bound)
 
     def plays(self, player: Player) -> None:
         """Show where a recording stands, and its frames up to there."""
@@ -252,4 +256,5 @@ class Panel:
     def _draw(self, time: Any, distance: Any, bound: Any) -> None:
         known = np.isfinite(distance) & np.isfinite(bound)
         if known.sum() > 1:
+            self._plotted = True
             self._plot.data = (time[known], distance[known], bound[known])
