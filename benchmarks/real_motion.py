@@ -1,13 +1,14 @@
 """A recorded, jittery motion carries an ellipsoidal tool past a lens and a rounded box at rest.
 
-Run with ``python -m benchmarks.real_motion``. It prints how many frames were certified, how far
-the tracked answers are from cold queries, and what they took. The motion is not part of the
-project: TUM RGB-D benchmark, sequence freiburg1_xyz (CC BY 4.0), a hand-held camera at about
-100 Hz with uneven time stamps.
+Run with ``python -m benchmarks.real_motion FILE``. It prints how many frames were certified, how
+far the tracked answers are from cold queries, and what they took. The motion is not part of the
+project: FILE is the ``groundtruth.txt`` of sequence freiburg1_xyz of the TUM RGB-D benchmark (CC BY
+4.0), a hand-held camera at about 100 Hz with uneven time stamps.
 """
 
 from __future__ import annotations
 
+import argparse
 import itertools
 from collections import Counter
 from dataclasses import dataclass, field
@@ -58,9 +59,9 @@ class Record:
     features: Counter[str] = field(default_factory=Counter)
 
 
-def recorded_motion() -> PoseSamples:
+def recorded_motion(file: Path = RECORDING) -> PoseSamples:
     """Return the recorded motion, from time 0."""
-    return read_pose_samples(RECORDING).starting_at(0.0)
+    return read_pose_samples(file).starting_at(0.0)
 
 
 def compare(record: Record, answer: so.Proximity, cold: so.Proximity, size: float) -> None:
@@ -100,9 +101,15 @@ def track(name: str, law: so.PredictorCorrector, motion: PoseSamples) -> Record:
 
 
 def main() -> None:
-    if not RECORDING.exists():
-        raise SystemExit(f"The recording is not here: {RECORDING}")
-    motion = recorded_motion()
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("file", nargs="?", type=Path, default=RECORDING, help="poses, .tum or .txt")
+    file = parser.parse_args().file
+    if not file.exists():
+        raise SystemExit(
+            f"There is no recording at {file}: give the path of groundtruth.txt of the sequence "
+            "freiburg1_xyz (TUM RGB-D benchmark)"
+        )
+    motion = recorded_motion(file)
     steps = np.diff(motion.times)
     print(
         f"{len(motion.times)} samples, {motion.end:.1f} s, "
