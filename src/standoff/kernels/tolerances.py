@@ -136,6 +136,12 @@ CONTACT_STEPS = 12
 
 # Positions (length) must stay below this: squares of distances must not overflow.
 FARTHEST = 1e100
+# Parameters that a frame of the paper's law changes by more than this have overflowed: fourth
+# powers of them must not, and no patch is so wide (parameter units; on a half-space lengths).
+LONGEST_CHANGE = 1e50
+# How far (in spans) from the other body's foot a witness point on a half-space may go: the nearest
+# point is under the body, and a law that has left it so far behind would only run away.
+FOOT_REACH = 4.0
 
 # Off a crease the curvature falls from infinity: the first parameter inside is sought between
 # CREASE_FIRST and CREASE_LAST (gnomonic, dimensionless) in CREASE_STEPS halvings of its logarithm.
@@ -154,6 +160,9 @@ FAN_REFINE = 60
 # Lengths of the certificate carry a few roundings each; the bound is lowered by this many eps
 # of the largest coordinate met, so that it stays a bound in floating point.
 BOUND_ROUNDINGS = 16.0
+# A vector square to an edge is made a unit vector where the square of its length (dimensionless: a
+# unit vector's part) exceeds FLAT_PART: at most 1.4 times its roundoff is then along the edge.
+FLAT_PART = 0.5
 
 # How strongly a restart's direction is mixed with those before it, a start (dimensionless).
 MIXING = 0.3

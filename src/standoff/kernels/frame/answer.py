@@ -51,14 +51,16 @@ def judge(pair, p, found, lenient, tolerance, cut):
     goal = START_GAP if tolerance == inf else tolerance
     span = pair_span(pair, p, abs(d))
     near = d - lower <= goal * span + pair_slack(pair)
+    # a tolerance without an end certifies nothing
+    certified = near or (outcome == CERTIFIED and tolerance < inf)
     if cut and (outcome == UNCERTIFIED or (outcome == TOUCHING_OR_OVERLAPPING and not near)):
         return DEADLINE
     # within the tolerance of touching the bound's sign says nothing
     if d <= radii or outcome == PENETRATING or (near and lower <= radii):
-        if near or outcome in (CERTIFIED, PENETRATING):
+        if certified or outcome == PENETRATING:
             proof = DEPTH_PROOF * (radii - d) + TOUCHING * span + pair_slack(pair)
             return GLOBAL if found.upper - d <= proof else LOCAL
-    elif lower > radii and (near or (outcome == CERTIFIED and tolerance < inf)):
+    elif lower > radii and certified:
         return CONVERGED
     if lenient or tolerance == inf:
         return TRACKING

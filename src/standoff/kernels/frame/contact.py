@@ -5,6 +5,7 @@ from math import inf, nan
 import numpy as np
 
 from standoff.kernels.algebra.vectors import axpy, dot, norm, sub
+from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import pair_slack, pair_span
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.depth.descent import descend
@@ -44,9 +45,7 @@ def contact_query(pair, pose, place, normal, begin, everywhere, tolerance, work)
     if (begin != COLD or plane) and not at.found:
         at = descend(pair, pose, at, tolerance, work)
     least = -inf
-    if plane:
-        least = -at.distance
-    elif not at.found or at.distance <= 0.0:
+    if not plane and (not at.found or at.distance <= 0.0):
         # followed alone, the minimum is still asked whether the bodies overlap at all
         proof, rivals = (DEPTH_PROOF, MAX_RIVALS) if everywhere else (1.0, 0)
         logged = work.counts[EVENTS]
@@ -92,6 +91,9 @@ def conclude(pair, pose, at, least, tolerance, work):
     d = dot(n, gap)
     bound, blur = certify_along(pair, pose, place, jets, n)
     upper = norm(gap)
+    if bound <= 0.0 and (pair.ints_a[L.UNBOUNDED] or pair.ints_b[L.UNBOUNDED]):
+        # no point of a body is lower over a half-space than its lowest
+        upper = min(upper, d)
     if exhausted(work):
         bound = max(bound, -box_depth(pair, pose, n) - pair_slack(pair))
     span = pair_span(pair, pose.p, abs(d))

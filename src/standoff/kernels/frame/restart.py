@@ -1,8 +1,15 @@
 """A global start: of a first frame, and of one that the last frame does not lead to."""
 
+from standoff.kernels.algebra.vectors import dot, sub
 from standoff.kernels.body.features import pair_span
 from standoff.kernels.compiler.decorators import kernel, shared
-from standoff.kernels.depth.penetration import NOTHING, begin_along, contact_scale, minimum_along
+from standoff.kernels.depth.penetration import (
+    NOTHING,
+    begin_along,
+    contact_scale,
+    minimum_along,
+    plane_normal,
+)
 from standoff.kernels.depth.search import overlap_shown
 from standoff.kernels.frame.contact import COLD, bound_along, contact_query, some_direction
 from standoff.kernels.pair.certificate import certify_along
@@ -87,6 +94,31 @@ def start_due(before, work):
 
 
 @kernel
+def height_along(pair, pose, place, n):
+    """How far B's witness point is beyond A's along n."""
+    jet_a, jet_b = pair_jets(pair, pose, place)
+    return dot(n, sub(jet_b[0], jet_a[0]))
+
+
+@kernel
+def cut_off_above(pair, pose, found, n):
+    """`cut_off` over a half-space, whose normal n from A to B is the only one that parts them.
+
+    Any point of the other body below the plane shows that they overlap, and by how much at least.
+    """
+    place = begin_along(pair, pose, n)
+    height, last = height_along(pair, pose, place, n), height_along(pair, pose, found.place, n)
+    if last < height:
+        place, height = found.place, last
+    if height > 0.0:
+        way = some_direction(found.normal)
+        same = found.distance, found.lower, found.upper
+        return Found(found.outcome, found.place, *same, way), False
+    bound = bound_along(pair, pose, place, n)
+    return Found(found.outcome, place, bound, bound, height, n), True
+
+
+@kernel
 def cut_off(pair, pose, found):
     """(found, inside) of a frame that ran out of evaluations outside contact.
 
@@ -95,6 +127,9 @@ def cut_off(pair, pose, found):
     direction where both witness points have come to lie on one another: such a pair is no distance
     apart, and a distance of 0 would tell nothing of its depth.
     """
+    plane, square = plane_normal(pair, pose)
+    if plane:
+        return cut_off_above(pair, pose, found, square)
     n = some_direction(found.normal)
     shown, way, least = overlap_shown(pair, pose)
     if not shown and found.distance <= TOUCHING * pair_span(pair, pose.p, 0.0):

@@ -33,7 +33,7 @@ from standoff.kernels.body.features import (
 )
 from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.pair.switching import apex_normal, end_direction, steepest_in_sector
-from standoff.kernels.tolerances import BOUND_ROUNDINGS, EPS, FRONT
+from standoff.kernels.tolerances import BOUND_ROUNDINGS, EPS, FLAT_PART, FRONT
 from standoff.kernels.values import Vector, side_of
 
 # What normals a cone has: one, those between two faces', all square to an edge without faces, or a
@@ -41,17 +41,47 @@ from standoff.kernels.values import Vector, side_of
 SINGLE, ARC, CIRCLE, FAN = np.int64(0), np.int64(1), np.int64(2), np.int64(3)
 
 
+@small
+def nearer(n, a, b):
+    """Of two unit vectors the one nearer to n."""
+    return a if dot(n, a) > dot(n, b) else b
+
+
+@small
+def square_to(n, t):
+    """A vector near n and square to the unit vector t, to a few roundings: n less its part along t.
+
+    Its roundoff is eps whatever its length is, so it is made a unit vector only where it is long.
+    A short one is roundoff where n lies along t, and as a unit vector would point anywhere. It
+    bounds as it is: a normal cone holds the zero vector too, and every shorter one.
+    """
+    flat = axpy(-dot(n, t), t, n)
+    return unit(flat) if dot(flat, flat) > FLAT_PART else flat
+
+
+@small
+def turns_within(flat, axis, a, b):
+    """Does a vector square to `axis` turn from a towards b and not past it?"""
+    return dot(cross(a, flat), axis) >= 0.0 and dot(cross(flat, b), axis) >= 0.0
+
+
 @kernel
 def between(n, a, b):
-    """The unit vector of the cone spanned by unit vectors a and b that is nearest to n."""
+    """A vector of the cone spanned by unit vectors a and b: the nearest to n where n is near it.
+
+    a x b keeps a direction good to eps / |a x b|. What that does to n less its part along it is a
+    few roundings, as long as that part (a sine) is no longer than a x b itself. Where it is longer,
+    a or b bounds. That the turn from a and towards b is tested with roundoff lets a vector past
+    either by an angle of a few roundings.
+    """
     axis = cross(a, b)
-    if dot(axis, axis) < EPS:
-        return a if dot(n, a) > dot(n, b) else b
-    flat = axpy(-dot(n, axis) / dot(axis, axis), axis, n)
-    # inside the cone when the flat part is on the inner side of both generators
-    if dot(cross(a, flat), axis) >= 0.0 and dot(cross(flat, b), axis) >= 0.0:
-        return unit(flat)
-    return a if dot(n, a) > dot(n, b) else b
+    square, along = dot(axis, axis), dot(n, axis)
+    if square < EPS or abs(along) > square:
+        return nearer(n, a, b)
+    flat = axpy(-along / square, axis, n)
+    if turns_within(flat, axis, a, b):
+        return unit(flat) if dot(flat, flat) > FLAT_PART else flat
+    return nearer(n, a, b)
 
 
 class NormalCone(NamedTuple):
@@ -92,30 +122,37 @@ def normal_cone(ints, reals, side, jet):
 
 @kernel
 def nearest_on_arc(cone, n):
-    """(nearest unit normal to n at a point of an edge with faces, bound on its roundoff)."""
+    """`nearest_normal` of an edge with faces."""
     _, a, b, tangent, noise = cone
+    flat, opening = square_to(n, tangent), cross(a, b)
+    axis = tangent if dot(opening, tangent) > 0.0 else scale(-1.0, tangent)
     if noise > 0.0:
         # well within the cone the nearest normal is n less its part along the tangent, whose
         # digits are whole: the faces' normals need only be known to lie on either side
-        flat = unit(axpy(-dot(n, tangent), tangent, n))
-        axis = tangent if dot(cross(a, b), tangent) > 0.0 else scale(-1.0, tangent)
-        if min(dot(cross(a, flat), axis), dot(cross(flat, b), axis)) > noise:
+        least = min(dot(cross(a, flat), axis), dot(cross(flat, b), axis))
+        if least > noise * norm(flat):
+            return flat, 0.0
+    else:
+        # too far along the edge for `between`, which does not know the tangent?
+        far = dot(n, tangent) ** 2 > dot(opening, opening) >= EPS
+        if far and turns_within(flat, axis, a, b):
             return flat, 0.0
     return between(n, a, b), noise
 
 
 @small
 def nearest_normal(ints, reals, feature, cone, n):
-    """(unit vector of a normal cone as near to the unit vector n as found, bound on its roundoff).
+    """(vector of a normal cone as near to the unit vector n as found, bound on its roundoff).
 
-    Any member of the cone gives a valid bound; the nearest gives the tightest.
+    Any member of the cone gives a valid bound, whatever its length; the nearest the tightest. It is
+    a unit vector where n is near the cone. Roundings of eps are in `lowered`.
     """
     if cone.kind == SINGLE:
         return cone.first, cone.noise
     if cone.kind == ARC:
         return nearest_on_arc(cone, n)
     if cone.kind == CIRCLE:
-        return unit(axpy(-dot(n, cone.tangent), cone.tangent, n)), 0.0
+        return square_to(n, cone.tangent), 0.0
     return vertex_cone(ints, reals, feature, n), 0.0
 
 
@@ -136,9 +173,9 @@ def behind(ints, reals, feature, n):
 
 @kernel
 def vertex_cone(ints, reals, feature, n):
-    """A unit outward normal near n at a vertex: n itself where no direction of the fan rises.
+    """An outward normal near n at a vertex: n itself where no direction of the fan rises.
 
-    Zero, which bounds nothing, where it is an inward one.
+    Zero, which bounds by the body's box alone, where it is an inward one.
     """
     r = vertex_record(ints, feature)
     fan, n_fan = ints[r + L.VERTEX_FAN], ints[r + L.VERTEX_N_FAN]
@@ -165,7 +202,7 @@ def vertex_cone(ints, reals, feature, n):
     cone, count = ints[r + L.VERTEX_CONE], ints[r + L.VERTEX_N_CONE]
     if count == 0:
         if at < n_fan:  # a faceless end: its cone is the half-space of the edge's direction
-            return unit(axpy(-worst, direction, n))
+            return square_to(n, direction)
         return best
     best_match = dot(n, best) if at >= n_fan else -inf
     for k in range(count):
@@ -270,7 +307,13 @@ def hangs_over_b(pair, pose, place, cones, n):
 def lowered(pair, pose, cones, bound):
     """A bound less both bodies' slack and what roundoff may have added to it.
 
-    The coordinates' taxicab lengths are at least their lengths, and cost no roots.
+    The bound is n.gap less what hangs over, of any n that is a unit vector to a rounding. In units
+    of eps and of `reach`, the sum of all lengths that take part: each witness point has 3 from its
+    surface's sums (those of a NURBS are convex combinations) and 4 from the pose; n's length and
+    the product n.gap have 3; a member of a normal cone may be off the cone by 3, over which the
+    body reaches at most its size; the support of the box has 3. As each length is in one of them
+    only, BOUND_ROUNDINGS = 16 is more than all. The coordinates' taxicab lengths are at least their
+    lengths, and cost no roots.
     """
     x_b = add(cones.x_a, cones.gap)
     reach = pair.reals_a[L.SIZE] + pair.reals_b[L.SIZE]

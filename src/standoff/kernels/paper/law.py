@@ -1,10 +1,21 @@
 """The paper's law over one frame: integrate, saturate, switch; with the variants that it prints."""
 
-from standoff.kernels.algebra.vectors import norm, rotate_back, scale, sub
-from standoff.kernels.body.features import pair_span
+from standoff.kernels.algebra.vectors import (
+    add,
+    axpy,
+    dot,
+    norm,
+    rotate,
+    rotate_back,
+    scale,
+    sub,
+)
+from standoff.kernels.body import layout as L
+from standoff.kernels.body.features import chart_jet, pair_span
 from standoff.kernels.body.trimming import HIT_LIMIT, NO_HIT, walk
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.frame.prediction import apply_step
+from standoff.kernels.pair.certified import on_feature
 from standoff.kernels.pair.descent import (
     NO_EDGE,
     pair_jets,
@@ -14,7 +25,7 @@ from standoff.kernels.pair.descent import (
     walk_pair,
 )
 from standoff.kernels.pair.events import CHART_CHANGES, CORRECTIONS, EVENTS, SATURATIONS
-from standoff.kernels.pair.newton import gradient_norm
+from standoff.kernels.pair.newton import gradient_norm, metric_inverse
 from standoff.kernels.pair.system import gradient, projection_errors
 from standoff.kernels.paper.integrators import Change, integrate
 from standoff.kernels.paper.voronoi import voronoi_switch
@@ -28,6 +39,8 @@ from standoff.kernels.state.options import feedback_number
 from standoff.kernels.state.state import Integrated
 from standoff.kernels.tolerances import (
     EPS,
+    FOOT_REACH,
+    LONGEST_CHANGE,
     MAX_VORONOI_PASSES,
     SLOPE,
     SLOPE_NOISE,
@@ -35,7 +48,7 @@ from standoff.kernels.tolerances import (
     TOUCHING,
     WOUND_UP,
 )
-from standoff.kernels.values import NO_RATES, Side, body_of, side_of, with_side
+from standoff.kernels.values import NO_RATES, Side, body_of, side_of, together, with_side
 
 
 @kernel
@@ -110,10 +123,17 @@ def total(four):
 
 
 @kernel
+def longest(four):
+    """The greatest magnitude of four numbers."""
+    return max(max(abs(four[0]), abs(four[1])), max(abs(four[2]), abs(four[3])))
+
+
+@kernel
 def drop_unbounded(change, work):
     """A frame whose integration overflows changes nothing, and counts as saturated."""
     numbers = total(change.parameters) + total(change.errors) + total(change.integral)
-    if numbers + total(change.first) == 0.0:
+    finite = numbers + total(change.first) == 0.0
+    if finite and max(longest(change.parameters), longest(change.first)) <= LONGEST_CHANGE:
         return change
     work.counts[SATURATIONS] += 1
     return Change(NO_RATES, NO_RATES, NO_RATES, change.gain, NO_RATES)
@@ -211,15 +231,69 @@ def integrate_and_switch(pair, motion, before, options, h, work):
 
 
 @kernel
+def beside_foot(ints, reals, side, x, reach):
+    """(cut, side): a half-space's witness point, no farther than `reach` (length) from the foot of
+    x, in its frame. The plane has no boundary to saturate at.
+    """
+    jet = chart_jet(ints, reals, side.chart, 0.0, 0.0)
+    i = metric_inverse(jet[1], jet[2])
+    way = sub(x, jet[0])
+    a, b = i[0] * dot(jet[1], way), i[1] * dot(jet[1], way) + i[2] * dot(jet[2], way)
+    u, v = i[0] * a + i[1] * b, i[2] * b
+    du, dv = side.p - u, side.q - v
+    far = norm(axpy(du, jet[1], scale(dv, jet[2])))
+    if far <= reach:
+        return 0, side
+    s = reach / far
+    return 1, Side(side.feature, side.chart, u + s * du, v + s * dv)
+
+
+@kernel
+def box_centre(reals):
+    o = L.BOX_CENTRE
+    return reals[o], reals[o + 1], reals[o + 2]
+
+
+@kernel
+def within_reach(pair, pose, place, work):
+    """The place, kept beside the other body where one is a half-space; counted as saturated."""
+    ia, ra, ib, rb = pair
+    if not (ia[L.UNBOUNDED] or ib[L.UNBOUNDED]):
+        return place
+    reach = FOOT_REACH * pair_span(pair, pose.p, 0.0)
+    cut_a, cut_b = 0, 0
+    side_a, side_b = side_of(place, 0), side_of(place, 1)
+    if ia[L.UNBOUNDED]:
+        x = add(rotate(pose.R, box_centre(rb)), pose.p)
+        cut_a, side_a = beside_foot(ia, ra, side_a, x, reach)
+    if ib[L.UNBOUNDED]:
+        x = rotate_back(pose.R, sub(box_centre(ra), pose.p))
+        cut_b, side_b = beside_foot(ib, rb, side_b, x, reach)
+    work.counts[SATURATIONS] += cut_a + cut_b
+    return together(side_a, side_b)
+
+
+@kernel
+def stepped(pair, pose, before, options, change, work):
+    """The place after the step and its saturation: on both bodies, or else where it was."""
+    if options.saturation == SATURATE_ZERO:
+        place = zeroed_step(pair, before, change.parameters, work)
+    else:
+        place = apply_step(pair, before, held_step(pair, before, change), work)
+    place = within_reach(pair, pose, place, work)
+    if on_feature(pair, place):
+        return place
+    work.counts[SATURATIONS] += 1
+    return before
+
+
+@kernel
 def carry_and_switch(pair, motion, before, options, change, work):
     """(place, integrated): a change that was integrated, then a switch."""
     change = drop_unbounded(change, work)
     work.counts[CORRECTIONS] += 1
-    place, pose = before.place, motion.pose
-    if options.saturation == SATURATE_ZERO:
-        place = zeroed_step(pair, place, change.parameters, work)
-    else:
-        place = apply_step(pair, place, held_step(pair, place, change), work)
+    pose = motion.pose
+    place = stepped(pair, pose, before.place, options, change, work)
     jet_a, jet_b = pair_jets(pair, pose, place)
     dR = sub(jet_a[0], jet_b[0])
     d = norm(dR)
