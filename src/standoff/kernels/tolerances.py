@@ -113,6 +113,9 @@ COLLAPSED = 1e-13
 
 # Roundings (eps times the size) of a tangent that is summed from control points or from a formula.
 NORMAL_NOISE = 16.0
+# A normal that roundoff may turn by more than this (chord) may be the reverse: its point may be
+# past the collapsed side by PARAMETER_NOISE, where the tangent along that side has the other sign.
+REVERSED_NORMAL = 0.05
 # Most that this may take from a bound, in scales, and the answer still be called certified: a
 # witness point nearer to a collapsed side than some 1e-8 of the size.
 BLUR = 1e-6
@@ -160,6 +163,8 @@ FAN_REFINE = 60
 # Lengths of the certificate carry a few roundings each; the bound is lowered by this many eps
 # of the largest coordinate met, so that it stays a bound in floating point.
 BOUND_ROUNDINGS = 16.0
+# Witness points nearer than this (length) coincide: the squares of such lengths underflow.
+COINCIDENT = 1e-140
 # A vector square to an edge is made a unit vector where the square of its length (dimensionless: a
 # unit vector's part) exceeds FLAT_PART: at most 1.4 times its roundoff is then along the edge.
 FLAT_PART = 0.5

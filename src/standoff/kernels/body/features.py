@@ -21,7 +21,7 @@ from standoff.kernels.algebra.vectors import (
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.jets import chart_parameters, curve_jet, pcurve_jet, surface_jet
 from standoff.kernels.compiler.decorators import kernel, shared, small
-from standoff.kernels.tolerances import COLLAPSED, EPS, NORMAL_NOISE
+from standoff.kernels.tolerances import COLLAPSED, EPS, NORMAL_NOISE, REVERSED_NORMAL
 
 ZERO = (0.0, 0.0, 0.0)
 
@@ -172,7 +172,7 @@ def normal_noise(kind, reals, jet):
         return 0.0
     product = sqrt(dot(jet[1], jet[1]) * dot(jet[2], jet[2]))
     lost = NORMAL_NOISE * EPS * (reals[L.SIZE] + norm(jet[0])) * norm(jet[4])
-    return lost / product if lost < 2.0 * product else 2.0
+    return lost / product if lost < REVERSED_NORMAL * product else 2.0
 
 
 @small
@@ -196,6 +196,9 @@ def face_normal(ints, reals, side, jet):
     if active(jet[1]) == 0.0 or active(jet[2]) == 0.0:
         # left out there as collapsed; what is left of it still has a direction, of great noise
         jet = chart_jet(ints, reals, side.chart, side.p, side.q)
+        if ints[chart_record(ints, side.chart) + L.CHART_KIND] == L.CONE:
+            # past the apex by roundoff x_u points the other way; x_uv is one along a ruling
+            jet = (jet[0], jet[4], jet[2], jet[3], jet[4], jet[5])
     return noisy_normal(ints, reals, side.chart, jet)
 
 

@@ -33,12 +33,14 @@ from standoff.kernels.body.features import (
 )
 from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.pair.switching import apex_normal, end_direction, steepest_in_sector
-from standoff.kernels.tolerances import BOUND_ROUNDINGS, EPS, FLAT_PART, FRONT
+from standoff.kernels.tolerances import BOUND_ROUNDINGS, COINCIDENT, EPS, FLAT_PART, FRONT
 from standoff.kernels.values import Vector, side_of
 
 # What normals a cone has: one, those between two faces', all square to an edge without faces, or a
 # vertex's, which are found when they are asked for.
 SINGLE, ARC, CIRCLE, FAN = np.int64(0), np.int64(1), np.int64(2), np.int64(3)
+
+ANY_DIRECTION = (1.0, 0.0, 0.0)  # in the plane of planar bodies too
 
 
 @small
@@ -360,14 +362,16 @@ def certify_cones(pair, pose, place, cones, hint):
     """`certify`, by the normal cones at the witness points."""
     gap = cones.gap
     d = norm(gap)
-    direction = scale(1.0 / d, gap) if d > 0.0 else ZERO
+    # bodies that may overlap are bounded by unit vectors only: by any, where points coincide
+    direction = scale(1.0 / d, gap) if d > COINCIDENT else ANY_DIRECTION
     m_b = into_b(pose.R, direction)
     n_a, noise_a = nearest_of_a(pair, place, cones, direction)
     n_b, noise_b = nearest_of_b(pair, place, cones, m_b)
     hangs_a = over_a(pair, cones, sub(direction, n_a), noise_a)
     hangs_b = over_b(pair, cones, sub(m_b, n_b), noise_b)
     blur_a, blur_b = over_a(pair, cones, ZERO, noise_a), over_b(pair, cones, ZERO, noise_b)
-    best, normal = d - hangs_a - hangs_b, direction
+    along = d if d > COINCIDENT else dot(direction, gap)
+    best, normal = along - hangs_a - hangs_b, direction
     if dot(hint, hint) > 0.5:
         bound = dot(hint, gap) - hangs_over_a(pair, place, cones, hint)[0]
         bound -= hangs_over_b(pair, pose, place, cones, hint)[0]
