@@ -147,15 +147,58 @@ def test_overhang_is_the_support_of_the_box():
 
 def test_between_is_the_nearest_of_the_cone():
     x, z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
-    assert between(unit(1, 5, 2), x, z) == pytest.approx(unit(1, 0, 2), abs=1e-15)
+    assert between(unit(1, 2, 2), x, z) == pytest.approx(unit(1, 0, 2), abs=1e-15)
+    # one that leans along the edge is left as long as it is
+    assert between(unit(1, 5, 2), x, z) == pytest.approx(np.array((1, 0, 2)) / 30**0.5, abs=1e-15)
     assert between(unit(-1, 0, 0.1), x, z) == z
     assert between(unit(0.1, 0, -1), x, z) == x
     assert between(unit(0, 1, 1), z, z) == z
 
 
+def leaning(t, angle, rng):
+    """A unit vector at an angle to the unit vector t."""
+    square = np.cross(t, rng.normal(size=3))
+    square /= np.linalg.norm(square)
+    n = math.cos(angle) * np.asarray(t) + math.sin(angle) * square
+    return tuple(map(float, n * rng.choice([1.0 - 2e-16, 1.0, 1.0 + 2e-16])))
+
+
+@pytest.mark.parametrize("opening", [1e-7, 1e-4, 0.1, 1.0, 3.0, 3.14])
+def test_no_member_of_a_cone_leans_along_its_edge(opening, rng):
+    """Whatever n is: the product with the edge is roundoff, so are those with what is behind."""
+    for _ in range(200):
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        a, t = turn[:, 0], turn[:, 2]
+        b = math.cos(opening) * a + math.sin(opening) * turn[:, 1]
+        angle = 10.0 ** rng.uniform(-17.0, 0.0)
+        m = np.array(between(leaning(t, angle, rng), tuple(map(float, a)), tuple(map(float, b))))
+        assert abs(m @ t) < 2e-15
+        assert np.linalg.norm(m) < 1.0 + 1e-15
+        # past neither face's normal: no farther than roundoff in front of what is behind both
+        inward_a, inward_b = np.cross(t, a), np.cross(b, t)
+        if opening < 3.1:
+            inward_a = inward_a * np.sign(inward_a @ b)
+            inward_b = inward_b * np.sign(inward_b @ a)
+            assert min(m @ inward_a, m @ inward_b) > -4e-15
+
+
+def test_an_end_and_a_segment_have_no_normal_along_them(rng):
+    segment = so.shapes.segment(start=[0.3, -0.2, 0.1], end=[1.1, 0.7, -0.4])
+    ints, reals = segment.ints, segment.reals
+    t = np.array([0.8, 0.9, -0.5]) / np.linalg.norm([0.8, 0.9, -0.5])
+    for _ in range(300):
+        n = leaning(t * rng.choice([-1.0, 1.0]), 10.0 ** rng.uniform(-17.0, 0.0), rng)
+        cone = edge_cone(ints, reals, 0, 0.5, tuple(map(float, t)))
+        m, noise = nearest_normal(ints, reals, 0, cone, n)
+        assert abs(np.array(m) @ t) < 2e-15
+        assert noise == 0.0
+        # the first end: what is outward there falls along the segment
+        assert np.array(vertex_cone(ints, reals, 1, n)) @ t < 2e-15
+
+
 def test_cones_of_an_edge_and_a_corner():
     """The edge's: between +x and +z; the corner's: the octant, or its face or edge nearest by."""
-    for n, nearest in ((unit(1, 4, 3), unit(1, 0, 3)), (unit(-1, 0, 1), (0.0, 0.0, 1.0))):
+    for n, nearest in ((unit(1, 3, 3), unit(1, 0, 3)), (unit(-1, 0, 1), (0.0, 0.0, 1.0))):
         cone = edge_cone(INTS, REALS, EDGE, 0.5, ALONG_EDGE)
         near, noise = nearest_normal(INTS, REALS, EDGE, cone, n)
         assert near == pytest.approx(nearest, abs=1e-15)
