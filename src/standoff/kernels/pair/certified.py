@@ -1,5 +1,6 @@
 """A descent with its certificate, polished where contact is very near."""
 
+from math import inf
 from typing import Any, NamedTuple
 
 from standoff.kernels.body.features import dimension, pair_slack, pair_span
@@ -46,7 +47,8 @@ def weigh(pair, pose, place, jets, hint, tolerance):
     """
     d, lower, normal, blur = certify(pair, pose, place, jets, hint)
     if not on_feature(pair, place):
-        return Weighed(UNCERTIFIED, d, lower, normal)
+        # a surface continued past its face bounds nothing
+        return Weighed(UNCERTIFIED, d, -inf, normal)
     return Weighed(outcome_of(pair, pose, d, lower, blur, tolerance), d, lower, normal)
 
 
