@@ -208,7 +208,7 @@ def test_a_resolved_law_has_what_was_left_open() -> None:
     assert so.PredictorCorrector().resolved(DT) == so.PredictorCorrector()
 
 
-@pytest.mark.parametrize("page", ["answers.md", "scene-format.md"])
+@pytest.mark.parametrize("page", ["options.md", "scene-format.md"])
 def test_the_pages_name_each_option(page: str) -> None:
     """A row each, with all its values and its default."""
     rows = {}
