@@ -215,7 +215,7 @@ def test_the_pages_name_each_option(page: str) -> None:
     for line in (ROOT / "docs" / page).read_text(encoding="utf-8").splitlines():
         found = re.match(r"\| `(\w+)` \|", line)
         if found:
-            rows[found[1]] = line
+            rows.setdefault(found[1], line)  # the counts, farther down, have a `restarts` too
     for name, each in every_option().items():
         row = rows[name]
         for word in getattr(each.kind, "names", ()):
