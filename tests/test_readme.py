@@ -14,6 +14,19 @@ from standoff_studies.oracles import Ellipsoid, Lens, Placed
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 LINK = re.compile(r"\]\(([^)#\s]+)")
+# What users look for, and the pages that derive it.
+SOUGHT = (
+    *("quick-start", "ten-tasks", "coming-from", "derivatives", "differentiable", "many-poses"),
+    *("fast-loops", "c-interface", "servo", "live-page", "time-of-impact", "answers"),
+)
+DERIVED = ("architecture", "symbols", "pair-system", "laws", "automaton", "certificate")
+# A page for use, and the page that says how it works and why it is right.
+HALVES = (
+    ("answers", "options"),
+    ("time-of-impact", "impact-proof"),
+    ("servo", "servo-loop"),
+    ("coupler", "coupler-passivity"),
+)
 
 
 def python_block() -> str:
@@ -62,3 +75,21 @@ def test_every_local_link_of_the_documents_leads_somewhere() -> None:
         if "://" not in target and not (page.parent / target).exists()
     ]
     assert not missing
+
+
+def test_what_users_look_for_comes_before_the_derivations() -> None:
+    links = LINK.findall(README)
+    first = min(links.index(f"docs/{page}.md") for page in DERIVED)
+    late = [page for page in SOUGHT if f"docs/{page}.md" not in links[:first]]
+    assert not late
+
+
+def test_it_says_in_one_line_that_step_is_not_read() -> None:
+    assert len(re.findall(r"^STEP files are not read yet.*\.$", README, re.MULTILINE)) == 1
+
+
+@pytest.mark.parametrize(("use", "why"), HALVES)
+def test_use_and_proof_are_two_pages_that_link_each_other(use: str, why: str) -> None:
+    for page, other in ((use, why), (why, use)):
+        opening = (ROOT / "docs" / f"{page}.md").read_text("utf-8").split("\n## ")[0]
+        assert f"{other}.md" in LINK.findall(opening), page

@@ -102,7 +102,7 @@ def before_the_ways(d: Drawing) -> None:
         d, 270, 48, 420, "poses and twists become 36 numbers in a row", "tracking/inputs.py", PYTHON
     )
     border(d, 116, "Python", "compiled by Numba: kernels/")
-    stage(d, 270, 136, 420, "invalid poses are refused", "state/arrays.py")
+    stage(d, 270, 136, 420, "invalid poses are rejected", "state/arrays.py")
     stage(d, 270, 204, 420, "B is seen from A: one pose, one twist", "algebra/rigid.py")
     for top, bottom in ((34, 48), (96, 136), (184, 204)):
         d.arrow([(480, top), (480, bottom)])

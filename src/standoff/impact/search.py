@@ -52,7 +52,7 @@ def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
     """The first time at which two moving bodies come to a clearance: never later than the truth.
 
     Each interval of time is proven free by the certified bounds at its ends and the greatest
-    accelerations within it (docs/time-of-impact.md).
+    accelerations within it (docs/impact-proof.md).
 
     Parameters
     ----------
