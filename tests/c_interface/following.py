@@ -101,7 +101,7 @@ def as_in_c(tracker: so.Tracker, out: np.ndarray) -> list[float]:
         *out[K.OUT_Q : K.OUT_Q + 4],
         out[K.RESIDUAL],
         *(0, *features, out[K.STATUS]),
-        *(counts[N.EVALUATIONS], counts[N.EVENTS], counts[N.REFUSALS]),
+        *(counts[N.EVALUATIONS], counts[N.EVENTS], counts[N.GENERAL_FRAMES]),
     ]
 
 

@@ -32,7 +32,7 @@ static void put(const standoff_answer *answer, int code, double out[N_ANSWER])
                            answer->status,
                            answer->evaluations,
                            answer->switches,
-                           answer->refusals};
+                           answer->general_frames};
     memcpy(out, answer, 23 * sizeof(double));
     memcpy(out + 23, ints, sizeof ints);
 }

@@ -160,7 +160,7 @@ def _closest_text(scene: Scene, recording: Recording) -> str:
         return "no frame has a distance"
     a, b = scene.pair
     return (
-        f"{recording.distance[frame]:.12g} {scene.length_unit} at {_time(recording.time[frame])}, "
+        f"{recording.distance[frame]:.6g} {scene.length_unit} at {_time(recording.time[frame])}, "
         f"{a} {recording.feature_a[frame]} to {b} {recording.feature_b[frame]}"
     )
 

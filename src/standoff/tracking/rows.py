@@ -75,7 +75,7 @@ class Counts(NamedTuple):
     solved_parameters : int
         Parameters that a switch has taken from such a search: none with ``reset="nearest"``, as
         the paper prints it.
-    refusals : int
+    general_frames : int
         1 where the frame that is compiled for this pair's kinds of faces was tried and left the
         answer to the general one: at a boundary, in contact, on an edge or a vertex.
     """
@@ -90,7 +90,7 @@ class Counts(NamedTuple):
     searches: int
     foot_points: int
     solved_parameters: int
-    refusals: int = 0
+    general_frames: int = 0
 
 
 # Where the fields of Counts stand in the kernels' own counts.
@@ -107,7 +107,7 @@ COUNT_SLOTS = [
         N.SEARCHES,
         N.FOOT_POINTS,
         N.SOLVED_PARAMETERS,
-        N.REFUSALS,
+        N.GENERAL_FRAMES,
     )
 ]
 

@@ -240,7 +240,7 @@ static void tell(const standoff_pair *pair, const double *out, standoff_answer *
     answer->regularised = (int32_t)counts[REGULARISED];
     answer->saturations = (int32_t)counts[SATURATIONS];
     answer->searches = (int32_t)counts[SEARCHES];
-    answer->refusals = (int32_t)counts[REFUSALS];
+    answer->general_frames = (int32_t)counts[GENERAL_FRAMES];
 }
 
 /* What a kernel returned, as a code of this interface. */

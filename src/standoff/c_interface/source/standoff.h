@@ -106,7 +106,7 @@ typedef struct {
     int32_t regularised;     /* solves whose Hessian had to be decomposed */
     int32_t saturations;
     int32_t searches;        /* searches over all directions of depth */
-    int32_t refusals;        /* 1: left to the general frame by the one for these kinds of faces */
+    int32_t general_frames;  /* 1: left to the general frame by the one for these kinds of faces */
 } standoff_answer;
 
 /* A change of a body's feature. */

@@ -40,7 +40,7 @@ from standoff.kernels.pair.events import (
     LIMIT,
     N_COUNTS,
     NO_LIMIT,
-    REFUSALS,
+    GENERAL_FRAMES,
     RESTARTS,
     exhausted,
     tidy_events,
@@ -204,7 +204,7 @@ def frame_predicted(pair, inputs, h, options, state, out, work):
         if on_faces(pair, state) and answered_smoothly(pair, inputs, h, options, state, out):
             forget_polytope(work)
             return
-        work.counts[REFUSALS] = 1
+        work.counts[GENERAL_FRAMES] = 1
     step_frame(track_predicted, pair, inputs, (h, h), options, state, out, work)
     forget_polytope(work)
 

@@ -6,7 +6,7 @@ from standoff.kernels.compiler.decorators import kernel
 
 # Counts, in one int64 array.
 EVALUATIONS, CORRECTIONS, SATURATIONS, CHART_CHANGES, RESTARTS, REGULARISED, EVENTS = range(7)
-SEARCHES, FOOT_POINTS, SOLVED_PARAMETERS, REFUSALS = range(7, 11)
+SEARCHES, FOOT_POINTS, SOLVED_PARAMETERS, GENERAL_FRAMES = range(7, 11)
 N_COUNTS = 11
 # Behind them, the evaluations after which the frame must end (its deadline).
 LIMIT = N_COUNTS
