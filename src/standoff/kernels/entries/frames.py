@@ -35,12 +35,12 @@ from standoff.kernels.pair.contact_newton import contact_rates
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import (
     EVENTS,
+    GENERAL_FRAMES,
     KEEPING,
     KEPT,
     LIMIT,
     N_COUNTS,
     NO_LIMIT,
-    GENERAL_FRAMES,
     RESTARTS,
     exhausted,
     tidy_events,
