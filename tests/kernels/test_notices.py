@@ -134,10 +134,9 @@ def test_a_long_wait_is_told_to_go_on(
             compiled(work, work, 0.5)
     lines = heard()
     told = ["query, part 1 of 2", "contact, part 2 of 2"] if quiet == "0" else []
-    assert list(dict.fromkeys(line.partition(": 0 s")[0] for line in lines)) == [
+    assert list(dict.fromkeys(line.rpartition(":")[0] for line in lines)) == [
         f"standoff: still compiling {part}" for part in told
     ]
-    assert len(lines) <= 5
 
 
 def test_nothing_is_said_while_nothing_is_compiled(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -28,13 +29,13 @@ def progress_shown(doing: str = "starting") -> Iterator[Show]:
                 task, completed=done, total=total, description=doing
             )
         return
-    latest = doing
+    latest, started = doing, time.monotonic()
 
     def note(done: int, total: int, doing: str) -> None:
         nonlocal latest
         latest = f"{doing}: {done} of {total} done"
 
-    with alive(lambda: f"{latest} ..."):
+    with alive(lambda: f"{latest}, {time.monotonic() - started:.0f} s so far ..."):
         yield note
 
 

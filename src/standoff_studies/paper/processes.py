@@ -153,14 +153,19 @@ def _compile(needed: Needed) -> None:
         prepare_named(*needed)
 
 
-def _work(pipe: Connection, order: Order) -> None:
-    """Make chapters until the pipe closes."""
+def asking(pipe: Connection) -> Callable[[Any], None]:
+    """What a worker calls for a function's entry that is not on disk."""
 
     def ask(function: Any) -> None:
         pipe.send(Needed(function.__module__, function.__name__))
-        pipe.recv()  # it is on disk, if it can be kept
+        pipe.recv()  # it is there now, if it can be kept
 
-    cache.compiled_elsewhere = ask
+    return ask
+
+
+def _work(pipe: Connection, order: Order) -> None:
+    """Make chapters until the pipe closes."""
+    cache.compiled_elsewhere = asking(pipe)
     os.environ[QUIET] = "1"  # what there is to say of the compiler its parent has said
     # The parent ends its workers on Ctrl-C; a traceback of each would only hide its message.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

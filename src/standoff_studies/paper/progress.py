@@ -26,7 +26,7 @@ def figures_bar(total: int) -> Iterator[Tell]:
             else:
                 begun.pop(entry.key, None)
                 done += 1
-            doing = f"making figure {' and '.join(begun)}" if begun else "writing"
-            show(done, total, doing)
+            figures = "figures" if len(begun) > 1 else "figure"
+            show(done, total, f"making {figures} {' and '.join(begun)}" if begun else "writing")
 
         yield tell
