@@ -86,7 +86,7 @@ def sew(patches: Sequence[Any], tolerance: float | None = None) -> Sewn:
     try:
         return _sewn(cut, notes, size, tolerance)
     except OpenShell as shell:
-        raise _refusal(shell, cut, size, tolerance) from None
+        raise _refusal(shell, patches, size, tolerance) from None
 
 
 def _sewn(cut: list[Patch], notes: list[str], size: float, tolerance: float) -> Sewn:
@@ -119,9 +119,11 @@ def _sewn(cut: list[Patch], notes: list[str], size: float, tolerance: float) -> 
     )
 
 
-def _refusal(shell: OpenShell, cut: list[Patch], size: float, tolerance: float) -> BodyError:
+def _refusal(
+    shell: OpenShell, patches: Sequence[Surface], size: float, tolerance: float
+) -> BodyError:
     """An open shell in one sentence, with the tolerance that would close it if there is one."""
-    wide = _closing(shell, cut, size)
+    wide = _closing(shell, patches, size)
     if not shell.gaps:
         return BodyError(
             f"The shell is open: {shell.sides[0]} alone matches nothing; a patch is missing."
@@ -138,7 +140,7 @@ def _refusal(shell: OpenShell, cut: list[Patch], size: float, tolerance: float) 
     )
 
 
-def _closing(shell: OpenShell, cut: list[Patch], size: float) -> float | None:
+def _closing(shell: OpenShell, patches: Sequence[Surface], size: float) -> float | None:
     """A tolerance with which the patches are sewn, tried; None where there is none to offer."""
     widest = max((gap.apart for gap in shell.gaps), default=np.inf)
     for times in (1.0, 2.0, 4.0):  # corners may part by more than the sides that end in them
@@ -146,7 +148,7 @@ def _closing(shell: OpenShell, cut: list[Patch], size: float) -> float | None:
         if not wide <= WIDEST_SEAM * size:
             return None
         try:
-            _sewn(cut, [], size, wide)
+            _sewn(*cut_patches(patches, wide), size, wide)
         except (OpenShell, BodyError):
             continue
         return wide
