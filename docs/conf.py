@@ -18,7 +18,8 @@ project = "Standoff"
 author = "The Standoff authors"
 version = release = standoff.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "paper"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+extensions += ["mathml", "paper", "build_progress"]
 # the tables of a report are included by its page
 exclude_patterns = ["_extensions", "accuracy-report/accuracy.md"]
 

@@ -8,6 +8,7 @@ import pytest
 
 import standoff as so
 from families import patch_shells as shells
+from standoff.bodies.sewing import sew
 from standoff.geometry import BezierPatch, Cylinder, Plane, ellipsoid_octants, ellipsoid_patches
 
 IDENTITY = np.eye(3)
@@ -31,21 +32,37 @@ def refusal(patches, **options):
     return str(error.value)
 
 
-def test_a_side_that_matches_nothing_names_its_nearest_and_the_distance():
-    assert re.search(
-        r"The shell is open: patch 0 side \w\w matches nothing: nearest open side is patch 5 side "
-        r"\w\w, 0\.0032 away; .*tolerance 1\.73e-09",
-        refusal(box_with(5, (0, 0, 3.2e-3))),
+def test_an_open_shell_is_told_in_one_sentence_with_the_gaps_and_the_tolerance():
+    assert refusal(box_with(5, (0, 0, 3.2e-3))) == (
+        "The shell is open: patch 0 side v0 and patch 5 side u0 are 0.0032 apart, patch 1 side v1 "
+        "and patch 5 side u1 are 0.0032 apart, patch 2 side u1 and patch 5 side v0 are 0.0032 "
+        "apart and 1 more such gap, more than tolerance=1.73e-09 allows; tolerance=0.0033 would "
+        "join them."
     )
-    text = refusal(box_with(5, (0, 0, 3.2e-3)))
-    assert text.count("matches nothing") == 6
-    assert "(2 more sides are open)" in text  # four of patch 5 and its four neighbours'
-    assert "patch 4" not in text  # which lies on the other side
+
+
+@pytest.mark.parametrize("shift", [(0, 0, 1e-7), (2e-4, 2e-4, 2e-4), (0, 3e-5, 1e-6)])
+def test_the_tolerance_that_a_refusal_names_joins_them(shift):
+    patches = box_with(5, shift)
+    (offered,) = re.findall(r"; tolerance=(\S+) would join them\.$", refusal(patches))
+    shift = np.linalg.norm(shift)
+    assert shift < float(offered) < 2.0 * shift
+    sewn = sew(patches, float(offered))
+    assert sewn.residual == pytest.approx(shift, rel=1e-6)
+
+
+@pytest.mark.parametrize("shift", [(0, 0, 0.05), (5e-3, 0, 0)])  # too wide; sides that slid
+def test_where_no_tolerance_would_do_none_is_offered(shift):
+    text = refusal(box_with(5, shift))
+    assert text.endswith("and a greater one would not help: a patch is missing or out of place.")
+    assert "tolerance=0" not in text
 
 
 def test_the_tolerance_decides():
     patches = box_with(5, (0, 0, 1e-7))
-    assert re.search(r"1e-07 away.*tolerance 9e-08", refusal(patches, tolerance=9e-8))
+    assert re.search(
+        r"1e-07 apart.*more than tolerance=9e-08 allows", refusal(patches, tolerance=9e-8)
+    )
     report = so.Body.from_patches(patches, tolerance=2e-7).check()
     assert report.sewing_residual == pytest.approx(1e-7, rel=1e-6)
     assert report.slack >= report.sewing_residual
@@ -57,14 +74,14 @@ def test_an_open_shell(missing):
     patches = list(ellipsoid_patches(1.0, 0.8, 0.6))
     del patches[missing]
     assert re.search(
-        r"The shell is open: patch \d side .* matches nothing: nearest open side is",
+        r"The shell is open: patch \d side .* apart.*: a patch is missing or out of place\.$",
         refusal(patches),
     )
 
 
 def test_one_patch_alone_is_open():
     assert re.search(
-        "The shell is open: patch 0 side v0 matches nothing",
+        "The shell is open: patch 0 side v0 and patch 0 side .*: a patch is missing",
         refusal(ellipsoid_patches(1, 1, 1)[:1]),
     )
 
@@ -228,4 +245,4 @@ def test_a_shell_that_winds_twice_round_its_tips():
 def test_octants_that_do_not_fit_name_the_octant():
     patches = list(ellipsoid_octants(1, 1, 1))
     patches[3] = ellipsoid_octants(1, 1, 0.9)[3]
-    assert re.search("patch 3 side .* matches nothing", refusal(patches))
+    assert re.search(r"patch \d side \w\w and patch 3 side \w\w are 0.1 apart", refusal(patches))

@@ -18,13 +18,14 @@ STANDARDS = {"cc": "-std=c11", "c++": "-std=c++11"}
 
 @pytest.fixture(scope="session")
 def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of the shared library and its header."""
+    """The folder of the shared library and its header; ``progress`` has what was told meanwhile."""
     if shutil.which("cc") is None:
         pytest.skip("there is no C compiler: install gcc to test the C interface")
     if not modules.AVAILABLE or BOUNDS_CHECK:
         pytest.skip("the C library is made of kernels as this version of Numba compiles them")
     folder = tmp_path_factory.mktemp("c library")
-    build_library(folder)
+    with (folder / "progress").open("w") as told:
+        build_library(folder, progress=lambda done, total: print(done, total, file=told))
     return folder
 
 

@@ -15,6 +15,8 @@ import standoff as so
 from c_interface.following import CASES, DT, FRAMES, Case, in_c, in_python, motion
 from families import formula_bodies, nurbs_bodies
 from standoff.c_interface import build_library, save_pair
+from standoff.c_interface.objects import SYMBOLS
+from standoff.c_interface.pair_file import SMOOTH_FRAMES
 from standoff.geometry import ConicArc
 from standoff.tracking.status import Status
 from standoff.whole_files import MissingFolder
@@ -56,6 +58,12 @@ def test_nurbs_bodies_go_to_files_too(
     answers, _ = in_c(program(FRAMES), tracker, frames, tmp_path)
     expected, _ = in_python(tracker, frames)
     np.testing.assert_array_equal(answers.view(np.int64), expected.view(np.int64))
+
+
+def test_each_part_that_was_compiled_was_told(library: Path) -> None:
+    told = [line.split() for line in (library / "progress").read_text().splitlines()]
+    parts = len(SYMBOLS) + len(SMOOTH_FRAMES)
+    assert told == [[str(done), str(parts)] for done in range(parts + 1)]
 
 
 def test_no_interpreter_is_in_the_process(library: Path, program: Callable[..., Path]) -> None:

@@ -14,7 +14,10 @@ from standoff.cli import c_library
 Standoff = Callable[..., Any]
 
 
-def built(folder: Path, processor: str | None) -> tuple[Path, Path]:
+def built(
+    folder: Path, processor: str | None, progress: Callable[[int, int], None]
+) -> tuple[Path, Path]:
+    progress(1, 2)
     (folder / "processor").write_text(str(processor))
     return folder / "libstandoff.so", folder / "standoff.h"
 

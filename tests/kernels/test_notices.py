@@ -5,6 +5,9 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import time
+from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -13,13 +16,14 @@ from standoff.kernels.compiler import notices
 from standoff.kernels.entries.preparing import every_entry
 
 SEGMENT = "import standoff as so; so.shapes.segment(1.0); so.shapes.segment(2.0)"
+OTHER = "from standoff.kernels.entries.queries import pcurve_jet as entry; entry.prepare()"
 
 
-def said(folder: Path, **settings: str) -> list[str]:
-    """The lines on stderr, a pipe, of a program that makes a segment, which needs one entry."""
+def said(folder: Path, program: str = SEGMENT, **settings: str) -> list[str]:
+    """The lines on stderr, a pipe, of a program; a segment needs one entry."""
     environment = {key: value for key, value in os.environ.items() if key != notices.QUIET}
     ended = subprocess.run(
-        [sys.executable, "-c", SEGMENT],
+        [sys.executable, "-c", program],
         env=environment | {"NUMBA_CACHE_DIR": str(folder)} | settings,
         capture_output=True,
         text=True,
@@ -31,11 +35,22 @@ def said(folder: Path, **settings: str) -> list[str]:
 def test_the_first_use_is_told_once_and_later_ones_are_silent(tmp_path: Path) -> None:
     first, *rest = said(tmp_path)
     assert first == (
-        "standoff: compiling the kernels for the geometry of bodies: once for this installation, "
-        "about 10 s (`standoff warmup` compiles all of them ahead) ..."
+        "standoff: compiling the kernels for the geometry of bodies (curve_jet, part 1 of at most "
+        "13): at most about 10 s of one core, kept for next time; `standoff warmup` compiles all "
+        "of them ahead ..."
     )
-    assert [line.rstrip(" s0123456789") for line in rest] in ([], ["standoff: compiled in"])
+    ended = "standoff: curve_jet compiled in"
+    assert [line.rstrip(" s0123456789") for line in rest] in ([], [ended])
     assert said(tmp_path) == []
+
+
+def test_another_part_in_the_next_program_is_told_in_other_words(tmp_path: Path) -> None:
+    """Of the same work: what a program does not call is compiled in a later one."""
+    first, *_ = said(tmp_path)
+    other, *_ = said(tmp_path, program=OTHER)
+    assert "(pcurve_jet, part 1 of at most 13)" in other
+    assert first.partition("(")[0] == other.partition("(")[0]
+    assert first != other
 
 
 def test_it_can_be_silenced(tmp_path: Path) -> None:
@@ -57,24 +72,96 @@ def test_a_closed_stderr_stops_nothing(
 
 
 def test_every_entry_is_needed_for_something_and_all_that_is_named_is_an_entry_s() -> None:
-    assert {each.work for each in every_entry()} == set(notices.WORK)
+    entries = Counter(each.work for each in every_entry())
+    assert set(entries) == set(notices.WORK)
+    assert all(work.parts in (entries[name], 0) for name, work in notices.WORK.items())
 
 
-def test_who_tells_of_it_himself_is_not_told_twice(
+@pytest.fixture
+def heard(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+) -> Callable[[], list[str]]:
+    """The lines on stderr of a process that has compiled nothing and is not quiet."""
     monkeypatch.delenv(notices.QUIET, raising=False)
     monkeypatch.setattr(notices, "_said", set())
+    monkeypatch.setattr(notices, "_begun", Counter())
+    return lambda: capsys.readouterr().err.splitlines()
+
+
+def compiled(work: str, name: str = "start", seconds: float = 0.0, kept: bool = True) -> None:
+    """What an entry does that is not on disk."""
+    with notices.waiting(work, name):
+        notices.compiling(kept)
+        time.sleep(seconds)
+
+
+def test_who_tells_of_it_himself_is_not_told_twice(heard: Callable[[], list[str]]) -> None:
     with notices.told_elsewhere():
-        notices.compiling("query")
-    assert capsys.readouterr().err == ""
-    notices.compiling("query")
-    notices.compiling("query")
-    notices.compiling("contact")
-    alone, after = capsys.readouterr().err.splitlines()
+        compiled("query")
+    assert heard() == []
+    compiled("query")
+    compiled("query")
+    compiled("contact")
+    alone, after = heard()
     query, contact = notices.WORK["query"], notices.WORK["contact"]
-    assert f"about {query.alone} s (`standoff warmup`" in alone
-    assert f"about {contact.seconds} s ..." in after
+    assert f"about {query.alone} s of one core, kept for next time; `standoff warmup`" in alone
+    assert f"about {contact.seconds} s of one core, kept for next time ..." in after
+
+
+def test_which_part_of_how_many(heard: Callable[[], list[str]]) -> None:
+    for work in notices.parts(["bodies", "query", "frames"]):
+        compiled(work)
+    compiled("contact")
+    assert [line.partition("(")[2].partition(")")[0] for line in heard()] == [
+        *("start, part 1 of 3", "start, part 2 of 3", "start, part 3 of 3"),
+        "start, part 1 of at most 2",
+    ]
+
+
+def test_what_cannot_be_kept_is_not_said_to_be(heard: Callable[[], list[str]]) -> None:
+    compiled("query", kept=False)
+    assert "kept" not in heard()[0]
+
+
+@pytest.mark.parametrize("quiet", ["0", "1"])
+def test_a_long_wait_is_told_to_go_on(
+    quiet: str, heard: Callable[[], list[str]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(notices, "PERIOD", 0.2)
+    monkeypatch.setenv(notices.QUIET, quiet)
+    with notices.alive(lambda: "the wait that this one is part of"), notices.told_elsewhere():
+        for work in notices.parts(["query", "contact"]):
+            compiled(work, work, 0.5)
+    lines = heard()
+    told = ["query, part 1 of 2", "contact, part 2 of 2"] if quiet == "0" else []
+    assert list(dict.fromkeys(line.rpartition(":")[0] for line in lines)) == [
+        f"standoff: still compiling {part}" for part in told
+    ]
+
+
+def test_nothing_is_said_while_nothing_is_compiled(
+    heard: Callable[[], list[str]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(notices, "PERIOD", 0.05)
+    with notices.waiting("query", "start"):
+        time.sleep(0.3)
+    compiled("query")
+    time.sleep(0.2)
+    assert len(heard()) == 1
+
+
+def test_a_watch_goes_on_where_nobody_reads(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.delenv(notices.QUIET, raising=False)
+    monkeypatch.setattr(notices, "PERIOD", 0.05)
+    with (tmp_path / "closed").open("w") as closed:
+        pass
+    monkeypatch.setattr(sys, "stderr", closed)
+    asked: list[bool] = []
+    with notices.alive(lambda: str(asked.append(True))):
+        time.sleep(0.4)
+    assert len(asked) > 1
 
 
 def test_the_works_add_up_to_the_whole() -> None:

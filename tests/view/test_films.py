@@ -31,7 +31,11 @@ def test_a_gif_has_the_pictures_in_the_time_of_the_motion(
     run: so.Recording, tmp_path: Path
 ) -> None:
     image = pytest.importorskip("PIL.Image", reason="Pillow is not installed")
-    save_video(run, tmp_path / "run.gif", pictures=3, speed=0.5)
+    told: list[tuple[int, int]] = []
+    save_video(
+        *(run, tmp_path / "run.gif"), pictures=3, speed=0.5, progress=lambda *n: told.append(n)
+    )
+    assert told == [(1, 3), (2, 3), (3, 3)]
     with image.open(tmp_path / "run.gif") as film:
         assert film.n_frames == 3
         assert film.info["duration"] == pytest.approx(1000.0 * LASTS / 0.5 / 2, abs=10.0)

@@ -66,8 +66,9 @@ def _check_joins(vertices: Array, edges: Sequence[Edge], size: float, tolerance:
             worst = max(worst, miss)
             if miss > tolerance:
                 raise BodyError(
-                    f"Edge {j} misses its vertex {vertex} by {miss:.3g} (size {size:.3g}): move "
-                    "the vertex or trim the curve.",
+                    f"Edge {j} misses its vertex {vertex} by {miss:.3g} (size {size:.3g}), more "
+                    f"than tolerance={tolerance:.3g} allows: move the vertex, trim the curve or "
+                    "give a greater tolerance.",
                     part=("edge", j),
                 )
     return worst
@@ -107,7 +108,8 @@ def _check_on_surface(
                 if miss > tolerance:
                     raise BodyError(
                         f"Edge {c.edge} leaves the surface of face {chart.face} by {miss:.3g} "
-                        f"(size {size:.3g}) at its parameter {t:.6g}.",
+                        f"(size {size:.3g}) at its parameter {t:.6g}, more than tolerance="
+                        f"{tolerance:.3g} allows.",
                         part=("edge", c.edge),
                     )
     return worst

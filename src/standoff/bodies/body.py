@@ -160,8 +160,12 @@ class Body(KeepsReadOnly):
             Each with a finite domain: NURBS, Bezier, revolved, extruded and formula surfaces
             have one, ``surface.restricted(u0, u1, v0, v1)`` gives one to any.
         tolerance : float, optional
-            How far joined sides may be apart, length; 1e-9 of the size by default. The greatest
-            distance found goes into the certificate's slack.
+            How far joined sides may be apart, length in the patches' unit; 1e-9 of the size (the
+            diagonal of their box) by default: 7e-8 mm for a cube of 40 mm. That is ample for
+            patches of one formula, and small since a gap that is accepted goes into the slack, by
+            which every lower bound is less. Raise it for patches whose sides were computed one by
+            one, as those of a CAD kernel: to its own tolerance, often 1e-7 of its unit. Only the
+            greatest distance found counts, not the tolerance; corners within it become one.
         convexity_tolerance : float, optional
             Greatest convexity defect, length; 1e-6 of the size by default. The bound proven for
             the patches and sampled for the edges goes into the certificate's slack too.
@@ -172,7 +176,8 @@ class Body(KeepsReadOnly):
         ------
         BodyError
             Sides that match none or several, more than one shell, patches that meet in a point
-            only, no volume, a boundary that is not convex; the message names the place.
+            only, no volume, a boundary that is not convex; the message names the place, and for
+            an open shell the gaps and a ``tolerance`` that would close them if there is one.
         ValueError
             NaN, infinite or negative numbers.
         """

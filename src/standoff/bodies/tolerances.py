@@ -108,7 +108,13 @@ NARROWEST: Final = 1e-12
 """A polygon narrower than this part of its length is a segment: its width has no digits."""
 
 SEWING_TOLERANCE: Final = 1e-9
-"""Sides closer than this part of the body's size are one edge: the roundoff of making patches."""
+"""Sides closer than this part of the body's size are one edge: the roundoff of making patches. It
+is small as what is accepted goes off every lower bound; a CAD kernel's 1e-7 of a unit is asked for
+by name."""
+
+WIDEST_SEAM: Final = 1e-2
+"""A gap wider than this part of the body's size is no seam: a message offers no tolerance for it,
+as a patch is missing or out of place."""
 
 THIN_LENS: Final = 1e-9
 """A lens's offset, and its radius less the offset, are at least this part of its radius: what

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import BinaryIO
@@ -29,7 +30,11 @@ SECONDS = 60
 
 
 def build_library(
-    folder: str | Path, *, processor: str | None = None, compiler: str | None = None
+    folder: str | Path,
+    *,
+    processor: str | None = None,
+    compiler: str | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Path, Path]:
     """Build the shared library of the C interface; takes about a minute.
 
@@ -43,6 +48,8 @@ def build_library(
         machine's own, and answers are those of Python here to the last bit.
     compiler : str, optional
         The C compiler's command; if not given, what ``CC`` in the environment says, or ``cc``.
+    progress : callable, optional
+        ``progress(done, total)`` is called with the parts compiled so far, and all.
 
     Returns
     -------
@@ -68,7 +75,7 @@ def build_library(
     say(f"building {NAMES[sys.platform]}, about {SECONDS} s on one core ...")
     with tempfile.TemporaryDirectory() as place:
         work = Path(place)
-        objects.build(work, processor)
+        objects.build(work, processor, progress)
         header = layout_header(objects.smooth_symbols())
         write_whole({work / "layout.h": partial(_put, header.encode())})
         made = work / NAMES[sys.platform]

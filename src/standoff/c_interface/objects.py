@@ -11,7 +11,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,9 @@ from standoff.kernels.compiler import modules
 from standoff.kernels.compiler.decorators import BOUNDS_CHECK, CONTRACTED
 from standoff.kernels.entries import c_interface as kernels
 from standoff.whole_files import write_whole
+
+Progress = Callable[[int, int], None]
+"""Is told how many parts are done, and of how many."""
 
 TABLE_AND_BLOCK = types.int64, types.int64
 RECORD_AND_STEP = types.int64, types.float64
@@ -41,7 +44,7 @@ def smooth_symbols() -> list[str]:
     return [f"standoff_kernel_{frame.py_func.__name__}" for frame in SMOOTH_FRAMES]
 
 
-def compiled_libraries() -> tuple[dict[str, str], list[Any]]:
+def compiled_libraries(progress: Progress) -> tuple[dict[str, str], list[Any]]:
     """(kernels' own symbols to those of the library, all modules of machine code), compiled now."""
     renamed: dict[str, str] = {}
     found: dict[str, Any] = {}
@@ -54,12 +57,14 @@ def compiled_libraries() -> tuple[dict[str, str], list[Any]]:
             frame.py_func, targetoptions=CONTRACTED, pipeline_class=modules.SharedCompiler
         )
         asked.append((symbol, bare, RECORD_AND_STEP))
-    for symbol, kernel, signature in asked:
+    for done, (symbol, kernel, signature) in enumerate(asked):
+        progress(done, len(asked))
         kernel.compile(signature)
         made = kernel.overloads[signature]
         renamed[made.fndesc.llvm_func_name] = symbol
         for library in _reached(made.library):
             found[library.name] = library
+    progress(len(asked), len(asked))
     return renamed, list(found.values())
 
 
@@ -91,9 +96,9 @@ def hidden(code: llvm.ModuleRef, renamed: dict[str, str]) -> llvm.ModuleRef:
     return code
 
 
-def write(folder: Path) -> None:
+def write(folder: Path, progress: Progress = lambda done, total: None) -> None:
     """Compile all that the library calls and write it to a folder, an object file a module."""
-    renamed, libraries = compiled_libraries()
+    renamed, libraries = compiled_libraries(progress)
     machine = relocatable_machine(libraries[0]._codegen)
     files = {}
     for number, library in enumerate(libraries):
@@ -103,7 +108,7 @@ def write(folder: Path) -> None:
     write_whole(files)
 
 
-def build(folder: Path, processor: str | None = None) -> None:
+def build(folder: Path, processor: str | None = None, progress: Progress | None = None) -> None:
     """`write` in a process of its own with an empty cache, which holds no code to link again.
 
     Parameters
@@ -111,6 +116,8 @@ def build(folder: Path, processor: str | None = None) -> None:
     folder : Path
     processor : str, optional
         LLVM's name, such as ``x86-64-v3``; this machine's own if not given.
+    progress : callable, optional
+        ``progress(done, total)`` is called with the parts compiled so far, and all.
     """
     if not modules.AVAILABLE or numba.config.DISABLE_JIT or BOUNDS_CHECK:  # type: ignore[attr-defined]
         raise StandoffError(
@@ -121,16 +128,29 @@ def build(folder: Path, processor: str | None = None) -> None:
         environment = os.environ | {"NUMBA_CACHE_DIR": empty}
         if processor is not None:
             environment |= {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": ""}
-        done = subprocess.run(
-            [sys.executable, "-m", "standoff.c_interface.objects", str(folder)],
-            env=environment,
-            stderr=subprocess.PIPE,
-            text=True,
-            check=False,
-        )
-    if done.returncode != 0:
-        raise StandoffError(f"The kernels could not be compiled for C:\n{done.stderr.strip()}")
+        command = [sys.executable, "-m", "standoff.c_interface.objects", str(folder)]
+        # What goes wrong goes to a file: two pipes that are read one after the other may fill up.
+        with (
+            tempfile.TemporaryFile("w+") as errors,
+            subprocess.Popen(
+                command, env=environment, stdout=subprocess.PIPE, stderr=errors, text=True
+            ) as process,
+        ):
+            for told in process.stdout or ():
+                if progress is not None:
+                    done, total = map(int, told.split())
+                    progress(done, total)
+            code = process.wait()
+            errors.seek(0)
+            said = errors.read().strip()
+    if code != 0:
+        raise StandoffError(f"The kernels could not be compiled for C:\n{said}")
+
+
+def _tell(done: int, total: int) -> None:
+    """How far it has come, to the process that started this one."""
+    print(done, total, flush=True)
 
 
 if __name__ == "__main__":
-    write(Path(sys.argv[1]))
+    write(Path(sys.argv[1]), _tell)

@@ -8,6 +8,7 @@ from standoff.c_interface import build_library
 from standoff.cli.arguments import LibraryCommand
 from standoff.cli.errors import CommandError, ExitCode, WriteError
 from standoff.cli.facts import json_text
+from standoff.cli.progress import progress_bar
 from standoff.errors import StandoffError
 
 
@@ -24,7 +25,10 @@ def run_c_library(command: LibraryCommand) -> int:
     started = time.perf_counter()
     try:
         command.folder.mkdir(parents=True, exist_ok=True)
-        library, header = build_library(command.folder, processor=command.processor)
+        with progress_bar("compiling the library's parts") as progress:
+            library, header = build_library(
+                command.folder, processor=command.processor, progress=progress
+            )
     except StandoffError as error:
         raise CommandError(str(error)) from error
     except OSError as error:

@@ -1,27 +1,46 @@
-"""How far a run has come, shown where somebody can see it."""
+"""How far a command has come: a bar in a terminal, elsewhere a line now and then."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import Progress as Bar
 
+from standoff.kernels.compiler.notices import alive
 from standoff.recording.simulate import Progress
+
+Show = Callable[[int, int, str], None]
+"""Is told how many are done, of how many, and what is being done."""
 
 
 @contextmanager
-def progress_bar(doing: str = "tracking") -> Iterator[Progress | None]:
-    """Show a progress bar on stderr where that is a terminal; `doing` stands before it."""
-    if not sys.stderr.isatty():
-        yield None
+def progress_shown(doing: str = "starting") -> Iterator[Show]:
+    """Show on stderr what is being done: a bar, or where it is no terminal a line every 10 s."""
+    if sys.stderr.isatty():
+        # A stdout that is not a terminal stays what it is: the bar would take its lines.
+        console, both = Console(stderr=True), sys.stdout.isatty()
+        with Bar(console=console, transient=True, redirect_stdout=both) as bar:
+            task = bar.add_task(doing, total=None)
+            yield lambda done, total, doing: bar.update(
+                task, completed=done, total=total, description=doing
+            )
         return
-    with Bar(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("starting", total=None)
+    latest, started = doing, time.monotonic()
 
-        def show(done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total, description=doing)
+    def note(done: int, total: int, doing: str) -> None:
+        nonlocal latest
+        latest = f"{doing}: {done} of {total} done"
 
-        yield show
+    with alive(lambda: f"{latest}, {time.monotonic() - started:.0f} s so far ..."):
+        yield note
+
+
+@contextmanager
+def progress_bar(doing: str = "tracking") -> Iterator[Progress]:
+    """`progress_shown` for one thing that is done all the time."""
+    with progress_shown(doing) as show:
+        yield lambda done, total: show(done, total, doing)

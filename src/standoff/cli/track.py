@@ -13,6 +13,7 @@ from standoff.cli.progress import progress_bar
 from standoff.cli.selection import chosen, target_of
 from standoff.cli.summary import recording_lines
 from standoff.recording import Recording
+from standoff.recording.simulate import Progress
 from standoff.scene import (
     Scene,
     SceneError,
@@ -50,7 +51,9 @@ def run_track(command: TrackCommand) -> int:
     with progress_bar() as progress:
         recordings = [record(run.scene, run.settings, progress) for run in runs]
     done = list(zip(runs, recordings, strict=True))
-    write_whole({path: write for run, told in done for path, write in run.files(told).items()})
+    with progress_bar("drawing the film") as drawn:
+        files = [run.files(told, drawn).items() for run, told in done]
+        write_whole({path: write for each in files for path, write in each})
     if command.report.json:
         print(
             pairs_text(
@@ -108,7 +111,7 @@ class _Run(NamedTuple):
             except ModuleNotFoundError as error:
                 raise CommandError(str(error)) from error
 
-    def files(self, recording: Recording) -> dict[Path, Writer]:
+    def files(self, recording: Recording, drawn: Progress) -> dict[Path, Writer]:
         files: dict[Path, Writer] = {}
         if self.output is not None:
             from standoff.recording.file import write_table
@@ -120,7 +123,7 @@ class _Run(NamedTuple):
             ending = self.plot.suffix.lower().removeprefix(".")
             files[self.plot] = lambda file: write_plot(recording, file, ending)
         if self.export is not None:
-            write = writer_of(self.export)
+            write = writer_of(self.export, drawn)
             files[self.export] = lambda file: write(recording, file)
         return files
 

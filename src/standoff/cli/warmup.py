@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
-
-from rich.console import Console
-from rich.progress import Progress as Bar
 
 from standoff import __version__
 from standoff.cli.arguments import WarmupCommand
 from standoff.cli.errors import ExitCode
 from standoff.cli.facts import json_text
+from standoff.cli.progress import progress_shown
 from standoff.kernels.compiler.entry import Entry
-from standoff.kernels.compiler.notices import WORK, told_elsewhere
+from standoff.kernels.compiler.notices import WORK, parts, told_elsewhere
 from standoff.kernels.entries.preparing import every_entry, kept_in, name_of, was_compiled
 
 
@@ -43,12 +40,11 @@ def run_warmup(command: WarmupCommand) -> int:
     done: list[Ready] = []
     started = time.perf_counter()
     try:
-        with told_elsewhere(), _bar(len(entries)) as show:
-            for number, entry in enumerate(entries, 1):
-                show(f"{name_of(entry)}, {WORK[entry.work].what}", number - 1)
+        with told_elsewhere(), progress_shown() as show:
+            for number, entry in enumerate(parts(entries), 1):
+                show(number - 1, len(entries), f"{name_of(entry)}, {WORK[entry.work].what}")
                 done.append(_ready(entry))
                 _tell(done[-1], f"{number}/{len(entries)}", command.json)
-                show("", number)
     except KeyboardInterrupt:
         print(
             f"standoff: interrupted after {len(done)} of {len(entries)}; these need not be "
@@ -78,19 +74,6 @@ def _tell(one: Ready, place: str, to_stderr: bool) -> None:
     name = one.name.rpartition(".")[2]
     line = f"{place:>5} {one.seconds:6.2f} s  {one.how:<8}  {name}: {one.what}"
     print(line, file=sys.stderr if to_stderr else sys.stdout, flush=True)
-
-
-@contextmanager
-def _bar(total: int) -> Iterator[Callable[[str, int], None]]:
-    """Show which entry is at work, where stderr is a terminal."""
-    if not sys.stderr.isatty():
-        yield lambda doing, completed: None
-        return
-    console = Console(stderr=True)
-    # A stdout that is not a terminal stays what it is: the bar would take its lines.
-    with Bar(console=console, transient=True, redirect_stdout=sys.stdout.isatty()) as bar:
-        task = bar.add_task("starting", total=total)
-        yield lambda doing, completed: bar.update(task, description=doing, completed=completed)
 
 
 def _total(done: Sequence[Ready], folder: Path | None, started: float) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from standoff.recording import Recording
+from standoff.recording.simulate import Progress
 
 ENDINGS = (".html", ".mp4", ".gif", ".rrd")
 
@@ -14,12 +15,14 @@ RunWriter = Callable[[Recording, BinaryIO], object]
 """Writes a run to a stream."""
 
 
-def writer_of(path: Path) -> RunWriter:
+def writer_of(path: Path, progress: Progress | None = None) -> RunWriter:
     """Return what writes a run to a file of one of the `ENDINGS`.
 
     Parameters
     ----------
     path : Path
+    progress : callable, optional
+        ``progress(done, total)`` is called with the pictures of a film drawn so far, and all.
 
     Raises
     ------
@@ -38,4 +41,4 @@ def writer_of(path: Path) -> RunWriter:
     from standoff.view.video import check_installed, write_video
 
     check_installed(ending)
-    return lambda recording, file: write_video(recording, file, ending)
+    return lambda recording, file: write_video(recording, file, ending, progress=progress)

@@ -11,6 +11,7 @@ import numpy as np
 from standoff.errors import StandoffError, not_installed
 from standoff.real_numbers import shown
 from standoff.recording import Recording
+from standoff.recording.simulate import Progress
 from standoff.tracking.choices import positive_number, whole_number
 from standoff.tracking.pair_plot import view_angles
 from standoff.view.shown import what_moved
@@ -27,6 +28,7 @@ def save_video(
     pictures: int = 300,
     speed: float = 1.0,
     view: tuple[float, float] | None = None,
+    progress: Progress | None = None,
 ) -> None:
     """Write a run as a film of both bodies, their active features and the witness line.
 
@@ -44,6 +46,8 @@ def save_video(
     view : (float, float), optional
         Elevation and azimuth of the viewer, degrees. If not given, the view is across the normal of
         the closest frame.
+    progress : callable, optional
+        ``progress(done, total)`` is called with the pictures drawn so far, and all.
 
     Raises
     ------
@@ -70,7 +74,9 @@ def save_video(
     what_moved(recording)
     count, factor = whole_number(pictures, "pictures"), positive_number(speed, "speed")
     angles = view_angles(view)
-    write_whole({target: lambda file: write_video(recording, file, ending, count, factor, angles)})
+    write_whole(
+        {target: lambda file: write_video(recording, file, ending, count, factor, angles, progress)}
+    )
 
 
 def check_installed(ending: str) -> None:
@@ -98,6 +104,7 @@ def write_video(
     pictures: int = 300,
     speed: float = 1.0,
     view: tuple[float, float] | None = None,
+    progress: Progress | None = None,
 ) -> None:
     """Write a film to a stream; `save_video` describes it, and checks what it is given."""
     from standoff.recording.animation import drawing
@@ -112,6 +119,8 @@ def write_video(
     for number in range(count):
         draw(number)
         images.append(_pixels(figure))
+        if progress is not None:
+            progress(number + 1, count)
     write = _write_gif if ending == ".gif" else _write_mp4
     write(images, rate, file)
 

@@ -7,18 +7,27 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from itertools import groupby
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from standoff.kernels.compiler import cache
 from standoff.kernels.compiler.notices import QUIET
-from standoff.kernels.entries.preparing import prepare_all
+from standoff.kernels.entries.preparing import prepare_named
 from standoff_studies.paper.figure import Entry
 from standoff_studies.paper.making import Made, make_and_write
 
 Tell = Callable[[Entry, Made | None], None]
 """Is told that a figure is begun (None) and what became of it."""
+
+
+class Needed(NamedTuple):
+    """A worker's word that it needs an entry of the kernels, which is not on disk."""
+
+    module: str
+    name: str
 
 
 class Order(NamedTuple):
@@ -92,7 +101,6 @@ class _Worker:
 
 
 def _side_by_side(chapters: Sequence[list[Entry]], order: Order, jobs: int, hear: Tell) -> None:
-    prepare_all()  # once, here, and not side by side in each worker
     waiting = list(chapters)
     workers: list[_Worker] = []
     try:
@@ -120,7 +128,12 @@ def _side_by_side(chapters: Sequence[list[Entry]], order: Order, jobs: int, hear
 def _receive(worker: _Worker, hear: Tell) -> list[Entry] | None:
     """Take one word from a worker: None while it is at work, else what another is to make."""
     try:
-        entry, result = worker.pipe.recv()
+        word = worker.pipe.recv()
+        if isinstance(word, Needed):
+            _compile(word)
+            worker.pipe.send(word)
+            return None
+        entry, result = word
     except (EOFError, OSError):
         # The process is gone: killed, or out of memory. Its figure fails, the others go on.
         worker.process.join()
@@ -134,8 +147,25 @@ def _receive(worker: _Worker, hear: Tell) -> list[Entry] | None:
     return None if worker.left else []
 
 
+def _compile(needed: Needed) -> None:
+    """Compile once, here, what each worker would compile for itself."""
+    with suppress(Exception):  # the worker meets the same error, and its figure tells it
+        prepare_named(*needed)
+
+
+def asking(pipe: Connection) -> Callable[[Any], None]:
+    """What a worker calls for a function's entry that is not on disk."""
+
+    def ask(function: Any) -> None:
+        pipe.send(Needed(function.__module__, function.__name__))
+        pipe.recv()  # it is there now, if it can be kept
+
+    return ask
+
+
 def _work(pipe: Connection, order: Order) -> None:
     """Make chapters until the pipe closes."""
+    cache.compiled_elsewhere = asking(pipe)
     os.environ[QUIET] = "1"  # what there is to say of the compiler its parent has said
     # The parent ends its workers on Ctrl-C; a traceback of each would only hide its message.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from rich.console import Console
-from rich.progress import Progress as Bar
-
+from standoff.cli.progress import progress_shown
 from standoff_studies.paper.figure import Entry
 
 Tell = Callable[[Entry, object], None]
@@ -17,20 +14,19 @@ Tell = Callable[[Entry, object], None]
 
 @contextmanager
 def figures_bar(total: int) -> Iterator[Tell]:
-    """Show which figures are being made, and how many are done, where stderr is a terminal."""
-    if not sys.stderr.isatty():
-        yield lambda entry, result: None
-        return
-    with Bar(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("starting", total=total)
-        begun: dict[str, None] = {}
+    """Show which figures are being made, and how many are done."""
+    begun: dict[str, None] = {}
+    done = 0
+    with progress_shown() as show:
 
-        def show(entry: Entry, result: object) -> None:
+        def tell(entry: Entry, result: object) -> None:
+            nonlocal done
             if result is None:
                 begun[entry.key] = None
             else:
                 begun.pop(entry.key, None)
-                bar.advance(task)
-            bar.update(task, description=f"making {' and '.join(begun)}" if begun else "writing")
+                done += 1
+            figures = "figures" if len(begun) > 1 else "figure"
+            show(done, total, f"making {figures} {' and '.join(begun)}" if begun else "writing")
 
-        yield show
+        yield tell

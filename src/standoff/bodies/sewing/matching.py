@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -11,9 +12,40 @@ from numpy.typing import NDArray
 from standoff.bodies.sewing.corners import Stretch
 from standoff.bodies.sewing.sides import gap
 from standoff.errors import BodyError
+from standoff.wording import counted
 
-# Unmatched sides that one message names.
-MAX_NAMED = 6
+# Gaps that one message names.
+MAX_NAMED = 3
+
+
+class Gap(NamedTuple):
+    """Two open sides, each other's nearest or one the other's, and how far apart, length."""
+
+    one: str
+    other: str
+    apart: float
+
+
+class OpenShell(Exception):
+    """Sides that lie along no other.
+
+    Attributes
+    ----------
+    sides : list of str
+    gaps : list of Gap
+        To the nearest open side; none where one side alone is open.
+    """
+
+    def __init__(self, sides: list[str], gaps: list[Gap]) -> None:
+        super().__init__(sides, gaps)
+        self.sides, self.gaps = sides, gaps
+
+    def told(self) -> str:
+        """The gaps, in words."""
+        named = [f"{g.one} and {g.other} are {g.apart:.2g} apart" for g in self.gaps[:MAX_NAMED]]
+        more = len(self.gaps) - len(named)
+        named += [f"{counted(more, 'more such gap')}"] if more else []
+        return f"{', '.join(named[:-1])} and {named[-1]}" if len(named) > 1 else named[0]
 
 
 def match(stretches: Sequence[Stretch], tolerance: float) -> list[tuple[Stretch, Stretch]]:
@@ -21,8 +53,10 @@ def match(stretches: Sequence[Stretch], tolerance: float) -> list[tuple[Stretch,
 
     Raises
     ------
+    OpenShell
+        Stretches along none.
     BodyError
-        A stretch along none, naming the nearest and its distance; or along more than one.
+        A stretch along more than one.
     """
     groups: dict[tuple[int, int], list[int]] = {}
     for k, s in enumerate(stretches):
@@ -44,7 +78,7 @@ def match(stretches: Sequence[Stretch], tolerance: float) -> list[tuple[Stretch,
             )
     loose = [k for k, found in enumerate(partners) if not found]
     if loose:
-        raise BodyError(_loose_message(stretches, loose, tolerance))
+        raise _open_shell(stretches, loose)
     return [(stretches[k], stretches[found[0]]) for k, found in enumerate(partners) if k < found[0]]
 
 
@@ -64,25 +98,23 @@ def _candidates(
     return found
 
 
-def _loose_message(stretches: Sequence[Stretch], loose: list[int], tolerance: float) -> str:
+def _open_shell(stretches: Sequence[Stretch], loose: list[int]) -> OpenShell:
     """Every open side with the open side that is nearest to it, and by how much."""
     open_sides = [stretches[k] for k in loose]
     points = np.concatenate([s.side.polyline for s in open_sides])
     owner = np.repeat(np.arange(len(open_sides)), [len(s.side.polyline) for s in open_sides])
     tree = scipy.spatial.KDTree(points)
-    lines = []
-    for k, stretch in enumerate(open_sides[:MAX_NAMED]):
+    apart: dict[tuple[int, int], float] = {}
+    for k, stretch in enumerate(open_sides):
         near = _neighbours(stretch, tree, owner) - {k}
         near = near or set(range(len(open_sides))) - {k}
         misses = {m: _apart(stretch, open_sides[m]) for m in near}
-        line = f"{stretch.label} matches nothing"
         if misses:
             m = min(misses, key=lambda m: misses[m])
-            line += f": nearest open side is {open_sides[m].label}, {misses[m]:.2g} away"
-        lines.append(line)
-    more = len(loose) - len(lines)
-    lines.append(f"tolerance {tolerance:.3g}" + (f" ({more} more sides are open)" if more else ""))
-    return "The shell is open: " + "; ".join(lines) + "."
+            pair = min(k, m), max(k, m)
+            apart[pair] = max(apart.get(pair, 0.0), misses[m])
+    gaps = [Gap(open_sides[a].label, open_sides[b].label, miss) for (a, b), miss in apart.items()]
+    return OpenShell([side.label for side in open_sides], gaps)
 
 
 def _neighbours(stretch: Stretch, tree: scipy.spatial.KDTree, owner: NDArray[np.intp]) -> set[int]:

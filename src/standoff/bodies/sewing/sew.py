@@ -11,11 +11,11 @@ import numpy as np
 from standoff.bodies.proofs import PatchProof
 from standoff.bodies.sewing.corners import Outline, Stretch, outline
 from standoff.bodies.sewing.correspondence import Correspondence, correspond, isoline
-from standoff.bodies.sewing.matching import match
+from standoff.bodies.sewing.matching import OpenShell, match
 from standoff.bodies.sewing.patches import Patch, check_patches, cut_patches, grid_points
 from standoff.bodies.sewing.shell import check_shell, outward_senses
 from standoff.bodies.sewing.sides import SENSES
-from standoff.bodies.tolerances import MAX_SPREAD, SEWING_TOLERANCE
+from standoff.bodies.tolerances import MAX_SPREAD, SEWING_TOLERANCE, WIDEST_SEAM
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.errors import BodyError
 from standoff.geometry.pcurves import Pcurve
@@ -23,6 +23,9 @@ from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array, positive
 from standoff.real_numbers import shown
+
+# A tolerance that is offered is a little more than the gap that was found at samples.
+ROOM = 1.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +83,13 @@ def sew(patches: Sequence[Any], tolerance: float | None = None) -> Sewn:
             tolerance,
         )
     cut, notes = cut_patches(patches, tolerance)
+    try:
+        return _sewn(cut, notes, size, tolerance)
+    except OpenShell as shell:
+        raise _refusal(shell, patches, size, tolerance) from None
+
+
+def _sewn(cut: list[Patch], notes: list[str], size: float, tolerance: float) -> Sewn:
     shape = outline(cut, tolerance)
     pairs = match([s for row in shape.stretches for s in row], tolerance)
     check_shell(cut, shape, pairs)
@@ -109,12 +119,57 @@ def sew(patches: Sequence[Any], tolerance: float | None = None) -> Sewn:
     )
 
 
+def _refusal(
+    shell: OpenShell, patches: Sequence[Surface], size: float, tolerance: float
+) -> BodyError:
+    """An open shell in one sentence, with the tolerance that would close it if there is one."""
+    wide = _closing(shell, patches, size)
+    if not shell.gaps:
+        return BodyError(
+            f"The shell is open: {shell.sides[0]} alone matches nothing; a patch is missing."
+        )
+    cure = (
+        ", and a greater one would not help: a patch is missing or out of place"
+        if wide is None
+        else f"; tolerance={wide:g} would join them"
+    )
+    return BodyError(
+        f"The shell is open: {shell.told()}, more than tolerance={tolerance:.3g} allows{cure}.",
+        "tolerance",
+        tolerance,
+    )
+
+
+def _closing(shell: OpenShell, patches: Sequence[Surface], size: float) -> float | None:
+    """A tolerance with which the patches are sewn, tried; None where there is none to offer."""
+    widest = max((gap.apart for gap in shell.gaps), default=np.inf)
+    for times in (1.0, 2.0, 4.0):  # corners may part by more than the sides that end in them
+        wide = _rounded_up(times * widest)
+        if not wide <= WIDEST_SEAM * size:
+            return None
+        try:
+            _sewn(*cut_patches(patches, wide), size, wide)
+        except (OpenShell, BodyError):
+            continue
+        return wide
+    return None
+
+
+def _rounded_up(length: float) -> float:
+    """A length with two digits, and a little room."""
+    if not np.isfinite(length):
+        return length
+    unit = 10.0 ** (np.floor(np.log10(ROOM * length)) - 1.0)
+    return float(f"{np.ceil(ROOM * length / unit) * unit:.3g}")
+
+
 def _joined(one: Stretch, other: Stretch, size: float, tolerance: float) -> Correspondence:
     found = correspond(one, other, size)
     if found.residual > MAX_SPREAD * tolerance:
         raise BodyError(
             f"{one.label} and {other.label} part by {found.residual:.3g} between their ends, "
-            f"tolerance {tolerance:.3g}: make them the same curve, or give a greater tolerance.",
+            f"more than tolerance={tolerance:.3g} allows: make them the same curve, or give "
+            f"tolerance={_rounded_up(found.residual):g}.",
             "tolerance",
             tolerance,
         )

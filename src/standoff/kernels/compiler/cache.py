@@ -13,6 +13,7 @@ import importlib
 import os
 import pickle
 import sys
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -39,6 +40,10 @@ DAMAGED = (
     *(AttributeError, ImportError),
 )
 """What reading a truncated or overwritten file of pickles raises."""
+
+compiled_elsewhere: Callable[[Any], None] | None = None
+"""Set in a process beside others: has a function's entry, which is not on disk, compiled by the one
+that they all ask, so that it is compiled once and told once."""
 
 
 class _Trusted:
@@ -171,17 +176,28 @@ class ModuleCache(Cache):  # type: ignore[misc]
         if stored is not None:
             return rebuilt(target_context, stored)
         self._begin()
-        found = None
+        found = self._kept(signature, target_context)
+        if found is None and self._work is not None and compiled_elsewhere is not None:
+            compiled_elsewhere(self._function)
+            found = self._kept(signature, target_context)
+        if found is None:
+            notices.compiling(self._keeps)
+        return found
+
+    @property
+    def _keeps(self) -> bool:
+        return not isinstance(self._impl.locator, _Nowhere)
+
+    def _kept(self, signature: Any, target_context: Any) -> Any:
+        """What is on disk, or None."""
         try:
-            if not isinstance(self._impl.locator, _Nowhere):
+            if self._keeps:
                 with self._guard_against_spurious_io_errors():
-                    found = self._load_overload(signature, target_context)
+                    return self._load_overload(signature, target_context)
         except DAMAGED as error:
             say(f"{self._cache_path}: what was kept there is damaged ({error}); compiling anew.")
             self.flush()
-        if found is None:
-            notices.compiling(self._work)
-        return found
+        return None
 
     def save_overload(self, signature: Any, result: Any) -> None:
         try:

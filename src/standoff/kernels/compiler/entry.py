@@ -64,7 +64,7 @@ class Entry(CPUDispatcher):  # type: ignore[misc]
             return
         with global_compiler_lock:
             if not self.ready:
-                with notices.waiting(self.work):
+                with notices.waiting(self.work, self.py_func.__name__):
                     self.compile(self.signature)
                 self.disable_compile()
 

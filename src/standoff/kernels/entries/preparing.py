@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 from standoff.kernels.compiler import cache
 from standoff.kernels.compiler.entry import Entry
+from standoff.kernels.compiler.notices import parts
 from standoff.kernels.entries import blocks, queries, servo, simulation, tracker
 
 MODULES = (
@@ -62,9 +64,7 @@ def prepare(paper: bool, planar: bool, runs: bool = False) -> None:
     )
     if runs:
         needed.append(tracker.run_paper if paper else tracker.run_predicted)
-    for each in needed:
-        if isinstance(each, Entry):  # a plain function under NUMBA_DISABLE_JIT=1
-            each.prepare()
+    _prepare_each(needed)
     for name in SCIPY:
         importlib.import_module(name)
     ready_for.add((paper, planar, runs))
@@ -72,18 +72,21 @@ def prepare(paper: bool, planar: bool, runs: bool = False) -> None:
 
 def prepare_simulation() -> None:
     """Have ready what a simulated system runs by."""
-    if isinstance(simulation.run_system, Entry):
-        simulation.run_system.prepare()
+    _prepare_each([simulation.run_system])
     for name in SCIPY:
         importlib.import_module(name)
 
 
 def prepare_servo() -> None:
     """Have ready what a servo loop runs by, and what the slower side calls meanwhile."""
+    _prepare_each([simulation.run_system, servo.serve, servo.put_row, servo.take_row])
     prepare_simulation()
-    for each in (servo.serve, servo.put_row, servo.take_row):
-        if isinstance(each, Entry):
-            each.prepare()
+
+
+def _prepare_each(needed: Sequence[Any]) -> None:
+    entries = [each for each in needed if isinstance(each, Entry)]  # none with NUMBA_DISABLE_JIT=1
+    for each in parts(entries):
+        each.prepare()
 
 
 def every_entry() -> Iterator[Entry]:
@@ -96,8 +99,14 @@ def every_entry() -> Iterator[Entry]:
 
 def prepare_all() -> None:
     """Have every entry ready, before other processes that ask for them are started."""
-    for each in every_entry():
-        each.prepare()
+    _prepare_each(list(every_entry()))
+
+
+def prepare_named(module: str, name: str) -> None:
+    """Have an entry ready for another process that asks for it; nothing where there is none."""
+    entry = getattr(importlib.import_module(module), name, None)
+    if isinstance(entry, Entry):
+        entry.prepare()
 
 
 def name_of(entry: Entry) -> str:
