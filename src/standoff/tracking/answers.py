@@ -31,6 +31,22 @@ def _field(name: str, doc: str) -> Any:
     return property(read, doc=doc)
 
 
+STATUSES = np.array(sorted(Status, key=lambda status: status.value), dtype=object)
+"""By their numbers, 0 and up."""
+
+
+def statuses(numbers: Array) -> NDArray[np.object_]:
+    """The statuses of the kernels' numbers (n,), REFUSED of nan."""
+    whole = np.where(np.isnan(numbers), Status.REFUSED.value, numbers).astype(np.int64)
+    found: NDArray[np.object_] = STATUSES[whole]
+    return found
+
+
+def proven(numbers: Array) -> NDArray[np.bool_]:
+    """Which answers are proven, by the kernels' numbers (n,) of their statuses."""
+    return np.isin(numbers, [status.value for status in Status if status.certified])
+
+
 class AnswerArrays(KeepsReadOnly):
     """What every table of answers has, in arrays of n rows."""
 
@@ -96,12 +112,12 @@ class Answers(AnswerArrays):
     @property
     def status(self) -> NDArray[np.object_]:
         """(n,) the status of each frame."""
-        return np.array([Status(int(x)) for x in AnswerRows(self.blocks).status], dtype=object)
+        return statuses(AnswerRows(self.blocks).status)
 
     @property
     def certified(self) -> NDArray[np.bool_]:
         """(n,) is the answer proven?"""
-        return np.array([status.certified for status in self.status], dtype=bool)
+        return proven(AnswerRows(self.blocks).status)
 
     @property
     def events(self) -> tuple[Event, ...]:

@@ -185,11 +185,18 @@ def check_pair(a: Body, b: Body) -> None:
             )
 
 
+def out_of_plane(flats: Array) -> NDArray[np.bool_]:
+    """Which of flat poses (..., 12) take a planar body out of z = 0?"""
+    level = np.abs(flats[..., [2, 5, 6, 7]]).max(axis=-1) <= PLANE_TILT
+    out: NDArray[np.bool_] = ~(level & (flats[..., 11] == 0.0) & (flats[..., 8] >= 0.0))
+    return out
+
+
 def check_in_plane(flat_a: Array, flat_b: Array) -> None:
     """A planar pair must move within one plane z = 0 of world."""
     for name, flat in (("pose_a", flat_a), ("pose_b", flat_b)):
-        tilt = float(np.abs(flat[[2, 5, 6, 7]]).max())
-        if not tilt <= PLANE_TILT or flat[11] != 0.0 or flat[8] < 0.0:
+        if out_of_plane(flat):
+            tilt = float(np.abs(flat[[2, 5, 6, 7]]).max())
             raise StandoffError(
                 f"{name} takes a planar body out of z = 0 (tilt {tilt:.3g}, z = {flat[11]}): "
                 "planar pairs turn about z and move in x and y.",
