@@ -236,16 +236,13 @@ class Poses(KeepsReadOnly):
 
 def _rows(value: Any, name: str, shape: tuple[int, ...]) -> FloatArray:
     """A new array of n rows of the given shape."""
-    given = np.asarray(value) if hasattr(value, "__array__") else value
-    found = shape_of(given)
-    if found is None or found[1:] != shape or not found[0]:
+    array = inputs.numbers(value, name, None)
+    if array.ndim == 0 or array.shape[1:] != shape or not len(array):
         wanted = ", ".join(map(str, ("n", *shape)))
         raise StandoffError(
-            f"{name} is {shown(value)}: give an array of shape ({wanted}), all of them real",
-            name,
-            value,
+            f"{name} has shape {array.shape}: give an array of shape ({wanted})", name, value
         )
-    return inputs.numbers(given, name, found)
+    return array
 
 
 def _shifts(translations: ArrayLike, count: int) -> FloatArray:

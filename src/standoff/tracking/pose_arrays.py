@@ -7,14 +7,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.errors import StandoffError
+from standoff.errors import MaskedNumbers, StandoffError
 from standoff.kernels.tolerances import FARTHEST, ROTATION
 from standoff.motion import Pose, Poses
 from standoff.motion.pose import matrix_of
 from standoff.motion.poses import SEVEN, has_last_row, matrices_of
 from standoff.motion.rotations import defect, mirrored, without_rounding
 from standoff.motion.tolerances import ROUNDED
-from standoff.real_numbers import check_unmasked, shape_of, shown
+from standoff.real_numbers import real_array, shape_of, shown
 from standoff.tracking.inputs import (
     LAST_ROW,
     ROTATION_THEN_POSITION,
@@ -58,11 +58,14 @@ def numbers(value: Any, name: str, forms: str) -> Array:
     ------
     StandoffError
     """
-    check_unmasked(value)
     try:
-        return np.asarray(value, dtype=np.float64)
+        return real_array(value, copy=False)
+    except MaskedNumbers as error:
+        raise StandoffError(f"{name} {error}: {shown(value)}", name, value) from error
     except (TypeError, ValueError) as error:
-        raise StandoffError(f"{name} = {shown(value)}: give {forms}.", name, value) from error
+        raise StandoffError(
+            f"{name} is {shown(value)}: give {forms}, all of them real numbers.", name, value
+        ) from error
 
 
 def read_poses(value: Any, name: str) -> PoseArray:
