@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -82,7 +82,7 @@ class Poses(KeepsReadOnly):
     def __init__(self, rotations: RotationLike, translations: ArrayLike) -> None:
         turns = _rows(matrix_of(rotations), "rotations", (3, 3))
         shifts = _shifts(translations, len(turns))
-        self._check(turns, shifts)
+        self._take(turns, shifts, zip(turns, shifts, strict=True))
 
     def _set(
         self, rotations: FloatArray, translations: FloatArray, repaired: NDArray[np.bool_]
@@ -91,14 +91,26 @@ class Poses(KeepsReadOnly):
             array.setflags(write=False)
         self.rotations, self.translations, self.repaired = rotations, translations, repaired
 
-    def _check(self, rotations: FloatArray, translations: FloatArray) -> None:
-        """Take over arrays of its own, rounded rotations repaired."""
+    def _take(
+        self,
+        rotations: FloatArray,
+        translations: FloatArray,
+        given: Iterable[PoseLike],
+        wrong: NDArray[np.bool_] | None = None,
+    ) -> None:
+        """Take over arrays of its own, with rounded rotations repaired.
+
+        Some may be known to be wrong; `given` are the poses for an error to speak of.
+        """
         with np.errstate(invalid="ignore", over="ignore"):  # of numbers that are refused below
             off = defect(rotations)
-            wrong = mirrored(rotations) | ~(off <= ROUNDED)
-        wrong |= ~(np.abs(translations) <= inputs.GREATEST).all(axis=1)
-        for index in np.flatnonzero(wrong).tolist():
-            _read(index, (rotations[index], translations[index]))  # says what is wrong with it
+            bad = mirrored(rotations) | ~(off <= ROUNDED)
+        bad |= ~(np.abs(translations) <= inputs.GREATEST).all(axis=1)
+        if wrong is not None:
+            bad |= wrong
+        if bad.any():
+            for index, pose in enumerate(given):
+                _read(index, pose)  # says what is wrong with it
         repaired = off > ORTHONORMALITY
         rotations[repaired] = without_rounding(rotations[repaired])
         self._set(rotations, translations, repaired)
@@ -151,10 +163,9 @@ class Poses(KeepsReadOnly):
                 given,
             )
         matrices = inputs.numbers(given, "poses", shape)
-        for index in np.flatnonzero(~has_last_row(matrices)).tolist():
-            _read(index, matrices[index])  # says what is wrong with it
+        turns, shifts = matrices[:, :3, :3].copy(), matrices[:, :3, 3].copy()
         made = cls.__new__(cls)
-        made._check(matrices[:, :3, :3].copy(), matrices[:, :3, 3].copy())
+        made._take(turns, shifts, matrices, ~has_last_row(matrices))
         return made
 
     @classmethod

@@ -85,7 +85,7 @@ def read_poses(value: Any, name: str) -> PoseArray:
         shapes = [shape_of(matrix_of(x)) for x in given] if len(given) == 2 else [None]
         if shapes[0] == (3, 3) or shapes == [(4,), (3,)]:
             return _one(tuple(given))
-        if shapes[0] is not None and shapes[-1] is not None and shapes[-1][-1:] == (3,):
+        if len(shapes[0] or ()) > 1 and (shapes[-1] or ())[-1:] == (3,):
             return _unmarked(_of_pair(given, name))
         if any(isinstance(x, Pose | tuple) or matrix_of(x) is not x for x in given):
             return _of_list(given, name)
