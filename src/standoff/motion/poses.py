@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import scipy
@@ -243,6 +243,18 @@ class Poses(KeepsReadOnly):
     def __repr__(self) -> str:
         told = f", {int(self.repaired.sum())} repaired" if self.repaired.any() else ""
         return f"<Poses: {len(self)}{told}>"
+
+
+PosesLike: TypeAlias = (
+    ArrayLike
+    | Poses
+    | PoseLike
+    | Sequence[PoseLike]
+    | NDArray[Any]
+    | HasMatrix
+    | tuple[RotationLike, ArrayLike]
+)
+"""What stands for many poses, or for one that goes with all: see `standoff.distances`."""
 
 
 def _rows(value: Any, name: str, shape: tuple[int, ...]) -> FloatArray:

@@ -16,7 +16,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
 from standoff.tracking.proximity import Event, Proximity
 from standoff.tracking.rows import AnswerRows
-from standoff.tracking.status import Status
+from standoff.tracking.status import BY_NUMBER, Status
 from standoff.wording import counted, short_name
 
 Array = NDArray[np.float64]
@@ -31,15 +31,10 @@ def _field(name: str, doc: str) -> Any:
     return property(read, doc=doc)
 
 
-STATUSES = np.array(sorted(Status, key=lambda status: status.value), dtype=object)
-"""By their numbers, 0 and up."""
-
-
 def statuses(numbers: Array) -> NDArray[np.object_]:
     """The statuses of the kernels' numbers (n,), REFUSED of nan."""
     whole = np.where(np.isnan(numbers), Status.REFUSED.value, numbers).astype(np.int64)
-    found: NDArray[np.object_] = STATUSES[whole]
-    return found
+    return np.array(BY_NUMBER, dtype=object)[whole]
 
 
 def proven(numbers: Array) -> NDArray[np.bool_]:

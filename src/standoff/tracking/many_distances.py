@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import feature_of
 from standoff.errors import StandoffError
 from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
-from standoff.motion import PoseLike, Poses
+from standoff.motion import PosesLike
 from standoff.tracking.answers import AnswerArrays, proven, statuses
 from standoff.tracking.choices import whole_number, yes_or_no
 from standoff.tracking.cold_query import ColdQuery
@@ -171,8 +170,8 @@ def _features(body: Body, numbers: Array) -> NDArray[np.void]:
 def distances(
     a: Body,
     b: Body,
-    poses_a: ArrayLike | PoseLike | Poses | Sequence[PoseLike],
-    poses_b: ArrayLike | PoseLike | Poses | Sequence[PoseLike],
+    poses_a: PosesLike,
+    poses_b: PosesLike,
     *,
     warm: bool = False,
     workers: int = 1,

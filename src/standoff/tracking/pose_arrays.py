@@ -36,6 +36,10 @@ ORDERS = {
 """In which 12 numbers are given at times that are to be R row-major, p: where these stand then."""
 
 
+TOGETHER = 2048
+"""So many poses are repaired together: their numbers stay in the processor's cache."""
+
+
 class PoseArray(NamedTuple):
     """Poses of n frames or rows, or one for all of them.
 
@@ -177,22 +181,32 @@ class Mended(NamedTuple):
 
 def mended(poses: Array, planar: bool = False) -> Mended:
     """Check and repair poses (n, 4, 4), all of them at once."""
-    matrices = np.array(poses, order="C")
+    found = Mended(np.array(poses, order="C"), *np.zeros((2, len(poses)), dtype=bool))
+    for first in range(0, len(poses), TOGETHER):
+        part = slice(first, first + TOGETHER)
+        _mend(found.matrices[part], found.repaired[part], found.refused[part], planar)
+    return found
+
+
+def _mend(
+    matrices: Array, repaired: NDArray[np.bool_], refused: NDArray[np.bool_], planar: bool
+) -> None:
+    """Fill in a part of `Mended`."""
     turns, shifts = matrices[:, :3, :3], matrices[:, :3, 3]
     with np.errstate(invalid="ignore", over="ignore"):  # of numbers that are refused
         # the kernel asks of the rows, a repair of the columns
         rounded = ~(defect(turns.transpose(0, 2, 1)) <= ROTATION - CHECK_ROUNDOFF)
         far = ~(np.abs(shifts[:, 0]) + np.abs(shifts[:, 1]) + np.abs(shifts[:, 2]) < FARTHEST)
-        refused = mirrored(turns) | far | ~has_last_row(matrices)
+        refused |= mirrored(turns) | far | ~has_last_row(matrices)
         if rounded.any():
             refused[rounded] |= ~(defect(turns[rounded]) <= ROUNDED)
-        repaired = rounded & ~refused
-    if repaired.any():
-        matrices[repaired, :3, :3] = without_rounding(turns[repaired])
+    sound = rounded & ~refused
+    if sound.any():
+        matrices[sound, :3, :3] = without_rounding(turns[sound])
     if planar:
         refused |= out_of_plane(flat_poses(matrices))
     matrices[~refused, 3] = LAST_ROW
-    return Mended(matrices, repaired & ~refused, refused)
+    repaired |= rounded & ~refused
 
 
 def flat_poses(matrices: Array) -> Array:

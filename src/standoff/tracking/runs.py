@@ -96,14 +96,17 @@ class Given(NamedTuple):
         marks = np.broadcast_to(marks_a, n) + np.broadcast_to(marks_b, n)
         return cls(of_a, of_b, xi_a, xi_b, h, marks)
 
-    def mended(self, first: int) -> Given:
-        """The same with the rounded poses of frames `first` and on repaired, and counted."""
-        poses, repaired = [], self.repaired.copy()
-        for given in (self.poses_a, self.poses_b):
-            matrices, rounded, _ = mended(given[first:])
-            poses.append(np.concatenate([given[:first], matrices]))
-            repaired[first:] += rounded
-        return self._replace(poses_a=poses[0], poses_b=poses[1], repaired=repaired)
+    def mended(self, refused: int, first: int) -> Given:
+        """The same with the rounded poses of frames `first` and on repaired, and counted: those of
+        the body that the kernel has refused, as BAD_POSE_A or BAD_POSE_B."""
+        given = self.poses_a if refused == K.BAD_POSE_A else self.poses_b
+        matrices, rounded, _ = mended(given[first:])
+        repaired = self.repaired.copy()
+        repaired[first:] += rounded
+        poses = np.concatenate([given[:first], matrices]) if first else matrices
+        if refused == K.BAD_POSE_A:
+            return self._replace(poses_a=poses, repaired=repaired)
+        return self._replace(poses_b=poses, repaired=repaired)
 
     def in_plane(self) -> bool:
         """Do all poses keep a planar body in z = 0?"""
@@ -170,15 +173,16 @@ def run(tracker: Steps, state: TrackerState, given: Given) -> tuple[TrackerState
     _take(polytopes[0], state.proximity)
     # planar bodies: where some leave their plane, each frame is looked at by itself
     compiled = not tracker.planar or given.in_plane()
-    looked_at = False
+    unchecked = {K.BAD_POSE_A, K.BAD_POSE_B}
     longer: dict[int, Proximity] = {}
     at = 0
     while at < n:
         done = K.BAD_ARRAYS
         if compiled:
             at, done = tracker.values(tracker.table.address, *given[:5], at, (blocks, polytopes))
-        if done in (K.BAD_POSE_A, K.BAD_POSE_B) and not looked_at:
-            given, looked_at = given.mended(at), True
+        if done in unchecked:  # all the later ones are likely rounded alike
+            unchecked.remove(done)
+            given = given.mended(done, at)
             continue
         if done == K.UNDECIDED:
             tracker.name_overlap(Block(blocks[at + 1]))

@@ -15,7 +15,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.tracking.block import Block
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.rows import AnswerRows, StateRow, motion_row, poses_of, twists_of
-from standoff.tracking.status import Status
+from standoff.tracking.status import BY_NUMBER, Status
 
 Array = NDArray[np.float64]
 
@@ -163,7 +163,7 @@ class FrameBuffer:
         number = self._block.item(K.STATUS)
         if number != number:
             raise StandoffError("The buffer has no answer yet: call tracker.step_into first.")
-        return Status(number)
+        return BY_NUMBER[int(number)]
 
     @property
     def certified(self) -> bool:

@@ -70,3 +70,5 @@ _ADVICE = {
         "says what is wrong with it."
     ),
 }
+BY_NUMBER = tuple(sorted(Status))
+"""The status of each number."""
