@@ -18,7 +18,7 @@ from standoff.tracking.inputs import check_in_plane, flat_pose, repair
 from standoff.tracking.pose_arrays import another_order
 
 Array = NDArray[np.float64]
-AT_REST = flat_pose(np.eye(4))
+HOME = flat_pose(np.eye(4))
 SHOWN = 3
 """So many errors are in the repr."""
 
@@ -53,7 +53,7 @@ class RefusedPoses(NamedTuple):
             flat = flat_pose(Pose.of(self.matrices[at]))
             if planar:
                 own = self.name == "poses_a"
-                check_in_plane(*((flat, AT_REST) if own else (AT_REST, flat)))
+                check_in_plane(*((flat, HOME) if own else (HOME, flat)))
             repair(flat.copy(), self.name)
         except StandoffError as error:
             told = f"Row {number} of {self.name}: {error}"
