@@ -155,6 +155,16 @@ MOTION: dict[str, dict[str, Any]] = {
         "end": 1.0,
     },
     "PoseSamples": {"times": [0.0, 1.0], "poses": [HOME, AWAY]},
+    "Poses": {"rotations": [np.eye(3)] * 2, "translations": np.zeros((2, 3))},
+    "Poses.from_wxyz": {
+        "quaternions": [[1.0, 0, 0, 0]] * 2,
+        "translations": [[0.0, 0.0, 0.0]] * 2,
+    },
+    "Poses.from_xyzw": {
+        "quaternions": [[0.0, 0, 0, 1]] * 2,
+        "translations": [[0.0, 0.0, 0.0]] * 2,
+    },
+    "Poses.of": {"poses": [HOME, AWAY]},
     "Screw": {
         "pose": HOME,
         "axis": [0, 0, 1],

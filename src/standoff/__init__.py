@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from standoff.control import min_gain
     from standoff.errors import BodyError, StandoffError
     from standoff.impact import time_of_impact
-    from standoff.motion import Pose, Twist
+    from standoff.motion import Pose, Poses, Twist
     from standoff.points import PointTracker
     from standoff.recording import Recording, open_recording, simulate
     from standoff.tracking import (
@@ -53,6 +53,7 @@ else:
             ),
             "standoff.motion": (
                 "Pose",
+                "Poses",
                 "Twist",
             ),
             "standoff.tracking": (
@@ -149,6 +150,7 @@ __all__ = [
     "PaperLaw",
     "PointTracker",
     "Pose",
+    "Poses",
     "PredictorCorrector",
     "Proximity",
     "Recording",

@@ -103,6 +103,11 @@ class DerivativeWarning(RuntimeWarning):
     """Derivatives of a distance that are not defined were handed to a framework, as nan."""
 
 
+class RefusedRowsWarning(RuntimeWarning):
+    """Most poses of many are none, so that most answers are nan; the message says what is wrong
+    with the first, and whether their numbers stand in another order."""
+
+
 def not_installed(library: str, extra: str = "cli") -> str:
     """What is said where a library is missing that comes with an extra of this package."""
     return (

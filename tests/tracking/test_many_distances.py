@@ -95,7 +95,7 @@ def test_a_bad_row_says_so_and_the_others_stand(warm):
     good = [0, 1, 2, 5, 6, 7, 9, 10, 11]
     np.testing.assert_allclose(found.distance[good], sound.distance[good], atol=1e-9)
     assert np.isnan(found.rows[[3, 4, 8]]).all()
-    assert [found.status[k] for k in (3, 4, 8)] == [None] * 3
+    assert [found.status[k] for k in (3, 4, 8)] == [Status.REFUSED] * 3
     assert found.feature_a["index"][3] == -1
     assert np.isnan(found.gradient[3]).all()
     with pytest.raises(ValueError, match="mirror"):

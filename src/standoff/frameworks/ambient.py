@@ -26,7 +26,7 @@ from standoff.real_numbers import shown
 from standoff.tracking.choices import choice
 from standoff.tracking.cold_query import distance
 from standoff.tracking.derivatives import Smoothness
-from standoff.tracking.many_distances import distances
+from standoff.tracking.many_distances import answered_rows
 
 Array = NDArray[np.float64]
 
@@ -173,7 +173,7 @@ def _one(pair: Pair, poses: list[Array], order: int) -> Rows:
 
 
 def _many(pair: Pair, poses: list[Array], order: int) -> Rows:
-    found = distances(pair.a, pair.b, *poses)
+    found = answered_rows(pair.a, pair.b, *poses)
     if found.errors:
         raise found.errors[min(found.errors)]
     if not order:

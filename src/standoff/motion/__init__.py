@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from standoff.motion.paths import Carried, ConstantTwist, Fixed, Offset, Path, Screw
     from standoff.motion.pose import Pose, PoseLike
     from standoff.motion.pose_function import PoseFunction
+    from standoff.motion.poses import Poses, PosesLike
     from standoff.motion.samples import PoseSamples
     from standoff.motion.samples_file import read_pose_samples
     from standoff.motion.twist import Frame, Twist, TwistLike
@@ -28,6 +29,7 @@ else:
             ),
             "standoff.motion.pose": ("Pose", "PoseLike"),
             "standoff.motion.pose_function": ("PoseFunction",),
+            "standoff.motion.poses": ("Poses", "PosesLike"),
             "standoff.motion.samples": ("PoseSamples",),
             "standoff.motion.samples_file": ("read_pose_samples",),
             "standoff.motion.twist": ("Frame", "Twist", "TwistLike"),
@@ -51,6 +53,8 @@ __all__ = [
     "PoseFunction",
     "PoseLike",
     "PoseSamples",
+    "Poses",
+    "PosesLike",
     "Screw",
     "Spiral",
     "Twist",

@@ -14,7 +14,7 @@ from standoff.motion import inputs
 from standoff.motion.bounds import MotionBounds, cross, length, turning
 from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import HasMatrix, Pose, PoseLike
-from standoff.motion.pose_stack import PoseStack
+from standoff.motion.poses import Poses
 from standoff.motion.tolerances import HALF_TURN_ANGLE, NEAR_HALF_TURN
 from standoff.motion.twist import Twist, screws
 from standoff.read_only import KeepsReadOnly
@@ -35,7 +35,7 @@ class PoseSamples(KeepsReadOnly):
     ----------
     times : array_like, shape (n,)
         Times of the samples [s], strictly increasing, at least two; uneven steps are welcome.
-    poses : sequence of n poses, ndarray of shape (n, 4, 4), or SciPy's ``RigidTransform`` of n
+    poses : Poses, sequence of n poses, array (n, 4, 4), or SciPy's ``RigidTransform`` of n
         Of a sequence each is a Pose or what `Pose.of` reads; an array holds homogeneous matrices,
         and is read some hundred times as fast. Rounded rotations are repaired as by `Pose.of`.
 
@@ -58,11 +58,11 @@ class PoseSamples(KeepsReadOnly):
     """
 
     def __init__(
-        self, times: ArrayLike, poses: Sequence[PoseLike] | NDArray[Any] | HasMatrix
+        self, times: ArrayLike, poses: Poses | Sequence[PoseLike] | NDArray[Any] | HasMatrix
     ) -> None:
-        self._set(times, PoseStack.of(poses))
+        self._set(times, Poses.of(poses))
 
-    def _set(self, times: ArrayLike, stack: PoseStack) -> None:
+    def _set(self, times: ArrayLike, stack: Poses) -> None:
         self._stack = stack
         self.times = inputs.array(times, "times", (len(stack.rotations),))
         self.repaired = int(np.count_nonzero(stack.repaired))
@@ -118,7 +118,7 @@ class PoseSamples(KeepsReadOnly):
     @cached_property
     def poses(self) -> tuple[Pose, ...]:
         """The poses of the samples, n of them."""
-        return tuple(self._stack.pose(index) for index in range(len(self.times)))
+        return tuple(self._stack)
 
     if not TYPE_CHECKING:
 
@@ -169,9 +169,9 @@ class PoseSamples(KeepsReadOnly):
         index, seconds = self._interval(t)
         if seconds == self.end:
             # Not by the last screw, so that every sample is met without rounding.
-            return self._stack.pose(-1)
+            return self._stack[-1]
         elapsed = seconds - float(self.times[index])
-        return self._twist(index).carry(self._stack.pose(index), elapsed)
+        return self._twist(index).carry(self._stack[index], elapsed)
 
     def twist(self, t: float) -> Twist:
         """Return how the body moves at time `t` [s], in world axes.

@@ -16,7 +16,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
 from standoff.tracking.proximity import Event, Proximity
 from standoff.tracking.rows import AnswerRows
-from standoff.tracking.status import Status
+from standoff.tracking.status import BY_NUMBER, Status
 from standoff.wording import counted, short_name
 
 Array = NDArray[np.float64]
@@ -29,6 +29,17 @@ def _field(name: str, doc: str) -> Any:
         return values
 
     return property(read, doc=doc)
+
+
+def statuses(numbers: Array) -> NDArray[np.object_]:
+    """The statuses of the kernels' numbers (n,), REFUSED of nan."""
+    whole = np.where(np.isnan(numbers), Status.REFUSED.value, numbers).astype(np.int64)
+    return np.array(BY_NUMBER, dtype=object)[whole]
+
+
+def proven(numbers: Array) -> NDArray[np.bool_]:
+    """Which answers are proven, by the kernels' numbers (n,) of their statuses."""
+    return np.isin(numbers, [status.value for status in Status if status.certified])
 
 
 class AnswerArrays(KeepsReadOnly):
@@ -96,12 +107,12 @@ class Answers(AnswerArrays):
     @property
     def status(self) -> NDArray[np.object_]:
         """(n,) the status of each frame."""
-        return np.array([Status(int(x)) for x in AnswerRows(self.blocks).status], dtype=object)
+        return statuses(AnswerRows(self.blocks).status)
 
     @property
     def certified(self) -> NDArray[np.bool_]:
         """(n,) is the answer proven?"""
-        return np.array([status.certified for status in self.status], dtype=bool)
+        return proven(AnswerRows(self.blocks).status)
 
     @property
     def events(self) -> tuple[Event, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from enum import Enum
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -13,6 +12,7 @@ from standoff.errors import StandoffError
 from standoff.kernels.entries import derivatives as kernels
 from standoff.kernels.pair import derivatives as D
 from standoff.kernels.state import arrays as K
+from standoff.ordered import Ordered
 from standoff.tracking.calls import packed
 from standoff.tracking.contact.witness_set import witness_set
 from standoff.tracking.rows import Answer
@@ -21,7 +21,7 @@ from standoff.tracking.threads import in_parts
 Array = NDArray[np.float64]
 
 
-class Smoothness(Enum):
+class Smoothness(Ordered):
     """Whether an answer has derivatives."""
 
     SMOOTH = "smooth"

@@ -128,7 +128,7 @@ def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
         return NO_TWIST
     if isinstance(twist, tuple) and len(twist) == 2:
         v, omega = twist
-        if type(v) is type(omega) is np.ndarray and v.shape == omega.shape == (3,):
+        if _plain_vector(v) and _plain_vector(omega):
             flat = np.empty(6)
             flat[:3], flat[3:] = v, omega
             return flat
@@ -138,6 +138,10 @@ def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
     if twist.frame != "world":
         twist = twist.in_world(Pose.of(pose))
     return np.concatenate([twist.v, twist.omega])
+
+
+def _plain_vector(value: Any) -> bool:
+    return type(value) is np.ndarray and value.shape == (3,) and value.dtype in PLAIN
 
 
 def refuse_twists(twist_a: Array, twist_b: Array) -> NoReturn:
@@ -185,11 +189,18 @@ def check_pair(a: Body, b: Body) -> None:
             )
 
 
+def out_of_plane(flats: Array) -> NDArray[np.bool_]:
+    """Which of flat poses (..., 12) take a planar body out of z = 0?"""
+    level = np.abs(flats[..., [2, 5, 6, 7]]).max(axis=-1) <= PLANE_TILT
+    out: NDArray[np.bool_] = ~(level & (flats[..., 11] == 0.0) & (flats[..., 8] >= 0.0))
+    return out
+
+
 def check_in_plane(flat_a: Array, flat_b: Array) -> None:
     """A planar pair must move within one plane z = 0 of world."""
     for name, flat in (("pose_a", flat_a), ("pose_b", flat_b)):
-        tilt = float(np.abs(flat[[2, 5, 6, 7]]).max())
-        if not tilt <= PLANE_TILT or flat[11] != 0.0 or flat[8] < 0.0:
+        if out_of_plane(flat):
+            tilt = float(np.abs(flat[[2, 5, 6, 7]]).max())
             raise StandoffError(
                 f"{name} takes a planar body out of z = 0 (tilt {tilt:.3g}, z = {flat[11]}): "
                 "planar pairs turn about z and move in x and y.",

@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 import operator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import feature_of
 from standoff.errors import StandoffError
 from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
-from standoff.kernels.tolerances import FARTHEST, ROTATION
-from standoff.motion import Pose, PoseLike
-from standoff.tracking.answers import AnswerArrays
+from standoff.motion import PosesLike
+from standoff.tracking.answers import AnswerArrays, proven, statuses
 from standoff.tracking.choices import whole_number, yes_or_no
 from standoff.tracking.cold_query import ColdQuery
-from standoff.tracking.inputs import check_in_plane, flat_pose
 from standoff.tracking.overlap_proof import cores_overlap
+from standoff.tracking.pose_arrays import PoseArray, mended, read_poses
 from standoff.tracking.proximity import Proximity
+from standoff.tracking.refused_rows import RefusedPoses, RefusedRows
 from standoff.tracking.rows import motion_row
-from standoff.tracking.runs import read_poses
 from standoff.tracking.status import Status
 from standoff.tracking.threads import in_parts
 from standoff.tracking.tracker import Tracker
@@ -49,10 +48,11 @@ class Distances(AnswerArrays):
         As in `Proximity`, in world axes.
     repaired : (n,) array of int
         How many of a row's two poses had a rounded rotation and were brought to the nearest.
-    errors : dict of int to StandoffError
-        Of the rows that were refused.
+    errors : mapping of int to StandoffError
+        Of the rows that were refused; each error is made when it is asked for.
     poses : pair of (n, 4, 4) arrays
-        World poses of A and B that the rows hold for; (1, 4, 4) where one was given for all.
+        World poses of A and B that the rows hold for, nan where they are none; (1, 4, 4) where one
+        was given for all.
     """
 
     __slots__ = ("_a", "_b", "errors", "poses", "repaired", "rows")
@@ -63,7 +63,7 @@ class Distances(AnswerArrays):
         rows: Array,
         poses: tuple[Array, Array],
         repaired: NDArray[np.int64],
-        errors: dict[int, StandoffError],
+        errors: RefusedRows,
     ) -> None:
         self._a, self._b = bodies
         self.rows, self.poses, self.repaired, self.errors = rows, poses, repaired, errors
@@ -81,16 +81,13 @@ class Distances(AnswerArrays):
 
     @property
     def status(self) -> NDArray[np.object_]:
-        """(n,) the status of each row; None where it was refused."""
-        numbers = self.rows[:, K.STATUS]
-        known: dict[float, Status | None] = {float(s.value): s for s in Status}
-        return np.array([known.get(x) for x in numbers.tolist()], dtype=object)
+        """(n,) the status of each row, REFUSED where a pose is none."""
+        return statuses(self.rows[:, K.STATUS])
 
     @property
     def certified(self) -> NDArray[np.bool_]:
         """(n,) is the answer proven?"""
-        proven = [float(s.value) for s in Status if s.certified]
-        return np.isin(self.rows[:, K.STATUS], proven)
+        return proven(self.rows[:, K.STATUS])
 
     @property
     def feature_a(self) -> NDArray[np.void]:
@@ -173,8 +170,8 @@ def _features(body: Body, numbers: Array) -> NDArray[np.void]:
 def distances(
     a: Body,
     b: Body,
-    poses_a: ArrayLike | PoseLike,
-    poses_b: ArrayLike | PoseLike,
+    poses_a: PosesLike,
+    poses_b: PosesLike,
     *,
     warm: bool = False,
     workers: int = 1,
@@ -185,8 +182,10 @@ def distances(
     ----------
     a, b : Body
         Two spatial bodies, or two planar ones.
-    poses_a, poses_b : array_like, shape (n, 4, 4) or (n, 12), or one pose for all rows
-        World poses; rows of 12 are R row-major, p.
+    poses_a, poses_b : array_like, shape (n, 4, 4) or (n, 12), and others, or one pose for all rows
+        World poses; rows of 12 are R row-major, p. Also a pair (R, p) of stacks (n, 3, 3) and
+        (n, 3), a list of poses, SciPy's ``RigidTransform`` of n, and `Poses`, which quaternions
+        take: ``so.Poses.from_xyzw(q, p)`` or ``from_wxyz``.
     warm : bool
         False: every row is a cold query by itself, as ``so.distance``. True: each starts from the
         row before, as ``Tracker.run``: several times as fast where rows follow a motion.
@@ -198,6 +197,11 @@ def distances(
     Distances
         Arrays of n rows. A row with invalid poses says so; the others are not affected.
 
+    Warns
+    -----
+    RefusedRowsWarning
+        More than half of the rows have invalid poses.
+
     Raises
     ------
     TypeError
@@ -206,30 +210,43 @@ def distances(
         Arrays of another shape, or of different lengths; no positive number of workers; a planar
         body with a spatial one; two half-spaces.
     """
+    found = answered_rows(a, b, poses_a, poses_b, warm=warm, workers=workers)
+    if found.errors:
+        found.errors.warn(stacklevel=2)
+    return found
+
+
+def answered_rows(
+    a: Body, b: Body, poses_a: Any, poses_b: Any, *, warm: bool = False, workers: int = 1
+) -> Distances:
+    """`distances`, without a warning."""
     at_least_one(workers, "workers")
     query = Tracker(a, b) if yes_or_no(warm, "warm") else ColdQuery(a, b)
-    (of_a, mark_a), (of_b, mark_b) = read_poses(poses_a, "poses_a"), read_poses(poses_b, "poses_b")
-    n = max(len(of_a), len(of_b))
-    if {len(of_a), len(of_b)} - {1, n}:
+    given_a, given_b = read_poses(poses_a, "poses_a"), read_poses(poses_b, "poses_b")
+    counts = len(given_a.matrices), len(given_b.matrices)
+    n = max(counts)
+    if {*counts} - {1, n}:
         raise StandoffError(
-            f"poses_a has {counted(len(of_a), 'pose')} and poses_b {len(of_b)}: give n of both, or "
+            f"poses_a has {counted(counts[0], 'pose')} and poses_b {counts[1]}: give n of both, or "
             "one for all rows.",
             "poses_a",
         )
-    errors: dict[int, StandoffError] = {}
-    repaired = np.full(n, mark_a + mark_b)
-    of_a, of_b = (
-        _checked(poses, name, query.planar, n, errors, repaired)
-        for poses, name in ((of_a, "poses_a"), (of_b, "poses_b"))
+    (of_a, marks_a, refused_a), (of_b, marks_b, refused_b) = (
+        _checked(given, name, query.planar)
+        for given, name in ((given_a, "poses_a"), (given_b, "poses_b"))
     )
+    refused = np.zeros(n, dtype=bool)
+    for poses in (refused_a, refused_b):
+        refused[slice(None) if poses.given == 1 and len(poses.rows) else poses.rows] = True
     rows = np.full((n, K.N_OUT), np.nan)
     if warm:
-        _warm(query, (of_a, of_b), rows, errors)
+        _warm(query, (of_a, of_b), rows, refused)
     else:
         _cold(query, (of_a, of_b), rows, workers)
     for k in np.flatnonzero(rows[:, K.STATUS] == Status.NOT_CERTIFIED.value).tolist():
         _name_overlap(query, rows[k], _row(of_a, k), _row(of_b, k))
-    rows[list(errors)] = np.nan
+    errors = RefusedRows(refused, refused_a, refused_b, query.planar)
+    repaired = np.broadcast_to(marks_a, n) + np.broadcast_to(marks_b, n)
     return Distances((a, b), rows, (of_a, of_b), repaired, errors)
 
 
@@ -251,36 +268,15 @@ def _flat(pose: Array) -> Array:
 
 
 def _checked(
-    poses: Array,
-    name: str,
-    planar: bool,
-    n: int,
-    errors: dict[int, StandoffError],
-    repaired: NDArray[np.int64],
-) -> Array:
-    """Poses for the kernels: rounded ones repaired, invalid ones replaced and noted."""
-    turns = poses[:, :3, :3]
-    with np.errstate(invalid="ignore", over="ignore"):
-        off = np.abs(turns @ turns.transpose(0, 2, 1) - np.eye(3)).max(axis=(1, 2))
-        sound = (off <= ROTATION) & (np.linalg.det(turns) > 0.0)
-        sound &= (poses[:, 3] == (0.0, 0.0, 0.0, 1.0)).all(axis=1)
-        sound &= np.abs(poses[:, :3, 3]).sum(axis=1) < FARTHEST
-    suspects = range(len(poses)) if planar else np.flatnonzero(~sound).tolist()
-    mended = np.array(poses, order="C")  # kept by the answers: the caller may change his own
-    for k in suspects:
-        places = range(n) if len(poses) == 1 else (k,)
-        try:
-            pose = Pose.of(poses[k])
-            flat = flat_pose(pose)
-            if planar:
-                check_in_plane(flat, flat)
-            mended[k] = pose.matrix
-            repaired[list(places)] += bool(pose.repaired)
-        except StandoffError as error:
-            mended[k] = np.eye(4)
-            told = StandoffError(f"Row {k} of {name}: {error}", name, error.value)
-            errors.update(dict.fromkeys(places, told))
-    return mended
+    given: PoseArray, name: str, planar: bool
+) -> tuple[Array, NDArray[np.int64], RefusedPoses]:
+    """Poses for the kernels, which refuse nan: rounded ones repaired, invalid ones nan; how many
+    of each were repaired; the invalid ones."""
+    matrices, repaired, refused = mended(given.matrices, planar)
+    rows = np.flatnonzero(refused)
+    told = RefusedPoses(name, rows, given.matrices[rows], len(matrices))
+    matrices[rows] = np.nan
+    return matrices, np.where(refused, 0, given.repaired + repaired), told
 
 
 def _cold(query: Tracker, poses: tuple[Array, Array], rows: Array, workers: int) -> None:
@@ -294,23 +290,23 @@ def _cold(query: Tracker, poses: tuple[Array, Array], rows: Array, workers: int)
 
 
 def _warm(
-    query: Tracker, poses: tuple[Array, Array], rows: Array, errors: dict[int, StandoffError]
+    query: Tracker, poses: tuple[Array, Array], rows: Array, refused: NDArray[np.bool_]
 ) -> None:
     """Answer each row from the one before; the first, and one behind a refused row, cold."""
-    good = [k for k in range(len(rows)) if k not in errors]
-    if not good:
-        return
-    cuts = np.flatnonzero(np.diff(good) > 1) + 1
-    for stretch in np.split(np.array(good), cuts):
+    good = np.flatnonzero(~refused)
+    done = np.zeros(len(rows), dtype=np.int64)
+    for stretch in np.split(good, np.flatnonzero(np.diff(good) > 1) + 1) if len(good) else ():
         first, end = int(stretch[0]), int(stretch[-1]) + 1
+        if end - first == 1:
+            batch.starts(query.packed, *poses, first, end, query.options, rows, done)
+            continue
         state = query.start(_row(poses[0], first), _row(poses[1], first))
         rows[first] = state.proximity.row
-        if end - first > 1:
-            parts = [x if len(x) == 1 else x[first + 1 : end] for x in poses]
-            if all(len(x) == 1 for x in parts):
-                parts[0] = np.repeat(parts[0], end - first - 1, axis=0)
-            _, answers = query.run(state, *parts)
-            rows[first + 1 : end] = answers.blocks[:, : K.N_OUT]
+        parts = [x if len(x) == 1 else x[first + 1 : end] for x in poses]
+        if all(len(x) == 1 for x in parts):
+            parts[0] = np.repeat(parts[0], end - first - 1, axis=0)
+        _, answers = query.run(state, *parts)
+        rows[first + 1 : end] = answers.blocks[:, : K.N_OUT]
 
 
 def _name_overlap(query: Tracker, row: Array, pose_a: Array, pose_b: Array) -> None:

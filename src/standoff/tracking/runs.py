@@ -14,11 +14,11 @@ from standoff.kernels.pair import events as N
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
 from standoff.motion import Pose, Twist
-from standoff.real_numbers import check_unmasked, shown
 from standoff.tracking.address_table import AddressTable
 from standoff.tracking.answers import Answers
 from standoff.tracking.block import Block, with_polytope
-from standoff.tracking.inputs import ABSENT, flat_twist, matrix_and_mark
+from standoff.tracking.inputs import ABSENT, flat_twist, out_of_plane
+from standoff.tracking.pose_arrays import another_order, flat_poses, mended, numbers, read_poses
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.state import TrackerState
 
@@ -52,7 +52,7 @@ class Given(NamedTuple):
     twists_a, twists_b : (n, 6) arrays, or (n, 1) where none was given
     steps : (n,) array
         Time since the frame before, s.
-    repaired : int
+    repaired : (n,) array of int
         How many of a frame's poses were repaired when they were read.
     """
 
@@ -61,7 +61,7 @@ class Given(NamedTuple):
     twists_a: Array
     twists_b: Array
     steps: Array
-    repaired: int
+    repaired: NDArray[np.int64]
 
     @classmethod
     def of(
@@ -74,8 +74,8 @@ class Given(NamedTuple):
         StandoffError
             A shape that is not one of those named, or different numbers of frames.
         """
-        a, mark_a = read_poses(poses_a, "poses_a")
-        b, mark_b = read_poses(poses_b, "poses_b")
+        a, marks_a = read_poses(poses_a, "poses_a")
+        b, marks_b = read_poses(poses_b, "poses_b")
         counts = {"poses_a": len(a), "poses_b": len(b)}
         given = [
             _twists(twist, name, poses)
@@ -93,7 +93,32 @@ class Given(NamedTuple):
                     name,
                 )
         of_a, of_b, xi_a, xi_b, h = (_repeated(x, n) for x in (a, b, *given, steps))
-        return cls(of_a, of_b, xi_a, xi_b, h, mark_a + mark_b)
+        marks = np.broadcast_to(marks_a, n) + np.broadcast_to(marks_b, n)
+        return cls(of_a, of_b, xi_a, xi_b, h, marks)
+
+    def mended(self, refused: int, first: int) -> Given:
+        """The same with the rounded poses of frames `first` and on repaired, and counted: those of
+        the body that the kernel has refused, as BAD_POSE_A or BAD_POSE_B."""
+        given = self.poses_a if refused == K.BAD_POSE_A else self.poses_b
+        matrices, rounded, _ = mended(given[first:])
+        repaired = self.repaired.copy()
+        repaired[first:] += rounded
+        poses = np.concatenate([given[:first], matrices]) if first else matrices
+        if refused == K.BAD_POSE_A:
+            return self._replace(poses_a=poses, repaired=repaired)
+        return self._replace(poses_b=poses, repaired=repaired)
+
+    def in_plane(self) -> bool:
+        """Do all poses keep a planar body in z = 0?"""
+        return not any(out_of_plane(flat_poses(x)).any() for x in (self.poses_a, self.poses_b))
+
+    def advice(self, first: int) -> str:
+        """A sentence about another order that the refused poses of frames `first` and on fit."""
+        told = []
+        for poses in (self.poses_a[first:], self.poses_b[first:]):
+            refused = mended(poses).refused
+            told += [f" {another_order(poses[refused])}"] if refused.any() else []
+        return max(told, key=len, default="").rstrip()
 
     def frame(self, k: int) -> tuple[Any, Any, Any, Any]:
         """Poses and twists of frame k, as ``Tracker.step`` takes them."""
@@ -108,33 +133,6 @@ def _repeated(array: Array, n: int) -> Array:
     return np.require(array, requirements=["C", "W"])
 
 
-def _numbers(value: Any, name: str, forms: str) -> Array:
-    check_unmasked(value)
-    try:
-        return np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise StandoffError(f"{name} = {shown(value)}: give {forms}.", name, value) from error
-
-
-def read_poses(value: Any, name: str) -> tuple[Array, int]:
-    """Poses (n, 4, 4), or one of them (1, 4, 4), and was it repaired?"""
-    forms = "an array of shape (n, 4, 4) or (n, 12), or one pose"
-    if isinstance(value, Pose | tuple):
-        matrix, mark = matrix_and_mark(value)
-        return matrix[None], int(mark)
-    array = _numbers(value, name, forms)
-    if array.shape == (4, 4):
-        return array[None], 0
-    if array.ndim == 3 and array.shape[1:] == (4, 4) and len(array):
-        return array, 0
-    if array.ndim == 2 and array.shape[1] == 12 and len(array):
-        poses = np.zeros((len(array), 4, 4))
-        poses[:, :3, :3], poses[:, :3, 3] = array[:, :9].reshape(-1, 3, 3), array[:, 9:]
-        poses[:, 3, 3] = 1.0
-        return poses, 0
-    raise StandoffError(f"{name} has the shape {array.shape}: give {forms}.", name, value)
-
-
 def _twists(value: Any, name: str, poses: Array) -> Array:
     """Twists (n, 6) in world axes, or one; (1, 1) of the mark where none is given."""
     forms = "an array of shape (n, 6), or one twist"
@@ -145,7 +143,7 @@ def _twists(value: Any, name: str, poses: Array) -> Array:
         return np.hstack([turns @ value.v, turns @ value.omega])
     if isinstance(value, Twist | tuple):
         return flat_twist(value, Pose.identity())[None]
-    array = _numbers(value, name, forms)
+    array = numbers(value, name, forms)
     if array.shape == (6,):
         return array[None]
     if array.ndim == 2 and array.shape[1] == 6 and len(array):
@@ -156,7 +154,7 @@ def _twists(value: Any, name: str, poses: Array) -> Array:
 def _steps(tracker: Steps, dt: Any) -> Array:
     if dt is None:
         return np.array([tracker.dt])
-    array = np.atleast_1d(_numbers(dt, "dt", "one time in seconds, or one for each frame"))
+    array = np.atleast_1d(numbers(dt, "dt", "one time in seconds, or one for each frame"))
     if array.ndim != 1 or not len(array):
         raise StandoffError(f"dt has the shape {array.shape}: give one time, or n.", "dt", dt)
     for extreme in (array.min(), array.max()):
@@ -173,14 +171,19 @@ def run(tracker: Steps, state: TrackerState, given: Given) -> tuple[TrackerState
     blocks, polytopes = np.empty((n + 1, K.N_BLOCK)), np.zeros((2, N_POLYTOPE))
     blocks[0] = state.proximity._out[: K.N_BLOCK]
     _take(polytopes[0], state.proximity)
-    repaired = np.full(n, given.repaired)
+    # planar bodies: where some leave their plane, each frame is looked at by itself
+    compiled = not tracker.planar or given.in_plane()
+    unchecked = {K.BAD_POSE_A, K.BAD_POSE_B}
     longer: dict[int, Proximity] = {}
     at = 0
     while at < n:
-        # planar bodies: whether they stay in their plane is looked at in Python
         done = K.BAD_ARRAYS
-        if not tracker.planar:
+        if compiled:
             at, done = tracker.values(tracker.table.address, *given[:5], at, (blocks, polytopes))
+        if done in unchecked:  # all the later ones are likely rounded alike
+            unchecked.remove(done)
+            given = given.mended(done, at)
+            continue
         if done == K.UNDECIDED:
             tracker.name_overlap(Block(blocks[at + 1]))
         elif done != K.FINE:
@@ -190,13 +193,15 @@ def run(tracker: Steps, state: TrackerState, given: Given) -> tuple[TrackerState
             blocks[at + 1] = answer._out[: K.N_BLOCK]
             blocks[at + 1, K.BLOCK_POLYTOPE] = 0.0
             _take(polytopes[(at + 1) % 2], answer)
-            repaired[at] += answer.repaired
+            given.repaired[at] += answer.repaired
             if answer._out[K.OUT_COUNTS + N.EVENTS] > K.KEPT_EVENTS:
-                longer[at] = answer
+                mark = int(given.repaired[at])
+                longer[at] = Proximity(tracker.a, tracker.b, answer._out, mark)
         at += 1
     kept = with_polytope(blocks[n], polytopes[n % 2])
-    last = longer.get(n - 1) or Proximity(tracker.a, tracker.b, kept, repaired[-1])
-    return TrackerState(last), Answers((tracker.a, tracker.b), blocks[1:], repaired, longer)
+    last = longer.get(n - 1) or Proximity(tracker.a, tracker.b, kept, int(given.repaired[-1]))
+    answers = Answers((tracker.a, tracker.b), blocks[1:], given.repaired, longer)
+    return TrackerState(last), answers
 
 
 def _take(polytope: Array, answer: Proximity) -> None:
@@ -210,4 +215,5 @@ def _single(tracker: Steps, before: TrackerState, given: Given, k: int) -> Proxi
     try:
         return tracker.step_anew(before, given.frame(k), float(given.steps[k]))[1]
     except StandoffError as error:
-        raise type(error)(f"Frame {k}: {error}", error.argument, error.value) from error
+        told = f"Frame {k}: {error}{given.advice(k)}"
+        raise type(error)(told, error.argument, error.value) from error

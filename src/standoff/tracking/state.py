@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.errors import StandoffError
+from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.block import Block
 from standoff.tracking.proximity import Proximity
-from standoff.tracking.rows import StateRow, motion_row, poses_of, twists_of
+from standoff.tracking.rows import AnswerRows, StateRow, motion_row, poses_of, twists_of
+from standoff.tracking.status import BY_NUMBER, Status
 
 Array = NDArray[np.float64]
 
@@ -85,7 +89,9 @@ class Answering(Protocol):
 class FrameBuffer:
     """Arrays of one frame, reused: write into the poses (12 numbers: R row-major, p) and twists.
 
-    The arrays are written into, not replaced: the kernels read them by address.
+    The arrays are written into, not replaced: the kernels read them by address. ``normal``,
+    ``point_a`` and ``point_b`` are views of the answer, made once: each frame changes them, so copy
+    what is to outlive it.
 
     Parameters
     ----------
@@ -118,6 +124,10 @@ class FrameBuffer:
         self._motion, self._state, self._out = named.motion, named.state, named.out
         self._pose_a, self._pose_b = poses_of(self._motion)
         self._twist_a, self._twist_b = twists_of(self._motion)
+        answer = AnswerRows(self._out)
+        self._normal, self._point_a, self._point_b = answer.normal, answer.point_a, answer.point_b
+        for view in (self._normal, self._point_a, self._point_b):
+            view.flags.writeable = False
 
     def __getstate__(self) -> dict[str, Any]:
         # views of one block, which copies of each would not be
@@ -136,6 +146,29 @@ class FrameBuffer:
     state = property(lambda self: self._state, doc="The warm start, changed in place.")
     out = property(lambda self: self._out, doc="The answer, as kernels.state.arrays lays it out.")
     events = property(lambda self: Block(self._block).events, doc="The log of switches, flat.")
+    distance = property(lambda self: self._block.item(K.DISTANCE), doc="Signed, as in Proximity.")
+    lower_bound = property(
+        lambda self: self._block.item(K.LOWER_BOUND), doc="Certified lower bound of the distance."
+    )
+    upper_bound = property(
+        lambda self: self._block.item(K.UPPER_BOUND), doc="Upper bound of the distance."
+    )
+    normal = property(attrgetter("_normal"), doc="(3,) unit vector from A to B, read-only.")
+    point_a = property(attrgetter("_point_a"), doc="(3,) witness point on A, read-only.")
+    point_b = property(attrgetter("_point_b"), doc="(3,) witness point on B, read-only.")
+
+    @property
+    def status(self) -> Status:
+        """How the last frame ended."""
+        number = self._block.item(K.STATUS)
+        if number != number:
+            raise StandoffError("The buffer has no answer yet: call tracker.step_into first.")
+        return BY_NUMBER[int(number)]
+
+    @property
+    def certified(self) -> bool:
+        """Is the distance proven?"""
+        return self.status.certified
 
     def proximity(self) -> Proximity:
         """The last answer as a value."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from enum import Enum
+from standoff.ordered import Ordered
 
 
-class Status(Enum):
+class Status(Ordered):
     """The numbers are those of ``standoff.kernels.state.arrays``."""
 
     CONVERGED = 0
@@ -15,6 +15,7 @@ class Status(Enum):
     LOCAL = 4
     GLOBAL = 5
     DEADLINE = 6
+    REFUSED = 7
 
     @property
     def certified(self) -> bool:
@@ -64,4 +65,10 @@ _ADVICE = {
         "The evaluations allowed for this step ran out: the lower bound holds and the next step "
         "goes on from here; allow more evaluations, or shorten the step."
     ),
+    Status.REFUSED: (
+        "There is no answer, since a pose of this row is none: `errors` of so.distances' result "
+        "says what is wrong with it."
+    ),
 }
+BY_NUMBER = tuple(sorted(Status))
+"""The status of each number."""

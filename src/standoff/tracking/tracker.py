@@ -13,7 +13,7 @@ from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.compiler.entry import WrongKind
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.state import arrays as K
-from standoff.motion import PoseLike, TwistLike
+from standoff.motion import PoseLike, PosesLike, TwistLike
 from standoff.shown_names import hides
 from standoff.spellings import no_attribute
 from standoff.tracking.answers import Answers
@@ -248,8 +248,8 @@ class Tracker(ReachedPair):
     def run(
         self,
         state: TrackerState,
-        poses_a: ArrayLike | PoseLike,
-        poses_b: ArrayLike | PoseLike,
+        poses_a: PosesLike,
+        poses_b: PosesLike,
         twists_a: ArrayLike | TwistLike | None = None,
         twists_b: ArrayLike | TwistLike | None = None,
         dt: ArrayLike | None = None,
@@ -261,7 +261,8 @@ class Tracker(ReachedPair):
         state : TrackerState
             Of this pair; it is not changed.
         poses_a, poses_b : array_like, shape (n, 4, 4) or (n, 12), or one pose for all frames
-            World poses at the end of each step; rows of 12 are R row-major, p.
+            World poses at the end of each step; rows of 12 are R row-major, p. Also every other
+            form that `distances` reads: (R, p) stacks, `Poses`, a list of poses.
         twists_a, twists_b : array_like, shape (n, 6), or one twist for all frames, optional
             (v, omega) in world axes, as in ``step``.
         dt : float or array_like, shape (n,), optional
@@ -291,6 +292,8 @@ class Tracker(ReachedPair):
         """One frame in place, for loops that must not allocate.
 
         Writes ``buffer.out`` (laid out in ``standoff.kernels.state.arrays``) and ``buffer.state``.
+        ``buffer.normal``, ``point_a``, ``point_b``, ``lower_bound``, ``upper_bound`` and ``status``
+        read them without making an object.
 
         Parameters
         ----------
