@@ -11,7 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 import standoff as so
-from standoff.tracking import Smoothness
+from standoff.kernels.pair import derivatives as D
+from standoff.tracking import Smoothness, derivatives
 from tracking.contact_cases import BOX, CASES, CYLINDER, LYING, OVERLAPS, PLATE, SQUARE
 
 Array = NDArray[np.float64]
@@ -161,6 +162,33 @@ def test_tilts_of_a_cylinder_on_a_plate(tilt, gap):
     there = gradients(n, answer.point_a[None], answer.point_b[None], (HOME, pose))[0]
     here = ~np.isnan(given)
     assert np.abs(given - there)[here].max() <= EXACT
+
+
+@pytest.mark.parametrize("angle", 10.0 ** np.arange(-12.0, -2.0))
+def test_what_is_given_of_nearly_parallel_cylinders_has_nine_digits(angle):
+    """Their common perpendicular is x: between parallel and crossed there is a gap without digits,
+    and nothing that is wrong."""
+    pose = so.Pose.exp([angle, 0, 0], [1.1, 0, 0.3])
+    found = so.distance(CYLINDER, CYLINDER, HOME, pose).derivatives()
+    flags = Smoothness.PARTIAL, Smoothness.UNDEFINED, Smoothness.SMOOTH
+    assert found.smoothness is flags[int(angle > 5e-10) + int(angle > 5e-5)]
+    if found.smoothness is not Smoothness.UNDEFINED:
+        n = np.array([1.0, 0.0, 0.0])
+        assert np.abs(found.gradient[[0, 1, 2, 6, 7, 8]] - np.r_[-n, n]).max() <= EXACT
+
+
+def test_one_pair_of_a_singular_system_at_a_boundary(monkeypatch):
+    """The set of pairs is one point, but without digits: the translations, and the turn about n."""
+    answer = so.distance(s.halfspace(), s.sphere(0.3), HOME, so.Pose(np.eye(3), [1, 2, 0.5]))
+
+    def derived(pair, block, to):
+        to[:12] = np.arange(12.0)
+        return D.SINGULAR_BESIDE
+
+    monkeypatch.setattr(derivatives.kernels, "derive", derived)
+    expected = np.arange(12.0)
+    expected[[3, 4, 9, 10]] = np.nan
+    np.testing.assert_array_equal(answer.gradient, expected)
 
 
 @pytest.mark.parametrize("off", [0.0, 1e-10, 1e-8])
