@@ -17,7 +17,7 @@ from standoff.kernels.pair import derivatives as D
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import SQUARE_AXIS
 from standoff.tracking.calls import packed
-from standoff.tracking.contact.witness_set import WitnessSet, witness_set
+from standoff.tracking.contact.witness_set import poses_of, serving_pairs
 from standoff.tracking.rows import Answer
 from standoff.tracking.threads import in_parts
 
@@ -206,12 +206,9 @@ def _kept(answer: Callable[[], Answer], kind: int, numbers: Array) -> tuple[Smoo
         numbers.fill(np.nan)
         return Smoothness.UNDEFINED, REASONS[kind]
     given = answer()
-    served = witness_set(given)
-    if served.normal_dimension or len(served.normals) > 1:
-        numbers.fill(np.nan)
-        return Smoothness.UNDEFINED, NOT_UNIQUE
-    if served.dimension or kind == D.SINGULAR_BESIDE:
-        _clear_turns(given, served, numbers)
+    dimension, points, _ = serving_pairs(given, *poses_of(given))
+    if dimension or kind == D.SINGULAR_BESIDE:
+        _clear_turns(given, points, numbers)
         return _partial(numbers)
     first = kind == D.BESIDE_A
     name, feature = ("A", given.feature_a) if first else ("B", given.feature_b)
@@ -221,22 +218,23 @@ def _kept(answer: Callable[[], Answer], kind: int, numbers: Array) -> tuple[Smoo
 def _partial(numbers: Array) -> tuple[Smoothness, str]:
     """Nan for all but the gradient."""
     numbers[D.NORMAL_JACOBIAN :] = np.nan
-    lost = np.isnan(numbers[D.GRADIENT : D.GRADIENT + 12]).reshape(4, 3).any(axis=0).tolist()
-    axes = ", ".join(axis for axis, gone in zip("xyz", lost, strict=True) if gone)
+    lost = np.isnan(numbers[D.GRADIENT : D.GRADIENT + 12].reshape(4, 3))
+    axes = ", ".join("xyz"[k] for k in range(3) if lost[:, k].any())
     which = f"turns about {axes} have no derivative" if axes else "only the gradient exists"
     return Smoothness.PARTIAL, f"the witness points are not unique, or barely: {which}."
 
 
-def _clear_turns(answer: Answer, served: WitnessSet, numbers: Array) -> None:
+def _clear_turns(answer: Answer, points: Array, numbers: Array) -> None:
     """Nan for the turns that move the pairs of witness points that serve unequally along n.
 
     As the kernel does by the null directions of its system; here by the pairs themselves.
     """
-    ways = np.eye(3) - np.outer(served.normal, served.normal)  # of points that have no digits
-    if served.dimension:
-        ways = served.points_a - served.points_a[0]
+    n = answer.normal
+    ways = np.eye(3) - np.outer(n, n)  # of one point, which has no digits
+    if len(points) > 1:
+        ways = points - points[0]
         ways = ways / np.linalg.norm(ways, axis=1).max()
-    turned = np.abs(np.cross(ways, served.normal)).max(axis=0) > SQUARE_AXIS
+    turned = np.abs(np.cross(ways, n)).max(axis=0) > SQUARE_AXIS
     if any(body.dimension == 2 for body in answer.bodies):
         turned &= [False, False, True]
     for turn in (D.GRADIENT + 3, D.GRADIENT + 9):
