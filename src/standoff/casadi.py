@@ -33,7 +33,8 @@ def distance(a: Body, b: Body, *, undefined: str = "nan", name: str = "distance"
     ----------
     a, b : Body
     undefined : "nan" or "raise"
-        Where a derivative is not defined: nan with a `DerivativeWarning`, or an error.
+        Where a derivative, or a part of it, is not defined: nan with a `DerivativeWarning`, or an
+        error.
     name : str
         Of the function, as CasADi takes it.
 

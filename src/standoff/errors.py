@@ -100,7 +100,8 @@ class MaskedNumbers(StandoffTypeError):
 
 
 class DerivativeWarning(RuntimeWarning):
-    """Derivatives of a distance that are not defined were handed to a framework, as nan."""
+    """Derivatives of a distance that are not defined, all or in part, were handed to a framework,
+    as nan."""
 
 
 class RefusedRowsWarning(RuntimeWarning):

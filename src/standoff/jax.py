@@ -35,7 +35,8 @@ def distance(a: Body, b: Body, pose_a: Any, pose_b: Any, *, undefined: str = "na
     pose_a, pose_b : array, shape (4, 4) or (n, 4, 4)
         World poses, float64; one pose goes with n of the other body.
     undefined : "nan" or "raise"
-        Where a derivative is not defined: nan with a `DerivativeWarning`, or an error.
+        Where a derivative, or a part of it, is not defined: nan with a `DerivativeWarning`, or an
+        error.
 
     Returns
     -------

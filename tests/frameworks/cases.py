@@ -18,7 +18,9 @@ INSIDE = np.array([-0.4, 0.2, 0.6, 0.1, 0.2, -0.3, 0.3, -0.5, 0.7, 0.6, 0.4, 0.3
 
 STACKED = np.eye(4)
 STACKED[2, 3] = 1.5
-"""Of a box over another: parallel flat sides, so no derivatives."""
+"""Of a box over another: parallel flat sides, so no derivatives by turns about x and y."""
+LOST = np.array([[0, 0, 1, 0], [0, 0, 1, 0], [1, 1, 0, 0], [0, 0, 0, 0]], dtype=bool)
+"""The entries that such turns change at R = I."""
 
 
 def pose(q: np.ndarray) -> np.ndarray:

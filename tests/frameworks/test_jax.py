@@ -21,6 +21,7 @@ from frameworks.cases import (
     ELLIPSOID,
     INSIDE,
     LENS,
+    LOST,
     STACKED,
     close,
     differences,
@@ -111,12 +112,19 @@ def test_undefined_derivatives_warn_or_raise() -> None:
     def stacked(p: Any, undefined: str) -> Any:
         return standoff.jax.distance(BOX, BOX, np.eye(4), p, undefined=undefined)
 
+    def shifted(p: Any) -> Any:
+        return stacked(jnp.eye(4).at[:3, 3].set(p), "nan")
+
+    found = []
     for order in (jax.grad, jax.hessian):
         asked = jax.jit(order(stacked), static_argnums=1)
         with pytest.warns(DerivativeWarning, match="not unique"):
-            found = np.array(asked(STACKED, "nan"))
-        assert np.isnan(found[..., :3, :]).all()
-    with pytest.raises(Exception, match="has no derivatives: the witness points"):
+            found.append(np.array(asked(STACKED, "nan")))
+    np.testing.assert_array_equal(np.isnan(found[0]), LOST)
+    assert np.isnan(found[1][..., :3, :]).all()
+    with pytest.warns(DerivativeWarning, match="not unique"):
+        close(jax.grad(shifted)(jnp.array([0.0, 0.0, 1.5])), np.array([0.0, 0.0, 1.0]), 1e-15)
+    with pytest.raises(Exception, match="has not all derivatives: the witness points"):
         jax.grad(stacked)(STACKED, "raise")
     close(stacked(STACKED, "raise"), 0.5, 1e-12)
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from frameworks.cases import APART, BOX, ELLIPSOID, INSIDE, LENS, STACKED, close, differences
+from frameworks.cases import APART, BOX, ELLIPSOID, INSIDE, LENS, LOST, STACKED, close, differences
 from standoff.errors import DerivativeWarning, StandoffError
 
 torch = pytest.importorskip("torch", reason="PyTorch is not installed: `make torch`")
@@ -77,10 +77,15 @@ def test_undefined_derivatives_warn_or_raise() -> None:
     home, there = torch.eye(4, dtype=torch.float64), leaf(STACKED)
     with pytest.warns(DerivativeWarning, match="not unique"):
         standoff.torch.distance(BOX, BOX, home, there).backward()
-    assert torch.isnan(there.grad[:3]).all()
+    np.testing.assert_array_equal(np.isnan(there.grad.numpy()), LOST)
+    shift = leaf(np.array([0.0, 0.0, 1.5]))
+    moved = torch.cat([torch.cat([home[:3, :3], shift[:, None]], 1), home[3:]])
+    with pytest.warns(DerivativeWarning, match="not unique"):
+        standoff.torch.distance(BOX, BOX, home, moved).backward()
+    close(shift.grad, np.array([0.0, 0.0, 1.0]), 1e-15)
     found = standoff.torch.distance(BOX, BOX, home, there, undefined="raise")
     close(found.detach(), 0.5, 1e-12)
-    with pytest.raises(StandoffError, match="has no derivatives: the witness points"):
+    with pytest.raises(StandoffError, match="has not all derivatives: the witness points"):
         found.backward()
 
 

@@ -262,15 +262,19 @@ def test_rows_without_derivatives_have_flags_and_nan():
     found = so.distances(box, box, np.eye(4), boxed())
     flat, single = so.distance(box, box, np.eye(4), boxed()[0]), found.derivatives()
     assert [flag.name for flag in single.smoothness] == [
-        "UNDEFINED",
+        "PARTIAL",
         "SMOOTH",
         "SMOOTH",
         "UNDEFINED",
     ]
     assert set(single.reasons) == {0, 3}
     assert flat.derivatives().smoothness is single.smoothness[0]
-    assert np.isnan(single.gradient[[0, 3]]).all()
-    assert np.isnan(found.gradient[[0, 3]]).all()
+    for gradient in (single.gradient, found.gradient):
+        np.testing.assert_array_equal(gradient[0], flat.gradient)
+        np.testing.assert_array_equal(gradient[0, 6:9], [0.0, 0.0, 1.0])
+        np.testing.assert_array_equal(np.flatnonzero(np.isnan(gradient[0])), [3, 4, 9, 10])
+        assert np.isnan(gradient[3]).all()
+    assert np.isnan(single.hessian[[0, 3]]).all()
     assert np.isfinite(single.hessian[[1, 2]]).all()
 
 

@@ -36,6 +36,9 @@ NONE = np.zeros(0)
 UNDEFINED = {"nan": 0, "raise": 1}
 """What is done where a derivative is not defined."""
 
+LACKING = (Smoothness.PARTIAL, Smoothness.UNDEFINED)
+"""Flags of answers that lack derivatives."""
+
 NO_THIRD = (
     "Standoff has first and second derivatives of the distance, not third ones: one of the "
     "derivatives asked for goes through the Hessian."
@@ -106,7 +109,7 @@ def value(pair: Pair, poses_a: Array, poses_b: Array) -> Array:
 def first(pair: Pair, poses_a: Array, poses_b: Array) -> First:
     """Distances and gradients; where they are not defined, as the pair says."""
     rows, lead = _rows(pair, poses_a, poses_b, 1)
-    by_entries = np.einsum("nt,nte->ne", rows.gradient, _twists(rows))
+    by_entries = _by_entries(rows.gradient, _twists(rows))
     return First(rows.distance.reshape(lead), by_entries.reshape(*lead, 2, 4, 4))
 
 
@@ -114,7 +117,7 @@ def second(pair: Pair, poses_a: Array, poses_b: Array) -> Second:
     """Distances, gradients and Hessians; where they are not defined, as the pair says."""
     rows, lead = _rows(pair, poses_a, poses_b, 2)
     twists = _twists(rows)
-    by_entries = np.einsum("nt,nte->ne", rows.gradient, twists)
+    by_entries = _by_entries(rows.gradient, twists)
     bent = twists.transpose(0, 2, 1) @ rows.hessian @ twists
     for body in range(2):
         here = slice(16 * body, 16 * body + 16)
@@ -164,8 +167,8 @@ def _one(pair: Pair, poses: list[Array], order: int) -> Rows:
     if not order:
         return Rows(number, NONE, NONE, (NONE, NONE))
     derived = answer.derivatives()
-    if derived.smoothness is Smoothness.UNDEFINED:
-        _tell(pair, "", derived.reason, "")
+    if derived.smoothness in LACKING:
+        _tell(pair, derived.smoothness, "", derived.reason, "")
     at = answer.poses
     assert at is not None  # a cold answer keeps them
     turns = (at[0][:9].reshape(1, 3, 3), at[1][:9].reshape(1, 3, 3))
@@ -180,11 +183,11 @@ def _many(pair: Pair, poses: list[Array], order: int) -> Rows:
         return Rows(found.distance, NONE, NONE, (NONE, NONE))
     turns = (found.poses[0][:, :3, :3], found.poses[1][:, :3, :3])
     derived = found.derivatives()
-    missing = np.flatnonzero(derived.smoothness == Smoothness.UNDEFINED)
+    missing = np.flatnonzero([flag in LACKING for flag in derived.smoothness])
     if len(missing):
         row = int(missing[0])
         told = f" ({len(missing)} of {len(found)} rows.)"
-        _tell(pair, f" of row {row}", derived.reasons[row], told)
+        _tell(pair, derived.smoothness[row], f" of row {row}", derived.reasons[row], told)
     return Rows(found.distance, derived.gradient, derived.hessian, turns)
 
 
@@ -198,6 +201,16 @@ def _twists(rows: Rows) -> Array:
         turn = slice(6 * body + 3, 6 * body + 6)
         twists[:, turn, body, :3, :3] = np.einsum("mil,nlj->nmij", SKEW, rows.turns[body])
     return twists.reshape(count, 12, 32)
+
+
+def _by_entries(gradient: Array, twists: Array) -> Array:
+    """(n, 32) derivatives by the entries, from those by twists; nan where a nan has a part in it,
+    and there alone: in flat contact the entries of the position keep theirs."""
+    lost = np.isnan(gradient)
+    found: Array = np.einsum("nt,nte->ne", np.where(lost, 0.0, gradient), twists)
+    if lost.any():
+        found[np.einsum("nt,nte->ne", lost, twists != 0.0)] = np.nan
+    return found
 
 
 def _across(turns: Array, by_turn: Array) -> Array:
@@ -214,13 +227,15 @@ def _across(turns: Array, by_turn: Array) -> Array:
     return found.reshape(-1, 16, 3)
 
 
-def _tell(pair: Pair, which: str, reason: str, more: str) -> None:
-    """Warn of an answer without derivatives, or raise."""
-    told = f"The distance{which} has no derivatives: {reason}{more}"
+def _tell(pair: Pair, flag: Smoothness, which: str, reason: str, more: str) -> None:
+    """Warn of an answer that lacks derivatives, or raise."""
+    some = flag is Smoothness.PARTIAL
+    told = f"The distance{which} has {'not all' if some else 'no'} derivatives: {reason}{more}"
     if UNDEFINED[pair.undefined]:
         raise StandoffError(told)
     warnings.warn(
-        f"{told} They are nan; undefined='raise' makes this an error.",
+        f"{told} {'The others' if some else 'They'} are nan; undefined='raise' makes this an "
+        "error.",
         DerivativeWarning,
         stacklevel=5,
     )

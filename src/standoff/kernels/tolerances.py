@@ -269,6 +269,15 @@ SETTLED = 1e-4
 NEWTON_ROUNDS = 3
 # A correction below this (dimensionless, scaled as the system) changes no digit that counts.
 SETTLED_STEP = 1e-13
+# A null direction of that system (of length 1, scaled as the system) with more than this of it in
+# the normal: the witness points may be off by a fourth of the span along it, and the normal then
+# has no nine digits. In flat contact this part is roundoff; between two cylinders it is the angle
+# of their axes; at a focal point, where depths stop being least, it is the span over a radius.
+TURNING_NORMAL = 3e-9
+# Radians: a turn about an axis this near to square to (delta x n), delta a way that witness points
+# may go, moves all of them alike along n. The gradient's component is then right to this part of
+# the sizes, as much as what counts as parallel decides.
+SQUARE_AXIS = 1e-9
 # Radians, and of the body's size: a witness point this near another feature lies on both.
 BESIDE_FEATURE = 1e-9
 # Of the span: cores that are nearer than this touch, and the normal may not be unique.

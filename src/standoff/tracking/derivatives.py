@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -12,9 +14,10 @@ from standoff.errors import StandoffError
 from standoff.kernels.entries import derivatives as kernels
 from standoff.kernels.pair import derivatives as D
 from standoff.kernels.state import arrays as K
+from standoff.kernels.tolerances import SQUARE_AXIS
 from standoff.ordered import Ordered
 from standoff.tracking.calls import packed
-from standoff.tracking.contact.witness_set import witness_set
+from standoff.tracking.contact.witness_set import poses_of, serving_pairs
 from standoff.tracking.rows import Answer
 from standoff.tracking.threads import in_parts
 
@@ -26,6 +29,7 @@ class Smoothness(Ordered):
 
     SMOOTH = "smooth"
     ONE_SIDED = "one-sided"
+    PARTIAL = "partial"
     UNDEFINED = "undefined"
 
 
@@ -36,9 +40,12 @@ class Derivatives(NamedTuple):
     ----------
     smoothness : Smoothness
         ONE_SIDED: a witness point lies where two features meet. The gradient holds on all sides,
-        the rest where the features stay those of the answer. UNDEFINED: all arrays are nan.
+        the rest where the features stay those of the answer. PARTIAL: the normal is unique, but
+        the witness points are not (flat and line contact): the gradient's components by
+        translation, and by turns that move all of them alike; nan in its others and in the other
+        arrays. UNDEFINED: all arrays are nan.
     reason : str
-        Why they are one-sided or undefined; empty where they are smooth.
+        Why they are one-sided, partial or undefined; empty where they are smooth.
     gradient : (12,) array
         Of the signed distance: length per length, and length per radian.
     hessian : (12, 12) array
@@ -84,7 +91,7 @@ class DerivativeArrays(NamedTuple):
 
 NOT_UNIQUE = "the witness points or the normal are not unique."
 REASONS = {
-    D.SINGULAR: NOT_UNIQUE,
+    D.UNDETERMINED: NOT_UNIQUE,
     D.NOT_AT_REST: "the witness points are not at rest at an optimum of their features.",
     D.NO_DISTANCE: "the answer has no distance.",
     D.EQUALLY_DEEP: NOT_UNIQUE,
@@ -93,15 +100,17 @@ NO_POSES = "the answer keeps no poses."
 
 
 def defined(derivatives: Derivatives) -> Derivatives:
-    """The same, or a StandoffError with the reason where they are undefined."""
-    if derivatives.smoothness is Smoothness.UNDEFINED:
-        raise _error(derivatives.reason)
+    """The same, or a StandoffError with the reason where they are undefined, or the gradient's
+    alone."""
+    if derivatives.smoothness in (Smoothness.PARTIAL, Smoothness.UNDEFINED):
+        some = derivatives.smoothness is Smoothness.PARTIAL
+        raise _error(derivatives.reason, "but parts of its gradient " if some else "")
     return derivatives
 
 
-def _error(reason: str) -> StandoffError:
+def _error(reason: str, but: str = "") -> StandoffError:
     return StandoffError(
-        f"The distance has no derivatives here: {reason} "
+        f"The distance has no derivatives {but}here: {reason} "
         "answer.derivatives() gives a flag in place of this error."
     )
 
@@ -110,8 +119,6 @@ def derivatives(answer: Answer) -> Derivatives:
     """See ``Proximity.derivatives``."""
     numbers = np.empty(D.N_DERIVATIVES)
     smoothness, reason = _derived(answer, numbers)
-    if smoothness is Smoothness.UNDEFINED:
-        numbers.fill(np.nan)
     return Derivatives(smoothness, reason, *_parts(numbers))
 
 
@@ -166,12 +173,7 @@ def _derived_rows(
     smoothness = np.full(len(numbers), Smoothness.SMOOTH, dtype=object)
     reasons = {}
     for k in np.flatnonzero(kinds != D.SMOOTH).tolist():
-        kind = int(kinds[k])
-        known = kind not in (D.BESIDE_A, D.BESIDE_B)
-        told = (Smoothness.UNDEFINED, REASONS[kind]) if known else _judged(table[k], kind)
-        smoothness[k], reasons[k] = told
-        if told[0] is Smoothness.UNDEFINED:
-            numbers[k] = np.nan
+        smoothness[k], reasons[k] = _kept(partial(table.__getitem__, k), int(kinds[k]), numbers[k])
     return smoothness, reasons
 
 
@@ -190,18 +192,50 @@ def _parts(numbers: Array) -> tuple[Array, Array, Array, tuple[Array, Array]]:
 def _derived(answer: Answer, numbers: Array) -> tuple[Smoothness, str]:
     """Write an answer's derivatives into `numbers`; say whether there are any."""
     if len(answer._out) < K.BLOCK_EVENTS or answer.poses is None:
+        numbers.fill(np.nan)
         return Smoothness.UNDEFINED, NO_POSES
-    a, b = answer.bodies
-    kind = kernels.derive(packed(a, b), answer._out, numbers)
-    return (Smoothness.SMOOTH, "") if kind == D.SMOOTH else _judged(answer, kind)
+    kind = kernels.derive(packed(*answer.bodies), answer._out, numbers)
+    return (Smoothness.SMOOTH, "") if kind == D.SMOOTH else _kept(lambda: answer, kind, numbers)
 
 
-def _judged(answer: Answer, kind: int) -> tuple[Smoothness, str]:
-    """What is left of derivatives that are not smooth, and why."""
-    if kind not in (D.BESIDE_A, D.BESIDE_B):
+def _kept(answer: Callable[[], Answer], kind: int, numbers: Array) -> tuple[Smoothness, str]:
+    """What is left of derivatives that are not smooth, and why; nan for the rest of `numbers`."""
+    if kind == D.SINGULAR:
+        return _partial(numbers)
+    if kind in REASONS:
+        numbers.fill(np.nan)
         return Smoothness.UNDEFINED, REASONS[kind]
-    if not witness_set(answer).unique:
-        return Smoothness.UNDEFINED, NOT_UNIQUE
+    given = answer()
+    dimension, points, _ = serving_pairs(given, *poses_of(given))
+    if dimension or kind == D.SINGULAR_BESIDE:
+        _clear_turns(given, points, numbers)
+        return _partial(numbers)
     first = kind == D.BESIDE_A
-    name, feature = ("A", answer.feature_a) if first else ("B", answer.feature_b)
+    name, feature = ("A", given.feature_a) if first else ("B", given.feature_b)
     return Smoothness.ONE_SIDED, f"the witness point on {name} lies at the boundary of {feature}."
+
+
+def _partial(numbers: Array) -> tuple[Smoothness, str]:
+    """Nan for all but the gradient."""
+    numbers[D.NORMAL_JACOBIAN :] = np.nan
+    lost = np.isnan(numbers[D.GRADIENT : D.GRADIENT + 12].reshape(4, 3))
+    axes = ", ".join("xyz"[k] for k in range(3) if lost[:, k].any())
+    which = f"turns about {axes} have no derivative" if axes else "only the gradient exists"
+    return Smoothness.PARTIAL, f"the witness points are not unique, or barely: {which}."
+
+
+def _clear_turns(answer: Answer, points: Array, numbers: Array) -> None:
+    """Nan for the turns that move the pairs of witness points that serve unequally along n.
+
+    As the kernel does by the null directions of its system; here by the pairs themselves.
+    """
+    n = answer.normal
+    ways = np.eye(3) - np.outer(n, n)  # of one point, which has no digits
+    if len(points) > 1:
+        ways = points - points[0]
+        ways = ways / np.linalg.norm(ways, axis=1).max()
+    turned = np.abs(np.cross(ways, n)).max(axis=0) > SQUARE_AXIS
+    if any(body.dimension == 2 for body in answer.bodies):
+        turned &= [False, False, True]
+    for turn in (D.GRADIENT + 3, D.GRADIENT + 9):
+        numbers[turn : turn + 3][turned] = np.nan

@@ -115,7 +115,8 @@ class Distances(AnswerArrays):
     def gradient(self) -> Array:
         """(n, 12) derivatives of the distance by unit twists (v_A, omega_A, v_B, omega_B).
 
-        nan where they are undefined; computed at each call, as those below.
+        nan where there is none, in flat contact by some turns only; computed at each call, as those
+        below.
         """
         from standoff.tracking.derivatives import gradients
 

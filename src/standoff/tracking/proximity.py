@@ -138,7 +138,8 @@ class Proximity(Answer, PlainData):
     def gradient(self) -> Array:
         """(12,) of the distance by unit twists (v_A, omega_A, v_B, omega_B), world axes.
 
-        This and the next three raise StandoffError where they are undefined.
+        This and the next three raise StandoffError where they are undefined. In flat and line
+        contact this has nan for turns without a derivative, and the next three raise it.
         """
         from standoff.tracking.derivatives import gradient
 

@@ -34,7 +34,7 @@ from standoff.kernels.entries.tracker import pair_pointers
 from standoff.kernels.pair.derivatives import (
     EQUALLY_DEEP,
     NO_DISTANCE,
-    SMOOTH,
+    SINGULAR_BESIDE,
     differentiate,
 )
 from standoff.kernels.pair.events import LIMIT, NO_LIMIT
@@ -105,10 +105,10 @@ def derive_at(pair, pose_a, pose_b, answer, everything, to):
     Ra, pose = read_rotation(pose_a, 0), relative_pose(pose_a, pose_b)
     n = read_vector(answer, NORMAL)
     kind = differentiate(pair, Ra, pose, place_of(answer), n, d, everything, to)
-    if kind != SMOOTH or d > TOUCHING_CORES * pair_span(pair, pose.p, abs(d)):
-        return kind
+    if kind > SINGULAR_BESIDE or d > TOUCHING_CORES * pair_span(pair, pose.p, abs(d)):
+        return kind  # nothing is left, or the normal is the only one
     shared = has_rivals(pair, pose, rotate_back(Ra, n), d, place_of(answer))
-    return EQUALLY_DEEP if shared else SMOOTH
+    return EQUALLY_DEEP if shared else kind
 
 
 @entry(PAIR, READ, WRITE, work="derivatives")

@@ -4,12 +4,20 @@ By the 12 unit twists (v_A, w_A, v_B, w_B) in world axes, R <- exp(w) R, p <- p 
 a root of the contact-regular form r(y) = 0, y = (q, n, d), and stays one while the bodies move:
 dy = -J^-1 r_t, once for each unit twist. This is regular apart, in contact and in penetration.
 
+Where J is singular, as in flat and line contact, its null directions are those in which the
+witness points may go with n and d held. All pairs (x, y) that serve share n; d has the derivative
+least over them of n . (y' - x') along any motion. So the gradient (-n, -a x n, n, c x n) keeps its
+components by translation, and those by turns about axes e with e . (delta x n) = 0 for all ways
+delta that the points may go: there all pairs agree.
+
 All vectors are in world axes, from A's origin. Lengths are those of the cores.
 """
 
+from math import nan
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.full_pivoting import factor_fully, solve_factored
+from standoff.kernels.algebra.symmetric import least_norm_solve, symmetric_eigen
 from standoff.kernels.algebra.vectors import add, axpy, cross, rotate_back, scale, sub, unit
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import moved_jet, pair_span
@@ -34,6 +42,8 @@ from standoff.kernels.tolerances import (
     SETTLED,
     SETTLED_STEP,
     SINGULAR_SYSTEM,
+    SQUARE_AXIS,
+    TURNING_NORMAL,
 )
 from standoff.kernels.values import ORIGIN, Place, Pose, Vector, moved, side_of
 
@@ -41,8 +51,11 @@ from standoff.kernels.values import ORIGIN, Place, Pose, Vector, moved, side_of
 GRADIENT, NORMAL_JACOBIAN, POINT_JACOBIAN_A, POINT_JACOBIAN_B, HESSIAN = 0, 12, 48, 84, 120
 N_DERIVATIVES = 264
 
-# What came of it.
-SMOOTH, BESIDE_A, BESIDE_B, SINGULAR, NOT_AT_REST, NO_DISTANCE, EQUALLY_DEEP = range(7)
+# What came of it. All but SMOOTH and the BESIDEs leave the gradient alone at most: SINGULAR the
+# components that exist, and nan; SINGULAR_BESIDE those of the answer's own pair of points, of which
+# the set of all pairs tells which exist; the others nothing.
+SMOOTH, BESIDE_A, BESIDE_B, SINGULAR, SINGULAR_BESIDE = range(5)
+UNDETERMINED, NOT_AT_REST, NO_DISTANCE, EQUALLY_DEEP = range(5, 9)
 
 # Columns of the rates, one a unit twist, 8 numbers each.
 N_TWISTS, N_SYSTEM = 12, 8
@@ -54,7 +67,7 @@ NORMAL_Z = 6  # of y: planar bodies have none
 class Optimum(NamedTuple):
     """An optimum of two features, brought to roundoff."""
 
-    kind: int  # SMOOTH where all is regular, SINGULAR or NOT_AT_REST
+    kind: int  # SMOOTH where all is regular, SINGULAR, UNDETERMINED or NOT_AT_REST
     place: Place
     jets: Any  # both, world axes from A's origin
     normal: Vector
@@ -83,36 +96,48 @@ def world_jets(pair, pose, turn, place):
 
 
 @kernel
-def factored(jets, n, d, span, flat, factor):
-    """Factor the scaled J; False where it is singular. `flat`: of planar bodies, whose normal has
-    no third component."""
+def build_system(jets, n, d, span, flat, factor):
+    """The scaled J, not factored. `flat`: of planar bodies, whose normal has no third component."""
     J = factor.J
     scaled_jacobian(jets[0], jets[1], n, d, span, factor.scales, J)
     if flat:
         for k in range(N_SYSTEM):
             J[N_SYSTEM * NORMAL_Z + k] = J[N_SYSTEM * k + NORMAL_Z] = 0.0
         J[N_SYSTEM * NORMAL_Z + NORMAL_Z] = 1.0
-    return factor_fully(J, factor.order, N_SYSTEM) > SINGULAR_SYSTEM
+
+
+@kernel
+def solved(jets, n, d, span, flat, r, factor):
+    """r becomes J^-1 r, J its factor; what J is. Where it is singular r becomes the least x that
+    serves, which is 0 along the null directions."""
+    build_system(jets, n, d, span, flat, factor)
+    if flat:
+        r[NORMAL_Z] = 0.0
+    if factor_fully(factor.J, factor.order, N_SYSTEM) > SINGULAR_SYSTEM:
+        solve_factored(factor.J, factor.order, r, stack_reals(), N_SYSTEM)
+        return SMOOTH
+    build_system(jets, n, d, span, flat, factor)
+    finite = least_norm_solve(factor.J, r, N_SYSTEM, SINGULAR_SYSTEM)
+    return SINGULAR if finite else UNDETERMINED
 
 
 @kernel
 def at_optimum(pair, pose, turn, place, n, d, factor):
-    """The optimum that Newton's method on r(y) = 0 ends at, with the features held; J is left
-    factored there."""
+    """The optimum that Newton's method on r(y) = 0 ends at, with the features held; J, where it is
+    regular, is left factored there."""
     span = pair_span(pair, pose.p, abs(d)) + pair.reals_a[L.RADIUS] + pair.reals_b[L.RADIUS]
     span = span if span > 0.0 else 1.0  # a point that touches a half-space or a point: any length
     flat = planar(pair)
-    r, y, scales = stack_reals(), stack_reals(), factor.scales
+    r, scales = stack_reals(), factor.scales
     jets = world_jets(pair, pose, turn, place)
+    kind = SMOOTH
     for k in range(NEWTON_ROUNDS + 1):
         contact_scales(jets[0], jets[1], span, scales)
         if not scaled_residual(jets[0], jets[1], n, d, span, scales, r) <= SETTLED:
             return Optimum(NOT_AT_REST, place, jets, n, d, span)
-        if not factored(jets, n, d, span, flat, factor):
-            return Optimum(SINGULAR, place, jets, n, d, span)
-        if flat:
-            r[NORMAL_Z] = 0.0
-        solve_factored(factor.J, factor.order, r, y, N_SYSTEM)
+        kind = solved(jets, n, d, span, flat, r, factor)
+        if kind == UNDETERMINED:
+            return Optimum(UNDETERMINED, place, jets, n, d, span)
         most = 0.0
         for i in range(N_SYSTEM):
             most = max(most, abs(r[i]))
@@ -122,7 +147,7 @@ def at_optimum(pair, pose, turn, place, n, d, factor):
         place = moved(place, 1.0, step)
         n, d = unit(sub(n, (r[4], r[5], r[6]))), d - span * r[7]
         jets = world_jets(pair, pose, turn, place)
-    return Optimum(SMOOTH, place, jets, n, d, span)
+    return Optimum(kind, place, jets, n, d, span)
 
 
 @kernel
@@ -226,6 +251,48 @@ def symmetrise(hessian, flat):
 
 
 @kernel
+def clear_turns(optimum, flat, factor, to):
+    """NaN in the gradient's components by turns that the null directions of J change; whether n is
+    held along all of them."""
+    J, values, scales = factor.J, stack_reals(), factor.scales
+    build_system(optimum.jets, optimum.normal, optimum.distance, optimum.span, flat, factor)
+    symmetric_eigen(J, values, N_SYSTEM)
+    least = greatest = abs(values[0])
+    for i in range(1, N_SYSTEM):
+        least, greatest = min(least, abs(values[i])), max(greatest, abs(values[i]))
+    # pivots called J singular: the least eigenvalue is null whatever its size
+    null = max(least, SINGULAR_SYSTEM * greatest)
+    for i in range(N_SYSTEM):
+        if abs(values[i]) > null:
+            continue
+        y = ahead(J, N_SYSTEM * i)
+        if max(abs(y[4]), abs(y[5]), abs(y[6])) > TURNING_NORMAL:
+            return False
+        for side in range(2):
+            jet = optimum.jets[side]
+            along_p = scale(y[2 * side] * scales[2 * side], jet[1])
+            way = axpy(y[2 * side + 1] * scales[2 * side + 1], jet[2], along_p)
+            change = cross(way, optimum.normal)
+            for j in range(3):
+                k = 6 * side + 3 + j
+                if abs(change[j]) > SQUARE_AXIS * optimum.span and not (flat and off_plane(k)):
+                    to[GRADIENT + k] = nan
+    return True
+
+
+@kernel
+def beside(pair, Ra, pose, optimum):
+    """BESIDE_A or BESIDE_B where a witness point lies on another feature too, else SMOOTH."""
+    inward = rotate_back(Ra, optimum.normal)
+    if beside_another(pair.ints_a, pair.reals_a, side_of(optimum.place, 0), inward):
+        return BESIDE_A
+    back = scale(-1.0, rotate_back(pose.R, inward))
+    if beside_another(pair.ints_b, pair.reals_b, side_of(optimum.place, 1), back):
+        return BESIDE_B
+    return SMOOTH
+
+
+@kernel
 def differentiate(pair, Ra, pose, place, n, d, everything, to):
     """Derivatives of an answer into `to`, N_DERIVATIVES numbers, the gradient alone where not
     `everything`; what came of it.
@@ -236,22 +303,21 @@ def differentiate(pair, Ra, pose, place, n, d, everything, to):
     factor = Factor(stack_matrix(), ints_on_stack(N_ORDER), stack_reals())
     turn = Pose(Ra, ORIGIN)
     found = at_optimum(pair, pose, turn, place, n, d, factor)
-    if found.kind != SMOOTH:
+    if found.kind == UNDETERMINED or found.kind == NOT_AT_REST:
         return found.kind
     flat = planar(pair)
     p = moved_jet(turn, (pose.p, ORIGIN, ORIGIN, ORIGIN, ORIGIN, ORIGIN))[0]
     arm_a, arm_b = found.jets[0][0], sub(found.jets[1][0], p)
     write_gradient(found.normal, arm_a, arm_b, flat, to)
+    boundary = beside(pair, Ra, pose, found)
+    if found.kind == SINGULAR:
+        if boundary != SMOOTH:
+            return SINGULAR_BESIDE
+        return SINGULAR if clear_turns(found, flat, factor, to) else UNDETERMINED
     if everything:
         rates = reals_on_stack(N_RATES)
         rates_of(found, p, flat, factor, rates)
         write_side(0, found, arm_a, pair.reals_a[L.RADIUS], flat, rates, to)
         write_side(1, found, arm_b, pair.reals_b[L.RADIUS], flat, rates, to)
         symmetrise(ahead(to, HESSIAN), flat)
-    inward = rotate_back(Ra, found.normal)
-    if beside_another(pair.ints_a, pair.reals_a, side_of(found.place, 0), inward):
-        return BESIDE_A
-    back = scale(-1.0, rotate_back(pose.R, inward))
-    if beside_another(pair.ints_b, pair.reals_b, side_of(found.place, 1), back):
-        return BESIDE_B
-    return SMOOTH
+    return boundary

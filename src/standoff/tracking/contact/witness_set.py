@@ -108,16 +108,25 @@ def witness_set(
             "proximity",
             given,
         )
-    first, second = _poses(proximity, pose_a, pose_b)
+    first, second = poses_of(proximity, pose_a, pose_b)
     if not np.isfinite(proximity.distance):
         raise StandoffError(
             f"The answer has no distance (status {proximity.status.name}), so no witness points.",
             "proximity",
             proximity,
         )
+    several, normals = _normals(proximity, first, second)
+    across, points_a, points_b = serving_pairs(proximity, first, second)
+    n = proximity.normal
+    off = points_b - points_a - proximity.distance * n
+    residual = float(np.linalg.norm(off, axis=1).max())
+    return WitnessSet(across, several, points_a, points_b, n, normals, residual)
+
+
+def serving_pairs(proximity: Answer, first: Pose, second: Pose) -> tuple[int, Array, Array]:
+    """(dimension, points on A, points on B) of the set that belongs to the answer's own normal."""
     a, b = proximity.bodies
     n = proximity.normal
-    several, normals = _normals(proximity, first, second)
     x, y = proximity.point_a, proximity.point_b
     origin = first.translation
     sides = [
@@ -125,11 +134,7 @@ def witness_set(
         _side(b, second, -n, y + b.radius * n, origin),
     ]
     across, on_a, on_b = _overlap(proximity, sides, first, second)
-    points_a = on_a + origin + a.radius * n
-    points_b = on_b + origin - b.radius * n
-    off = points_b - points_a - proximity.distance * n
-    residual = float(np.linalg.norm(off, axis=1).max())
-    return WitnessSet(across, several, points_a, points_b, n, normals, residual)
+    return across, on_a + origin + a.radius * n, on_b + origin - b.radius * n
 
 
 def _normals(proximity: Answer, first: Pose, second: Pose) -> tuple[int, Array]:
@@ -144,9 +149,10 @@ def _normals(proximity: Answer, first: Pose, second: Pose) -> tuple[int, Array]:
     return several, n[None] if several else equal_normals(a, b, first, second, n, distance)
 
 
-def _poses(
-    proximity: Answer, pose_a: PoseLike | None, pose_b: PoseLike | None
+def poses_of(
+    proximity: Answer, pose_a: PoseLike | None = None, pose_b: PoseLike | None = None
 ) -> tuple[Pose, Pose]:
+    """The poses that an answer holds for: those given, or those that it keeps."""
     if pose_a is not None and pose_b is not None:
         return Pose.of(pose_a), Pose.of(pose_b)
     kept = getattr(proximity, "poses", None)
