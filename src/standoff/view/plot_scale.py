@@ -67,7 +67,8 @@ def scale_of(values: Array, size: float, known: PlotScale | None = None) -> Plot
     power = floor(log10((high - low) / STEPS))
     unit = Decimal(1).scaleb(power)
     wide = (high - low) / STEPS / float(unit)
-    step = unit * next(times for times in (1, 2, 5, 10) if times >= wide)
+    # A little less than `wide`, as its own roundoff would skip a step that fits exactly.
+    step = unit * next(times for times in (1, 2, 5, 10) if times >= 0.999 * wide)
     first, last = floor(low / float(step)), ceil(high / float(step))
     ticks = [k * step for k in range(first, last + 1)]
     return PlotScale(tuple(float(tick) for tick in ticks), _written(ticks, step))
