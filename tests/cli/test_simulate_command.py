@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from standoff.scene import SceneError
+from standoff.scene import SceneError, load_scene
 from standoff.scene.simulation import load_simulation
 
 Standoff = Callable[..., Any]
@@ -272,3 +272,11 @@ def test_arms_have_names_or_numbers(tmp_path: Path) -> None:
     assert free.device.hand is None
     assert free.every == 4
     assert free.system.tool == 1
+
+
+def test_a_scene_of_the_other_kind_is_sent_to_its_command() -> None:
+    with pytest.raises(SceneError, match="`standoff track` runs it and `standoff view` shows it"):
+        load_simulation(EXAMPLES.parent / "cam.toml")
+    for name in ("bounce", "conveyor", "hand-on-lens", "rattleback"):
+        with pytest.raises(SceneError, match="`standoff simulate` runs it"):
+            load_scene(EXAMPLES / f"{name}.toml")

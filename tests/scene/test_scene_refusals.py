@@ -51,6 +51,8 @@ TOP = [
     ("version = 1\nbodies = 3", "bodies", ["must be a table", "[bodies]", "got 3"]),
     ("version = 1\n[bodies]\na = 3", "bodies.a", ["must be a table", "[bodies.a]"]),
     (f"version = 1\n{BODIES}", "", ["'pair' is missing"]),
+    (f"version = 1\n{BODIES}[free.a]", "free", ["a simulation", "`standoff simulate`", "[free]"]),
+    (f"version = 1\n{BODIES}{PAIR}[free.a]", "free", ["unknown key 'free'"]),
     (f'version = 1\ntitle = ""\n{BODIES}{PAIR}', "title", ["text in quotes"]),
     (f"version = 1\nlength_unit = 1\n{BODIES}{PAIR}", "length_unit", ["text in quotes", "got 1"]),
     (f'version = 1\n{BODIES}[pair]\na = "a"', "pair", ["'b' is missing"]),

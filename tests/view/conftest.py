@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -91,3 +92,10 @@ def tab(chromium: Any) -> Iterator[Any]:
     yield make
     for each in opened:
         each.page.close()
+
+
+@pytest.fixture
+def slowly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a browser that draws without a graphics card keep up."""
+    pytest.importorskip("viser", reason="viser is not installed (extra 'view')")
+    monkeypatch.setattr(import_module("standoff.view.page"), "PERIOD", 0.15)

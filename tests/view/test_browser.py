@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
+from browsing import opened, pull, until
 
 from standoff.scene import load_scene
+
+pytestmark = pytest.mark.usefixtures("slowly")
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HALF = np.array([0.5, 0.4, 0.3])
@@ -36,27 +36,6 @@ step = 0.001
 """
 
 
-def until(holds: Callable[[], bool], seconds: float = 15.0) -> None:
-    end = time.monotonic() + seconds
-    while not holds():
-        assert time.monotonic() < end, "it did not come about"
-        time.sleep(0.05)
-
-
-def on_screen(page: Any, point: Any) -> tuple[float, float]:
-    """Where the one open tab shows a point of the world, pixels."""
-    (client,) = page.server.get_clients().values()
-    camera = client.camera
-    w, x, y, z = camera.wxyz
-    axes = Rotation.from_quat([x, y, z, w]).as_matrix()
-    right, down, ahead = axes.T @ (np.asarray(point) - camera.position)
-    scale = 0.5 * camera.image_height / np.tan(0.5 * camera.fov)
-    return (
-        0.5 * camera.image_width + scale * right / ahead,
-        0.5 * camera.image_height + scale * down / ahead,
-    )
-
-
 def colours(picture: Path) -> int:
     """How many the scene of a saved run has, above its buttons: an empty one has one."""
     import matplotlib.image
@@ -71,13 +50,6 @@ def from_box(centre: Any) -> float:
     return float(np.linalg.norm(np.maximum(np.abs(centre) - HALF, 0.0))) - RADIUS
 
 
-@pytest.fixture(autouse=True)
-def slowly(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let a browser that draws without a graphics card keep up."""
-    pytest.importorskip("viser", reason="viser is not installed (extra 'view')")
-    monkeypatch.setattr(import_module("standoff.view.page"), "PERIOD", 0.15)
-
-
 @pytest.fixture
 def page(chromium: Any, tmp_path: Path) -> Iterator[Any]:
     from standoff.view.page import Page
@@ -88,38 +60,12 @@ def page(chromium: Any, tmp_path: Path) -> Iterator[Any]:
         yield page
 
 
-def opened(page: Any, tab: Any) -> Any:
-    """The page's tab, shown."""
-    tab.page.goto(page.address)
-    tab.shown("distance")
-    until(lambda: bool(page.server.get_clients()))
-    tab.page.wait_for_timeout(500)
-    return tab
-
-
-def pull(page: Any, tab: Any, axis: int, length: float, release: bool = True) -> None:
-    """Drag the ball by an arrow of its handle."""
-    grip = page.stage.picture.handles[0]
-    start = page.stage.pair.poses[0].translation.copy()
-    start[axis] += 0.8 * grip.scale
-    along = np.eye(3)[axis]
-    mouse = tab.page.mouse
-    mouse.move(*on_screen(page, start))
-    tab.page.wait_for_timeout(300)
-    mouse.down()
-    for part in np.linspace(0.0, length, 8):
-        mouse.move(*on_screen(page, start + part * along))
-    if release:
-        mouse.up()
-    tab.page.wait_for_timeout(300)
-
-
 def test_a_dragged_ball_s_distance_is_that_of_the_closed_form(
     page: Any, tab: Callable[..., Any]
 ) -> None:
     desk = opened(page, tab(980, 420))
     assert desk.number("distance") == pytest.approx(0.3, abs=1e-8)
-    assert desk.shown("b") == "face 5"
+    assert desk.shown("b") == "face 5 of box"
     pull(page, desk, 0, -0.8)
     centre = page.stage.pair.poses[0].translation
     assert centre[0] == pytest.approx(-0.7, abs=0.15)

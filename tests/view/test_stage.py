@@ -201,6 +201,59 @@ def test_bodies_of_the_examples_can_be_pulled(name: str) -> None:
         assert pull.fault == ""
 
 
+def test_a_page_goes_back_to_the_scene_s_poses(tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text(SCENE, "utf-8")
+    others = {"twist": EXAMPLES / "twist.toml"}
+    with Page(load_scene(file), others=others) as page:
+        ask, panel = page._asked.put, page.panel
+        home = page.stage.pair.poses
+        assert tuple(panel._hand.options) == ("ball (A)", "box (B)", "nothing")
+        for pulled in (False, True):
+            ask(lambda pulled=pulled: page.pull(pulled))
+            ask(lambda: page.stage._drag(0, [0.9, 0.3, 0.0, 0.3], [0.2, 0.0, 0.2], held=True))
+            until(lambda: page.stage.pair.poses[0].translation[0] > 0.01)
+            assert panel._back.visible
+            ask(page.back)
+            until(lambda: not panel._back.visible)
+            assert page.stage.pair.poses == home
+            assert page.stage.pair.answer.distance == pytest.approx(0.01, abs=1e-12)
+            assert page.stage._pull is None
+        ask(lambda: page.open("twist"))
+        until(lambda: page.stage.player is not None)
+        stage = page.stage
+        ask(lambda: page.seek(0.2))
+        ask(lambda: stage._drag(1, [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0]))
+        until(lambda: stage.pair.poses[1].translation[2] == -1.0)
+        ask(page.back)
+        until(lambda: not panel._back.visible)
+        until(lambda: panel._time.value == 0.2)
+        assert not stage._by_hand
+        assert stage.picture._bodies[1].frame.position[2] != -1.0
+
+
+def test_bodies_are_of_glass_while_one_is_deep_in_the_other(tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text(SCENE, "utf-8")
+    with Page(load_scene(file)) as page:
+        stage = page.stage
+        picture = stage.picture
+        for height, deep in ((0.08, False), (0.0699, False), (0.05, True), (0.0, True), (1, False)):
+            pose = [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, height]
+            page._asked.put(lambda pose=pose: stage._drag(0, *pose))
+            until(lambda height=height: stage.pair.poses[0].translation[2] == height)
+            until(lambda deep=deep: picture._answer._depth.visible is deep)
+            assert [body._glass for body in picture._bodies] == [deep, deep]
+            assert [body._skin.visible for body in picture._bodies] == [not deep, not deep]
+            assert picture._answer._normal.visible is not deep
+            if deep:
+                answer = picture._answer
+                length = answer._depth.scale[2]
+                assert length == pytest.approx(-stage.pair.answer.distance)
+                tip = answer._depth.position + length * stage.pair.answer.normal
+                assert tip == pytest.approx(answer._points[0].position)
+
+
 def test_the_page_opens_from_python(tmp_path: Path) -> None:
     a, b = so.shapes.sphere(0.1), so.shapes.sphere(0.2)
     away = Pose(np.eye(3), [1.0, 0.0, 0.0])

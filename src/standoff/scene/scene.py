@@ -37,6 +37,9 @@ KEYS = (
 )
 """Every key that the top of a scene file may have."""
 
+SIMULATED = ("free", "contact", "contacts", "coupler", "device", "simulate")
+"""Keys that only the file of a simulation has."""
+
 
 @dataclass(frozen=True, eq=False)
 class Scene:
@@ -171,6 +174,7 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
         raise error.found_in(path) from error
     top = Table(content, file=path)
     check_version(top)
+    _refuse_simulation(top)
     top.expect(*KEYS)
     bodies = named(top, "bodies", read_body)
     if not bodies:
@@ -188,6 +192,17 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
         pairs=pairs,
         selected=pairs[0],
     )
+
+
+def _refuse_simulation(top: Table) -> None:
+    """Name the command for a file of the other kind, if that is what it is."""
+    found = [key for key in SIMULATED if key in top]
+    if found and "pair" not in top and "pairs" not in top:
+        raise top.error(
+            "this is the scene of a simulation: `standoff simulate` runs it, and draws it with "
+            f"--plot; the scene of a pair has no [{found[0]}]",
+            found[0],
+        )
 
 
 def text_of(path: Path) -> str:

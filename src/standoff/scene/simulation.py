@@ -142,6 +142,13 @@ def load_simulation(
         raise error.found_in(path) from error
     top = Table(content, file=path)
     check_version(top)
+    for key in ("pair", "pairs"):
+        if key in top and "simulate" not in top:
+            raise top.error(
+                "this is the scene of a pair: `standoff track` runs it and `standoff view` shows "
+                f"it; the scene of a simulation has no [{key}]",
+                key,
+            )
     top.expect(*KEYS)
     bodies = named(top, "bodies", read_body)
     if not bodies:

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 import scipy
+import trimesh
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
 from standoff.motion import Pose
-from standoff.tracking import Status
 from standoff.view.shapes import Mesh, Shape
 
 Array = NDArray[np.float64]
@@ -27,8 +27,11 @@ WITNESS_COLOUR: Colour = (20, 20, 20)
 BOUND_COLOUR: Colour = (0, 158, 115)
 FORCE_COLOUR: Colour = (204, 121, 167)
 
-OPACITY = 0.85
-"""Of a body's surface: witness points inside a body that overlaps are seen through it."""
+OPACITY, ACTIVE_OPACITY = 0.85, 0.9
+"""Of a body's surface, and of its active face: edges behind it are seen through it."""
+
+GLASS, ACTIVE_GLASS = 0.22, 0.35
+"""The same where bodies overlap: the other body and the witness points inside it are seen."""
 
 POINT_SIZE = 0.012
 """Diameter of a drawn vertex over the body's size."""
@@ -65,10 +68,13 @@ class BodyNodes:
     def __init__(self, scene: Any, name: str, shape: Shape, which: int) -> None:
         self._scene, self.name, self._shape = scene, name, shape
         self._plain, self._strong = COLOURS[which]
-        self._active: tuple[Feature | None, Any] = (None, None)
+        self._active: tuple[tuple[Feature, bool] | None, Any] = (None, None)
+        self._glass = False
+        self._clear: Any = None
         self.frame = scene.add_frame(name, show_axes=False)
+        self._skin = None
         if shape.skin is not None:
-            self._mesh("skin", shape.skin, self._plain, OPACITY)
+            self._skin = self._mesh("skin", shape.skin, self._plain, OPACITY)
         if len(shape.drawn):
             self._lines("edges", shape.segments(), EDGE_COLOUR, 1.5)
         if len(shape.vertices) and not shape.body.radius:
@@ -77,6 +83,17 @@ class BodyNodes:
     def place(self, pose: Pose) -> None:
         """Put the body at a pose."""
         self.frame.wxyz, self.frame.position = quaternion(pose), tuple(pose.translation)
+
+    def glass(self, on: bool) -> None:
+        """Be of glass, or solid again."""
+        if on == self._glass:
+            return
+        self._glass = on
+        if self._skin is None or self._shape.skin is None:
+            return
+        if self._clear is None:
+            self._clear = self._pane("glass", self._shape.skin, self._plain, GLASS)
+        self._skin.visible, self._clear.visible = not on, on
 
     def highlight(self, feature: Feature, outward: Array) -> None:
         """Draw a feature in the strong colour.
@@ -89,18 +106,22 @@ class BodyNodes:
             shown on its skin.
         """
         known, node = self._active
-        if feature != known:
+        if (feature, self._glass) != known:
             if node is not None:
                 node.remove()
             node = self._drawn(feature)
-            self._active = feature, node
+            self._active = (feature, self._glass), node
         if node is not None and feature.kind != "face":
             node.position = tuple(self._shape.body.radius * outward)
 
     def _drawn(self, feature: Feature) -> Any:
         part = self._shape.of(feature)
         if isinstance(part, Mesh):
-            return self._mesh("active", part, self._strong, 0.9) if len(part.points) else None
+            if not len(part.points):
+                return None
+            if self._glass:
+                return self._pane("active", part, self._strong, ACTIVE_GLASS)
+            return self._mesh("active", part, self._strong, ACTIVE_OPACITY)
         if feature.kind == "edge":
             return self._lines("active", part, self._strong, 5.0)
         return self._points("active", part[None], self._strong, 2.0)
@@ -115,6 +136,22 @@ class BodyNodes:
             side="double",
             cast_shadow=False,
             receive_shadow=False,
+        )
+
+    def _pane(self, name: str, mesh: Mesh, colour: Colour, opacity: float) -> Any:
+        # Viser's own meshes hide what is behind them, however clear they are: three.js draws them
+        # into the buffer of depths. It does not for a material of glTF that blends.
+        material = trimesh.visual.material.PBRMaterial(
+            baseColorFactor=[*_linear(colour), opacity],
+            metallicFactor=0.0,
+            roughnessFactor=1.0,
+            alphaMode="BLEND",
+            doubleSided=True,
+        )
+        pane = trimesh.Trimesh(mesh.points, mesh.triangles, process=False)
+        pane.visual = trimesh.visual.TextureVisuals(material=material)
+        return self._scene.add_mesh_trimesh(
+            f"{self.name}/{name}", pane, cast_shadow=False, receive_shadow=False
         )
 
     def _lines(self, name: str, pieces: Array, colour: Colour, width: float) -> Any:
@@ -168,6 +205,16 @@ class AnswerNodes:
             head_radius=0.05 * ARROW * size,
             head_length=0.2 * ARROW * size,
         )
+        # From B's witness point to A's: its length is set along its own axis.
+        self._depth = scene.add_arrows(
+            "/answer/depth",
+            upright,
+            WITNESS_COLOUR,
+            shaft_radius=0.02 * ARROW * size,
+            head_radius=0.07 * ARROW * size,
+            head_length=0.25,
+            visible=False,
+        )
         self._force = scene.add_arrows(
             "/answer/force",
             2.0 * ARROW * size * upright,
@@ -187,7 +234,9 @@ class AnswerNodes:
             self._force.position, self._force.wxyz = tuple(at), upright_to(force / size)
             self._force.scale = max(size / greatest, 0.02)
 
-    def show(self, points: tuple[Array, Array], normal: Array, text: str) -> None:
+    def show(
+        self, points: tuple[Array, Array], normal: Array, text: str, *, deep: bool = False
+    ) -> None:
         """Draw an answer.
 
         Parameters
@@ -198,19 +247,34 @@ class AnswerNodes:
             From A to B.
         text : str
             Stands beside the witness line.
+        deep : bool
+            The bodies overlap: in place of line and normal an arrow along the normal, as long as
+            the move of B that separates them.
         """
         known = bool(np.isfinite([*points, normal]).all())
-        for node in (*self._points, *self._line, self._normal):
+        for node in (*self._line, self._normal):
+            node.visible = known and not deep
+        for node in self._points:
             node.visible = known
+        self._depth.visible = known and deep
         self._label.text = text
         if not known:
             return
         for node, point in zip(self._points, points, strict=True):
             node.position = tuple(point)
+        if deep:
+            depth = float(np.linalg.norm(points[0] - points[1]))
+            self._depth.position, self._depth.wxyz = tuple(points[1]), upright_to(normal)
+            self._depth.scale = (1.0, 1.0, depth)
         self._normal.position, self._normal.wxyz = tuple(points[0]), upright_to(normal)
         for node, share in zip(self._line, np.linspace(0.0, 1.0, DOTS + 2)[1:-1], strict=True):
             node.position = tuple((1.0 - share) * points[0] + share * points[1])
-        self._label.position = tuple(0.5 * (points[0] + points[1]))
+        self._label.position = tuple(points[0] if deep else 0.5 * (points[0] + points[1]))
+
+
+def _linear(colour: Colour) -> list[float]:
+    """A colour as glTF has it, in proportion to the light: near enough the power of 2.2."""
+    return [float((part / 255.0) ** 2.2) for part in colour]
 
 
 def upright_to(direction: Array) -> tuple[float, float, float, float]:
@@ -220,12 +284,3 @@ def upright_to(direction: Array) -> tuple[float, float, float, float]:
         return 0.0, 1.0, 0.0, 0.0
     w = np.sqrt(0.5 * (1.0 + z))
     return float(w), float(-0.5 * y / w), float(0.5 * x / w), 0.0
-
-
-def answer_text(distance: float, lower_bound: float, status: Status, unit: str) -> str:
-    """Return what stands beside the witness line."""
-    if not np.isfinite(distance):
-        return status.name.lower().replace("_", " ")
-    length = f"{distance:.6g} {unit}".rstrip()
-    bound = f"≥ {lower_bound:.6g}" if np.isfinite(lower_bound) else "no lower bound"
-    return f"{length} ({bound})"

@@ -118,6 +118,10 @@ class Page:
         if which in HANDS:
             self.stage.hand(which)
 
+    def back(self) -> None:
+        """Put the bodies back to where the scene has them."""
+        self.stage.back()
+
     def pull(self, on: bool) -> None:
         """Pull the dragged body through the virtual coupler, or carry it."""
         self.stage.pull(on)

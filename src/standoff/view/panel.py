@@ -7,27 +7,24 @@ from collections.abc import Callable, Sequence
 from html import escape
 from typing import Any, Protocol
 
-import numpy as np
-
 from standoff.view.laws import INTEGRATORS, NAMES
 from standoff.view.player import SPEEDS, Player
+from standoff.view.plot import Plot
 from standoff.view.pull import LEAST_FORCE, MAX_FORCE
-from standoff.view.readout import COLOURS, readout
+from standoff.view.readout import readout
 from standoff.view.shown import Shown
-
-SPAN = 10.0
-"""Time that the plot shows [s]."""
-
-MOST_POINTS = 240
-"""Points of a curve in the plot: more are not told apart at its width."""
+from standoff.view.tolerances import MAX_TEXT
 
 LOGGED = 12
 """Newest switches that the log shows."""
 
-PLOT_EVERY = 5
-"""Looks between two plots: ten a second, as all of it is sent anew."""
-
 HANDS = ("A", "B", "nothing")
+
+PHONE = """<style data-of="phone">@media (max-width: 36em) {
+.mantine-Paper-root:has([data-of=phone]),
+.mantine-Paper-root:has([data-of=phone]) [style*="width: 20em"] { width: 100% !important; }
+}</style>"""
+"""Viser's panel of a narrow window is 20 em wide, and leaves a strip of the scene beside it."""
 
 ROW = "<tr><td>{:.3f} s</td><td>{}</td><td>{} → {}</td></tr>"
 LOG = '<table style="font-size:.8em;margin:.3em .9em;border-spacing:.6em 0">{}</table>'
@@ -41,6 +38,7 @@ class Asks(Protocol):
     def seek(self, time: float) -> None: ...
     def speed(self, factor: float) -> None: ...
     def hand(self, which: str) -> None: ...
+    def back(self) -> None: ...
     def pull(self, on: bool) -> None: ...
     def limit(self, force: float) -> None: ...
     def law(self, name: str, integrator: str, share: float) -> None: ...
@@ -69,14 +67,13 @@ class Panel:
         titles: Sequence[str],
     ) -> None:
         self._gui, self._later, self._asks = server.gui, later, asks
-        self._trace: deque[tuple[float, float, float]] = deque(maxlen=4 * MOST_POINTS)
         self._log: deque[str] = deque(maxlen=LOGGED)
-        self._looks = 0
+        self._names, self._unit, self._size = ("A", "B"), "", 1.0
         gui = server.gui
         gui.configure_theme(show_logo=False, show_share_button=False)
+        gui.add_html(PHONE)
         self._readout = gui.add_html("")
-        self._plot = self._make_plot()
-        self._plotted = False
+        self._plot = Plot(server)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Move"):
             self._make_motion()
@@ -87,32 +84,12 @@ class Panel:
         with tabs.add_tab("Scenes"):
             self._make_scenes(titles)
 
-    def _make_plot(self) -> Any:
-        empty = np.array([0.0, 1.0])
-        label = {"stroke": "gray", "grid": {"stroke": "rgba(128,128,128,.2)"}}
-        return self._gui.add_uplot(
-            (empty, empty * 0.0, empty * 0.0),
-            (
-                {"label": "s"},
-                {"label": "distance", "stroke": COLOURS[0], "width": 2},
-                {"label": "lower bound", "stroke": COLOURS[1], "width": 1, "dash": (4, 4)},
-            ),
-            scales={"x": {"time": False, "auto": True}},
-            axes=({**label, "size": 30}, {**label, "size": 56}),
-            legend={"show": False},
-            height=140,
-        )
-
     def _make_motion(self) -> None:
         gui = self._gui
         self._play = gui.add_button("Play")
         self._time = gui.add_slider("time, s", 0.0, 1.0, 0.001, 0.0)
         self._speed = gui.add_dropdown("speed", tuple(SPEEDS), initial_value="×1")
-        self._hand = gui.add_dropdown("drag", HANDS, initial_value="A")
-        self._pull = gui.add_checkbox("through a spring", False)
-        self._limit = gui.add_slider(
-            "greatest force, N", LEAST_FORCE, MAX_FORCE, 0.1, MAX_FORCE, visible=False
-        )
+        self._make_hand()
         self._export = gui.add_button("Save the run as a page")
         self._playing = False
 
@@ -132,11 +109,30 @@ class Panel:
             factor = SPEEDS.get(event.target.value, 1.0)
             self._later(lambda: self._asks.speed(factor))
 
+        @self._export.on_click
+        async def _(event: Any) -> None:
+            client = event.client
+            self._later(lambda: self._asks.export(client))
+
+    def _make_hand(self) -> None:
+        gui = self._gui
+        self._hand = gui.add_dropdown("drag", HANDS, initial_value="A")
+        self._back = gui.add_button("Back to the scene's poses", visible=False)
+        self._pull = gui.add_checkbox("through a spring", False)
+        self._limit = gui.add_slider(
+            "greatest force, N", LEAST_FORCE, MAX_FORCE, 0.1, MAX_FORCE, visible=False
+        )
+
         @self._hand.on_update
         async def _(event: Any) -> None:
-            which = str(event.target.value)
-            if event.client is not None:
+            options, value = tuple(self._hand.options), event.target.value
+            if event.client is not None and value in options:
+                which = HANDS[options.index(value)]
                 self._later(lambda: self._asks.hand(which))
+
+        @self._back.on_click
+        async def _(_: Any) -> None:
+            self._later(self._asks.back)
 
         @self._pull.on_update
         async def _(event: Any) -> None:
@@ -149,11 +145,6 @@ class Panel:
             force = float(event.target.value)
             if event.client is not None:
                 self._later(lambda: self._asks.limit(force))
-
-        @self._export.on_click
-        async def _(event: Any) -> None:
-            client = event.client
-            self._later(lambda: self._asks.export(client))
 
     def _make_law(self) -> None:
         gui = self._gui
@@ -184,8 +175,31 @@ class Panel:
             title = str(chosen.value)
             self._later(lambda: self._asks.open(title))
 
-    def begin(self, title: str, player: Player | None, which: str) -> None:
-        """Set the panel up for a scene."""
+    def begin(
+        self,
+        title: str,
+        player: Player | None,
+        which: str,
+        names: tuple[str, str],
+        unit: str,
+        size: float,
+    ) -> None:
+        """Set the panel up for a scene.
+
+        Parameters
+        ----------
+        title : str
+        player : Player or None
+        which : str
+            Of A and B the one that is dragged.
+        names : (str, str)
+            Of both bodies.
+        unit : str
+            Label of lengths.
+        size : float
+            Of the bodies, in that unit.
+        """
+        self._names, self._unit, self._size = names, unit, size
         self._gui.set_panel_label(title)
         for element in (self._play, self._time, self._speed, self._export):
             element.visible = player is not None
@@ -193,8 +207,19 @@ class Panel:
             self._time.min, self._time.max = player.first, player.last
             self._time.step = (player.last - player.first) / 1000.0
             self._time.value = player.time
-        self._hand.value = which
+        # A name is cut to what a message may hold; its letter keeps the two apart then.
+        hands = [
+            f"{name[: MAX_TEXT - 4]} ({letter})" for name, letter in zip(names, "AB", strict=True)
+        ]
+        self._hand.options = (*hands, HANDS[-1])
+        self._hand.value = hands["AB".index(which)]
+        self.strayed(False)
+        self._plot.begin(size)
         self.forget()
+
+    def strayed(self, off: bool) -> None:
+        """Tell whether bodies are elsewhere than the scene says, and there is a way back."""
+        self._back.visible = off
 
     def pull_is(self, on: bool, limit: float) -> None:
         """Tell whether the body is pulled through the coupler, and its greatest force [N]."""
@@ -212,10 +237,9 @@ class Panel:
 
     def forget(self) -> None:
         """Empty plot and log."""
-        self._trace.clear()
+        self._plot.forget()
         self._log.clear()
         self._switches.content = NONE_YET
-        self._looks = 0
 
     def switched(self, time: float, body: str, source: object, target: object) -> None:
         """Note a switch of a body's feature."""
@@ -223,14 +247,10 @@ class Panel:
         self._log.appendleft(row)
         self._switches.content = LOG.format("".join(self._log))
 
-    def show(
-        self, shown: Shown, names: tuple[str, str], unit: str, force: float | None = None
-    ) -> None:
+    def show(self, shown: Shown, force: float | None = None) -> None:
         """Show the numbers of an instant; `force` [N] of the coupler where it pulls."""
-        self._readout.content = readout(shown, names, unit, force)
-        if not self._plotted:  # a level line until something moves
-            level = np.ones(2)
-            self._draw(np.array([0.0, 1.0]), level * shown.distance, level * shown.lower_bound)
+        self._readout.content = readout(shown, self._names, self._unit, self._size, force)
+        self._plot.stands(shown)
 
     def plays(self, player: Player) -> None:
         """Show where a recording stands, and its frames up to there."""
@@ -238,23 +258,8 @@ class Panel:
             self._playing = player.playing
             self._play.label = "Pause" if player.playing else "Play"
         self._time.value = round(player.time, 4)
-        if self._due():
-            rows, run = player.behind(SPAN, MOST_POINTS), player.recording
-            self._draw(run.time[rows], run.distance[rows], run.lower_bound[rows])
+        self._plot.plays(player)
 
     def traces(self, time: float, shown: Shown) -> None:
         """Add an instant of a body that is moved by hand to the plot."""
-        self._trace.append((time, shown.distance, shown.lower_bound))
-        if self._due():
-            rows = np.array([row for row in self._trace if row[0] >= time - SPAN])
-            self._draw(*rows[:: -(-len(rows) // MOST_POINTS)].T)
-
-    def _due(self) -> bool:
-        self._looks += 1
-        return self._looks % PLOT_EVERY == 1
-
-    def _draw(self, time: Any, distance: Any, bound: Any) -> None:
-        known = np.isfinite(distance) & np.isfinite(bound)
-        if known.sum() > 1:
-            self._plotted = True
-            self._plot.data = (time[known], distance[known], bound[known])
+        self._plot.traces(time, shown)

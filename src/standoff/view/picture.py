@@ -8,12 +8,17 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.motion import Pose
-from standoff.view.nodes import AnswerNodes, BodyNodes, answer_text, quaternion
+from standoff.view.nodes import AnswerNodes, BodyNodes, quaternion
+from standoff.view.readout import beside
 from standoff.view.shapes import Shape, shape_of
 from standoff.view.shown import Shown
+from standoff.view.tolerances import SEEN_INTO
 
 GRIP = 0.5
 """Size of the handle that drags a body, over the body's own."""
+
+FIRM, FAINT = 0.6, 0.25
+"""Opacity of that handle, which is drawn over all else: faint where it would hide an overlap."""
 
 AWAY = 2.5
 """Distance of a new page's camera, over half the width of what it should see."""
@@ -46,6 +51,8 @@ class Picture:
     handles : list
         Viser's, of A and B; empty where there are none.
     planar : bool
+    size : float
+        Of the larger body [length].
     """
 
     def __init__(
@@ -61,7 +68,8 @@ class Picture:
             BodyNodes(scene, f"/{which}", shape, number)
             for number, (which, shape) in enumerate(zip("AB", self.shapes, strict=True))
         ]
-        self._answer = AnswerNodes(scene, max(shape.size for shape in self.shapes))
+        self.size = max(shape.size for shape in self.shapes)
+        self._answer = AnswerNodes(scene, self.size)
         self.handles = [self._handle(number) for number in (0, 1)] if handles else []
 
     def _handle(self, number: int) -> Any:
@@ -70,7 +78,7 @@ class Picture:
             scale=GRIP * self.shapes[number].size,
             active_axes=(True, True, not self.planar),
             depth_test=False,
-            opacity=0.6,
+            opacity=FIRM,
             visible=False,
         )
 
@@ -110,16 +118,22 @@ class Picture:
         held : int, optional
             Number of the handle that is in a user's hand: it is left there.
         """
+        small = min(shape.size for shape in self.shapes)
+        deep = shown.status.penetrating and -shown.distance > SEEN_INTO * small
         sides = zip(self._bodies, shown.poses, shown.features, (1.0, -1.0), strict=True)
         for nodes, pose, feature, sign in sides:
             nodes.place(pose)
+            nodes.glass(deep)
             nodes.highlight(feature, sign * (pose.rotation.T @ shown.normal))
         for number, handle in enumerate(self.handles):
+            handle.opacity = FAINT if deep else FIRM
             if number != held:
+                # Its squares are never faint: they go, but not out of a hand.
+                handle.disable_sliders = deep and not self.planar
                 pose = shown.poses[number]
                 handle.wxyz, handle.position = quaternion(pose), tuple(pose.translation)
-        text = answer_text(shown.distance, shown.lower_bound, shown.status, self._unit)
-        self._answer.show(shown.points, shown.normal, f"{note}{text}")
+        text = beside(shown, self._unit, self.size)
+        self._answer.show(shown.points, shown.normal, f"{note}{text}", deep=deep)
 
 
 def step_back(camera: Any, usual: Any) -> None:

@@ -1,4 +1,4 @@
-"""The numbers of an answer as the page's panel shows them."""
+"""An answer in the words and numbers of the page."""
 
 from __future__ import annotations
 
@@ -6,29 +6,91 @@ from html import escape
 
 import numpy as np
 
+from standoff.tracking import Status
+from standoff.view.nodes import COLOURS as BODY_COLOURS
 from standoff.view.shown import Shown
+from standoff.view.tolerances import TOUCHING
 
 DIGITS = 9
-"""Decimal digits that the panel shows."""
+"""Significant digits of distance and lower bound in the table."""
+
+SHORT = 4
+"""Significant digits of a length in a sentence."""
 
 COLOURS = ("#0072B2", "#009E73")
 """Of distance and lower bound in the plot."""
 
 MARK = '<span style="color:{}">■</span> '
-NAME = "opacity:.65;padding-right:.8em;white-space:nowrap"
+BODY = '<span style="color:rgb{}">●</span> '
+NAME = "opacity:.65;padding-right:.8em;white-space:nowrap;vertical-align:top"
 ROW = f'<tr><td style="{NAME}">{{}}</td><td data-of="{{}}">{{}}</td></tr>'
 TABLE = (
-    '<table style="font-size:.875em;margin:.3em .9em;font-variant-numeric:tabular-nums">{}</table>'
+    '<div data-of="verdict" style="font-weight:600;margin:.5em .9em .2em">{}</div>'
+    '<table style="font-size:.875em;margin:.2em .9em;font-variant-numeric:tabular-nums;'
+    'overflow-wrap:anywhere">{}</table>'
 )
 
 
-def length(value: float, unit: str) -> str:
-    """Return a length as the panel shows it."""
-    return f"{value:.{DIGITS}g} {unit}".rstrip() if np.isfinite(value) else "not known"
+def length(value: float, unit: str, digits: int = DIGITS) -> str:
+    """Return a length as the page writes it."""
+    return f"{value:.{digits}g} {unit}".rstrip() if np.isfinite(value) else "not known"
 
 
-def readout(answer: Shown, names: tuple[str, str], unit: str, force: float | None = None) -> str:
-    """Return the table of an answer, as HTML.
+def verdict(answer: Shown, unit: str, size: float) -> str:
+    """Return in a sentence how the bodies stand, and how far that is proven.
+
+    Parameters
+    ----------
+    answer : Shown
+    unit : str
+        Label of lengths.
+    size : float
+        Of the bodies, in that unit.
+    """
+    distance, bound, status = answer.distance, answer.lower_bound, answer.status
+    if status is Status.OVERLAPPING or not np.isfinite(distance):
+        return "overlap, depth not known" if status.penetrating else "distance not known"
+    proven = status.certified or status.penetrating
+    off = max(abs(distance), abs(bound))
+    if proven and off <= TOUCHING * size:
+        return f"touching, to within {length(off, unit, 2)}" if off else "touching"
+    if status.penetrating:
+        how = "proven least" if status is Status.GLOBAL else "perhaps not the least"
+        return f"overlap, depth {length(-distance, unit, SHORT)}, {how}"
+    if status.certified:
+        return f"apart, distance {length(distance, unit, SHORT)}, proven"
+    why = _UNPROVEN[status]
+    if not np.isfinite(bound):
+        return f"distance at most {length(distance, unit, SHORT)}: {why}"
+    low = length(bound, "", SHORT)
+    return f"distance between {low} and {length(distance, unit, SHORT)}: {why}"
+
+
+_UNPROVEN = {
+    Status.TRACKING: "the law is still on its way",
+    Status.NOT_CERTIFIED: "not proven closer",
+    Status.DEADLINE: "stopped by the deadline",
+}
+
+
+def beside(answer: Shown, unit: str, size: float) -> str:
+    """Return what stands beside the witness line: the verdict without its proof.
+
+    Parameters
+    ----------
+    answer, unit, size
+        As of `verdict`.
+    """
+    said = verdict(answer, unit, size)
+    if said.startswith(("apart", "overlap")):
+        return said.split(", ")[1].removeprefix("distance ")
+    return said.split(",")[0].split(":")[0].removeprefix("distance ")
+
+
+def readout(
+    answer: Shown, names: tuple[str, str], unit: str, size: float, force: float | None = None
+) -> str:
+    """Return the sentence and the table of an answer, as HTML.
 
     Parameters
     ----------
@@ -37,6 +99,8 @@ def readout(answer: Shown, names: tuple[str, str], unit: str, force: float | Non
         Of A and B.
     unit : str
         Label of lengths.
+    size : float
+        Of the bodies, in that unit.
     force : float, optional
         Of the coupler [N].
 
@@ -44,24 +108,28 @@ def readout(answer: Shown, names: tuple[str, str], unit: str, force: float | Non
     -------
     str
     """
-    normal = ", ".join(f"{value:+.3f}" for value in answer.normal)
-    rows = [
-        ("distance", length(answer.distance, unit)),
-        ("lower bound", length(answer.lower_bound, unit)),
-        ("gap", f"{answer.distance - answer.lower_bound:.2e} {unit}".rstrip()),
-        ("status", answer.status.name.lower().replace("_", " ")),
-        (names[0], str(answer.features[0])),
-        (names[1], str(answer.features[1])),
-        ("normal", normal),
+    normal = ", ".join(f"{value:+.3f}" for value in np.round(answer.normal, 3) + 0.0)
+    features = [
+        f"{feature} of {name}" for feature, name in zip(answer.features, names, strict=True)
     ]
-    keys = ["distance", "bound", "gap", "status", "a", "b", "normal"]
+    bodies = [BODY.format(strong) for _, strong in BODY_COLOURS]
+    rows = [
+        (MARK.format(COLOURS[0]) + "distance", "distance", length(answer.distance, unit)),
+        (MARK.format(COLOURS[1]) + "lower bound", "bound", _bound(answer, unit, size)),
+        ("gap", "gap", length(answer.distance - answer.lower_bound, unit, 2)),
+        (bodies[0] + "from", "a", features[0]),
+        (bodies[1] + "to", "b", features[1]),
+        ("normal", "normal", normal),
+    ]
     if force is not None:
-        rows.append(("force", f"{force:.2f} N"))
-        keys.append("force")
-    marks = (*(MARK.format(colour) for colour in COLOURS), *[""] * (len(rows) - 2))
+        rows.append(("force", "force", f"{force:.2f} N"))
     return TABLE.format(
-        "".join(
-            ROW.format(mark + escape(name), key, escape(text))
-            for key, mark, (name, text) in zip(keys, marks, rows, strict=True)
-        )
+        escape(verdict(answer, unit, size)),
+        "".join(ROW.format(name, key, escape(text)) for name, key, text in rows),
     )
+
+
+def _bound(answer: Shown, unit: str, size: float) -> str:
+    """The lower bound; of one that is all but 0 the digits are roundoff."""
+    bound = answer.lower_bound
+    return length(bound, unit, DIGITS if abs(bound) > TOUCHING * size else 2)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import json
 import socket
 import threading
 import time
@@ -21,7 +22,7 @@ try:
     import viser as viser
     import websockets
     import websockets.asyncio.server
-    from viser import infra
+    from viser import _messages, infra
     from websockets.datastructures import Headers
     from websockets.http11 import Request, Response
 except ModuleNotFoundError as error:
@@ -237,6 +238,13 @@ def guarded_server(access: Access, port: int | None = None) -> viser.ViserServer
             "cannot be guarded; install one of the versions that the extra 'view' asks for."
         )
     return server
+
+
+def name_tab(server: viser.ViserServer, title: str) -> None:
+    """Put a title on the browser's tab of every page, those that are opened later too."""
+    # Viser has no word for it. As JSON the title is a text to the browser, whatever it holds.
+    source = f"document.title = {json.dumps(title)};"
+    server._websock_server.queue_message(_messages.RunJavascriptMessage(source))
 
 
 def check_free(host: str, port: int) -> None:

@@ -18,6 +18,7 @@ from standoff.view.panel import Panel
 from standoff.view.picture import Picture
 from standoff.view.player import Player
 from standoff.view.pull import LEAST_FORCE, MAX_FORCE, Pull
+from standoff.view.server import name_tab
 from standoff.view.shown import Shown, of_answer, of_frame
 
 
@@ -65,7 +66,7 @@ class Stage:
         poses = [Pose.of(motion.path.pose(start)) for motion in scene.pair_motions]
         self.pair = LivePair(*scene.pair_bodies, (poses[0], poses[1]), scene.settings.law, self._dt)
         self.player = Player(record(scene)) if laws.moves(scene) else None
-        self._wanted = self.pair.poses
+        self._home = self._wanted = self.pair.poses
         self._by_hand = self.player is None
         self._clock = 0.0
         self._held: int | None = None
@@ -79,7 +80,9 @@ class Stage:
         self.picture.aim(self.pair.poses)
         which = "AB"[moving_body(scene)]
         panel.pull_is(False, max_force)
-        panel.begin(scene.title, self.player, which)
+        unit, size = scene.length_unit, self.picture.size
+        panel.begin(scene.title, self.player, which, scene.pair, unit, size)
+        name_tab(server, scene.title)
         self._tell_law()
         self.hand(which)
         self._show(of_answer(self.pair.answer, self.pair.poses))
@@ -120,6 +123,19 @@ class Stage:
         for name, handle in zip("AB", self.picture.handles, strict=True):
             handle.visible = name == which
 
+    def back(self) -> None:
+        """Put the bodies back to where the scene has them, of a motion where it stands."""
+        if self.player is not None:
+            self._play_on()
+            self._show_frame(self.player)
+            return
+        self._let_go()
+        self.pair.restart(self._home)
+        self._wanted, self._held, self._clock = self._home, None, 0.0
+        self.panel.forget()
+        self.panel.strayed(False)
+        self._show(of_answer(self.pair.answer, self.pair.poses))
+
     def pull(self, on: bool) -> None:
         """Pull the dragged body through the virtual coupler, or carry it.
 
@@ -132,13 +148,16 @@ class Stage:
         if not on:
             return
         if self._hand is None:
-            raise StandoffError("Nothing is dragged that could be pulled: choose A or B.")
+            raise StandoffError(
+                "Nothing is dragged that could be pulled: choose a body under 'drag'."
+            )
         if not self._by_hand:
             self._take_in_hand()
         size = self.picture.shapes[self._hand].size
         self._pull = Pull(self.pair, self._hand, size, self.max_force)
         self._wanted = self.pair.poses
         self.panel.pull_is(True, self.max_force)
+        self.panel.strayed(True)
 
     def limit(self, force: float) -> None:
         """Lower the coupler's greatest force [N]; a higher one than now is not taken."""
@@ -228,6 +247,7 @@ class Stage:
         poses = list(self._wanted)
         poses[number] = placed(wxyz, position, self.picture.planar)
         self._wanted = poses[0], poses[1]
+        self.panel.strayed(True)
 
     def _take_in_hand(self) -> None:
         """Go from the motion to the hand, where the motion stands."""
@@ -243,8 +263,9 @@ class Stage:
         """Go from the hand to the motion."""
         if self._by_hand:
             self._let_go()
-            self._by_hand = False
+            self._by_hand, self._held = False, None
             self.panel.forget()
+            self.panel.strayed(False)
 
     def _note_switches(self, player: Player, before: int) -> None:
         for event in player.recording.events:
@@ -265,7 +286,7 @@ class Stage:
             held = self._held if pull is None else pull.number
             force = None if pull is None else float(np.linalg.norm(pull.force))
             self.picture.show(shown, held=held)
-            self.panel.show(shown, self.scene.pair, self.scene.length_unit, force)
+            self.panel.show(shown, force)
 
     def _tell_law(self) -> None:
         resolved = self.pair.tracker.resolved_law

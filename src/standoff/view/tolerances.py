@@ -40,3 +40,11 @@ LEAST_FILM_RATE: Final = 2.0
 
 MOST_LOGGED: Final = 2000
 """Most frames of a run that are written for rerun, so many: each takes some 4 kB there."""
+
+TOUCHING: Final = 1e-9
+"""Distance and depth, over the bodies' size, up to which they are said to touch: far above the
+bounds' roundoff, and far below what can be seen or made."""
+
+SEEN_INTO: Final = 0.02
+"""Depth over the smaller body's size from which bodies are shown as of glass: above what a tool of
+the coupler presses in, so that a contact does not flicker."""

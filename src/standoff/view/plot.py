@@ -1,0 +1,112 @@
+"""The plot of the page: distance and lower bound of the last seconds."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.view.player import Player
+from standoff.view.plot_scale import PlotScale, scale_of
+from standoff.view.readout import COLOURS
+from standoff.view.shown import Shown
+
+Array = NDArray[np.float64]
+
+SPAN = 10.0
+"""Time that the plot shows [s]."""
+
+MOST_POINTS = 240
+"""Points of a curve in the plot: more are not told apart at its width."""
+
+EVERY = 5
+"""Looks between two plots: as all of it is sent anew, it is not drawn at each."""
+
+LOOK = {"stroke": "gray", "grid": {"stroke": "rgba(128,128,128,.2)"}}
+TIME_AXIS = {**LOOK, "size": 34, "label": "time, s", "labelSize": 14, "labelGap": 0}
+
+DIGIT, GAP = 7, 22
+"""Width of a number's character, and that of its tick and margin [pixels]."""
+
+
+class Plot:
+    """Distance and lower bound over time.
+
+    Parameters
+    ----------
+    server : viser.ViserServer
+    """
+
+    def __init__(self, server: Any) -> None:
+        self._server = server
+        self._trace: deque[tuple[float, float, float]] = deque(maxlen=4 * MOST_POINTS)
+        self._looks = 0
+        self._size = 1.0
+        self._scale: PlotScale | None = None
+        empty = np.array([0.0, 1.0])
+        self._node = server.gui.add_uplot(
+            (empty, empty * 0.0, empty * 0.0),
+            (
+                {"label": "s"},
+                {"label": "distance", "stroke": COLOURS[0], "width": 2},
+                {"label": "lower bound", "stroke": COLOURS[1], "width": 1, "dash": (4, 4)},
+            ),
+            scales={"x": {"time": False, "auto": True}},
+            axes=(TIME_AXIS, LOOK),
+            legend={"show": False},
+            height=150,
+            padding=(10, 12, 0, 0),
+        )
+
+    def begin(self, size: float) -> None:
+        """Be the plot of bodies of that size [length]."""
+        self._size, self._scale = size, None
+        self.forget()
+
+    def forget(self) -> None:
+        """Empty the curves of the hand."""
+        self._trace.clear()
+        self._looks = 0
+
+    def stands(self, shown: Shown) -> None:
+        """Show level lines where nothing has moved yet."""
+        if self._looks == 0:
+            level = np.ones(2)
+            self._draw(np.array([0.0, 1.0]), level * shown.distance, level * shown.lower_bound)
+
+    def plays(self, player: Player) -> None:
+        """Show a recording up to where it stands."""
+        if self._due():
+            rows, run = player.behind(SPAN, MOST_POINTS), player.recording
+            self._draw(run.time[rows], run.distance[rows], run.lower_bound[rows])
+
+    def traces(self, time: float, shown: Shown) -> None:
+        """Go on with an instant of a body that is moved by hand."""
+        self._trace.append((time, shown.distance, shown.lower_bound))
+        if self._due():
+            rows = np.array([row for row in self._trace if row[0] >= time - SPAN])
+            self._draw(*rows[:: -(-len(rows) // MOST_POINTS)].T)
+
+    def _due(self) -> bool:
+        self._looks += 1
+        return self._looks % EVERY == 1
+
+    def _draw(self, time: Array, distance: Array, bound: Array) -> None:
+        known = np.isfinite(distance) & np.isfinite(bound)
+        if known.sum() < 2:
+            return
+        curves = time[known], distance[known], bound[known]
+        self._scale = scale = scale_of(np.concatenate(curves[1:]), self._size, self._scale)
+        width = GAP + DIGIT * max(len(label) for label in scale.labels)
+        upwards = {**LOOK, "size": width, "splits": scale.ticks, "values": scale.labels}
+        with self._server.atomic():
+            # Both ranges are told: left to itself the page writes three decimals of a number that
+            # changes in the fifth, and finds no range of time when its scale upwards is another.
+            self._node.scales = {
+                "x": {"time": False, "range": (float(curves[0][0]), float(curves[0][-1]))},
+                "y": {"range": (scale.ticks[0], scale.ticks[-1])},
+            }
+            self._node.axes = (TIME_AXIS, upwards)
+            self._node.data = curves
