@@ -57,6 +57,11 @@ PCURVE_OVERLAP = 1e-12
 
 # A point known no better than this (parameter units, relative) may lie outside by roundoff.
 PARAMETER_NOISE = 1e-14
+# Parameters so many times those of a face (dimensionless) are not on it: what they are known to is
+# more than the face is wide.
+FAR_OUT = 1e6
+# Crossings of a ray this near to each other (relative) are one: a face without area has two.
+SAME_CROSSING = 1e-12
 # How far (parameter units) along a tangent a curve stays within PARAMETER_NOISE of it: a line that
 # starts on a curve and touches it this near touches it at its start.
 TOUCH_WIDTH = 1e-6
@@ -113,9 +118,6 @@ COLLAPSED = 1e-13
 
 # Roundings (eps times the size) of a tangent that is summed from control points or from a formula.
 NORMAL_NOISE = 16.0
-# A normal that roundoff may turn by more than this (chord) may be the reverse: its point may be
-# past the collapsed side by PARAMETER_NOISE, where the tangent along that side has the other sign.
-REVERSED_NORMAL = 0.05
 # Most that this may take from a bound, in scales, and the answer still be called certified: a
 # witness point nearer to a collapsed side than some 1e-8 of the size.
 BLUR = 1e-6

@@ -16,6 +16,7 @@ from rich.progress import Progress as Bar
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra, WriteError
 from standoff.cli.facts import json_text
 from standoff.cli.output import check_target, make_folder, write_whole
+from standoff_studies.soak.certificates import run_certificates
 from standoff_studies.soak.failures import Facts, read_failure, replay
 from standoff_studies.soak.ledger import NAME, Ledger
 from standoff_studies.soak.processes import Done, Tell, soak
@@ -54,6 +55,8 @@ def run_soak(command: SoakOptions) -> int:
             raise CommandError(f"--{name} {value}: give 1 or more")
     if command.seed < 0:
         raise CommandError(f"--seed {command.seed}: give 0 or more")
+    if command.certificates is not None:
+        return run_certificates(command.certificates, command.seed, command.output, command.json)
     ledger = _ledger(command)
     started, before = time.perf_counter(), ledger.pairs_done()
     try:
@@ -156,6 +159,11 @@ def _print(ledger: Ledger, seconds: float, pairs: int) -> None:
 
 
 def _told(facts: Facts) -> str:
+    if "round" in facts:
+        return (
+            f"round {facts['round']['number']} of the adversary failed: {facts['what']} "
+            f"({facts['value']} where {facts['allowed']} is allowed)"
+        )
     if "case" not in facts:
         last = str(facts["what"]).strip().splitlines()[-1]
         return f"pair {facts['number']} failed: {last}"
@@ -175,7 +183,12 @@ def _replay(file: Path) -> int:
     except ValueError as error:
         raise CommandError(f"--replay {file}: {error}") from error
     print(f"the file says: {_told(facts)}")
-    if again.failure is not None:
+    if again.breach is not None:
+        miss = again.breach.miss
+        print(f"now the round fails: {miss.what} ({miss.value} where {miss.allowed} is allowed)")
+    elif "round" in facts:
+        print("now no check of the round fails")
+    elif again.failure is not None:
         fault, query = again.failure.fault, "cold " if again.failure.cold else ""
         print(
             f"now the pair fails at {query}frame {fault.frame}: {fault.what} ({fault.value} where "
@@ -185,5 +198,5 @@ def _replay(file: Path) -> int:
         print("now no check of the pair fails")
     if again.step is not None:
         print(f"the step alone, from the file's state, fails: {again.step.what}")
-    failed = again.failure is not None or again.step is not None
+    failed = any(one is not None for one in again)
     return ExitCode.FAILED if failed else ExitCode.DONE

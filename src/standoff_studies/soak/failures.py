@@ -15,6 +15,7 @@ from standoff.kernels.tolerances import ROTATION
 from standoff.tracking.block import Block
 from standoff.tracking.tracker import Tracker
 from standoff.version import __version__
+from standoff_studies.soak.adversary import Breach, run_round
 from standoff_studies.soak.cases import Case
 from standoff_studies.soak.checks import Fault, judge
 from standoff_studies.soak.motions import Frames
@@ -37,10 +38,13 @@ class Replayed(NamedTuple):
         Of the whole pair, run again from its first frame.
     step : Fault or None
         Of the one step, from the state that the file holds.
+    breach : Breach or None
+        Of the adversary's round, run again.
     """
 
     failure: Failure | None
     step: Fault | None
+    breach: Breach | None = None
 
 
 def failure_facts(failure: Failure) -> Facts:
@@ -61,6 +65,29 @@ def failure_facts(failure: Failure) -> Facts:
     except Exception:
         facts["step_unknown"] = traceback.format_exc()
     return facts
+
+
+def breach_facts(breach: Breach) -> Facts:
+    """Return a failure of the adversary's as plain data."""
+    return {
+        "kind": KIND,
+        "standoff": __version__,
+        "what": breach.miss.what,
+        "value": _number(breach.miss.value),
+        "allowed": _number(breach.miss.allowed),
+        "round": {"seed": breach.seed, "number": breach.number, "cases": breach.cases},
+        "asked": breach.miss.case,
+        "about": _plain(breach.facts),
+    }
+
+
+def _plain(value: Any) -> Any:
+    """Numbers that are not finite as words, which JSON has none for."""
+    if isinstance(value, dict):
+        return {name: _plain(one) for name, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(one) for one in value]
+    return _number(value) if isinstance(value, float) else value
 
 
 def exception_facts(seed: int, number: int, frames: int, text: str) -> Facts:
@@ -129,6 +156,14 @@ def read_failure(file: Path) -> Facts:
     if facts.get("kind") != KIND:
         raise ValueError(f"it is not a failure of a soak: its 'kind' is not '{KIND}'")
     text(entry(facts, "what"), "'what'")
+    if "round" in facts:
+        numbers_of = mapping(facts["round"], "'round'")
+        for name, least in (("seed", 0), ("number", 0), ("cases", 1)):
+            whole(entry(numbers_of, name), f"the round's '{name}'", least)
+        for name in ("value", "allowed"):
+            number(entry(facts, name), f"'{name}'")
+        whole(entry(facts, "asked"), "'asked'")
+        return facts
     if "case" not in facts:
         for name, least in (("seed", 0), ("number", 0), ("frames", 1)):
             whole(entry(facts, name), f"'{name}'", least)
@@ -164,6 +199,9 @@ def replay(facts: Facts) -> Replayed:
     ValueError
         The file's parts do not fit this version.
     """
+    if "round" in facts:
+        _, breaches = run_round(**{k: facts["round"][k] for k in ("seed", "number", "cases")})
+        return Replayed(None, None, breaches[0] if breaches else None)
     if "case" not in facts:
         from standoff_studies.soak.cases import draw_case
 

@@ -10,6 +10,7 @@ from typing import Any
 from standoff.tracking.status import Status
 from standoff.version import __version__
 from standoff.whole_files import write_whole
+from standoff_studies.soak.adversary import CASES, WILD_FRAMES
 from standoff_studies.soak.cases import PER_DRAWER
 from standoff_studies.soak.reading import entry, read_facts, rows, whole
 from standoff_studies.soak.tally import Tally
@@ -122,6 +123,7 @@ class Ledger:
         wanted = {
             "pairs": (sums["pairs"], pairs),
             "frames": (sums["frames"], frames),
+            "certificates": (sums["certificates"], CASES * pairs),
             "frames of all statuses": (sum(sums[status.name] for status in Status), frames),
             "certified": (
                 sums["certified"],
@@ -132,8 +134,13 @@ class Ledger:
             if count != right:
                 return f"it counts {count} {name} where {right} were done"
         for name, count in sums.items():
-            if count > frames:
-                return f"it counts {count} '{name}' in {frames} frames"
+            most, things = frames, "frames"
+            if name.startswith("certificates"):
+                most, things = CASES * pairs, "certificates"
+            elif name.startswith("wild"):
+                most, things = WILD_FRAMES * pairs, "wild frames"
+            if count > most:
+                return f"it counts {count} '{name}' in {most} {things}"
         return ""
 
 

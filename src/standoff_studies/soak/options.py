@@ -30,6 +30,9 @@ class SoakOptions:
     """Go on with the soak in DIR, of the same seed and frames."""
     replay: Annotated[Path | None, arg(metavar="FILE", help_behavior_hint="")] = None
     """Only run the pair of a failure's file again."""
+    certificates: Annotated[int | None, arg(metavar="N", help_behavior_hint="")] = None
+    """Only ask the certificate by itself, in about N cases of known distance, and list every check
+    that fails."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print the ledger as JSON."""
 
@@ -39,6 +42,8 @@ class SoakOptions:
 
         if self.replay is not None:
             return f"running the pair of {shown(self.replay)} again"
+        if self.certificates is not None:
+            return f"asking the certificate by itself in {self.certificates:,} cases"
         return (
             f"tracking and checking random pairs up to {self.pairs:,}, each "
             f"{self.frames:,} frames, into {shown(self.output)}"

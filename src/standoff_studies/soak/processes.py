@@ -15,8 +15,14 @@ from typing import Any, NamedTuple
 
 from standoff.kernels.compiler.notices import QUIET
 from standoff.kernels.entries.preparing import prepare_all
+from standoff_studies.soak.adversary import run_round
 from standoff_studies.soak.cases import draw_case
-from standoff_studies.soak.failures import Facts, exception_facts, failure_facts
+from standoff_studies.soak.failures import (
+    Facts,
+    breach_facts,
+    exception_facts,
+    failure_facts,
+)
 from standoff_studies.soak.ledger import Ledger, Part
 from standoff_studies.soak.preparing import compile_kernels
 from standoff_studies.soak.running import run_case
@@ -50,7 +56,7 @@ Tell = Callable[[Done], None]
 def run_part(
     seed: int, frames: int, part: Part, at: Callable[[int], None] = lambda number: None
 ) -> Done:
-    """Run pairs first .. end - 1 up to the first that fails.
+    """Run pairs first .. end - 1, each with a round of the adversary, up to the first that fails.
 
     Parameters
     ----------
@@ -65,12 +71,16 @@ def run_part(
         try:
             case, a, b, moves = draw_case(seed, number, frames)
             counted, failure = run_case(case, a, b, moves)
+            provoked, breaches = run_round(seed, number)
         except Exception:
             facts = exception_facts(seed, number, frames, traceback.format_exc())
             return Done(part, tally, number, facts)
         if failure is not None:
             return Done(part, tally, number, failure_facts(failure))
+        if breaches:
+            return Done(part, tally, number, breach_facts(breaches[0]))
         tally.add(counted)
+        tally.add(provoked)
     return Done(part, tally)
 
 

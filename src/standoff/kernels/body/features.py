@@ -21,7 +21,7 @@ from standoff.kernels.algebra.vectors import (
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.jets import chart_parameters, curve_jet, pcurve_jet, surface_jet
 from standoff.kernels.compiler.decorators import kernel, shared, small
-from standoff.kernels.tolerances import COLLAPSED, EPS, NORMAL_NOISE, REVERSED_NORMAL
+from standoff.kernels.tolerances import COLLAPSED, EPS, NORMAL_NOISE, PCURVE_OVERLAP
 
 ZERO = (0.0, 0.0, 0.0)
 
@@ -165,14 +165,19 @@ def normal_noise(kind, reals, jet):
     """A bound on how far (chord of the unit sphere, at most 2) roundoff turns the chart's normal.
 
     Beside a collapsed side one tangent is a small difference of greater numbers: its direction
-    loses its digits, and its roundoff is that of the mixed derivative times a parameter's. The
-    quadrics' tangents are products and keep theirs.
+    loses its digits, and its roundoff is that of the mixed derivative times a parameter's. A point
+    past the side, as far as PCURVE_OVERLAP allows, has its normal turned round. The quadrics'
+    tangents are products and keep theirs.
     """
     if kind != L.NURBS and kind != L.REVOLUTION and kind != L.EXTRUSION and kind != L.FORMULA:
         return 0.0
-    product = sqrt(dot(jet[1], jet[1]) * dot(jet[2], jet[2]))
+    uu, vv = dot(jet[1], jet[1]), dot(jet[2], jet[2])
+    past = 2.0 * PCURVE_OVERLAP
+    if min(uu, vv) <= past * past * dot(jet[4], jet[4]):
+        return 2.0
+    product = sqrt(uu * vv)
     lost = NORMAL_NOISE * EPS * (reals[L.SIZE] + norm(jet[0])) * norm(jet[4])
-    return lost / product if lost < REVERSED_NORMAL * product else 2.0
+    return lost / product if lost < 2.0 * product else 2.0
 
 
 @small

@@ -17,9 +17,11 @@ from standoff.kernels.compiler.decorators import shared, uncontracted
 from standoff.kernels.tolerances import (
     AIM_FIRST,
     AIM_STEP,
+    FAR_OUT,
     PARAMETER_NOISE,
     PCURVE_OVERLAP,
     RAYS,
+    SAME_CROSSING,
     TOUCH_WIDTH,
 )
 from standoff.kernels.values import Hit
@@ -119,6 +121,20 @@ def well_inside(reals, o, u, v):
 
 
 @uncontracted
+def far_out(reals, o, u, v):
+    """Are parameters so much greater than those on the face that their roundoff is wider than it?
+
+    A half-space's face, and one without area, have no rectangle to tell by.
+    """
+    b = o + L.INNER
+    low, high = reals[b] + reals[b + 2], reals[b + 1] + reals[b + 3]
+    if not (-inf < low <= high < inf):
+        return False
+    width = 1.0 + max(abs(reals[b]), abs(reals[b + 1])) + max(abs(reals[b + 2]), abs(reals[b + 3]))
+    return abs(u) + abs(v) > FAR_OUT * width
+
+
+@uncontracted
 def walk_face(ints, reals, chart, u, v, du, dv):
     """(s, hit, index, t): how much of the step fits on the face, s <= 1, and what it hits."""
     r = chart_record(ints, chart)
@@ -177,6 +193,27 @@ def walk(ints, reals, feature, chart, p, q, dp, dq):
 
 
 @uncontracted
+def ray_side(ints, reals, record, u, v, du, dv):
+    """1 where a ray from (u, v) leaves the face at the first boundary it meets, or (u, v) is on a
+    boundary; -1 where it enters there; 0 where it meets none. `record` is the chart's.
+    """
+    noise = PARAMETER_NOISE * (1.0 + abs(u) + abs(v))
+    first = ints[record + L.CHART_COEDGE]
+    nearest, side = inf, 0
+    for j in range(first, first + ints[record + L.CHART_N_COEDGES]):
+        count, s1, out1, _, s2, out2, _ = crossings(ints, reals, j, u, v, du, dv, noise)
+        if (count > 0 and s1 == 0.0) or (count > 1 and s2 == 0.0):
+            return 1
+        for m in range(count):
+            s, out = (s1, out1) if m == 0 else (s2, out2)
+            if 0.0 < s < nearest * (1.0 - SAME_CROSSING):
+                nearest, side = s, out
+            elif 0.0 < s <= nearest * (1.0 + SAME_CROSSING):
+                side = min(side, out)  # entered and left at once, from outside
+    return side
+
+
+@uncontracted
 def on_face(ints, reals, chart, u, v):
     """Is (u, v) on the face? From inside a ray leaves at the first boundary it meets."""
     r = chart_record(ints, chart)
@@ -187,7 +224,7 @@ def on_face(ints, reals, chart, u, v):
     if well_inside(reals, o, u, v):
         return True
     limit = reals[o + L.LIMIT]
-    if abs(u) > limit or abs(v) > limit:
+    if abs(u) > limit or abs(v) > limit or far_out(reals, o, u, v):
         return False
     # Rays are aimed at points of the boundary, so that they meet it.
     for k in range(RAYS):
@@ -201,15 +238,7 @@ def on_face(ints, reals, chart, u, v):
             continue
         if hypot(x - u, y - v) <= noise:
             return True
-        nearest, side = inf, 0
-        for j in range(first, first + n):
-            count, s1, out1, _, s2, out2, _ = crossings(ints, reals, j, u, v, x - u, y - v, noise)
-            if (count > 0 and s1 == 0.0) or (count > 1 and s2 == 0.0):
-                return True  # on the boundary
-            if count > 0 and 0.0 < s1 < nearest:
-                nearest, side = s1, out1
-            if count > 1 and 0.0 < s2 < nearest:
-                nearest, side = s2, out2
+        side = ray_side(ints, reals, r, u, v, x - u, y - v)
         if side != 0:
             return side > 0
     return True

@@ -91,11 +91,11 @@ def conclude(pair, pose, at, least, tolerance, work):
     d = dot(n, gap)
     bound, blur = certify_along(pair, pose, place, jets, n)
     upper = norm(gap)
+    if exhausted(work):
+        bound = max(bound, -box_depth(pair, pose, n) - pair_slack(pair))
     if bound <= 0.0 and (pair.ints_a[L.UNBOUNDED] or pair.ints_b[L.UNBOUNDED]):
         # no point of a body is lower over a half-space than its lowest
         upper = min(upper, d)
-    if exhausted(work):
-        bound = max(bound, -box_depth(pair, pose, n) - pair_slack(pair))
     span = pair_span(pair, pose.p, abs(d))
     allowed = min(tolerance, BLUR) * span + pair_slack(pair) + min(blur, BLUR * span)
     if d - bound > allowed or norm(axpy(-d, n, gap)) > ALIGNED * span:
