@@ -11,8 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 import standoff as so
-from standoff.kernels.pair import derivatives as D
-from standoff.tracking import Smoothness, derivatives
+from standoff.tracking import Smoothness
 from tracking.contact_cases import BOX, CASES, CYLINDER, LYING, OVERLAPS, PLATE, SQUARE
 
 Array = NDArray[np.float64]
@@ -177,18 +176,14 @@ def test_what_is_given_of_nearly_parallel_cylinders_has_nine_digits(angle):
         assert np.abs(found.gradient[[0, 1, 2, 6, 7, 8]] - np.r_[-n, n]).max() <= EXACT
 
 
-def test_one_pair_of_a_singular_system_at_a_boundary(monkeypatch):
-    """The set of pairs is one point, but without digits: the translations, and the turn about n."""
-    answer = so.distance(s.halfspace(), s.sphere(0.3), HOME, so.Pose(np.eye(3), [1, 2, 0.5]))
-
-    def derived(pair, block, to):
-        to[:12] = np.arange(12.0)
-        return D.SINGULAR_BESIDE
-
-    monkeypatch.setattr(derivatives.kernels, "derive", derived)
-    expected = np.arange(12.0)
-    expected[[3, 4, 9, 10]] = np.nan
-    np.testing.assert_array_equal(answer.gradient, expected)
+def test_one_pair_of_a_singular_system_at_a_boundary():
+    """A lying cylinder touches a disc's rim from inside, seen along n: one pair, without digits."""
+    disc = s.cylinder(0.5, 1.0)
+    pose = so.Pose.exp([0, 0, np.pi / 2], [0.25, 0.5, -0.75]) @ so.Pose.exp(LYING, [0, 0, 0])
+    found = so.distance(disc, disc, HOME, pose).derivatives()
+    assert found.smoothness is Smoothness.PARTIAL
+    assert np.abs(found.gradient[6:9] - [0, 0, -1]).max() <= EXACT
+    np.testing.assert_array_equal(np.isnan(found.gradient[9:]), [True, True, False])
 
 
 @pytest.mark.parametrize("off", [0.0, 1e-10, 1e-8])
