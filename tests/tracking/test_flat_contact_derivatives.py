@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 import standoff as so
+from standoff.kernels.state import arrays as K
 from standoff.tracking import Smoothness
 from tracking.contact_cases import BOX, CASES, CYLINDER, LYING, OVERLAPS, PLATE, SQUARE
 
@@ -186,13 +187,26 @@ def test_one_pair_of_a_singular_system_at_a_boundary():
     np.testing.assert_array_equal(np.isnan(found.gradient[9:]), [True, True, False])
 
 
+@pytest.mark.parametrize("spin", [0.0, 0.4])
 @pytest.mark.parametrize("off", [0.0, 1e-10, 1e-8])
-def test_an_axis_is_square_to_1e_9(off):
+def test_an_axis_is_square_to_1e_9(off, spin):
     """A turn about a lying cylinder's own line has a derivative; about one off it by 1e-8 not."""
     pose = so.Pose.exp([0, 0, off], [1, 2, 1.5]) @ so.Pose.exp(LYING, [0, 0, 0])
+    pose = pose @ so.Pose.exp([0, 0, spin], [0, 0, 0])
     given = so.distance(s.halfspace(), CYLINDER, HOME, pose).gradient
     np.testing.assert_array_equal(np.isnan(given[[3, 4, 5]]), [True, off > 1e-9, False])
     np.testing.assert_array_equal(np.isnan(given[[9, 10, 11]]), [True, off > 1e-9, False])
+
+
+def test_an_answer_that_still_converges_is_brought_to_its_optimum():
+    """Of a law's frame with a normal off by 1e-5 the gradient has the optimum's."""
+    cam, roller = CYLINDER, s.cylinder(0.2, 1.0)
+    n = np.array([0.6, 0.8, 0.0])
+    good = so.distance(cam, roller, HOME, so.Pose(np.eye(3), 1.0 * n))
+    block = good._out.copy()
+    block[K.NORMAL : K.NORMAL + 3] = np.array([0.6 - 8e-6, 0.8 + 6e-6, 0.0])
+    given = so.Proximity(cam, roller, block).gradient
+    assert np.abs(given[6:9] - n).max() <= EXACT
 
 
 def test_a_flat_point_has_a_gradient_by_translation():
