@@ -187,15 +187,22 @@ def test_one_pair_of_a_singular_system_at_a_boundary():
     np.testing.assert_array_equal(np.isnan(found.gradient[9:]), [True, True, False])
 
 
-@pytest.mark.parametrize("spin", [0.0, 0.4])
 @pytest.mark.parametrize("off", [0.0, 1e-10, 1e-8])
-def test_an_axis_is_square_to_1e_9(off, spin):
-    """A turn about a lying cylinder's own line has a derivative; about one off it by 1e-8 not."""
+def test_an_axis_is_square_to_1e_9(off):
+    """A turn about the line of contact has a derivative; about one off it by 1e-8 not.
+
+    By the set of pairs, of a lying cylinder whose rim is named, and by the system, of two
+    cylinders side by side.
+    """
     pose = so.Pose.exp([0, 0, off], [1, 2, 1.5]) @ so.Pose.exp(LYING, [0, 0, 0])
-    pose = pose @ so.Pose.exp([0, 0, spin], [0, 0, 0])
     given = so.distance(s.halfspace(), CYLINDER, HOME, pose).gradient
     np.testing.assert_array_equal(np.isnan(given[[3, 4, 5]]), [True, off > 1e-9, False])
     np.testing.assert_array_equal(np.isnan(given[[9, 10, 11]]), [True, off > 1e-9, False])
+    world = so.Pose.exp([off, 0, 0], [0.3, 0.2, 0.1])
+    beside = so.distance(CYLINDER, CYLINDER, world, world @ so.Pose(np.eye(3), [1.1, 0, 0.3]))
+    assert (beside.feature_a.kind, beside.feature_b.kind) == ("face", "face")
+    np.testing.assert_array_equal(np.isnan(beside.gradient[3:6]), [False, True, off > 1e-9])
+    np.testing.assert_array_equal(np.isnan(beside.gradient[9:]), [False, True, off > 1e-9])
 
 
 def test_an_answer_that_still_converges_is_brought_to_its_optimum():
