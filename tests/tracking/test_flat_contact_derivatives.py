@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 import standoff as so
-from standoff.kernels.pair import derivatives as D
-from standoff.tracking import Smoothness, derivatives
+from standoff.kernels.state import arrays as K
+from standoff.tracking import Smoothness
 from tracking.contact_cases import BOX, CASES, CYLINDER, LYING, OVERLAPS, PLATE, SQUARE
 
 Array = NDArray[np.float64]
@@ -177,27 +177,43 @@ def test_what_is_given_of_nearly_parallel_cylinders_has_nine_digits(angle):
         assert np.abs(found.gradient[[0, 1, 2, 6, 7, 8]] - np.r_[-n, n]).max() <= EXACT
 
 
-def test_one_pair_of_a_singular_system_at_a_boundary(monkeypatch):
-    """The set of pairs is one point, but without digits: the translations, and the turn about n."""
-    answer = so.distance(s.halfspace(), s.sphere(0.3), HOME, so.Pose(np.eye(3), [1, 2, 0.5]))
-
-    def derived(pair, block, to):
-        to[:12] = np.arange(12.0)
-        return D.SINGULAR_BESIDE
-
-    monkeypatch.setattr(derivatives.kernels, "derive", derived)
-    expected = np.arange(12.0)
-    expected[[3, 4, 9, 10]] = np.nan
-    np.testing.assert_array_equal(answer.gradient, expected)
+def test_one_pair_of_a_singular_system_at_a_boundary():
+    """A lying cylinder touches a disc's rim from inside, seen along n: one pair, without digits."""
+    disc = s.cylinder(0.5, 1.0)
+    pose = so.Pose.exp([0, 0, np.pi / 2], [0.25, 0.5, -0.75]) @ so.Pose.exp(LYING, [0, 0, 0])
+    found = so.distance(disc, disc, HOME, pose).derivatives()
+    assert found.smoothness is Smoothness.PARTIAL
+    assert np.abs(found.gradient[6:9] - [0, 0, -1]).max() <= EXACT
+    np.testing.assert_array_equal(np.isnan(found.gradient[9:]), [True, True, False])
 
 
 @pytest.mark.parametrize("off", [0.0, 1e-10, 1e-8])
 def test_an_axis_is_square_to_1e_9(off):
-    """A turn about a lying cylinder's own line has a derivative; about one off it by 1e-8 not."""
+    """A turn about the line of contact has a derivative; about one off it by 1e-8 not.
+
+    By the set of pairs, of a lying cylinder whose rim is named, and by the system, of two
+    cylinders side by side.
+    """
     pose = so.Pose.exp([0, 0, off], [1, 2, 1.5]) @ so.Pose.exp(LYING, [0, 0, 0])
     given = so.distance(s.halfspace(), CYLINDER, HOME, pose).gradient
     np.testing.assert_array_equal(np.isnan(given[[3, 4, 5]]), [True, off > 1e-9, False])
     np.testing.assert_array_equal(np.isnan(given[[9, 10, 11]]), [True, off > 1e-9, False])
+    world = so.Pose.exp([off, 0, 0], [0.3, 0.2, 0.1])
+    beside = so.distance(CYLINDER, CYLINDER, world, world @ so.Pose(np.eye(3), [1.1, 0, 0.3]))
+    assert (beside.feature_a.kind, beside.feature_b.kind) == ("face", "face")
+    np.testing.assert_array_equal(np.isnan(beside.gradient[3:6]), [False, True, off > 1e-9])
+    np.testing.assert_array_equal(np.isnan(beside.gradient[9:]), [False, True, off > 1e-9])
+
+
+def test_an_answer_that_still_converges_is_brought_to_its_optimum():
+    """Of a law's frame with a normal off by 1e-5 the gradient has the optimum's."""
+    cam, roller = CYLINDER, s.cylinder(0.2, 1.0)
+    n = np.array([0.6, 0.8, 0.0])
+    good = so.distance(cam, roller, HOME, so.Pose(np.eye(3), 1.0 * n))
+    block = good._out.copy()
+    block[K.NORMAL : K.NORMAL + 3] = np.array([0.6 - 8e-6, 0.8 + 6e-6, 0.0])
+    given = so.Proximity(cam, roller, block).gradient
+    assert np.abs(given[6:9] - n).max() <= EXACT
 
 
 def test_a_flat_point_has_a_gradient_by_translation():

@@ -275,7 +275,7 @@ def clear_turns(optimum, flat, factor, to):
             change = cross(way, optimum.normal)
             for j in range(3):
                 k = 6 * side + 3 + j
-                if abs(change[j]) > SQUARE_AXIS * optimum.span and not (flat and off_plane(k)):
+                if abs(change[j]) > SQUARE_AXIS * optimum.span:
                     to[GRADIENT + k] = nan
     return True
 
