@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.kernels.entries.preparing import prepare_all
+from standoff_studies.soak.adversary import run_round
 from standoff_studies.soak.cases import Case
 from standoff_studies.soak.motions import Motion, Path
 from standoff_studies.soak.running import run_case
@@ -19,7 +20,7 @@ no part of the kernels, and counts as the pair's time."""
 
 
 def compile_kernels() -> None:
-    """Have all kernels ready; make a body of every kind, and track and ask a pair."""
+    """Have all kernels ready; make a body of every kind, track and ask a pair, run a round."""
     prepare_all()
     rng = np.random.default_rng(0)
     bodies = [
@@ -29,6 +30,7 @@ def compile_kernels() -> None:
     ]
     bounded = [one for one in bodies if one.body.bounded]
     _run(bounded[-1], bounded[0])
+    run_round(0, 0, 1)
 
 
 def _run(a: Made, b: Made) -> None:
