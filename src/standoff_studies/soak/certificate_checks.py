@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from standoff.kernels.body import layout as L
 from standoff.kernels.pair.certified import CERTIFIED
 from standoff.kernels.state.arrays import N_MOTION
-from standoff.kernels.tolerances import BLUR, DEPTH_PROOF, EPS, START_GAP, TOUCHING
+from standoff.kernels.tolerances import BLUR, DEPTH_PROOF, EPS, PCURVE_OVERLAP, START_GAP, TOUCHING
 from standoff.tracking.status import Status
 from standoff_studies.oracles import HalfSpace, lengths
 from standoff_studies.soak import any_places as P
@@ -97,7 +97,8 @@ def misses(scene: Scene, asked: Array) -> Iterator[Miss]:
     goal = np.where(np.isinf(told), START_GAP, told) * asked[:, P.SPAN]
     blur = np.minimum(asked[:, P.BLUR], BLUR * asked[:, P.SPAN])
     allowed = goal + slack + blur + noise
-    shares = slack + noise
+    # a place may be past its face's boundary by that much, and is drawn so
+    past = slack + noise + PCURVE_OVERLAP * size_of(scene, asked)
 
     yield from worst("a bound that is no number", np.isnan(lower) * 1.0, 0.0)
     yield from worst("a distance that is not finite", 1.0 * ~np.isfinite(d), 0.0)
@@ -110,9 +111,7 @@ def misses(scene: Scene, asked: Array) -> Iterator[Miss]:
         noise,
         asked_of,
     )
-    yield from worst(
-        "points of the bodies nearer than the distance", truth - d, shares, on & ~along
-    )
+    yield from worst("points of the bodies nearer than the distance", truth - d, past, on & ~along)
     off = np.abs(d - truth)
     yield from worst("certified at a wrong distance", off, allowed, certified & np.isfinite(told))
     apart = status == Status.CONVERGED.value
