@@ -16,6 +16,12 @@ SHOWN_CHARACTERS = 200
 DEEPEST = 8
 """Most dimensions of an array that is read. NumPy itself stops walking at 32 and at 64."""
 
+NOT_REAL = (
+    *(bool, np.bool_, str, bytes, type(None)),
+    *(complex, np.complexfloating, np.datetime64, np.timedelta64),
+)
+"""What NumPy would make a float64 of, or refuses in words of its own, and is no real number."""
+
 
 def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
     """Return `value` as a message repeats it: its repr, cut short."""
@@ -66,11 +72,12 @@ def shape_of(value: Any) -> tuple[int, ...] | None:
     return None if ragged else tuple(objects.shape)
 
 
-def real_array(value: Any) -> NDArray[np.float64]:
-    """Return a new float64 array of real numbers.
+def real_array(value: Any, *, copy: bool = True) -> NDArray[np.float64]:
+    """Return a float64 array of real numbers: a new one, or with ``copy=False`` the one given where
+    it is one already.
 
-    NumPy itself would read text and truth values as numbers, None as NaN, and drop an imaginary
-    part with no more than a warning.
+    NumPy itself would read text, truth values and durations as numbers, None as NaN, and drop an
+    imaginary part with no more than a warning.
 
     Raises
     ------
@@ -82,16 +89,35 @@ def real_array(value: Any) -> NDArray[np.float64]:
         Its rows differ in length, or it is nested too deeply.
     """
     check_unmasked(value)
-    given = value if isinstance(value, np.ndarray) else np.array(value, dtype=object)
+    given = as_given(value)
     if given.dtype.kind not in "iufO":
         raise StandoffTypeError(f"numbers of the kind {given.dtype}")
     if given.ndim > DEEPEST:
         raise StandoffError(f"lists in lists, more than {DEEPEST} deep")
     if given.dtype.kind == "O":
-        for item in given.flat:
-            if isinstance(item, bool | np.bool_ | str | bytes) or item is None:
-                raise StandoffTypeError(f"{shown(item)} is not a number")
+        wrong = tuple(kind for kind in set(map(type, given.flat)) if issubclass(kind, NOT_REAL))
+        if wrong:
+            item = next(item for item in given.flat if isinstance(item, wrong))
+            raise StandoffTypeError(f"{shown(item)} is not a real number")
     try:
-        return np.array(given, dtype=np.float64)
+        return np.array(given, dtype=np.float64) if copy else np.asarray(given, dtype=np.float64)
     except OverflowError as error:
         raise StandoffError(f"a number beyond float64: {error}") from error
+
+
+def as_given(value: Any) -> NDArray[Any]:
+    """An array of what is given, every element of lists as it is, before NumPy makes them alike.
+
+    Raises
+    ------
+    ValueError
+        Its rows differ in length.
+    """
+    if isinstance(value, np.ndarray):
+        return value
+    if hasattr(value, "__array__") and not isinstance(value, np.generic):
+        return np.asarray(value)  # of JAX, PyTorch or pandas, which know their own kind of number
+    given = np.array(value, dtype=object)
+    if any(issubclass(kind, list | tuple) for kind in set(map(type, given.flat))):
+        raise StandoffError("rows of different lengths")
+    return given

@@ -138,7 +138,7 @@ def test_poses_and_twists_in_every_form() -> None:
     [
         ({"poses_b": np.zeros((3, 4))}, r"poses_b has the shape \(3, 4\): give an array"),
         ({"poses_b": np.zeros((0, 4, 4))}, r"poses_b has the shape \(0, 4, 4\)"),
-        ({"poses_b": "there"}, "poses_b = 'there'"),
+        ({"poses_b": "there"}, "poses_b is 'there': give an array"),
         ({"poses_a": np.tile(REST, (4, 1, 1))}, "poses_b is given for 5 frames|poses_a is given"),
         ({"twists_b": np.zeros((5, 5))}, r"twists_b has the shape \(5, 5\)"),
         ({"twists_b": np.zeros((4, 6))}, "twists_b is given for 4 frames, another for 5"),

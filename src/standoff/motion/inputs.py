@@ -49,8 +49,9 @@ def array(
     return copied
 
 
-def numbers(value: ArrayLike, name: str, shape: tuple[int, ...]) -> FloatArray:
-    """Copy `value` to a float64 array of the given shape, whose components may be of any size."""
+def numbers(value: ArrayLike, name: str, shape: tuple[int, ...] | None) -> FloatArray:
+    """Copy `value` to a float64 array of the given shape (None: of any), whose components may be of
+    any size."""
     try:
         copied = real_array(value)
     except MaskedNumbers as error:
@@ -59,7 +60,7 @@ def numbers(value: ArrayLike, name: str, shape: tuple[int, ...]) -> FloatArray:
         raise StandoffError(
             f"{name} is {shown(value)}: give {_numbers(shape)}, all of them real", name, value
         ) from error
-    if copied.shape != shape:
+    if shape is not None and copied.shape != shape:
         raise StandoffError(
             f"{name} has shape {copied.shape}, value {text(copied)}: give {_numbers(shape)}",
             name,
@@ -113,7 +114,9 @@ def direction(value: ArrayLike, name: str) -> FloatArray:
     return unit
 
 
-def _numbers(shape: tuple[int, ...]) -> str:
+def _numbers(shape: tuple[int, ...] | None) -> str:
+    if shape is None:
+        return "an array of numbers"
     if len(shape) == 1:
         return f"{shape[0]} numbers"
     return f"an array of {' by '.join(map(str, shape))} numbers"

@@ -16,7 +16,7 @@ from standoff.motion.inputs import FloatArray, text
 from standoff.motion.rotations import as_rotation, nearest_rotation
 from standoff.motion.tolerances import ORTHONORMALITY, QUATERNION_ROUNDING, UNIT_QUATERNION
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shape_of, shown
+from standoff.real_numbers import as_given, shape_of, shown
 from standoff.spellings import no_attribute
 
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)
@@ -268,8 +268,7 @@ class Pose(KeepsReadOnly):
         ValueError
             If the last axis has not three components.
         """
-        inputs.unmasked(points, "points")
-        array = np.asarray(points, dtype=np.float64)
+        array = inputs.numbers(points, "points", None)
         if array.ndim == 0 or array.shape[-1] != 3:
             raise StandoffError(
                 f"points have shape {array.shape}: give an array of shape (..., 3)",
@@ -334,7 +333,7 @@ def _parts(value: PoseLike) -> tuple[RotationLike, ArrayLike]:
     given = matrix_of(value)
     inputs.unmasked(given, "pose")
     try:
-        given = np.asarray(given)
+        given = as_given(given)
     except (ValueError, RecursionError) as error:
         raise StandoffError(f"not a pose: {shown(value)}; {_ACCEPTED}", "value", value) from error
     if given.shape == (4,):

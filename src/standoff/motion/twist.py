@@ -15,7 +15,7 @@ from standoff.motion import inputs
 from standoff.motion.inputs import FloatArray, text
 from standoff.motion.pose import Pose, PoseLike
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
+from standoff.real_numbers import as_given, shown
 
 Frame: TypeAlias = Literal["world", "body"]
 """The axes in which a twist's components are given."""
@@ -81,7 +81,7 @@ class Twist(KeepsReadOnly):
             return value
         inputs.unmasked(value, "twist")
         try:
-            given = np.asarray(value)
+            given = as_given(value)
         except (ValueError, RecursionError) as error:
             raise StandoffError(
                 f"not a twist: {shown(value)}; {_ACCEPTED}", "value", value

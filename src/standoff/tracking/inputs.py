@@ -128,7 +128,7 @@ def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
         return NO_TWIST
     if isinstance(twist, tuple) and len(twist) == 2:
         v, omega = twist
-        if type(v) is type(omega) is np.ndarray and v.shape == omega.shape == (3,):
+        if _plain_vector(v) and _plain_vector(omega):
             flat = np.empty(6)
             flat[:3], flat[3:] = v, omega
             return flat
@@ -138,6 +138,10 @@ def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
     if twist.frame != "world":
         twist = twist.in_world(Pose.of(pose))
     return np.concatenate([twist.v, twist.omega])
+
+
+def _plain_vector(value: Any) -> bool:
+    return type(value) is np.ndarray and value.shape == (3,) and value.dtype in PLAIN
 
 
 def refuse_twists(twist_a: Array, twist_b: Array) -> NoReturn:

@@ -12,7 +12,7 @@ from standoff.bodies.body import Body
 from standoff.bodies.features import Feature, charts_of
 from standoff.errors import MaskedNumbers, StandoffError
 from standoff.kernels.entries.queries import on_face
-from standoff.real_numbers import check_unmasked, shown
+from standoff.real_numbers import check_unmasked, real_array, shown
 from standoff.tracking.rows import StateRow
 
 Array = NDArray[np.float64]
@@ -87,15 +87,14 @@ def _feature_of(body: Body, feature: Any) -> tuple[str, int]:
 def _values_of(body: Body, kind: str, index: int, parameters: Any) -> Array:
     """Parameters of a feature, as many as it takes."""
     try:
-        check_unmasked(parameters)
-        values = np.atleast_1d(np.asarray(parameters, dtype=np.float64)).ravel()
+        values = real_array(parameters).ravel()
     except MaskedNumbers as error:
         raise StandoffError(
             f"The parameter list {error}: {shown(parameters)}", "parameters", parameters
         ) from error
     except (TypeError, ValueError) as error:
         raise StandoffError(
-            f"Parameters {shown(parameters)} are not numbers.", "parameters", parameters
+            f"Parameters {shown(parameters)} are not real numbers.", "parameters", parameters
         ) from error
     wanted = COUNT[kind]
     atlas = kind == "face" and charts_of(body, index)[1] > 1

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.errors import StandoffError
+from standoff.errors import MaskedNumbers, StandoffError
 from standoff.kernels.compiler.entry import Entry
 from standoff.kernels.pair import events as N
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
 from standoff.motion import Pose, Twist
-from standoff.real_numbers import check_unmasked, shown
+from standoff.real_numbers import real_array, shown
 from standoff.tracking.address_table import AddressTable
 from standoff.tracking.answers import Answers
 from standoff.tracking.block import Block, with_polytope
@@ -109,11 +109,14 @@ def _repeated(array: Array, n: int) -> Array:
 
 
 def _numbers(value: Any, name: str, forms: str) -> Array:
-    check_unmasked(value)
     try:
-        return np.asarray(value, dtype=np.float64)
+        return real_array(value, copy=False)
+    except MaskedNumbers as error:
+        raise StandoffError(f"{name} {error}: {shown(value)}", name, value) from error
     except (TypeError, ValueError) as error:
-        raise StandoffError(f"{name} = {shown(value)}: give {forms}.", name, value) from error
+        raise StandoffError(
+            f"{name} is {shown(value)}: give {forms}, all of them real numbers.", name, value
+        ) from error
 
 
 def read_poses(value: Any, name: str) -> tuple[Array, int]:
