@@ -95,7 +95,7 @@ def real_array(value: Any, *, copy: bool = True) -> NDArray[np.float64]:
     if given.ndim > DEEPEST:
         raise StandoffError(f"lists in lists, more than {DEEPEST} deep")
     if given.dtype.kind == "O":
-        wrong = tuple(kind for kind in set(map(type, given.flat)) if issubclass(kind, NOT_REAL))
+        wrong = tuple(kind for kind in _kinds(given) if issubclass(kind, NOT_REAL))
         if wrong:
             item = next(item for item in given.flat if isinstance(item, wrong))
             raise StandoffTypeError(f"{shown(item)} is not a real number")
@@ -118,6 +118,10 @@ def as_given(value: Any) -> NDArray[Any]:
     if hasattr(value, "__array__") and not isinstance(value, np.generic):
         return np.asarray(value)  # of JAX, PyTorch or pandas, which know their own kind of number
     given = np.array(value, dtype=object)
-    if any(issubclass(kind, list | tuple) for kind in set(map(type, given.flat))):
+    if any(issubclass(kind, list | tuple) for kind in _kinds(given)):
         raise StandoffError("rows of different lengths")
     return given
+
+
+def _kinds(objects: NDArray[np.object_]) -> set[type]:
+    return set(map(type, objects.ravel().tolist()))
