@@ -12,6 +12,7 @@ from standoff.cli.output import Writer, check_target, write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.selection import chosen, target_of
 from standoff.cli.summary import recording_lines
+from standoff.cli.terminal import tell
 from standoff.recording import Recording
 from standoff.scene import (
     Scene,
@@ -52,7 +53,7 @@ def run_track(command: TrackCommand) -> int:
     done = list(zip(runs, recordings, strict=True))
     write_whole({path: write for run, told in done for path, write in run.files(told).items()})
     if command.report.json:
-        print(
+        tell(
             pairs_text(
                 whole,
                 [
@@ -67,7 +68,7 @@ def run_track(command: TrackCommand) -> int:
             "\n".join(recording_lines(run.scene, told, run.written(), verbose=verbose))
             for run, told in done
         ]
-        print("\n\n".join(texts))
+        tell("\n\n".join(texts))
     certified = all(recording.certified.all() for recording in recordings)
     return ExitCode.DONE if certified else ExitCode.NOT_CERTIFIED
 
