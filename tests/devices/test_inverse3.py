@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 import time
 from collections.abc import Iterator
 
@@ -152,6 +153,41 @@ def test_a_bad_frame_ends_the_force(
         assert not any(service.forces[-1])
         service.clear()
         engaged(servo, service)
+
+
+@pytest.mark.parametrize("answered", [True, False])
+def test_a_flood_ends_the_force_and_holds_no_stop_up(service: FakeService, answered: bool) -> None:
+    device = Inverse3(service.url)
+    with Servo(device_soak.held_ball(2e-3), device=device, max_age=0.2) as servo:
+        engaged(servo, service)
+        flood = Flood(service, answered=answered)
+        service.mangle = flood
+        assert until(lambda: flood.sent > 1000)
+        assert until(lambda: not servo.latest().engaged)
+        if answered:  # and the device is told so while the flood goes on
+            assert until(lambda: service.zeros > 10)
+        started = time.monotonic()
+        servo.stop()
+        seconds = time.monotonic() - started
+        flood.over.set()
+    assert seconds < 0.5
+    assert not answered or not any(service.forces[-1])  # of what it does not hear it knows nothing
+
+
+class Flood:
+    """Answers without end; between them the service hears the forces, or it does not."""
+
+    def __init__(self, service: FakeService, *, answered: bool) -> None:
+        self._service, self._answered = service, answered
+        self.sent, self.over = 0, threading.Event()
+
+    def __call__(self, number: int, text: str) -> list[str | bytes | float]:
+        end = time.monotonic() + (0.02 if self._answered else 20.0)
+        while time.monotonic() < end and self.sent < 10_000_000 and not self.over.is_set():
+            assert self._service.open is not None
+            self._service.open.send(text)
+            self.sent += 1
+        return [text]
 
 
 def test_a_short_soak() -> None:
