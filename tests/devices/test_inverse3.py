@@ -13,10 +13,11 @@ from mangled import kinds
 
 import standoff as so
 from standoff.devices import Inverse3
+from standoff.devices.inverse3 import _Conversation
 from standoff.devices.inverse3_messages import Cursor, cursor_of, device_ids, force_message
 from standoff.errors import DeviceError, StandoffTypeError
 from standoff.servo import Servo
-from standoff.simulation import Fault
+from standoff.simulation import Fault, Wrench
 
 pytest.importorskip("websockets", reason="the extra 'devices' is not installed")
 
@@ -172,6 +173,42 @@ def test_a_flood_ends_the_force_and_holds_no_stop_up(service: FakeService, answe
         flood.over.set()
     assert seconds < 0.5
     assert not answered or not any(service.forces[-1])  # of what it does not hear it knows nothing
+
+
+def test_of_a_flood_no_more_is_read_than_comes_in_a_period() -> None:
+    class Endless:
+        """A connection that has another frame at any time, for two seconds."""
+
+        def __init__(self) -> None:
+            self.end, self.forces = time.monotonic() + 2.0, 0
+
+        def send(self, message: str) -> None:
+            self.forces += 1
+
+        def recv(self, seconds: float) -> str:
+            if time.monotonic() > self.end:
+                raise TimeoutError
+            return "{}"
+
+    class Quiet:
+        """A port that tells of no force."""
+
+        max_age = 0.01
+
+        def wrench(self) -> Wrench:
+            return Wrench.zero()
+
+        def fail(self, fault: Fault) -> None:
+            pass
+
+    socket, device = Endless(), Inverse3()
+    told = _Conversation(device, socket, DEVICE, Quiet())  # type: ignore[arg-type]
+    started = time.monotonic()
+    for _ in range(5):
+        told.exchange()
+    assert time.monotonic() - started < 1.0
+    assert socket.forces == 5
+    assert device.refused > 5
 
 
 class Flood:
