@@ -132,6 +132,13 @@ def test_a_files_own_name(standoff: Standoff, tmp_path: Path) -> None:
         assert obeyed(ended.err) == []
 
 
+def test_the_name_of_what_was_written(standoff: Standoff, passing: Path) -> None:
+    ended = standoff("automaton", passing, "-o", passing.with_name("\x1b[2J.txt"))
+    assert ended.code == 0, ended.err
+    assert "wrote" in ended.out
+    assert obeyed(ended.out) == []
+
+
 def test_errors_and_reprs_of_the_library() -> None:
     body = so.Body.from_brep([[0.0, 0.0, 0.0]], name=OBEYED)
     pair = so.distance(body, so.shapes.sphere(1.0), np.eye(4), (np.eye(3), [3.0, 0.0, 0.0]))
