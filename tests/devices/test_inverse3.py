@@ -187,7 +187,7 @@ def test_of_a_flood_no_more_is_read_than_comes_in_a_period() -> None:
 
         def recv(self, seconds: float) -> str:
             if time.monotonic() > self.end:
-                raise TimeoutError
+                raise ConnectionError("of a flood all was read")
             return "{}"
 
     class Quiet:
