@@ -22,7 +22,10 @@ from standoff import bodies, recording
 SOURCE = Path(so.__file__).parent
 ROOT = {"standoff", "standoff.on_demand", "standoff.version"}
 # The flags of the laws' options are made from their declarations.
-LAWS = {"standoff.errors", *(f"standoff.tracking{part}" for part in ("", ".laws", ".law_options"))}
+LAWS = {
+    *("standoff.errors", "standoff.wording"),
+    *(f"standoff.tracking{part}" for part in ("", ".laws", ".law_options")),
+}
 COMMANDS = (
     *("track", "distance", "impact", "check", "automaton"),
     *("paper", "soak", "accuracy", "warmup"),
@@ -147,7 +150,7 @@ def test_import_loads_three_modules_and_no_other_package() -> None:
 def test_help_loads_only_what_reads_the_arguments(command: str) -> None:
     given = [*command.split(), "--help"]
     modules = loaded(f"from standoff.cli import main\nmain({given})")
-    parts = ("", ".added", ".arguments", ".entry", ".errors", ".overview")
+    parts = ("", ".added", ".arguments", ".entry", ".errors", ".overview", ".terminal")
     command_line = {f"standoff.cli{part}" for part in parts} | LAWS
     assert {name for name in modules if packages({name}) == {"standoff"}} == ROOT | command_line
     shown = STUDIES if not command else [name for name in STUDIES if name == command]

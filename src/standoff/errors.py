@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from standoff.wording import printable
+
 
 class StandoffError(ValueError):
     """What was given cannot serve; the message names it, the offending value and the fix.
@@ -23,7 +25,8 @@ class StandoffError(ValueError):
     """
 
     def __init__(self, message: str, argument: str = "", value: Any = None) -> None:
-        super().__init__(message)
+        # Messages repeat names and values of files, and end on terminals.
+        super().__init__(printable(message, keep="\n"))
         self.argument = argument
         self.value = value
 

@@ -1,13 +1,61 @@
-"""Words that stand in lines of results: numbers with their nouns, names cut to fit."""
+"""Words that stand in lines of results: numbers with their nouns, names cut to fit, and text of
+others that a terminal would obey."""
 
 from __future__ import annotations
+
+import json
+import re
+import unicodedata
 
 NAME_SHOWN = 20
 """Longest name of a body that the line of an answer or a recording repeats, in characters."""
 
+_PERHAPS_HIDDEN = re.compile(r"[^\x20-\x7e]")
+
+
+def printable(text: str, keep: str = "") -> str:
+    """Return text whose characters are all seen, and none obeyed: the others as escapes.
+
+    A terminal obeys control characters, C0, DEL and C1 alike: they move the cursor, set the
+    window's title and clear the screen. Format characters turn what is read around them, and lone
+    surrogates, of file names, cannot be written at all.
+
+    Parameters
+    ----------
+    text : str
+        Of a scene, a file or a device, or with a piece of it.
+    keep : str
+        Control characters of our own, such as the ends of lines.
+    """
+    if text.isprintable():
+        return text
+    return _PERHAPS_HIDDEN.sub(lambda found: _seen(found[0], keep), text)
+
+
+def printable_json(text: str) -> str:
+    """Return JSON that says the same, in characters that are all seen."""
+
+    def seen(found: re.Match[str]) -> str:
+        letter = found[0]
+        return json.dumps(letter)[1:-1] if _hidden(letter) and letter != "\n" else letter
+
+    return _PERHAPS_HIDDEN.sub(seen, text)
+
+
+def _seen(letter: str, keep: str) -> str:
+    if letter in keep or not _hidden(letter):
+        return letter
+    return letter.encode("unicode_escape").decode()
+
+
+def _hidden(letter: str) -> bool:
+    # Spaces of other widths are no more than spaces, though Python escapes them too.
+    return not letter.isprintable() and unicodedata.category(letter) != "Zs"
+
 
 def short_name(name: str) -> str:
     """Return a body's name as it stands in a line with others."""
+    name = printable(name)
     return name if len(name) <= NAME_SHOWN else name[: NAME_SHOWN - 1] + "…"
 
 

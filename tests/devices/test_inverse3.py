@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 import time
 from collections.abc import Iterator
 
@@ -12,10 +13,11 @@ from mangled import kinds
 
 import standoff as so
 from standoff.devices import Inverse3
+from standoff.devices.inverse3 import _Conversation
 from standoff.devices.inverse3_messages import Cursor, cursor_of, device_ids, force_message
 from standoff.errors import DeviceError, StandoffTypeError
 from standoff.servo import Servo
-from standoff.simulation import Fault
+from standoff.simulation import Fault, Wrench
 
 pytest.importorskip("websockets", reason="the extra 'devices' is not installed")
 
@@ -152,6 +154,77 @@ def test_a_bad_frame_ends_the_force(
         assert not any(service.forces[-1])
         service.clear()
         engaged(servo, service)
+
+
+@pytest.mark.parametrize("answered", [True, False])
+def test_a_flood_ends_the_force_and_holds_no_stop_up(service: FakeService, answered: bool) -> None:
+    device = Inverse3(service.url)
+    with Servo(device_soak.held_ball(2e-3), device=device, max_age=0.2) as servo:
+        engaged(servo, service)
+        flood = Flood(service, answered=answered)
+        service.mangle = flood
+        assert until(lambda: flood.sent > 1000)
+        assert until(lambda: not servo.latest().engaged)
+        if answered:  # and the device is told so while the flood goes on
+            assert until(lambda: service.zeros > 10)
+        started = time.monotonic()
+        servo.stop()
+        seconds = time.monotonic() - started
+        flood.over.set()
+    assert seconds < 0.5
+    assert not answered or not any(service.forces[-1])  # of what it does not hear it knows nothing
+
+
+def test_of_a_flood_no_more_is_read_than_comes_in_a_period() -> None:
+    class Endless:
+        """A connection that has another frame at any time, for two seconds."""
+
+        def __init__(self) -> None:
+            self.end, self.forces = time.monotonic() + 2.0, 0
+
+        def send(self, message: str) -> None:
+            self.forces += 1
+
+        def recv(self, seconds: float) -> str:
+            if time.monotonic() > self.end:
+                raise ConnectionError("of a flood all was read")
+            return "{}"
+
+    class Quiet:
+        """A port that tells of no force."""
+
+        max_age = 0.01
+
+        def wrench(self) -> Wrench:
+            return Wrench.zero()
+
+        def fail(self, fault: Fault) -> None:
+            pass
+
+    socket, device = Endless(), Inverse3()
+    told = _Conversation(device, socket, DEVICE, Quiet())  # type: ignore[arg-type]
+    started = time.monotonic()
+    for _ in range(5):
+        told.exchange()
+    assert time.monotonic() - started < 1.0
+    assert socket.forces == 5
+    assert device.refused > 5
+
+
+class Flood:
+    """Answers without end; between them the service hears the forces, or it does not."""
+
+    def __init__(self, service: FakeService, *, answered: bool) -> None:
+        self._service, self._answered = service, answered
+        self.sent, self.over = 0, threading.Event()
+
+    def __call__(self, number: int, text: str) -> list[str | bytes | float]:
+        end = time.monotonic() + (0.02 if self._answered else 20.0)
+        while time.monotonic() < end and self.sent < 10_000_000 and not self.over.is_set():
+            assert self._service.open is not None
+            self._service.open.send(text)
+            self.sent += 1
+        return [text]
 
 
 def test_a_short_soak() -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from standoff.automaton.graph import Automaton, Mode, Transition, is_smooth, mode_of
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
+from standoff.wording import printable
 
 if TYPE_CHECKING:
     from standoff.automaton.visits import Visit
@@ -53,7 +54,7 @@ def _body_lines(
     counts = [f"{n} {kind if n == 1 else plural[kind]}" for kind, n in kinds.items()]
     smooth = sum(is_smooth(body, feature) for feature in features)
     passed = f" ({smooth} smooth: passed from face to face)" if smooth else ""
-    told = f"{letter} = {name} ({body.name}): {', '.join(counts)}{passed}, "
+    told = f"{letter} = {printable(name)} ({printable(body.name)}): {', '.join(counts)}{passed}, "
     if not transitions:
         return [f"{told}no switches"]
     rows = [(f"  {t.source} → {t.target}", t.switching, t.reset) for t in transitions]
@@ -139,7 +140,7 @@ def automaton_mermaid(automaton: Automaton, names: Names = ("A", "B")) -> str:
 
 
 def _plain(text: str) -> str:
-    return text.replace('"', "'")
+    return printable(text).replace('"', "'")
 
 
 def _identity(letter: str, feature: Feature) -> str:

@@ -35,7 +35,7 @@ from standoff.geometry.validation import (
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of
 from standoff.spellings import renamed
-from standoff.wording import counted
+from standoff.wording import counted, printable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -346,7 +346,7 @@ class Body(KeepsReadOnly):
         faces, edges = counted(self.n_faces, "face"), counted(self.n_edges, "edge")
         parts = f"{faces}, {edges}, {counted(self.n_vertices, 'vertex', 'vertices')}"
         skin = f", radius {self.radius:g}" if self.radius else ""
-        return f"<Body {self.name}: {parts}{skin}, size {self.size:g}>"
+        return f"<Body {printable(self.name)}: {parts}{skin}, size {self.size:g}>"
 
 
 def _body(name: str, radius: float, packed: Packed) -> Body:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.features import Feature
 from standoff.bodies.tolerances import SHOWN_ROUNDOFF
+from standoff.wording import printable_json
 
 
 class PlainData:
@@ -59,8 +60,9 @@ def plain(value: Any) -> Any:
 
 
 def json_text(facts: Mapping[str, Any], indent: int | None = None) -> str:
-    """Return strict JSON; NaN and the infinities are null."""
-    return json.dumps(_finite(plain(facts)), indent=indent, ensure_ascii=False, allow_nan=False)
+    """Return strict JSON; NaN and the infinities are null, control characters escapes."""
+    finite = _finite(plain(facts))
+    return printable_json(json.dumps(finite, indent=indent, ensure_ascii=False, allow_nan=False))
 
 
 def _finite(value: Any) -> Any:

@@ -15,6 +15,7 @@ from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes, Positional, arg, subc
 from standoff.cli.added import AddedCommand, added
 from standoff.cli.errors import CommandError
 from standoff.cli.overview import overview
+from standoff.cli.terminal import tell
 from standoff.tracking.law_options import Option
 from standoff.tracking.laws import every_option, laws_with
 
@@ -382,7 +383,7 @@ def parse(arguments: Sequence[str]) -> Command:
     # The library's own commands wait for nobody else's, and nobody replaces them.
     commands = OWN if first in OWN else OWN | added(first) | OWN
     if first in ("-h", "--help"):
-        print(overview(commands, len(OWN)))
+        tell(overview(commands, len(OWN)))
         raise SystemExit(0)
     if not first.startswith("-") and first not in commands:
         from standoff.spellings import unknown_command

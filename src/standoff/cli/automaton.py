@@ -11,6 +11,7 @@ from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.output import Writer, check_named, check_target, write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.selection import chosen, target_of
+from standoff.cli.terminal import tell
 from standoff.recording import Recording
 from standoff.scene import Scene, load_scene, prepare, record
 from standoff.scene.reader import unknown_name
@@ -51,10 +52,10 @@ def run_automaton(command: AutomatonCommand) -> int:
     }
     write_whole(files)
     for target in files:
-        print(f"wrote {target}")
+        tell(f"wrote {target}")
     if not files:
         texts = [TEXTS[form](m, s.pair) for s, m in zip(scenes, automata, strict=True)]
-        print("\n\n".join(texts))
+        tell("\n\n".join(texts))
     certified = all(run.certified.all() for run in runs)
     return ExitCode.DONE if certified else ExitCode.NOT_CERTIFIED
 

@@ -9,6 +9,7 @@ from standoff.cli.arguments import LibraryCommand
 from standoff.cli.errors import CommandError, ExitCode, WriteError
 from standoff.cli.facts import json_text
 from standoff.cli.progress import progress_bar
+from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 
 
@@ -34,8 +35,8 @@ def run_c_library(command: LibraryCommand) -> int:
     except OSError as error:
         raise WriteError(str(error)) from error
     if command.json:
-        print(json_text({"library": str(library), "header": str(header)}))
+        tell(json_text({"library": str(library), "header": str(header)}))
         return ExitCode.DONE
-    print(f"{library} and {header}, built in {time.perf_counter() - started:.0f} s")
-    print(f"compile a program with: cc program.c -I{command.folder} -L{command.folder} -lstandoff")
+    tell(f"{library} and {header}, built in {time.perf_counter() - started:.0f} s")
+    tell(f"compile a program with: cc program.c -I{command.folder} -L{command.folder} -lstandoff")
     return ExitCode.DONE

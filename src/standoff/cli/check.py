@@ -9,6 +9,7 @@ from typing import Any, BinaryIO
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from standoff import __version__
 from standoff.cli.arguments import CheckCommand
@@ -17,6 +18,8 @@ from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
 from standoff.cli.output import Writer, check_named, check_target, write_whole
 from standoff.cli.subject import Subject, subjects
+from standoff.cli.terminal import tell
+from standoff.wording import printable
 
 PLOT_ENDINGS = (".png", ".svg", ".pdf")
 
@@ -39,7 +42,7 @@ def run_check(command: CheckCommand) -> int:
     files = _files(found, targets)
     write_whole(files)
     if command.json:
-        print(_json(found, list(files)))
+        tell(_json(found, list(files)))
     else:
         console = Console(highlight=False)
         if not console.is_terminal:
@@ -47,7 +50,7 @@ def run_check(command: CheckCommand) -> int:
         for subject in found:
             console.print(_table(subject))
         for target in files:
-            print(f"wrote {target}")
+            tell(f"wrote {target}")
     return ExitCode.DONE
 
 
@@ -113,11 +116,11 @@ def _table(subject: Subject) -> Table:
     table = Table(
         "what",
         "found",
-        title=f"{subject.name}: {body.name}",
+        title=Text(printable(f"{subject.name}: {body.name}")),
         title_justify="left",
         box=SIMPLE_HEAD,
         pad_edge=False,
     )
     for what, found in report_rows(body, subject.unit):
-        table.add_row(what, found)
+        table.add_row(what, Text(printable(found)))  # as text: in markup "[unit]" is a style
     return table

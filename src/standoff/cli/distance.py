@@ -7,6 +7,7 @@ from standoff.cli.errors import ExitCode
 from standoff.cli.facts import answer_facts, pairs_text
 from standoff.cli.selection import chosen
 from standoff.cli.summary import answer_lines
+from standoff.cli.terminal import tell
 from standoff.scene import load_scene, query
 
 
@@ -24,10 +25,10 @@ def run_distance(command: DistanceCommand) -> int:
     answers = [query(scene, command.time) for scene in scenes]
     told = list(zip(scenes, answers, strict=True))
     if command.report.json:
-        print(pairs_text(whole, [answer_facts(scene, *answer) for scene, answer in told]))
+        tell(pairs_text(whole, [answer_facts(scene, *answer) for scene, answer in told]))
     else:
         verbose = command.report.verbose
         texts = ["\n".join(answer_lines(scene, *answer, verbose=verbose)) for scene, answer in told]
-        print("\n\n".join(texts))
+        tell("\n\n".join(texts))
     certified = all(answer.certified for _, answer in answers)
     return ExitCode.DONE if certified else ExitCode.NOT_CERTIFIED

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from standoff import __version__
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra, WriteError
+from standoff.cli.terminal import tell
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -25,7 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     given = list(sys.argv[1:] if arguments is None else arguments)
     if given == ["--version"]:
-        print(f"standoff {__version__}")
+        tell(f"standoff {__version__}")
         return ExitCode.DONE
     try:
         return _run(given)
@@ -71,5 +72,5 @@ def _run(given: list[str]) -> int:
 
 
 def _complain(message: str, code: ExitCode) -> int:
-    print(f"standoff: {message}", file=sys.stderr)
+    tell(f"standoff: {message}", error=True)
     return code

@@ -9,6 +9,7 @@ from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import impact_facts, pairs_text
 from standoff.cli.selection import chosen
 from standoff.cli.summary import impact_lines
+from standoff.cli.terminal import tell
 from standoff.impact import Impact, ImpactStatus
 from standoff.scene import Scene, SceneError, first_impact, load_scene
 
@@ -26,11 +27,11 @@ def run_impact(command: ImpactCommand) -> int:
     # All are asked before any is told: a pair that is refused ends the command.
     told = [(scene, _found(scene, command)) for scene in scenes]
     if command.report.json:
-        print(pairs_text(whole, [impact_facts(*found) for found in told]))
+        tell(pairs_text(whole, [impact_facts(*found) for found in told]))
     else:
         verbose = command.report.verbose
         texts = ["\n".join(impact_lines(*found, verbose=verbose)) for found in told]
-        print("\n\n".join(texts))
+        tell("\n\n".join(texts))
     decided = all(found.status is not ImpactStatus.UNDECIDED for _, found in told)
     return ExitCode.DONE if decided else ExitCode.NOT_CERTIFIED
 

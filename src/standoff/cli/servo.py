@@ -16,6 +16,7 @@ from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
 from standoff.cli.output import check_target, write_whole
 from standoff.cli.summary import line
+from standoff.cli.terminal import tell
 from standoff.devices import Inverse3, Trace
 from standoff.errors import StandoffError
 from standoff.kernels.compiler.notices import say
@@ -23,6 +24,7 @@ from standoff.scene import SceneError
 from standoff.scene.simulation import SimulationScene, load_simulation
 from standoff.servo import Servo, ServoReport
 from standoff.simulation.device import Fault
+from standoff.wording import printable
 
 TABLE_ENDINGS = (".parquet",)
 HAPLY = "haply"
@@ -81,7 +83,7 @@ def run_servo(command: ServoCommand) -> int:
         from standoff.servo.file import write_log
 
         write_whole({command.output: lambda file: write_log(report, facts, file)})
-    print(json_text(facts) if command.json else "\n".join(_lines(scene, report, command.output)))
+    tell(json_text(facts) if command.json else "\n".join(_lines(scene, report, command.output)))
     sound = report.ended.sound and report.fault is Fault.NONE
     return ExitCode.DONE if sound else ExitCode.FAILED
 
@@ -146,12 +148,13 @@ def _served(servo: Servo) -> ServoReport:
             while not (came or servo.wait(LOOKED)):
                 told = servo.latest()
                 if told.ended is None and told.fault is not Fault.NONE:
-                    say(f"the coupler let go: {told.fault.advice} {servo.problem}".rstrip())
+                    problem = printable(servo.problem)
+                    say(f"the coupler let go: {told.fault.advice} {problem}".rstrip())
                     break
         finally:
             report = servo.stop()
     for note in report.notes:
-        say(note)
+        say(printable(note))
     return report
 
 

@@ -15,6 +15,7 @@ from standoff.cli.facts import json_text
 from standoff.cli.output import Writer, check_target, write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.summary import line
+from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 from standoff.scene import SceneError
 from standoff.scene.simulation import SimulationScene, load_simulation
@@ -52,9 +53,9 @@ def run_simulate(command: SimulateCommand) -> int:
     files = _files(command, scene, run, facts)
     write_whole(files)
     if command.json:
-        print(json_text(facts | {"files": [str(path) for path in files]}))
+        tell(json_text(facts | {"files": [str(path) for path in files]}))
     else:
-        print("\n".join(_lines(scene, run, list(files))))
+        tell("\n".join(_lines(scene, run, list(files))))
     return ExitCode.DONE if run.uncertified == 0 else ExitCode.NOT_CERTIFIED
 
 

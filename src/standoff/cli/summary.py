@@ -18,7 +18,7 @@ from standoff.tracking.feedback_facts import feedback_text
 from standoff.tracking.law_options import OfFeedback, Option, options_of
 from standoff.tracking.laws import LAWS, PredictorCorrector
 from standoff.tracking.proximity import shown_size
-from standoff.wording import counted
+from standoff.wording import counted, printable
 
 FIRST_EVENTS = 8
 """How many switching events the summary lists: they fit on a screen with the rest. All of them are
@@ -43,7 +43,7 @@ MARGIN = 14
 
 def line(name: str, text: str) -> str:
     """Return one line of the summary."""
-    return f"{name:<{MARGIN}}{text}"
+    return f"{printable(name):<{MARGIN}}{printable(text)}"
 
 
 def answer_lines(
@@ -206,7 +206,7 @@ def _tolerance_text(tolerance: float) -> str:
 
 def _on(name: str) -> str:
     """The name of the line of a witness point, with a space before what it says."""
-    text = f"on {name}"
+    text = f"on {printable(name)}"
     return text if len(text) < MARGIN else f"{text[: MARGIN - 2]}…"
 
 

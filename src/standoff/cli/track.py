@@ -12,6 +12,7 @@ from standoff.cli.output import Writer, check_target, write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.selection import chosen, target_of
 from standoff.cli.summary import recording_lines
+from standoff.cli.terminal import tell
 from standoff.recording import Recording
 from standoff.recording.simulate import Progress
 from standoff.scene import (
@@ -55,7 +56,7 @@ def run_track(command: TrackCommand) -> int:
         files = [run.files(told, drawn).items() for run, told in done]
         write_whole({path: write for each in files for path, write in each})
     if command.report.json:
-        print(
+        tell(
             pairs_text(
                 whole,
                 [
@@ -70,7 +71,7 @@ def run_track(command: TrackCommand) -> int:
             "\n".join(recording_lines(run.scene, told, run.written(), verbose=verbose))
             for run, told in done
         ]
-        print("\n\n".join(texts))
+        tell("\n\n".join(texts))
     certified = all(recording.certified.all() for recording in recordings)
     return ExitCode.DONE if certified else ExitCode.NOT_CERTIFIED
 

@@ -6,6 +6,7 @@ import webbrowser
 
 from standoff.cli.arguments import ViewCommand
 from standoff.cli.errors import CommandError, ExitCode
+from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 from standoff.scene import SceneError, load_scene
 from standoff.view.gallery import scenes_in
@@ -37,12 +38,12 @@ def run_view(command: ViewCommand) -> int:
     except StandoffError as error:
         raise CommandError(str(error)) from error
     with page:
-        print(f"{scene.title}: open {page.address}", flush=True)
-        print("The address holds the token of this run. Ctrl+C ends it.", flush=True)
+        tell(f"{scene.title}: open {page.address}")
+        tell("The address holds the token of this run. Ctrl+C ends it.")
         if command.open:
             webbrowser.open(page.address)
         try:
             page.wait()
         except KeyboardInterrupt:
-            print("closed")
+            tell("closed")
     return ExitCode.DONE

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,6 +12,7 @@ from standoff.cli.arguments import WarmupCommand
 from standoff.cli.errors import ExitCode
 from standoff.cli.facts import json_text
 from standoff.cli.progress import progress_shown
+from standoff.cli.terminal import tell
 from standoff.kernels.compiler.entry import Entry
 from standoff.kernels.compiler.notices import WORK, parts, told_elsewhere
 from standoff.kernels.entries.preparing import every_entry, kept_in, name_of, was_compiled
@@ -46,15 +46,15 @@ def run_warmup(command: WarmupCommand) -> int:
                 done.append(_ready(entry))
                 _tell(done[-1], f"{number}/{len(entries)}", command.json)
     except KeyboardInterrupt:
-        print(
+        tell(
             f"standoff: interrupted after {len(done)} of {len(entries)}; these need not be "
             "compiled again",
-            file=sys.stderr,
+            error=True,
         )
         return ExitCode.INTERRUPTED
     ready = [entry for entry in entries if entry.ready]
     folder = kept_in(ready[-1]) if ready else None
-    print(_json(done, folder, started) if command.json else _total(done, folder, started))
+    tell(_json(done, folder, started) if command.json else _total(done, folder, started))
     return _ended(done, folder)
 
 
@@ -73,7 +73,7 @@ def _ready(entry: Entry) -> Ready:
 def _tell(one: Ready, place: str, to_stderr: bool) -> None:
     name = one.name.rpartition(".")[2]
     line = f"{place:>5} {one.seconds:6.2f} s  {one.how:<8}  {name}: {one.what}"
-    print(line, file=sys.stderr if to_stderr else sys.stdout, flush=True)
+    tell(line, error=to_stderr)
 
 
 def _total(done: Sequence[Ready], folder: Path | None, started: float) -> str:
@@ -102,14 +102,14 @@ def _json(done: Sequence[Ready], folder: Path | None, started: float) -> str:
 def _ended(done: Sequence[Ready], folder: Path | None) -> ExitCode:
     failed = [one for one in done if one.error]
     for one in failed:
-        print(f"standoff: {one.name} could not be compiled: {one.error}", file=sys.stderr)
+        tell(f"standoff: {one.name} could not be compiled: {one.error}", error=True)
     if failed:
         return ExitCode.NOT_COMPILED
     if folder is None and any(one.compiled for one in done):
-        print(
+        tell(
             "standoff: the machine code could not be kept: name a folder of your own in "
             "NUMBA_CACHE_DIR",
-            file=sys.stderr,
+            error=True,
         )
         return ExitCode.NOT_WRITTEN
     return ExitCode.DONE

@@ -20,6 +20,7 @@ from standoff.devices.port import Port
 from standoff.devices.tolerances import (
     ASKED_AGAIN,
     BETWEEN_LOOKS,
+    CLOSED_WITHIN,
     CONNECTED_WITHIN,
     LONGEST_FRAME,
 )
@@ -138,7 +139,7 @@ class Inverse3(BoundToRun):
                 compression=None,
                 proxy=None,
                 open_timeout=CONNECTED_WITHIN,
-                close_timeout=CONNECTED_WITHIN,
+                close_timeout=CLOSED_WITHIN,
                 max_size=LONGEST_FRAME,
             )
         except Exception as error:  # the library's own kinds, the system's, and what is no address
@@ -226,7 +227,9 @@ class _Conversation:
         left = sent + device._period - time.monotonic()
         if self._came(max(left, 0.0)) is not None:
             self._refuse(Fault.OUT_OF_ORDER)  # the service answers once: this one is doubled
-            while self._came(0.0) is not None:
+            # Of a flood no more than comes in a period: the device waits for its force of zero.
+            end = time.monotonic() + device._period
+            while time.monotonic() < end and self._came(0.0) is not None:
                 self._refuse(Fault.OUT_OF_ORDER)
 
     def _take(self, frame: object, sent: float) -> None:

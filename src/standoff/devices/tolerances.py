@@ -20,6 +20,10 @@ LONGEST_FRAME: Final = 65_536
 CONNECTED_WITHIN: Final = 3.0
 """Seconds, a time to wait, times over what a service on the same machine takes to answer."""
 
+CLOSED_WITHIN: Final = 0.2
+"""Seconds, a time to wait, many times over what a service on the same machine takes to say goodbye:
+one that floods the connection never does, and the force was set to zero before."""
+
 SHORTEST_PERIOD: Final = 1e-4
 """Seconds, parts of one: the shortest period of a device, that of the fastest servo."""
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from standoff.errors import StandoffError
+from standoff.wording import printable
 
 SHOWN_CHARACTERS = 120
 """Longest key that a message repeats, in characters; `SceneError.key` has all of it."""
@@ -32,7 +33,9 @@ class SceneError(StandoffError):
         self.key = key
         self.file = file
         place = key if len(key) <= SHOWN_CHARACTERS else key[: SHOWN_CHARACTERS - 1] + "…"
-        message = ": ".join(part for part in (str(file or ""), place, problem) if part)
+        # Of one line each: what they are called is not ours.
+        parts = (printable(str(file or "")), printable(place), problem)
+        message = ": ".join(part for part in parts if part)
         super().__init__(message, key, value)
 
     def found_in(self, file: Path) -> SceneError:

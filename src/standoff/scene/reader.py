@@ -17,6 +17,7 @@ from standoff import real_numbers
 from standoff.errors import StandoffError
 from standoff.scene.errors import SceneError
 from standoff.spellings import nearest
+from standoff.wording import printable
 
 Array = npt.NDArray[np.float64]
 Value = TypeVar("Value")
@@ -32,7 +33,7 @@ def shown(value: object) -> str:
 
 def one_of(names: Iterable[str]) -> str:
     """Return names as a sentence lists them: ``'a', 'b' or 'c'``."""
-    quoted = [f"'{name}'" for name in names]
+    quoted = [f"'{printable(name)}'" for name in names]
     return " or ".join(filter(None, [", ".join(quoted[:-1]), *quoted[-1:]]))
 
 
@@ -41,7 +42,7 @@ def unknown_name(name: str, known: Iterable[str], noun: str) -> str:
     names = sorted(known)
     likely = nearest(name, names)
     if likely is not None:
-        return f"unknown {noun} {shown(name)}; did you mean '{likely}'?"
+        return f"unknown {noun} {shown(name)}; did you mean '{printable(likely)}'?"
     return f"unknown {noun} {shown(name)}; known here: {one_of(names)}"
 
 

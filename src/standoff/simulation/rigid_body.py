@@ -15,6 +15,7 @@ from standoff.motion.pose_function import path_of
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.simulation.mass_properties import MassProperties, mass_properties
+from standoff.wording import printable
 
 FREE, FIXED, DRIVEN = "free", "fixed", "driven"
 
@@ -166,7 +167,7 @@ class RigidBody(KeepsReadOnly):
 
     def __repr__(self) -> str:
         mass = "" if self.mass_properties is None else f", mass {self.mass_properties.mass:g}"
-        return f"<RigidBody {self.body.name}: {self.kind}{mass}>"
+        return f"<RigidBody {printable(self.body.name)}: {self.kind}{mass}>"
 
 
 def check_body(body: object) -> None:

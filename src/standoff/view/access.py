@@ -12,11 +12,13 @@ import hmac
 import ipaddress
 import math
 import secrets
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 from urllib.parse import urlsplit
 
+from standoff.kernels.tolerances import FARTHEST
+from standoff.motion.tolerances import UNIT_QUATERNION
 from standoff.view.tolerances import (
     MAX_DEPTH,
     MAX_TEXT,
@@ -173,10 +175,52 @@ def message_fault(message: Any) -> str | None:
         return "the message is of a kind that this page does not send"
     if not _plain(message, MAX_DEPTH):
         return "the message holds something that is neither a short text nor a finite number"
+    if not all(isinstance(message.get(key, ""), str) for key in ("name", "owner", "uuid")):
+        return "the message names what it changes by something that is no text"
     if kind == "GuiUpdateMessage":
         updates = message.get("updates")
         if not isinstance(updates, Mapping) or set(updates) != {"value"}:
             return "the message changes more of an element than its value"
+    if kind == "TransformControlsUpdateMessage":
+        return _pose_fault(message.get("wxyz"), message.get("position"))
+    return None
+
+
+def value_fault(value: Any, current: Any, options: Sequence[str] | None = None) -> str | None:
+    """Return why a value is refused for an element of the page; None where it may be set.
+
+    Viser would cast it: a text to a number, NaN among them, and anything to a text.
+
+    Parameters
+    ----------
+    value : object
+        What the message gives.
+    current : object
+        The element's own value.
+    options : sequence of str, optional
+        All that the element can be set to, where these are few.
+    """
+    number = isinstance(current, int | float) and not isinstance(current, bool)
+    if number and (isinstance(value, bool) or not isinstance(value, int | float)):
+        return "the message gives something else than a number where one stands"
+    if not number and type(value) is not type(current):
+        return "the message gives a value of another kind than the one that stands there"
+    if options is not None and value not in options:
+        return "the message gives a choice that the page does not have"
+    return None
+
+
+def _pose_fault(wxyz: Any, position: Any) -> str | None:
+    """Is this the pose of a handle?"""
+    for numbers, count in ((wxyz, 4), (position, 3)):
+        if not isinstance(numbers, list) or len(numbers) != count:
+            return "the message gives no pose: four numbers and three"
+        if any(isinstance(x, bool) or not isinstance(x, int | float) for x in numbers):
+            return "the message gives no pose: one of its parts is no number"
+    if not abs(math.hypot(*wxyz) - 1.0) < UNIT_QUATERNION:
+        return "the message gives no pose: its quaternion is not of length 1"
+    if not math.hypot(*position) < FARTHEST:
+        return "the message gives a pose too far away to be computed with"
     return None
 
 

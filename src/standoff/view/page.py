@@ -6,15 +6,19 @@ import queue
 import threading
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
+from traceback import format_exc
 from typing import Any
 
 from standoff.errors import StandoffError
+from standoff.kernels.compiler.notices import say
 from standoff.scene import Scene, load_scene
 from standoff.view.access import Access
 from standoff.view.panel import HANDS, Panel
 from standoff.view.server import guarded_server, stop
 from standoff.view.stage import Stage
+from standoff.wording import printable
 
 PERIOD = 0.04
 """Time between two looks at what the pages ask for [s]: a browser that draws without a graphics
@@ -59,6 +63,7 @@ class Page:
     ) -> None:
         self._asked: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._closing = threading.Event()
+        self._told_last = ""
         self._others = {scene.title: scene.file, **(others or {})}
         access = Access(host)
         self.server = guarded_server(access, port)
@@ -151,6 +156,12 @@ class Page:
             client.send_file_download(name, content, save_immediately=True)
 
     def _work(self) -> None:
+        try:
+            self._serve()
+        finally:
+            self._closing.set()  # who waits for the page is told, whatever ended it
+
+    def _serve(self) -> None:
         last = time.monotonic()
         while not self._closing.wait(max(0.0, last + PERIOD - time.monotonic())):
             now = time.monotonic()
@@ -164,7 +175,17 @@ class Page:
         try:
             task()
         except (StandoffError, OSError) as error:
-            for client in self.server.get_clients().values():
-                client.add_notification(
-                    "Not done", str(error), auto_close_seconds=10.0, color="red"
-                )
+            self._notify(str(error))
+        except Exception as error:
+            # A fault of ours, or a message that nobody thought of: one page must not end the thread
+            # that all pages live by.
+            told = printable(format_exc().rstrip(), keep="\n")
+            if told != self._told_last:  # the same at every look is said once
+                say(f"the page goes on after a fault:\n{told}")
+            self._told_last = told
+            self._notify(f"an unexpected fault, told where the page was started: {error!r}")
+
+    def _notify(self, text: str) -> None:
+        for client in self.server.get_clients().values():
+            with suppress(Exception):  # one that has just gone
+                client.add_notification("Not done", text, auto_close_seconds=10.0, color="red")

@@ -14,7 +14,7 @@ from http import HTTPStatus
 from typing import Any
 
 from standoff.errors import StandoffError, not_installed
-from standoff.view.access import Access, Allowance, message_fault
+from standoff.view.access import Access, Allowance, message_fault, value_fault
 from standoff.view.tolerances import MAX_MESSAGE, MAX_PAGES
 
 try:
@@ -70,6 +70,8 @@ class GuardedServer(VISERS):  # type: ignore[misc]
 
     access: Access
     guarded: bool
+    value_fault: Callable[[str, Any], str | None] = staticmethod(lambda uuid, value: None)
+    """Why an element of the page, by its identifier, is not set to a value; None where it is."""
 
     def __init__(self, *given: Any, **named: Any) -> None:
         super().__init__(*given, **named)
@@ -196,7 +198,10 @@ class _Connection(websockets.asyncio.server.ServerConnection):
             message = msgspec.msgpack.decode(raw)
         except (msgspec.DecodeError, RecursionError):
             return "the message is cut or damaged"
-        return message_fault(message)
+        fault = message_fault(message)
+        if fault is None and message["type"] == "GuiUpdateMessage":
+            fault = self.guard.value_fault(message.get("uuid", ""), message["updates"]["value"])
+        return fault
 
 
 class _Websockets(types.ModuleType):
@@ -237,6 +242,15 @@ def guarded_server(access: Access, port: int | None = None) -> viser.ViserServer
             f"viser {viser.__version__} makes its server in a way that is not known here, so it "
             "cannot be guarded; install one of the versions that the extra 'view' asks for."
         )
+    elements = server.gui._gui_input_handle_from_uuid
+
+    def fault(uuid: str, value: Any) -> str | None:
+        element: Any = elements.get(uuid)  # viser passes over what is not there any more
+        if element is None:
+            return None
+        return value_fault(value, element.value, getattr(element, "options", None))
+
+    server._websock_server.value_fault = fault
     return server
 
 

@@ -15,6 +15,7 @@ from standoff import __version__
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
 from standoff.cli.output import check_target, make_folder, write_whole
+from standoff.cli.terminal import tell
 from standoff_studies.accuracy import report
 from standoff_studies.accuracy.measuring import OURS, Row, measure
 from standoff_studies.accuracy.peers.all_peers import all_peers
@@ -60,11 +61,11 @@ def run_accuracy(command: AccuracyOptions) -> int:
     seconds = time.perf_counter() - started
     if command.json:
         facts = {"standoff": __version__, "seconds": seconds, **report.facts(run)}
-        print(json_text({**facts, "files": [str(path) for path in written]}))
+        tell(json_text({**facts, "files": [str(path) for path in written]}))
     else:
         _print(run, seconds)
         for path in written:
-            print(f"wrote {path}")
+            tell(f"wrote {path}")
     bad = any(row.engine == OURS and row.verdict in ("wrong", "no answer") for row in rows)
     return ExitCode.NOT_CERTIFIED if bad else ExitCode.DONE
 
@@ -136,9 +137,7 @@ def _print(run: report.Run, seconds: float) -> None:
     for line in report.engine_rows(run.rows, by_level=False):
         engines.add_row(*line)
     console.print(engines)
-    print(
-        f"{len(run.rows)} answers in {seconds:.1f} s; errors over the pair's size, normals in rad"
-    )
+    tell(f"{len(run.rows)} answers in {seconds:.1f} s; errors over the pair's size, normals in rad")
 
 
 def _table(title: str, header: tuple[str, ...]) -> Table:

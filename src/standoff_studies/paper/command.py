@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Sequence
 from importlib import import_module
@@ -17,6 +16,7 @@ from standoff import __version__
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
 from standoff.cli.output import check_target, make_folder, write_whole
+from standoff.cli.terminal import tell
 from standoff_studies.paper.catalogue import CATALOGUE, UnknownFigure, chosen
 from standoff_studies.paper.figure import Entry
 from standoff_studies.paper.progress import figures_bar
@@ -43,7 +43,7 @@ def run_paper(command: PaperOptions) -> int:
         If the report could not be written.
     """
     if command.list:
-        print(_listing(command))
+        tell(_listing(command))
         return ExitCode.DONE
     try:
         entries = chosen(command.keys)
@@ -61,12 +61,12 @@ def run_paper(command: PaperOptions) -> int:
     report = _report(made, command.output)
     seconds = time.perf_counter() - started
     if command.json:
-        print(_json(made, report, seconds))
+        tell(_json(made, report, seconds))
     else:
         _print(made, report, seconds)
     for one in made:
         if one.error:
-            print(f"standoff: figure {one.entry.key} failed: {one.error}", file=sys.stderr)
+            tell(f"standoff: figure {one.entry.key} failed: {one.error}", error=True)
     if any(one.unwritten for one in made):
         return ExitCode.NOT_WRITTEN
     return ExitCode.FAILED if any(one.error for one in made) else ExitCode.DONE
@@ -100,19 +100,19 @@ def _make(entries: Sequence[Entry], command: PaperOptions, jobs: int) -> list[Ma
     complete: list[str] = []
     with figures_bar(len(entries)) as show:
 
-        def tell(entry: Entry, result: Made | None) -> None:
+        def note(entry: Entry, result: Made | None) -> None:
             if result is not None and not result.error:
                 complete.append(entry.key)
             show(entry, result)
 
         try:
-            return make_all(entries, Order(command.output, not command.no_animations), jobs, tell)
+            return make_all(entries, Order(command.output, not command.no_animations), jobs, note)
         except KeyboardInterrupt:
             pass
     written = (
         f"complete in {command.output}: {', '.join(complete)}" if complete else "none complete"
     )
-    print(f"standoff: interrupted; figures {written}; no report was written", file=sys.stderr)
+    tell(f"standoff: interrupted; figures {written}; no report was written", error=True)
     return None
 
 
@@ -170,8 +170,8 @@ def _print(made: Sequence[Made], report: Path, seconds: float) -> None:
         shows = f"{one.entry.title} (failed)" if one.error else one.entry.title
         table.add_row(one.entry.key, shows, *counts, f"{one.seconds:.1f}")
     console.print(table)
-    print(
+    tell(
         "hold, not: what the paper states, measured; open: no verdict; true: true by "
         "construction; own: the paper states nothing"
     )
-    print(f"wrote {report}, and {sum(len(one.files) for one in made)} files beside it")
+    tell(f"wrote {report}, and {sum(len(one.files) for one in made)} files beside it")

@@ -16,6 +16,7 @@ from rich.progress import Progress as Bar
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra, WriteError
 from standoff.cli.facts import json_text
 from standoff.cli.output import check_target, make_folder, write_whole
+from standoff.cli.terminal import tell
 from standoff_studies.soak.certificates import run_certificates
 from standoff_studies.soak.failures import Facts, read_failure, replay
 from standoff_studies.soak.ledger import NAME, Ledger
@@ -66,16 +67,16 @@ def run_soak(command: SoakOptions) -> int:
     except KeyboardInterrupt:
         _save(ledger, command.output)
         again = f"go on with --resume -o {command.output}"
-        print(f"standoff: interrupted at {ledger.pairs_done()} pairs; {again}", file=sys.stderr)
+        tell(f"standoff: interrupted at {ledger.pairs_done()} pairs; {again}", error=True)
         return ExitCode.INTERRUPTED
     _save(ledger, command.output)
     file = _write_failure(failed, command.output) if failed is not None else None
     if command.json:
-        print(json_text(ledger.facts() | {"failure": None if file is None else str(file)}))
+        tell(json_text(ledger.facts() | {"failure": None if file is None else str(file)}))
     else:
         _print(ledger, time.perf_counter() - started, ledger.pairs_done() - before)
     if failed is not None:
-        print(f"standoff: {_told(failed.facts or {})}; {file} reproduces it", file=sys.stderr)
+        tell(f"standoff: {_told(failed.facts or {})}; {file} reproduces it", error=True)
         return ExitCode.FAILED
     return ExitCode.DONE
 
@@ -148,14 +149,14 @@ def _bar(ledger: Ledger, pairs: int) -> Iterator[Tell]:
 def _print(ledger: Ledger, seconds: float, pairs: int) -> None:
     tally = ledger.tally
     rate = f" ({pairs} of them in {seconds:.1f} s)" if pairs else ""
-    print(f"seed {ledger.seed}: {ledger.pairs_done()} pairs of {ledger.frames} frames{rate}")
+    tell(f"seed {ledger.seed}: {ledger.pairs_done()} pairs of {ledger.frames} frames{rate}")
     for name, number in sorted(tally.sums.items()):
         if name != "pairs":
-            print(f"{number:>13,}  {name}")
+            tell(f"{number:>13,}  {name}")
     for name, value in sorted(tally.worst.items()):
-        print(f"{value:>13.6g}  worst: {name}")
+        tell(f"{value:>13.6g}  worst: {name}")
     for pair, frame, status, names, distance in tally.examples:
-        print(f"pair {pair} frame {frame}: {status}, {names}, distance {distance}")
+        tell(f"pair {pair} frame {frame}: {status}, {names}, distance {distance}")
 
 
 def _told(facts: Facts) -> str:
@@ -182,21 +183,21 @@ def _replay(file: Path) -> int:
         raise CommandError(f"--replay {file}: cannot be read ({error.strerror})") from error
     except ValueError as error:
         raise CommandError(f"--replay {file}: {error}") from error
-    print(f"the file says: {_told(facts)}")
+    tell(f"the file says: {_told(facts)}")
     if again.breach is not None:
         miss = again.breach.miss
-        print(f"now the round fails: {miss.what} ({miss.value} where {miss.allowed} is allowed)")
+        tell(f"now the round fails: {miss.what} ({miss.value} where {miss.allowed} is allowed)")
     elif "round" in facts:
-        print("now no check of the round fails")
+        tell("now no check of the round fails")
     elif again.failure is not None:
         fault, query = again.failure.fault, "cold " if again.failure.cold else ""
-        print(
+        tell(
             f"now the pair fails at {query}frame {fault.frame}: {fault.what} ({fault.value} where "
             f"{fault.allowed} is allowed)"
         )
     else:
-        print("now no check of the pair fails")
+        tell("now no check of the pair fails")
     if again.step is not None:
-        print(f"the step alone, from the file's state, fails: {again.step.what}")
+        tell(f"the step alone, from the file's state, fails: {again.step.what}")
     failed = any(one is not None for one in again)
     return ExitCode.FAILED if failed else ExitCode.DONE
