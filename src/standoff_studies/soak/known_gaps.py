@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies import shapes
 from standoff.bodies.body import Body
+from standoff.errors import BodyError
 from standoff.geometry import Line
 from standoff_studies import oracles
 from standoff_studies.soak.lattice import PER_LENGTH, signed_distance, whole
@@ -32,6 +33,9 @@ LENGTHS = frozenset({"axes", "r", "radius", "length", "height", "offset", "round
 
 LATTICE_SHARE = 0.45
 """Of the pairs: on a lattice."""
+
+SCALED = 0.2
+"""Share of the bodies that are far smaller or larger than those of the soak's pairs."""
 
 LEAPS = 0.3
 """Share of the poses of a walk that have nothing to do with those before."""
@@ -85,7 +89,12 @@ def built_drawer(seed: int, number: int) -> tuple[Made, ...]:
     found: list[Made] = []
     while len(found) < DRAWER:
         shape = draw_shape(rng)
-        one = made(scaled(shape, 10.0 ** rng.uniform(-6.0, 6.0)) if rng.random() < 0.2 else shape)
+        if rng.random() < SCALED:
+            shape = scaled(shape, 10.0 ** rng.uniform(-6.0, 6.0))
+        try:
+            one = made(shape)
+        except BodyError:
+            continue  # faces of a thin core back to back but for roundoff: told, and no body to ask
         if one.body.bounded or (len(found) and found[0].body.bounded):
             found.append(one)
     return tuple(found)
