@@ -144,7 +144,7 @@ def test_a_planted_fault_is_found_and_replayed(what, monkeypatch, tmp_path, caps
     def planted(scene, drawn):
         asked = true(scene, drawn)
         sign = 1.0 if RAISED[what] == any_places.LOWER else -1.0
-        asked[:, RAISED[what]] += sign * (1e-9 + 1e-9 * abs(scene.truth))
+        asked[:, RAISED[what]] += sign * (1e-8 + 1e-8 * abs(scene.truth))
         return asked
 
     monkeypatch.setattr(certificate_checks, "ask_all", planted)

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from standoff.kernels.body import layout as L
 from standoff.kernels.pair.certified import CERTIFIED
 from standoff.kernels.state.arrays import N_MOTION
-from standoff.kernels.tolerances import BLUR, DEPTH_PROOF, EPS, PCURVE_OVERLAP, START_GAP, TOUCHING
+from standoff.kernels.tolerances import BLUR, DEPTH_PROOF, EPS, START_GAP, TOUCHING
 from standoff.tracking.status import Status
 from standoff_studies.oracles import HalfSpace, lengths
 from standoff_studies.soak import any_places as P
-from standoff_studies.soak.checks import BLURRED, BOX_CENTRE, LEAST, ROUNDOFF
+from standoff_studies.soak.checks import BLURRED, BOX_CENTRE, LEAST, ON_BODY, ROUNDOFF
 from standoff_studies.soak.known_gaps import Scene
 from standoff_studies.soak.placing import heights, to_world
 from standoff_studies.soak.tally import Tally
@@ -97,8 +97,8 @@ def misses(scene: Scene, asked: Array) -> Iterator[Miss]:
     goal = np.where(np.isinf(told), START_GAP, told) * asked[:, P.SPAN]
     blur = np.minimum(asked[:, P.BLUR], BLUR * asked[:, P.SPAN])
     allowed = goal + slack + blur + noise
-    # a place may be past its face's boundary by that much, and is drawn so
-    past = slack + noise + PCURVE_OVERLAP * size_of(scene, asked)
+    # a point may be past its face's boundary, as witness points of the soak may
+    shares = slack + ON_BODY / ROUNDOFF * noise
 
     yield from worst("a bound that is no number", np.isnan(lower) * 1.0, 0.0)
     yield from worst("a distance that is not finite", 1.0 * ~np.isfinite(d), 0.0)
@@ -111,7 +111,9 @@ def misses(scene: Scene, asked: Array) -> Iterator[Miss]:
         noise,
         asked_of,
     )
-    yield from worst("points of the bodies nearer than the distance", truth - d, past, on & ~along)
+    yield from worst(
+        "points of the bodies nearer than the distance", truth - d, shares, on & ~along
+    )
     off = np.abs(d - truth)
     yield from worst("certified at a wrong distance", off, allowed, certified & np.isfinite(told))
     apart = status == Status.CONVERGED.value
@@ -133,5 +135,6 @@ def count(tally: Tally, scene: Scene, asked: Array) -> None:
     tally.count("certificates that prove a distance", certified.sum())
     tally.count("certificates off a face", (asked[:, P.ON] < 0.5).sum())
     over = (asked[:, P.LOWER] - radii - scene.truth) / size_of(scene, asked)
-    highest = over[np.isfinite(over)].max(initial=-1.0)
+    asked_of = (asked[:, P.ON] > 0.5) | (asked[:, P.HOW] < P.ALONG)
+    highest = over[np.isfinite(over) & asked_of].max(initial=-1.0)
     tally.note("a certificate's bound above the distance, over size, in eps", highest / EPS)
