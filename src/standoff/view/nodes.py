@@ -269,7 +269,7 @@ class AnswerNodes:
         self._normal.position, self._normal.wxyz = tuple(points[0]), upright_to(normal)
         for node, share in zip(self._line, np.linspace(0.0, 1.0, DOTS + 2)[1:-1], strict=True):
             node.position = tuple((1.0 - share) * points[0] + share * points[1])
-        self._label.position = tuple(points[0] if deep else 0.5 * (points[0] + points[1]))
+        self._label.position = tuple(points[1] if deep else 0.5 * (points[0] + points[1]))
 
 
 def _linear(colour: Colour) -> list[float]:

@@ -263,3 +263,7 @@ class Panel:
     def traces(self, time: float, shown: Shown) -> None:
         """Add an instant of a body that is moved by hand to the plot."""
         self._plot.traces(time, shown)
+
+    def rests(self) -> None:
+        """Show the plot up to where the hand has stopped."""
+        self._plot.rests()

@@ -42,7 +42,7 @@ class Plot:
     def __init__(self, server: Any) -> None:
         self._server = server
         self._trace: deque[tuple[float, float, float]] = deque(maxlen=4 * MOST_POINTS)
-        self._looks = 0
+        self._looks, self._behind = 0, False
         self._size = 1.0
         self._scale: PlotScale | None = None
         empty = np.array([0.0, 1.0])
@@ -68,7 +68,7 @@ class Plot:
     def forget(self) -> None:
         """Empty the curves of the hand."""
         self._trace.clear()
-        self._looks = 0
+        self._looks, self._behind = 0, False
 
     def stands(self, shown: Shown) -> None:
         """Show level lines where nothing has moved yet."""
@@ -78,16 +78,25 @@ class Plot:
 
     def plays(self, player: Player) -> None:
         """Show a recording up to where it stands."""
-        if self._due():
+        if self._due() or not player.playing:
             rows, run = player.behind(SPAN, MOST_POINTS), player.recording
             self._draw(run.time[rows], run.distance[rows], run.lower_bound[rows])
 
     def traces(self, time: float, shown: Shown) -> None:
         """Go on with an instant of a body that is moved by hand."""
         self._trace.append((time, shown.distance, shown.lower_bound))
+        self._behind = True
         if self._due():
-            rows = np.array([row for row in self._trace if row[0] >= time - SPAN])
-            self._draw(*rows[:: -(-len(rows) // MOST_POINTS)].T)
+            self.rests()
+
+    def rests(self) -> None:
+        """Show the curves of the hand up to their last instant."""
+        if self._behind:
+            self._behind = False
+            rows = np.array([row for row in self._trace if row[0] >= self._trace[-1][0] - SPAN])
+            # Thinned from the end: the last instant is the one that the table tells.
+            every = -(-len(rows) // MOST_POINTS)
+            self._draw(*rows[::-every][::-1].T)
 
     def _due(self) -> bool:
         self._looks += 1

@@ -211,6 +211,7 @@ class Stage:
         self._clock += elapsed
         settled = self.pair.answer.certified or self.pair.answer.status.penetrating
         if self._pull is None and self._wanted is self.pair.poses and settled:
+            self.panel.rests()
             return
         try:
             events = self.pair.move(self._next_poses(elapsed), elapsed)
