@@ -64,7 +64,7 @@ def test_a_body_of_many_patches_and_a_scene_of_many_bodies_speak(
 def test_an_interrupt_ends_the_reading_of_many_bodies(tmp_path: Path) -> None:
     file = tmp_path / "many.toml"
     file.write_text(SCENE)
-    command = [sys.executable, "-m", "standoff.cli", "check", str(file)]
+    command = [sys.executable, "-m", "standoff.cli", "distance", str(file)]
     talking = {**os.environ, "STANDOFF_QUIET": "0"}
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stderr=pipe, stdout=pipe, env=talking) as running:
