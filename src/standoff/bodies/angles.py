@@ -23,6 +23,8 @@ from standoff.bodies.topology import Apex
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Plane, Surface
 from standoff.geometry.validation import Array
+from standoff.long_loops import told
+from standoff.motion.bounds import cross
 
 # Shares of an edge where its turn is sampled.
 SHARES = np.linspace(0.0, 1.0, 17)
@@ -58,7 +60,7 @@ def edge_turns(body: Assembled, size: float) -> list[EdgeTurns]:
             users[j].append(i)
     return [
         _sampled(body, size, j, used[0], used[1])
-        for j, used in enumerate(users)
+        for j, used in enumerate(told(users, "measuring angles of edges"))
         if len(used) == 2 and used[0] != used[1]
     ]
 
@@ -91,7 +93,7 @@ def refined(body: Assembled, found: Sequence[EdgeTurns], size: float) -> list[Ed
         if e.doubt > TURN_NOISE
         and (e.least - e.doubt < max(least, 0.0) or e.greatest + e.doubt > greatest)
         else e
-        for e in found
+        for e in told(found, "refining angles of edges")
     ]
 
 
@@ -126,7 +128,7 @@ def _turn(body: Assembled, size: float, j: int, one: int, other: int, t: float) 
     chart, u, v = chart_at(body.charts, one, j, t)
     n0 = chart.outward * surface_normal(chart.surface, u, v)
     side = next(c.side for c in chart.coedges if c.edge == j) * chart.outward
-    inward = side * np.cross(n0, tangent / length)
+    inward = side * cross(n0, tangent / length)
     noise = normal_noise(chart.surface, u, v, size)
     chart, u, v = chart_at(body.charts, other, j, t)
     n1 = chart.outward * surface_normal(chart.surface, u, v)
@@ -148,7 +150,7 @@ def check_vertices(body: Assembled) -> None:
     """
     axes = [np.sum(cone, axis=0) if cone else np.zeros(3) for cone in body.cones]
     total = np.zeros(len(body.vertices))
-    for i, face in enumerate(body.faces):
+    for i, face in enumerate(told(body.faces, "checking corners of faces")):
         for vertex, directions in _face_directions(body, i):
             total[vertex] += _swept(directions, axes[vertex])
         for apex in face.apexes:
@@ -192,4 +194,4 @@ def _swept(directions: list[Array], axis: Array) -> float:
     if length == 0.0:
         return 0.0
     flat = [d - (d @ axis) / length * axis for d in directions]
-    return sum(float(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)) for a, b in pairwise(flat))
+    return sum(float(np.arctan2(np.linalg.norm(cross(a, b)), a @ b)) for a, b in pairwise(flat))

@@ -23,6 +23,7 @@ from standoff.errors import BodyError
 from standoff.geometry.curves import Curve
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.long_loops import told
 
 # Points of an edge's span that are compared with the surface beside it.
 SPAN_POINTS = 9
@@ -94,7 +95,7 @@ def _check_on_surface(
 ) -> float:
     """The greatest distance of an edge from its trimming curves."""
     worst = 0.0
-    for chart in charts:
+    for chart in told(charts, "comparing edges with faces"):
         for c in chart.coedges:
             if c.edge < 0:
                 continue
@@ -127,7 +128,7 @@ def _vertex_geometry(
 ) -> tuple[list[list[Sector]], list[list[Array]]]:
     sectors: list[list[Sector]] = [[] for _ in vertices]
     cones: list[list[Array]] = [[] for _ in vertices]
-    for i, face in enumerate(faces):
+    for i, face in enumerate(told(faces, "measuring corners of faces")):
         number = bisect_left(charts, i, key=lambda chart: chart.face)
         for a in face.apexes:
             side = float(SIDES.index(a.side))

@@ -19,6 +19,7 @@ from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.tolerances import EPS, NORMAL_NOISE
+from standoff.motion.bounds import cross
 
 # |u|, |v| of an atlas's gnomonic charts: they overlap from RECHART (1.2) to here.
 ATLAS_LIMIT = 2.0
@@ -67,14 +68,14 @@ def loop_pcurve(face: Face, entry: int, edges: Sequence[Edge], surface: Surface)
 def surface_normal(surface: Surface, u: float, v: float) -> Array:
     """Unit f_u x f_v; its limit from inside the domain where one of the two has collapsed."""
     _, xu, xv, _, xuv, _ = surface.jet(u, v)
-    normal = np.cross(xu, xv)
+    normal = cross(xu, xv)
     length = float(np.linalg.norm(normal))
     a, b = float(np.linalg.norm(xu)), float(np.linalg.norm(xv))
     if min(a, b) > COLLAPSED_TANGENT * max(a, b) and length > 0.0:
         return np.asarray(normal / length)
     _, near_u, near_v, *_ = surface.jet(*_inwards(surface, u, v))
-    near = np.cross(near_u, near_v)
-    normal = np.cross(xuv, xv) if a < b else np.cross(xu, xuv)
+    near = cross(near_u, near_v)
+    normal = cross(xuv, xv) if a < b else cross(xu, xuv)
     length = float(np.linalg.norm(normal))
     if length == 0.0:
         return np.asarray(near / np.linalg.norm(near))

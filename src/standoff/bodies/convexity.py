@@ -27,6 +27,7 @@ from standoff.bodies.report import PatchCheck
 from standoff.bodies.tolerances import LEAST_AXIS, TURN_ROUNDOFF
 from standoff.errors import BodyError
 from standoff.geometry.validation import Array
+from standoff.long_loops import told
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ def convexity(
     names = known.names if known else [f"face {i}" for i in range(len(body.faces))]
     checks = []
     total = 0.0
-    for chart in body.charts:
+    for chart in told(body.charts, "proving patches convex"):
         proof = known.proofs[chart.face] if known else prove_patch(chart.surface)
         check, turn = _check_patch(chart, names[chart.face], proof, size, tolerance)
         checks.append(check)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from standoff.bodies.body import Body
+from standoff.long_loops import told
 from standoff.motion import Pose
 from standoff.scene.errors import SceneError
 from standoff.scene.files import file_problem, toml_tables
@@ -18,6 +19,7 @@ from standoff.scene.placements import read_pose
 from standoff.scene.reader import Array, Table, Value, shown, unknown_name
 from standoff.scene.settings import TrackSettings
 from standoff.scene.shapes import read_body
+from standoff.wording import printable
 
 VERSION = 1
 """The version of the scene format that this library reads."""
@@ -245,7 +247,10 @@ def named(
     for name in table.names():
         if bodies is not None and name not in bodies:
             raise table.error(unknown_name(name, bodies, "body"), name)
-    return {name: read(table.table(name)) for name in table.names()}
+    names = told(
+        table.names(), f"reading {key} of {printable(top.file.name if top.file else 'a scene')}"
+    )
+    return {name: read(table.table(name)) for name in names}
 
 
 def _motion(name: str, motions: Mapping[str, Table], placements: Mapping[str, Pose]) -> Motion:
