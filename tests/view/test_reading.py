@@ -141,4 +141,9 @@ def test_the_phone_s_panel_is_as_wide_as_the_phone(
         plot = phone.page.locator(".uplot-container").bounding_box()
         assert plot["width"] > 350
         phone.shot("phone-inside")
+        # Its camera stands farther off than a desk's, and is put there again where it was not.
+        (client,) = page.server.get_clients().values()
+        usual = page.server.initial_camera
+        client.camera.position, client.camera.look_at = usual.position, usual.look_at
+        until(lambda: not np.allclose(client.camera.position, usual.position))
         assert phone.errors == []

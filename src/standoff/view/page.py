@@ -106,6 +106,11 @@ class Page:
         """Aim the camera of a page that has just been opened."""
         self.stage.picture.aim_one(client)
 
+        # What all pages begin with may reach this one later, and undo it.
+        @client.camera.on_update
+        async def _(_: Any) -> None:
+            self.stage.picture.aim_again(client)
+
     def play(self, playing: bool) -> None:
         """Play the motion, or pause."""
         self.stage.play(playing)

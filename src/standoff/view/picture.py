@@ -103,6 +103,12 @@ class Picture:
         """Put one page's camera where new ones begin."""
         step_back(client.camera, self._server.initial_camera)
 
+    def aim_again(self, client: Any) -> None:
+        """Aim the camera of a narrow page that stands where viser puts it, too near."""
+        usual = self._server.initial_camera
+        if client.camera.aspect < 1.0 and np.allclose(client.camera.position, usual.position):
+            self.aim_one(client)
+
     def pull(self, at: Any, force: Any, greatest: float) -> None:
         """Draw the coupler's force on a tool; see `AnswerNodes.pull`."""
         self._answer.pull(at, force, greatest)
