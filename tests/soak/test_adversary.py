@@ -200,6 +200,6 @@ def test_no_overlap_is_named_where_bodies_are_apart():
         named += 1
         # that of cores, but over a half-space that of the swept bodies
         swept = a.radius + b.radius if a.bounded and b.bounded else 0.0
-        size = a.size * a.bounded + b.size * b.bounded + np.linalg.norm((pose_b - pose_a)[9:])
+        size = sum(x.size for x in (a, b) if x.bounded) + np.linalg.norm((pose_b - pose_a)[9:])
         assert scene.truth + swept <= 1e-10 * size
     assert named > 0
