@@ -389,8 +389,7 @@ def parse(arguments: Sequence[str]) -> Command:
         from standoff.spellings import unknown_command
 
         raise CommandError(unknown_command(first, commands))
-    each = [Annotated[command, subcommand(name)] for name, command in commands.items()]
-    any_of_them: Any = reduce(or_, each)
+    any_of_them: Any = reduce(or_, (Annotated[c, subcommand(n)] for n, c in commands.items()))
     found: Command = tyro.cli(
         any_of_them,
         prog="standoff",
