@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 import time
 from collections import Counter
 from functools import partial
@@ -13,6 +12,7 @@ from typing import IO, Any
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
 from standoff.cli.output import make_folder, write_whole
+from standoff.cli.terminal import tell
 from standoff_studies.soak.adversary import Breach, run_round
 from standoff_studies.soak.failures import breach_facts
 from standoff_studies.soak.tally import Tally
@@ -48,15 +48,15 @@ def run_certificates(cases: int, seed: int, folder: Path, as_json: bool) -> int:
     files = _write(worst, folder)
     if as_json:
         facts: dict[str, Any] = {"seed": seed, **tally.facts(), "failed": dict(failed)}
-        print(json_text(facts | {"files": {what: str(file) for what, file in files.items()}}))
+        tell(json_text(facts | {"files": {what: str(file) for what, file in files.items()}}))
     else:
         _print(tally, seed, time.perf_counter() - started)
     for what, rounds in failed.most_common():
         miss = worst[what].miss
-        print(
+        tell(
             f"standoff: {what}: in {rounds} rounds, at worst {miss.value:.6g} where "
             f"{miss.allowed:.3g} is allowed; {files[what]} reproduces it",
-            file=sys.stderr,
+            error=True,
         )
     return ExitCode.FAILED if failed else ExitCode.DONE
 
@@ -82,8 +82,8 @@ def _put(text: bytes, stream: IO[bytes]) -> None:
 
 
 def _print(tally: Tally, seed: int, seconds: float) -> None:
-    print(f"seed {seed}: {tally.sums['certificates']:,} certificates in {seconds:.1f} s")
+    tell(f"seed {seed}: {tally.sums['certificates']:,} certificates in {seconds:.1f} s")
     for name, number in sorted(tally.sums.items()):
-        print(f"{number:>13,}  {name}")
+        tell(f"{number:>13,}  {name}")
     for name, value in sorted(tally.worst.items()):
-        print(f"{value:>13.6g}  worst: {name}")
+        tell(f"{value:>13.6g}  worst: {name}")
