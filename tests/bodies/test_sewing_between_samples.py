@@ -35,7 +35,7 @@ def cube_with_a_lip(height: float, width: float) -> list:
 
 @pytest.mark.parametrize("width", WIDTHS)
 def test_a_narrow_lip_is_no_joint(width: float) -> None:
-    with pytest.raises(so.BodyError, match=r"patch 0 side v1 .*0\.0066 away"):
+    with pytest.raises(so.BodyError, match=r"patch 0 side v1 .*0\.0066 apart"):
         so.Body.from_patches(cube_with_a_lip(1e-2, width))
 
 

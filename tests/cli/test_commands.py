@@ -31,7 +31,7 @@ def test_track_sums_up_the_run(standoff: Standoff, passing: Path) -> None:
     assert lines["law"] == "predictor-corrector, predictor feedforward-2"
     assert lines["frames"] == "101 from 0 s to 2 s, 20 ms apart"
     assert lines["certified"] == ("101 of 101 frames, 100 %, tolerance 1e-10 of the pair's size")
-    assert lines["closest"].startswith(f"{recording.distance[closest]:.12g} cm at ")
+    assert lines["closest"].startswith(f"{recording.distance[closest]:.6g} cm at ")
     assert f"part {recording.feature_b[closest]}" in lines["closest"]
     assert lines["worst gap"].startswith(f"{recording.gap.max():.3g} cm")
     assert lines["work"].startswith(f"{recording.total_counts().evaluations} evaluations, ")

@@ -46,7 +46,7 @@ def test_track_sums_up_each(standoff: Standoff, pairs: Path) -> None:
     assert "pair          near: A = tool (ellipsoid), B = part (box)" in near
     assert "pair          far: A = tool (ellipsoid), B = wall (halfspace)" in far
     for text, scene, frames in zip((near, far), load_scene(pairs).each(), (101, 21), strict=True):
-        assert f"{record(scene).distance.min():.12g} cm" in text
+        assert f"{record(scene).distance.min():.6g} cm" in text
         assert f"{frames} from 0 s to 2 s" in text
 
 

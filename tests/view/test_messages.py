@@ -121,7 +121,7 @@ def test_the_page_s_own_messages_pass_still(page: Page) -> None:
         until(lambda: bool(page.stage.pair.poses[0].translation[2] == 3.0))
         send(connection, CAMERA)  # by which viser knows that a page is there
         until(lambda: len(page.server.get_clients()) == 1)
-        send(connection, value(page.panel._hand, "B"))
+        send(connection, value(page.panel._hand, page.panel._hand.options[1]))
         until(lambda: page.stage._hand == 1)
         send(connection, value(page.panel._limit, 1))
         until(lambda: page.stage.max_force == 1.0)

@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.view.tolerances import LEVEL_CURVE
+
 Array = NDArray[np.float64]
 
 STEPS = 4
@@ -17,10 +19,6 @@ STEPS = 4
 CALM = 0.35
 """Share of a scale that curves must fill to keep it: a plot that is scaled anew at each look
 cannot be read."""
-
-LEVEL = 1e-6
-"""Change of the distance over the bodies' size below which the curve counts as level: scaled up,
-it would show the roundoff of poses, in numbers of many digits."""
 
 LONGEST = 7
 """Characters of a number beside the plot; a longer one is written with an exponent."""
@@ -61,7 +59,7 @@ def scale_of(values: Array, size: float, known: PlotScale | None = None) -> Plot
     low, high = float(values.min()), float(values.max())
     if known is not None and known.holds(low, high):
         return known
-    if high - low < LEVEL * size:
+    if high - low < LEVEL_CURVE * size:
         half = max(abs(low), abs(high), 0.01 * size) / 2.0
         low, high = low - half, high + half
     power = floor(log10((high - low) / STEPS))

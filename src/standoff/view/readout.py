@@ -9,7 +9,7 @@ import numpy as np
 from standoff.tracking import Status
 from standoff.view.nodes import COLOURS as BODY_COLOURS
 from standoff.view.shown import Shown
-from standoff.view.tolerances import TOUCHING
+from standoff.view.tolerances import SAID_TO_TOUCH
 
 DIGITS = 9
 """Significant digits of distance and lower bound in the table."""
@@ -52,7 +52,7 @@ def verdict(answer: Shown, unit: str, size: float) -> str:
         return "overlap, depth not known" if status.penetrating else "distance not known"
     proven = status.certified or status.penetrating
     off = max(abs(distance), abs(bound))
-    if proven and off <= TOUCHING * size:
+    if proven and off <= SAID_TO_TOUCH * size:
         return f"touching, to within {length(off, unit, 2)}" if off else "touching"
     if status.penetrating:
         how = "proven least" if status is Status.GLOBAL else "perhaps not the least"
@@ -132,4 +132,4 @@ def readout(
 def _bound(answer: Shown, unit: str, size: float) -> str:
     """The lower bound; of one that is all but 0 the digits are roundoff."""
     bound = answer.lower_bound
-    return length(bound, unit, DIGITS if abs(bound) > TOUCHING * size else 2)
+    return length(bound, unit, DIGITS if abs(bound) > SAID_TO_TOUCH * size else 2)
