@@ -11,7 +11,7 @@ from standoff.tracking import Status
 from standoff.view.plot_scale import PlotScale, scale_of
 from standoff.view.readout import beside, readout, verdict
 from standoff.view.shown import Shown
-from standoff.view.tolerances import LEVEL_CURVE
+from standoff.view.tolerances import LEVEL_PLOT
 
 SAID = [
     (Status.CONVERGED, 12.34567, 12.34567, "apart, distance 12.35 mm, proven", "12.35 mm"),
@@ -100,7 +100,7 @@ def test_the_scale_is_calm_and_a_level_curve_is_not_magnified() -> None:
     assert scale_of(np.array([0.032, 0.049]), 0.2, first) is first
     assert scale_of(np.array([0.032, 0.051]), 0.2, first) != first
     assert scale_of(np.array([0.032, 0.033]), 0.2, first) != first
-    level = scale_of(np.array([0.83, 0.83 * (1.0 + 0.1 * LEVEL_CURVE)]), 1.0)
+    level = scale_of(np.array([0.83, 0.83 * (1.0 + 0.1 * LEVEL_PLOT)]), 1.0)
     assert level.labels == ("0", "0.5", "1.0", "1.5")
     assert scale_of(np.array([-34.0]), 100.0) == PlotScale(
         (-60.0, -50.0, -40.0, -30.0, -20.0, -10.0), ("-60", "-50", "-40", "-30", "-20", "-10")

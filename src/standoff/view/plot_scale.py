@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.view.tolerances import LEVEL_CURVE
+from standoff.view.tolerances import LEVEL_PLOT
 
 Array = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def scale_of(values: Array, size: float, known: PlotScale | None = None) -> Plot
     low, high = float(values.min()), float(values.max())
     if known is not None and known.holds(low, high):
         return known
-    if high - low < LEVEL_CURVE * size:
+    if high - low < LEVEL_PLOT * size:
         half = max(abs(low), abs(high), 0.01 * size) / 2.0
         low, high = low - half, high + half
     power = floor(log10((high - low) / STEPS))

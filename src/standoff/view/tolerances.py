@@ -41,7 +41,7 @@ LEAST_FILM_RATE: Final = 2.0
 MOST_LOGGED: Final = 2000
 """Most frames of a run that are written for rerun, so many: each takes some 4 kB there."""
 
-LEVEL_CURVE: Final = 1e-6
+LEVEL_PLOT: Final = 1e-6
 """Change of the distance over the bodies' size below which the curve counts as level: scaled up,
 it would show the roundoff of poses, in numbers of many digits."""
 

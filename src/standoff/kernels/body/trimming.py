@@ -171,6 +171,26 @@ def walk_face(ints, reals, chart, u, v, du, dv):
     return best, hit, index, where
 
 
+@uncontracted
+def passes_an_end(ints, reals, chart, u, v):
+    """Are parameters beyond the end of a face without width, whose border is one line twice?"""
+    r = chart_record(ints, chart)
+    b = ints[r + L.CHART_REALS] + L.INNER
+    if reals[b] <= reals[b + 1] or ints[r + L.CHART_N_COEDGES] != 2:
+        return False
+    kind = ints[coedge_record(ints, ints[r + L.CHART_COEDGE]) + L.COEDGE_KIND]
+    return kind == L.LINE and not on_face(ints, reals, chart, u, v)
+
+
+@uncontracted
+def beside_line(ints, reals, coedge, u, v):
+    """The parameter of a straight pcurve's point nearest to (u, v)."""
+    x, y, tx, ty, _ = coedge_parameters(ints, reals, coedge, 0.0)
+    t = ((u - x) * tx + (v - y) * ty) / (tx * tx + ty * ty)
+    o = ints[coedge_record(ints, coedge) + L.COEDGE_REALS]
+    return min(max(t, reals[o + L.PCURVE_FIRST]), reals[o + L.PCURVE_LAST])
+
+
 @shared
 def walk(ints, reals, feature, chart, p, q, dp, dq):
     """How much of a step from parameters (p, q) of any feature fits, and what stops it."""
@@ -180,6 +200,9 @@ def walk(ints, reals, feature, chart, p, q, dp, dq):
         if well_inside(reals, o, p, q) and well_inside(reals, o, p + dp, q + dq):
             return Hit(1.0, NO_HIT, -1, 0.0)
         s, kind, index, t = walk_face(ints, reals, chart, p, q, dp, dq)
+        if kind == NO_HIT and passes_an_end(ints, reals, chart, p + dp, q + dq):
+            index = ints[chart_record(ints, chart) + L.CHART_COEDGE]
+            return Hit(0.0, HIT_COEDGE, index, beside_line(ints, reals, index, p, q))
         return Hit(s, kind, index, t)
     if dim == 1 and dp != 0.0:
         e = edge_record(ints, feature)
@@ -227,6 +250,7 @@ def on_face(ints, reals, chart, u, v):
     if abs(u) > limit or abs(v) > limit or far_out(reals, o, u, v):
         return False
     # Rays are aimed at points of the boundary, so that they meet it.
+    across, up = 0.0, 0.0
     for k in range(RAYS):
         if n == 0:
             break
@@ -241,4 +265,6 @@ def on_face(ints, reals, chart, u, v):
         side = ray_side(ints, reals, r, u, v, x - u, y - v)
         if side != 0:
             return side > 0
-    return True
+        across, up = v - y, x - u
+    # along a face without width none does: is the point on its line, between the ends?
+    return (across == 0.0 and up == 0.0) or ray_side(ints, reals, r, u, v, across, up) > 0
