@@ -21,6 +21,11 @@ def walk_face(ints, reals, chart, u, v, du, dv):
     return trimming.walk_face(pointer(ints, 0), pointer(reals, 0), chart, u, v, du, dv)
 
 
+@njit
+def walk(ints, reals, feature, chart, u, v, du, dv):
+    return trimming.walk(pointer(ints, 0), pointer(reals, 0), feature, chart, u, v, du, dv)
+
+
 def wedge() -> so.Body:
     """A box's top cut slantwise: five edges that are parallel to no axis of (u, v)."""
     return so.shapes.polytope(
@@ -90,3 +95,34 @@ def test_a_start_outside_by_more_than_roundoff_returns_to_the_boundary():
     outward = -side * np.array([-tangent[1], tangent[0]])
     s, hit, index, _ = walk_face(body.ints, body.reals, chart, *(p + 6.6e-9 * outward), *outward)
     assert (s, hit, index) == (0.0, HIT_COEDGE, coedges[0])
+
+
+def test_a_face_without_width_ends_where_its_line_does():
+    """The rim of a flat polygon: its border is one line twice, which no ray along it crosses."""
+    body = so.shapes.polygon([[-1.25, 0.75, 0], [-0.75, 0, 0], [-0.75, 0.5, 0]])
+    ints, reals = body.ints, body.reals
+    lengths = [0.5, np.hypot(0.5, 0.25), np.hypot(0.5, 0.75)]
+    ends = []
+    for face in (2, 3, 4):
+        chart = int(ints[ints[L.FACES] + L.FACE_STRIDE * face])
+        inside = [u for u in np.linspace(-2.0, 2.0, 4001) if on_face(ints, reals, chart, u, 0.0)]
+        ends.append(inside[-1] - inside[0])
+        middle = 0.5 * (inside[0] + inside[-1])
+        assert not on_face(ints, reals, chart, middle, 1e-6)
+        short = walk(ints, reals, face, chart, middle, 0.0, 0.1, 0.0)
+        assert (short.s, short.kind) == (1.0, trimming.NO_HIT)
+        for way in (-5.0, 5.0):  # held at its edge, not carried on along the line
+            hit = walk(ints, reals, face, chart, middle, 0.0, way, 0.0)
+            assert (hit.s, hit.kind) == (0.0, HIT_COEDGE)
+            assert hit.t == pytest.approx(0.5, abs=1e-3)
+    assert sorted(ends) == pytest.approx(sorted(lengths), abs=2e-3)
+
+
+@pytest.mark.parametrize("far", [1e8, 1e24, 1e200])
+def test_parameters_far_out_are_on_no_face(far):
+    """Their roundoff is wider than the face, and everything would be near its boundary."""
+    for body in (so.shapes.cylinder(0.7, 1.3), so.shapes.cone(1.0, 2.0), so.shapes.egg(1.0, 1.5)):
+        ints, reals = body.ints, body.reals
+        for chart in range(ints[L.N_CHARTS]):
+            for u, v in ((0.1, -far), (far, 0.2), (-far, -21.0)):
+                assert not on_face(ints, reals, chart, u, v)

@@ -159,3 +159,23 @@ def test_a_cones_normal_past_its_apex_by_roundoff(rng):
             answer = tracker.start_from(REST, at(x), place, (("vertex", 0), ())).proximity
             assert np.allclose(answer.point_a, apex)
             check_bounds(answer, truth)
+
+
+def test_a_witness_point_leaves_no_face_without_width(rng):
+    """The rim of a flat polygon goes on for ever along its line, but for its ends."""
+    corners = np.array([[-1.25, 0.75, 0.0], [-0.75, 0.0, 0.0], [-0.75, 0.5, 0.0]])
+    polygon, point = so.shapes.polygon(corners), so.shapes.point()
+    tracker = so.Tracker(point, polygon)
+    vertex = (("vertex", 0), ())
+    for _ in range(40):
+        # beyond a corner, nearest to it
+        out = corners[0] - corners[1:].mean(axis=0)
+        pose = at(-corners[0] - out * rng.uniform(0.5, 3.0) + rng.normal(size=3) * 0.1)
+        truth = min(np.linalg.norm(corners + pose[:3, 3], axis=1))
+        for face in (2, 3, 4):
+            place = ("face", face), (rng.uniform(0.0, 0.3), 0.0)
+            state = tracker.start_from(REST, pose, vertex, place)
+            check_bounds(state.proximity, truth)
+            moved = at(pose[:3, 3] + rng.normal(size=3) * 0.05)
+            truth_then = min(np.linalg.norm(corners + moved[:3, 3], axis=1))
+            check_bounds(tracker.step(state, REST, moved)[1], truth_then)
