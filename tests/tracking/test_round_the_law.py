@@ -168,14 +168,14 @@ def test_a_witness_point_leaves_no_face_without_width(rng):
     tracker = so.Tracker(point, polygon)
     vertex = (("vertex", 0), ())
     for _ in range(40):
-        # beyond a corner, nearest to it
+        # beyond a corner, nearest to it, in the polygon's plane: no step leads across a rim
         out = corners[0] - corners[1:].mean(axis=0)
-        pose = at(-corners[0] - out * rng.uniform(0.5, 3.0) + rng.normal(size=3) * 0.1)
+        pose = at(-corners[0] - out * rng.uniform(0.5, 3.0) + rng.normal(size=3) * [0.1, 0.1, 0.0])
         truth = min(np.linalg.norm(corners + pose[:3, 3], axis=1))
         for face in (2, 3, 4):
             place = ("face", face), (rng.uniform(0.0, 0.3), 0.0)
             state = tracker.start_from(REST, pose, vertex, place)
             check_bounds(state.proximity, truth)
-            moved = at(pose[:3, 3] + rng.normal(size=3) * 0.05)
+            moved = at(pose[:3, 3] + rng.normal(size=3) * [0.05, 0.05, 0.0])
             truth_then = min(np.linalg.norm(corners + moved[:3, 3], axis=1))
             check_bounds(tracker.step(state, REST, moved)[1], truth_then)
