@@ -58,6 +58,25 @@ def test_bounds_hold_where_a_witness_is_held_beside_the_tip(name: str) -> None:
                     assert held(body, pose, "edge", edge, (t,)) <= true + 1e-12 * body.size
 
 
+@pytest.mark.parametrize("name", ["lens of patches", "gore", "cone"])
+def test_bounds_hold_where_a_witness_is_past_the_tip_by_roundoff(name: str) -> None:
+    """There the tangent along the side, and so the normal, has the other sign."""
+    body = so.shapes.gore(0.5, 2.0, 5) if name == "gore" else BODIES[name]
+    taken = 0
+    for x in around(body, 12):
+        pose = so.Pose(np.eye(3), x)
+        true = so.distance(body, POINT, REST, pose).distance
+        for s in (1e-18, 1e-16, 1e-14, 1e-13, 4e-13, 8e-13):
+            for u, v in ((0.0, -s), (1.0, -s), (0.3, -s), (0.0, 1.0 + s), (1.0, 1.0 + s)):
+                try:
+                    bound = held(body, pose, "face", 0, (u, v))
+                except so.StandoffError:  # no place on the face
+                    continue
+                taken += 1
+                assert bound <= true + 1e-12 * body.size
+    assert taken > 50
+
+
 @pytest.mark.parametrize("name", BODIES)
 def test_answers_beside_the_tip_are_still_certified(name: str) -> None:
     """The bound's allowance for roundoff costs no certificate where the answer itself is near."""
