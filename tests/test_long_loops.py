@@ -15,8 +15,8 @@ from standoff import long_loops
 from standoff.long_loops import told
 from standoff.scene import load_scene
 
-SPHERES = "".join(f'[bodies.b{k}]\nshape = "sphere"\nradius = {1 + k}\n' for k in range(20_000))
-SCENE = f'version = 1\n{SPHERES}[placements.b1]\nposition = [9, 0, 0]\n[pair]\na = "b0"\nb = "b1"\n'
+BOXES = "".join(f'[bodies.b{k}]\nshape = "box"\nsize = [1, 2, {1 + k}]\n' for k in range(20_000))
+SCENE = f'version = 1\n{BOXES}[placements.b1]\nposition = [9, 0, 0]\n[pair]\na = "b0"\nb = "b1"\n'
 
 
 @pytest.fixture
