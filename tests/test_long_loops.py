@@ -54,7 +54,7 @@ def test_a_body_of_many_patches_and_a_scene_of_many_bodies_speak(
     assert said.out == ""
     assert "standoff: proving patches convex: 0 of 8" in said.err
     file = tmp_path / "\x1b[2J.toml"
-    file.write_text(SCENE.replace(SPHERES, SPHERES[:150].rpartition("[bodies")[0]))
+    file.write_text(SCENE.replace(BOXES, BOXES[:150].rpartition("[bodies")[0]))
     load_scene(file)
     said = capsys.readouterr()
     assert said.out == ""
