@@ -18,6 +18,14 @@ from standoff.scene import load_scene
 BOXES = "".join(f'[bodies.b{k}]\nshape = "box"\nsize = [1, 2, {1 + k}]\n' for k in range(20_000))
 SCENE = f'version = 1\n{BOXES}[placements.b1]\nposition = [9, 0, 0]\n[pair]\na = "b0"\nb = "b1"\n'
 
+# A shell has its background jobs ignore the signal, and they pass that on to what they start.
+INTERRUPTIBLE = """
+import signal, sys
+from standoff.cli import main
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.exit(main(sys.argv[1:]))
+"""
+
 
 @pytest.fixture
 def talking(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -64,7 +72,7 @@ def test_a_body_of_many_patches_and_a_scene_of_many_bodies_speak(
 def test_an_interrupt_ends_the_reading_of_many_bodies(tmp_path: Path) -> None:
     file = tmp_path / "many.toml"
     file.write_text(SCENE)
-    command = [sys.executable, "-m", "standoff.cli", "distance", str(file)]
+    command = [sys.executable, "-c", INTERRUPTIBLE, "distance", str(file)]
     talking = {**os.environ, "STANDOFF_QUIET": "0"}
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stderr=pipe, stdout=pipe, env=talking) as running:
@@ -73,7 +81,10 @@ def test_an_interrupt_ends_the_reading_of_many_bodies(tmp_path: Path) -> None:
             if b"reading bodies" in line:
                 break
         running.send_signal(signal.SIGINT)
-        out, err = running.communicate(timeout=10.0)
+        try:
+            out, err = running.communicate(timeout=60.0)
+        finally:
+            running.kill()  # else one that goes on would be waited for
     assert running.returncode == 130
     assert out == b""
     assert b"interrupted" in err
