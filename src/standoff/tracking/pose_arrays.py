@@ -199,14 +199,21 @@ def _mend(
         far = ~(np.abs(shifts[:, 0]) + np.abs(shifts[:, 1]) + np.abs(shifts[:, 2]) < FARTHEST)
         refused |= mirrored(turns) | far | ~has_last_row(matrices)
         if rounded.any():
-            refused[rounded] |= ~(defect(turns[rounded]) <= ROUNDED)
+            those = _rows(rounded)
+            refused[those] |= ~(defect(turns[those]) <= ROUNDED)
     sound = rounded & ~refused
     if sound.any():
-        matrices[sound, :3, :3] = without_rounding(turns[sound])
+        those = _rows(sound)
+        matrices[those, :3, :3] = without_rounding(turns[those])
     if planar:
         refused |= out_of_plane(flat_poses(matrices))
-    matrices[~refused, 3] = LAST_ROW
+    matrices[_rows(~refused), 3] = LAST_ROW
     repaired |= rounded & ~refused
+
+
+def _rows(chosen: NDArray[np.bool_]) -> NDArray[np.bool_] | slice:
+    """What picks rows: all of them, as of float32, without a copy."""
+    return slice(None) if chosen.all() else chosen
 
 
 def flat_poses(matrices: Array) -> Array:
