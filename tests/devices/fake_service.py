@@ -117,15 +117,21 @@ class FakeService:
                     # out when that one's own answer comes.
                     self.allowed = 2 if len(told) > 1 else 0
                     self.sent_bad = True
-                for each in told:
-                    if isinstance(each, float):
-                        time.sleep(each)
-                    else:
-                        socket.send(each)
+                self._answer(socket, told)
         except ConnectionClosed:
             return
         except _HungUp:
             socket.socket.close()
+
+    def _answer(self, socket: ServerConnection, told: list[str | bytes | float]) -> None:
+        try:
+            for each in told:
+                if isinstance(each, float):
+                    time.sleep(each)
+                else:
+                    socket.send(each)
+        except ConnectionClosed:
+            return  # by the other side: what it sent before that is still to be read
 
     def _heard(self, message: Any) -> None:
         profile = message.get("session", {}).get("configure", {}).get("profile", {}).get("name")
