@@ -40,6 +40,18 @@ def test_parts_of_a_map_join_over_the_seam_and_at_the_poles() -> None:
     assert basins.parts(cells.ravel()) == [3, 2]
     cells[0, 5] = cells[0, 60] = True
     assert basins.parts(cells.ravel()) == [3, 2, 2]
+    at = [basins.COLUMNS * row + column for row, column in ((0, 5), (0, 60), (10, 0), (10, 89))]
+    assert basins.stray(cells.ravel()) == at
+
+
+def test_the_laws_own_stray_starts_are_those_of_long_steps() -> None:
+    """Each is next to a singular M; in steps a fiftieth as long none is left."""
+    found = basins.beside_a_point("raw law").found
+    lone = basins.stray(found)
+    assert len(lone) == 3
+    assert sum(basins.parts(found)[1:]) == 3
+    assert basins.strays_in_small_steps() == 0
+    assert len(basins.parts(basins.beside_a_point("Newton").found)) > 3
 
 
 def test_printed_tests_do_not_ask_for_the_own_witness_point() -> None:
