@@ -13,23 +13,37 @@ from standoff_studies.paper.simulation_e.own_point import decisions
 def test_iterations_come_to_what_is_asked() -> None:
     """Each method's answers are within the accuracy, by the certified points; Newton's count is
     that of its steps and one evaluation that finds them enough."""
-    for name in update_cost.ITERATIONS:
+    for name in update_cost.PRICES:
         got = update_cost.spent(name, 1e-5)
         assert np.isfinite(got.evaluations).all()
         assert 0.0 < got.error <= 1e-5
     assert set(update_cost.spent("Newton", 1e-5).evaluations.tolist()) == {2.0}
 
 
-def test_the_laws_error_is_of_second_order_in_the_step() -> None:
-    assert 1e-9 < update_cost.law_spent().error < 1e-6
+@pytest.mark.parametrize("integrator", ["heun", "euler"])
+def test_the_laws_error_is_of_second_order_in_the_step(integrator: str) -> None:
+    assert 1e-9 < update_cost.law_spent(integrator).error < 1e-6
+
+
+def test_costs_tell_first_order_from_second() -> None:
+    """The paper's integrator evaluates twice; BFGS and gradient descent never need M."""
+    assert [update_cost.law_spent(name).cost for name in ("heun", "euler")] == [2.0, 1.0]
+    got = {name: update_cost.spent(name, 1e-5) for name in update_cost.PRICES}
+    assert got["Newton"].cost == 2.0
+    for name in ("quasi-Newton (BFGS)", "gradient descent"):
+        assert got[name].cost == pytest.approx(0.5 * got[name].evaluations.mean())
+    table = update_cost.table()
+    assert {len(column) for column in table.values()} == {2 + 3 * len(update_cost.TARGETS)}
 
 
 def test_the_verdict_follows_the_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By both integrators cheaper than Newton and gradient descent; than BFGS by Euler's only."""
     holds = [statement.holds for statement in update_cost.statements()]
-    assert holds == [True, True, True, True]
-    free = update_cost.Spent(np.ones(update_cost.UPDATES), 0.0)
-    monkeypatch.setattr(update_cost, "spent", lambda name, target: free)
-    assert [s.holds for s in update_cost.statements()] == [True, False, False, False]
+    assert holds == [True, True, None, True, None]
+    for count, verdict in ((0.0, False), (1.5, None), (3.0, True)):
+        got = update_cost.Spent(np.full(update_cost.UPDATES, count), 0.0)
+        monkeypatch.setattr(update_cost, "spent", lambda name, target, got=got: got)
+        assert [s.holds for s in update_cost.statements()] == [True, *3 * [verdict], None]
 
 
 def test_parts_of_a_map_join_over_the_seam_and_at_the_poles() -> None:
