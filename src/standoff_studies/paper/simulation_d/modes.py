@@ -13,7 +13,8 @@ from standoff.bodies.tessellation import edge_lines
 from standoff.tracking import Feature, distance
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.held_features import CONTINUOUS, greatest_growth
+from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth
+from standoff_studies.paper.resets import growth_statement
 from standoff_studies.paper.simulation_d.runs import (
     ARRIVED,
     ENTERED,
@@ -27,8 +28,10 @@ from standoff_studies.paper.simulation_d.runs import (
     Runs,
     arrivals,
     furthest_instants,
+    moves_by_resets,
     run,
     short,
+    tried,
 )
 
 if TYPE_CHECKING:
@@ -158,9 +161,11 @@ def _statements(runs: Runs, automaton: Automaton) -> tuple[Statement, ...]:
             f"at each of {len(exact.events)} instants the feature after the switch is at most "
             f"{grows:.0e} of the radius farther from the point than the one before it",
             grows <= CONTINUOUS,
-            "Old and new feature share the point at which they switch.",
+            SHARED,
             "the library's own law: the claim is of the closest points",
+            constructed=True,
         ),
+        growth_statement(moves_by_resets(), len(tried()), LAW),
     )
 
 

@@ -19,6 +19,7 @@ from standoff.recording.times import even_times
 from standoff.tracking import Feature, Tracker, TrackerState
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import lens_of_patches
+from standoff_studies.paper.resets import Move, moves_of
 
 Array = NDArray[np.float64]
 
@@ -148,7 +149,7 @@ def arrivals() -> Arrivals:
     frames = round(PATIENCE / STEP)
     points = [(HELIX.pose(k * STEP), HELIX.twist(k * STEP)) for k in range(1, frames + 1)]
     motion = [(pose.translation, twist.v) for pose, twist in points]
-    places = [(face, (u, v)) for face in range(runs.lens.n_faces) for u in TRIED for v in TRIED]
+    places = tried()
     ends = []
     for place in places:
         buffer = law.buffer(begin(law, *place))
@@ -158,6 +159,26 @@ def arrivals() -> Arrivals:
         ends.append(buffer.proximity().point_a)
     off = np.linalg.norm(np.array(ends) - runs.exact.point_a[frames], axis=1)
     return Arrivals(int((off < ARRIVED).sum()), len(places))
+
+
+def tried() -> list[tuple[int, tuple[float, float]]]:
+    """Return the starts that are tried: a face, and (u, v) on it."""
+    return [(face, (u, v)) for face in range(run().lens.n_faces) for u in TRIED for v in TRIED]
+
+
+@cache
+def moves_by_resets() -> list[Move]:
+    """Return what the printed resets do to the witness points, from every tried start.
+
+    Up to `ENTERED`: by then its switches to the true feature are over.
+    """
+    runs, times = run(), even_times(0.0, ENTERED, STEP)
+    law = printed_tracker(runs.lens, runs.point)
+    found: list[Move] = []
+    for place in tried():
+        made = track_along(law, REST, HELIX, times, state=begin(law, *place))
+        found += moves_of(made, (REST, HELIX), GAIN)
+    return found
 
 
 def entered(recording: Recording) -> list[RecordedEvent]:
