@@ -14,6 +14,7 @@ from standoff.tracking import Feature, distance
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement
 from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth
+from standoff_studies.paper.many_starts import INDEFINITE
 from standoff_studies.paper.resets import growth_statement
 from standoff_studies.paper.simulation_d.runs import (
     ARRIVED,
@@ -171,17 +172,20 @@ def _statements(runs: Runs, automaton: Automaton) -> tuple[Statement, ...]:
 
 def _as_printed(runs: Runs) -> tuple[Statement, Statement]:
     """What becomes of starts anywhere, and that nothing beside the law helps."""
-    tried, counts = arrivals(), [recording.total_counts() for recording in runs.paper]
+    tried, still = arrivals(), arrivals(moving=False)
+    counts = [recording.total_counts() for recording in runs.paper]
     injected = sum(one.restarts + one.searches + one.solved_parameters for one in counts)
     return (
         Statement(
             "Section on the hybrid system",
             "from a start anywhere on tiled convex bodies the errors converge",
             f"{tried.arrived} of {tried.tried} starts on the three faces are at the closest point "
-            f"to {ARRIVED:g} after {PATIENCE:g} s",
+            f"to {ARRIVED:g} after {PATIENCE:g} s, {still.arrived} if the point stays where it "
+            f"begins; of the {tried.lost} and {still.lost} others {tried.placed} and "
+            f"{still.placed} are on the right face, {tried.pinned} and {still.pinned} are held at "
+            "a side of the patch with M indefinite",
             tried.arrived == tried.tried,
-            "behind the lens M is indefinite, and the printed system comes to another stationary "
-            "point there; the library's rank rule and certificate are for that",
+            INDEFINITE,
             LAW,
         ),
         Statement(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth, growth
+from standoff_studies.paper.many_starts import INDEFINITE
 from standoff_studies.paper.resets import (
     draw_projection_errors,
     growth_statement,
@@ -170,10 +171,11 @@ def _as_printed(runs: Runs) -> tuple[Statement, ...]:
             "Section on the hybrid system",
             "from a start anywhere on tiled convex bodies the errors converge",
             f"{tried.arrived} of {tried.tried} random starts on both bodies are at the distance to "
-            f"{ARRIVED:g} after {PATIENCE:g} s",
+            f"{ARRIVED:g} after {PATIENCE:g} s; of the {tried.lost} others "
+            f"{tried.placed} are on the features of the closest points, and {tried.pinned} are "
+            "held at a side of a patch with M indefinite",
             tried.arrived == tried.tried,
-            "M of two bodies is indefinite where their faces turn away from each other, and the "
-            "printed system comes to another stationary point there",
+            INDEFINITE,
             LAW,
         ),
         Statement(

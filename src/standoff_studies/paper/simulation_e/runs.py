@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,7 @@ from standoff.tracking import Tracker, TrackerState
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import lens_of_patches
+from standoff_studies.paper.many_starts import Ends, is_pinned
 from standoff_studies.paper.resets import Move, moves_of
 from standoff_studies.paper.simulation_d.runs import place_on, short
 
@@ -117,13 +117,6 @@ def begin(law: Tracker, place_a: Place, place_b: Place) -> TrackerState:
     return law.start_from(pose_a, pose_b, *places, twist_a, twist_b, settle=False)
 
 
-class Arrivals(NamedTuple):
-    """How many of the tried starts have come to the distance after `PATIENCE`."""
-
-    arrived: int
-    tried: int
-
-
 def tried() -> list[tuple[Place, Place]]:
     """Return the random starts on both bodies that are tried."""
     rng, found = np.random.default_rng(1), []
@@ -135,21 +128,28 @@ def tried() -> list[tuple[Place, Place]]:
 
 
 @cache
-def arrivals() -> Arrivals:
-    """Try random starts on both bodies with the printed system."""
+def arrivals() -> Ends:
+    """Try random starts on both bodies with the printed system: which are there at `PATIENCE`."""
     runs = run()
     law = Tracker(runs.a, runs.b, STEP, law=PaperLaw.as_printed(gain=GAIN))
     frames = round(PATIENCE / STEP)
     placed = [(PATH_B.pose(k * STEP), PATH_B.twist(k * STEP)) for k in range(1, frames + 1)]
     motion = [(flat_pose(pose), flat_twist(twist, pose)) for pose, twist in placed]
-    found = 0
+    due = runs.exact.feature_a[frames], runs.exact.feature_b[frames]
+    poses = _placed(frames * STEP)[:2]
+    arrived = on_due = pinned = 0
     for places in tried():
         buffer = law.buffer(begin(law, *places))
         for pose, twist in motion:
             buffer.pose_b[:], buffer.twist_b[:] = pose, twist
             law.step_into(buffer)
-        found += abs(buffer.proximity().distance - runs.exact.distance[frames]) < ARRIVED
-    return Arrivals(int(found), TRIED)
+        answer = buffer.proximity()
+        if abs(answer.distance - runs.exact.distance[frames]) < ARRIVED:
+            arrived += 1
+            continue
+        on_due += (answer.feature_a, answer.feature_b) == due
+        pinned += is_pinned((runs.a, runs.b), poses, answer)
+    return Ends(arrived, TRIED, on_due, pinned)
 
 
 @cache
