@@ -56,8 +56,8 @@ ITEMS: tuple[Item, ...] = (
     ),
     Item(
         "M is positive definite",
-        "partial", "of a body and a point near the minimum; not of two bodies",
-        "[the pair system](../pair-system.md)",
+        "partial", "H = S M is near the minimum; away from it that depends on (u, v)",
+        "[where M is definite](definite.md)",
         ("basin",),
     ),
     Item(
@@ -140,14 +140,14 @@ ITEMS: tuple[Item, ...] = (
     ),
     Item(
         "the distance between features never grows at a switch",
-        "done", "holds for the closest points",
+        "done", "by construction of the closest points; measured at the printed resets",
         "[simulation D](simulation-d.md), [simulation E](simulation-e.md)",
         ("9", "13", "17", "20"),
     ),
     Item(
         "a start anywhere on tiled convex bodies converges",
-        "done", "does not hold for the printed system",
-        "[which starts arrive](convergence.md)",
+        "done", "in the plane; in space not with M as printed, and it depends on the patches",
+        "[which starts arrive](convergence.md), [where M is definite](definite.md)",
         ("arrivals",),
     ),
     Item(
@@ -158,7 +158,7 @@ ITEMS: tuple[Item, ...] = (
     ),
     Item(
         "each update takes one time step",
-        "done", "",
+        "done", "of two evaluations by the paper's integrator",
         "[verdict](verdict.md)",
         ("cost",),
     ),
