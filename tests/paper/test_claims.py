@@ -1,4 +1,4 @@
-"""The claims on an update's cost, Newton's basin and a body's own witness point."""
+"""The claims on an update's cost, Newton's basin and a body's own point; what cannot fail."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from standoff_studies.paper import update_cost
+from standoff_studies.paper.catalogue import chosen, make
 from standoff_studies.paper.control import basins
 from standoff_studies.paper.simulation_e.own_point import decisions
+from standoff_studies.paper.verdicts import Verdict
 
 
 def test_iterations_come_to_what_is_asked() -> None:
@@ -44,6 +46,31 @@ def test_the_verdict_follows_the_counts(monkeypatch: pytest.MonkeyPatch) -> None
         got = update_cost.Spent(np.full(update_cost.UPDATES, count), 0.0)
         monkeypatch.setattr(update_cost, "spent", lambda name, target, got=got: got)
         assert [s.holds for s in update_cost.statements()] == [True, *3 * [verdict], None]
+
+
+CANNOT_FAIL = {
+    "8": ["six external Voronoi lines"],
+    "9": ["never grows at a switch", "both kinds of switches occur", "curve to curve outside"],
+    "12": ["external and internal Voronoi regions"],
+    "13": ["never grows at a switch", "the modes are vertex–vertex"],
+    "16": ["visits faces, edges and a vertex"],
+    "17": ["never grows at a switch"],
+    "19": ["in five snapshots"],
+    "20": ["never grows at a switch", "a second on the boundary curve", "enters an edge"],
+}
+"""Statements that a chosen motion, a chosen body or continuity settles, by figure."""
+
+
+@pytest.mark.parametrize("key", CANNOT_FAIL)
+def test_what_cannot_fail_is_marked(key: str) -> None:
+    """And would still be told if it did."""
+    (entry,) = chosen([key])
+    statements = make(entry).statements
+    for words in CANNOT_FAIL[key]:
+        (found,) = (one for one in statements if words in one.stated)
+        assert Verdict.of(found) is Verdict.CONSTRUCTED, found.stated
+        assert found.why
+        assert Verdict.of(found._replace(holds=False)) is Verdict.FAILS
 
 
 def test_parts_of_a_map_join_over_the_seam_and_at_the_poles() -> None:
