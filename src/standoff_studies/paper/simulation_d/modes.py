@@ -180,10 +180,10 @@ def _as_printed(runs: Runs) -> tuple[Statement, Statement]:
             "Section on the hybrid system",
             "from a start anywhere on tiled convex bodies the errors converge",
             f"{tried.arrived} of {tried.tried} starts on the three faces are at the closest point "
-            f"to {ARRIVED:g} after {PATIENCE:g} s, {still.arrived} if the point stays where it "
-            f"begins; of the {tried.lost} and {still.lost} others {tried.placed} and "
-            f"{still.placed} are on the right face, {tried.pinned} and {still.pinned} are held at "
-            "a side of the patch with M indefinite",
+            f"to {ARRIVED:g} after {PATIENCE:g} s; of the {tried.lost} others {tried.placed} are "
+            f"on the right face, and {tried.pinned} are held at a side of a patch with M "
+            f"indefinite. If the point stays where it begins {still.arrived} arrive, and of the "
+            f"{still.lost} others it is {still.placed} and {still.pinned}",
             tried.arrived == tried.tried,
             INDEFINITE,
             LAW,
