@@ -13,7 +13,9 @@ from standoff.bodies.tessellation import edge_lines
 from standoff.tracking import Feature, distance
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.held_features import CONTINUOUS, greatest_growth
+from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth
+from standoff_studies.paper.many_starts import INDEFINITE
+from standoff_studies.paper.resets import growth_statement
 from standoff_studies.paper.simulation_d.runs import (
     ARRIVED,
     ENTERED,
@@ -27,8 +29,10 @@ from standoff_studies.paper.simulation_d.runs import (
     Runs,
     arrivals,
     furthest_instants,
+    moves_by_resets,
     run,
     short,
+    tried,
 )
 
 if TYPE_CHECKING:
@@ -158,25 +162,30 @@ def _statements(runs: Runs, automaton: Automaton) -> tuple[Statement, ...]:
             f"at each of {len(exact.events)} instants the feature after the switch is at most "
             f"{grows:.0e} of the radius farther from the point than the one before it",
             grows <= CONTINUOUS,
-            "Old and new feature share the point at which they switch.",
+            SHARED,
             "the library's own law: the claim is of the closest points",
+            constructed=True,
         ),
+        growth_statement(moves_by_resets(), len(tried()), LAW),
     )
 
 
 def _as_printed(runs: Runs) -> tuple[Statement, Statement]:
     """What becomes of starts anywhere, and that nothing beside the law helps."""
-    tried, counts = arrivals(), [recording.total_counts() for recording in runs.paper]
+    tried, still = arrivals(), arrivals(moving=False)
+    counts = [recording.total_counts() for recording in runs.paper]
     injected = sum(one.restarts + one.searches + one.solved_parameters for one in counts)
     return (
         Statement(
             "Section on the hybrid system",
             "from a start anywhere on tiled convex bodies the errors converge",
             f"{tried.arrived} of {tried.tried} starts on the three faces are at the closest point "
-            f"to {ARRIVED:g} after {PATIENCE:g} s",
+            f"to {ARRIVED:g} after {PATIENCE:g} s; of the {tried.lost} others {tried.placed} are "
+            f"on the right face, and {tried.pinned} are held at a side of a patch with M "
+            f"indefinite. If the point stays where it begins {still.arrived} arrive, and of the "
+            f"{still.lost} others it is {still.placed} and {still.pinned}",
             tried.arrived == tried.tried,
-            "behind the lens M is indefinite, and the printed system comes to another stationary "
-            "point there; the library's rank rule and certificate are for that",
+            INDEFINITE,
             LAW,
         ),
         Statement(

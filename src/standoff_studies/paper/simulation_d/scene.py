@@ -125,7 +125,9 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             f"{seen['face']} faces, {seen['edge']} edges and {seen['vertex']} vertex in "
             f"{len(visits)} stays",
             set(sequence(visits)) >= {"face 0", "edge 0", "vertex 1"},
-            by=LAW,
+            "the helix is ours, chosen so that it does",
+            LAW,
+            constructed=True,
         ),
         Statement(
             "Fig. 16",
