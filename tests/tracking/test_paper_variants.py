@@ -184,7 +184,7 @@ def test_voronoi_switching_between_two_bodies() -> None:
 
 def test_zeroed_components_keep_the_patch() -> None:
     """Saturated, a point stays on its face with parameters at a bound, and every zeroing counts."""
-    states, _ = walk(PATCHED, 400, PATCH_WRONG, switching="none")
+    states, _ = walk(PATCHED, 400, PATCH_WRONG, switching="none", solve="plain")
     parameters = np.array([s.proximity.parameters_a for s in states])
     assert all(str(s.proximity.feature_a) == "face 0" for s in states)
     assert not switches(states)

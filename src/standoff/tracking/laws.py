@@ -109,8 +109,9 @@ class PaperLaw(Law):
     solve: str = option(
         "ranked",
         Choice(("ranked", "plain", "covariant")),
-        "By the rank rule, or by H as it is, without a safeguard: the raw law; or by the rank rule "
-        "with the part of H that does not depend on the parametrisation, which is semidefinite.",
+        "By H where it is definite, else by the part of it that does not depend on the "
+        "parametrisation, which is semidefinite anywhere; or by H as it is, without a safeguard: "
+        "the raw law; or by the covariant part everywhere.",
     )
     reset: str = option(
         "foot",

@@ -14,7 +14,7 @@ from standoff.kernels.body.features import pair_span
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import EVALUATIONS, REGULARISED, SATURATIONS
-from standoff.kernels.pair.newton import law, pair_metric, plain_law
+from standoff.kernels.pair.newton import law, ldl, pair_metric, plain_law, plainly_definite
 from standoff.kernels.pair.system import (
     covariant_hessian,
     feedforward,
@@ -72,28 +72,11 @@ def times_hessian(H, w):
 
 
 @kernel
-def solve_law(jet_a, jet_b, g, H, fed, span, work):
-    """(p, w_ff) by the rank rule."""
-    metrics = pair_metric(jet_a, jet_b)
-    step, w_ff, regularised, _, _ = law(metrics, jet_a, jet_b, g, H, fed, span)
-    work.counts[REGULARISED] += regularised
-    return step, w_ff
-
-
-@kernel
 def solve_plain(jet_a, jet_b, g, H, fed, work):
     """(p, w_ff) by H as it is."""
     step, w_ff, solved = plain_law(jet_a, jet_b, g, H, fed)
     work.counts[REGULARISED] += 1 - solved
     return step, w_ff
-
-
-@kernel
-def solved_hessian(jet_a, jet_b, solve):
-    """H by which the law is solved: as printed, or without what depends on the parametrisation."""
-    if solve == SOLVE_COVARIANT:
-        return covariant_hessian(jet_a, jet_b)
-    return hessian(jet_a, jet_b)
 
 
 @kernel
@@ -128,11 +111,20 @@ def gain_unbent(jet_a, jet_b, gain, step, h, work):
 
 @kernel
 def solved(jet_a, jet_b, g, fed, solve, span, work):
-    """(p, w_ff) by one of the solves."""
-    H = solved_hessian(jet_a, jet_b, solve)
+    """(p, w_ff, covariant) by one of the solves; the last tells that H was taken without what
+    depends on the parametrisation: always, or by the rank rule where H is not definite.
+    """
+    H = hessian(jet_a, jet_b)
     if solve == SOLVE_PLAIN:
-        return solve_plain(jet_a, jet_b, g, H, fed, work)
-    return solve_law(jet_a, jet_b, g, H, fed, span, work)
+        step, w_ff = solve_plain(jet_a, jet_b, g, H, fed, work)
+        return step, w_ff, False
+    metrics = pair_metric(jet_a, jet_b)
+    covariant = solve == SOLVE_COVARIANT or not plainly_definite(metrics, H, ldl(H)[0])[0]
+    if covariant:
+        H = covariant_hessian(jet_a, jet_b)
+    step, w_ff, regularised, _, _ = law(metrics, jet_a, jet_b, g, H, fed, span)
+    work.counts[REGULARISED] += regularised
+    return step, w_ff, covariant
 
 
 @kernel
@@ -162,9 +154,9 @@ def rates_at(pair, motion, place, options, integrated, h, work):
     # what the law leaves out still moves the errors
     fed = gradient(b) if options.predictor != PREDICT_NONE else NO_RATES
     g = gradient(commanded_errors(options, jet_a, jet_b, psi, integrated.integral))
-    step, w_ff = solved(jet_a, jet_b, g, fed, options.solve, span, work)
+    step, w_ff, covariant = solved(jet_a, jet_b, g, fed, options.solve, span, work)
     work.counts[EVALUATIONS] += 1
-    if options.solve == SOLVE_COVARIANT:
+    if covariant:
         gain = gain_unbent(jet_a, jet_b, gain, step, h, work)
     w = (
         gain * step[0] + w_ff[0],
