@@ -35,10 +35,18 @@ class Motion(NamedTuple):
 
 
 class Arrivals(NamedTuple):
-    """How many of the tried starts have arrived."""
+    """How many of the tried starts have arrived.
+
+    Attributes
+    ----------
+    arrived, tried : int
+    by : str
+        The law that they were tried with.
+    """
 
     arrived: int
     tried: int
+    by: str
 
 
 def motion_along(path_a: Path, path_b: Path, times: Array) -> Motion:

@@ -113,15 +113,19 @@ class Errors(NamedTuple):
 
 def projection_errors(recording: Recording, paths: tuple[Path, Path]) -> Errors:
     """Return the projection errors in one of `EVERY` frames, and at and before each switch."""
-    assert recording.pair is not None, "not opened from a file"
     frames = {*range(0, len(recording), EVERY), len(recording) - 1}
     for event in recording.events:
         frames |= {event.frame - 1, event.frame}
-    chosen, sizes = sorted(frames), []
-    for frame in chosen:
-        poses, places = _at(recording, paths, frame)[:2], _places(recording, frame)
-        sizes.append(np.linalg.norm(pair_system(*recording.pair, *poses, *places).Psi))
-    return Errors(recording.time[chosen], np.array(sizes))
+    chosen = sorted(frames)
+    sizes = np.array([error_at(recording, paths, frame) for frame in chosen])
+    return Errors(recording.time[chosen], sizes)
+
+
+def error_at(recording: Recording, paths: tuple[Path, Path], frame: int) -> float:
+    """Return the size of the projection errors in one frame [length²]."""
+    assert recording.pair is not None, "not opened from a file"
+    poses, places = _at(recording, paths, frame)[:2], _places(recording, frame)
+    return float(np.linalg.norm(pair_system(*recording.pair, *poses, *places).Psi))
 
 
 def reset_place(body: Body, place: Place, target: Feature) -> Place:

@@ -24,7 +24,6 @@ from standoff_studies.paper.simulation_b.run import (
     CONVERGED,
     DURATION,
     GAIN,
-    LAW,
     Run,
     psi,
     run,
@@ -145,7 +144,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"the nearest of the three, in the others at most {1e3 * since:.0f} ms have gone since "
             f"the jump to it (1/K is {1e3 / GAIN:g} ms)",
             since < 1.0 / GAIN,
-            by=LAW,
+            by=paper.by,
         ),
         Statement(
             "Fig. 11",
@@ -153,10 +152,10 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"{frames} frames at vertices, the witness point leaves them by {slip:.0e} length",
             slip == 0.0,
             "a vertex has no parameter that could move",
-            LAW,
+            paper.by,
             constructed=True,
         ),
-        reset_statement(resets(simulation), LAW),
+        reset_statement(resets(simulation), paper.by),
         Statement(
             "Fig. 11",
             "-",
@@ -165,7 +164,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"{np.mean(same[settled]):.2%} of the frames",
             None,
             "The greatest lag is where a curve takes over soon after its parameter left its bound.",
-            LAW,
+            paper.by,
         ),
     )
 

@@ -18,14 +18,13 @@ from standoff_studies.paper.simulation_b.run import (
     CONVERGED,
     DENSE,
     FRAME,
-    LAW,
-    OWN_LAW,
     PAST,
     Run,
     arrivals,
     brute_modes,
     off_instants,
 )
+from standoff_studies.paper.unaided import Part, unaided
 
 KINDS = ("medial", "crossing", "voronoi")
 """Of switches."""
@@ -55,7 +54,7 @@ def statements(simulation: Run) -> tuple[Statement, ...]:
             f"{counts['medial']} jumps over the medial axis, {counts['crossing']} crossing of the "
             f"boundary, {onto} switches from a curve to a vertex and {back} back",
             counts["medial"] >= 6 and onto >= 3 and back >= 3,
-            by=LAW,
+            by=simulation.paper.by,
         ),
         _curve_to_curve(simulation),
         Statement(
@@ -65,7 +64,7 @@ def statements(simulation: Run) -> tuple[Statement, ...]:
             f"boundary: the same in {agree} of {int(settled.sum())} snapshots after "
             f"{CONVERGED:g} s",
             agree == int(settled.sum()),
-            by=LAW,
+            by=simulation.paper.by,
         ),
         _instants(simulation),
         *_starts(simulation),
@@ -88,7 +87,7 @@ def _curve_to_curve(simulation: Run) -> Statement:
         frames[0] == frames[1] and source.kind == target.kind == "edge",
         "At a sharp vertex two curves' regions do not touch: the point passes the vertex at "
         f"{PAST} length, and its region within a step.",
-        LAW,
+        simulation.paper.by,
     )
 
 
@@ -105,7 +104,7 @@ def _instants(simulation: Run) -> Statement:
         f"{off['voronoi']:.0e} s of it, at the boundary {off['crossing']:.0e} s, at the medial "
         f"axis computed before the run {off['medial']:.0e} s",
         all(near) and max(off.values()) < WITHIN,
-        by=LAW,
+        by=simulation.paper.by,
     )
 
 
@@ -151,7 +150,7 @@ def _growth(simulation: Run) -> Statement:
         f"switches the feature after it is at most {grows:.0e} length farther away than the one "
         "before it",
         grows <= CONTINUOUS,
-        by=OWN_LAW + ": the claim is of the closest points",
+        by=simulation.own + ": the claim is of the closest points",
     )
 
 
@@ -173,7 +172,7 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
             f"outside, from {len(runs)} wrong starts: the same {int(outside.sum())} Voronoi "
             f"switches, instants within {outer:.0e} s",
             same and outer < INSTANT,
-            by=LAW,
+            by=simulation.paper.by,
         ),
         Statement(
             "Section on the hybrid system",
@@ -183,7 +182,7 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
             same and inner < INSTANT,
             "which side of the medial axis the point is on is read from its place; the trackers "
             "are not asked",
-            LAW,
+            simulation.paper.by,
             constructed=True,
         ),
     )
@@ -192,8 +191,6 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
 def _as_printed(simulation: Run) -> tuple[Statement, Statement]:
     """What becomes of starts anywhere, and that nothing beside the law helps."""
     tried, runs = arrivals(), (simulation.paper, *simulation.others)
-    foots = sum(one.injected.foot_points for one in runs)
-    injected = sum(sum(one.injected) for one in runs) - foots
     return (
         Statement(
             "Section on the hybrid system",
@@ -201,15 +198,11 @@ def _as_printed(simulation: Run) -> tuple[Statement, Statement]:
             f"{tried.arrived} of {tried.tried} starts all over the three curves are at the "
             f"distance to their curve to {ARRIVED:g} after {CONVERGED:g} s",
             tried.arrived == tried.tried,
-            by=LAW,
+            by=tried.by,
         ),
-        Statement(
-            "Section on the hybrid system",
-            "no search, restart or exact solution is part of the tracking",
-            f"in {len(runs)} runs of {len(simulation.paper)} frames {injected} restarts, searches "
-            f"and parameters taken from a solve; the guards outside sought {foots} foot points, "
-            "and wrote none",
-            injected == 0,
-            by=LAW,
+        unaided(
+            [Part.of(part) for one in runs for part in (*one.parts, one.outside)],
+            simulation.paper.by,
+            runs=len(runs),
         ),
     )

@@ -19,6 +19,8 @@ from standoff.recording.times import even_times
 from standoff.tracking import Feature, Tracker, TrackerState
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import lens_of_patches
+from standoff_studies.paper.law_words import law_words
+from standoff_studies.paper.many_starts import Arrivals
 
 Array = NDArray[np.float64]
 
@@ -53,11 +55,6 @@ closest point is on face 1 at about (0.2, 0.6). Figs. 16-18 show the run from th
 
 GAIN = 25.0
 """K of the printed system [1/s]: "a very low controller gain"."""
-
-LAW = f"PaperLaw.as_printed(gain={GAIN:g}): Voronoi tests, M as it is, wrong start"
-"""What the statements say they were measured with."""
-
-OWN_LAW = "the library's own law, certified"
 
 ENTERED = 0.005
 """After these seconds the switches of a wrong start to the true feature are over: the guards see
@@ -107,6 +104,16 @@ class Runs:
     exact: Recording
     paper: tuple[Recording, ...]
 
+    @property
+    def by(self) -> str:
+        """What statements on `paper` were measured with."""
+        return law_words(*self.paper, told="wrong start")
+
+    @property
+    def own(self) -> str:
+        """What statements on `exact` were measured with."""
+        return law_words(self.exact)
+
 
 @cache
 def run() -> Runs:
@@ -133,13 +140,6 @@ def begin(law: Tracker, face: int, parameters: tuple[float, float]) -> TrackerSt
     return law.start_from(*poses, *places, *twists, settle=False)
 
 
-class Arrivals(NamedTuple):
-    """How many of the tried starts have come to the closest point after `PATIENCE`."""
-
-    arrived: int
-    tried: int
-
-
 @cache
 def arrivals() -> Arrivals:
     """Try starts all over the three faces with the printed system."""
@@ -157,7 +157,8 @@ def arrivals() -> Arrivals:
             law.step_into(buffer)
         ends.append(buffer.proximity().point_a)
     off = np.linalg.norm(np.array(ends) - runs.exact.point_a[frames], axis=1)
-    return Arrivals(int((off < ARRIVED).sum()), len(places))
+    by = law_words(law, told="starts on a grid")
+    return Arrivals(int((off < ARRIVED).sum()), len(places), by)
 
 
 def entered(recording: Recording) -> list[RecordedEvent]:

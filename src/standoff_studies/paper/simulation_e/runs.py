@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,8 @@ from standoff.tracking import Tracker, TrackerState
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import lens_of_patches
+from standoff_studies.paper.law_words import law_words
+from standoff_studies.paper.many_starts import Arrivals
 from standoff_studies.paper.simulation_d.runs import place_on, short
 
 Array = NDArray[np.float64]
@@ -51,11 +52,6 @@ GAIN = 50.0
 START = ((0, (0.4, 0.76)), (1, (0.6, 0.83)))
 """Face and parameters of A and of B where the printed system is started, one that arrives."""
 
-LAW = f"PaperLaw.as_printed(gain={GAIN:g}): Voronoi tests, M as it is, wrong start"
-"""What the statements say they were measured with."""
-
-OWN_LAW = "the library's own law, certified"
-
 CONVERGED = 0.3
 """When the start has converged [s]: exp(-K t) is 3e-7."""
 
@@ -81,6 +77,16 @@ class Runs:
     exact: Recording
     paper: Recording
 
+    @property
+    def by(self) -> str:
+        """What statements on `paper` were measured with."""
+        return law_words(self.paper, told="wrong start")
+
+    @property
+    def own(self) -> str:
+        """What statements on `exact` were measured with."""
+        return law_words(self.exact)
+
 
 @cache
 def pair() -> tuple[Body, Body]:
@@ -95,9 +101,14 @@ def run() -> Runs:
     a, b = pair()
     exact = so.simulate(so.Tracker(a, b, STEP), PATH_A, PATH_B, DURATION)
     times = even_times(0.0, DURATION, STEP)
-    law = Tracker(a, b, STEP, law=PaperLaw.as_printed(gain=GAIN))
+    law = printed_tracker(a, b)
     paper = track_along(law, PATH_A, PATH_B, times, state=begin(law, *START))
     return Runs(a, b, exact, paper)
+
+
+def printed_tracker(a: Body, b: Body) -> Tracker:
+    """Return the tracker of the system as printed."""
+    return Tracker(a, b, STEP, law=PaperLaw.as_printed(gain=GAIN))
 
 
 Place = tuple[int, tuple[float, float]]
@@ -112,18 +123,11 @@ def begin(law: Tracker, place_a: Place, place_b: Place) -> TrackerState:
     return law.start_from(pose_a, pose_b, *places, twist_a, twist_b, settle=False)
 
 
-class Arrivals(NamedTuple):
-    """How many of the tried starts have come to the distance after `PATIENCE`."""
-
-    arrived: int
-    tried: int
-
-
 @cache
 def arrivals() -> Arrivals:
     """Try random starts on both bodies with the printed system."""
     runs, rng = run(), np.random.default_rng(1)
-    law = Tracker(runs.a, runs.b, STEP, law=PaperLaw.as_printed(gain=GAIN))
+    law = printed_tracker(runs.a, runs.b)
     frames = round(PATIENCE / STEP)
     placed = [(PATH_B.pose(k * STEP), PATH_B.twist(k * STEP)) for k in range(1, frames + 1)]
     motion = [(flat_pose(pose), flat_twist(twist, pose)) for pose, twist in placed]
@@ -136,7 +140,7 @@ def arrivals() -> Arrivals:
             buffer.pose_b[:], buffer.twist_b[:] = pose, twist
             law.step_into(buffer)
         found += abs(buffer.proximity().distance - runs.exact.distance[frames]) < ARRIVED
-    return Arrivals(int(found), TRIED)
+    return Arrivals(int(found), TRIED, law_words(law, told="random starts"))
 
 
 def sequence(visits: Iterable[Visit]) -> tuple[tuple[str, str], ...]:
