@@ -64,7 +64,9 @@ def test_a_recording_has_the_words_of_its_tracker() -> None:
 
 def test_what_differs_is_left_to_the_statement() -> None:
     found = law_words(tracker(), tracker(gain=50.0))
-    assert found == law_words(tracker()).replace("K = 25/s", "K as named")
+    assert found == law_words(tracker()).replace("K = 25/s", "K = 25 or 50/s")
+    many = law_words(*(tracker(gain=gain) for gain in (10.0, 20.0, 30.0, 40.0)))
+    assert many == law_words(tracker()).replace("K = 25/s", "K as named")
     both = law_words(tracker(), tracker(solve="ranked"))
     assert "solve as named" in both
     assert "as_printed" not in both

@@ -31,6 +31,9 @@ WORDS: dict[str, dict[Any, str]] = {
 }
 """Values of the paper's law, in this order; empty where Eq. (12) and Fig. 4 have it so."""
 
+MOST_GAINS = 3
+"""That are told one by one; of more the statement tells its own."""
+
 PRINTED = ("saturation", "reset", "restarts")
 """Options that the name ``as_printed`` tells."""
 
@@ -90,10 +93,10 @@ def _of_one_kind(ran: list[Ran]) -> str:
         return ", ".join([*words, *_others(laws[0], values)])
     as_printed = all(map(printed, laws))
     name = "so.PaperLaw.as_printed" if as_printed else "so.PaperLaw"
-    integrator = values.pop("integrator")
+    integrator, _ = values.pop("integrator"), values.pop("gain")
     words = [
         INTEGRATORS.get(integrator, f"integrator {integrator}"),
-        _gain(values.pop("gain"), values.pop("feedback")),
+        _gain([one["gain"] for one in facts], values.pop("feedback")),
         frame,
     ]
     if values["switching"] not in ("voronoi", NAMED):
@@ -105,10 +108,14 @@ def _of_one_kind(ran: list[Ran]) -> str:
     return f"{name}: " + ", ".join([*filter(None, words), *_others(laws[0], values)])
 
 
-def _gain(gain: Any, feedback: Any) -> str:
+def _gain(gains: list[float], feedback: Any) -> str:
+    """The gains of some laws, each once, or their feedback."""
     if feedback is not None:
         return f"feedback {feedback if feedback == NAMED else feedback['kind']}"
-    return f"K {gain}" if gain == NAMED else f"K = {gain:g}/s"
+    different = sorted(set(gains))
+    if len(different) > MOST_GAINS:
+        return f"K {NAMED}"
+    return f"K = {' or '.join(f'{gain:g}' for gain in different)}/s"
 
 
 def _option(name: str, value: Any) -> str:

@@ -227,14 +227,14 @@ def _short(feature: Feature) -> str:
 
 def reset_statement(resets: list[Reset], by: str) -> Statement:
     """Say whether the projection errors at the switches are those that the resets imply."""
-    off = max(reset.off for reset in resets)
-    after = [reset.found for reset in resets]
+    off = max((reset.off for reset in resets), default=0.0)
+    after = [reset.found for reset in resets] or [0.0]
     return Statement(
         "Eqs. (15)–(17)",
         "at a switch the projection errors jump by what the reset implies, and by nothing else",
         f"at all {len(resets)} frames with switches they are those of the reset's parameters to "
         f"{off:.0e} length²; they come to {max(after):.1e} at most",
-        off <= ROUNDED,
+        off <= ROUNDED if resets else None,
         "the law's step and the reset are computed again, without the kernels that switch",
         by,
     )

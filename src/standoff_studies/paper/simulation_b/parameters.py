@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -117,11 +118,14 @@ def not_nearest(simulation: Run) -> NDArray[np.int64]:
 
 
 def held(simulation: Run) -> tuple[int, float]:
-    """Return how many frames at vertices there are, and how far the witness leaves them."""
+    """Return how many frames at vertices there are, and how far the witness leaves them.
+
+    nan where there are none.
+    """
     paper, body = simulation.paper, simulation.body
     at = [k for k, feature in enumerate(paper.feature) if feature.kind == "vertex"]
     corners = np.array([body.vertex_points[paper.feature[k].index] for k in at])
-    return len(at), float(np.abs(paper.witness[at] - corners).max())
+    return len(at), float(np.abs(paper.witness[at] - corners).max()) if at else math.nan
 
 
 def _statements(simulation: Run) -> tuple[Statement, ...]:

@@ -91,6 +91,7 @@ class Run(NamedTuple):
     snapshots: NDArray[np.int64]
 
 
+@cache
 def motion(body: Body) -> Spiral:
     """Return the point's spiral: it passes vertex 1 just outside in its third turn."""
     corner = body.vertex_points[1]
@@ -100,15 +101,32 @@ def motion(body: Body) -> Spiral:
 
 
 @cache
+def shape() -> tuple[Body, VoronoiRegions]:
+    """Return the body and its regions."""
+    body = planar_body()
+    return body, voronoi_regions(body)
+
+
+def frame_times() -> Array:
+    """Return the times of the frames [s]."""
+    return np.asarray(FRAME * np.arange(round(DURATION / FRAME) + 1), dtype=np.float64)
+
+
+@cache
+def exact_run() -> tuple[PointRecording, str]:
+    """Track the point with the library's own law; and the words of that law."""
+    body, _ = shape()
+    tracker = PointTracker(body, FRAME)
+    return record_point(tracker, motion(body), frame_times()), law_words(tracker)
+
+
+@cache
 def run() -> Run:
     """Return the simulation, computed once."""
-    body = planar_body()
-    path, regions = motion(body), voronoi_regions(body)
-    times = np.asarray(FRAME * np.arange(round(DURATION / FRAME) + 1), dtype=np.float64)
+    (body, regions), (exact, own) = shape(), exact_run()
+    path, times = motion(body), frame_times()
     printed = Printed(body, regions, path, times, GAIN)
     paper, *others = (printed.run(start) for start in (WRONG_START, *OTHER_STARTS))
-    tracker = PointTracker(body, FRAME)
-    exact, own = record_point(tracker, path, times), law_words(tracker)
     snapshots = np.arange(SNAPSHOTS) * round(DURATION / FRAME / SNAPSHOTS)
     return Run(body, regions, path, printed, paper, tuple(others), exact, own, snapshots)
 

@@ -109,6 +109,7 @@ class Run(NamedTuple):
         return law_words(self.exact)
 
 
+@cache
 def motion() -> Path:
     """Return B's motion: it spins steadily while its centre follows a spiral."""
     spin = ConstantTwist(Pose.identity(), Twist((0.0, 0.0, 0.0), (0.0, 0.0, SPIN)))
@@ -116,10 +117,21 @@ def motion() -> Path:
 
 
 @cache
+def pair() -> tuple[Body, Body]:
+    """Return A and B."""
+    return planar_body(), leaf()
+
+
+@cache
+def exact_run() -> Recording:
+    """Track the pair with the library's own law."""
+    return simulate(Tracker(*pair(), FRAME), REST, motion(), DURATION)
+
+
+@cache
 def run() -> Run:
     """Return the simulation, computed once."""
-    a, b, path = planar_body(), leaf(), motion()
-    exact = simulate(Tracker(a, b, FRAME), REST, path, DURATION)
+    (a, b), path, exact = pair(), motion(), exact_run()
     law = printed_tracker(a, b)
     state, times = begin(law, path, *START), even_times(0.0, DURATION, FRAME)
     paper = track_along(law, REST, path, times, state=state)

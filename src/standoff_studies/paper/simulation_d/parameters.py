@@ -111,8 +111,8 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             "the parameters have constant stretches at 0 or 1 where the point lies on an edge",
             f"{len(stays)} stretches of {min(v.end - v.start for v in stays):.2f} to "
             f"{max(v.end - v.start for v in stays):.2f} s; there u is off 0 or 1 by "
-            f"{offsets.max():.0e} in {len(offsets)} frames",
-            bool(offsets.max() == 0.0),
+            f"{offsets.max(initial=0.0):.0e} in {len(offsets)} frames",
+            bool(len(offsets) and offsets.max() == 0.0),
             "on an edge u is read from the edge's own line in (u, v)",
             runs.by,
             constructed=True,

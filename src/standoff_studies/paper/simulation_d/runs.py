@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from standoff.automaton import Visit
 from standoff.bodies import Body, shapes
 from standoff.motion import Fixed, Helix, Pose, Twist
-from standoff.recording import RecordedEvent, Recording
+from standoff.recording import RecordedEvent, Recording, simulate
 from standoff.recording.simulate import track_along
 from standoff.recording.times import even_times
 from standoff.tracking import Feature, Tracker, TrackerState
@@ -116,11 +116,22 @@ class Runs:
 
 
 @cache
+def pair() -> tuple[Body, Body]:
+    """Return the lens and the point."""
+    return lens_of_patches(RADIUS, OFFSET), shapes.point()
+
+
+@cache
+def exact_run() -> Recording:
+    """Track the point on its helix with the library's own law."""
+    return simulate(Tracker(*pair(), STEP), REST, HELIX, DURATION)
+
+
+@cache
 def run() -> Runs:
     """Track the point on its helix with the printed system, and with the library's own law."""
-    lens, point = lens_of_patches(RADIUS, OFFSET), shapes.point()
+    (lens, point), exact = pair(), exact_run()
     times = even_times(0.0, DURATION, STEP)
-    exact = track_along(Tracker(lens, point, STEP), REST, HELIX, times)
     law = printed_tracker(lens, point)
     starts = [begin(law, face, parameters) for face, parameters in WRONG_STARTS]
     paper = tuple(track_along(law, REST, HELIX, times, state=start) for start in starts)

@@ -10,11 +10,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-import standoff as so
 from standoff.automaton import Visit
 from standoff.bodies import Body
 from standoff.motion import Carried, ConstantTwist, Fixed, Helix, Pose, Twist
-from standoff.recording import Recording
+from standoff.recording import Recording, simulate
 from standoff.recording.simulate import track_along
 from standoff.recording.times import even_times
 from standoff.tracking import Tracker, TrackerState
@@ -96,10 +95,15 @@ def pair() -> tuple[Body, Body]:
 
 
 @cache
+def exact_run() -> Recording:
+    """Track the pair with the library's own law."""
+    return simulate(Tracker(*pair(), STEP), PATH_A, PATH_B, DURATION)
+
+
+@cache
 def run() -> Runs:
     """Track the pair with both laws."""
-    a, b = pair()
-    exact = so.simulate(so.Tracker(a, b, STEP), PATH_A, PATH_B, DURATION)
+    (a, b), exact = pair(), exact_run()
     times = even_times(0.0, DURATION, STEP)
     law = printed_tracker(a, b)
     paper = track_along(law, PATH_A, PATH_B, times, state=begin(law, *START))
