@@ -6,11 +6,12 @@ from typing import Any
 
 from standoff.points import PointTracker
 from standoff.recording import Recording
+from standoff.simulation import Operator
 from standoff.tracking import Tracker
 from standoff.tracking.law_options import Law, options_of
 from standoff.tracking.laws import PaperLaw
 
-Ran = Tracker | PointTracker | Recording
+Ran = Tracker | PointTracker | Recording | Operator
 """What keeps a record of its law."""
 
 NAMED = "as named"
@@ -48,7 +49,7 @@ def law_words(*ran: Ran, told: str = "") -> str:
 
     Parameters
     ----------
-    *ran : Tracker, PointTracker or Recording
+    *ran : Tracker, PointTracker, Recording or Operator
         One at least.
     told : str
         What no record holds, such as the start.
