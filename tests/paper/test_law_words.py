@@ -33,6 +33,8 @@ def test_the_printed_law() -> None:
     ("options", "told"),
     [
         ({"solve": "ranked"}, "M by the rank rule"),
+        ({"solve": "covariant"}, "M covariant"),
+        ({"far_side": "left"}, "faces left on the far side"),
         ({"gain": 12.5}, "K = 12.5/s"),
         ({"feedforward": False}, "no feedforward"),
         ({"reset": "foot"}, "resets to the foot point"),
@@ -48,7 +50,7 @@ def test_a_replaced_option_is_told(options: dict[str, Any], told: str) -> None:
     found = law_words(tracker(**options))
     assert told in found
     assert told not in law_words(tracker())
-    still = not options.keys() - {"gain", "integrator"}
+    still = not options.keys() - {"gain", "integrator", "far_side"}
     assert ("as_printed" in found) is still
 
 
@@ -101,6 +103,7 @@ def test_whatever_is_counted_fails_the_claim(name: str) -> None:
     "law",
     [
         replace(PRINTED, solve="ranked"),
+        replace(PRINTED, solve="covariant"),
         replace(PRINTED, reset="foot"),
         replace(PRINTED, restarts=True),
         so.PredictorCorrector(),

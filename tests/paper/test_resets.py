@@ -17,6 +17,9 @@ from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import lens_of_patches, planar_body
 from standoff_studies.paper.resets import (
     ROUNDED,
+    Move,
+    growth_statement,
+    moves_of,
     projection_errors,
     reset_place,
     reset_statement,
@@ -62,6 +65,44 @@ def test_the_errors_jump_by_what_the_reset_implies(case: Callable[[], Case], lea
     errors = projection_errors(recording, paths)
     at = np.searchsorted(errors.time, [reset.time for reset in resets])
     assert errors.size[at] == pytest.approx([reset.found for reset in resets], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("moves", "least"), [(d.moves_by_resets, 40), (e.moves_by_resets, 20)], ids=["D", "E"]
+)
+def test_printed_resets_of_wrong_starts_move_the_points_together(
+    moves: Callable[[], list[Move]], least: int
+) -> None:
+    """From afar they move witness points by up to a length, and never farther apart."""
+    moved = [move for move in moves() if move.way > ROUNDED]
+    assert len(moved) >= least
+    assert max(move.way for move in moved) > 0.5
+    assert all(abs(move.growth) <= move.way + ROUNDED for move in moved)
+    assert max(move.growth for move in moved) <= ROUNDED
+
+
+@pytest.mark.parametrize("case", [of_c, of_d])
+def test_moves_are_those_of_the_resets(case: Callable[[], Case]) -> None:
+    """A switch of the wrong start jumps in distance between two frames; the later ones do not."""
+    recording, paths, gain = case()
+    moves, resets = moves_of(recording, paths, gain), resets_of(recording, paths, gain)
+    assert len(moves) == len(resets)
+    steps = np.array(
+        [recording.distance[r.frame] - recording.distance[r.frame - 1] for r in resets]
+    )
+    # beside the reset a frame has the law's own step, at K h = 0.025 and a few hundredths of a way
+    assert np.array([move.growth for move in moves]) == pytest.approx(steps, abs=0.05)
+    assert moves[0].growth < -0.1
+    assert max(move.way for move in moves[1:]) <= ROUNDED
+
+
+def test_a_distance_that_grows_is_told() -> None:
+    moves = [Move(0.4, -0.3), Move(0.0, 0.0), Move(0.2, 0.1)]
+    told = growth_statement(moves, 2, "").measured
+    assert "from 2 wrong starts, move a witness point in 2 of 3 frames" in told
+    assert "grows in 1, by up to 1.0e-01 length" in told
+    assert growth_statement(moves[:1], 1, "").measured.endswith("grows in 0")
+    assert growth_statement(moves[1:2], 1, "").measured.endswith("does not change")
 
 
 def test_an_exact_reset_is_told() -> None:

@@ -190,6 +190,9 @@ def test_the_figures_are_the_printed_systems(run):
         assert counts.foot_points > 0
     tried = runs.arrivals()
     assert 0.4 < tried.arrived / tried.tried < 0.95
+    # what does not arrive is on the right face, at a side of its patch, with M indefinite
+    for ends in (tried, runs.arrivals(moving=False)):
+        assert ends.placed == ends.pinned == ends.lost > 0
 
 
 @pytest.mark.parametrize("law", ["exact", "paper"])

@@ -133,6 +133,9 @@ def test_the_figures_are_the_printed_systems(done):
     assert counts.foot_points > len(done.paper)
     tried = runs.arrivals()
     assert 0 < tried.arrived < 0.6 * tried.tried
+    # most of the others are at a side of a patch, with M indefinite
+    assert tried.pinned > 0.8 * tried.lost
+    assert tried.placed > 0.4 * tried.lost
     stay = parameters.edge_stay(done)
     assert stay[1] - stay[0] == pytest.approx(1.0, abs=0.1)
 

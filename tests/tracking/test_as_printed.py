@@ -61,7 +61,7 @@ def test_it_is_one_configuration() -> None:
     law = so.PaperLaw.as_printed(gain=50.0)
     assert law == so.PaperLaw(
         gain=50.0, switching="voronoi", saturation="zero", solve="plain", reset="nearest",
-        restarts=False,
+        far_side="kept", restarts=False,
     )  # fmt: skip
     assert (law.integrator, law.realisation, law.feedforward) == ("heun", "evaluated", True)
     assert so.PaperLaw.as_printed(gain=50.0, integrator="rk4").integrator == "rk4"

@@ -41,6 +41,7 @@ VARIANT: dict[str, Any] = {
     "switching": "voronoi",
     "solve": "plain",
     "reset": "nearest",
+    "far_side": "kept",
     "restarts": False,
     **COMMON,
 }
@@ -95,8 +96,9 @@ def test_choices_stand_in_the_order_of_the_kernels_numbers() -> None:
         "realisation": [K.EVALUATED, K.INTEGRATED],
         "saturation": [K.SATURATE_HOLD, K.SATURATE_ZERO],
         "switching": [K.SWITCH_MULTIPLIERS, K.SWITCH_VORONOI, K.SWITCH_NONE],
-        "solve": [K.SOLVE_RANKED, K.SOLVE_PLAIN],
+        "solve": [K.SOLVE_RANKED, K.SOLVE_PLAIN, K.SOLVE_COVARIANT],
         "reset": [K.RESET_FOOT, K.RESET_NEAREST],
+        "far_side": [K.FAR_SIDE_LEFT, K.FAR_SIDE_KEPT],
         "depth": [K.DEPTH_GLOBAL, K.DEPTH_LOCAL],
         "integrator": list(range(len(I.NAMES))),
     }
@@ -181,7 +183,7 @@ def test_the_help_names_each_option(capsys: pytest.CaptureFixture[str]) -> None:
         parse(["track", "--help"])
     told = re.sub(r"[\s│]+", " ", capsys.readouterr().out)
     for name, each in every_option().items():
-        assert f"--{name} " in told
+        assert f"--{name.replace('_', '-')} " in told
         assert each.help[:40] in told
 
 

@@ -251,6 +251,15 @@ WOUND_UP = 10.0
 # and back: an edge's parameter and its pcurve give the point back but for a few roundings.
 STANDSTILL = 1e-12
 
+# The covariant solve's step is cut where its second-order part along the surface, which belongs to
+# the parametrisation, exceeds this part of the first-order one: beside a collapsed side a small
+# step turns the parameter along that side through all its range.
+MOST_BENT = 0.5
+
+# How often a frame of the paper's law may hold a boundary and be solved again: both bodies from a
+# face over an edge to a vertex.
+MOST_HELD = 4
+
 # Radians between level and tilted, where a flat contact of simulated bodies ends: far above the
 # tilt of bodies at rest on each other (depth over size), far below that of one that has tipped.
 FLAT_TILT = 0.02

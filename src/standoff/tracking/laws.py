@@ -108,14 +108,21 @@ class PaperLaw(Law):
     )
     solve: str = option(
         "ranked",
-        Choice(("ranked", "plain")),
-        "By the rank rule, or by H as it is, without a safeguard: the raw law.",
+        Choice(("ranked", "plain", "covariant")),
+        "By the rank rule, or by H as it is, without a safeguard: the raw law; or by the rank rule "
+        "with the part of H that does not depend on the parametrisation, which is semidefinite.",
     )
     reset: str = option(
         "foot",
         Choice(("foot", "nearest")),
         "Where the Voronoi tests enter an edge: at its point closest to the opposing witness "
         "point, or, as printed, at the pcurve's parameter nearest in (u, v) to the face's own.",
+    )
+    far_side: str = option(
+        "left",
+        Choice(("left", "kept")),
+        "A face whose tangent plane the opposing witness point is behind is left by the Voronoi "
+        "tests, as Lin and Canny and V-Clip do, or kept: the face's region is then on both sides.",
     )
     restarts: bool = option(
         True,
@@ -154,7 +161,9 @@ class PaperLaw(Law):
             )
 
     @classmethod
-    def as_printed(cls, *, gain: float, integrator: str = "heun") -> PaperLaw:
+    def as_printed(
+        cls, *, gain: float, integrator: str = "heun", far_side: str = "kept"
+    ) -> PaperLaw:
         """Return the system that the paper prints, without any safeguard of the library's.
 
         Errors are evaluated from Eqs. (1)-(4) (Fig. 4), M is solved as it is, Eq. (12), components
@@ -169,11 +178,15 @@ class PaperLaw(Law):
             K, 1/s. In its simulations the paper takes "a very low controller gain"; 25 to 100
             serve at 1 kHz.
         integrator : str, default "heun"
+        far_side : {"kept", "left"}
+            The paper's regions can be read both ways: a face's on both sides of it, or, as in Lin
+            and Canny's algorithm, in front alone.
 
         Notes
         -----
-        M of two bodies is indefinite far from the minimum, where this system may come to another
-        stationary point, or leave a start for ever: docs/paper has the fractions.
+        M of two bodies may be indefinite far from the minimum, in one parametrisation and not in
+        another. Such a start is left for ever in a corner of the right faces: docs/paper has the
+        fractions. With ``solve="covariant"`` M is definite anywhere.
         """
         return cls(
             integrator=integrator,
@@ -183,6 +196,7 @@ class PaperLaw(Law):
             switching="voronoi",
             solve="plain",
             reset="nearest",
+            far_side=far_side,
             restarts=False,
         )
 

@@ -19,6 +19,9 @@ CONTINUOUS = 1e-13
 """A distance that changes by less over a switch is continuous [length]: an instant good to 1e-9 s
 makes a difference of its square, and what is left is roundoff."""
 
+SHARED = "the old and the new feature share the point at which the closest points switch"
+"""Why the distance of the closest points cannot grow there."""
+
 Place = tuple[Any, Any]
 
 

@@ -56,8 +56,8 @@ ITEMS: tuple[Item, ...] = (
     ),
     Item(
         "M is positive definite",
-        "partial", "of a body and a point near the minimum; not of two bodies",
-        "[the pair system](../pair-system.md)",
+        "partial", "H = S M is near the minimum; away from it that depends on (u, v)",
+        "[where M is definite](definite.md)",
         ("basin",),
     ),
     Item(
@@ -140,25 +140,25 @@ ITEMS: tuple[Item, ...] = (
     ),
     Item(
         "the distance between features never grows at a switch",
-        "done", "holds for the closest points",
+        "done", "by construction of the closest points; measured at the printed resets",
         "[simulation D](simulation-d.md), [simulation E](simulation-e.md)",
         ("9", "13", "17", "20"),
     ),
     Item(
         "a start anywhere on tiled convex bodies converges",
-        "done", "does not hold for the printed system",
-        "[which starts arrive](convergence.md)",
+        "done", "in the plane; in space not with M as printed, and it depends on the patches",
+        "[which starts arrive](convergence.md), [where M is definite](definite.md)",
         ("arrivals",),
     ),
     Item(
         "gains from 0.5 to 1500 at 1 kHz; upper limit",
-        "done", "stable up to 1990, and no lower limit with the feedforward",
+        "done", "stable inside, and beyond both ends too: from 0.25 to 1990",
         "[simulation A](simulation-a.md), [control](control.md)",
         ("7", "stability"),
     ),
     Item(
         "each update takes one time step",
-        "done", "",
+        "done", "of two evaluations by the paper's integrator",
         "[verdict](verdict.md)",
         ("cost",),
     ),

@@ -18,13 +18,18 @@ NAMED = "as named"
 """Of an option whose value the statement tells itself: the trackers differ in it."""
 
 WORDS: dict[str, dict[Any, str]] = {
-    "solve": {"plain": "M as it is", "ranked": "M by the rank rule"},
+    "solve": {
+        "plain": "M as it is",
+        "ranked": "M by the rank rule",
+        "covariant": "M covariant, by the rank rule",
+    },
     "switching": {
         "voronoi": "Voronoi tests",
         "multipliers": "switching by multipliers",
         "none": "no switching",
     },
     "saturation": {"zero": "saturation zeroed", "hold": "edges held"},
+    "far_side": {"kept": "", "left": "faces left on the far side"},
     "reset": {"nearest": "resets by the pcurve", "foot": "resets to the foot point"},
     "restarts": {False: "no restarts", True: "restarts"},
     "feedforward": {True: "", False: "no feedforward"},
@@ -77,7 +82,8 @@ def printed(law: Law) -> bool:
     """Is a law the system as printed, at some gain by some integrator?"""
     if not isinstance(law, PaperLaw) or law.gain is None:
         return False
-    return law == PaperLaw.as_printed(gain=law.gain, integrator=law.integrator)
+    options = {"integrator": law.integrator, "far_side": law.far_side}
+    return law == PaperLaw.as_printed(gain=law.gain, **options)
 
 
 def _of_one_kind(ran: list[Ran]) -> str:
@@ -101,7 +107,7 @@ def _of_one_kind(ran: list[Ran]) -> str:
         frame,
     ]
     if values["switching"] not in ("voronoi", NAMED):
-        del values["reset"]  # of those tests alone
+        del values["reset"], values["far_side"]  # of those tests alone
     for option in [option for option in WORDS if option in values]:
         value = values.pop(option)
         if not (as_printed and option in PRINTED):

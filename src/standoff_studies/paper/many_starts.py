@@ -7,16 +7,30 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.bodies import Body
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.entries.preparing import prepare
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
-from standoff.motion import Path
-from standoff.tracking import Tracker, TrackerState
+from standoff.motion import Path, Pose
+from standoff.tracking import Proximity, Tracker, TrackerState, pair_system
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.rows import poses_of, twists_of
 
 Array = NDArray[np.float64]
+
+AT_SIDE = 1e-9
+"""Parameters that are nearer to 0 or 1 are at a side: the zeroing holds them there exactly."""
+
+LEFT = 1e-3
+"""Projection errors above this have not decayed [length²]: those that do are far below it."""
+
+INDEFINITE = (
+    "on large parts of the right, facing faces M as printed is indefinite: away from the minimum "
+    "ΔR·f_uu has a part along the tangents, which belongs to the parametrisation and not to the "
+    "body. The zeroing then holds the witness point at a side or in a corner of the patch"
+)
+"""Why starts on the right faces do not arrive."""
 
 
 class Motion(NamedTuple):
@@ -47,6 +61,47 @@ class Arrivals(NamedTuple):
     arrived: int
     tried: int
     by: str
+
+
+class Ends(NamedTuple):
+    """Where the tried starts have ended.
+
+    Attributes
+    ----------
+    arrived, tried : int
+    by : str
+        The law that they were tried with.
+    placed, pinned : int
+        Of those that have not arrived: how many are on the features of the closest points, and how
+        many are held at a side of a patch with M indefinite and projection errors left.
+    """
+
+    arrived: int
+    tried: int
+    by: str
+    placed: int
+    pinned: int
+
+    @property
+    def lost(self) -> int:
+        """How many have not arrived."""
+        return self.tried - self.arrived
+
+
+def is_pinned(bodies: tuple[Body, Body], poses: tuple[Pose, Pose], answer: Proximity) -> bool:
+    """Is a start held at a side of a patch, with M indefinite and projection errors left?
+
+    For bodies of patches with parameters in [0, 1].
+    """
+    places = (
+        (answer.feature_a, answer.parameters_a),
+        (answer.feature_b, answer.parameters_b),
+    )
+    parameters = np.array([*answer.parameters_a, *answer.parameters_b])
+    at_side = bool((np.minimum(parameters, 1.0 - parameters) < AT_SIDE).any())
+    system = pair_system(*bodies, *poses, *places)
+    indefinite = bool(np.linalg.eigvalsh(system.H).min(initial=np.inf) < 0.0)
+    return at_side and indefinite and bool(np.linalg.norm(system.Psi) > LEFT)
 
 
 def motion_along(path_a: Path, path_b: Path, times: Array) -> Motion:

@@ -80,4 +80,5 @@ def stage_rates(pair, motion, place, n, near, options, integrated, work):
     jets = pair_jets(pair, motion.pose, place)
     if near or norm(sub(jets[1][0], jets[0][0])) == 0.0:
         return contact_law(pair, motion, place, n, options.gain, work)
-    return rates_at(pair, motion, place, options, integrated, work)[0]
+    # no frame's step is taken: the bodies' own integrator chooses it
+    return rates_at(pair, motion, place, options, integrated, 0.0, work)[0]

@@ -56,6 +56,55 @@ def hessian(jet_a, jet_b):
 
 
 @small
+def bending(away, jet):
+    """(uu, uv, vv): away·II, of the second derivatives the part along the normal, or along what is
+    square to an edge's tangent; 0 where it is negative.
+
+    `away` is x - y, from the opposing point y. Over a convex patch it is semidefinite: positive
+    where y is in front of the tangent plane, negative behind it. What is left out, the part along
+    the tangents, belongs to the parametrisation, and vanishes with Psi.
+    """
+    xu, xv = jet[1], jet[2]
+    if active(xu) == 0.0 or active(xv) == 0.0:
+        t, tt = (xv, jet[5]) if active(xu) == 0.0 else (xu, jet[3])
+        square = dot(t, t)
+        along = dot(tt, t) / square if square > 0.0 else 0.0
+        bent = max(dot(away, tt) - along * dot(away, t), 0.0)
+        return (0.0, 0.0, bent) if active(xu) == 0.0 else (bent, 0.0, 0.0)
+    n = cross(xu, xv)
+    square = dot(n, n)
+    height = dot(away, n) / square if square > 0.0 else 0.0
+    uu, uv, vv = height * dot(n, jet[3]), height * dot(n, jet[4]), height * dot(n, jet[5])
+    return (uu, uv, vv) if uu + vv > 0.0 else (0.0, 0.0, 0.0)
+
+
+@small
+def covariant_hessian(jet_a, jet_b):
+    """H of the first fundamental forms plus the distance times the second ones, laid out as by
+    `hessian`, to which it is equal where Psi is 0.
+
+    (F x - G y)² + s_A x'II_A x + s_B y'II_B y with s = max(height of the opposing point, 0): of
+    convex bodies semidefinite anywhere, and the same in every parametrisation.
+    """
+    dR = sub(jet_a[0], jet_b[0])
+    fu, fv, hr, hs = jet_a[1], jet_a[2], jet_b[1], jet_b[2]
+    a_uu, a_uv, a_vv = bending(dR, jet_a)
+    b_rr, b_rs, b_ss = bending(scale(-1.0, dR), jet_b)
+    return (
+        dot(fu, fu) + a_uu + 1.0 - active(fu),
+        dot(fu, fv) + a_uv,
+        -dot(fu, hr),
+        -dot(fu, hs),
+        dot(fv, fv) + a_vv + 1.0 - active(fv),
+        -dot(fv, hr),
+        -dot(fv, hs),
+        dot(hr, hr) + b_rr + 1.0 - active(hr),
+        dot(hr, hs) + b_rs,
+        dot(hs, hs) + b_ss + 1.0 - active(hs),
+    )
+
+
+@small
 def point_velocity(x, motion):
     """V(x) = v + w x (x - p): velocity of the body's point now at x."""
     p, v, w = motion

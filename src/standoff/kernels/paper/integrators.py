@@ -9,16 +9,28 @@ from typing import NamedTuple
 import numpy as np
 
 from standoff.kernels.algebra.rigid import within_frame
-from standoff.kernels.algebra.vectors import norm, sub
+from standoff.kernels.algebra.vectors import active, axpy, cross, dot, norm, scale, sub
 from standoff.kernels.body.features import pair_span
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.descent import pair_jets
-from standoff.kernels.pair.events import EVALUATIONS, REGULARISED
+from standoff.kernels.pair.events import EVALUATIONS, REGULARISED, SATURATIONS
 from standoff.kernels.pair.newton import law, pair_metric, plain_law
-from standoff.kernels.pair.system import feedforward, gradient, hessian, projection_errors
+from standoff.kernels.pair.system import (
+    covariant_hessian,
+    feedforward,
+    gradient,
+    hessian,
+    projection_errors,
+)
 from standoff.kernels.paper.feedback import commanded_errors, gain_now
-from standoff.kernels.state.arrays import INTEGRATED, PREDICT_NONE, SOLVE_PLAIN
+from standoff.kernels.state.arrays import (
+    INTEGRATED,
+    PREDICT_NONE,
+    SOLVE_COVARIANT,
+    SOLVE_PLAIN,
+)
 from standoff.kernels.state.state import Four, Integrated
+from standoff.kernels.tolerances import MOST_BENT
 from standoff.kernels.values import NO_RATES, STILL, moved, of_origin
 
 NAMES = ("euler", "heun", "midpoint", "rk4")
@@ -77,48 +89,91 @@ def solve_plain(jet_a, jet_b, g, H, fed, work):
 
 
 @kernel
-def feedforward_now(pair, motion, place, solve, work):
-    """w_ff at witness points, where no evaluation of the frame belongs to them."""
-    jet_a, jet_b = pair_jets(pair, motion.pose, place)
-    p = motion.pose.p
-    H = hessian(jet_a, jet_b)
-    b = feedforward(jet_a, jet_b, STILL, of_origin(motion))
-    fed = gradient(b)
-    work.counts[EVALUATIONS] += 1
-    if solve == SOLVE_PLAIN:
-        return solve_plain(jet_a, jet_b, NO_RATES, H, fed, work)[1]
-    span = pair_span(pair, p, norm(sub(jet_a[0], jet_b[0])))
-    return solve_law(jet_a, jet_b, NO_RATES, H, fed, span, work)[1]
+def solved_hessian(jet_a, jet_b, solve):
+    """H by which the law is solved: as printed, or without what depends on the parametrisation."""
+    if solve == SOLVE_COVARIANT:
+        return covariant_hessian(jet_a, jet_b)
+    return hessian(jet_a, jet_b)
 
 
 @kernel
-def rates_at(pair, motion, place, options, integrated, work):
+def part_unbent(jet, du, dv):
+    """The part, at most 1, of a step of one body's parameters whose second-order term along the
+    surface is at most MOST_BENT of its first-order one: that term belongs to the parametrisation.
+    """
+    xu, xv = jet[1], jet[2]
+    first = axpy(du, xu, scale(dv, xv))
+    second = axpy(du * du, jet[3], axpy(2.0 * du * dv, jet[4], scale(dv * dv, jet[5])))
+    way, n = norm(first), cross(xu, xv)
+    if active(n) == 0.0:
+        off = abs(dot(second, first)) / way if way > 0.0 else 0.0
+    else:
+        off = norm(axpy(-dot(second, n) / dot(n, n), n, second))
+    most = 2.0 * MOST_BENT * way
+    return most / off if off > most else 1.0
+
+
+@kernel
+def gain_unbent(jet_a, jet_b, gain, step, h, work):
+    """K, lowered so that neither body's chart bends what it adds to the frame's step; counted as
+    saturated. Away from collapsed sides and large errors it is K."""
+    s = gain * h
+    kept = min(
+        part_unbent(jet_a, s * step[0], s * step[1]),
+        part_unbent(jet_b, s * step[2], s * step[3]),
+    )
+    work.counts[SATURATIONS] += kept < 1.0
+    return kept * gain
+
+
+@kernel
+def solved(jet_a, jet_b, g, fed, solve, span, work):
+    """(p, w_ff) by one of the solves."""
+    H = solved_hessian(jet_a, jet_b, solve)
+    if solve == SOLVE_PLAIN:
+        return solve_plain(jet_a, jet_b, g, H, fed, work)
+    return solve_law(jet_a, jet_b, g, H, fed, span, work)
+
+
+@kernel
+def feedforward_now(pair, motion, place, solve, work):
+    """w_ff at witness points, where no evaluation of the frame belongs to them."""
+    jet_a, jet_b = pair_jets(pair, motion.pose, place)
+    b = feedforward(jet_a, jet_b, STILL, of_origin(motion))
+    work.counts[EVALUATIONS] += 1
+    span = pair_span(pair, motion.pose.p, norm(sub(jet_a[0], jet_b[0])))
+    return solved(jet_a, jet_b, NO_RATES, gradient(b), solve, span, work)[1]
+
+
+@kernel
+def rates_at(pair, motion, place, options, integrated, h, work):
     """(w, Psi, Psi', K): rates of the parameters at one stage, the errors used and their own rate,
     the gain used: w = -M⁻¹(v(Psi) + b).  Eqs. (12)-(14)
+
+    h is the frame's time step, 0 where none is taken.
     """
     p = motion.pose.p
     jet_a, jet_b = pair_jets(pair, motion.pose, place)
     span = pair_span(pair, p, norm(sub(jet_a[0], jet_b[0])))
     evaluated = options.realisation != INTEGRATED
     psi = projection_errors(jet_a, jet_b) if evaluated else integrated.errors
-    H = hessian(jet_a, jet_b)
     b = feedforward(jet_a, jet_b, STILL, of_origin(motion))
     gain = gain_now(options, jet_a, jet_b, b)
     # what the law leaves out still moves the errors
     fed = gradient(b) if options.predictor != PREDICT_NONE else NO_RATES
     g = gradient(commanded_errors(options, jet_a, jet_b, psi, integrated.integral))
-    if options.solve == SOLVE_PLAIN:
-        step, w_ff = solve_plain(jet_a, jet_b, g, H, fed, work)
-    else:
-        step, w_ff = solve_law(jet_a, jet_b, g, H, fed, span, work)
+    step, w_ff = solved(jet_a, jet_b, g, fed, options.solve, span, work)
     work.counts[EVALUATIONS] += 1
+    if options.solve == SOLVE_COVARIANT:
+        gain = gain_unbent(jet_a, jet_b, gain, step, h, work)
     w = (
         gain * step[0] + w_ff[0],
         gain * step[1] + w_ff[1],
         gain * step[2] + w_ff[2],
         gain * step[3] + w_ff[3],
     )
-    Mw = gradient(times_hessian(H, w))
+    # however the rates were solved for, the errors move by M as it is
+    Mw = gradient(times_hessian(hessian(jet_a, jet_b), w))
     # a parameter that does not exist has 1 in H and no rate
     return w, psi, (Mw[0] + b[0], Mw[1] + b[1], Mw[2] + b[2], Mw[3] + b[3]), gain
 
@@ -150,7 +205,7 @@ def integrate(pair, before, after, h, options, work):
             along(start.errors, c * h, psi_rate), along(start.integral, c * h, psi), gain
         )
         place = moved(before.place, c * h, w)
-        w, psi, psi_rate, gain = rates_at(pair, motion, place, options, stage, work)
+        w, psi, psi_rate, gain = rates_at(pair, motion, place, options, stage, h, work)
         if i == 0:
             first = along(NO_RATES, h, w)
         weight = h * WEIGHTS[integrator, i]

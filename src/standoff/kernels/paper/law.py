@@ -11,8 +11,8 @@ from standoff.kernels.algebra.vectors import (
     sub,
 )
 from standoff.kernels.body import layout as L
-from standoff.kernels.body.features import chart_jet, pair_span
-from standoff.kernels.body.trimming import HIT_LIMIT, NO_HIT, walk
+from standoff.kernels.body.features import chart_jet, coedge_record, pair_span
+from standoff.kernels.body.trimming import HIT_COEDGE, HIT_LIMIT, NO_HIT, walk
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.frame.prediction import apply_step
 from standoff.kernels.pair.certified import on_feature
@@ -32,16 +32,18 @@ from standoff.kernels.paper.voronoi import voronoi_switch
 from standoff.kernels.state.arrays import (
     FEEDBACK_PI,
     SATURATE_ZERO,
+    SOLVE_COVARIANT,
     SWITCH_MULTIPLIERS,
     SWITCH_VORONOI,
 )
 from standoff.kernels.state.options import feedback_number
-from standoff.kernels.state.state import Integrated
+from standoff.kernels.state.state import Integrated, moved_to
 from standoff.kernels.tolerances import (
     EPS,
     FOOT_REACH,
     LONGEST_CHANGE,
     MAX_VORONOI_PASSES,
+    MOST_HELD,
     SLOPE,
     SLOPE_NOISE,
     STANDSTILL,
@@ -52,10 +54,18 @@ from standoff.kernels.values import NO_RATES, Side, body_of, side_of, together, 
 
 
 @kernel
-def zeroed_step(pair, place, step, work):
+def at_collapsed_side(ints, hit):
+    """Has a walk met a side of its face that has collapsed into a vertex?"""
+    return hit.kind == HIT_COEDGE and ints[coedge_record(ints, hit.index) + L.COEDGE_EDGE] < 0
+
+
+@kernel
+def zeroed_step(pair, place, step, solve, work):
     """The paper's saturation: a component that leads out of its feature is zeroed after the solve.
 
-    Each parameter goes by itself as far as its feature lets it; no feature is left.
+    Each parameter goes by itself as far as its feature lets it; no feature is left. By the
+    covariant solve a point on a collapsed side is at its vertex: the parameter along that side
+    moves nothing, and the face would be left by the directions of one value of it alone.
     """
     for k in range(4):
         body = k // 2
@@ -68,19 +78,22 @@ def zeroed_step(pair, place, step, work):
         if hit.kind == HIT_LIMIT:
             return take_hit(pair, place, body, hit, NO_EDGE, work)[0]
         work.counts[SATURATIONS] += hit.kind != NO_HIT
+        if solve == SOLVE_COVARIANT and at_collapsed_side(ints, hit):
+            place = take_hit(pair, place, body, hit, NO_EDGE, work)[0]
+            step = (0.0, 0.0, step[2], step[3]) if body == 0 else NO_RATES
     return recentre(pair, place, work)[0]
 
 
 @kernel
-def voronoi_passes(pair, pose, place, span, reset, work):
+def voronoi_passes(pair, pose, place, span, options, work):
     """Test both bodies' features against each other's witness points until none switches."""
     for _ in range(MAX_VORONOI_PASSES):
         jet_a, jet_b = pair_jets(pair, pose, place)
-        switched, place = voronoi_switch(pair, 0, jet_b[0], span, place, reset, work)
+        switched, place = voronoi_switch(pair, 0, jet_b[0], span, place, options, work)
         if switched:
             continue
         x = rotate_back(pose.R, sub(jet_a[0], pose.p))
-        switched, place = voronoi_switch(pair, 1, x, span, place, reset, work)
+        switched, place = voronoi_switch(pair, 1, x, span, place, options, work)
         if not switched:
             break
     return place
@@ -223,11 +236,37 @@ def released(pair, pose, before, place, gap, work):
     return found
 
 
+@kernel
+def held_at_once(pair, motion, before, options, h, work):
+    """(before, change): a boundary that the rates lead out of where they begin is held, and the law
+    solved again on it, until they lead along it or nothing is free.
+
+    The Voronoi tests let a boundary go in the same frame, wherever the opposing point is not beyond
+    it: held after the step, it would stop every frame anew, and nothing would move along it.
+    """
+    change = integrate(pair, before, motion, h, options, work)
+    for _ in range(MOST_HELD):
+        body, hit = walk_pair(pair, before.place, change.first)
+        if hit.kind == NO_HIT or hit.kind == HIT_LIMIT or hit.s > STANDSTILL:
+            break
+        place = take_hit(pair, before.place, body, hit, NO_EDGE, work)[0]
+        errors = begun(pair, before.motion.pose, place, before.integrated.gain)
+        before = moved_to(before, place, errors)
+        change = integrate(pair, before, motion, h, options, work)
+    return before, change
+
+
 @shared
 def integrate_and_switch(pair, motion, before, options, h, work):
     """(place, integrated): w = -M⁻¹(v(Psi) + b) over one frame, then a switch."""
-    change = integrate(pair, before, motion, h, options, work)
-    return carry_and_switch(pair, motion, before, options, change, work)
+    if options.saturation == SATURATE_ZERO or options.switching != SWITCH_VORONOI:
+        change = integrate(pair, before, motion, h, options, work)
+        return carry_and_switch(pair, motion, before, options, change, work)
+    held, change = held_at_once(pair, motion, before, options, h, work)
+    place, integrated = carry_and_switch(pair, motion, held, options, change, work)
+    if place.feature_a == before.place.feature_a and place.feature_b == before.place.feature_b:
+        work.counts[EVENTS] = 0  # what was held for the frame alone is no switch
+    return place, integrated
 
 
 @kernel
@@ -277,7 +316,7 @@ def within_reach(pair, pose, place, work):
 def stepped(pair, pose, before, options, change, work):
     """The place after the step and its saturation: on both bodies, or else where it was."""
     if options.saturation == SATURATE_ZERO:
-        place = zeroed_step(pair, before, change.parameters, work)
+        place = zeroed_step(pair, before, change.parameters, options.solve, work)
     else:
         place = apply_step(pair, before, held_step(pair, before, change), work)
     place = within_reach(pair, pose, place, work)
@@ -305,7 +344,7 @@ def carry_and_switch(pair, motion, before, options, change, work):
         floor = max(SLOPE, max(SLOPE_NOISE * EPS * span, slope) / d)
         place = released(pair, pose, before.place, place, (scale(-1.0 / d, dR), d, floor), work)
     elif options.switching == SWITCH_VORONOI:
-        place = voronoi_passes(pair, pose, place, span, options.reset, work)
+        place = voronoi_passes(pair, pose, place, span, options, work)
     counts = work.counts
     moved = counts[SATURATIONS] + counts[CHART_CHANGES] + counts[EVENTS] > 0
     return place, remember(pair, pose, options, before, place, change, moved, work)

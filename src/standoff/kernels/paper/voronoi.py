@@ -2,22 +2,15 @@
 
 A face's region ends at the ruled surface of its normals along an edge, an edge's at the planes
 square to it at its ends. Both are tested at the point of the edge that is closest to the opposing
-point, so that the answer does not depend on this body's own parameters. A point behind the body,
-within a face's normals drawn backwards, is in that face's region by these tests: they are blind to
-the far side, which the certificate sees.
-
-Such a foot point is what a guard needs. Whether a reset takes its parameter is another matter: as
-printed it does not, see `reset_onto_edge`. Foot points and parameters taken from them are counted.
+point, so that the answer does not depend on this body's own parameters. Points behind a
+face, within its normals drawn backwards, are the matter of `far_side`.
 """
 
 from standoff.kernels.algebra.vectors import dot, norm, scale, sub, unit
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
-    best_coedge,
-    chart_jet,
     chart_record,
     coedge_conormal,
-    coedge_parameters,
     coedge_record,
     dimension,
     edge_jet,
@@ -25,21 +18,17 @@ from standoff.kernels.body.features import (
     vertex_point,
     vertex_record,
 )
-from standoff.kernels.body.jets import chart_parameters
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.events import FOOT_POINTS, SOLVED_PARAMETERS, log_event
 from standoff.kernels.pair.switching import (
-    across,
     end_direction,
-    is_smooth,
     onto_face,
     steepest_release,
 )
-from standoff.kernels.state.arrays import RESET_NEAREST
+from standoff.kernels.paper.far_side import height_at_edge, off_far_side
+from standoff.kernels.paper.foot_points import closest_on_edge, reset_onto_edge
+from standoff.kernels.state.arrays import FAR_SIDE_KEPT, FAR_SIDE_LEFT, RESET_NEAREST
 from standoff.kernels.tolerances import (
-    BRACKET_ROUNDINGS,
-    CLOSEST_SAMPLES,
-    CLOSEST_STEPS,
     EPS,
     SLOPE,
     SLOPE_NOISE,
@@ -47,46 +36,6 @@ from standoff.kernels.tolerances import (
 from standoff.kernels.values import NO_CHART, Side, body_of, side_of, with_side
 
 SAME = -1  # the feature is kept
-
-
-@kernel
-def closest_on_edge(ints, reals, edge, x):
-    """(t, at_end): the edge's closest parameter to x, sought from samples by bounded Newton.
-
-    at_end is 0 or 1 where it is an end of the edge, else -1.
-    """
-    e = edge_record(ints, edge)
-    o = ints[e + L.EDGE_REALS]
-    t0, t1 = reals[o + L.EDGE_T0], reals[o + L.EDGE_T1]
-    closed = ints[e + L.EDGE_FLAGS] & L.CLOSED != 0
-    width = (t1 - t0) / CLOSEST_SAMPLES
-    t, best = t0, 1e300
-    for k in range(CLOSEST_SAMPLES + 1):
-        s = t0 + k * width
-        d = norm(sub(edge_jet(ints, reals, edge, s)[0], x))
-        if d < best:
-            t, best = s, d
-    low, high = t - width, t + width
-    if not closed:
-        low, high = max(low, t0), min(high, t1)
-    for _ in range(CLOSEST_STEPS):
-        c, ct, ctt = edge_jet(ints, reals, edge, t)
-        away = sub(c, x)
-        slope = dot(away, ct)
-        if slope > 0.0:
-            high = t
-        else:
-            low = t
-        curvature = dot(ct, ct) + dot(away, ctt)
-        step = -slope / curvature if curvature > 0.0 else 0.0
-        if curvature <= 0.0 or not low <= t + step <= high:
-            step = 0.5 * (low + high) - t
-        t += step
-        if abs(step) <= BRACKET_ROUNDINGS * EPS * (abs(t) + t1 - t0):
-            break
-    if not closed and (t <= t0 or t >= t1):
-        return (t0, 0) if t <= t0 else (t1, 1)
-    return t, -1
 
 
 @kernel
@@ -167,85 +116,6 @@ def off_face(ints, reals, face, x, noise, work):
 
 
 @kernel
-def seen_from(ints, reals, side, chart):
-    """(seen, u, v): a face's point in another chart of it."""
-    if side.chart == chart:
-        return True, side.p, side.q
-    x = chart_jet(ints, reals, side.chart, side.p, side.q)[0]
-    u, v, depth = chart_parameters(reals, ints[chart_record(ints, chart) + L.CHART_REALS], x)
-    return depth > 0.0, u, v
-
-
-@kernel
-def off_parameters(ints, reals, coedge, side, t):
-    """(square of the distance in (u, v), its half slope, square of the pcurve's speed) between the
-    pcurve at t and a face's point."""
-    k = best_coedge(ints, reals, coedge, t)
-    chart = ints[coedge_record(ints, k) + L.COEDGE_CHART]
-    seen, u, v = seen_from(ints, reals, side, chart)
-    x, y, dx, dy, depth = coedge_parameters(ints, reals, k, t)
-    if not seen or depth <= 0.0:
-        return 1e300, 0.0, 0.0
-    a, b = x - u, y - v
-    return a * a + b * b, a * dx + b * dy, dx * dx + dy * dy
-
-
-@kernel
-def nearest_in_parameters(ints, reals, coedge, side):
-    """The edge's parameter at which its pcurve is nearest in (u, v) to a face's point.
-
-    Sought as `closest_on_edge` does, in the plane of the parameters: the opposing point is not
-    asked.
-    """
-    c = coedge_record(ints, coedge)
-    edge = ints[L.N_FACES] + ints[c + L.COEDGE_EDGE]
-    e = edge_record(ints, edge)
-    o = ints[e + L.EDGE_REALS]
-    t0, t1 = reals[o + L.EDGE_T0], reals[o + L.EDGE_T1]
-    width = (t1 - t0) / CLOSEST_SAMPLES
-    t, best = t0, 2e300
-    for k in range(CLOSEST_SAMPLES + 1):
-        s = t0 + k * width
-        d2 = off_parameters(ints, reals, coedge, side, s)[0]
-        if d2 < best:
-            t, best = s, d2
-    low, high = t - width, t + width
-    if ints[e + L.EDGE_FLAGS] & L.CLOSED == 0:
-        low, high = max(low, t0), min(high, t1)
-    for _ in range(CLOSEST_STEPS):
-        _, slope, speed2 = off_parameters(ints, reals, coedge, side, t)
-        if slope > 0.0:
-            high = t
-        else:
-            low = t
-        step = -slope / speed2 if speed2 > 0.0 else 0.0
-        step = min(max(t + step, low), high) - t
-        t += step
-        if abs(step) <= BRACKET_ROUNDINGS * EPS * (abs(t) + t1 - t0):
-            break
-    return t
-
-
-@kernel
-def reset_onto_edge(ints, reals, coedge, side, t, reset, work):
-    """Reset face -> edge: the side on the coedge's edge, or beyond it where the edge is smooth.
-
-    As printed (RESET_NEAREST) the parameter is that nearest in (u, v) to the face's own, so that
-    an error is left for the law to drive to zero; else it is the foot point's t, which is exact
-    at once.
-    """
-    edge = ints[L.N_FACES] + ints[coedge_record(ints, coedge) + L.COEDGE_EDGE]
-    if reset == RESET_NEAREST:
-        t = nearest_in_parameters(ints, reals, coedge, side)
-    else:
-        work.counts[SOLVED_PARAMETERS] += 1
-    if is_smooth(ints, edge):
-        feature, chart, p, q = across(ints, reals, edge, coedge, t)
-        return Side(feature, chart, p, q)
-    return Side(edge, NO_CHART, t, 0.0)
-
-
-@kernel
 def collapsed_side(ints, reals, face, x, noise, work):
     """The vertex of one of the face's collapsed sides whose region holds x, else SAME."""
     for k in range(ints[L.N_VERTICES]):
@@ -264,11 +134,12 @@ def collapsed_side(ints, reals, face, x, noise, work):
 
 
 @kernel
-def off_edge(ints, reals, edge, p, x, noise, work):
+def off_edge(ints, reals, side, x, noise, far_side, work):
     """(slope, gap, feature, chart, p, q): where x has left an edge's region.
 
     An end that x lies beyond is entered at its vertex; a face at the edge's own point.
     """
+    edge, p = side.feature, side.p
     work.counts[FOOT_POINTS] += 1
     t, end = closest_on_edge(ints, reals, edge, x)
     e = edge_record(ints, edge)
@@ -285,12 +156,17 @@ def off_edge(ints, reals, edge, p, x, noise, work):
             vertex = ints[L.N_FACES] + ints[L.N_EDGES] + ints[e + L.EDGE_FIRST + end]
             return slope, d, vertex, -1, 0.0, 0.0
     best, to, chart, a, b = 0.0, SAME, -1, 0.0, 0.0
-    for side in range(2):
-        coedge = ints[e + L.EDGE_COEDGE_0 + side]
+    in_front = False
+    for k in range(2):
+        coedge = ints[e + L.EDGE_COEDGE_0 + k]
         if coedge >= 0:
             slope = -dot(away, coedge_conormal(ints, reals, coedge, tangent, t)[0]) / d
-            if slope < min(best, -(SLOPE + noise / d)):
-                best = slope
+            if slope >= -(SLOPE + noise / d):
+                continue
+            # of two faces that x has come over, one that it is behind would be left at once
+            front = far_side == FAR_SIDE_KEPT or height_at_edge(ints, reals, coedge, t, x) > -noise
+            if (front and not in_front) or (front == in_front and slope < best):
+                best, in_front = slope, front
                 to, chart, a, b = onto_face(ints, reals, coedge, p)
     return best, d, to, chart, a, b
 
@@ -340,13 +216,18 @@ def log_left(work, body, source, to, slope, gap):
 
 
 @kernel
-def switch_off_face(pair, body, x, noise, place, reset, work):
+def switch_off_face(pair, body, x, noise, place, options, work):
     """`voronoi_switch` of a face."""
     ints, reals = body_of(pair, body)
     side = side_of(place, body)
+    if options.far_side == FAR_SIDE_LEFT:
+        left, slope, gap, there = off_far_side(ints, reals, side, x, noise, options.reset, work)
+        if left:
+            log_left(work, body, side.feature, there.feature, slope, gap)
+            return True, with_side(place, body, there)
     slope, gap, coedge, t = off_face(ints, reals, side.feature, x, noise, work)
     if coedge >= 0:
-        there = reset_onto_edge(ints, reals, coedge, side, t, reset, work)
+        there = reset_onto_edge(ints, reals, coedge, side, t, options.reset, work)
         log_left(work, body, side.feature, there.feature, slope, gap)
         return True, with_side(place, body, there)
     vertex = collapsed_side(ints, reals, side.feature, x, noise, work)
@@ -357,17 +238,17 @@ def switch_off_face(pair, body, x, noise, place, reset, work):
 
 
 @kernel
-def voronoi_switch(pair, body, x, span, place, reset, work):
+def voronoi_switch(pair, body, x, span, place, options, work):
     """(switched, place): test one body's feature against the opposing point x, in this body's
     frame."""
     ints, reals = body_of(pair, body)
     noise = SLOPE_NOISE * EPS * span
     side = side_of(place, body)
-    dim = dimension(ints, side.feature)
+    dim, reset, far_side = dimension(ints, side.feature), options.reset, options.far_side
     if dim == 2:
-        return switch_off_face(pair, body, x, noise, place, reset, work)
+        return switch_off_face(pair, body, x, noise, place, options, work)
     if dim == 1:
-        slope, gap, to, chart, a, b = off_edge(ints, reals, side.feature, side.p, x, noise, work)
+        slope, gap, to, chart, a, b = off_edge(ints, reals, side, x, noise, far_side, work)
     else:
         slope, gap, to, chart, a, b = off_vertex(ints, reals, side.feature, x, noise, reset, work)
     if to == SAME:

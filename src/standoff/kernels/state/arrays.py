@@ -50,15 +50,17 @@ O_DEPTH = 10  # which depth is followed in penetration
 O_DEADLINE = 11  # most second-order evaluations a frame
 O_RESET = 12  # of the Voronoi tests: where an edge is entered
 O_RESTARTS = 13  # 0: the law alone, whatever the certificate says
-O_DATA = 14  # what the feedback needs
+O_FAR_SIDE = 14  # of the Voronoi tests: what a face does with a point behind it
+O_DATA = 15  # what the feedback needs
 O_SMOOTH = O_DATA + 16  # address of the frame that is tried first (entries.smooth); 0: none
 N_OPTIONS = O_SMOOTH + 1
 FEEDBACK_LINEAR, FEEDBACK_MATRIX, FEEDBACK_PI, FEEDBACK_POWER, FEEDBACK_MOTION = range(5)
 EVALUATED, INTEGRATED = 0, 1
 SATURATE_HOLD, SATURATE_ZERO = 0, 1
 SWITCH_MULTIPLIERS, SWITCH_VORONOI, SWITCH_NONE = range(3)
-SOLVE_RANKED, SOLVE_PLAIN = 0, 1
+SOLVE_RANKED, SOLVE_PLAIN, SOLVE_COVARIANT = range(3)
 RESET_FOOT, RESET_NEAREST = 0, 1
+FAR_SIDE_LEFT, FAR_SIDE_KEPT = 0, 1
 DEPTH_GLOBAL, DEPTH_LOCAL = 0, 1
 
 # Output.

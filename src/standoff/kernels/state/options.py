@@ -10,6 +10,7 @@ from standoff.kernels.state.arrays import (
     O_DATA,
     O_DEADLINE,
     O_DEPTH,
+    O_FAR_SIDE,
     O_FEEDBACK,
     O_GAIN,
     O_INTEGRATOR,
@@ -40,6 +41,7 @@ class Options(NamedTuple):
     switching: int
     solve: int
     reset: int
+    far_side: int
     restarts: bool
     depth: int
     deadline: int  # most evaluations a frame
@@ -61,6 +63,7 @@ def read_options(numbers):
         int(numbers[O_SWITCHING]),
         int(numbers[O_SOLVE]),
         int(numbers[O_RESET]),
+        int(numbers[O_FAR_SIDE]),
         numbers[O_RESTARTS] != 0.0,
         int(numbers[O_DEPTH]),
         int(numbers[O_DEADLINE]),

@@ -41,6 +41,28 @@ class State(NamedTuple):
 
 
 @kernel
+def moved_to(state, place, integrated):
+    """The state with other witness points."""
+    return State(
+        place,
+        state.rates,
+        state.last_rates,
+        state.last_step,
+        state.history,
+        state.motion,
+        state.fed,
+        state.time,
+        state.lost,
+        integrated,
+        state.normal,
+        state.distance,
+        state.inside,
+        state.lower,
+        state.cut,
+    )
+
+
+@kernel
 def read_four(numbers, o):
     return (numbers[o], numbers[o + 1], numbers[o + 2], numbers[o + 3])
 

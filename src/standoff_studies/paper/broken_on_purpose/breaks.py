@@ -53,8 +53,8 @@ TRIALS = {
     "simulation_a.raw_law": ("growth_of_small_errors",),
     "simulation_b.run": ("arrivals",),
     "simulation_c.run": ("arrivals",),
-    "simulation_d.runs": ("arrivals",),
-    "simulation_e.runs": ("arrivals",),
+    "simulation_d.runs": ("arrivals", "moves_by_resets"),
+    "simulation_e.runs": ("arrivals", "moves_by_resets"),
     "simulation_e.own_point": ("decisions",),
 }
 """and that of many starts and gains, which take longer."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
+from numpy.typing import NDArray
 from scipy.ndimage import label
 
 import standoff as so
@@ -31,7 +32,9 @@ COLUMNS, ROWS = 90, 45
 PAIRS = 1000
 """Random starts on two ellipsoids."""
 GAIN = 100.0
-"""K of the raw law [1/s]: K h = 0.1, near enough to continuous time."""
+"""K of the raw law [1/s]: K h = 0.1, near enough to continuous time but for single starts."""
+GENTLER = 50
+"""Part of `GAIN` at which those are tried again: K h = 0.002."""
 
 LAWS: dict[str, tuple[so.PaperLaw | so.PredictorCorrector, int]] = {
     "raw law": (so.PaperLaw(gain=GAIN, solve="plain"), 250),
@@ -106,8 +109,8 @@ def weighted(found: np.ndarray) -> float:
     return float((weight * found).sum() / weight.sum())
 
 
-def parts(found: np.ndarray) -> list[int]:
-    """Cells of each connected part of a basin on the map, the largest first.
+def joined(found: np.ndarray) -> NDArray[np.int64]:
+    """Number the connected parts of a basin on the map from 1, shape (ROWS, COLUMNS); 0 is outside.
 
     Cells join by their sides, over the seam of the longitudes, and all of them at a pole.
     """
@@ -120,8 +123,33 @@ def parts(found: np.ndarray) -> list[int]:
     for left, right in zip(names[:, 0].tolist(), names[:, -1].tolist(), strict=True):
         if left and right:
             same[max(left, right)] = min(left, right)
-    flat = [same.get(name, name) for name in names[:, :-1].ravel().tolist() if name]
-    return sorted(Counter(flat).values(), reverse=True)
+    flat = [same.get(name, name) for name in names[:, :-1].ravel().tolist()]
+    return np.array(flat).reshape(ROWS, COLUMNS)
+
+
+def parts(found: np.ndarray) -> list[int]:
+    """Cells of each connected part of a basin on the map, the largest first."""
+    names = joined(found)
+    return sorted(Counter(names[names > 0].tolist()).values(), reverse=True)
+
+
+def stray(found: np.ndarray) -> list[int]:
+    """Starts of a basin on the map that do not join its largest part, by their number."""
+    names = joined(found).ravel()
+    ((largest, _),) = Counter(names[names > 0].tolist()).most_common(1)
+    return np.flatnonzero((names > 0) & (names != largest)).tolist()
+
+
+@cache
+def strays_in_small_steps() -> int:
+    """How many of the raw law's stray starts find the minimum at a gain `GENTLER` times as low."""
+    _, steps = LAWS["raw law"]
+    law = so.PaperLaw(gain=GAIN / GENTLER, solve="plain")
+    tracker = so.Tracker(ellipsoids()[0], so.shapes.point(), dt=STEP, law=law)
+    around = directions()[2][stray(beside_a_point("raw law").found)]
+    starts = [(place_of(x), (("vertex", 0), ())) for x in around]
+    poses = Pose.identity(), Pose(np.eye(3), POINT_AT)
+    return int(basin(tracker, *poses, starts, GENTLER * steps).found.sum())
 
 
 def attraction() -> Artwork:
@@ -131,7 +159,9 @@ def attraction() -> Artwork:
             "Above: the ellipsoid's surface by longitude and latitude of the start, with a point "
             f"beside it; what becomes of {ROWS * COLUMNS} starts under the raw law "
             f"w = −M⁻¹(KΨ + b) (Heun, K = {GAIN:g} 1/s, {LAWS['raw law'][1]} steps of 1 ms) and "
-            "under Newton's method (Euler, K h = 1). The star is the nearest point. The law's "
+            "under Newton's method (Euler, K h = 1). The star is the nearest point. Single cells "
+            "that find it from outside the island, on both maps, are beside a singular M, from "
+            "where one long step happens to lead back. The law's "
             "direction depends on the parameters, so the charts' borders (dotted) show. Below: "
             f"shares of starts that end at the true minimum, by area of the unit sphere, and of "
             f"{PAIRS} random starts on two ellipsoids."
@@ -152,15 +182,17 @@ def _statements() -> tuple[Statement, ...]:
         return f"{weighted(beside_a_point(law).found):.1%}, {of_two(law).fraction:.1%}"
 
     all_found = of_two("safeguarded").found.all() and beside_a_point("safeguarded").found.all()
-    sizes = parts(beside_a_point("Newton").found)
-    raw = beside_a_point("raw law").found.all() and of_two("raw law").found.all()
+    sizes, own = (parts(beside_a_point(law).found) for law in ("Newton", "raw law"))
+    lone = stray(beside_a_point("raw law").found)
     return (
         Statement(
             "Convergence",
-            "a start anywhere on two convex bodies converges to the closest points",
+            "-",
             f"raw law: {share('raw law')} of the starts (body and point, two bodies)",
-            bool(raw),
-            "M⁻¹ also leads to the farthest points and to saddles: H must be positive definite",
+            None,
+            "The paper claims that a start anywhere converges on two convex bodies composed of "
+            "tiled convex surface patches; these ellipsoids have no tiles. M⁻¹ also leads to the "
+            "farthest points and to saddles: M must be definite",
         ),
         Statement(
             "Convergence",
@@ -174,8 +206,19 @@ def _statements() -> tuple[Statement, ...]:
             f"on the map of body and point it falls into {len(sizes)} separate parts of "
             f"{', '.join(map(str, sizes))} starts",
             len(sizes) > 1,
+            f"the raw law's own map, at K h = {GAIN * STEP:g}, has {len(lone)} stray cells too",
             by="PaperLaw(integrator='euler', gain=1000, solve='plain'): Newton's method; "
             f"{ROWS * COLUMNS} starts on an ellipsoid beside a point",
+        ),
+        Statement(
+            "Section I",
+            "-",
+            f"the raw law's basin on that map has parts of {', '.join(map(str, own))} starts; at "
+            f"K h = {GAIN * STEP / GENTLER:g} {strays_in_small_steps()} of the {len(lone)} stray "
+            "starts find the minimum",
+            None,
+            "Such a start is near a singular M, and its first step is long enough to land in the "
+            "basin, as many of Newton's steps are.",
         ),
         Statement(
             "Convergence",

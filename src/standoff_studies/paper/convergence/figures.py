@@ -21,6 +21,7 @@ from standoff_studies.paper.convergence.cells import (
     study,
 )
 from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.many_starts import INDEFINITE
 from standoff_studies.paper.simulation_e.runs import STEP
 
 if TYPE_CHECKING:
@@ -104,8 +105,7 @@ def _statements(cells: tuple[Cell, ...]) -> tuple[Statement, ...]:
             f"{_range(printed)} of the starts arrive, by gain ({GAINS[0]:g} to {GAINS[-1]:g} 1/s) "
             "and motion",
             all(cell.arrived == cell.tried for cell in printed),
-            "tiling is not enough: where two faces turn away from each other M is indefinite, and "
-            "the printed system comes to another stationary point or to none",
+            INDEFINITE,
             f"PaperLaw.as_printed: Voronoi tests, M as it is; {starts}",
         ),
         *(

@@ -132,7 +132,7 @@ def _draw_steps(axes: Axes) -> None:
         yscale="log",
         xlabel="K [1/s]",
         ylabel=f"steps until |Ψ| / |Ψ(0)| < {SETTLED:g}",
-        ylim=(5, 3e4),
+        ylim=(5, 5e4),
     )
     axes.text(30.0, 6.5, "tinted: the paper's stable range", ha="center")
     axes.legend(loc="upper center")

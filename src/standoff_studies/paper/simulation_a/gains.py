@@ -33,6 +33,7 @@ STATED = (0.5, 1500.0)
 """The paper's stable range by experiment [1/s]."""
 
 GAINS = (
+    0.25,
     0.5,
     1.0,
     2.0,
@@ -57,7 +58,7 @@ GAINS = (
     1980.0,
     1990.0,
 )
-"""Gains at which the steps to settle are counted [1/s]."""
+"""Gains at which the steps to settle are counted [1/s]: the paper's range, and beyond both ends."""
 
 SLACK_OF_STEPS = 1.2
 """A run may take so many times the steps of linear theory before it counts as not settled."""
@@ -161,6 +162,11 @@ def starts() -> Array:
 def trials() -> Trials:
     """Try every start at every gain of `TRIED_GAINS`, by the law without safeguards."""
     return try_all(starts(), np.array(TRIED_GAINS, dtype=float), TRIED_FRAMES)
+
+
+def settled_share(gain: float) -> float:
+    """The part of all starts that settles at one of `TRIED_GAINS` [1/s]."""
+    return float((trials().steps[TRIED_GAINS.index(int(gain))] >= 0).mean())
 
 
 def greatest_for_all() -> float:

@@ -128,10 +128,21 @@ class Run:
         apart = np.linalg.norm(self.target - self.witness, axis=1)
         return np.asarray(np.abs(self.psi) / (apart[:, None] * lengths))
 
+    @cached_property
+    def cosines_left(self) -> Array:
+        """The greatest of both cosines from each step on, shape (n,): it never grows."""
+        greatest = self.cosines.max(axis=1)
+        return np.asarray(np.maximum.accumulate(greatest[::-1])[::-1])
+
     def steps_below(self, cosine: float) -> int | None:
         """Steps after which both cosines stay below a level; None if they do not."""
-        above = np.flatnonzero((self.cosines >= cosine).any(axis=1))
-        return int(above[-1]) + 1 if above[-1] + 1 < len(self.q) else None
+        below = np.flatnonzero(self.cosines_left < cosine)
+        return int(below[0]) if len(below) else None
+
+    def levels_between(self, least: int, most: int) -> tuple[float, float]:
+        """The levels below which both cosines stay after `least` to `most` steps, neither fewer
+        nor more: above the first number, up to the second."""
+        return float(self.cosines_left[most]), float(self.cosines_left[least - 1])
 
     @property
     def steps(self) -> int | None:

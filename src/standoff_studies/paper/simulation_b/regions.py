@@ -96,7 +96,9 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"{len(regions.external)} lines, two from each of {simulation.body.n_vertices} "
             "vertices, square to its two curves",
             len(regions.external) == 6,
-            by=NO_LAW,
+            "the body is ours, with three vertices, and two lines are drawn from each",
+            NO_LAW,
+            constructed=True,
         ),
         Statement(
             "Fig. 8",

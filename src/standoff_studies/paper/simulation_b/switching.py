@@ -12,12 +12,15 @@ from standoff.points import PointVisit
 from standoff.tracking import Feature
 from standoff_studies.paper.drawing import short_name
 from standoff_studies.paper.figure import Statement
-from standoff_studies.paper.held_features import CONTINUOUS, held_distance
+from standoff_studies.paper.held_features import CONTINUOUS, SHARED, held_distance
+from standoff_studies.paper.resets import growth_statement, moves_of
+from standoff_studies.paper.simulation_b.printed import REST
 from standoff_studies.paper.simulation_b.run import (
     ARRIVED,
     CONVERGED,
     DENSE,
     FRAME,
+    GAIN,
     PAST,
     Run,
     arrivals,
@@ -54,7 +57,9 @@ def statements(simulation: Run) -> tuple[Statement, ...]:
             f"{counts['medial']} jumps over the medial axis, {counts['crossing']} crossing of the "
             f"boundary, {onto} switches from a curve to a vertex and {back} back",
             counts["medial"] >= 6 and onto >= 3 and back >= 3,
-            by=simulation.paper.by,
+            "the motion is ours, chosen so that they occur",
+            simulation.paper.by,
+            constructed=True,
         ),
         _curve_to_curve(simulation),
         Statement(
@@ -70,6 +75,7 @@ def statements(simulation: Run) -> tuple[Statement, ...]:
         *_starts(simulation),
         *_as_printed(simulation),
         _growth(simulation),
+        _growth_by_resets(simulation),
     )
 
 
@@ -88,8 +94,9 @@ def _curve_to_curve(simulation: Run) -> Statement:
         f"to {short_name(target)} in {1e3 * (first.end - first.start):.2f} ms, within one frame",
         frames[0] == frames[1] and source.kind == target.kind == "edge",
         "At a sharp vertex two curves' regions do not touch: the point passes the vertex at "
-        f"{PAST} length, and its region within a step.",
+        f"{PAST} length, by a motion chosen for it, and its region within a step.",
         simulation.paper.by,
+        constructed=True,
     )
 
 
@@ -152,8 +159,17 @@ def _growth(simulation: Run) -> Statement:
         f"switches the feature after it is at most {grows:.0e} length farther away than the one "
         "before it",
         grows <= CONTINUOUS,
-        by=simulation.own + ": the claim is of the closest points",
+        f"outside {SHARED}; inside both are equally far away on the medial axis",
+        simulation.own + ": the claim is of the closest points",
+        constructed=True,
     )
+
+
+def _growth_by_resets(simulation: Run) -> Statement:
+    runs = simulation.paper, *simulation.others
+    paths = REST, simulation.path
+    moves = [move for one in runs for move in moves_of(one.outside, paths, GAIN)]
+    return growth_statement(moves, len(runs), simulation.paper.by)
 
 
 def _starts(simulation: Run) -> tuple[Statement, Statement]:

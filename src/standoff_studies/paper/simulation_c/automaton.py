@@ -12,8 +12,9 @@ from standoff.tracking import Feature
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import planar_features, short_name
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.held_features import CONTINUOUS, greatest_growth, growth
+from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth, growth
 from standoff_studies.paper.many_starts import Arrivals
+from standoff_studies.paper.resets import growth_statement, moves_of
 from standoff_studies.paper.simulation_c.kinds import FILLS, KINDS, kind_of, show_kinds
 from standoff_studies.paper.simulation_c.kinds import mode_name as name_of
 from standoff_studies.paper.simulation_c.run import (
@@ -142,7 +143,9 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             "the modes are vertex–vertex, vertex–curve and curve–curve",
             "stays: " + ", ".join(f"{kinds[k]} {KINDS[k]}" for k in range(3)),
             min(kinds[k] for k in range(3)) >= 2,
-            by=simulation.by,
+            "the motion is ours, chosen so that all three occur",
+            simulation.by,
+            constructed=True,
         ),
         Statement(
             "Fig. 13",
@@ -161,9 +164,11 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"at each of {len(simulation.exact.events)} instants the features after the switch are "
             f"at most {grows:.0e} length farther apart than those before it",
             grows <= CONTINUOUS,
-            "Old and new feature share the point at which they switch.",
+            SHARED,
             simulation.own + ": the claim is of the closest points",
+            constructed=True,
         ),
+        growth_statement(moves_of(simulation.paper, simulation.paths, GAIN), 1, simulation.by),
     )
 
 

@@ -128,7 +128,9 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"external lines: {counts[0]} of A, {counts[1]} of B, two a vertex; branches of the "
             f"medial axis: {branches[0]} of A, {branches[1]} of B",
             counts == (2 * corners[0], 2 * corners[1]) and min(branches) >= 1,
-            by="so.voronoi_regions, before the run: no law",
+            "two lines are drawn from each vertex, and a body with a corner has a branch inside",
+            "so.voronoi_regions, before the run: no law",
+            constructed=True,
         ),
         Statement(
             "Section on the hybrid system",

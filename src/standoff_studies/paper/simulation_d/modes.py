@@ -13,7 +13,9 @@ from standoff.bodies.tessellation import edge_lines
 from standoff.tracking import Feature, distance
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.held_features import CONTINUOUS, greatest_growth
+from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth
+from standoff_studies.paper.many_starts import INDEFINITE
+from standoff_studies.paper.resets import growth_statement
 from standoff_studies.paper.simulation_d.runs import (
     ARRIVED,
     ENTERED,
@@ -26,8 +28,10 @@ from standoff_studies.paper.simulation_d.runs import (
     Runs,
     arrivals,
     furthest_instants,
+    moves_by_resets,
     run,
     short,
+    tried,
 )
 from standoff_studies.paper.unaided import Part, unaided
 
@@ -158,24 +162,28 @@ def _statements(runs: Runs, automaton: Automaton) -> tuple[Statement, ...]:
             f"at each of {len(exact.events)} instants the feature after the switch is at most "
             f"{grows:.0e} of the radius farther from the point than the one before it",
             grows <= CONTINUOUS,
-            "Old and new feature share the point at which they switch.",
+            SHARED,
             runs.own + ": the claim is of the closest points",
+            constructed=True,
         ),
+        growth_statement(moves_by_resets(), len(tried()), runs.by),
     )
 
 
 def _as_printed(runs: Runs) -> tuple[Statement, Statement]:
     """What becomes of starts anywhere, and that nothing beside the law helps."""
-    tried = arrivals()
+    tried, still = arrivals(), arrivals(moving=False)
     return (
         Statement(
             "Section on the hybrid system",
             "from a start anywhere on tiled convex bodies the errors converge",
             f"{tried.arrived} of {tried.tried} starts on the three faces are at the closest point "
-            f"to {ARRIVED:g} after {PATIENCE:g} s",
+            f"to {ARRIVED:g} after {PATIENCE:g} s; of the {tried.lost} others {tried.placed} are "
+            f"on the right face, and {tried.pinned} are held at a side of a patch with M "
+            f"indefinite. If the point stays where it begins {still.arrived} arrive, and of the "
+            f"{still.lost} others it is {still.placed} and {still.pinned}",
             tried.arrived == tried.tried,
-            "behind the lens M is indefinite, and the printed system comes to another stationary "
-            "point there; the library's rank rule and certificate are for that",
+            INDEFINITE,
             tried.by,
         ),
         unaided([Part.of(one) for one in runs.paper], runs.by),

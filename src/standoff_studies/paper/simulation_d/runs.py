@@ -12,15 +12,16 @@ from numpy.typing import NDArray
 
 from standoff.automaton import Visit
 from standoff.bodies import Body, shapes
-from standoff.motion import Fixed, Helix, Pose, Twist
+from standoff.motion import Fixed, Helix, Path, Pose, Twist
 from standoff.recording import RecordedEvent, Recording, simulate
 from standoff.recording.simulate import track_along
 from standoff.recording.times import even_times
-from standoff.tracking import Feature, Tracker, TrackerState
+from standoff.tracking import Feature, Tracker, TrackerState, distance
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.law_words import law_words
-from standoff_studies.paper.many_starts import Arrivals
+from standoff_studies.paper.many_starts import Ends, is_pinned
+from standoff_studies.paper.resets import Move, moves_of
 
 Array = NDArray[np.float64]
 
@@ -143,33 +144,62 @@ def printed_tracker(lens: Body, point: Body) -> Tracker:
     return Tracker(lens, point, STEP, law=PaperLaw.as_printed(gain=GAIN))
 
 
-def begin(law: Tracker, face: int, parameters: tuple[float, float]) -> TrackerState:
+def begin(
+    law: Tracker, face: int, parameters: tuple[float, float], path: Path = HELIX
+) -> TrackerState:
     """Return the state at parameters of a face, whatever they are worth."""
-    poses = Pose.identity(), HELIX.pose(0.0)
-    twists = Twist.zero(), HELIX.twist(0.0)
+    poses = Pose.identity(), path.pose(0.0)
+    twists = Twist.zero(), path.twist(0.0)
     places = (("face", face), parameters), (("vertex", 0), ())
     return law.start_from(*poses, *places, *twists, settle=False)
 
 
 @cache
-def arrivals() -> Arrivals:
-    """Try starts all over the three faces with the printed system."""
-    runs = run()
+def arrivals(*, moving: bool = True) -> Ends:
+    """Try starts all over the three faces with the printed system, for `PATIENCE`.
+
+    The point goes along its helix, or rests where that begins.
+    """
+    runs, path = run(), HELIX if moving else Fixed(HELIX.pose(0.0))
     law = printed_tracker(runs.lens, runs.point)
-    frames = round(PATIENCE / STEP)
-    points = [(HELIX.pose(k * STEP), HELIX.twist(k * STEP)) for k in range(1, frames + 1)]
-    motion = [(pose.translation, twist.v) for pose, twist in points]
-    places = [(face, (u, v)) for face in range(runs.lens.n_faces) for u in TRIED for v in TRIED]
-    ends = []
-    for place in places:
-        buffer = law.buffer(begin(law, *place))
+    times = even_times(0.0, PATIENCE, STEP)[1:].tolist()
+    motion = [(path.pose(t).translation, path.twist(t).v) for t in times]
+    poses = REST.pose(PATIENCE), path.pose(PATIENCE)
+    due = distance(runs.lens, runs.point, *poses)
+    arrived = placed = pinned = 0
+    for place in tried():
+        buffer = law.buffer(begin(law, *place, path))
         for x, v in motion:
             buffer.pose_b[9:], buffer.twist_b[:3] = x, v
             law.step_into(buffer)
-        ends.append(buffer.proximity().point_a)
-    off = np.linalg.norm(np.array(ends) - runs.exact.point_a[frames], axis=1)
+        answer = buffer.proximity()
+        if np.linalg.norm(answer.point_a - due.point_a) < ARRIVED:
+            arrived += 1
+            continue
+        placed += answer.feature_a == due.feature_a
+        pinned += is_pinned((runs.lens, runs.point), poses, answer)
     by = law_words(law, told="starts on a grid")
-    return Arrivals(int((off < ARRIVED).sum()), len(places), by)
+    return Ends(arrived, len(tried()), by, placed, pinned)
+
+
+def tried() -> list[tuple[int, tuple[float, float]]]:
+    """Return the starts that are tried: a face, and (u, v) on it."""
+    return [(face, (u, v)) for face in range(run().lens.n_faces) for u in TRIED for v in TRIED]
+
+
+@cache
+def moves_by_resets() -> list[Move]:
+    """Return what the printed resets do to the witness points, from every tried start.
+
+    Up to `ENTERED`: by then its switches to the true feature are over.
+    """
+    runs, times = run(), even_times(0.0, ENTERED, STEP)
+    law = printed_tracker(runs.lens, runs.point)
+    found: list[Move] = []
+    for place in tried():
+        made = track_along(law, REST, HELIX, times, state=begin(law, *place))
+        found += moves_of(made, (REST, HELIX), GAIN)
+    return found
 
 
 def entered(recording: Recording) -> list[RecordedEvent]:

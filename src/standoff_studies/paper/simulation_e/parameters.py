@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
-from standoff_studies.paper.held_features import CONTINUOUS, greatest_growth, growth
+from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth, growth
+from standoff_studies.paper.many_starts import INDEFINITE
 from standoff_studies.paper.resets import (
     draw_projection_errors,
+    growth_statement,
     projection_errors,
     reset_statement,
     reset_table,
@@ -27,10 +29,12 @@ from standoff_studies.paper.simulation_e.runs import (
     PATH_B,
     PATIENCE,
     STEP,
+    TRIED,
     Runs,
     arrivals,
     face_parameters,
     features_of,
+    moves_by_resets,
     run,
     witness_error,
 )
@@ -106,7 +110,9 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             "a witness point enters an edge and leaves it to the next face",
             "; ".join(f"{body}: {' → '.join(path)}" for body, path in paths.items()),
             all(passes_an_edge(path) for path in paths.values()),
-            by=runs.by,
+            "the motion is ours, chosen so that both do",
+            runs.by,
+            constructed=True,
         ),
         Statement(
             "Fig. 20",
@@ -124,6 +130,7 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             abs(stay[0] - 2.67) < BESIDE and abs(stay[1] - 3.66) < BESIDE,
             f"the motion is ours, chosen to come within {BESIDE:g} s of the paper's",
             runs.by,
+            constructed=True,
         ),
         *_as_printed(runs),
         decay_statement(runs.paper, (PATH_A, PATH_B), DECAY, GAIN, runs.by),
@@ -134,9 +141,11 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             f"at each of {len(runs.exact.events)} instants the features after the switch are at "
             f"most {grows:.0e} of the radius farther apart than those before it",
             grows <= CONTINUOUS,
-            "Old and new feature share the point at which they switch.",
+            SHARED,
             runs.own + ": the claim is of the closest points",
+            constructed=True,
         ),
+        growth_statement(moves_by_resets(), TRIED, runs.by),
         Statement(
             "Fig. 20",
             "-",
@@ -172,10 +181,11 @@ def _as_printed(runs: Runs) -> tuple[Statement, ...]:
             "Section on the hybrid system",
             "from a start anywhere on tiled convex bodies the errors converge",
             f"{tried.arrived} of {tried.tried} random starts on both bodies are at the distance to "
-            f"{ARRIVED:g} after {PATIENCE:g} s",
+            f"{ARRIVED:g} after {PATIENCE:g} s; of the {tried.lost} others "
+            f"{tried.placed} are on the features of the closest points, and {tried.pinned} are "
+            "held at a side of a patch with M indefinite",
             tried.arrived == tried.tried,
-            "M of two bodies is indefinite where their faces turn away from each other, and the "
-            "printed system comes to another stationary point there",
+            INDEFINITE,
             tried.by,
         ),
         Statement(

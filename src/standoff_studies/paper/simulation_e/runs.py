@@ -21,7 +21,8 @@ from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.law_words import law_words
-from standoff_studies.paper.many_starts import Arrivals
+from standoff_studies.paper.many_starts import Ends, is_pinned
+from standoff_studies.paper.resets import Move, moves_of
 from standoff_studies.paper.simulation_d.runs import place_on, short
 
 Array = NDArray[np.float64]
@@ -56,6 +57,10 @@ CONVERGED = 0.3
 
 TRIED, PATIENCE, ARRIVED = 30, 0.6, 1e-4
 """Random starts, after which time [s], and to which distance [length], they count as arrived."""
+
+
+SWITCHED = 0.1
+"""When a tried start has come to the features where it stays [s]: 5 / `GAIN`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,24 +132,54 @@ def begin(law: Tracker, place_a: Place, place_b: Place) -> TrackerState:
     return law.start_from(pose_a, pose_b, *places, twist_a, twist_b, settle=False)
 
 
+def tried() -> list[tuple[Place, Place]]:
+    """Return the random starts on both bodies that are tried."""
+    rng, found = np.random.default_rng(1), []
+    for _ in range(TRIED):
+        faces, at = rng.integers(3, size=2).tolist(), rng.uniform(0.02, 0.98, (2, 2)).tolist()
+        first, second = zip(faces, map(tuple, at), strict=True)
+        found.append((first, second))
+    return found
+
+
 @cache
-def arrivals() -> Arrivals:
-    """Try random starts on both bodies with the printed system."""
-    runs, rng = run(), np.random.default_rng(1)
+def arrivals() -> Ends:
+    """Try random starts on both bodies with the printed system: which are there at `PATIENCE`."""
+    runs = run()
     law = printed_tracker(runs.a, runs.b)
     frames = round(PATIENCE / STEP)
     placed = [(PATH_B.pose(k * STEP), PATH_B.twist(k * STEP)) for k in range(1, frames + 1)]
     motion = [(flat_pose(pose), flat_twist(twist, pose)) for pose, twist in placed]
-    found = 0
-    for _ in range(TRIED):
-        faces, at = rng.integers(3, size=2).tolist(), rng.uniform(0.02, 0.98, (2, 2)).tolist()
-        places = [(face, (u, v)) for face, (u, v) in zip(faces, at, strict=True)]
+    due = runs.exact.feature_a[frames], runs.exact.feature_b[frames]
+    poses = _placed(frames * STEP)[:2]
+    arrived = on_due = pinned = 0
+    for places in tried():
         buffer = law.buffer(begin(law, *places))
         for pose, twist in motion:
             buffer.pose_b[:], buffer.twist_b[:] = pose, twist
             law.step_into(buffer)
-        found += abs(buffer.proximity().distance - runs.exact.distance[frames]) < ARRIVED
-    return Arrivals(int(found), TRIED, law_words(law, told="random starts"))
+        answer = buffer.proximity()
+        if abs(answer.distance - runs.exact.distance[frames]) < ARRIVED:
+            arrived += 1
+            continue
+        on_due += (answer.feature_a, answer.feature_b) == due
+        pinned += is_pinned((runs.a, runs.b), poses, answer)
+    return Ends(arrived, TRIED, law_words(law, told="random starts"), on_due, pinned)
+
+
+@cache
+def moves_by_resets() -> list[Move]:
+    """Return what the printed resets do to the witness points, from every tried start.
+
+    Up to `SWITCHED`: the start's own switches are over by then.
+    """
+    runs, times = run(), even_times(0.0, SWITCHED, STEP)
+    law = printed_tracker(runs.a, runs.b)
+    found: list[Move] = []
+    for places in tried():
+        made = track_along(law, PATH_A, PATH_B, times, state=begin(law, *places))
+        found += moves_of(made, (PATH_A, PATH_B), GAIN)
+    return found
 
 
 def sequence(visits: Iterable[Visit]) -> tuple[tuple[str, str], ...]:

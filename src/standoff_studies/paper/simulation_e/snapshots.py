@@ -126,7 +126,9 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             f"{runs.a.n_faces} and {runs.b.n_faces} patches; five modes, "
             f"{', '.join(f'{a}–{b}' for a, b in modes)}",
             (runs.a.n_faces, runs.b.n_faces, len(modes)) == (3, 3, 5),
-            by=runs.by,
+            "bodies, motion and instants are ours",
+            runs.by,
+            constructed=True,
         ),
         Statement(
             "Fig. 19",
