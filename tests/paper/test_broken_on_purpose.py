@@ -6,18 +6,14 @@ from dataclasses import replace
 
 import pytest
 
-from standoff.recording.simulate import track_along
-from standoff.recording.times import even_times
 from standoff.tracking import Tracker
-from standoff.tracking.laws import PaperLaw
+from standoff_studies.paper.broken_on_purpose import BREAKS, FIGURES, Break, Noticed, noticed
+from standoff_studies.paper.broken_on_purpose.matrix import markdown, sound
 from standoff_studies.paper.catalogue import chosen, make
 from standoff_studies.paper.figure import Entry, Statement
-from standoff_studies.paper.simulation_b import run as b
-from standoff_studies.paper.simulation_b import snapshots as snapshots_b
-from standoff_studies.paper.simulation_b.printed import Printed
 from standoff_studies.paper.simulation_c import regions as regions_c
 from standoff_studies.paper.simulation_c import run as c
-from standoff_studies.paper.simulation_e import parameters as parameters_e
+from standoff_studies.paper.simulation_d import runs as d
 from standoff_studies.paper.simulation_e import runs as e
 from standoff_studies.paper.verdicts import Verdict
 
@@ -27,28 +23,43 @@ def saying(statements: tuple[Statement, ...], words: str) -> Statement:
     return found
 
 
-def decay_of(printed: Printed) -> Statement:
-    """Simulation B's statement on the decay of the errors, of another run."""
-    broken = b.run()._replace(paper=printed.run(b.WRONG_START))
-    return saying(snapshots_b._statements(broken), "decay as exp")
+@pytest.mark.parametrize("one", BREAKS, ids=lambda one: one.key)
+def test_what_is_claimed_is_noticed(one: Break) -> None:
+    """Each figure that claims what is broken says so in that statement, and none dies of it."""
+    figures = sorted(one.claimed_by, key=int)
+    found = {row.key: row for row in noticed(one, figures, trials=False)}
+    assert [(row.key, row.error) for row in found.values() if row.error] == []
+    for figure, words in one.claims:
+        assert sum(words in stated for stated in found[figure].failed) == 1, (figure, words)
+    # the law on record is another one, but for twists that it was told wrong
+    assert [row.key for row in found.values() if row.words != (not one.backwards)] == []
 
 
-def printed_at(gain: float) -> Printed:
-    run = b.run()
-    return Printed(run.body, run.regions, run.path, run.printed.times, gain)
+def test_nothing_is_noticed_where_nothing_is_broken() -> None:
+    """The matrix by itself breaks nothing, nor does it leave anything broken behind."""
+    runs = {d.run: d.run().paper[0].time, e.run: e.run().paper.time}
+    for row in noticed(Break("none", "the law as it is"), ("18", "20"), trials=False):
+        assert row == Noticed(row.key)
+    for run, time in runs.items():
+        made = run().paper
+        assert (made[0] if isinstance(made, tuple) else made).time is time
+    assert d.Tracker is Tracker
 
 
-def test_another_law_is_told() -> None:
-    """Without the feedforward the errors come to b/K instead of falling as exp(-K t)."""
-    printed = printed_at(b.GAIN)
-    assert Verdict.of(decay_of(printed)) is Verdict.HOLDS
-    law = replace(printed.parallel.law, feedforward=False)
-    printed.parallel = Tracker(printed.body, printed.parallel.b, 1e-3, law=law)
-    assert Verdict.of(decay_of(printed)) is Verdict.FAILS
-
-
-def test_another_gain_is_told() -> None:
-    assert Verdict.of(decay_of(printed_at(1.2 * b.GAIN))) is Verdict.FAILS
+def test_the_table_tells_every_break() -> None:
+    """One row a break and one column a figure; what a figure fails to notice is a bold 0."""
+    blind = Noticed("20")
+    rows = {one.key: (*map(Noticed, FIGURES[:-1]), blind) for one in BREAKS}
+    lines = markdown(rows).splitlines()
+    assert lines[0].count("|") == len(FIGURES) + 2
+    assert len([line for line in lines if line.startswith("| ")]) == 1 + len(BREAKS)
+    halved = next(line for line in lines if line.startswith("| gain halved"))
+    assert halved.count("**✗ 0**") == len(BREAKS[0].claimed_by)
+    seen = Noticed("7", failed=("it decays",), mended=("it arrives",), words=True)
+    text = markdown({"gain halved": (seen,)})
+    assert "**✗ 1** by" in text
+    assert "- Fig. 7: ✓ → ✗ it decays" in text
+    assert "- Fig. 7: ✗ → ✓ it arrives" in text
 
 
 def test_a_normal_of_the_wrong_sign_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -66,22 +77,11 @@ def test_a_normal_of_the_wrong_sign_is_told(monkeypatch: pytest.MonkeyPatch) -> 
     assert Verdict.of(saying(regions_c._statements(c.run()), words)) is Verdict.FAILS
 
 
-def test_an_exact_reset_is_told() -> None:
-    """Entering edges at the foot point, as a solve finds it, is no longer the printed system."""
-    runs, words = e.run(), "no search, restart or exact solution"
-    assert saying(parameters_e._as_printed(runs), words).holds is True
-    law = replace(PaperLaw.as_printed(gain=e.GAIN), reset="foot")
-    tracker = Tracker(runs.a, runs.b, e.STEP, law=law)
-    times = even_times(0.0, 1.2, e.STEP)
-    other = track_along(tracker, e.PATH_A, e.PATH_B, times, state=e.begin(tracker, *e.START))
-    broken = replace(runs, paper=other)
-    assert Verdict.of(saying(parameters_e._as_printed(broken), words)) is Verdict.FAILS
-
-
 @pytest.mark.parametrize("entry", chosen(["all"]), ids=lambda entry: entry.key)
 def test_every_statement_names_its_law(entry: Entry) -> None:
     """All that "standoff paper all" makes: figures, chapters and what is beyond the paper."""
-    for statement in make(entry).statements:
+    made = sound(entry.key) if entry.key in FIGURES else make(entry).statements
+    for statement in made:
         assert statement.by, statement.measured
         if statement.constructed:
             assert statement.why, "says why it cannot fail"

@@ -143,6 +143,24 @@ def test_limit_for_small_errors_is_that_of_linear_theory():
         raw_law.raw_tracker(2000.0)
 
 
+def test_a_growth_that_does_not_rise_has_no_limit(monkeypatch):
+    """As at half the gain, where small errors vanish within the steps that are looked at."""
+    monkeypatch.setattr(gains, "growth_of_small_errors", lambda *_: 0.0)
+    assert np.isnan(gains.small_error_limit.__wrapped__())
+
+
+def test_figures_are_run_by_the_raw_law():
+    """Figs. 6 and 7: M as it is, on one face, and nothing else that moves the witness point."""
+    for made in (snapshots.snapshot_run(), errors.shown(100.0), errors.shown(1000.0)):
+        law = made.tracker.law
+        assert (law.solve, law.switching, law.saturation) == ("plain", "none", "zero")
+        assert (law.restarts, law.feedforward, law.integrator) == (False, True, "heun")
+        assert law.gain == made.gain
+        assert made.counts.regularised == made.counts.restarts == made.counts.saturations == 0
+        assert made.counts.corrections == len(made.q) - 1
+    assert [errors.shown(1000.0).steps_below(level) for level in (1e-2, 1e-3, 1e-4)] == [8, 12, 15]
+
+
 def test_large_errors_meet_a_lower_limit():
     """Why the experiment's limit is below theory's: H is lost at the trial stage from far away."""
     trials = gains.trials()

@@ -90,11 +90,12 @@ LAWS: dict[str, Followed] = {
 
 @dataclass(frozen=True)
 class Accuracy:
-    """Greatest witness error (length) of a run, and its second-order evaluations a frame."""
+    """A run's greatest witness error (length), second-order evaluations a frame, and tracker."""
 
     error: float
     evaluations: float
     chart_changes: int
+    tracker: so.Tracker
 
 
 @cache
@@ -157,7 +158,7 @@ def measure(
             changes += answer.counts.chart_changes
         if t > settled and k % every == 0:
             worst = max(worst, witness_error(answer, so.distance(A, B, pose_a, pose_b)))
-    return Accuracy(worst, evaluations / len(steps), changes)
+    return Accuracy(worst, evaluations / len(steps), changes, tracker)
 
 
 def even(step: float, duration: float = DURATION) -> Array:

@@ -49,10 +49,18 @@ class Motion(NamedTuple):
 
 
 class Arrivals(NamedTuple):
-    """How many of the tried starts have arrived."""
+    """How many of the tried starts have arrived.
+
+    Attributes
+    ----------
+    arrived, tried : int
+    by : str
+        The law that they were tried with.
+    """
 
     arrived: int
     tried: int
+    by: str
 
 
 class Ends(NamedTuple):
@@ -61,6 +69,8 @@ class Ends(NamedTuple):
     Attributes
     ----------
     arrived, tried : int
+    by : str
+        The law that they were tried with.
     placed, pinned : int
         Of those that have not arrived: how many are on the features of the closest points, and how
         many are held at a side of a patch with M indefinite and projection errors left.
@@ -68,6 +78,7 @@ class Ends(NamedTuple):
 
     arrived: int
     tried: int
+    by: str
     placed: int
     pinned: int
 

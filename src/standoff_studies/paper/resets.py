@@ -166,15 +166,19 @@ class Errors(NamedTuple):
 
 def projection_errors(recording: Recording, paths: tuple[Path, Path]) -> Errors:
     """Return the projection errors in one of `EVERY` frames, and at and before each switch."""
-    assert recording.pair is not None, "not opened from a file"
     frames = {*range(0, len(recording), EVERY), len(recording) - 1}
     for event in recording.events:
         frames |= {event.frame - 1, event.frame}
-    chosen, sizes = sorted(frames), []
-    for frame in chosen:
-        poses, places = _at(recording, paths, frame)[:2], _places(recording, frame)
-        sizes.append(np.linalg.norm(pair_system(*recording.pair, *poses, *places).Psi))
-    return Errors(recording.time[chosen], np.array(sizes))
+    chosen = sorted(frames)
+    sizes = np.array([error_at(recording, paths, frame) for frame in chosen])
+    return Errors(recording.time[chosen], sizes)
+
+
+def error_at(recording: Recording, paths: tuple[Path, Path], frame: int) -> float:
+    """Return the size of the projection errors in one frame [length²]."""
+    assert recording.pair is not None, "not opened from a file"
+    poses, places = _at(recording, paths, frame)[:2], _places(recording, frame)
+    return float(np.linalg.norm(pair_system(*recording.pair, *poses, *places).Psi))
 
 
 def reset_place(body: Body, place: Place, target: Feature) -> Place:
@@ -284,14 +288,14 @@ def _short(feature: Feature) -> str:
 
 def reset_statement(resets: list[Reset], by: str) -> Statement:
     """Say whether the projection errors at the switches are those that the resets imply."""
-    off = max(reset.off for reset in resets)
-    after = [reset.found for reset in resets]
+    off = max((reset.off for reset in resets), default=0.0)
+    after = [reset.found for reset in resets] or [0.0]
     return Statement(
         "Eqs. (15)–(17)",
         "at a switch the projection errors jump by what the reset implies, and by nothing else",
         f"at all {len(resets)} frames with switches they are those of the reset's parameters to "
         f"{off:.0e} length²; they come to {max(after):.1e} at most",
-        off <= ROUNDED,
+        off <= ROUNDED if resets else None,
         "the law's step and the reset are computed again, without the kernels that switch",
         by,
     )

@@ -14,6 +14,7 @@ from standoff.motion import Pose, Twist
 from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.law_words import law_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,11 +65,8 @@ VARIANTS: dict[str, dict[str, Any]] = {
 """Name of each: the options of the paper's law in which it differs from the default."""
 
 
-LAW = (
-    "so.PaperLaw with the option named, the others as they are by default (M by the rank rule, "
-    "switches onto edges at foot points), from wrong starts on a face"
-)
-"""What the statements say they were measured with."""
+TOLD = "from wrong starts on a face"
+"""What the record of the trackers does not hold."""
 
 
 class Run(NamedTuple):
@@ -85,6 +83,7 @@ class Run(NamedTuple):
     saturations, evaluations : int
     gain : ndarray
         That the law used [1/s]; 0 at the start.
+    tracker : so.Tracker
     """
 
     time: Array
@@ -94,6 +93,7 @@ class Run(NamedTuple):
     saturations: int
     evaluations: int
     gain: Array
+    tracker: so.Tracker
 
 
 @cache
@@ -137,6 +137,7 @@ def run(name: str, start: tuple[float, float] = WRONG_STARTS[0], gain: float | N
         sum(x.counts.saturations for x in answers),
         sum(x.counts.evaluations for x in answers),
         np.array(gains),
+        tracker,
     )
 
 
@@ -231,9 +232,14 @@ def variants() -> Artwork:
         ),
         draw=draw,
         tables={"variants": variant_table(), "runs": run_table()},
-        statements=measured_by(LAW, statements()),
+        statements=measured_by(by(), statements()),
         shown=("variants",),
     )
+
+
+def by() -> str:
+    """Return what the statements were measured with: each variant's own law."""
+    return law_words(*(run(name).tracker for name in VARIANTS), told=TOLD)
 
 
 def variant_table() -> dict[str, list[str]]:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
+from standoff.tracking import Tracker
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.law_accuracy import LAWS, STEPS, even, frame_time, measure
+from standoff_studies.paper.law_words import law_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,18 +44,16 @@ FIRST_STYLE = {"Heun": 0, "Euler": 1, "RK4": 2, "one": 3, "two": 4, "secant": 5,
 """Colour, dashes and marker of a law, by its first word; those without feedforward are hollow."""
 
 
-LAW = (
-    "each law by its name: so.PaperLaw (rank rule, multipliers) at K h = 1, or "
-    "so.PredictorCorrector; two untiled ellipsoids, from the closest points"
-)
-"""What the statements say they were measured with."""
+TOLD = "two untiled ellipsoids, from the closest points"
+"""What the record of the trackers does not hold."""
 
 
 class Measured(NamedTuple):
-    """One law at one frame time: greatest witness error [length], evaluations a frame."""
+    """One law at one frame time: greatest witness error [length], evaluations a frame, tracker."""
 
     error: float
     evaluations: float
+    tracker: Tracker
 
 
 @cache
@@ -69,7 +69,7 @@ def accuracies() -> dict[str, dict[float, Measured]]:
         for step in CURVE_STEPS:
             got = measure(even(step), followed)
             rates_only = 1.0 if isinstance(followed.law, PaperLaw) else 0.0
-            found[name][step] = Measured(got.error, got.evaluations - rates_only)
+            found[name][step] = Measured(got.error, got.evaluations - rates_only, got.tracker)
     return found
 
 
@@ -119,9 +119,15 @@ def verdict() -> Artwork:
             "wrong_twists": wrong_table(),
             "curve": curve_table(),
         },
-        statements=measured_by(LAW, statements()),
+        statements=measured_by(by(), statements()),
         shown=("accuracy", "wrong_twists"),
     )
+
+
+def by() -> str:
+    """Return what the statements were measured with: each law, at each frame time."""
+    trackers = [got.tracker for rows in accuracies().values() for got in rows.values()]
+    return law_words(*trackers, told=TOLD)
 
 
 def accuracy_table() -> dict[str, list[str]]:

@@ -45,11 +45,13 @@ class Decay(NamedTuple):
         K h.
     measured, predicted : (n,) arrays
         Signed: Psi after a step in parts of Psi before, and R(-K h).
+    trackers : tuple of so.Tracker
     """
 
     z: Array
     measured: Array
     predicted: Array
+    trackers: tuple[so.Tracker, ...]
 
 
 @cache
@@ -62,6 +64,12 @@ def bodies() -> tuple[Body, Body]:
 def optimum() -> so.Proximity:
     """Their witness points at rest."""
     return so.distance(*bodies(), *REST)
+
+
+@cache
+def tracker(**options: Any) -> so.Tracker:
+    """The paper's law with some options, on the two ellipsoids."""
+    return so.Tracker(*bodies(), dt=STEP, law=so.PaperLaw(**options))
 
 
 def errors_after(steps: int, offset: Array, **options: Any) -> Array:
@@ -79,11 +87,11 @@ def _errors(steps: int, offset: Array, options: dict[str, Any]) -> Array:
         (best.feature_a, (u + offset[0], v + offset[1], chart_a)),
         (best.feature_b, (r + offset[2], s + offset[3], chart_b)),
     )
-    tracker = so.Tracker(*bodies(), dt=STEP, law=so.PaperLaw(**options))
-    state = tracker.start_from(*REST, *places, settle=False)
+    law = tracker(**options)
+    state = law.start_from(*REST, *places, settle=False)
     rows = [so.tracking.pair_system(*bodies(), *REST, *places).Psi]
     for _ in range(steps):
-        state, answer = tracker.step(state, *REST, STILL, STILL)
+        state, answer = law.step(state, *REST, STILL, STILL)
         now = (
             answer.place_a,
             answer.place_b,
@@ -98,11 +106,13 @@ def decays() -> dict[str, Decay]:
     found = {}
     for name in NAMES:
         z = stability_limit(name) * (np.arange(POINTS) + 0.5) / POINTS
-        measured = []
-        for k in z:
+        measured, ran = [], []
+        for k in z.tolist():
             before, after = errors_after(1, OFFSET * DIRECTION, integrator=name, gain=k / STEP)
             measured.append(float(after @ before / (before @ before)))
-        found[name] = Decay(z, np.array(measured), np.asarray(growth_factor(name, -z)))
+            ran.append(tracker(integrator=name, gain=k / STEP))
+        predicted = np.asarray(growth_factor(name, -z))
+        found[name] = Decay(z, np.array(measured), predicted, tuple(ran))
     return found
 
 
@@ -115,6 +125,7 @@ class Loop(NamedTuple):
     gain, integral : float
         K [1/s] and K_i [1/s²].
     measured, predicted : (2,) complex arrays
+    tracker : so.Tracker
     """
 
     integrator: str
@@ -122,6 +133,7 @@ class Loop(NamedTuple):
     integral: float
     measured: Complex
     predicted: Complex
+    tracker: so.Tracker
 
 
 @cache
@@ -138,7 +150,8 @@ def loops() -> tuple[Loop, ...]:
             t, d = np.linalg.solve([[e[1], -e[0]], [e[2], -e[1]]], e[2:])
             measured = np.sort_complex(np.roots([1.0, -t, d]).astype(complex))
             predicted = np.sort_complex(sampled_roots(name, law, STEP))
-            found.append(Loop(name, law.gain, law.integral, measured, predicted))
+            ran = tracker(integrator=name, feedback=law)
+            found.append(Loop(name, law.gain, law.integral, measured, predicted, ran))
     return tuple(found)
 
 

@@ -15,6 +15,7 @@ from standoff.motion import Pose, Twist
 from standoff.tracking import feedback
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.law_words import law_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,10 +54,6 @@ LAWS: dict[str, feedback.Feedback] = {
 """The sign-power law twice: with its greatest gain at 1/h, and nearly at Euler's limit 2/h."""
 
 
-LAW = "so.PaperLaw(integrator='euler') with the feedback named: multipliers, rank rule, wrong start"
-"""What the statements say they were measured with."""
-
-
 class Run(NamedTuple):
     """What a feedback did.
 
@@ -72,6 +69,7 @@ class Run(NamedTuple):
         Share of the frames of `CHATTER` at which Psi_u changes its sign.
     psi_u : (FRAMES + 1,) array
         The first projection error [length² per parameter].
+    tracker : so.Tracker
     """
 
     error: Array
@@ -79,6 +77,7 @@ class Run(NamedTuple):
     steady: float
     chatter: float
     psi_u: Array
+    tracker: so.Tracker
 
 
 @cache
@@ -131,6 +130,7 @@ def run(name: str) -> Run:
         float(late.mean()),
         float((np.diff(np.sign(psi[CHATTER])) != 0.0).mean()),
         np.array(psi),
+        tracker,
     )
 
 
@@ -159,7 +159,9 @@ def four_feedbacks() -> Artwork:
         ),
         draw=_draw,
         tables=_tables(),
-        statements=measured_by(LAW, _statements()),
+        statements=measured_by(
+            law_words(*(run(name).tracker for name in LAWS), told="wrong start"), _statements()
+        ),
     )
 
 

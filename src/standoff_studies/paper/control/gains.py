@@ -13,6 +13,7 @@ from standoff_studies.paper import style
 from standoff_studies.paper.control.decay import arrival, decays, loops
 from standoff_studies.paper.control.lag import FRAMES, PAIRS, Lag, measured_lags
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.law_words import law_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,13 +25,6 @@ AGREE = 1e-7
 """Most a measured growth factor may be off its prediction: what Psi's roundoff, 1e-16 of 1e-5,
 and the chart's curvature leave, with room."""
 NAMED = {"euler": "Euler", "heun": "Heun", "midpoint": "midpoint", "rk4": "RK4"}
-
-
-LAW = (
-    "so.PaperLaw (multipliers, rank rule) with the integrator, feedback and gain named: from 1e-5 "
-    "off the minimum at rest; the lower bound by Euler without feedforward, from the closest points"
-)
-"""What the statements say they were measured with."""
 
 
 @cache
@@ -54,6 +48,17 @@ def worst_arrival() -> float:
     return float(np.abs(arrival().measured - arrival().predicted).max())
 
 
+def by() -> str:
+    """Return what the statements were measured with."""
+    growing = law_words(*(one for made in decays().values() for one in made.trackers))
+    looped = law_words(*(loop.tracker for loop in loops()))
+    lagging = law_words(*(lag.tracker for lag in lags()))
+    return (
+        f"from 1e-5 off the minimum at rest {growing}; the PI loop, {looped}; the lower bound, "
+        f"from the closest points, {lagging}"
+    )
+
+
 def decay_and_lag() -> Artwork:
     """Decay and lag."""
     return Artwork(
@@ -73,7 +78,7 @@ def decay_and_lag() -> Artwork:
         ),
         draw=_draw,
         tables=_tables(),
-        statements=measured_by(LAW, _statements()),
+        statements=measured_by(by(), _statements()),
     )
 
 

@@ -53,11 +53,14 @@ class Lag(NamedTuple):
         Greatest distance of a core's witness point from its true place, over all frames [length].
     bound : float
         What ``so.min_gain`` promises with the gain used [length].
+    tracker : so.Tracker
+        Without feedforward, at that gain.
     """
 
     kind: str
     error: float
     bound: float
+    tracker: so.Tracker
 
     @property
     def part(self) -> float:
@@ -115,7 +118,7 @@ def measured_lag(case: Case) -> Lag | None:
     )
     off = core_points(case, run(law, case, poses)) - core_points(case, truth)
     error = float(np.linalg.norm(off, axis=2).max())
-    return Lag(case.kind, error, bound)
+    return Lag(case.kind, error, bound, law)
 
 
 def run(tracker: so.Tracker, case: Case, poses: Array) -> list[so.Proximity]:

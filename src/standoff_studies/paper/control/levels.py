@@ -16,6 +16,7 @@ from standoff.geometry.validation import Array
 from standoff.motion import Pose, Twist
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.law_words import law_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,11 +44,8 @@ GRID = 71
 """Points a side at which the functions are evaluated for the picture."""
 
 
-LAW = (
-    "so.PaperLaw(solve='plain', gain=100), and where dV/dt is watched RK4 at gain=50 without "
-    "switching: M as it is, bodies at rest, starts within the level"
-)
-"""What the statements say they were measured with."""
+TOLD = "where dV/dt is watched the second; bodies at rest, starts within the level"
+"""What the record of the trackers does not hold."""
 
 
 @cache
@@ -78,13 +76,33 @@ def case(bodies: str) -> Case:
 
 
 @cache
+def tracker(bodies: str) -> so.Tracker:
+    """Return that of the raw law."""
+    made = case(bodies)
+    return so.Tracker(made.a, made.b, STEP, law=so.PaperLaw(gain=GAIN, solve="plain"))
+
+
+@cache
+def watched_tracker(bodies: str) -> so.Tracker:
+    """Return that whose V and E are watched: it stays on its features."""
+    made = case(bodies)
+    law = so.PaperLaw(integrator="rk4", gain=WATCHED_GAIN, solve="plain", switching="none")
+    return so.Tracker(made.a, made.b, STEP, law=law)
+
+
+def by() -> str:
+    """Return what the statements were measured with."""
+    both = (law_words(*map(made, ("point", "faces"))) for made in (tracker, watched_tracker))
+    return "; ".join([*both, TOLD])
+
+
+@cache
 def runs(bodies: str) -> tuple[Basin, Basin]:
     """The raw law from starts within the level of V, and within that of E."""
     made = case(bodies)
-    tracker = so.Tracker(made.a, made.b, STEP, law=so.PaperLaw(gain=GAIN, solve="plain"))
     within = [[places(made, q) for q in points] for points in made.levels.inside(PART)]
     home = Pose.identity()
-    first, second = (basin(tracker, home, made.pose_b, starts, FRAMES) for starts in within)
+    first, second = (basin(tracker(bodies), home, made.pose_b, starts, FRAMES) for starts in within)
     return first, second
 
 
@@ -121,12 +139,7 @@ class Watched(NamedTuple):
 def watched(bodies: str) -> Watched:
     """V and E along runs from within both levels, evaluated by `so.tracking.pair_system`."""
     made = case(bodies)
-    tracker = so.Tracker(
-        made.a,
-        made.b,
-        STEP,
-        law=so.PaperLaw(integrator="rk4", gain=WATCHED_GAIN, solve="plain", switching="none"),
-    )
+    tracker = watched_tracker(bodies)
     by_slope, by_energy = made.levels.inside(CLEAR)
     chosen = [x[:: max(1, 2 * len(x) // WATCHED)] for x in (by_slope, by_energy)]
     home, still = Pose.identity(), Twist.zero()
@@ -181,7 +194,7 @@ def lyapunov() -> Artwork:
         ),
         draw=_draw,
         tables=_tables(),
-        statements=measured_by(LAW, (s for name in ("point", "faces") for s in _statements(name))),
+        statements=measured_by(by(), (s for name in ("point", "faces") for s in _statements(name))),
     )
 
 

@@ -14,6 +14,7 @@ from standoff_studies.paper import style
 from standoff_studies.paper.control.decay import DAMPINGS, PROPORTIONAL, loops
 from standoff_studies.paper.control.gains import AGREE, worst_loop
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.law_words import law_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,12 +32,6 @@ MARKED = {
 """K h that are named on the real root of proportional feedback, and where it then is."""
 METHODS = ("euler", "heun", "rk4")
 TITLES = {"euler": "Euler", "heun": "Heun and midpoint", "rk4": "RK4"}
-
-
-LAW = (
-    "so.control, linear theory: no tracker; measured roots by so.PaperLaw from 1e-5 off the minimum"
-)
-"""What the statements say they were measured with."""
 
 
 class Locus(NamedTuple):
@@ -103,8 +98,14 @@ def stability() -> Artwork:
         ),
         draw=_draw,
         tables=_tables(),
-        statements=measured_by(LAW, _statements()),
+        statements=measured_by(by(), _statements()),
     )
+
+
+def by() -> str:
+    """Return what the statements were measured with."""
+    ran = law_words(*(loop.tracker for loop in loops()), told="from 1e-5 off the minimum")
+    return f"so.control, linear theory: no tracker; measured roots by {ran}"
 
 
 def _statements() -> tuple[Statement, ...]:

@@ -72,6 +72,8 @@ class Runs:
     Attributes
     ----------
     lens, ball : Body
+    operator : Operator
+        That of `inside`.
     inside : SystemRun
         With the law inside the operator, at `GAIN`.
     beside : SystemRun
@@ -84,6 +86,7 @@ class Runs:
 
     lens: Body
     ball: Body
+    operator: sim.Operator
     inside: sim.SystemRun
     beside: sim.SystemRun
     microseconds: dict[str, float]
@@ -203,6 +206,7 @@ def run() -> Runs:
     return Runs(
         lens(),
         made.system.bodies[1].body,
+        inside,
         made,
         dragged(beside),
         {one.tracker: _microseconds(one) for one in (inside, beside)},

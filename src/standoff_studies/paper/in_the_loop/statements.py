@@ -14,20 +14,16 @@ from standoff_studies.paper.figure import Statement, measured_by
 from standoff_studies.paper.in_the_loop.run import (
     BALL,
     CONTACT,
-    GAIN,
     GAINS,
-    METHOD,
     PERIOD,
     Runs,
     dragged,
     exact_distances,
     operator,
 )
+from standoff_studies.paper.law_words import law_words
 
 Array = NDArray[np.float64]
-
-LAW = f"the paper's law inside the operator ({METHOD}, K = {GAIN:g}/s, 1 ms)"
-"""What the statements say they were measured with."""
 
 CLOSE = 1e-6
 """Greatest error of the law's distance that counts as tracked [m]: a thousandth of the depth."""
@@ -46,7 +42,8 @@ class Steps(NamedTuple):
 def all_statements(runs: Runs) -> tuple[Statement, ...]:
     """Return every statement of the figure."""
     parts = (_features(runs), _one_state(runs), _smooth(runs), _energy(runs), _beside(runs))
-    return measured_by(LAW, (*parts, _gains(), _cost(runs)))
+    by = law_words(runs.operator, told="inside the operator")
+    return measured_by(by, (*parts, _gains(), _cost(runs)))
 
 
 def kinds_touched(runs: Runs) -> list[str]:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from standoff.geometry.validation import Array
+from standoff.tracking import Tracker
 from standoff_studies.paper.realisations.run import MISS, RIGHT, Trace, exact, trace, true_errors
 
 REALISATIONS = ("integrated", "evaluated")
@@ -81,6 +82,22 @@ def difference(integrator: str, gain: float) -> Difference:
         runs = [trace(name, integrator, gain, SPAN / frames, frames, MISS) for name in REALISATIONS]
         apart.append(_farthest(runs[0].points - runs[1].points)[-1])
     return Difference(SPAN / np.array(FRAMES, dtype=float), np.array(apart))
+
+
+def trackers() -> tuple[Tracker, ...]:
+    """Return what was compared: both realisations, in time, by each integrator and at each gain."""
+    step = SPAN / FRAMES[0]
+    made = [
+        one
+        for name in REALISATIONS
+        for one in (
+            trace(name, "heun", GAIN, SHORT_STEP, SHORT_FRAMES, MISS),
+            trace(name, "heun", GAIN, LONG_STEP, LONG_FRAMES, RIGHT, 0.0),
+            *(trace(name, integrator, GAIN, step, FRAMES[0], MISS) for integrator in ORDERS),
+            *(trace(name, "heun", gain, step, FRAMES[0], MISS) for gain in GAINS),
+        )
+    ]
+    return tuple(one.tracker for one in made)
 
 
 @cache

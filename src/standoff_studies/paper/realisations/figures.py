@@ -9,6 +9,7 @@ import numpy as np
 from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, measured_by
+from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.realisations import comparison as c
 from standoff_studies.paper.realisations.diagrams import draw_evaluated, draw_integrated
 from standoff_studies.paper.realisations.statements import of_evaluated, of_integrated
@@ -17,11 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LAW = (
-    "so.PaperLaw(realisation='integrated' or 'evaluated'): multipliers, rank rule, Heun and the "
-    "start as told; two bodies, face against face"
-)
-"""What the statements say they were measured with."""
+TOLD = "two bodies, face against face, the start as told"
+"""What the record of the trackers does not hold."""
 
 EVERY = 20
 """Frames of the long runs from one drawn point to the next: their errors ripple slowly."""
@@ -50,7 +48,7 @@ def figure_3() -> Artwork:
         ),
         draw=_draw_integrated,
         tables={"decay": _decay_table()},
-        statements=measured_by(LAW, of_integrated()),
+        statements=measured_by(law_words(*c.trackers(), told=TOLD), of_integrated()),
     )
 
 
@@ -74,7 +72,7 @@ def figure_4() -> Artwork:
         ),
         draw=_draw_evaluated,
         tables=_comparison_tables(),
-        statements=measured_by(LAW, of_evaluated()),
+        statements=measured_by(law_words(*c.trackers(), told=TOLD), of_evaluated()),
     )
 
 

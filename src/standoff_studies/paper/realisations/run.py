@@ -55,12 +55,14 @@ class Trace:
     believed : ndarray, shape (n, 4)
         The errors that the law acts on [length²]: the integrated ones, or nan where they are
         evaluated.
+    tracker : Tracker
     """
 
     time: Array
     points: Array
     q: Array
     believed: Array
+    tracker: Tracker
 
 
 class Motion(NamedTuple):
@@ -152,7 +154,7 @@ def trace(
     if realisation == "evaluated":
         believed[:] = np.nan
     time = np.asarray(step * np.arange(frames + 1))
-    return Trace(time, _points(rows), rows[:, K.OUT_Q : K.OUT_Q + 4], believed)
+    return Trace(time, _points(rows), rows[:, K.OUT_Q : K.OUT_Q + 4], believed, tracker)
 
 
 @cache

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import NamedTuple
 
@@ -10,7 +11,8 @@ import numpy as np
 from standoff.control import growth_factor
 from standoff.geometry.validation import Array
 from standoff.kernels.state import arrays as K
-from standoff.tracking import distance, max_gain
+from standoff.tracking import Tracker, distance, max_gain
+from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.simulation_a.raw_law import Trials, growth_of_small_errors, try_all
 from standoff_studies.paper.simulation_a.run import (
     HOME,
@@ -184,7 +186,8 @@ def rescued() -> tuple[int, int]:
     home = 0
     for at, start in failed.tolist():
         begin = (float(starts()[start, 0]), float(starts()[start, 1]))
-        rows = track(float(TRIED_GAINS[at]), moving, begin)[[0, -1]]
+        safe = Tracker(vault(), point(), STEP, law=PaperLaw(gain=float(TRIED_GAINS[at])))
+        rows = track(safe, moving, begin)[[0, -1]]
         psi = projection_errors(rows[:, K.OUT_Q : K.OUT_Q + 2], moving.x[[0, -1]])
         first, last = np.linalg.norm(psi, axis=1).tolist()
         home += rows[-1, K.OUT_MODE] == FACE.index and last < SETTLED * first
@@ -195,11 +198,14 @@ def rescued() -> tuple[int, int]:
 def small_error_limit() -> float:
     """The gain [1/s] at which a small error would begin to grow, the point at rest.
 
-    The straight line through the growth measured at the gains `NEAR` is led on to 1.
+    The straight line through the growth measured at the gains `NEAR` is led on to 1; nan where it
+    does not rise, which no law does that runs at those gains.
     """
     u, v = closest_start()
     measured = [growth_of_small_errors(k, (u + SMALL, v + SMALL), SMALL_FRAMES) for k in NEAR]
     slope = (measured[1] - measured[0]) / (NEAR[1] - NEAR[0])
+    if slope <= 0.0:
+        return math.nan
     return float(NEAR[1] + (1.0 - measured[1]) / slope)
 
 

@@ -13,16 +13,16 @@ from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion import Twist
 from standoff.tracking import Tracker
-from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.simulation_a.run import (
     HOME,
     SETTLED,
     Motion,
     motion,
+    raw_tracker,
     system_at,
     systems,
 )
-from standoff_studies.paper.simulation_a.setting import FACE, PATH, STEP, VERTEX, point, vault
+from standoff_studies.paper.simulation_a.setting import FACE, PATH, STEP, VERTEX
 
 
 class Trials(NamedTuple):
@@ -50,11 +50,6 @@ class Trial(NamedTuple):
     q: Array
     settled: bool
     monotone: bool
-
-
-def raw_tracker(gain: float) -> Tracker:
-    """The law as it is: H is not made definite, and no feature is left for another."""
-    return Tracker(vault(), point(), STEP, law=PaperLaw(gain=gain, switching="none", solve="plain"))
 
 
 def try_all(starts: Array, gains: Array, frames: int) -> Trials:

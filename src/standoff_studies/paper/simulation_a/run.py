@@ -1,4 +1,4 @@
-"""Simulation A's runs: the paper's law from a wrong start, by ``so.Tracker``."""
+"""Simulation A's runs: the raw law, Eq. (12), from a wrong start, by ``so.Tracker``."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ from typing import NamedTuple
 import numpy as np
 
 from standoff.geometry.validation import Array
+from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion import Pose, Twist
 from standoff.tracking import PairSystem, Tracker
 from standoff.tracking.inputs import flat_pose
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.pair_system import PairSystems
+from standoff.tracking.rows import COUNT_SLOTS, Counts
 from standoff_studies.paper.simulation_a.setting import (
     FACE,
     PATH,
@@ -24,6 +26,7 @@ from standoff_studies.paper.simulation_a.setting import (
     point,
     vault,
 )
+from standoff_studies.paper.unaided import Part
 
 HOME = Pose.identity()
 """The vault stands still."""
@@ -82,17 +85,28 @@ class Run:
         Parameters (u, v).
     witness, target : ndarray, shape (n, 3)
         Witness point on the patch and the moving point [length], world.
+    tracker : Tracker
+        What followed it.
+    counts : Counts
+        In all frames.
     """
 
     gain: float
     q: Array
     witness: Array
     target: Array
+    tracker: Tracker
+    counts: Counts
 
     @cached_property
     def psi(self) -> Array:
         """Projection errors [length²], Eqs. (1)-(2), shape (n, 2)."""
         return projection_errors(self.q, self.target)
+
+    @property
+    def part(self) -> Part:
+        """What its tracker did."""
+        return Part(self.tracker.resolved_law, self.counts, len(self.q))
 
     @property
     def time(self) -> Array:
@@ -151,7 +165,7 @@ def run(
     feedforward: bool = True,
     integrator: str = "heun",
 ) -> Run:
-    """Track the point with the paper's law from parameters `start`, which need not be right.
+    """Track the point with the raw law from parameters `start`, which need not be right.
 
     Parameters
     ----------
@@ -167,34 +181,38 @@ def run(
     Raises
     ------
     RuntimeError
-        If the witness point leaves the patch.
+        If the witness point leaves the patch: a step had a component that leads out of it.
     """
     moving = motion(np.asarray(STEP * np.arange(frames + 1)))
-    rows = track(gain, moving, start, feedforward, integrator)
-    on_patch = rows[:, K.OUT_MODE] == FACE.index
-    if not on_patch.all():
+    tracker = raw_tracker(gain, feedforward, integrator)
+    rows = track(tracker, moving, start)
+    leaves = rows[:, K.OUT_COUNTS + N.SATURATIONS] > 0
+    if leaves.any():
         raise RuntimeError(
             f"K = {gain:g} 1/s from {start}: the witness point left the patch at step "
-            f"{int(np.argmin(on_patch))}."
+            f"{int(np.argmax(leaves))}."
         )
     q, witness = rows[:, K.OUT_Q : K.OUT_Q + 2], rows[:, K.POINT_A : K.POINT_A + 3]
-    return Run(gain, q.copy(), witness.copy(), moving.x)
+    counts = Counts(*rows[:, COUNT_SLOTS].sum(axis=0).astype(int).tolist())
+    return Run(gain, q.copy(), witness.copy(), moving.x, tracker, counts)
 
 
-def track(
-    gain: float,
-    moving: Motion,
-    start: tuple[float, float],
-    feedforward: bool = True,
-    integrator: str = "heun",
-) -> Array:
-    """Answers of all frames, (n, N_OUT), as ``standoff.kernels.state.arrays`` lays them out."""
-    tracker = Tracker(
-        vault(),
-        point(),
-        STEP,
-        law=PaperLaw(integrator=integrator, gain=gain, feedforward=feedforward),
+def raw_tracker(gain: float, feedforward: bool = True, integrator: str = "heun") -> Tracker:
+    """The law as it is: H is not made definite, and no feature is left for another."""
+    law = PaperLaw(
+        integrator=integrator,
+        gain=gain,
+        feedforward=feedforward,
+        switching="none",
+        saturation="zero",
+        solve="plain",
+        restarts=False,
     )
+    return Tracker(vault(), point(), STEP, law=law)
+
+
+def track(tracker: Tracker, moving: Motion, start: tuple[float, float]) -> Array:
+    """Answers of all frames, (n, N_OUT), as ``standoff.kernels.state.arrays`` lays them out."""
     poses, twists = (HOME, PATH.pose(0.0)), (Twist.zero(), PATH.twist(0.0))
     state = tracker.start_from(*poses, (FACE, start), (VERTEX, ()), *twists, settle=False)
     buffer = tracker.buffer(state)

@@ -13,10 +13,11 @@ from standoff.tracking import distance
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_space import space_axes
 from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
+from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.simulation_a.gains import TURN
 from standoff_studies.paper.simulation_a.run import HOME, Run, run
 from standoff_studies.paper.simulation_a.setting import FACE, PATH, STEP, point, vault
-from standoff_studies.paper.simulation_a.statements import LAW
+from standoff_studies.paper.simulation_a.statements import TOLD
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -80,7 +81,7 @@ def figure_6() -> Artwork:
         ),
         draw=_draw,
         tables={"run": run_table(made)},
-        statements=measured_by(LAW, _statements(made)),
+        statements=measured_by(law_words(made.tracker, told=TOLD), _statements(made)),
         animation=Animation(
             frames=len(ANIMATED),
             draw=_draw_frame,

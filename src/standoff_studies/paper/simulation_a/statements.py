@@ -7,9 +7,11 @@ import math
 import numpy as np
 
 from standoff_studies.paper.figure import Statement, measured_by
+from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.simulation_a import gains
 from standoff_studies.paper.simulation_a.run import SETTLED, Run
 from standoff_studies.paper.simulation_a.setting import STEP
+from standoff_studies.paper.unaided import unaided
 
 STATED = (75, 10)
 """The paper's steps to the steady state at K = 100 and 1000 1/s."""
@@ -17,11 +19,8 @@ STATED = (75, 10)
 LEVELS = (1e-2, 3e-3, 2e-3, 1.2e-3, 1e-3)
 """Cosines below which the steps are counted: within the levels that fit, and beside them."""
 
-LAW = (
-    "the raw law, Eq. (12), at the gain named: Heun, 1 kHz, M as it is, on one face without a "
-    "switch, from Fig. 6's wrong start if not told otherwise"
-)
-"""What the statements say they were measured with."""
+TOLD = "from Fig. 6's wrong start if not told otherwise"
+"""What the record of the trackers does not hold."""
 
 ABOUT = 0.15
 """Part by which a number may differ from the paper's "about 75" or "about 10" steps."""
@@ -42,7 +41,8 @@ def statements(slow: Run, fast: Run) -> tuple[Statement, ...]:
         _slowness(),
         _without_feedforward(),
     )
-    return measured_by(LAW, made)
+    by = law_words(slow.tracker, fast.tracker, told=TOLD)
+    return (*measured_by(by, made), unaided([slow.part, fast.part], by))
 
 
 def _steps(made: Run, stated: int) -> Statement:
@@ -80,7 +80,6 @@ def _as_cosines(slow: Run, fast: Run) -> Statement:
         f"{high:.4f}; steps until both cosines stay below a level: {told}",
         None if low < high else False,
         "the paper does not name the level; its start and patch are not ours",
-        "PaperLaw(gain=K), Heun, 1 kHz, on one face: no switch, wrong start",
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,7 +25,6 @@ from standoff_studies.paper.simulation_b.run import (
     CONVERGED,
     DURATION,
     GAIN,
-    LAW,
     Run,
     psi,
     run,
@@ -118,11 +118,14 @@ def not_nearest(simulation: Run) -> NDArray[np.int64]:
 
 
 def held(simulation: Run) -> tuple[int, float]:
-    """Return how many frames at vertices there are, and how far the witness leaves them."""
+    """Return how many frames at vertices there are, and how far the witness leaves them.
+
+    nan where there are none.
+    """
     paper, body = simulation.paper, simulation.body
     at = [k for k, feature in enumerate(paper.feature) if feature.kind == "vertex"]
     corners = np.array([body.vertex_points[paper.feature[k].index] for k in at])
-    return len(at), float(np.abs(paper.witness[at] - corners).max())
+    return len(at), float(np.abs(paper.witness[at] - corners).max()) if at else math.nan
 
 
 def _statements(simulation: Run) -> tuple[Statement, ...]:
@@ -145,7 +148,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"the nearest of the three, in the others at most {1e3 * since:.0f} ms have gone since "
             f"the jump to it (1/K is {1e3 / GAIN:g} ms)",
             since < 1.0 / GAIN,
-            by=LAW,
+            by=paper.by,
         ),
         Statement(
             "Fig. 11",
@@ -153,10 +156,10 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"{frames} frames at vertices, the witness point leaves them by {slip:.0e} length",
             slip == 0.0,
             "a vertex has no parameter that could move",
-            LAW,
+            paper.by,
             constructed=True,
         ),
-        reset_statement(resets(simulation), LAW),
+        reset_statement(resets(simulation), paper.by),
         Statement(
             "Fig. 11",
             "-",
@@ -165,7 +168,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"{np.mean(same[settled]):.2%} of the frames",
             None,
             "The greatest lag is where a curve takes over soon after its parameter left its bound.",
-            LAW,
+            paper.by,
         ),
     )
 

@@ -8,7 +8,6 @@ parameter is handed over as it is. Nothing is searched, added or put right on th
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,7 @@ from standoff.recording import RecordedEvent, Recording
 from standoff.recording.simulate import track_along
 from standoff.tracking import Feature, Tracker, TrackerState
 from standoff.tracking.laws import PaperLaw
+from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.simulation_b.medial import MedialRegions, first_change
 
 Array = NDArray[np.float64]
@@ -30,15 +30,6 @@ REST = Fixed(Pose.identity())
 """The body stays where it is."""
 
 POINT = ("vertex", 0), ()
-
-
-class Injected(NamedTuple):
-    """What is not the law, counted over a run: all are 0 but the foot points that tests sought."""
-
-    restarts: int
-    searches: int
-    solved_parameters: int
-    foot_points: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +53,8 @@ class PrintedRun:
         else nan.
     events : tuple of PointEvent
         In order of time. The value of a jump inside is the point's distance from the medial axis.
-    injected : Injected
+    parts : tuple of Recording
+        Of the parallel trackers, a curve each.
     body : Body
     outside : Recording
         From the frame on in which the point is outside.
@@ -78,12 +70,19 @@ class PrintedRun:
     curve_parameter: Array
     curve_distance: Array
     events: tuple[PointEvent, ...]
-    injected: Injected
+    parts: tuple[Recording, ...] = field(repr=False)
     body: Body = field(repr=False)
     outside: Recording = field(repr=False)
 
     def __len__(self) -> int:
         return len(self.time)
+
+    @property
+    def by(self) -> str:
+        """What statements on the run were measured with."""
+        inside, outside = law_words(*self.parts), law_words(self.outside)
+        within = f"inside, a tracker a curve and the medial axis, {inside}"
+        return f"{within}; outside, {outside}; wrong start"
 
     def modes(self) -> list[PointVisit]:
         """Return the visited modes in order of time; a stay of no length is left out."""
@@ -189,7 +188,7 @@ class Printed:
             curve_parameter=parameters,
             curve_distance=away,
             events=(*self._jumps(), self._crossing(runs), *map(_outer, rest.events)),
-            injected=_injected([*runs, rest]),
+            parts=tuple(runs),
             body=self.body,
             outside=rest,
         )
@@ -228,9 +227,3 @@ class Printed:
 def _outer(event: RecordedEvent) -> PointEvent:
     """A switch of the recording outside."""
     return PointEvent(event.time, "voronoi", *event[3:])
-
-
-def _injected(runs: list[Recording]) -> Injected:
-    counts = [run.total_counts() for run in runs]
-    names = Injected._fields
-    return Injected(*(sum(int(getattr(one, name)) for one in counts) for name in names))

@@ -15,6 +15,7 @@ from standoff.motion import Spiral
 from standoff.points import PointEvent, PointRecording, PointTracker, record_point
 from standoff.tracking import Feature
 from standoff_studies.paper.bodies import planar_body
+from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.many_starts import Arrivals, distances, motion_along
 from standoff_studies.paper.simulation_b.printed import REST, Printed, PrintedRun
 
@@ -44,12 +45,6 @@ OTHER_STARTS = ((0.05, 0.95, 0.95), (1.0, 0.0, 1.0))
 CONVERGED = 0.6
 """When the starts have converged [s]: e^(−K t) is 3e-7."""
 
-LAW = (
-    f"PaperLaw, gain={GAIN:g}, saturation zeroed, M as it is, wrong start; inside one tracker a "
-    "curve, switched on the medial axis, outside as_printed with Voronoi tests"
-)
-"""What the statements say they were measured with."""
-OWN_LAW = "the library's own law, certified"
 NO_LAW = "so.voronoi_regions, before the run: no law"
 
 TRIED = 41
@@ -79,6 +74,8 @@ class Run(NamedTuple):
         The same from `OTHER_STARTS`.
     exact : PointRecording
         By the library's own law, certified.
+    own : str
+        What statements on it were measured with.
     snapshots : ndarray of int, shape (SNAPSHOTS,)
         Frames of Fig. 10.
     """
@@ -90,9 +87,11 @@ class Run(NamedTuple):
     paper: PrintedRun
     others: tuple[PrintedRun, ...]
     exact: PointRecording
+    own: str
     snapshots: NDArray[np.int64]
 
 
+@cache
 def motion(body: Body) -> Spiral:
     """Return the point's spiral: it passes vertex 1 just outside in its third turn."""
     corner = body.vertex_points[1]
@@ -102,16 +101,34 @@ def motion(body: Body) -> Spiral:
 
 
 @cache
+def shape() -> tuple[Body, VoronoiRegions]:
+    """Return the body and its regions."""
+    body = planar_body()
+    return body, voronoi_regions(body)
+
+
+def frame_times() -> Array:
+    """Return the times of the frames [s]."""
+    return np.asarray(FRAME * np.arange(round(DURATION / FRAME) + 1), dtype=np.float64)
+
+
+@cache
+def exact_run() -> tuple[PointRecording, str]:
+    """Track the point with the library's own law; and the words of that law."""
+    body, _ = shape()
+    tracker = PointTracker(body, FRAME)
+    return record_point(tracker, motion(body), frame_times()), law_words(tracker)
+
+
+@cache
 def run() -> Run:
     """Return the simulation, computed once."""
-    body = planar_body()
-    path, regions = motion(body), voronoi_regions(body)
-    times = np.asarray(FRAME * np.arange(round(DURATION / FRAME) + 1), dtype=np.float64)
+    (body, regions), (exact, own) = shape(), exact_run()
+    path, times = motion(body), frame_times()
     printed = Printed(body, regions, path, times, GAIN)
     paper, *others = (printed.run(start) for start in (WRONG_START, *OTHER_STARTS))
-    exact = record_point(PointTracker(body, FRAME), path, times)
     snapshots = np.arange(SNAPSHOTS) * round(DURATION / FRAME / SNAPSHOTS)
-    return Run(body, regions, path, printed, paper, tuple(others), exact, snapshots)
+    return Run(body, regions, path, printed, paper, tuple(others), exact, own, snapshots)
 
 
 @cache
@@ -125,7 +142,8 @@ def arrivals() -> Arrivals:
         for u in np.linspace(0.0, 1.0, TRIED).tolist():
             state = printed.begun(printed.parallel, Feature("edge", curve), u, 0)
             found += bool(abs(distances(printed.parallel, state, motion)[-1] - due) < ARRIVED)
-    return Arrivals(found, TRIED * simulation.body.n_edges)
+    by = law_words(printed.parallel, told="starts along each curve")
+    return Arrivals(found, TRIED * simulation.body.n_edges, by)
 
 
 def late(recording: PointRecording | PrintedRun) -> list[PointEvent]:

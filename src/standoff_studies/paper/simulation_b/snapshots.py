@@ -19,8 +19,6 @@ from standoff_studies.paper.simulation_b.run import (
     CONVERGED,
     FRAME,
     GAIN,
-    LAW,
-    OWN_LAW,
     SNAPSHOTS,
     WRONG_START,
     Run,
@@ -140,7 +138,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"curves' errors fall at {min(rates):.2f} to {max(rates):.2f} per s with "
             f"K = {GAIN:g} per s",
             max(abs(rate - GAIN) for rate in rates) < 0.02 * GAIN,
-            by=LAW,
+            by=simulation.paper.by,
         ),
         Statement(
             "Fig. 10",
@@ -151,7 +149,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             None,
             "The greatest errors come after a parameter has left its bound, from which the law "
             "sets off early, by its rate over K.",
-            LAW,
+            simulation.paper.by,
         ),
         Statement(
             "Fig. 10",
@@ -160,7 +158,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"it changes by at most {jump:.2e} length, the point's way by {speed:.2e}; the normal "
             f"turns by {turn:.1e} rad in the crossing's frame",
             bool(jump <= speed * (1.0 + 1e-12)),
-            by=OWN_LAW,
+            by=simulation.own,
         ),
         Statement(
             "Fig. 10",
@@ -168,7 +166,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"certified in {certified:.0%} of {len(exact)} frames, bounds at most "
             f"{np.max(exact.upper_bound - exact.lower_bound):.1e} length apart",
             bool(certified == 1.0),
-            by=OWN_LAW,
+            by=simulation.own,
         ),
     )
 

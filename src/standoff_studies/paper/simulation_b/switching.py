@@ -21,14 +21,13 @@ from standoff_studies.paper.simulation_b.run import (
     DENSE,
     FRAME,
     GAIN,
-    LAW,
-    OWN_LAW,
     PAST,
     Run,
     arrivals,
     brute_modes,
     off_instants,
 )
+from standoff_studies.paper.unaided import Part, unaided
 
 KINDS = ("medial", "crossing", "voronoi")
 """Of switches."""
@@ -59,7 +58,7 @@ def statements(simulation: Run) -> tuple[Statement, ...]:
             f"boundary, {onto} switches from a curve to a vertex and {back} back",
             counts["medial"] >= 6 and onto >= 3 and back >= 3,
             "the motion is ours, chosen so that they occur",
-            LAW,
+            simulation.paper.by,
             constructed=True,
         ),
         _curve_to_curve(simulation),
@@ -70,7 +69,7 @@ def statements(simulation: Run) -> tuple[Statement, ...]:
             f"boundary: the same in {agree} of {int(settled.sum())} snapshots after "
             f"{CONVERGED:g} s",
             agree == int(settled.sum()),
-            by=LAW,
+            by=simulation.paper.by,
         ),
         _instants(simulation),
         *_starts(simulation),
@@ -81,20 +80,22 @@ def statements(simulation: Run) -> tuple[Statement, ...]:
 
 
 def _curve_to_curve(simulation: Run) -> Statement:
+    said = "Fig. 9", "curve to curve outside"
     stays = [v for v in simulation.paper.modes() if not v.inside and v.feature.kind == "vertex"]
+    if not stays:
+        return Statement(*said, "no vertex is passed outside", False, by=simulation.paper.by)
     first: PointVisit = stays[0]
     frames = [math.ceil(t / FRAME) for t in (first.start, first.end)]
     (source,) = (e.source for e in simulation.paper.events if e.time == first.start)
     (target,) = (e.target for e in simulation.paper.events if e.time == first.end)
     return Statement(
-        "Fig. 9",
-        "curve to curve outside",
+        *said,
         f"at {first.start:.4f} s: from {short_name(source)} by {short_name(first.feature)} "
         f"to {short_name(target)} in {1e3 * (first.end - first.start):.2f} ms, within one frame",
         frames[0] == frames[1] and source.kind == target.kind == "edge",
         "At a sharp vertex two curves' regions do not touch: the point passes the vertex at "
         f"{PAST} length, by a motion chosen for it, and its region within a step.",
-        LAW,
+        simulation.paper.by,
         constructed=True,
     )
 
@@ -112,7 +113,7 @@ def _instants(simulation: Run) -> Statement:
         f"{off['voronoi']:.0e} s of it, at the boundary {off['crossing']:.0e} s, at the medial "
         f"axis computed before the run {off['medial']:.0e} s",
         all(near) and max(off.values()) < WITHIN,
-        by=LAW,
+        by=simulation.paper.by,
     )
 
 
@@ -159,7 +160,7 @@ def _growth(simulation: Run) -> Statement:
         "before it",
         grows <= CONTINUOUS,
         f"outside {SHARED}; inside both are equally far away on the medial axis",
-        OWN_LAW + ": the claim is of the closest points",
+        simulation.own + ": the claim is of the closest points",
         constructed=True,
     )
 
@@ -168,7 +169,7 @@ def _growth_by_resets(simulation: Run) -> Statement:
     runs = simulation.paper, *simulation.others
     paths = REST, simulation.path
     moves = [move for one in runs for move in moves_of(one.outside, paths, GAIN)]
-    return growth_statement(moves, len(runs), LAW)
+    return growth_statement(moves, len(runs), simulation.paper.by)
 
 
 def _starts(simulation: Run) -> tuple[Statement, Statement]:
@@ -179,7 +180,7 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
     times = np.array([[event.time for event in run] for run in runs]) if same else np.empty((0, 0))
     outside = np.array([event.kind == "voronoi" for event in runs[0]])
     outer, inner = (
-        float(np.ptp(times[:, kind], axis=0).max()) if same else math.nan
+        float(np.ptp(times[:, kind], axis=0).max(initial=0.0)) if same else math.nan
         for kind in (outside, ~outside)
     )
     return (
@@ -188,8 +189,8 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
             claim,
             f"outside, from {len(runs)} wrong starts: the same {int(outside.sum())} Voronoi "
             f"switches, instants within {outer:.0e} s",
-            same and outer < INSTANT,
-            by=LAW,
+            bool(same and outside.any() and outer < INSTANT),
+            by=simulation.paper.by,
         ),
         Statement(
             "Section on the hybrid system",
@@ -199,7 +200,7 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
             same and inner < INSTANT,
             "which side of the medial axis the point is on is read from its place; the trackers "
             "are not asked",
-            LAW,
+            simulation.paper.by,
             constructed=True,
         ),
     )
@@ -208,8 +209,6 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
 def _as_printed(simulation: Run) -> tuple[Statement, Statement]:
     """What becomes of starts anywhere, and that nothing beside the law helps."""
     tried, runs = arrivals(), (simulation.paper, *simulation.others)
-    foots = sum(one.injected.foot_points for one in runs)
-    injected = sum(sum(one.injected) for one in runs) - foots
     return (
         Statement(
             "Section on the hybrid system",
@@ -217,15 +216,11 @@ def _as_printed(simulation: Run) -> tuple[Statement, Statement]:
             f"{tried.arrived} of {tried.tried} starts all over the three curves are at the "
             f"distance to their curve to {ARRIVED:g} after {CONVERGED:g} s",
             tried.arrived == tried.tried,
-            by=LAW,
+            by=tried.by,
         ),
-        Statement(
-            "Section on the hybrid system",
-            "no search, restart or exact solution is part of the tracking",
-            f"in {len(runs)} runs of {len(simulation.paper)} frames {injected} restarts, searches "
-            f"and parameters taken from a solve; the guards outside sought {foots} foot points, "
-            "and wrote none",
-            injected == 0,
-            by=LAW,
+        unaided(
+            [Part.of(part) for one in runs for part in (*one.parts, one.outside)],
+            simulation.paper.by,
+            runs=len(runs),
         ),
     )

@@ -26,14 +26,13 @@ from standoff_studies.paper.simulation_c.run import (
     DURATION,
     FRAME,
     GAIN,
-    LAW,
-    OWN_LAW,
     Run,
     curve_parameters,
     run,
     vertex_slip,
     witness_error,
 )
+from standoff_studies.paper.start_decay import decay_statement
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,6 +42,9 @@ Array = NDArray[np.float64]
 
 SPANS = ((0.0, 0.5), (0.0, 0.5 * DURATION), (0.5 * DURATION, DURATION))
 """The rows: the start by itself, and the motion in two, so that short stays can be seen [s]."""
+DECAY = (0.05, 0.25)
+"""Times between which the decay of the start is measured [s]: on one mode, before the law's own
+error shows."""
 LEAST_APART = 0.16
 """Between two written instants, on the time axis [s]: the height of a line of text."""
 LEAST_NAMED = 0.02
@@ -136,10 +138,11 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"the witness point leaves its vertex by at most {slip:.1e} length",
             slip <= SLIP,
             "a vertex has no parameter that could move",
-            LAW,
+            simulation.by,
             constructed=True,
         ),
-        reset_statement(resets_of(simulation.paper, simulation.paths, GAIN), LAW),
+        decay_statement(simulation.paper, simulation.paths, DECAY, GAIN, simulation.by),
+        reset_statement(resets_of(simulation.paper, simulation.paths, GAIN), simulation.by),
         Statement(
             "Fig. 15",
             "-",
@@ -149,7 +152,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             None,
             "The rest of a switch's frame still goes with the feedforward of the old feature, and "
             f"what that leaves decays as exp(−K t), 1/K = {1.0 / GAIN:g} s.",
-            LAW,
+            simulation.by,
         ),
         Statement(
             "Fig. 15",
@@ -158,7 +161,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"located; slope of the switching function {slopes.min():.2g} to {slopes.max():.2g} "
             "per s",
             None,
-            by=OWN_LAW,
+            by=simulation.own,
         ),
         Statement(
             "Fig. 15",
@@ -166,7 +169,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"certified in {np.mean(exact.certified):.0%} of the frames, distance "
             f"at most {exact.gap.max():.1e} length above its proven lower bound",
             None,
-            by=OWN_LAW,
+            by=simulation.own,
         ),
     )
 

@@ -21,7 +21,7 @@ from standoff_studies.paper.drawing import (
     short_name,
 )
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.simulation_c.run import FRAME, OWN_LAW, Run, run
+from standoff_studies.paper.simulation_c.run import FRAME, Run, run
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"at all {len(simulation.exact.events)} switching instants it is within {off:.1e} "
             "length of the external line between the two features",
             off <= ON_LINE,
-            by=OWN_LAW + ": the claim is of the closest points",
+            by=simulation.own + ": the claim is of the closest points",
         ),
     )
 

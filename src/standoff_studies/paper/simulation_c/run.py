@@ -18,6 +18,7 @@ from standoff.recording.times import even_times
 from standoff.tracking import Feature, Tracker, TrackerState
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import leaf, planar_body
+from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.many_starts import Arrivals, distances, motion_along
 
 Array = NDArray[np.float64]
@@ -43,11 +44,6 @@ GAIN = 25.0
 START = ((1, 0.7), (0, 0.2))
 """Curve and parameter of A and of B where the printed system is started, one of those that arrive;
 the closest points are on A's C1 at 0.1 and at B's V1."""
-
-LAW = f"PaperLaw.as_printed(gain={GAIN:g}): Voronoi tests, M as it is, wrong start"
-"""What the statements say they were measured with."""
-
-OWN_LAW = "the library's own law, certified"
 
 CONVERGED = 0.6
 """When the start has converged [s]: exp(-K t) is 3e-7."""
@@ -102,7 +98,18 @@ class Run(NamedTuple):
         """Of A, which rests, and of B."""
         return REST, self.path
 
+    @property
+    def by(self) -> str:
+        """What statements on `paper` were measured with."""
+        return law_words(self.paper, told="wrong start")
 
+    @property
+    def own(self) -> str:
+        """What statements on `exact` were measured with."""
+        return law_words(self.exact)
+
+
+@cache
 def motion() -> Path:
     """Return B's motion: it spins steadily while its centre follows a spiral."""
     spin = ConstantTwist(Pose.identity(), Twist((0.0, 0.0, 0.0), (0.0, 0.0, SPIN)))
@@ -110,10 +117,21 @@ def motion() -> Path:
 
 
 @cache
+def pair() -> tuple[Body, Body]:
+    """Return A and B."""
+    return planar_body(), leaf()
+
+
+@cache
+def exact_run() -> Recording:
+    """Track the pair with the library's own law."""
+    return simulate(Tracker(*pair(), FRAME), REST, motion(), DURATION)
+
+
+@cache
 def run() -> Run:
     """Return the simulation, computed once."""
-    a, b, path = planar_body(), leaf(), motion()
-    exact = simulate(Tracker(a, b, FRAME), REST, path, DURATION)
+    (a, b), path, exact = pair(), motion(), exact_run()
     law = printed_tracker(a, b)
     state, times = begin(law, path, *START), even_times(0.0, DURATION, FRAME)
     paper = track_along(law, REST, path, times, state=state)
@@ -153,7 +171,7 @@ def arrivals() -> Arrivals:
         curves, at = rng.integers(3, size=2).tolist(), rng.uniform(0.02, 0.98, 2).tolist()
         state = begin(law, simulation.path, *zip(curves, at, strict=True))
         found += bool(abs(distances(law, state, motion)[-1] - due) < ARRIVED)
-    return Arrivals(found, TRIED)
+    return Arrivals(found, TRIED, law_words(law, told="random starts"))
 
 
 def entered(recording: Recording) -> list[RecordedEvent]:

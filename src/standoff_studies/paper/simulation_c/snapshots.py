@@ -22,8 +22,6 @@ from standoff_studies.paper.simulation_c.run import (
     DURATION,
     FRAME,
     GAIN,
-    LAW,
-    OWN_LAW,
     RADIUS,
     Run,
     run,
@@ -115,7 +113,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"witness points at most {witness_error(simulation)[frames].max():.0e} length off; "
             + ", ".join(f"{kinds.count(k)} {KINDS[k]}" for k in range(3)),
             right == len(kinds) == 12,
-            by=LAW,
+            by=simulation.by,
         ),
         Statement(
             "Fig. 14",
@@ -124,7 +122,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"{exact.distance.min():.3f}, proven {exact.lower_bound.min():.3f} length",
             bool(centres[1] < centres[0] and exact.lower_bound.min() > 0.0),
             "the motion is ours",
-            OWN_LAW,
+            simulation.own,
             constructed=True,
         ),
     )

@@ -21,7 +21,6 @@ from standoff_studies.paper.simulation_d.runs import (
     ENTERED,
     GAIN,
     HELIX,
-    LAW,
     PATIENCE,
     REST,
     STEP,
@@ -34,6 +33,7 @@ from standoff_studies.paper.simulation_d.runs import (
     short,
     tried,
 )
+from standoff_studies.paper.unaided import Part, unaided
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -135,7 +135,7 @@ def _statements(runs: Runs, automaton: Automaton) -> tuple[Statement, ...]:
             f"{len(automaton.taken)} switches, each one that the automaton lists",
             len(automaton.taken) == len(paper.events) and not automaton.restarts,
             "the picture is drawn from the list of switches",
-            LAW,
+            runs.by,
             constructed=True,
         ),
         Statement(
@@ -144,7 +144,7 @@ def _statements(runs: Runs, automaton: Automaton) -> tuple[Statement, ...]:
             f"from {1e3 * ENTERED:g} ms on the mode is that of a global search in {agree} of "
             f"{len(frames)} frames",
             agree == len(frames),
-            by=LAW,
+            by=runs.by,
         ),
         Statement(
             "Section on the hybrid system",
@@ -153,7 +153,7 @@ def _statements(runs: Runs, automaton: Automaton) -> tuple[Statement, ...]:
             f"at the instants of the library's own law to {off:.1e} s",
             off < INSTANT,
             "the projection errors of the starts take 0.4 s to fall below a ten-thousandth",
-            LAW,
+            runs.by,
         ),
         *_as_printed(runs),
         Statement(
@@ -163,18 +163,16 @@ def _statements(runs: Runs, automaton: Automaton) -> tuple[Statement, ...]:
             f"{grows:.0e} of the radius farther from the point than the one before it",
             grows <= CONTINUOUS,
             SHARED,
-            "the library's own law: the claim is of the closest points",
+            runs.own + ": the claim is of the closest points",
             constructed=True,
         ),
-        growth_statement(moves_by_resets(), len(tried()), LAW),
+        growth_statement(moves_by_resets(), len(tried()), runs.by),
     )
 
 
 def _as_printed(runs: Runs) -> tuple[Statement, Statement]:
     """What becomes of starts anywhere, and that nothing beside the law helps."""
     tried, still = arrivals(), arrivals(moving=False)
-    counts = [recording.total_counts() for recording in runs.paper]
-    injected = sum(one.restarts + one.searches + one.solved_parameters for one in counts)
     return (
         Statement(
             "Section on the hybrid system",
@@ -186,17 +184,9 @@ def _as_printed(runs: Runs) -> tuple[Statement, Statement]:
             f"{still.lost} others it is {still.placed} and {still.pinned}",
             tried.arrived == tried.tried,
             INDEFINITE,
-            LAW,
+            tried.by,
         ),
-        Statement(
-            "Section on the hybrid system",
-            "no search, restart or exact solution is part of the tracking",
-            f"in {len(runs.paper)} runs of {len(runs.paper[0])} frames {injected} restarts, "
-            "searches and parameters taken from a solve; the guards sought "
-            f"{sum(one.foot_points for one in counts)} foot points, and wrote none",
-            injected == 0,
-            by=LAW,
-        ),
+        unaided([Part.of(one) for one in runs.paper], runs.by),
     )
 
 

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.recording import Recording
-from standoff.tracking import pair_system
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.resets import (
@@ -21,10 +20,7 @@ from standoff_studies.paper.resets import (
 from standoff_studies.paper.simulation_d.runs import (
     GAIN,
     HELIX,
-    LAW,
-    OWN_LAW,
     REST,
-    STEP,
     Runs,
     face_parameters,
     place_on,
@@ -32,6 +28,7 @@ from standoff_studies.paper.simulation_d.runs import (
     settling_steps,
     short,
 )
+from standoff_studies.paper.start_decay import decay_statement
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,9 +41,6 @@ SHADES = {"face": None, "edge": "#FBE3C0", "vertex": "#BDBDBD"}
 
 DECAY = (0.05, 0.25)
 """Times between which the decay of the start is measured [s]: later the law's own error shows."""
-
-DECAY_PART = 0.01
-"""Part of K by which that rate may differ."""
 
 LEAST_NAMED = 0.08
 """Shortest stay that is named [s]: a shorter one has no room for a name."""
@@ -84,7 +78,7 @@ def figure_18() -> Artwork:
             "parameters": table,
             "resets": reset_table(resets_of(recording, (REST, HELIX), GAIN)),
         },
-        statements=measured_by(OWN_LAW, _statements(runs)),
+        statements=measured_by(runs.own, _statements(runs)),
     )
 
 
@@ -109,26 +103,18 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
     offsets = edge_offsets(runs.paper[0])
     stays = [visit for visit in runs.exact.modes() if visit.feature_a.kind == "edge"]
     error = errors(runs)[settling_steps(runs.paper[0]) :]
-    rate = decay(runs)
     return (
-        Statement(
-            "Eq. (14)",
-            "the projection errors decay as exp(−K t) from the wrong start",
-            f"|Ψ| falls at {rate:.2f} per s from {DECAY[0]} s to {DECAY[1]} s, with "
-            f"K = {GAIN:g} per s",
-            abs(rate - GAIN) < DECAY_PART * GAIN,
-            by=LAW,
-        ),
-        reset_statement(resets_of(runs.paper[0], (REST, HELIX), GAIN), LAW),
+        decay_statement(runs.paper[0], (REST, HELIX), DECAY, GAIN, runs.by),
+        reset_statement(resets_of(runs.paper[0], (REST, HELIX), GAIN), runs.by),
         Statement(
             "Fig. 18",
             "the parameters have constant stretches at 0 or 1 where the point lies on an edge",
             f"{len(stays)} stretches of {min(v.end - v.start for v in stays):.2f} to "
             f"{max(v.end - v.start for v in stays):.2f} s; there u is off 0 or 1 by "
-            f"{offsets.max():.0e} in {len(offsets)} frames",
-            bool(offsets.max() == 0.0),
+            f"{offsets.max(initial=0.0):.0e} in {len(offsets)} frames",
+            bool(len(offsets) and offsets.max() == 0.0),
             "on an edge u is read from the edge's own line in (u, v)",
-            LAW,
+            runs.by,
             constructed=True,
         ),
         Statement(
@@ -139,21 +125,9 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             "3.2/s)",
             None,
             f"a switch falls into a frame, and what it leaves decays within 3/K = {3.0 / GAIN:g} s",
-            LAW,
+            runs.by,
         ),
     )
-
-
-def decay(runs: Runs) -> float:
-    """Return the rate at which the projection errors of the first wrong start fall [1/s]."""
-    recording, sizes = runs.paper[0], []
-    for time in DECAY:
-        k = round(time / STEP)
-        place = recording.feature_a[k], recording.parameters_a[k, :2]
-        poses = REST.pose(time), HELIX.pose(time)
-        found = pair_system(runs.lens, runs.point, *poses, place, (("vertex", 0), ()))
-        sizes.append(np.linalg.norm(found.Psi))
-    return float(np.log(sizes[0] / sizes[1]) / (DECAY[1] - DECAY[0]))
 
 
 def _draw() -> Figure:

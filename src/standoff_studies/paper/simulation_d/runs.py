@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from standoff.automaton import Visit
 from standoff.bodies import Body, shapes
 from standoff.motion import Fixed, Helix, Path, Pose, Twist
-from standoff.recording import RecordedEvent, Recording
+from standoff.recording import RecordedEvent, Recording, simulate
 from standoff.recording.simulate import track_along
 from standoff.recording.times import even_times
 from standoff.tracking import Feature, Tracker, TrackerState, distance
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import lens_of_patches
+from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.many_starts import Ends, is_pinned
 from standoff_studies.paper.resets import Move, moves_of
 
@@ -55,11 +56,6 @@ closest point is on face 1 at about (0.2, 0.6). Figs. 16-18 show the run from th
 
 GAIN = 25.0
 """K of the printed system [1/s]: "a very low controller gain"."""
-
-LAW = f"PaperLaw.as_printed(gain={GAIN:g}): Voronoi tests, M as it is, wrong start"
-"""What the statements say they were measured with."""
-
-OWN_LAW = "the library's own law, certified"
 
 ENTERED = 0.005
 """After these seconds the switches of a wrong start to the true feature are over: the guards see
@@ -109,13 +105,34 @@ class Runs:
     exact: Recording
     paper: tuple[Recording, ...]
 
+    @property
+    def by(self) -> str:
+        """What statements on `paper` were measured with."""
+        return law_words(*self.paper, told="wrong start")
+
+    @property
+    def own(self) -> str:
+        """What statements on `exact` were measured with."""
+        return law_words(self.exact)
+
+
+@cache
+def pair() -> tuple[Body, Body]:
+    """Return the lens and the point."""
+    return lens_of_patches(RADIUS, OFFSET), shapes.point()
+
+
+@cache
+def exact_run() -> Recording:
+    """Track the point on its helix with the library's own law."""
+    return simulate(Tracker(*pair(), STEP), REST, HELIX, DURATION)
+
 
 @cache
 def run() -> Runs:
     """Track the point on its helix with the printed system, and with the library's own law."""
-    lens, point = lens_of_patches(RADIUS, OFFSET), shapes.point()
+    (lens, point), exact = pair(), exact_run()
     times = even_times(0.0, DURATION, STEP)
-    exact = track_along(Tracker(lens, point, STEP), REST, HELIX, times)
     law = printed_tracker(lens, point)
     starts = [begin(law, face, parameters) for face, parameters in WRONG_STARTS]
     paper = tuple(track_along(law, REST, HELIX, times, state=start) for start in starts)
@@ -161,7 +178,8 @@ def arrivals(*, moving: bool = True) -> Ends:
             continue
         placed += answer.feature_a == due.feature_a
         pinned += is_pinned((runs.lens, runs.point), poses, answer)
-    return Ends(arrived, len(tried()), placed, pinned)
+    by = law_words(law, told="starts on a grid")
+    return Ends(arrived, len(tried()), by, placed, pinned)
 
 
 def tried() -> list[tuple[int, tuple[float, float]]]:

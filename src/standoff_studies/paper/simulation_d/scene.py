@@ -19,8 +19,6 @@ from standoff_studies.paper.simulation_d.runs import (
     ENTERED,
     GAIN,
     HELIX,
-    LAW,
-    OWN_LAW,
     SETTLED,
     STEP,
     WRONG_STARTS,
@@ -98,7 +96,7 @@ def figure_16() -> Artwork:
         ),
         draw=_draw,
         tables={"run": table},
-        statements=measured_by(OWN_LAW, _statements(runs)),
+        statements=measured_by(runs.own, _statements(runs)),
         animation=Animation(
             frames=FRAMES,
             draw=_draw_frame,
@@ -126,7 +124,7 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             f"{len(visits)} stays",
             set(sequence(visits)) >= {"face 0", "edge 0", "vertex 1"},
             "the helix is ours, chosen so that it does",
-            LAW,
+            runs.by,
             constructed=True,
         ),
         Statement(
@@ -136,6 +134,7 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             f"projection errors fall below {SETTLED:g} in "
             f"{', '.join(str(count) for count in steps)} steps of 1 ms",
             None,
+            by=runs.by,
         ),
         Statement(
             "Fig. 16",

@@ -10,6 +10,7 @@ import numpy as np
 from standoff.motion import Twist
 from standoff.tracking import Feature, Tracker
 from standoff.tracking.laws import PaperLaw
+from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, STEP, Runs, run
 
 AROUND = 10
@@ -29,10 +30,11 @@ LAWS = {
 
 
 class Decisions(NamedTuple):
-    """How many decisions were those of the closest points, of how many."""
+    """How many decisions were those of the closest points, of how many, and by which tests."""
 
     right: int
     tried: int
+    by: str
 
 
 @cache
@@ -42,20 +44,22 @@ def decisions(switching: str) -> Decisions:
     The opposing witness point is the closest one.
     """
     runs, right, tried = run(), 0, 0
+    tracker = Tracker(runs.a, runs.b, INSTANT, law=LAWS[switching])
     rng = np.random.default_rng(3)
     for event in runs.exact.events:
         own = "AB".index(event.body)
         for frame, due in ((event.frame - AROUND, False), (event.frame + AROUND, True)):
             for _ in range(POINTS):
                 at = rng.uniform(size=2 if event.source.kind == "face" else 1)
-                found = _switches(runs, switching, frame, own, (event.source, at))
+                found = _switches(runs, tracker, frame, own, (event.source, at))
                 right += found is due
                 tried += 1
-    return Decisions(right, tried)
+    by = law_words(tracker, told="the opposing witness point exact")
+    return Decisions(right, tried, by)
 
 
 def _switches(
-    runs: Runs, switching: str, frame: int, own: int, place: tuple[Feature, np.ndarray]
+    runs: Runs, tracker: Tracker, frame: int, own: int, place: tuple[Feature, np.ndarray]
 ) -> bool:
     """Does one body leave a feature, at a point of it, in a frame of the exact run?"""
     exact, time = runs.exact, frame * STEP
@@ -67,7 +71,6 @@ def _switches(
         for feature, row in zip(features, rows, strict=True)
     ]
     places[own] = place
-    tracker = Tracker(runs.a, runs.b, INSTANT, law=LAWS[switching])
     still = Twist.zero()
     (a, at_a), (b, at_b) = places
     state = tracker.start_from(*poses, (a, at_a), (b, at_b), still, still, settle=False)

@@ -10,17 +10,17 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-import standoff as so
 from standoff.automaton import Visit
 from standoff.bodies import Body
 from standoff.motion import Carried, ConstantTwist, Fixed, Helix, Pose, Twist
-from standoff.recording import Recording
+from standoff.recording import Recording, simulate
 from standoff.recording.simulate import track_along
 from standoff.recording.times import even_times
 from standoff.tracking import Tracker, TrackerState
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import lens_of_patches
+from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.many_starts import Ends, is_pinned
 from standoff_studies.paper.resets import Move, moves_of
 from standoff_studies.paper.simulation_d.runs import place_on, short
@@ -52,11 +52,6 @@ GAIN = 50.0
 START = ((0, (0.4, 0.76)), (1, (0.6, 0.83)))
 """Face and parameters of A and of B where the printed system is started, one that arrives."""
 
-LAW = f"PaperLaw.as_printed(gain={GAIN:g}): Voronoi tests, M as it is, wrong start"
-"""What the statements say they were measured with."""
-
-OWN_LAW = "the library's own law, certified"
-
 CONVERGED = 0.3
 """When the start has converged [s]: exp(-K t) is 3e-7."""
 
@@ -86,6 +81,16 @@ class Runs:
     exact: Recording
     paper: Recording
 
+    @property
+    def by(self) -> str:
+        """What statements on `paper` were measured with."""
+        return law_words(self.paper, told="wrong start")
+
+    @property
+    def own(self) -> str:
+        """What statements on `exact` were measured with."""
+        return law_words(self.exact)
+
 
 @cache
 def pair() -> tuple[Body, Body]:
@@ -95,14 +100,24 @@ def pair() -> tuple[Body, Body]:
 
 
 @cache
+def exact_run() -> Recording:
+    """Track the pair with the library's own law."""
+    return simulate(Tracker(*pair(), STEP), PATH_A, PATH_B, DURATION)
+
+
+@cache
 def run() -> Runs:
     """Track the pair with both laws."""
-    a, b = pair()
-    exact = so.simulate(so.Tracker(a, b, STEP), PATH_A, PATH_B, DURATION)
+    (a, b), exact = pair(), exact_run()
     times = even_times(0.0, DURATION, STEP)
-    law = Tracker(a, b, STEP, law=PaperLaw.as_printed(gain=GAIN))
+    law = printed_tracker(a, b)
     paper = track_along(law, PATH_A, PATH_B, times, state=begin(law, *START))
     return Runs(a, b, exact, paper)
+
+
+def printed_tracker(a: Body, b: Body) -> Tracker:
+    """Return the tracker of the system as printed."""
+    return Tracker(a, b, STEP, law=PaperLaw.as_printed(gain=GAIN))
 
 
 Place = tuple[int, tuple[float, float]]
@@ -131,7 +146,7 @@ def tried() -> list[tuple[Place, Place]]:
 def arrivals() -> Ends:
     """Try random starts on both bodies with the printed system: which are there at `PATIENCE`."""
     runs = run()
-    law = Tracker(runs.a, runs.b, STEP, law=PaperLaw.as_printed(gain=GAIN))
+    law = printed_tracker(runs.a, runs.b)
     frames = round(PATIENCE / STEP)
     placed = [(PATH_B.pose(k * STEP), PATH_B.twist(k * STEP)) for k in range(1, frames + 1)]
     motion = [(flat_pose(pose), flat_twist(twist, pose)) for pose, twist in placed]
@@ -149,7 +164,7 @@ def arrivals() -> Ends:
             continue
         on_due += (answer.feature_a, answer.feature_b) == due
         pinned += is_pinned((runs.a, runs.b), poses, answer)
-    return Ends(arrived, TRIED, on_due, pinned)
+    return Ends(arrived, TRIED, law_words(law, told="random starts"), on_due, pinned)
 
 
 @cache
@@ -159,7 +174,7 @@ def moves_by_resets() -> list[Move]:
     Up to `SWITCHED`: the start's own switches are over by then.
     """
     runs, times = run(), even_times(0.0, SWITCHED, STEP)
-    law = Tracker(runs.a, runs.b, STEP, law=PaperLaw.as_printed(gain=GAIN))
+    law = printed_tracker(runs.a, runs.b)
     found: list[Move] = []
     for places in tried():
         made = track_along(law, PATH_A, PATH_B, times, state=begin(law, *places))

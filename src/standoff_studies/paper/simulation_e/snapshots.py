@@ -19,8 +19,6 @@ from standoff_studies.paper.simulation_e.runs import (
     CONVERGED,
     DURATION,
     GAIN,
-    LAW,
-    OWN_LAW,
     PATH_A,
     PATH_B,
     SEMI_AXES,
@@ -97,7 +95,7 @@ def figure_19() -> Artwork:
                 "feature_b": [short(feature) for feature in recording.feature_b],
             }
         },
-        statements=measured_by(OWN_LAW, _statements(runs)),
+        statements=measured_by(runs.own, _statements(runs)),
         animation=Animation(
             frames=FRAMES,
             draw=_draw_frame,
@@ -129,7 +127,7 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             f"{', '.join(f'{a}–{b}' for a, b in modes)}",
             (runs.a.n_faces, runs.b.n_faces, len(modes)) == (3, 3, 5),
             "bodies, motion and instants are ours",
-            LAW,
+            runs.by,
             constructed=True,
         ),
         Statement(
@@ -139,7 +137,7 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             f"{CONVERGED:g} s by at most {late.max():.1e}, in the median {np.median(late):.1e}",
             None,
             "the greatest errors are those of the frames after a switch",
-            LAW,
+            runs.by,
         ),
         Statement(
             "Fig. 19",

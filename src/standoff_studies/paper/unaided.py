@@ -1,0 +1,103 @@
+"""Did anything but the printed law move the witness points? Read from what ran, and counted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from standoff.recording import Recording
+from standoff.tracking.law_options import Law
+from standoff.tracking.laws import PaperLaw
+from standoff.tracking.rows import Counts
+from standoff_studies.paper.figure import Statement
+from standoff_studies.paper.law_words import law_of
+
+
+class Aid(NamedTuple):
+    """What is not the law, counted over some runs: all are 0 in the printed system.
+
+    Attributes
+    ----------
+    restarts, searches : int
+    solved_parameters : int
+        Parameters that a switch has taken from a solve.
+    regularised : int
+        Solves that did not take M as it is.
+    """
+
+    restarts: int
+    searches: int
+    solved_parameters: int
+    regularised: int
+
+
+class Part(NamedTuple):
+    """What one tracker did: the law in its record, its counts in all, and its frames."""
+
+    law: Law
+    counts: Counts
+    frames: int
+
+    @classmethod
+    def of(cls, recording: Recording) -> Part:
+        """Return what a recording tells of its tracker."""
+        return cls(law_of(recording), recording.total_counts(), len(recording))
+
+
+def aid_of(parts: Sequence[Part]) -> Aid:
+    """Count what helped the law."""
+    return Aid(*(sum(int(getattr(p.counts, name)) for p in parts) for name in Aid._fields))
+
+
+def foot_points(parts: Sequence[Part]) -> int:
+    """Return how many foot points the guards have sought, which they do not write."""
+    return sum(part.counts.foot_points for part in parts)
+
+
+def allowed(law: Law) -> tuple[str, ...]:
+    """Return the options of a law that let something else in, whether or not it came to that.
+
+    Parameters
+    ----------
+    law : Law
+        As the record of a run has it.
+    """
+    if not isinstance(law, PaperLaw):
+        return (f"law={law.name!r}",)
+    barred = {
+        "solve": law.solve != "plain",
+        "reset": law.switching == "voronoi" and law.reset != "nearest",
+        "restarts": law.restarts,
+    }
+    return tuple(f"{name}={getattr(law, name)!r}" for name, is_so in barred.items() if is_so)
+
+
+def unaided(parts: Sequence[Part], by: str, *, runs: int | None = None) -> Statement:
+    """Say whether nothing but the printed law took part in some runs.
+
+    It does not hold if the runs count anything in `Aid`, or if the law in their record is one that
+    may do so.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+    by : str
+    runs : int, optional
+        That these are parts of; as many as there are if not given.
+    """
+    aid, feet = aid_of(parts), foot_points(parts)
+    options = sorted({option for part in parts for option in allowed(part.law)})
+    told = f"; the law on record has {', '.join(options)}" if options else ""
+    wrote = "wrote none" if aid.solved_parameters == 0 else "wrote some"
+    guards = f"; the guards sought {feet} foot points, and {wrote}" if feet else ""
+    number = len(parts) if runs is None else runs
+    return Statement(
+        "Section on the hybrid system",
+        "no search, restart or exact solution is part of the tracking",
+        f"in {number} {'run' if number == 1 else 'runs'} with {sum(p.frames for p in parts)} "
+        f"frames{'' if runs is None else ' of all trackers'} {aid.restarts} restarts, "
+        f"{aid.searches} searches, {aid.solved_parameters} parameters taken from a solve and "
+        f"{aid.regularised} regularised solves{told}{guards}",
+        not any(aid) and not options,
+        by=by,
+    )
