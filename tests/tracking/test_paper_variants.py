@@ -184,7 +184,7 @@ def test_voronoi_switching_between_two_bodies() -> None:
 
 def test_zeroed_components_keep_the_patch() -> None:
     """Saturated, a point stays on its face with parameters at a bound, and every zeroing counts."""
-    states, _ = walk(PATCHED, 400, PATCH_WRONG, switching="none", solve="plain")
+    states, _ = walk(PATCHED, 400, PATCH_WRONG, switching="none")
     parameters = np.array([s.proximity.parameters_a for s in states])
     assert all(str(s.proximity.feature_a) == "face 0" for s in states)
     assert not switches(states)
@@ -194,7 +194,7 @@ def test_zeroed_components_keep_the_patch() -> None:
     assert at_bound[-100:].all()
     counted = np.array([s.proximity.counts.saturations for s in states])
     assert (counted[-100:] >= 1).all()
-    assert counted[:10].sum() == 0
+    assert counted[2:10].sum() == 0  # before, the gain of a wrong start is lowered
 
 
 def test_the_integral_waits_at_a_bound() -> None:
