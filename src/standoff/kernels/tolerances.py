@@ -256,6 +256,12 @@ STANDSTILL = 1e-12
 # step turns the parameter along that side through all its range.
 MOST_BENT = 0.5
 
+# A normal that roundoff may turn by more than TURNED_NORMAL (chord of the unit sphere) says nothing
+# of the side that a point is on: beside a collapsed side. There an edge's plane is taken at
+# OFF_COLLAPSED of the way from its end to its middle, where the noise is below a millionth.
+TURNED_NORMAL = 1e-3
+OFF_COLLAPSED = 1e-3
+
 # How often a frame of the paper's law may hold a boundary and be solved again: both bodies from a
 # face over an edge to a vertex.
 MOST_HELD = 4

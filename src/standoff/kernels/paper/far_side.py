@@ -6,21 +6,23 @@ tests. Lin and Canny and V-Clip leave the face there; so do these guards, unless
 keep it. The way leads over the edge of the body that is nearest to the opposing point.
 """
 
-from standoff.kernels.algebra.vectors import dot, norm, sub
+from standoff.kernels.algebra.vectors import dot, norm, sub, unit
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_jet,
     chart_normal,
     chart_record,
+    coedge_conormal,
     coedge_record,
     edge_jet,
     edge_record,
+    normal_noise,
 )
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.events import FOOT_POINTS, SOLVED_PARAMETERS
 from standoff.kernels.pair.switching import is_smooth, onto_face
 from standoff.kernels.paper.foot_points import closest_on_edge, reset_onto_edge
-from standoff.kernels.tolerances import SLOPE
+from standoff.kernels.tolerances import OFF_COLLAPSED, SLOPE, TURNED_NORMAL
 from standoff.kernels.values import NO_CHART, Side
 
 
@@ -34,8 +36,18 @@ def height_over(ints, reals, side, x):
 
 @kernel
 def height_at_edge(ints, reals, coedge, t, x):
-    """Height of x over a face's tangent plane at its edge's point (length)."""
+    """Height of x over a face's tangent plane at its edge's point (length).
+
+    At an end where a side has collapsed there is no plane: a little along the edge there is.
+    """
     face, chart, u, v = onto_face(ints, reals, coedge, t)
+    jet = chart_jet(ints, reals, chart, u, v)
+    if normal_noise(ints[chart_record(ints, chart) + L.CHART_KIND], reals, jet) > TURNED_NORMAL:
+        edge = ints[L.N_FACES] + ints[coedge_record(ints, coedge) + L.COEDGE_EDGE]
+        o = ints[edge_record(ints, edge) + L.EDGE_REALS]
+        t0, t1 = reals[o + L.EDGE_T0], reals[o + L.EDGE_T1]
+        t += OFF_COLLAPSED * (0.5 * (t0 + t1) - t)
+        face, chart, u, v = onto_face(ints, reals, coedge, t)
     return height_over(ints, reals, Side(face, chart, u, v), x)
 
 
@@ -73,14 +85,39 @@ def nearest_edges(ints, reals, face, x, work):
 
 
 @kernel
+def returned(ints, reals, edge, t, face, x, noise):
+    """Would an edge give x back to one of its two faces: is x, at its foot point, on that face's
+    side, and not in front of the other face on the other's?
+    """
+    c, ct, _ = edge_jet(ints, reals, edge, t)
+    away, tangent = sub(x, c), unit(ct)
+    least = SLOPE * norm(away) + noise
+    over, over_other = False, False
+    e = edge_record(ints, edge)
+    for k in range(2):
+        coedge = ints[e + L.EDGE_COEDGE_0 + k]
+        if coedge < 0:
+            continue
+        if dot(away, coedge_conormal(ints, reals, coedge, tangent, t)[0]) <= least:
+            continue
+        if coedge == coedge_of_face(ints, edge, face):
+            over = True
+        elif height_at_edge(ints, reals, coedge, t, x) > -noise:
+            over_other = True
+    return over and not over_other
+
+
+@kernel
 def off_far_side(ints, reals, side, x, noise, reset, work):
     """(left, slope, distance, side): off a face of the far side, on the edge nearest to x.
 
     x is behind a face where it is behind the tangent planes at the face's own point and at the
     point of its edges that is nearest to x: a face that turns by more than half a circle has the
-    whole body behind some of its planes. An edge of the face's own is entered as any other switch
-    enters it. Another has no parameter of this face's: it is entered at the foot point, which is
-    counted as solved.
+    whole body behind some of its planes. A face that is steep at all of its edges may have x over
+    its middle and behind those planes: it is kept where the nearest edge would give x back to it.
+
+    An edge of the face's own is entered as any other switch enters it. Another has no parameter of
+    this face's: it is entered at the foot point, which is counted as solved.
     """
     d = norm(sub(x, chart_jet(ints, reals, side.chart, side.p, side.q)[0]))
     height, least = height_over(ints, reals, side, x), -(SLOPE * d + noise)
@@ -90,6 +127,8 @@ def off_far_side(ints, reals, side, x, noise, reset, work):
     if own < 0 or height_at_edge(ints, reals, own, s, x) >= least:
         return False, 0.0, d, side
     coedge = coedge_of_face(ints, edge, side.feature)
+    if coedge >= 0 and returned(ints, reals, edge, t, side.feature, x, noise):
+        return False, 0.0, d, side
     if coedge >= 0:
         there = reset_onto_edge(ints, reals, coedge, side, t, reset, work)
     elif is_smooth(ints, edge):
