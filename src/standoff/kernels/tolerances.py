@@ -256,12 +256,6 @@ STANDSTILL = 1e-12
 # step turns the parameter along that side through all its range.
 MOST_BENT = 0.5
 
-# A normal that roundoff may turn by more than TURNED_NORMAL (chord of the unit sphere) says nothing
-# of the side that a point is on: beside a collapsed side. There an edge's plane is taken at
-# OFF_COLLAPSED of the way from its end to its middle, where the noise is below a millionth.
-TURNED_NORMAL = 1e-3
-OFF_COLLAPSED = 1e-3
-
 # How often a frame of the paper's law may hold a boundary and be solved again: both bodies from a
 # face over an edge to a vertex.
 MOST_HELD = 4
@@ -305,3 +299,9 @@ AROUND = 1e-3
 # Of the size: widths of overlap (support sums) closer than this are the same. At AROUND one that
 # grows with a radius of curvature of 2e-4 of the size differs by more.
 SAME_WIDTH = 1e-10
+# Chord of the unit sphere: a normal that roundoff may turn by more than this has no use. That is
+# so beside a collapsed side, within about 1e-12 of the patch.
+MOST_TURNED = 1e-3
+# Part of the way from an edge's end to its middle: there a patch whose side has collapsed at the
+# end has a plane, turned from that at the end by no more than the edge itself turns on the way.
+OFF_COLLAPSED = 1e-3

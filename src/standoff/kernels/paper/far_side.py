@@ -6,30 +6,38 @@ tests. Lin and Canny and V-Clip leave the face there; so do these guards, unless
 keep it. The way leads over the edge of the body that is nearest to the opposing point.
 """
 
-from standoff.kernels.algebra.vectors import dot, norm, sub, unit
+from standoff.kernels.algebra.vectors import active, dot, norm, sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_jet,
     chart_normal,
     chart_record,
-    coedge_conormal,
     coedge_record,
     edge_jet,
     edge_record,
-    normal_noise,
+    normal_of_kind,
 )
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.events import FOOT_POINTS, SOLVED_PARAMETERS
 from standoff.kernels.pair.switching import is_smooth, onto_face
 from standoff.kernels.paper.foot_points import closest_on_edge, reset_onto_edge
-from standoff.kernels.tolerances import OFF_COLLAPSED, SLOPE, TURNED_NORMAL
+from standoff.kernels.tolerances import MOST_TURNED, OFF_COLLAPSED, SLOPE
 from standoff.kernels.values import NO_CHART, Side
 
 
 @kernel
+def has_plane(ints, reals, side):
+    """Does a face have a tangent plane at its point? On a collapsed side it has none."""
+    c = chart_record(ints, side.chart)
+    jet = chart_jet(ints, reals, side.chart, side.p, side.q)
+    kind, o = ints[c + L.CHART_KIND], ints[c + L.CHART_REALS]
+    normal, noise = normal_of_kind(kind, reals, o, jet)
+    return active(normal) == 1.0 and noise <= MOST_TURNED
+
+
+@kernel
 def height_over(ints, reals, side, x):
-    """Height of x over the tangent plane at a face's point (length): negative behind it, 0 where a
-    collapsed side has no plane."""
+    """Height of x over the tangent plane at a face's point (length): negative behind it."""
     jet = chart_jet(ints, reals, side.chart, side.p, side.q)
     return dot(chart_normal(ints, reals, side.chart, side.p, side.q), sub(x, jet[0]))
 
@@ -41,8 +49,7 @@ def height_at_edge(ints, reals, coedge, t, x):
     At an end where a side has collapsed there is no plane: a little along the edge there is.
     """
     face, chart, u, v = onto_face(ints, reals, coedge, t)
-    jet = chart_jet(ints, reals, chart, u, v)
-    if normal_noise(ints[chart_record(ints, chart) + L.CHART_KIND], reals, jet) > TURNED_NORMAL:
+    if not has_plane(ints, reals, Side(face, chart, u, v)):
         edge = ints[L.N_FACES] + ints[coedge_record(ints, coedge) + L.COEDGE_EDGE]
         o = ints[edge_record(ints, edge) + L.EDGE_REALS]
         t0, t1 = reals[o + L.EDGE_T0], reals[o + L.EDGE_T1]
@@ -65,12 +72,9 @@ def coedge_of_face(ints, edge, face):
 
 
 @kernel
-def nearest_edges(ints, reals, face, x, work):
-    """(edge, t, coedge, s): the body's edge that is nearest to x, at its parameter t, and that of
-    the face's own, at s; -1 where there is none.
-    """
+def nearest_edge(ints, reals, x, work):
+    """(edge, t): the body's edge that is nearest to x, at its foot point; edge -1 where it has none."""
     best, least, at = -1, 1e300, 0.0
-    own, least_own, at_own = -1, 1e300, 0.0
     for k in range(ints[L.N_EDGES]):
         edge = ints[L.N_FACES] + k
         work.counts[FOOT_POINTS] += 1
@@ -78,57 +82,24 @@ def nearest_edges(ints, reals, face, x, work):
         d = norm(sub(edge_jet(ints, reals, edge, t)[0], x))
         if d < least:
             best, least, at = edge, d, t
-        coedge = coedge_of_face(ints, edge, face)
-        if coedge >= 0 and d < least_own:
-            own, least_own, at_own = coedge, d, t
-    return best, at, own, at_own
-
-
-@kernel
-def returned(ints, reals, edge, t, face, x, noise):
-    """Would an edge give x back to one of its two faces: is x, at its foot point, on that face's
-    side, and not in front of the other face on the other's?
-    """
-    c, ct, _ = edge_jet(ints, reals, edge, t)
-    away, tangent = sub(x, c), unit(ct)
-    least = SLOPE * norm(away) + noise
-    over, over_other = False, False
-    e = edge_record(ints, edge)
-    for k in range(2):
-        coedge = ints[e + L.EDGE_COEDGE_0 + k]
-        if coedge < 0:
-            continue
-        if dot(away, coedge_conormal(ints, reals, coedge, tangent, t)[0]) <= least:
-            continue
-        if coedge == coedge_of_face(ints, edge, face):
-            over = True
-        elif height_at_edge(ints, reals, coedge, t, x) > -noise:
-            over_other = True
-    return over and not over_other
+    return best, at
 
 
 @kernel
 def off_far_side(ints, reals, side, x, noise, reset, work):
     """(left, slope, distance, side): off a face of the far side, on the edge nearest to x.
 
-    x is behind a face where it is behind the tangent planes at the face's own point and at the
-    point of its edges that is nearest to x: a face that turns by more than half a circle has the
-    whole body behind some of its planes. A face that is steep at all of its edges may have x over
-    its middle and behind those planes: it is kept where the nearest edge would give x back to it.
-
     An edge of the face's own is entered as any other switch enters it. Another has no parameter of
     this face's: it is entered at the foot point, which is counted as solved.
     """
     d = norm(sub(x, chart_jet(ints, reals, side.chart, side.p, side.q)[0]))
     height, least = height_over(ints, reals, side, x), -(SLOPE * d + noise)
-    if height >= least:
+    if height >= least and has_plane(ints, reals, side):
         return False, 0.0, d, side
-    edge, t, own, s = nearest_edges(ints, reals, side.feature, x, work)
-    if own < 0 or height_at_edge(ints, reals, own, s, x) >= least:
+    edge, t = nearest_edge(ints, reals, x, work)
+    if edge < 0:
         return False, 0.0, d, side
     coedge = coedge_of_face(ints, edge, side.feature)
-    if coedge >= 0 and returned(ints, reals, edge, t, side.feature, x, noise):
-        return False, 0.0, d, side
     if coedge >= 0:
         there = reset_onto_edge(ints, reals, coedge, side, t, reset, work)
     elif is_smooth(ints, edge):
