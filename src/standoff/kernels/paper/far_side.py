@@ -73,7 +73,7 @@ def coedge_of_face(ints, edge, face):
 
 @kernel
 def nearest_edge(ints, reals, x, work):
-    """(edge, t): the body's edge that is nearest to x, at its foot point; edge -1 where it has none."""
+    """(edge, t): the body's edge nearest to x, at its foot point; -1 where it has none."""
     best, least, at = -1, 1e300, 0.0
     for k in range(ints[L.N_EDGES]):
         edge = ints[L.N_FACES] + k
