@@ -129,12 +129,19 @@ def solved(jet_a, jet_b, g, fed, solve, span, work):
 
 @kernel
 def feedforward_now(pair, motion, place, solve, work):
-    """w_ff at witness points, where no evaluation of the frame belongs to them."""
+    """w_ff at witness points, where no evaluation of the frame belongs to them: by H, of which the
+    covariant part differs only away from them."""
     jet_a, jet_b = pair_jets(pair, motion.pose, place)
-    b = feedforward(jet_a, jet_b, STILL, of_origin(motion))
+    H = hessian(jet_a, jet_b)
+    fed = gradient(feedforward(jet_a, jet_b, STILL, of_origin(motion)))
     work.counts[EVALUATIONS] += 1
+    if solve == SOLVE_PLAIN:
+        return solve_plain(jet_a, jet_b, NO_RATES, H, fed, work)[1]
     span = pair_span(pair, motion.pose.p, norm(sub(jet_a[0], jet_b[0])))
-    return solved(jet_a, jet_b, NO_RATES, gradient(b), solve, span, work)[1]
+    metrics = pair_metric(jet_a, jet_b)
+    _, w_ff, regularised, _, _ = law(metrics, jet_a, jet_b, NO_RATES, H, fed, span)
+    work.counts[REGULARISED] += regularised
+    return w_ff
 
 
 @kernel
