@@ -58,7 +58,9 @@ LAWS: dict[str, Callable[[], object]] = {
     "euler": lambda: so.PaperLaw(integrator="euler"),
     "heun": lambda: so.PaperLaw(gain=100.0),
     "integrated": lambda: so.PaperLaw(integrator="rk4", realisation="integrated"),
-    "printed": lambda: so.PaperLaw(gain=100.0, switching="voronoi", saturation="zero"),
+    "printed": lambda: so.PaperLaw(
+        gain=100.0, switching="voronoi", saturation="zero", far_side="kept"
+    ),
     "raw": lambda: so.PaperLaw(integrator="midpoint", switching="none", solve="plain"),
 }
 
