@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from standoff.tracking.options import pack_options
 from standoff.tracking.places import put
 from standoff.tracking.rows import StateRow
 from standoff_studies.paper.bodies import lens_of_patches, planar_body
+from standoff_studies.paper.simulation_a.setting import vault
 
 BODIES = {
     "lens": so.shapes.lens(1.0, 0.45),
@@ -70,6 +72,38 @@ def points(body: so.Body, n: int, rng: np.random.Generator) -> np.ndarray:
         directions[:, 2] = 0.0
     directions /= np.linalg.norm(directions, axis=1)[:, None]
     return directions * body.size * rng.uniform(0.75, 2.0, (n, 1))
+
+
+STEEP = {
+    "stretched lens": lens_of_patches().transformed(np.diag([0.7, 1.1, 0.9])),
+    "vault": vault(),
+}
+"""Bodies with faces whose nearest side has no plane, as it has collapsed, or hides their middle."""
+
+
+@pytest.mark.parametrize("name", STEEP)
+def test_no_side_or_corner_holds_a_point_on_a_far_face(name: str) -> None:
+    """From corners, sides and middles of all faces to the feature of a cold query."""
+    body = STEEP[name]
+    law = np.append(
+        pack_options(so.PaperLaw(switching="voronoi", reset="nearest").resolved(1e-3)),
+        4.0 * body.size,
+    )
+    rng, along = np.random.default_rng(3), (0.0, 0.5, 1.0)
+    counts, log = N.new_counts(), np.zeros(N.MAX_EVENTS * N.EVENT_COLUMNS)
+    for x in points(body, 100, rng):
+        truth = so.distance(body, POINT, REST, so.Pose(np.eye(3), x))
+        for face, u, v in product(range(body.n_faces), along, along):
+            state = StateRow()
+            put(state, 0, body, (("face", face), (u, v)))
+            mode, q = state.mode.astype(np.int64), state.q.copy()
+            counts[:] = 0
+            switches = 0
+            while switch(body.ints, body.reals, x, law, mode, q, counts, log):
+                switches += 1
+                assert switches <= MOST, (x, face, u, v)
+            found = feature_of(body, int(mode[0]))
+            assert found == truth.feature_a, (x, face, u, v, found, truth.feature_a)
 
 
 @pytest.mark.parametrize("far_side", ["left", "kept"])

@@ -299,3 +299,9 @@ AROUND = 1e-3
 # Of the size: widths of overlap (support sums) closer than this are the same. At AROUND one that
 # grows with a radius of curvature of 2e-4 of the size differs by more.
 SAME_WIDTH = 1e-10
+# Chord of the unit sphere: a normal that roundoff may turn by more than this has no use. That is
+# so beside a collapsed side, within about 1e-12 of the patch.
+MOST_TURNED = 1e-3
+# Part of the way from an edge's end to its middle: there a patch whose side has collapsed at the
+# end has a plane, turned from that at the end by no more than the edge itself turns on the way.
+OFF_COLLAPSED = 1e-3
