@@ -6,17 +6,16 @@ tests. Lin and Canny and V-Clip leave the face there; so do these guards, unless
 keep it. The way leads over the edge of the body that is nearest to the opposing point.
 """
 
-from standoff.kernels.algebra.vectors import dot, norm, sub, unit
+from standoff.kernels.algebra.vectors import active, dot, norm, sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_jet,
     chart_normal,
     chart_record,
-    coedge_conormal,
     coedge_record,
     edge_jet,
     edge_record,
-    normal_noise,
+    normal_of_kind,
 )
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.events import FOOT_POINTS, SOLVED_PARAMETERS
@@ -27,19 +26,20 @@ from standoff.kernels.values import NO_CHART, Side
 
 
 @kernel
-def height_over(ints, reals, side, x):
-    """Height of x over the tangent plane at a face's point (length): negative behind it, 0 where a
-    collapsed side has no plane."""
+def has_plane(ints, reals, side):
+    """Does a face have a tangent plane at its point? On a collapsed side it has none."""
+    c = chart_record(ints, side.chart)
     jet = chart_jet(ints, reals, side.chart, side.p, side.q)
-    return dot(chart_normal(ints, reals, side.chart, side.p, side.q), sub(x, jet[0]))
+    kind, o = ints[c + L.CHART_KIND], ints[c + L.CHART_REALS]
+    normal, noise = normal_of_kind(kind, reals, o, jet)
+    return active(normal) == 1.0 and noise <= MOST_TURNED
 
 
 @kernel
-def has_plane(ints, reals, chart, u, v):
-    """Has a face a tangent plane at its point, not on a collapsed side?"""
-    jet = chart_jet(ints, reals, chart, u, v)
-    kind = ints[chart_record(ints, chart) + L.CHART_KIND]
-    return normal_noise(kind, reals, jet) <= MOST_TURNED
+def height_over(ints, reals, side, x):
+    """Height of x over the tangent plane at a face's point (length): negative behind it."""
+    jet = chart_jet(ints, reals, side.chart, side.p, side.q)
+    return dot(chart_normal(ints, reals, side.chart, side.p, side.q), sub(x, jet[0]))
 
 
 @kernel
@@ -49,7 +49,7 @@ def height_at_edge(ints, reals, coedge, t, x):
     At an end where a side has collapsed there is no plane: a little along the edge there is.
     """
     face, chart, u, v = onto_face(ints, reals, coedge, t)
-    if not has_plane(ints, reals, chart, u, v):
+    if not has_plane(ints, reals, Side(face, chart, u, v)):
         edge = ints[L.N_FACES] + ints[coedge_record(ints, coedge) + L.COEDGE_EDGE]
         o = ints[edge_record(ints, edge) + L.EDGE_REALS]
         t0, t1 = reals[o + L.EDGE_T0], reals[o + L.EDGE_T1]
@@ -73,7 +73,7 @@ def coedge_of_face(ints, edge, face):
 
 @kernel
 def nearest_edge(ints, reals, x, work):
-    """(edge, t): the body's edge that is nearest to x, at its parameter t; -1 where there is none."""
+    """(edge, t): the body's edge nearest to x, at its foot point; -1 where it has none."""
     best, least, at = -1, 1e300, 0.0
     for k in range(ints[L.N_EDGES]):
         edge = ints[L.N_FACES] + k
@@ -86,52 +86,20 @@ def nearest_edge(ints, reals, x, work):
 
 
 @kernel
-def returned(ints, reals, edge, t, face, x, noise):
-    """Would an edge give x back to one of its faces: is x over that face there, and not over the
-    other?
-    """
-    c, ct, _ = edge_jet(ints, reals, edge, t)
-    away, tangent = sub(x, c), unit(ct)
-    least = SLOPE * norm(away) + noise
-    over, over_other = False, False
-    e = edge_record(ints, edge)
-    for k in range(2):
-        coedge = ints[e + L.EDGE_COEDGE_0 + k]
-        if coedge < 0:
-            continue
-        if dot(away, coedge_conormal(ints, reals, coedge, tangent, t)[0]) <= least:
-            continue
-        if coedge == coedge_of_face(ints, edge, face):
-            over = True
-        else:
-            over_other = True
-    return over and not over_other
-
-
-@kernel
 def off_far_side(ints, reals, side, x, noise, reset, work):
     """(left, slope, distance, side): off a face of the far side, on the edge nearest to x.
 
-    x is behind a face where it is behind the tangent plane at the face's own point, and the body's
-    edge nearest to x would not give x back to the face. That edge would where x is before the
-    face's plane at the edge, or over the face alone: a face that turns far has the body, and
-    points that are over its middle, behind some of its planes. An edge of the face's own is
-    entered as any other switch enters it. Another has no parameter of this face's: it is entered
-    at the foot point, which is counted as solved.
+    An edge of the face's own is entered as any other switch enters it. Another has no parameter of
+    this face's: it is entered at the foot point, which is counted as solved.
     """
     d = norm(sub(x, chart_jet(ints, reals, side.chart, side.p, side.q)[0]))
     height, least = height_over(ints, reals, side, x), -(SLOPE * d + noise)
-    if height >= least and has_plane(ints, reals, side.chart, side.p, side.q):
+    if height >= least and has_plane(ints, reals, side):
         return False, 0.0, d, side
     edge, t = nearest_edge(ints, reals, x, work)
     if edge < 0:
         return False, 0.0, d, side
     coedge = coedge_of_face(ints, edge, side.feature)
-    if coedge >= 0 and (
-        height_at_edge(ints, reals, coedge, t, x) >= least
-        or returned(ints, reals, edge, t, side.feature, x, noise)
-    ):
-        return False, 0.0, d, side
     if coedge >= 0:
         there = reset_onto_edge(ints, reals, coedge, side, t, reset, work)
     elif is_smooth(ints, edge):

@@ -216,13 +216,23 @@ def log_left(work, body, source, to, slope, gap):
 
 
 @kernel
+def gives_to(ints, reals, side, face, x, noise, work):
+    """Would an edge give x to this face?"""
+    if dimension(ints, side.feature) != 1:
+        return False
+    return off_edge(ints, reals, side, x, noise, FAR_SIDE_LEFT, work)[2] == face
+
+
+@kernel
 def switch_off_face(pair, body, x, noise, place, options, work):
     """`voronoi_switch` of a face."""
     ints, reals = body_of(pair, body)
     side = side_of(place, body)
     if options.far_side == FAR_SIDE_LEFT:
         left, slope, gap, there = off_far_side(ints, reals, side, x, noise, options.reset, work)
-        if left:
+        # A face that turns far may have x behind some of its planes and over its middle: an edge
+        # that would give x back is not entered.
+        if left and not gives_to(ints, reals, there, side.feature, x, noise, work):
             log_left(work, body, side.feature, there.feature, slope, gap)
             return True, with_side(place, body, there)
     slope, gap, coedge, t = off_face(ints, reals, side.feature, x, noise, work)
