@@ -1,12 +1,17 @@
-"""Run the study anew and print its summary: ``python -m ...convergence > summary.json``."""
+"""Run the study anew: ``python -m ...convergence cells.jsonl > summary.json``."""
 
 import argparse
+from pathlib import Path
 
-from standoff_studies.paper.convergence.cells import study, summary
+from standoff_studies.paper.convergence.cells import read, study, summary
 
 if __name__ == "__main__":
-    argparse.ArgumentParser(
+    parser = argparse.ArgumentParser(
         prog="python -m standoff_studies.paper.convergence",
-        description="Run the convergence study anew, some minutes, and print its summary as JSON.",
-    ).parse_args()
-    print(summary(study()), end="")
+        description="Run the convergence study, two hours of processor time, and print its "
+        "summary as JSON. Cells that the file has already are not run again.",
+    )
+    parser.add_argument("cells", type=Path, help="where each cell and its traces are written")
+    kept = parser.parse_args().cells
+    study(kept)
+    print(summary(read(kept.read_text("utf-8").splitlines())), end="")

@@ -1,79 +1,120 @@
-"""The cells of the study of convergence: each a law and a motion, run from many random starts."""
+"""The cells of the study of convergence: each a pair, a motion, a law and a gain."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from importlib.resources import files
 from itertools import product
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from standoff.motion import Fixed, Path, Twist
-from standoff.recording import simulate
-from standoff.recording.times import even_times
-from standoff.tracking import Tracker
 from standoff.tracking.laws import PaperLaw
-from standoff_studies.paper.many_starts import distances, motion_along
-from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, STEP, pair
-
-Array = NDArray[np.float64]
+from standoff_studies.paper.convergence.pairs import DRAWN_PAIRS, GRIDS, LENSES, pair
+from standoff_studies.paper.convergence.starts import outcome, trial
 
 GAINS = (25.0, 100.0, 400.0, 1000.0)
 """K [1/s]: from "a very low controller gain" to K h = 1."""
 
-STARTS = 1000
-"""Random starts a cell: one in a hundred that fails is then known to half of itself."""
-
-PATIENCE = 15.0
-"""Times 1/K after which a start has arrived or counts as one that has not: exp(-15) is 3e-7."""
-
-LEAST_FRAMES = 20
-"""Added to it: a start may have to walk over several features, one a frame."""
-
-ARRIVED = 1e-4
-"""Greatest error of the distance of a start that has arrived [length]; the bodies are of size 2."""
-
 SEED = 12
-"""Of the starts; every cell has the same ones."""
+"""Of the starts; every cell of a pair has the same ones."""
+
+SUMMARY = "summary.json"
 
 CONFIDENCE = 1.96
 """Half width of a 95 % interval of a normal variable, in standard deviations."""
 
-SOLVES = {"plain": "M as it is", "ranked": "rank rule"}
-SWITCHINGS = {"voronoi": "Voronoi tests", "multipliers": "multipliers"}
 MOTIONS = {"rest": "at rest", "moving": "moving"}
-"""What the cells' options are called."""
+"""What the bodies do."""
 
-SUMMARY = "summary.json"
+
+class LawOf(NamedTuple):
+    """A law of the study.
+
+    Attributes
+    ----------
+    name : str
+    starts : int
+        How many a cell has.
+    options : dict
+        Of `PaperLaw`, with the gain and without restarts.
+    """
+
+    name: str
+    starts: int
+    options: dict[str, Any]
+
+
+PRINTED = {"saturation": "zero", "switching": "voronoi", "reset": "nearest"}
+"""Zeroing, switching and resets as printed."""
+
+LAWS = {
+    "printed": LawOf("as printed", 300, {**PRINTED, "solve": "plain", "far_side": "kept"}),
+    "printed-left": LawOf("as printed, far side left", 300, {**PRINTED, "solve": "plain"}),
+    "covariant": LawOf("covariant M", 1000, {**PRINTED, "solve": "covariant"}),
+    "covariant-hold": LawOf(
+        "covariant M, boundaries held",
+        1000,
+        {**PRINTED, "solve": "covariant", "saturation": "hold"},
+    ),
+    "ranked": LawOf("rank rule", 200, {**PRINTED, "solve": "ranked"}),
+    "own": LawOf("multipliers, rank rule", 1000, {}),
+}
+"""The laws by key, with the starts of a cell."""
+
+FEWER = {("printed", "drawn"): 100, ("covariant-hold", "lens"): 300}
+"""Starts where a law has fewer on some pairs: on each drawn pair, and where the bodies are D's, E's
+and C's, on which every start arrives without holding boundaries."""
+
+Options = tuple[str, str, str, float]
+"""Of a cell: the pair, the motion, the law, the gain."""
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One law and motion, and what became of its starts.
+    """One pair, motion, law and gain, and what became of its starts.
 
     Attributes
     ----------
-    motion, switching, solve : str
+    pair, motion, law : str
+        Keys.
     gain : float
         1/s
     tried, arrived : int
-    median, slowest : float
-        Time to arrive of those that do: the middle one and that of 99 of 100 [s]; nan if none do.
+    median, slowest : float or None
+        Time to arrive of those that do: the middle one and that of 99 of 100 [s]; None if none do.
+    right, settled : int
+        On the features of the closest points after the first frame, and at the end.
+    definite, definite_arrived : int
+        Of the `right` ones: with the printed M definite after the first frame, and those of them
+        that arrive.
+    right_arrived : int
+        Of the `right` ones: those that arrive.
+    causes : dict
+        Of those that do not arrive: how many by cause. A cause with "elsewhere" is on other
+        features than those of the closest points.
     """
 
+    pair: str
     motion: str
-    switching: str
-    solve: str
+    law: str
     gain: float
     tried: int
     arrived: int
-    median: float
-    slowest: float
+    median: float | None
+    slowest: float | None
+    right: int
+    settled: int
+    definite: int
+    definite_arrived: int
+    right_arrived: int
+    causes: dict[str, int]
 
     @property
     def part(self) -> float:
@@ -83,87 +124,111 @@ class Cell:
     @property
     def interval(self) -> tuple[float, float]:
         """Wilson's 95 % interval of that part."""
-        n, p, z = self.tried, self.part, CONFIDENCE
-        middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n)
-        half = z / (1.0 + z * z / n) * math.sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n))
-        return max(0.0, middle - half), min(1.0, middle + half)
+        return wilson(self.arrived, self.tried)
+
+    @property
+    def options(self) -> Options:
+        """What names the cell."""
+        return self.pair, self.motion, self.law, self.gain
 
 
-def law_of(switching: str, solve: str, gain: float) -> PaperLaw:
-    """Return a cell's law; "voronoi" and "plain" are the system as printed."""
-    if switching == "voronoi":
-        return PaperLaw(
-            gain=gain,
-            saturation="zero",
-            switching="voronoi",
-            solve=solve,
-            reset="nearest",
-            restarts=False,
-        )
-    return PaperLaw(gain=gain, switching=switching, solve=solve, restarts=False)
+def wilson(arrived: int, tried: int) -> tuple[float, float]:
+    """Return Wilson's 95 % interval of a part."""
+    n, p, z = tried, arrived / tried, CONFIDENCE
+    middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n)
+    half = z / (1.0 + z * z / n) * math.sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n))
+    return max(0.0, middle - half), min(1.0, middle + half)
 
 
-def path_of(motion: str) -> Path:
-    """Return B's path: at rest at its first pose, or moving as in simulation E."""
-    return PATH_B if motion == "moving" else Fixed(PATH_B.pose(0.0))
+def law_of(key: str, gain: float) -> PaperLaw:
+    """Return a law of the study; "printed" is the system as printed."""
+    return PaperLaw(gain=gain, restarts=False, **LAWS[key].options)
 
 
-def frames_of(gain: float) -> int:
-    """Return how many frames a start is given."""
-    return round(PATIENCE / gain / STEP) + LEAST_FRAMES
+def starts_of(options: Options) -> int:
+    """Return how many starts a cell has."""
+    name, _, law, _ = options
+    if name in GRIDS:
+        return len(pair(name).grid)
+    kind = "drawn" if name in DRAWN_PAIRS else "vaults" if name == "A vaults" else "lens"
+    return FEWER.get((law, kind), LAWS[law].starts)
 
 
-def arrival_times(motion: str, law: PaperLaw, starts: int = STARTS) -> Array:
-    """Return when each start has arrived for good [s], shape (starts,); nan where it never does.
-
-    Starts are uniform in the parameters of a random face of each body.
-    """
-    a, b = pair()
-    assert law.gain is not None
-    tracker, path, n = Tracker(a, b, STEP, law=law), path_of(motion), frames_of(law.gain)
-    rows = motion_along(PATH_A, path, even_times(0.0, n * STEP, STEP))
-    due = simulate(Tracker(a, b, STEP), PATH_A, path, n * STEP).distance[1:]
-    rng, found = np.random.default_rng(SEED), np.full(starts, np.nan)
-    poses, twists = (PATH_A.pose(0.0), path.pose(0.0)), (Twist.zero(), path.twist(0.0))
-    for k in range(starts):
-        faces, at = rng.integers(3, size=2).tolist(), rng.uniform(size=(2, 2))
-        places = (("face", faces[0]), at[0]), (("face", faces[1]), at[1])
-        state = tracker.start_from(*poses, *places, *twists, settle=False)
-        off = np.flatnonzero(~(np.abs(distances(tracker, state, rows) - due) < ARRIVED))
-        last = int(off[-1]) if len(off) else -1
-        if last < n - 1:
-            found[k] = (last + 2) * STEP
-    return found
-
-
-def made(cell: tuple[str, str, str, float], starts: int = STARTS) -> Cell:
-    """Run one cell."""
-    motion, switching, solve, gain = cell
-    times = arrival_times(motion, law_of(switching, solve, gain), starts)
-    there = times[np.isfinite(times)]
-    median, slowest = np.quantile(there, (0.5, 0.99)).tolist() if len(there) else (np.nan, np.nan)
-    return Cell(motion, switching, solve, gain, starts, len(there), median, slowest)
+def made(options: Options, starts: int | None = None) -> tuple[Cell, list[dict[str, Any]]]:
+    """Run one cell; also the traces of the starts that do not arrive."""
+    name, motion, law, gain = options
+    subject = pair(name)
+    tried = trial(subject, motion, law_of(law, gain))
+    rng, n = np.random.default_rng(SEED), starts_of(options) if starts is None else starts
+    places = [*subject.grid[:n]] or [subject.draw(rng) for _ in range(n)]
+    found = [outcome(tried, *place) for place in places]
+    there = [each.time for each in found if np.isfinite(each.time)]
+    median, slowest = np.quantile(there, (0.5, 0.99)).tolist() if there else (None, None)
+    ends = [(k, each.end) for k, each in enumerate(found) if each.end is not None]
+    cell = Cell(
+        *options,
+        n,
+        len(there),
+        median,
+        slowest,
+        right=sum(each.right for each in found),
+        settled=sum(each.settled for each in found),
+        definite=sum(each.definite for each in found),
+        definite_arrived=sum(each.definite and each.end is None for each in found),
+        right_arrived=sum(each.right and each.end is None for each in found),
+        causes=dict(Counter(end.cause + ("" if end.placed else ", elsewhere") for _, end in ends)),
+    )
+    return cell, [{"start": k, "places": places[k], **end._asdict()} for k, end in ends]
 
 
-def every_cell() -> Iterator[tuple[str, str, str, float]]:
+def every_cell() -> Iterator[Options]:
     """Yield the options of all cells."""
-    yield from product(MOTIONS, SWITCHINGS, SOLVES, GAINS)
+    every = (*LENSES, "A point", "A vaults", "B", "C", *DRAWN_PAIRS)
+    yield from product(every, MOTIONS, ("covariant", "printed"), GAINS)
+    held = ("E patches", "D patches", "A point", "A vaults", "C", *DRAWN_PAIRS)
+    yield from product(held, MOTIONS, ("covariant-hold",), GAINS)
+    left = (*(name for name in LENSES if name != "D gnomonic" and name != "D stereographic"),)
+    yield from product(
+        (*left, "A point", "A vaults", *DRAWN_PAIRS), ("rest",), ("printed-left",), GAINS
+    )
+    yield from product(("E patches", *DRAWN_PAIRS), ("rest",), ("ranked",), (GAINS[0], GAINS[-1]))
+    yield from product(("D patches", "E patches"), ("rest",), ("own",), GAINS[-1:])
+    yield from product(GRIDS, ("rest",), ("printed", "printed-left", "covariant"), GAINS[:1])
 
 
-def study(processes: int = 2, starts: int = STARTS) -> tuple[Cell, ...]:
-    """Run all cells, some side by side; eight minutes of processor time with kernels compiled."""
-    cells = list(every_cell())
-    with ProcessPoolExecutor(processes) as pool:
-        return tuple(pool.map(made, cells, [starts] * len(cells)))
+def study(kept: Path, processes: int = 2, starts: int | None = None) -> None:
+    """Run all cells that a file does not have yet, and write each to it as it ends, a line each."""
+    have = (
+        {cell.options for cell, _ in read(kept.read_text().splitlines())} if kept.exists() else ()
+    )
+    waiting = [options for options in every_cell() if options not in have]
+    with ProcessPoolExecutor(processes) as pool, kept.open("a", encoding="utf-8") as file:
+        runs = [pool.submit(made, options, starts) for options in waiting]
+        for run in as_completed(runs):
+            file.write(line(*run.result()) + "\n")
+            file.flush()
+
+
+def line(cell: Cell, traces: list[dict[str, Any]]) -> str:
+    """Return a cell and its traces as a line of JSON."""
+    return json.dumps({"cell": asdict(cell), "traces": traces})
+
+
+def read(lines: Iterable[str]) -> list[tuple[Cell, list[dict[str, Any]]]]:
+    """Return cells and traces of such lines."""
+    rows = [json.loads(text) for text in lines if text.strip()]
+    return [(Cell(**row["cell"]), row["traces"]) for row in rows]
 
 
 def committed() -> tuple[Cell, ...]:
     """Return the cells as they were run when the summary was last written."""
-    text = files("standoff_studies.paper.convergence").joinpath(SUMMARY).read_text()
+    text = files("standoff_studies.paper.convergence").joinpath(SUMMARY).read_text("utf-8")
     return tuple(Cell(**row) for row in json.loads(text)["cells"])
 
 
-def summary(cells: tuple[Cell, ...]) -> str:
-    """Return the text of a summary: every cell a line."""
-    rows = ",\n  ".join(json.dumps(asdict(cell)) for cell in cells)
+def summary(run: Iterable[tuple[Cell, list[dict[str, Any]]]]) -> str:
+    """Return the text of a summary: every cell a line, in the order of `every_cell`."""
+    found = {cell.options: cell for cell, _ in run}
+    ordered = [found[options] for options in every_cell() if options in found]
+    rows = ",\n  ".join(json.dumps(asdict(cell)) for cell in ordered)
     return f'{{"seed": {SEED}, "cells": [\n  {rows}\n]}}\n'

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 
@@ -55,6 +56,9 @@ class Helix:
     height: float
     rate: float
     rise: float
+
+    start = 0.0
+    end = math.inf
 
     def positions(self, time: ArrayLike) -> Array:
         """Return where the point is at times [s], shape (..., 3), world [length]."""
