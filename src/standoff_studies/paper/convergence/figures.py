@@ -88,8 +88,9 @@ def _artwork(cells: tuple[Cell, ...]) -> Artwork:
             "without restarts. A mark is a gain K: "
             f"{', '.join(f'{gain:g}' for gain in GAINS)} 1/s; a line joins the gains. D and E are "
             "the lens with a point and with a stretched lens, the same bodies and the same starts "
-            "in three parametrisations. The drawn pairs are stretched lenses of patches, at the "
-            "printed law with 100 starts each and K, else with 1000."
+            "in three parametrisations; the drawn pairs are stretched lenses of patches. A mark "
+            "stands for 1000 starts of a pair with the covariant M, in some cells for 200 or 300, "
+            "and for 300 as printed, 100 on a drawn pair."
         ),
         text=(
             "Two diagrams, bodies at rest and moving, with a row for each pair. As printed the "
