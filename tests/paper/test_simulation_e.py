@@ -68,6 +68,12 @@ def done() -> runs.Runs:
     return runs.run()
 
 
+def test_the_start_is_on_a_wrong_pair_of_faces(done):
+    first, second = done.paper.modes()[0], runs.stays(done.paper)[0]
+    assert runs.sequence([first, second]) == (("F2", "F2"), ("F0", "F1"))
+    assert second.start <= runs.ENTERED
+
+
 def test_two_bodies_of_three_patches(done):
     """Fig. 19: two spatial bodies of three patches each, with parameters from 0 to 1."""
     for body in (done.a, done.b):
@@ -84,14 +90,15 @@ def test_the_modes_are_those_of_brute_force(done):
         assert modes_of(done.exact, frame) == known
         # the printed system switches a little late or early: its witness points are off
         near = min(abs(frame * STEP - event.time) for event in done.exact.events) < 1.0 / runs.GAIN
-        assert near or modes_of(done.paper, frame) == known
+        # and the first frame leaves the wrong pair of faces
+        assert near or frame == 0 or modes_of(done.paper, frame) == known
         if known not in sequence[-1:]:
             sequence.append(known)
     stays = done.exact.modes()
     assert sequence == [
         (balls_of(done.a, stay.feature_a), balls_of(done.b, stay.feature_b)) for stay in stays
     ]
-    assert runs.sequence(stays) == runs.sequence(done.paper.modes())
+    assert runs.sequence(stays) == runs.sequence(runs.stays(done.paper))
     assert min(stay.end - stay.start for stay in stays) > EVERY * STEP
 
 
@@ -285,7 +292,7 @@ def test_the_figures_say_what_was_measured(done):
     frames = snapshots.snapshot_frames(done)
     assert [modes_of(done.paper, frame) for frame in frames] == [
         (balls_of(done.a, stay.feature_a), balls_of(done.b, stay.feature_b))
-        for stay in done.paper.modes()
+        for stay in runs.stays(done.paper)
     ]
     times = [f"t = {frame * STEP:.2f} s" for frame in frames]
     titles = [axes.get_title() for axes in snapshots.figure_19().draw().axes]

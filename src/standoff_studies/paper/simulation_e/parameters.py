@@ -32,10 +32,12 @@ from standoff_studies.paper.simulation_e.runs import (
     TRIED,
     Runs,
     arrivals,
+    entered,
     face_parameters,
     features_of,
     moves_by_resets,
     run,
+    stays,
     witness_error,
 )
 from standoff_studies.paper.start_decay import decay_statement
@@ -67,7 +69,8 @@ def figure_20() -> Artwork:
         caption=(
             "Simulation E: the parameters u, v of A's patch and r, s of B's (solid, dashed) that "
             f"the witness points are on, by the printed system at 1 kHz, K = {GAIN:g}/s, from a "
-            "wrong start; thin and dark, the library's own law. The modes are shaded in turn and "
+            "wrong start on another pair of faces, which the switching leaves in the first frame; "
+            "thin and dark, the library's own law. The modes are shaded in turn and "
             "named on top, A's feature first; thin lines mark the switching instants. On an edge "
             "(bar) the point keeps the parameters of the patch that it came from, and u or r stays "
             "at 1; when it leaves to the next patch they jump to that one's. Below: the distance, "
@@ -171,8 +174,8 @@ def _as_printed(runs: Runs) -> tuple[Statement, ...]:
         Statement(
             "Section on the hybrid system",
             "the features follow those of the closest points",
-            f"{'the same' if same else 'other'} {len(runs.paper.events)} switches as the library's "
-            f"own law, at most {late:.1e} s apart (a frame is {STEP:g} s; "
+            f"{'the same' if same else 'other'} {len(entered(runs.paper))} switches as the "
+            f"library's own law, at most {late:.1e} s apart (a frame is {STEP:g} s; "
             f"without b it would be about 1/K = {1.0 / GAIN:g} s)",
             bool(late < STEP),
             by=runs.by,
@@ -206,7 +209,7 @@ def edge_stay(runs: Runs) -> tuple[float, float]:
 
     Both nan where it comes to none.
     """
-    on = [visit for visit in runs.paper.modes() if visit.feature_a.kind == "edge"]
+    on = [visit for visit in stays(runs.paper) if visit.feature_a.kind == "edge"]
     return (on[0].start, on[-1].end) if on else (math.nan, math.nan)
 
 
@@ -224,7 +227,7 @@ def switch_differences(runs: Runs) -> Array:
 
     Infinite where the features differ.
     """
-    own, due = runs.paper.events, runs.exact.events
+    own, due = entered(runs.paper), runs.exact.events
     if [event[2:5] for event in own] != [event[2:5] for event in due]:
         return np.full(len(due), np.inf)
     return np.array([one.time - other.time for one, other in zip(own, due, strict=True)])
@@ -303,7 +306,7 @@ def _draw_parameters(axes: Axes, runs: Runs, body: str) -> None:
     places, exact = face_parameters(runs.paper, body), face_parameters(runs.exact, body)
     time, names = runs.paper.time, {"A": "u, v", "B": "r, s"}[body]
     for piece in places.pieces:
-        first = piece.start == 0
+        first = piece == places.pieces[0]
         label = ("u of A, r of B", "v of A, s of B") if first else (None, None)
         for own in (exact.u, exact.v):
             axes.plot(time[piece], own[piece], color=style.BLACK, linewidth=0.6, zorder=3)

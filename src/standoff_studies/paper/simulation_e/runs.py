@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from standoff.automaton import Visit
 from standoff.bodies import Body
 from standoff.motion import Carried, ConstantTwist, Fixed, Helix, Pose, Twist
-from standoff.recording import Recording, simulate
+from standoff.recording import RecordedEvent, Recording, simulate
 from standoff.recording.simulate import track_along
 from standoff.recording.times import even_times
 from standoff.tracking import Tracker, TrackerState
@@ -49,8 +49,13 @@ from a face over an edge to the next face."""
 GAIN = 50.0
 """K of the printed system [1/s]: "a very low controller gain"."""
 
-START = ((0, (0.4, 0.76)), (1, (0.6, 0.83)))
-"""Face and parameters of A and of B where the printed system is started, one that arrives."""
+START = ((2, (0.85, 0.39)), (2, (0.56, 0.36)))
+"""Face and parameters of A and of B where the printed system is started, one that arrives: the
+closest points are on faces 0 and 1."""
+
+ENTERED = 0.005
+"""After these seconds the switches of the wrong start to the true features are over: the guards see
+the opposing points alone, and a frame passes several [s]."""
 
 CONVERGED = 0.3
 """When the start has converged [s]: exp(-K t) is 3e-7."""
@@ -187,9 +192,19 @@ def sequence(visits: Iterable[Visit]) -> tuple[tuple[str, str], ...]:
     return tuple((short(visit.feature_a), short(visit.feature_b)) for visit in visits)
 
 
+def stays(recording: Recording) -> list[Visit]:
+    """Return the visited modes once the wrong start has come to the true features."""
+    return [visit for visit in recording.modes() if visit.end > ENTERED]
+
+
+def entered(recording: Recording) -> list[RecordedEvent]:
+    """Return the switches after that."""
+    return [event for event in recording.events if event.time > ENTERED]
+
+
 def features_of(recording: Recording, body: str) -> tuple[str, ...]:
     """Return the features that one body's witness point goes through, in order."""
-    names = [pair["AB".index(body)] for pair in sequence(recording.modes())]
+    names = [pair["AB".index(body)] for pair in sequence(stays(recording))]
     return tuple(name for k, name in enumerate(names) if k == 0 or name != names[k - 1])
 
 
@@ -213,9 +228,10 @@ class FaceParameters:
 
     @property
     def pieces(self) -> list[slice]:
-        """Stretches of frames on one face: between them the parameters jump."""
+        """Stretches of frames on one face, once the true features are entered: between them the
+        parameters jump."""
         cuts = [0, *(np.flatnonzero(np.diff(self.face)) + 1).tolist(), len(self.face)]
-        return [slice(first, last) for first, last in pairwise(cuts)]
+        return [slice(i, k) for i, k in pairwise(cuts) if k > round(ENTERED / STEP)]
 
 
 def face_parameters(recording: Recording, body: str) -> FaceParameters:

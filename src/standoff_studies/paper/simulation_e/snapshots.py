@@ -26,6 +26,7 @@ from standoff_studies.paper.simulation_e.runs import (
     Runs,
     run,
     sequence,
+    stays,
     witness_error,
 )
 
@@ -111,11 +112,11 @@ def figure_19() -> Artwork:
 
 def snapshot_frames(runs: Runs) -> list[int]:
     """Return the frame in the middle of each mode of the paper's law."""
-    return [round(0.5 * (stay.start + stay.end) / STEP) for stay in runs.paper.modes()]
+    return [round(0.5 * (stay.start + stay.end) / STEP) for stay in stays(runs.paper)]
 
 
 def _statements(runs: Runs) -> tuple[Statement, ...]:
-    modes = sequence(runs.paper.modes())
+    modes = sequence(stays(runs.paper))
     error = witness_error(runs)
     late = error[round(CONVERGED / STEP) :]
     certified = int(runs.exact.certified.sum())
