@@ -214,6 +214,7 @@ def test_info_tells_the_run() -> None:
         "gain": 50.0,
         "feedback": None,
         "reset": "foot",
+        "far_side": "left",
         "restarts": True,
         "feedforward": True,
         "tolerance": 1e-10,

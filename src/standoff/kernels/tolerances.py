@@ -256,8 +256,8 @@ STANDSTILL = 1e-12
 # step turns the parameter along that side through all its range.
 MOST_BENT = 0.5
 
-# How often a frame of the paper's law may hold a boundary and be solved again: both bodies from a
-# face over an edge to a vertex.
+# How many times a frame of the paper's law may hold a boundary and be solved again: both bodies
+# from a face over an edge to a vertex.
 MOST_HELD = 4
 
 # Radians between level and tilted, where a flat contact of simulated bodies ends: far above the

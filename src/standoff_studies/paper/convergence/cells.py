@@ -8,14 +8,16 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
+from functools import partial
 from importlib.resources import files
 from itertools import product
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 
 from standoff.tracking.laws import PaperLaw
+from standoff.whole_files import write_whole
 from standoff_studies.paper.convergence.pairs import DRAWN_PAIRS, GRIDS, LENSES, pair
 from standoff_studies.paper.convergence.starts import outcome, trial
 
@@ -197,16 +199,19 @@ def every_cell() -> Iterator[Options]:
 
 
 def study(kept: Path, processes: int = 2, starts: int | None = None) -> None:
-    """Run all cells that a file does not have yet, and write each to it as it ends, a line each."""
-    have = (
-        {cell.options for cell, _ in read(kept.read_text().splitlines())} if kept.exists() else ()
-    )
+    """Run all cells that a file does not have yet; it is written anew, whole, as each ends."""
+    lines = kept.read_text("utf-8").splitlines() if kept.exists() else []
+    have = {cell.options for cell, _ in read(lines)}
     waiting = [options for options in every_cell() if options not in have]
-    with ProcessPoolExecutor(processes) as pool, kept.open("a", encoding="utf-8") as file:
+    with ProcessPoolExecutor(processes) as pool:
         runs = [pool.submit(made, options, starts) for options in waiting]
         for run in as_completed(runs):
-            file.write(line(*run.result()) + "\n")
-            file.flush()
+            lines.append(line(*run.result()))
+            write_whole({kept: partial(_put, "\n".join([*lines, ""]))})
+
+
+def _put(text: str, stream: BinaryIO) -> None:
+    stream.write(text.encode())
 
 
 def line(cell: Cell, traces: list[dict[str, Any]]) -> str:
