@@ -16,6 +16,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of
 
 if TYPE_CHECKING:
+    from standoff.geometry.formulas.compiled import Formula
     from standoff.geometry.pcurves import Pcurve
     from standoff.geometry.surfaces import Surface
 
@@ -51,6 +52,11 @@ class Curve(KeepsReadOnly):
     @property
     def closed(self) -> bool:
         return False
+
+    @property
+    def formulas(self) -> tuple[Formula, ...]:
+        """The compiled formulas whose addresses stand in its data or its surface's."""
+        return ()
 
     @property
     def moved(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from standoff.geometry.tolerances import WHOLE_TURN
 from standoff.geometry.validation import Array, finite
 from standoff.kernels.body import layout as L
 from standoff.real_numbers import shown
+
+if TYPE_CHECKING:
+    from standoff.geometry.formulas.compiled import Formula
 
 
 class SurfaceCurve(Curve):
@@ -102,6 +105,10 @@ class SurfaceCurve(Curve):
         v = float(finite(v, "v", ()))
         matrix = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, v], [0.0, 0.0, 1.0]])
         return SurfaceCurve(surface, Pcurve(L.LINE, matrix), u0, u1)
+
+    @property
+    def formulas(self) -> tuple[Formula, ...]:
+        return self.surface.formulas
 
     def jet(self, t: float) -> tuple[Array, Array, Array]:
         surface, (h, ht, htt) = self._central(t)
