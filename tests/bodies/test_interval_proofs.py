@@ -8,8 +8,8 @@ from standoff.bodies.proofs.formulas import forms, signs, symbolic
 from standoff.bodies.proofs.formulas.normals import least_cosines
 from standoff.bodies.proofs.formulas.signs import proven_sign
 from standoff.bodies.proofs.interval import prove
+from standoff.geometry.boxes import grid
 from standoff.geometry.formulas import FormulaSurface
-from standoff.geometry.formulas.enclosures import grid
 
 PI = np.pi
 SQUARE = (-1, 1, -1, 1)

@@ -8,11 +8,12 @@ from standoff.bodies.proofs import interval
 from standoff.bodies.proofs.formulas import forms, normals
 from standoff.bodies.proofs.formulas.poles import poles_of
 from standoff.bodies.proofs.formulas.taylor import Expansion, TaylorBounds, curvature, normal
+from standoff.geometry.boxes import Boxes, grid
 from standoff.geometry.formulas import FormulaSurface
-from standoff.geometry.formulas.enclosures import Boxes, grid
 from standoff.geometry.formulas.expressions import read_expression
-from standoff.geometry.formulas.series import SeriesProgram, powers
+from standoff.geometry.formulas.series_program import SeriesProgram
 from standoff.geometry.intervals import Interval
+from standoff.geometry.series import powers
 
 PI = np.pi
 HALF = PI / 2
@@ -33,7 +34,7 @@ def test_series_hold_every_derivative(text):
     low = np.array([0.3, 0.4])
     width = 1e-3
     sides = [Interval(np.array([a]), np.array([a + width])) for a in low]
-    series = SeriesProgram([expression], ("u", "v"))(*sides, 3)[0]
+    series = SeriesProgram([expression], ("u", "v"))(*sides, order=3)[0]
     for row, (k, m) in enumerate(powers(3)):
         derivative = expression.diff(*([u] * k + [v] * m)) if k + m else expression
         derivative = derivative / (sympy.factorial(k) * sympy.factorial(m))

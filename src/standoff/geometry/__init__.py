@@ -13,9 +13,10 @@ if TYPE_CHECKING:
     from standoff.geometry.nurbs_curves import NurbsCurve
     from standoff.geometry.nurbs_pcurves import NurbsPcurve
     from standoff.geometry.pcurves import Pcurve
+    from standoff.geometry.quadrics import Cone, Cylinder, Plane, Sphere
     from standoff.geometry.superellipsoids import SuperellipsoidPole, SuperellipsoidSide
     from standoff.geometry.surface_curves import SurfaceCurve
-    from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
+    from standoff.geometry.surfaces import Surface
     from standoff.geometry.swept import Extrusion, Revolution
     from standoff.geometry.torus import Torus
 else:
@@ -32,7 +33,8 @@ else:
             "standoff.geometry.pcurves": ("Pcurve",),
             "standoff.geometry.superellipsoids": ("SuperellipsoidPole", "SuperellipsoidSide"),
             "standoff.geometry.surface_curves": ("SurfaceCurve",),
-            "standoff.geometry.surfaces": ("Cone", "Cylinder", "Plane", "Sphere", "Surface"),
+            "standoff.geometry.quadrics": ("Cone", "Cylinder", "Plane", "Sphere"),
+            "standoff.geometry.surfaces": ("Surface",),
             "standoff.geometry.swept": ("Extrusion", "Revolution"),
             "standoff.geometry.torus": ("Torus",),
         },

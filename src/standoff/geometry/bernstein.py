@@ -123,12 +123,18 @@ def segment(degree: int, first: float, last: float) -> Array:
 
     Row i holds the blossom at (first, ... , last ...): all its weights are positive.
     """
-    n = degree + 1
-    matrix = np.empty((n, n))
-    for i in range(n):
-        rows = np.eye(n)
-        for step in range(degree):
-            t = last if step < i else first
-            rows = (1.0 - t) * rows[:-1] + t * rows[1:]
-        matrix[i] = rows[0]
+    matrix: Array = segments(degree, np.array([first]), np.array([last]))[0]
     return matrix
+
+
+def segments(degree: int, first: Array, last: Array) -> Array:
+    """The same, (m, n, n), for m segments at once."""
+    n = degree + 1
+    matrices = np.empty((len(first), n, n))
+    for i in range(n):
+        rows = np.broadcast_to(np.eye(n), (len(first), n, n))
+        for step in range(degree):
+            t = (last if step < i else first)[:, None, None]
+            rows = (1.0 - t) * rows[:, :-1] + t * rows[:, 1:]
+        matrices[:, i] = rows[:, 0]
+    return matrices

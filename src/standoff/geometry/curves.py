@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from standoff.errors import StandoffError
+from standoff.geometry.intervals import Interval, cos, interval, sin
 from standoff.geometry.tolerances import PARALLEL_AXES, WHOLE_CONIC
 from standoff.geometry.validation import Array, affine_map, check_alike, finite, vector3
 from standoff.kernels.body import layout as L
@@ -17,6 +18,7 @@ from standoff.real_numbers import shape_of
 
 if TYPE_CHECKING:
     from standoff.geometry.formulas.compiled import Formula
+    from standoff.geometry.net_bounds import CutNets
     from standoff.geometry.pcurves import Pcurve
     from standoff.geometry.surfaces import Surface
 
@@ -76,6 +78,22 @@ class Curve(KeepsReadOnly):
         """(low, high), each (3,): surely around the curve; None where its kind gives none."""
         return None
 
+    def jets_over(self, t: Interval) -> Interval:
+        """(3, 3, n) bounds of (x, x_t, x_tt) over ranges of t that no span's end divides.
+
+        Raises
+        ------
+        StandoffError
+            A kind of curve without bounds.
+        """
+        raise StandoffError(f"{type(self).__name__} has no bounds: it cannot be a profile.")
+
+    def heights_over(self, directions: Interval, t: Interval) -> Interval:
+        """(m, n) bounds of direction . x over such ranges; directions (m, 3, n)."""
+        from standoff.geometry.curve_bounds import heights_by_jets
+
+        return heights_by_jets(self, directions, t)
+
     def transformed(self, linear: Array, shift: Array) -> Curve:
         """The exact image under x -> linear x + shift; the parameter stays the same."""
         linear, shift = affine_map(linear, shift)
@@ -119,6 +137,13 @@ class Line(Curve):
 
     kind = L.LINE
 
+    def jets_over(self, t: Interval) -> Interval:
+        from standoff.geometry.interval_vectors import mapped, stacked
+
+        one, zero = interval(np.ones_like(t.lo)), interval(np.zeros_like(t.lo))
+        rows = [[t, one, zero], [one, zero, zero]]
+        return mapped(self.basis()[:, [0, 2]], stacked([stacked(row) for row in rows]))
+
     def __init__(self, p: Any, q: Any) -> None:
         p, q = vector3(_planar(p), "p"), vector3(_planar(q), "q")
         if np.array_equal(p, q):
@@ -147,6 +172,21 @@ class ConicArc(Curve):
     """
 
     kind = L.CONIC
+
+    def jets_over(self, t: Interval) -> Interval:
+        from standoff.geometry.interval_vectors import mapped, stacked
+
+        c, s = cos(t), sin(t)
+        one, zero = interval(np.ones_like(t.lo)), interval(np.zeros_like(t.lo))
+        rows = [[c, -s, -c], [s, c, -s], [one, zero, zero]]
+        return mapped(self.basis(), stacked([stacked(row) for row in rows]))
+
+    def heights_over(self, directions: Interval, t: Interval) -> Interval:
+        """Exact but for rounding."""
+        from standoff.geometry.interval_vectors import mapped, wave
+
+        a, b, c = (mapped(directions, interval(col[:, None])) for col in self.basis().T)
+        return wave(a, b, t) + c
 
     def __init__(
         self, centre: Any, a: Any, b: Any, first: float = 0.0, last: float = FULL_TURN
@@ -189,6 +229,19 @@ class RationalBezier(Curve):
     """
 
     kind = L.BEZIER
+
+    def nets_over(self, t: Interval) -> CutNets:
+        """Its control points, cut to ranges of t."""
+        from standoff.geometry.net_bounds import curve_nets
+
+        return curve_nets(self.data[1:].reshape(1, -1, 4), np.array([0.0, 1.0]), t)
+
+    def jets_over(self, t: Interval) -> Interval:
+        return self.nets_over(t).jets()[:, [0, 1, 3]]
+
+    def heights_over(self, directions: Interval, t: Interval) -> Interval:
+        """Of the control points."""
+        return self.nets_over(t).heights(directions)
 
     def __init__(self, control_points: Any, weights: Any = None) -> None:
         if (shape_of(control_points) or ())[1:] == (2,):

@@ -37,23 +37,26 @@ class Interval:
         self.lo = lo
         self.hi = hi
 
+    def __getitem__(self, which: Any) -> Interval:
+        return Interval(self.lo[which], self.hi[which])
+
     def __neg__(self) -> Interval:
         return Interval(-self.hi, -self.lo)
 
-    def __add__(self, other: Interval | float) -> Interval:
+    def __add__(self, other: Interval | float | Array) -> Interval:
         b = interval(other)
         return _rounded(self.lo + b.lo, self.hi + b.hi)
 
     __radd__ = __add__
 
-    def __sub__(self, other: Interval | float) -> Interval:
+    def __sub__(self, other: Interval | float | Array) -> Interval:
         return self + (-interval(other))
 
     def __rsub__(self, other: float) -> Interval:
         return interval(other) + (-self)
 
-    def __mul__(self, other: Interval | float) -> Interval:
-        if not isinstance(other, Interval):
+    def __mul__(self, other: Interval | float | Array) -> Interval:
+        if not isinstance(other, Interval | np.ndarray):
             if other == 1.0:
                 return self
             if other == -1.0:
@@ -65,7 +68,7 @@ class Interval:
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Interval | float) -> Interval:
+    def __truediv__(self, other: Interval | float | Array) -> Interval:
         return self * reciprocal(interval(other))
 
     def __rtruediv__(self, other: float) -> Interval:
@@ -92,6 +95,17 @@ class Interval:
     def magnitude(self) -> Array:
         """The greatest absolute value."""
         return np.maximum(np.abs(self.lo), np.abs(self.hi))
+
+    @property
+    def middle(self) -> Array:
+        """A number amid the bounds."""
+        return np.asarray(0.5 * self.lo + 0.5 * self.hi)
+
+    @property
+    def radius(self) -> Array:
+        """The greatest distance of a value from `middle`."""
+        middle = self.middle
+        return np.asarray(np.nextafter(np.maximum(self.hi - middle, middle - self.lo), np.inf))
 
     @property
     def mignitude(self) -> Array:

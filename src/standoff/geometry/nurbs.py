@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -29,6 +29,12 @@ from standoff.geometry.knots import (
 from standoff.geometry.surfaces import Domain, Surface, checked_domain, inside
 from standoff.geometry.validation import Array, affine_map, check_alike, finite
 from standoff.kernels.body import layout as L
+
+if TYPE_CHECKING:
+    from standoff.geometry.boxes import Boxes
+    from standoff.geometry.intervals import Interval
+    from standoff.geometry.net_bounds import CutNets
+    from standoff.geometry.patch_bounds import PatchBounds
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,6 +217,24 @@ class NurbsSurface(Surface):
     def highest(self, direction: Array) -> None:
         """None: the box serves instead."""
         return
+
+    def nets_over(self, boxes: Boxes) -> CutNets:
+        """Its Bezier patches, cut to boxes that no knot divides."""
+        from standoff.geometry.net_bounds import CutNets
+
+        return CutNets(self.blocks, (self.essential_u.breaks, self.essential_v.breaks), boxes)
+
+    def jets_over(self, boxes: Boxes) -> Interval:
+        return self.nets_over(boxes).jets()
+
+    def extents_over(self, boxes: Boxes, directions: Array) -> Interval:
+        """Of the control points."""
+        return self.nets_over(boxes).heights(directions)
+
+    def bounds_over(self, boxes: Boxes) -> PatchBounds:
+        from standoff.geometry.net_bounds import net_bounds
+
+        return net_bounds(self, boxes)
 
     def refined(self, knots_u: Sequence[float] = (), knots_v: Sequence[float] = ()) -> NurbsSurface:
         """The same surface with further knots inserted inside its domain."""

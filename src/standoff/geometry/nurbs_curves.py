@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,10 @@ from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.tolerances import SMOOTH_JOINT
 from standoff.geometry.validation import Array, affine_map, finite
 from standoff.kernels.body import layout as L
+
+if TYPE_CHECKING:
+    from standoff.geometry.intervals import Interval
+    from standoff.geometry.net_bounds import CutNets
 from standoff.real_numbers import shape_of
 
 
@@ -107,6 +111,19 @@ class NurbsCurve(Curve):
     def box(self) -> tuple[Array, Array]:
         """(low, high) corners of a box that surely holds the curve, tightly."""
         return tight_box(self.blocks.swapaxes(1, 2)[..., None])
+
+    def nets_over(self, t: Interval) -> CutNets:
+        """Its Bezier pieces, cut to ranges of t that no knot divides."""
+        from standoff.geometry.net_bounds import curve_nets
+
+        return curve_nets(self.blocks, self.essential.breaks, t)
+
+    def jets_over(self, t: Interval) -> Interval:
+        return self.nets_over(t).jets()[:, [0, 1, 3]]
+
+    def heights_over(self, directions: Interval, t: Interval) -> Interval:
+        """Of the control points."""
+        return self.nets_over(t).heights(directions)
 
     def breaks(self) -> tuple[float, ...]:
         """Knots inside the domain where the curve may be less than C2."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +11,11 @@ from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array, finite
 from standoff.kernels.body import layout as L
+
+if TYPE_CHECKING:
+    from standoff.geometry.boxes import Boxes
+    from standoff.geometry.intervals import Interval
+    from standoff.geometry.patch_bounds import PatchBounds
 
 # Exponents that random poses found sound: beyond them roundings are edges to float64 (a box, an
 # octahedron), and descents near 2 end uncertified in some of a thousand poses.
@@ -78,6 +84,23 @@ class SuperellipsoidPole(Surface):
     def analytic_breaks(self) -> tuple[Array, Array]:
         """The coordinate planes."""
         return np.zeros(1), np.zeros(1)
+
+    def jets_over(self, boxes: Boxes) -> Interval:
+        from standoff.geometry.superellipsoid_bounds import superellipsoid_jets
+
+        return superellipsoid_jets(self, boxes)
+
+    def extents_over(self, boxes: Boxes, directions: Array) -> Interval:
+        """Between the corners' hull and a supporting plane."""
+        from standoff.geometry.superellipsoid_bounds import superellipsoid_extents
+
+        return superellipsoid_extents(self, boxes, directions)
+
+    def bounds_over(self, boxes: Boxes) -> PatchBounds:
+        """Curvatures are unknown beside the coordinate planes, where they may be infinite."""
+        from standoff.geometry.superellipsoid_bounds import superellipsoid_bounds
+
+        return superellipsoid_bounds(self, boxes)
 
     def highest(self, direction: Array) -> None:
         return None

@@ -21,7 +21,10 @@ from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import real_array, shape_of, shown
 
 if TYPE_CHECKING:
+    from standoff.geometry.boxes import Boxes
     from standoff.geometry.formulas.compiled import Formula
+    from standoff.geometry.intervals import Interval
+    from standoff.geometry.patch_bounds import PatchBounds
 
 Domain = tuple[float, float, float, float]
 UNBOUNDED: Domain = (-np.inf, np.inf, -np.inf, np.inf)
@@ -231,187 +234,94 @@ class Surface(KeepsReadOnly, ABC):
         body's box, so the certificate, rests on it.
         """
 
+    def extents(self, rectangles: Any, directions: Any) -> tuple[Array, Array]:
+        """How far the surface reaches along directions, over rectangles of parameters.
+
+        Parameters
+        ----------
+        rectangles : (n, 4) array_like
+            Rows (u0, u1, v0, v1) within the domain; a side may have no width.
+        directions : (m, 3) or (m, 3, n) array_like
+            Body frame; the same for all rectangles, or one set each.
+
+        Returns
+        -------
+        low, high : (m, n) arrays
+            Bounds of direction . x, in the unit of both.
+
+        Raises
+        ------
+        StandoffError
+            A wrong shape, a number that is not finite, u0 > u1 or v0 > v1.
+        """
+        from standoff.geometry.patch_bounds import checked_rectangles, cut
+
+        boxes = checked_rectangles(rectangles)
+        shape = (-1, 3) if np.ndim(directions) == 2 else (-1, 3, len(boxes))
+        given = finite(directions, "directions", shape)
+        each = given if given.ndim == 3 else given[..., None]
+        parts, owners = cut(boxes, self.analytic_breaks())
+        every = np.broadcast_to(each, (*each.shape[:2], len(boxes)))[..., owners]
+        found = self.extents_over(parts, every)
+        low, high = (np.full((len(each), len(boxes)), x) for x in (np.inf, -np.inf))
+        for row in range(len(each)):
+            np.minimum.at(low[row], owners, found.lo[row])
+            np.maximum.at(high[row], owners, found.hi[row])
+        return low, high
+
+    def bounds(self, rectangles: Any) -> PatchBounds:
+        """Boxes, cones of normals and curvatures over rectangles of parameters.
+
+        They enclose, and sharpen as rectangles shrink: boxes with the square of the width, cones
+        and curvatures with the width. Beside a crease they are of the rectangle's own side.
+
+        Parameters
+        ----------
+        rectangles : (n, 4) array_like
+            Rows (u0, u1, v0, v1) within the domain; a side may have no width.
+
+        Returns
+        -------
+        PatchBounds
+
+        Raises
+        ------
+        StandoffError
+            A wrong shape, a number that is not finite, u0 > u1 or v0 > v1.
+        """
+        from standoff.geometry.patch_bounds import checked_rectangles, cut
+
+        boxes = checked_rectangles(rectangles)
+        parts, owners = cut(boxes, self.analytic_breaks())
+        found = self.bounds_over(parts)
+        return found if len(parts) == len(boxes) else found.merged(owners, len(boxes))
+
+    @abstractmethod
+    def jets_over(self, boxes: Boxes) -> Interval:
+        """(3, 6, n) bounds of the canonical jet over boxes that no analytic break divides."""
+
+    def body_jets(self, boxes: Boxes) -> Interval:
+        """The same in the body's frame."""
+        from standoff.geometry.jet_bounds import affine_jets
+
+        return affine_jets(self.jets_over(boxes), self.linear, self.shift)
+
+    def extents_over(self, boxes: Boxes, directions: Array) -> Interval:
+        """(m, n) bounds of direction . x over such boxes; directions (m, 3, n)."""
+        from standoff.geometry.jet_bounds import JetBounds
+
+        return JetBounds(boxes, self.body_jets).extents(directions)
+
+    def bounds_over(self, boxes: Boxes) -> PatchBounds:
+        """`bounds` over such boxes."""
+        from standoff.geometry.jet_bounds import JetBounds
+
+        jets = JetBounds(boxes, self.body_jets)
+        return jets.bounds(jets.extents(np.eye(3)[..., None]))
+
     def canonical(self, points: Array) -> Array:
         """Body points, (..., 3), in the canonical frame."""
         return (np.asarray(points) - self.shift) @ np.linalg.inv(self.linear).T
 
 
-class Plane(Surface):
-    """(u, v, 0): the plane through `shift` spanned by the first two columns of `linear`.
-
-    Parameters
-    ----------
-    linear : (3, 3) array_like, regular
-        Its first two columns are the changes with u and v, length; the third, across, plays no
-        part.
-    shift : (3,) array_like
-        The point of u = v = 0, length.
-    domain : (u0, u1, v0, v1)
-        Ranges of the parameters, dimensionless; all of the surface by default.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, a singular map, an empty domain.
-    """
-
-    kind = L.PLANE
-    periodic = False
-    projection = "parallel"
-    part_of = None
-    ruled = True
-    proof = "theorem"
-    bulge = 0
-
-    def within_hemisphere(self) -> bool:
-        """It has one normal."""
-        return True
-
-    @staticmethod
-    def through(origin: Array, along_u: Array, along_v: Array) -> Plane:
-        """The plane x = origin + u along_u + v along_v.
-
-        Parameters
-        ----------
-        origin, along_u, along_v : (3,) array_like
-            Lengths; the last two not parallel.
-
-        Returns
-        -------
-        Plane
-
-        Raises
-        ------
-        ValueError
-            A wrong shape, a number that is not finite, parallel directions.
-        """
-        along_u, along_v = vector3(along_u, "along_u"), vector3(along_v, "along_v")
-        normal = np.cross(along_u, along_v)
-        length = np.linalg.norm(normal)
-        if length == 0.0:
-            raise StandoffError(f"along_u {along_u} and along_v {along_v} are parallel: no plane.")
-        # the third column plays no part in the jet; unit size keeps the inverse well scaled
-        third = normal / length * np.sqrt(length)
-        return Plane(np.column_stack([along_u, along_v, third]), vector3(origin, "origin"))
-
-    def highest(self, direction: Array) -> None:
-        return None
-
-
-class Sphere(Surface):
-    """The gnomonic chart (u, v, 1)/sqrt(1 + u² + v²): the half of an ellipsoid about `linear` e_z.
-
-    Every plane section is a conic in (u, v).
-
-    Parameters
-    ----------
-    linear : (3, 3) array_like, regular
-        Its columns are the ellipsoid's semi-axes, length; any orthogonal matrix on its right gives
-        another chart of the same ellipsoid.
-    shift : (3,) array_like
-        The ellipsoid's centre, length.
-    domain : (u0, u1, v0, v1)
-        Ranges of the parameters, tangents of angles from the centre of the chart; all of the
-        surface by default.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, a singular map, an empty domain.
-    """
-
-    kind = L.SPHERE
-    periodic = False
-    projection = "central"
-    part_of = "ellipsoid"
-    ruled = False
-    proof = "theorem"
-    bulge = 1
-
-    def within_hemisphere(self) -> bool:
-        """A gnomonic chart shows less than half a sphere."""
-        return True
-
-    def least_curvature(self) -> float:
-        """c/a² of an ellipsoid with semi-axes a >= b >= c."""
-        axes = np.linalg.svd(self.linear, compute_uv=False)
-        return float(axes[2] / axes[0] ** 2)
-
-    def farthest(self) -> float:
-        return float(np.linalg.norm(self.shift) + np.linalg.norm(self.linear, ord=2))
-
-    def highest(self, direction: Array) -> tuple[float, float] | None:
-        y = self.linear.T @ direction
-        return (float(y[0] / y[2]), float(y[1] / y[2])) if y[2] > 0.0 else None
-
-
-class Cylinder(Surface):
-    """(cos u, sin u, v); u needs no seam.
-
-    Parameters
-    ----------
-    linear : (3, 3) array_like, regular
-        Its first two columns are the semi-axes of the section, the third the change with v; length.
-    shift : (3,) array_like
-        The point of the axis at v = 0, length.
-    domain : (u0, u1, v0, v1)
-        Ranges of the parameters: u in radians; all of the surface by default.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, a singular map, an empty domain.
-    """
-
-    kind = L.CYLINDER
-    periodic = True
-    projection = "axial"
-    part_of = None
-    ruled = True
-    proof = "theorem"
-    bulge = 1
-
-    def within_hemisphere(self) -> bool:
-        """Less than half of it."""
-        return bool(self.domain[1] - self.domain[0] < np.pi)
-
-    def highest(self, direction: Array) -> None:
-        return None
-
-
-class Cone(Surface):
-    """(v cos u, v sin u, v), v >= 0: the apex is at `shift`.
-
-    Parameters
-    ----------
-    linear : (3, 3) array_like, regular
-        Its first two columns are the semi-axes of the section at v = 1, the third leads there from
-        the apex; length.
-    shift : (3,) array_like
-        The apex, length.
-    domain : (u0, u1, v0, v1)
-        Ranges of the parameters: u in radians; all of the surface by default.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, a singular map, an empty domain.
-    """
-
-    kind = L.CONE
-    periodic = True
-    projection = "axial"
-    part_of = None
-    ruled = True
-    proof = "theorem"
-    bulge = 1
-
-    def within_hemisphere(self) -> bool:
-        """Its normals lean away from its axis."""
-        return True
-
-    def highest(self, direction: Array) -> None:
-        return None
-
-
-__all__ = ["Cone", "Cylinder", "Plane", "Sphere", "Surface", "finite"]
+__all__ = ["Surface", "checked_domain", "finite"]

@@ -10,15 +10,20 @@ import numpy as np
 from standoff.errors import StandoffError
 from standoff.geometry.curve_bounds import box_of, curve_breaks, curve_reach
 from standoff.geometry.curves import FULL_TURN, Curve
+from standoff.geometry.interval_vectors import by_generator, mapped, stacked
+from standoff.geometry.intervals import Interval, interval
+from standoff.geometry.rotational import Rotational
 from standoff.geometry.surfaces import Domain, Surface, inside
-from standoff.geometry.tolerances import ALONG_PROFILE, PROFILE_ROUNDOFF
+from standoff.geometry.tolerances import ALONG_PROFILE, PROFILE_ROUNDOFF, ROUND_POLE
 from standoff.geometry.torus import checked_turn, full_turn
 from standoff.geometry.validation import LEAST, Array, affine_map, finite, vector3
 from standoff.kernels.body import layout as L
 from standoff.real_numbers import shown
 
 if TYPE_CHECKING:
+    from standoff.geometry.boxes import Boxes
     from standoff.geometry.formulas.compiled import Formula
+    from standoff.geometry.patch_bounds import PatchBounds
 
 # Points of a profile that are looked at.
 PROFILE_SAMPLES = 65
@@ -69,7 +74,7 @@ class Swept(Surface):
         return
 
 
-class Revolution(Swept):
+class Revolution(Swept, Rotational):
     """(r(v) cos u, r(v) sin u, z(v)): a profile (r, 0, z) turned about the axis z.
 
     Parameters
@@ -136,6 +141,45 @@ class Revolution(Swept):
     def pieces(self) -> tuple[Array, Array]:
         """Those of the profile, as v."""
         return np.zeros(0), inside(self.profile.spans(), *self.domain[2:])
+
+    def meridian(self, v: Interval) -> Interval:
+        return self.profile.jets_over(v)[[0, 2]]
+
+    def meridian_heights(self, rho: Interval, z: Interval, v: Interval) -> Interval:
+        none = interval(np.zeros_like(rho.lo))
+        directions = by_generator([rho, none, z + none])
+        return self.profile.heights_over(directions, v)
+
+    def meridian_normals(self, v: Interval) -> list[Interval]:
+        """(z', -rho') at the middle, and how far it turns from there."""
+        middle = interval(v.middle)
+        away, half = v - middle, interval(v.radius)
+        over, at = self.meridian(v), self.meridian(middle)
+        slope = stacked([over[1, 2], -over[0, 2]])
+        amid = interval(stacked([at[1, 2], -at[0, 2]]).middle)
+        value = stacked([at[1, 1], -at[0, 1]]) + (slope - amid) * away
+        return [value + amid * half, value - amid * half]
+
+    def over_radius(self, v: Interval) -> Interval:
+        """At a round pole, where both vanish, z'' / rho' bounds it (Cauchy's mean value)."""
+        meridian = self.meridian(v)
+        with np.errstate(all="ignore"):
+            found = meridian[1, 1] / meridian[0, 0]
+            limit = meridian[1, 2] / meridian[0, 1]
+        touches = np.zeros(len(v.lo), dtype=bool)
+        for end in (self.profile.first, self.profile.last):
+            if self._round_pole(end):
+                touches |= (v.lo <= end) & (end <= v.hi)
+        return Interval(
+            np.where(touches, limit.lo, found.lo), np.where(touches, limit.hi, found.hi)
+        )
+
+    def _round_pole(self, end: float) -> bool:
+        """Does the profile meet the axis squarely there, but for roundoff?"""
+        x, slope, _ = self.profile.jet(end)
+        size = float(np.linalg.norm(slope)) * (self.profile.last - self.profile.first)
+        square = abs(float(slope[2])) <= ROUND_POLE * abs(float(slope[0]))
+        return bool(abs(float(x[0])) <= PROFILE_ROUNDOFF * size) and square
 
     def _reach(self, direction: Array) -> float:
         """A bound of direction @ x over the domain."""
@@ -223,6 +267,27 @@ class Extrusion(Swept):
     def pieces(self) -> tuple[Array, Array]:
         """Those of the profile, as u."""
         return inside(self.profile.spans(), *self.domain[:2]), np.zeros(0)
+
+    def jets_over(self, boxes: Boxes) -> Interval:
+        u, v = boxes.sides
+        x, xu, xuu = (self.profile.jets_over(u)[:, k] for k in range(3))
+        along = interval(self.direction[:, None])
+        none = interval(np.zeros((3, len(boxes))))
+        return by_generator([x + along * v, xu, along + none, xuu, none, none])
+
+    def extents_over(self, boxes: Boxes, directions: Array) -> Interval:
+        """Exact but for rounding if the profile's are."""
+        u, v = boxes.sides
+        every = interval(np.broadcast_to(directions, (*directions.shape[:2], len(boxes))))
+        y = by_generator([mapped(every, interval(column[:, None])) for column in self.linear.T])
+        held = self.profile.heights_over(y, u) + mapped(y, interval(self.direction[:, None])) * v
+        return held + mapped(every, interval(self.shift[:, None]))
+
+    def bounds_over(self, boxes: Boxes) -> PatchBounds:
+        from standoff.geometry.jet_bounds import JetBounds
+
+        extents = self.extents_over(boxes, np.eye(3)[..., None])
+        return JetBounds(boxes, self.body_jets).bounds(extents)
 
     def _reach(self, direction: Array) -> float:
         """A bound of direction @ x over the domain."""

@@ -93,3 +93,28 @@ INFLECTION: Final = 1e-15
 ANGLE_ROUNDOFF: Final = 1e-15
 """Angles may pass a whole turn, or the ends of the convex part, by this (radians): roundoff of
 computing them."""
+
+CONE_ROUNDING: Final = 16.0 * float(np.finfo(np.float64).eps)
+"""Radians by which a cone of normals is opened: the roundoff of angles between unit vectors, and of
+an axis that is one but for some eps."""
+
+VANISHED: Final = 1e-290
+"""A vector as near to nothing as this (in whatever unit of length) comes from rounding an exact
+zero outward, as of a side that is one point."""
+
+NET_ROUNDING: Final = 64.0 * float(np.finfo(np.float64).eps)
+"""Control points of a part of a Bezier patch are rounded by this (relative to the greatest number
+of their net): twice nine levels of blossoms, two roundings each, and the sums of two matrix
+products."""
+
+SPAN_ROUNDING: Final = 4.0 * float(np.finfo(np.float64).eps)
+"""Ends of a part of a span are moved outward by this (a fraction of the span): they are rounded
+when they are brought to [0, 1]."""
+
+ROUND_POLE: Final = 1e-12
+"""A profile meets its axis squarely, so that its surface is smooth there, when it is inclined by no
+more than this (a ratio of its derivatives): roundoff of its control points, or of an angle."""
+
+LENGTH_ROUNDING: Final = 16.0 * float(np.finfo(np.float64).eps)
+"""Singular values and lengths of mapped vectors are rounded by this (relative to the map's greatest
+singular value): some eps each."""

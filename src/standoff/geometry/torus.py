@@ -8,7 +8,10 @@ import numpy as np
 
 from standoff.errors import StandoffError
 from standoff.geometry.curves import FULL_TURN
-from standoff.geometry.surfaces import Domain, Surface
+from standoff.geometry.interval_vectors import stacked, wave
+from standoff.geometry.intervals import Interval, cos, interval, near, sin
+from standoff.geometry.rotational import Rotational
+from standoff.geometry.surfaces import Domain
 from standoff.geometry.tolerances import ANGLE_ROUNDOFF
 from standoff.geometry.validation import Array, affine_map, finite, positive
 from standoff.kernels.body import layout as L
@@ -29,7 +32,7 @@ def checked_turn(first: Any, last: Any, name: str) -> tuple[float, float]:
     return a, b
 
 
-class Torus(Surface):
+class Torus(Rotational):
     """((R + r cos v) cos u, (R + r cos v) sin u, r sin v), |v| <= pi/2: its convex part.
 
     Parameters
@@ -101,6 +104,42 @@ class Torus(Surface):
         """A part above or below its middle plane, or less than half of it both ways."""
         u0, u1, v0, v1 = self.domain
         return bool(v0 > 0.0 or v1 < 0.0 or (u1 - u0 < np.pi and v1 - v0 < np.pi))
+
+    def meridian(self, v: Interval) -> Interval:
+        c, s = cos(v), sin(v)
+        rho, z = c * self.minor, s * self.minor
+        return stacked([stacked([rho + self.major, -z, -rho]), stacked([z, rho, -z])])
+
+    def over_radius(self, v: Interval) -> Interval:
+        """cos v / (R / r + cos v) grows with cos v on either side of the axis."""
+        c = cos(v)
+        ratio = interval(np.array(self.major)) / self.minor
+        ends = [x / (ratio + x) for x in (interval(c.lo), interval(c.hi))]
+        crosses = ~((ratio + c).mignitude > 0.0)
+        low, high = ends[0].lo, ends[1].hi
+        return Interval(np.where(crosses, -np.inf, low), np.where(crosses, np.inf, high))
+
+    def speed_and_bend(self, v: Interval) -> tuple[Interval, Interval]:
+        square = interval(np.full_like(v.lo, self.minor)) ** 2
+        return square, -square
+
+    def meridian_heights(self, rho: Interval, z: Interval, v: Interval) -> Interval:
+        return rho * self.major + wave(rho * self.minor, z * self.minor, v)
+
+    def meridian_normals(self, v: Interval) -> list[Interval]:
+        """At both ends, and where they are along the axis, if that lies between."""
+        spots = [stacked([cos(t), sin(t)]) for t in (interval(v.lo), interval(v.hi))]
+        zero = np.zeros_like(v.lo)
+        for crest, up in ((0.5 * np.pi, 1.0), (1.5 * np.pi, -1.0)):
+            inside = cos(v - near(crest)).hi >= 1.0
+            up_there = stacked([interval(zero), interval(zero + up)])
+            spots.append(
+                Interval(
+                    np.where(inside, up_there.lo, spots[0].lo),
+                    np.where(inside, up_there.hi, spots[0].hi),
+                )
+            )
+        return spots
 
     def highest(self, direction: Array) -> tuple[float, float] | None:
         y = self.linear.T @ direction

@@ -28,9 +28,10 @@ from standoff.bodies.proofs.formulas.signs import FIRST_GRID, Bounds, sign_of_pr
 from standoff.bodies.proofs.formulas.taylor import TaylorBounds, curvature
 from standoff.bodies.proofs.proof import PatchProof
 from standoff.bodies.proofs.tolerances import BEND_ROUNDOFF, FEW_OPERATIONS
+from standoff.geometry.boxes import Boxes, grid
 from standoff.geometry.formulas import FormulaSurface
 from standoff.geometry.formulas.compiled import Formula
-from standoff.geometry.formulas.enclosures import Boxes, Enclosure, grid, hull, images
+from standoff.geometry.formulas.enclosures import Enclosure, hull, images
 from standoff.geometry.formulas.expressions import sympy_module
 from standoff.geometry.intervals import TINY, Interval
 from standoff.geometry.validation import Array

@@ -10,7 +10,7 @@ from standoff.bodies.tolerances import THIN_LENS
 from standoff.bodies.topology import Edge, Face
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
-from standoff.geometry.surfaces import Sphere
+from standoff.geometry.quadrics import Sphere
 from standoff.geometry.validation import Array, not_negative, positive
 
 

@@ -13,7 +13,7 @@ from standoff.bodies.tolerances import NARROWEST, OFF_PLANE, PLANE_ROUNDINGS
 from standoff.bodies.topology import Edge, Face
 from standoff.errors import BodyError
 from standoff.geometry.curves import Line
-from standoff.geometry.surfaces import Plane
+from standoff.geometry.quadrics import Plane
 from standoff.geometry.validation import Array, finite, not_negative
 
 

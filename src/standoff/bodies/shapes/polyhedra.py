@@ -21,7 +21,7 @@ from standoff.bodies.tolerances import (
 from standoff.bodies.topology import Edge, Face
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.curves import Line
-from standoff.geometry.surfaces import Plane
+from standoff.geometry.quadrics import Plane
 from standoff.geometry.validation import LEAST, Array, finite, not_negative
 from standoff.spellings import renamed
 

@@ -11,7 +11,7 @@ from standoff.bodies.shapes.arguments import by_position, positive_numbers
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
-from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere
+from standoff.geometry.quadrics import Cone, Cylinder, Plane, Sphere
 from standoff.geometry.validation import Array, finite, matrix3, not_negative, positive, vector3
 from standoff.spellings import renamed
 

@@ -10,7 +10,7 @@ from standoff.bodies.shapes.profile_hulls import Arc, Chain, hull_chain
 from standoff.bodies.tolerances import SAME_RADIUS
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
-from standoff.geometry.surfaces import Cone, Cylinder, Plane
+from standoff.geometry.quadrics import Cone, Cylinder, Plane
 from standoff.geometry.swept import Revolution
 from standoff.geometry.validation import Array, not_negative
 

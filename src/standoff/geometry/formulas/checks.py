@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 
 from standoff.errors import FormulaError
+from standoff.geometry.boxes import Boxes, grid
 from standoff.geometry.formulas.compiled import Formula, compiled
 from standoff.geometry.formulas.enclosures import (
     CHUNK,
     DIVE,
     FIRST_GRID,
-    Boxes,
     Enclosure,
-    grid,
     without_bounds,
 )
 from standoff.geometry.formulas.expressions import parameter_values, read_expression

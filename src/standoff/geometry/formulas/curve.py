@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from standoff.geometry.boxes import grid
 from standoff.geometry.curves import Curve
 from standoff.geometry.formulas.checks import (
     CURVE_VARIABLES,
@@ -16,7 +17,8 @@ from standoff.geometry.formulas.checks import (
     read_formula,
 )
 from standoff.geometry.formulas.compiled import Formula, compiled
-from standoff.geometry.formulas.enclosures import Enclosure, grid, hull
+from standoff.geometry.formulas.enclosures import Enclosure, hull
+from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.tolerances import CLOSED_CURVE
 from standoff.geometry.validation import Array, affine_map
 from standoff.kernels.body import layout as L
@@ -96,6 +98,18 @@ class FormulaCurve(Curve):
         """(low, high), each (3,), body frame: surely around the curve, by interval bounds."""
         bounds = Enclosure(self.formula.jet[:6], CURVE_VARIABLES)
         return hull(bounds, grid((self.first, self.last), BOX_GRID), self.linear, self.shift)
+
+    def jets_over(self, t: Interval) -> Interval:
+        from standoff.geometry.formulas.series_program import series_program
+        from standoff.geometry.interval_vectors import mapped, stacked
+
+        rows = series_program(self.formula)(t, order=2)
+        # of u^k alone: places 0, 1 and 3 of the series
+        jets = stacked([Interval(c.lo[[0, 1, 3]], c.hi[[0, 1, 3]]) for c in rows])
+        jets = mapped(self.linear, jets * np.array([1.0, 1.0, 2.0])[:, None])
+        shift = np.zeros((3, 3, 1))
+        shift[:, 0, 0] = self.shift
+        return jets + interval(shift)
 
     def __reduce__(self) -> tuple[Any, ...]:
         limits = (self.first, self.last)

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from standoff.geometry.boxes import Boxes, grid
 from standoff.geometry.formulas.programs import Writer
+from standoff.geometry.interval_vectors import mapped
 from standoff.geometry.intervals import FUNCTIONS, Interval, interval
 from standoff.geometry.tolerances import SMALLEST_BOX
 from standoff.geometry.validation import Array
@@ -20,45 +21,6 @@ CHUNK = 256
 # Boxes that are cut on first, so that a place is found before all of a pole's line is covered.
 DIVE = 16
 MOST_BOXES = 30_000
-
-
-class Boxes:
-    """n boxes of d parameters: `low` and `high`, each (n, d)."""
-
-    def __init__(self, low: Array, high: Array) -> None:
-        self.low = low
-        self.high = high
-
-    def __len__(self) -> int:
-        return len(self.low)
-
-    def __getitem__(self, which: Any) -> Boxes:
-        return Boxes(self.low[which], self.high[which])
-
-    @property
-    def middle(self) -> Array:
-        return 0.5 * (self.low + self.high)
-
-    @property
-    def sides(self) -> list[Interval]:
-        return [Interval(self.low[:, k], self.high[:, k]) for k in range(self.low.shape[1])]
-
-    def halves(self, axis: NDArray[np.int64]) -> Boxes:
-        """Each box cut in two across its `axis` (n,)."""
-        rows = np.arange(len(self))
-        middle = self.middle[rows, axis]
-        left, right = self.high.copy(), self.low.copy()
-        left[rows, axis] = middle
-        right[rows, axis] = middle
-        return Boxes(np.concatenate([self.low, right]), np.concatenate([left, self.high]))
-
-
-def grid(domain: Sequence[float], sides: int) -> Boxes:
-    """sides^d boxes that tile (u0, u1, v0, v1), or (t0, t1)."""
-    cuts = [np.linspace(domain[k], domain[k + 1], sides + 1) for k in range(0, len(domain), 2)]
-    low = np.stack([a.ravel() for a in np.meshgrid(*(c[:-1] for c in cuts), indexing="ij")], 1)
-    high = np.stack([a.ravel() for a in np.meshgrid(*(c[1:] for c in cuts), indexing="ij")], 1)
-    return Boxes(low, high)
 
 
 class Enclosure:
@@ -149,14 +111,3 @@ def hull(bounds: Enclosure, boxes: Boxes, linear: Array, shift: Array) -> tuple[
 
 def _by_three(rows: Interval) -> list[Interval]:
     return [Interval(rows.lo[k : k + 3], rows.hi[k : k + 3]) for k in range(0, len(rows.lo), 3)]
-
-
-def mapped(linear: Array, x: Interval) -> Interval:
-    """(3, n) bounds of linear @ x."""
-    rows = []
-    for row in linear:
-        total = interval(0.0)
-        for a, low, high in zip(row, x.lo, x.hi, strict=True):
-            total = total + interval(float(a)) * Interval(low, high)
-        rows.append(total)
-    return Interval(np.stack([r.lo for r in rows]), np.stack([r.hi for r in rows]))

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from standoff.errors import FormulaError
+from standoff.geometry.boxes import grid
 from standoff.geometry.formulas.checks import (
     SURFACE_VARIABLES,
     check_finite,
@@ -16,10 +17,14 @@ from standoff.geometry.formulas.checks import (
     read_formula,
 )
 from standoff.geometry.formulas.compiled import Formula, compiled
-from standoff.geometry.formulas.enclosures import Enclosure, grid, hull
+from standoff.geometry.formulas.enclosures import Enclosure, hull
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array, affine_map
 from standoff.kernels.body import layout as L
+
+if TYPE_CHECKING:
+    from standoff.geometry.boxes import Boxes
+    from standoff.geometry.intervals import Interval
 
 # Boxes a side whose hull is the box of a patch: its excess falls with the square.
 BOX_GRID = 24
@@ -110,6 +115,12 @@ class FormulaSurface(Surface):
         """(low, high), each (3,), body frame: surely around the patch, by interval bounds."""
         bounds = Enclosure(self.formula.jet[:9], SURFACE_VARIABLES)
         return hull(bounds, grid(self.domain, BOX_GRID), self.linear, self.shift)
+
+    def jets_over(self, boxes: Boxes) -> Interval:
+        from standoff.geometry.formulas.series_program import series_program
+        from standoff.geometry.jet_bounds import derivatives
+
+        return derivatives(series_program(self.formula)(*boxes.sides, order=2))
 
     def highest(self, direction: Array) -> None:
         """None: `box` serves."""

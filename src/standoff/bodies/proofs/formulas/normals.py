@@ -11,8 +11,9 @@ from standoff.bodies.proofs.formulas.forms import curvature_forms
 from standoff.bodies.proofs.formulas.signs import FIRST_GRID, Bounds, sign_of_product, widest
 from standoff.bodies.proofs.formulas.taylor import TaylorBounds, normal
 from standoff.bodies.proofs.tolerances import FEW_OPERATIONS, LEAST_COSINE, SMALLEST_SIGN_BOX
+from standoff.geometry.boxes import Boxes, grid
 from standoff.geometry.formulas.compiled import Formula
-from standoff.geometry.formulas.enclosures import Boxes, grid, mapped
+from standoff.geometry.interval_vectors import mapped
 from standoff.geometry.intervals import TINY, Interval
 from standoff.geometry.validation import Array
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.proofs.tolerances import SMALLEST_SIGN_BOX, ZERO_BOUND
-from standoff.geometry.formulas.enclosures import Boxes, Enclosure, grid, mean_value
+from standoff.geometry.boxes import Boxes, grid
+from standoff.geometry.formulas.enclosures import Enclosure, mean_value
 from standoff.geometry.formulas.expressions import sympy_module
 from standoff.geometry.intervals import Interval
 from standoff.geometry.validation import Array

@@ -22,10 +22,11 @@ import numpy as np
 from standoff.bodies.proofs.formulas.poles import Pole, poles_of
 from standoff.bodies.proofs.formulas.symbolic import cross, dot
 from standoff.bodies.proofs.tolerances import QUOTIENT_ROUNDOFF
+from standoff.geometry.boxes import Boxes
 from standoff.geometry.formulas.compiled import Formula
-from standoff.geometry.formulas.enclosures import Boxes
-from standoff.geometry.formulas.series import Series, SeriesProgram, powers
+from standoff.geometry.formulas.series_program import SeriesProgram
 from standoff.geometry.intervals import Interval, interval
+from standoff.geometry.series import Series, powers
 from standoff.geometry.validation import Array
 
 # Order of the series of x: those of its second derivatives are of two less, and of four less at a
@@ -114,7 +115,7 @@ class Expansion:
             Interval(np.append(c.lo, r.lo), np.append(c.hi, r.hi))
             for c, r in zip(centres, reach, strict=True)
         ]
-        self.x = program(both[0], both[1], order)
+        self.x = program(both[0], both[1], order=order)
         self.away = [s - c for s, c in zip(boxes.sides, centres, strict=True)]
         self.to_middle = [interval(m) - c for m, c in zip(boxes.middle.T, centres, strict=True)]
         if pole is not None:

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from standoff.geometry.formulas.programs import Writer
 from standoff.geometry.intervals import FUNCTIONS, TINY, Interval, interval
 from standoff.geometry.validation import Array
 
@@ -317,22 +316,3 @@ SERIES_FUNCTIONS: dict[str, Any] = {
     "near": PLAIN["near"],
 }  # fmt: skip
 """By the names that formulas are written in."""
-
-
-class SeriesProgram:
-    """Expressions in u and v as a program over series."""
-
-    def __init__(self, expressions: Sequence[Any], variables: tuple[str, ...]) -> None:
-        lines, outputs = Writer("near({})").body(expressions)
-        text = [f"def series({', '.join(variables)}):", *lines, f"return [{', '.join(outputs)}]"]
-        namespace: dict[str, Any] = dict(SERIES_FUNCTIONS)
-        exec("\n    ".join(text), namespace)
-        self._series = namespace["series"]
-        self.length = sum(map(len, text))
-
-    def __call__(self, u: Interval, v: Interval, order: int) -> list[Series]:
-        """One series an expression over boxes with these sides (n,)."""
-        first, second = Series.variable(u, 0, order), Series.variable(v, 1, order)
-        with np.errstate(all="ignore"):
-            found = self._series(first, second)
-        return [s if isinstance(s, Series) else first * 0.0 + s for s in found]

@@ -1,0 +1,198 @@
+"""Bounds of rational Bezier patches and curves over parts of them, from their control nets.
+
+Derivatives are nets too; each is cut to the part, whose values its coefficients hold. Quotients
+are taken about a point of the part, so that the weights' bounds multiply small vectors.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.geometry.bernstein import product, segments
+from standoff.geometry.boxes import Boxes
+from standoff.geometry.interval_vectors import stacked
+from standoff.geometry.intervals import Interval, interval
+from standoff.geometry.jet_bounds import JetBounds, widened
+from standoff.geometry.patch_bounds import PatchBounds, cone_round
+from standoff.geometry.tolerances import NET_ROUNDING, SPAN_ROUNDING
+from standoff.geometry.validation import Array
+
+if TYPE_CHECKING:
+    from standoff.geometry.nurbs import NurbsSurface
+
+EPS = float(np.finfo(np.float64).eps)
+# Cones wider than this (radians) are sought anew by the product of the nets.
+WIDE_CONE = 0.1
+
+
+class CutNets:
+    """Parts of a grid of rational Bezier patches, over boxes that no break divides.
+
+    Parameters
+    ----------
+    blocks : (nu, nv, p + 1, q + 1, 4) homogeneous points; curves have nv = 1, q = 0.
+    breaks : (nu + 1,) and (nv + 1,) parameters between the patches.
+    boxes : n of them.
+    """
+
+    def __init__(self, blocks: Array, breaks: tuple[Array, Array], boxes: Boxes) -> None:
+        self.spans, self.ends, self.widths = [], [], []
+        for axis, levels in enumerate(breaks):
+            middle, low, high = (b[:, axis] for b in (boxes.middle, boxes.low, boxes.high))
+            span = np.clip(np.searchsorted(levels, middle, "right") - 1, 0, len(levels) - 2)
+            first, width = levels[span], levels[span + 1] - levels[span]
+            start, stop = (low - first) / width - SPAN_ROUNDING, (high - first) / width
+            self.spans.append(span)
+            self.widths.append(width)
+            self.ends.append((np.clip(start, 0, 1), np.clip(stop + SPAN_ROUNDING, 0, 1)))
+        self.h = blocks[self.spans[0], self.spans[1]]
+
+    def net(self, along_u: int, along_v: int) -> Interval:
+        """(4, n, i, j) coefficients of a partial derivative over each box, rounding included."""
+        h, off = self.h, np.zeros_like(self.h)
+        if along_u >= h.shape[1] or along_v >= h.shape[2]:
+            return interval(np.zeros((4, len(h), 1, 1)))
+        scale: Array = np.ones(len(h))
+        for axis, times in ((1, along_u), (2, along_v)):
+            for _ in range(times):
+                degree = h.shape[axis] - 1
+                h = degree * np.diff(h, axis=axis)
+                # of equal points it is exactly nothing
+                first, last = (np.delete(off, k, axis) for k in (0, -1))
+                off = degree * (first + last) + 2.0 * EPS * np.abs(h)
+                scale = scale / self.widths[axis - 1]
+        rows = segments(h.shape[1] - 1, *self.ends[0])
+        columns = segments(h.shape[2] - 1, *self.ends[1])
+        part, size, off = (
+            _cut(c, rows, columns) * scale[:, None, None] for c in (h, np.abs(h), off)
+        )
+        spare = NET_ROUNDING * size + 2.0 * off
+        return Interval(part - spare, part + spare)
+
+    @cached_property
+    def points(self) -> Interval:
+        """(3, k, n) control points, whose hull holds each part."""
+        h = _flat(self.net(0, 0))
+        return h[:3] / h[3]
+
+    def normals(self) -> Interval:
+        """(3, k, n) coefficients of w^3 x_u × x_v, which span the normals.
+
+        They are those of w X_u × X_v + w_v X × X_u - w_u X × X_v with X about a point of the part.
+        Of a side that is one point, but for rounding, they are nothing: such a row is left out, as
+        the next one is that of the quotient by the distance from the side.
+        """
+        centre = self.points.middle.mean(axis=1)[:, :, None, None]
+        h, hu, hv = (self.net(*order) for order in ((0, 0), (1, 0), (0, 1)))
+        x, xu, xv = (c[:3] - interval(centre) * c[3] for c in (h, hu, hv))
+        plain = _crossed(xu, xv)
+        if hu[3].magnitude.any() or hv[3].magnitude.any():
+            plain = _times(plain, h[3])
+            plain = plain + _times(_crossed(x, xu), hv[3]) - _times(_crossed(x, xv), hu[3])
+        for axis in (0, 1):
+            for end in (0, 1):
+                at = np.flatnonzero(self._collapsed(axis, end))
+                row = (slice(None), at, -end) if axis == 0 else (slice(None), at, slice(None), -end)
+                plain.lo[row] = plain.hi[row] = 0.0
+        return _flat(plain)
+
+    def _collapsed(self, axis: int, end: int) -> NDArray[np.bool_]:
+        """(n,) which parts begin (0) or end (1) along u or v at a side that is one point."""
+        at_end = self.ends[axis][end] == float(end)
+        side = np.take(self.h, -end, axis=1 + axis)
+        x = side[..., :3] / side[..., 3:]
+        width = np.ptp(x, axis=1).max(axis=1)
+        return np.asarray(at_end & (width <= NET_ROUNDING * np.abs(x).max(axis=(1, 2))))
+
+    def heights(self, directions: Interval | Array) -> Interval:
+        """(m, n) bounds of direction . x; directions (m, 3, n)."""
+        rows = []
+        given = interval(directions)
+        for low, high in zip(given.lo, given.hi, strict=True):
+            total = interval(0.0)
+            for k in range(3):
+                total = total + self.points[k] * Interval(low[k], high[k])
+            rows.append(_held(total))
+        return stacked(rows)
+
+    def jets(self) -> Interval:
+        """(3, 6, n) bounds of the jet."""
+        centre = interval(self.points.middle.mean(axis=1)[:, None])
+        offset = _held(self.points - centre)
+        weights, nets = {}, {}
+        for order in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)):
+            h = _flat(self.net(*order))
+            nets[order], weights[order] = _held(h[:3] - centre * h[3]), _held(h[3])
+        w = weights[0, 0]
+        wu, wv, wuu, wuv, wvv = (weights[k] for k in ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2)))
+        xu = (nets[1, 0] - offset * wu) / w
+        xv = (nets[0, 1] - offset * wv) / w
+        rows = (
+            offset + centre[:, 0],
+            xu,
+            xv,
+            (nets[2, 0] - xu * wu * 2.0 - offset * wuu) / w,
+            (nets[1, 1] - xu * wv - xv * wu - offset * wuv) / w,
+            (nets[0, 2] - xv * wv * 2.0 - offset * wvv) / w,
+        )
+        return Interval(np.stack([r.lo for r in rows], 1), np.stack([r.hi for r in rows], 1))
+
+
+def _cut(net: Array, rows: Array, columns: Array) -> Array:
+    """(c, n, i, j) from nets (n, a, b, c), rows (n, i, a) and columns (n, j, b)."""
+    n, a, b, c = net.shape
+    first = np.matmul(rows, net.reshape(n, a, b * c)).reshape(n, -1, b, c)
+    return np.moveaxis(np.matmul(columns[:, None], first), -1, 0)
+
+
+def _flat(net: Interval) -> Interval:
+    """(..., k, n) coefficients in one row, from (..., n, i, j)."""
+    n, i, j = net.lo.shape[-3:]
+    rows = (np.moveaxis(c.reshape(*c.shape[:-3], n, i * j), -2, -1) for c in (net.lo, net.hi))
+    return Interval(*rows)
+
+
+def _times(a: Interval, b: Interval) -> Interval:
+    """The product of polynomials by Bernstein coefficients, (..., n, i, j)."""
+    middle = product(a.middle, b.middle)
+    # |a b - a' b'| <= |a'| |b - b'| + |a - a'| |b|, and each sum is rounded
+    off = product(np.abs(a.middle), b.radius) + product(a.radius, b.magnitude)
+    off = off + NET_ROUNDING * product(np.abs(a.middle), np.abs(b.middle))
+    return Interval(middle - 2.0 * off, middle + 2.0 * off)
+
+
+def _crossed(a: Interval, b: Interval) -> Interval:
+    """(3, n, i, j) the cross product of vector polynomials."""
+    after, before = [1, 2, 0], [2, 0, 1]
+    return _times(a[after], b[before]) - _times(a[before], b[after])
+
+
+def net_bounds(surface: NurbsSurface, boxes: Boxes) -> PatchBounds:
+    """Boxes, cones of normals and curvatures of a NURBS, over boxes that no knot divides."""
+    nets = surface.nets_over(boxes)
+    jets = JetBounds(boxes, surface.jets_over)
+    axis, angle = jets.normals()
+    wide = np.flatnonzero(angle > WIDE_CONE)
+    if len(wide):
+        # the product of the nets turns out narrower than the mean value, but is dearer
+        other, closer = cone_round(surface.nets_over(boxes[wide]).normals())
+        axis[wide] = np.where((closer < angle[wide])[:, None], other, axis[wide])
+        angle[wide] = np.minimum(closer, angle[wide])
+    box = widened(nets.heights(np.eye(3)[..., None]))
+    return PatchBounds(*box, axis, angle, *jets.curvatures())
+
+
+def curve_nets(blocks: Array, breaks: Array, t: Interval) -> CutNets:
+    """Those of a curve's pieces (m, p + 1, 4), over ranges of t."""
+    none, one = np.zeros_like(t.lo), np.ones_like(t.lo)
+    boxes = Boxes(np.stack([t.lo, none], 1), np.stack([t.hi, one], 1))
+    return CutNets(blocks[:, None, :, None], (breaks, np.array([0.0, 1.0])), boxes)
+
+
+def _held(coefficients: Interval) -> Interval:
+    """Bounds of values from those of coefficients, over the axis before the last."""
+    return Interval(coefficients.lo.min(axis=-2), coefficients.hi.max(axis=-2))

@@ -1,0 +1,247 @@
+"""Planes and quadrics: a plane, an ellipsoid's gnomonic chart, a cylinder, a cone, and their affine
+images."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from standoff.errors import StandoffError
+from standoff.geometry.interval_vectors import stacked
+from standoff.geometry.intervals import Interval, interval
+from standoff.geometry.rotational import Rotational
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array, vector3
+from standoff.kernels.body import layout as L
+
+if TYPE_CHECKING:
+    from standoff.geometry.boxes import Boxes
+    from standoff.geometry.patch_bounds import PatchBounds
+    from standoff.geometry.series import Series
+
+
+class Plane(Surface):
+    """(u, v, 0): the plane through `shift` spanned by the first two columns of `linear`.
+
+    Parameters
+    ----------
+    linear : (3, 3) array_like, regular
+        Its first two columns are the changes with u and v, length; the third, across, plays no
+        part.
+    shift : (3,) array_like
+        The point of u = v = 0, length.
+    domain : (u0, u1, v0, v1)
+        Ranges of the parameters, dimensionless; all of the surface by default.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, a singular map, an empty domain.
+    """
+
+    kind = L.PLANE
+    periodic = False
+    projection = "parallel"
+    part_of = None
+    ruled = True
+    proof = "theorem"
+    bulge = 0
+
+    def within_hemisphere(self) -> bool:
+        """It has one normal."""
+        return True
+
+    @staticmethod
+    def through(origin: Array, along_u: Array, along_v: Array) -> Plane:
+        """The plane x = origin + u along_u + v along_v.
+
+        Parameters
+        ----------
+        origin, along_u, along_v : (3,) array_like
+            Lengths; the last two not parallel.
+
+        Returns
+        -------
+        Plane
+
+        Raises
+        ------
+        ValueError
+            A wrong shape, a number that is not finite, parallel directions.
+        """
+        along_u, along_v = vector3(along_u, "along_u"), vector3(along_v, "along_v")
+        normal = np.cross(along_u, along_v)
+        length = np.linalg.norm(normal)
+        if length == 0.0:
+            raise StandoffError(f"along_u {along_u} and along_v {along_v} are parallel: no plane.")
+        # the third column plays no part in the jet; unit size keeps the inverse well scaled
+        third = normal / length * np.sqrt(length)
+        return Plane(np.column_stack([along_u, along_v, third]), vector3(origin, "origin"))
+
+    def highest(self, direction: Array) -> None:
+        return None
+
+    def jets_over(self, boxes: Boxes) -> Interval:
+        from standoff.geometry.jet_bounds import series_jets
+
+        return series_jets(boxes, lambda u, v: (u, v, 0.0))
+
+
+class Sphere(Surface):
+    """The gnomonic chart (u, v, 1)/sqrt(1 + u² + v²): the half of an ellipsoid about `linear` e_z.
+
+    Every plane section is a conic in (u, v).
+
+    Parameters
+    ----------
+    linear : (3, 3) array_like, regular
+        Its columns are the ellipsoid's semi-axes, length; any orthogonal matrix on its right gives
+        another chart of the same ellipsoid.
+    shift : (3,) array_like
+        The ellipsoid's centre, length.
+    domain : (u0, u1, v0, v1)
+        Ranges of the parameters, tangents of angles from the centre of the chart; all of the
+        surface by default.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, a singular map, an empty domain.
+    """
+
+    kind = L.SPHERE
+    periodic = False
+    projection = "central"
+    part_of = "ellipsoid"
+    ruled = False
+    proof = "theorem"
+    bulge = 1
+
+    def within_hemisphere(self) -> bool:
+        """A gnomonic chart shows less than half a sphere."""
+        return True
+
+    def least_curvature(self) -> float:
+        """c/a² of an ellipsoid with semi-axes a >= b >= c."""
+        axes = np.linalg.svd(self.linear, compute_uv=False)
+        return float(axes[2] / axes[0] ** 2)
+
+    def farthest(self) -> float:
+        return float(np.linalg.norm(self.shift) + np.linalg.norm(self.linear, ord=2))
+
+    def highest(self, direction: Array) -> tuple[float, float] | None:
+        y = self.linear.T @ direction
+        return (float(y[0] / y[2]), float(y[1] / y[2])) if y[2] > 0.0 else None
+
+    def jets_over(self, boxes: Boxes) -> Interval:
+        from standoff.geometry.jet_bounds import series_jets
+        from standoff.geometry.series import power
+
+        def form(u: Series, v: Series) -> tuple[Series, Series, Series]:
+            s = power(u**2 + v**2 + 1.0, -0.5)
+            return u * s, v * s, s
+
+        return series_jets(boxes, form)
+
+    def extents_over(self, boxes: Boxes, directions: Array) -> Interval:
+        """Exact but for rounding."""
+        from standoff.geometry.gnomonic import ellipsoid_extents
+
+        return ellipsoid_extents(self, boxes, directions)
+
+    def bounds_over(self, boxes: Boxes) -> PatchBounds:
+        """Boxes are exact but for rounding, and of a sphere the curvatures."""
+        from standoff.geometry.gnomonic import ellipsoid_bounds
+
+        return ellipsoid_bounds(self, boxes)
+
+
+class Cylinder(Rotational):
+    """(cos u, sin u, v); u needs no seam.
+
+    Parameters
+    ----------
+    linear : (3, 3) array_like, regular
+        Its first two columns are the semi-axes of the section, the third the change with v; length.
+    shift : (3,) array_like
+        The point of the axis at v = 0, length.
+    domain : (u0, u1, v0, v1)
+        Ranges of the parameters: u in radians; all of the surface by default.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, a singular map, an empty domain.
+    """
+
+    kind = L.CYLINDER
+    periodic = True
+    projection = "axial"
+    part_of = None
+    ruled = True
+    proof = "theorem"
+    bulge = 1
+
+    def within_hemisphere(self) -> bool:
+        """Less than half of it."""
+        return bool(self.domain[1] - self.domain[0] < np.pi)
+
+    def highest(self, direction: Array) -> None:
+        return None
+
+    def meridian(self, v: Interval) -> Interval:
+        one, zero = interval(np.ones_like(v.lo)), interval(np.zeros_like(v.lo))
+        return stacked([stacked([one, zero, zero]), stacked([v, one, zero])])
+
+    def meridian_heights(self, rho: Interval, z: Interval, v: Interval) -> Interval:
+        return rho + z * v
+
+    def meridian_normals(self, v: Interval) -> list[Interval]:
+        return [stacked([interval(np.ones_like(v.lo)), interval(np.zeros_like(v.lo))])]
+
+
+class Cone(Rotational):
+    """(v cos u, v sin u, v), v >= 0: the apex is at `shift`.
+
+    Parameters
+    ----------
+    linear : (3, 3) array_like, regular
+        Its first two columns are the semi-axes of the section at v = 1, the third leads there from
+        the apex; length.
+    shift : (3,) array_like
+        The apex, length.
+    domain : (u0, u1, v0, v1)
+        Ranges of the parameters: u in radians; all of the surface by default.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, a singular map, an empty domain.
+    """
+
+    kind = L.CONE
+    periodic = True
+    projection = "axial"
+    part_of = None
+    ruled = True
+    proof = "theorem"
+    bulge = 1
+
+    def within_hemisphere(self) -> bool:
+        """Its normals lean away from its axis."""
+        return True
+
+    def highest(self, direction: Array) -> None:
+        return None
+
+    def meridian(self, v: Interval) -> Interval:
+        one, zero = interval(np.ones_like(v.lo)), interval(np.zeros_like(v.lo))
+        return stacked([stacked([v, one, zero]), stacked([v, one, zero])])
+
+    def meridian_heights(self, rho: Interval, z: Interval, v: Interval) -> Interval:
+        return (rho + z) * v
+
+    def meridian_normals(self, v: Interval) -> list[Interval]:
+        one = interval(np.ones_like(v.lo))
+        return [stacked([one, -one])]
