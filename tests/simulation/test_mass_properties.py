@@ -12,6 +12,9 @@ from mass_cases import CASES, CLOUD, TETRAHEDRON, rounded_cylinder
 from solids import Solid
 
 import standoff as so
+from standoff.bodies.moments import boundary
+from standoff.bodies.moments.cells import Cell
+from standoff.bodies.moments.flux import Frame
 from standoff.geometry import (
     BezierPatch,
     ConicArc,
@@ -22,9 +25,6 @@ from standoff.geometry import (
     SurfaceCurve,
 )
 from standoff.simulation import MassErrors, MassProperties, mass_properties
-from standoff.simulation.moments import boundary
-from standoff.simulation.moments.cells import Cell
-from standoff.simulation.moments.flux import Frame
 
 SHAPES = so.shapes
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from standoff.simulation.moments.cells import Cell, evaluated, integrate, rule
+from standoff.bodies.moments.cells import Cell, evaluated, integrate, rule
 
 Array = NDArray[np.float64]
 Plain = Callable[[Array, Array], Array]

@@ -89,7 +89,7 @@ def refined(body: Assembled, found: Sequence[EdgeTurns], size: float) -> list[Ed
     least = min(e.least for e in found)
     greatest = max(e.greatest for e in found)
     return [
-        _minimised(body, size, e)
+        extremes(body, size, e)
         if e.doubt > TURN_NOISE
         and (e.least - e.doubt < max(least, 0.0) or e.greatest + e.doubt > greatest)
         else e
@@ -97,7 +97,8 @@ def refined(body: Assembled, found: Sequence[EdgeTurns], size: float) -> list[Ed
     ]
 
 
-def _minimised(body: Assembled, size: float, e: EdgeTurns) -> EdgeTurns:
+def extremes(body: Assembled, size: float, e: EdgeTurns) -> EdgeTurns:
+    """An edge's extreme turns, by minimisation about the sampled ones."""
     curve = body.edges[e.edge].curve
     width = (curve.last - curve.first) / (len(SHARES) - 1)
 

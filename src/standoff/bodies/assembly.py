@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
-from standoff.bodies.charts import edge_points, interior_point, make_charts, surface_normal
+from standoff.bodies.charts import edge_points, make_charts, surface_normal
+from standoff.bodies.enclosed import all_flat, enclosed_by, enclosed_by_planes, outward_right
 from standoff.bodies.orientation import chart_at, orient
 from standoff.bodies.packing import Assembled, Chart, Sector
 from standoff.bodies.tolerances import (
     JOIN_TOLERANCE,
+    SIGN_OF_VOLUME,
     SINGULAR_CORNER,
     WIDE_ANGLE,
     coordinate_roundoff,
@@ -36,13 +39,15 @@ class Joined:
     """An oriented boundary.
 
     notes : what was turned; residual : the greatest distance of parts that were joined, length;
-    tolerance : what it was allowed to be, length.
+    tolerance : what it was allowed to be, length; shells, claims : as ``Oriented``.
     """
 
     parts: Assembled
     notes: list[str]
     residual: float
     tolerance: float
+    shells: list[list[int]]
+    claims: list[int]
 
 
 def _check_joins(vertices: Array, edges: Sequence[Edge], size: float, tolerance: float) -> float:
@@ -73,21 +78,6 @@ def _check_joins(vertices: Array, edges: Sequence[Edge], size: float, tolerance:
                     part=("edge", j),
                 )
     return worst
-
-
-def _check_loops(faces: Sequence[Face], edges: Sequence[Edge]) -> None:
-    for i, face in enumerate(faces):
-        ends: dict[int, int] = {}
-        for j, s in face.loop:
-            e = edges[j]
-            if e.first is None or e.last is None:
-                continue
-            a, b = (e.first, e.last) if s > 0 else (e.last, e.first)
-            ends[a] = ends.get(a, 0) - 1
-            ends[b] = ends.get(b, 0) + 1
-        loose = [vertex for vertex, balance in ends.items() if balance != 0]
-        if loose:
-            raise BodyError(f"Face {i}: its loop is open at vertices {loose}.", part=("face", i))
 
 
 def _check_on_surface(
@@ -221,68 +211,75 @@ def assemble(
     faces: Sequence[Face],
     dimension: int,
     size: float,
-    bounded: bool,
     tolerance: float | None = None,
-    senses: Sequence[int] | None = None,
+    senses: Sequence[int | None] | None = None,
+    trusted: bool = False,
 ) -> Joined:
     """Orient and check a boundary; its parts may miss each other by `tolerance`, length.
 
     By the roundoff of their coordinates they always may, whatever the tolerance.
 
-    senses : for every face +1 where f_u x f_v points outward, else -1, where it is known and the
-        loops follow it.
+    senses, trusted : as in ``orient``.
     """
     tolerance = JOIN_TOLERANCE * size if tolerance is None else tolerance
     roundoff = coordinate_roundoff(np.concatenate([vertices, *(edge_points(e) for e in edges)]))
     tolerance = max(tolerance, roundoff)
     miss = _check_joins(vertices, edges, size, tolerance)
-    inside = interior_point(vertices, edges, faces)
-    charts = make_charts(faces, edges, inside, bounded)
-    if senses is not None:
-        for chart in charts:
-            chart.outward = float(senses[chart.face])
-    smooth, notes = orient(charts, faces, edges, known=senses is not None)
+    charts = make_charts(faces, edges)
+    parts = Assembled(dimension, vertices, edges, faces, charts)
+    found = orient(charts, faces, edges, _volume(parts), senses, trusted)
+    parts = replace(parts, smooth=found.smooth)
     if roundoff > JOIN_TOLERANCE * size > 0.0:
-        notes.append(
+        found.notes.append(
             f"far from the origin: parts may miss each other by {roundoff:.3g}, the roundoff of "
             "their coordinates"
         )
-    _check_loops(faces, edges)
     miss = max(miss, _check_on_surface(charts, edges, size, tolerance))
     sectors, cones = _vertex_geometry(vertices, edges, faces, charts)
-    right = [False] * len(edges)
+    parts = replace(parts, sectors=sectors, cones=cones)
     if dimension == 2:
-        right, cones = _planar_geometry(vertices, edges, inside, size)
-    parts = Assembled(dimension, vertices, edges, faces, charts, smooth, right, sectors, cones)
-    return Joined(parts, notes, miss, tolerance)
+        right, cones = _planar_geometry(vertices, edges)
+        parts = replace(parts, outward_right=right, cones=cones)
+    return Joined(parts, found.notes, miss, tolerance, found.shells, found.claims)
+
+
+def _volume(parts: Assembled) -> Callable[[Sequence[int]], float]:
+    """Of a shell, as the charts face when it is asked."""
+
+    from standoff.bodies.boundary import boundary_of
+
+    def volume(shell: Sequence[int]) -> float:
+        if all_flat(parts, shell):
+            return enclosed_by_planes(parts, shell).settled
+        return enclosed_by(boundary_of(parts), shell, SIGN_OF_VOLUME).settled
+
+    return volume
 
 
 def _planar_geometry(
-    vertices: Array, edges: Sequence[Edge], inside: Array, size: float
+    vertices: Array, edges: Sequence[Edge]
 ) -> tuple[list[bool], list[list[Array]]]:
     """Outward sides of a planar loop's edges and the normal cones of its vertices."""
-    right: list[bool] = []
     cones: list[list[Array]] = [[] for _ in vertices]
-    for edge in edges:
+    meeting = Counter(v for edge in edges for v in (edge.first, edge.last) if v is not None)
+    for number in range(len(vertices)):
+        if meeting[number] != 2:
+            raise BodyError(
+                f"Planar loop: {meeting[number]} curves meet at vertex {number} "
+                f"{vertices[number][:2]}; exactly two must."
+            )
+    right = outward_right(edges)
+    for j, edge in enumerate(edges):
         c = edge.curve
-        x, tangent, _ = c.jet(0.5 * (c.first + c.last))
-        outward = np.array([tangent[1], -tangent[0], 0.0])
-        right.append(bool(outward @ (x - inside) > 0.0))
         for vertex, t in ((edge.first, c.first), (edge.last, c.last)):
             if vertex is not None:
                 tangent = c.jet(t)[1]
                 if not tangent.any():
                     raise BodyError(
-                        f"Planar loop: edge {len(right) - 1} has no tangent at its vertex {vertex} "
+                        f"Planar loop: edge {j} has no tangent at its vertex {vertex} "
                         f"{vertices[vertex][:2]}; leave out the doubled control point."
                     )
-                sign = 1.0 if right[-1] else -1.0
+                sign = 1.0 if right[j] else -1.0
                 normal = sign * np.array([tangent[1], -tangent[0], 0.0])
                 cones[vertex].append(normal / np.linalg.norm(normal))
-    for vertex, cone in enumerate(cones):
-        if len(cone) != 2:
-            raise BodyError(
-                f"Planar loop: {len(cone)} curves meet at vertex {vertex} "
-                f"{vertices[vertex][:2]}; exactly two must."
-            )
     return right, cones

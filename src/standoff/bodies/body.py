@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,12 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from standoff.bodies.addresses import formulas_of, readdressed
 from standoff.bodies.assembly import assemble
+from standoff.bodies.boundary import Boundary
 from standoff.bodies.charts import edge_points, loop_pcurve
 from standoff.bodies.convexity import Known
 from standoff.bodies.finishing import Packed, finish
-from standoff.bodies.packing import Ints
 from standoff.bodies.report import BodyReport
 from standoff.bodies.sewing import sew
 from standoff.bodies.tolerances import MAX_SPREAD, SIMILARITY_TOLERANCE, SINGULAR_MAP
@@ -32,19 +30,17 @@ from standoff.geometry.validation import (
     positive,
     vector3,
 )
-from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of
 from standoff.spellings import renamed
-from standoff.wording import counted, printable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
-class Body(KeepsReadOnly):
-    """A convex body in its own frame. Make one with ``so.shapes``, ``Body.from_patches`` or
-    ``Body.from_brep``.
+class Body(Boundary):
+    """A convex body in its own frame: a boundary that is proven convex. Make one with
+    ``so.shapes``, ``Body.from_patches`` or ``Body.from_brep``.
 
     Attributes
     ----------
@@ -64,20 +60,11 @@ class Body(KeepsReadOnly):
         Diagonal of the box around the body with its radius, length; inf for a half-space.
     """
 
-    name: str
-    vertex_points: Array
-    edge_parts: tuple[Edge, ...]
-    face_parts: tuple[Face, ...]
-    radius: float
-    dimension: int
-    ints: Ints
-    reals: Array
     report: BodyReport
-    size: float
 
     @staticmethod
     @renamed(radius="rounding=...")
-    def from_brep(
+    def from_brep(  # type: ignore[override]  # it takes what a convex body needs
         vertices: Any = (),
         edges: Sequence[Edge] = (),
         faces: Sequence[Face] = (),
@@ -126,7 +113,6 @@ class Body(KeepsReadOnly):
         check_parts(points, edges, faces, dimension)
         spots = [points] + [edge_points(e) for e in edges]
         cloud = np.concatenate(spots)
-        bounded = any(f.loop or len(f.charts) > 1 for f in faces) or not faces
         rough = float(np.linalg.norm(np.ptp(cloud, axis=0))) if len(cloud) else 1.0
         if len(cloud) > 1 and rough < LEAST:
             raise BodyError(
@@ -135,7 +121,7 @@ class Body(KeepsReadOnly):
         tolerance = None if tolerance is None else positive(tolerance, "tolerance")
         if convexity_tolerance is not None:
             convexity_tolerance = not_negative(convexity_tolerance, "convexity_tolerance")
-        joined = assemble(points, edges, faces, dimension, rough, bounded, tolerance)
+        joined = assemble(points, edges, faces, dimension, rough, tolerance)
         return _body(name, radius, finish(joined, radius, convexity_tolerance))
 
     @staticmethod
@@ -187,7 +173,7 @@ class Body(KeepsReadOnly):
         sewn = sew(patches, tolerance)
         reach = MAX_SPREAD * sewn.tolerance
         joined = assemble(
-            sewn.vertices, sewn.edges, sewn.faces, 3, sewn.size, True, reach, sewn.senses
+            sewn.vertices, sewn.edges, sewn.faces, 3, sewn.size, reach, sewn.senses, trusted=True
         )
         joined = replace(
             joined,
@@ -294,59 +280,12 @@ class Body(KeepsReadOnly):
         return figure
 
     @property
-    def digest(self) -> str:
-        """SHA-256 of the packed body, hexadecimal: the same on every machine."""
-        formulas = formulas_of(self.edge_parts, self.face_parts)
-        addresses = [f.address for f in formulas]
-        reals = readdressed(self.reals, addresses, [0.0] * len(addresses))
-        packed = hashlib.sha256()
-        for array, kind in ((self.ints, "<i8"), (reals, "<f8")):
-            packed.update(array.size.to_bytes(8, "little"))
-            packed.update(array.astype(kind).tobytes())
-        for formula in formulas:
-            packed.update(repr(formula.expressions).encode())
-        return packed.hexdigest()
-
-    def __getstate__(self) -> Any:
-        formulas = formulas_of(self.edge_parts, self.face_parts)
-        return super().__getstate__(), [f.address for f in formulas]
-
-    def __setstate__(self, stored: Any) -> None:
-        state, old = stored
-        super().__setstate__(state)
-        # formulas are compiled again in another process, at other addresses
-        new = [f.address for f in formulas_of(self.edge_parts, self.face_parts)]
-        object.__setattr__(self, "reals", readdressed(self.reals, old, new))
-
-    @property
-    def bounded(self) -> bool:
-        return bool(np.isfinite(self.size))
-
-    @property
-    def n_faces(self) -> int:
-        return len(self.face_parts)
-
-    @property
-    def n_edges(self) -> int:
-        return len(self.edge_parts)
-
-    @property
-    def n_vertices(self) -> int:
-        return len(self.vertex_points)
-
-    @property
     def flat(self) -> bool:
         """May it meet a planar body: everything in z = 0 and no faces."""
         if self.face_parts:
             return False
         spots = [self.vertex_points] + [edge_points(e) for e in self.edge_parts]
         return bool(np.abs(np.concatenate(spots)[:, 2]).max() == 0.0)
-
-    def __repr__(self) -> str:
-        faces, edges = counted(self.n_faces, "face"), counted(self.n_edges, "edge")
-        parts = f"{faces}, {edges}, {counted(self.n_vertices, 'vertex', 'vertices')}"
-        skin = f", radius {self.radius:g}" if self.radius else ""
-        return f"<Body {printable(self.name)}: {parts}{skin}, size {self.size:g}>"
 
 
 def _body(name: str, radius: float, packed: Packed) -> Body:

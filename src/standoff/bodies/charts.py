@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from standoff.bodies.packing import Chart, Coedge
-from standoff.bodies.tolerances import CHART_RIM, COLLAPSED_TANGENT, FLAT_ROUNDINGS, INWARD_STEP
+from standoff.bodies.tolerances import CHART_RIM, COLLAPSED_TANGENT, INWARD_STEP
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.errors import BodyError
 from standoff.geometry.exact_pcurves import pcurve_of
@@ -27,33 +27,6 @@ def edge_points(edge: Edge) -> Array:
     """Points inside an edge, (7, 3), body frame."""
     c = edge.curve
     return np.array([c.point(c.first + s * (c.last - c.first)) for s in EDGE_POINTS])
-
-
-def interior_point(vertices: Array, edges: Sequence[Edge], faces: Sequence[Face]) -> Array:
-    """A point inside the convex hull of the boundary."""
-    points = [vertices] if len(vertices) else []
-    points += [edge_points(e) for e in edges]
-    points += [_amid(face, edges) for face in faces]
-    return np.asarray(np.concatenate(points).mean(axis=0))
-
-
-def _amid(face: Face, edges: Sequence[Edge]) -> Array:
-    """Points of a face's surface amid its loop, (n, 3). An atlas's first chart is centred on it."""
-    if not face.loop:
-        return np.array([chart.jet(0.0, 0.0)[0] for chart in face.charts])
-    surface = face.charts[0]
-    if surface.periodic:  # its edges surround it, and its angles are not joined yet
-        return np.zeros((0, 3))
-    if len(face.charts) > 1:
-        return surface.jet(0.0, 0.0)[0][None]
-    spots = []
-    for k, (j, _) in enumerate(face.loop):
-        if 0 <= j < len(edges):
-            c = edges[j].curve
-            pcurve = loop_pcurve(face, k, edges, surface)
-            spots += [pcurve.point(t) for t in np.linspace(c.first, c.last, 9)]
-    u, v = np.mean([p[:2] for p in spots if p[2] > 0.0] or [(0.0, 0.0)], axis=0)
-    return surface.jet(float(u), float(v))[0][None]
 
 
 def loop_pcurve(face: Face, entry: int, edges: Sequence[Edge], surface: Surface) -> Pcurve:
@@ -105,9 +78,8 @@ def _inwards(surface: Surface, u: float, v: float) -> tuple[float, float]:
     return u + step * (0.5 * (u0 + u1) - u), v + step * (0.5 * (v0 + v1) - v)
 
 
-def make_charts(
-    faces: Sequence[Face], edges: Sequence[Edge], inside: Array, bounded: bool
-) -> list[Chart]:
+def make_charts(faces: Sequence[Face], edges: Sequence[Edge]) -> list[Chart]:
+    """The charts of all faces with their coedges, whose sides are the loops' senses."""
     charts = []
     for i, face in enumerate(faces):
         for surface in face.charts:
@@ -132,44 +104,14 @@ def make_charts(
                         part=("face", i),
                     )
                 chart.coedges += [
-                    Coedge(j, piece, first, last, orientation)
+                    Coedge(j, piece, first, last, orientation, k)
                     for a, b in spans
                     for piece, first, last in pcurve.pieces(a, b)
                 ]
             if surface.periodic:
                 _join_angles(chart, edges)
-            u, v = _somewhere(chart, edges)
-            x = surface.jet(u, v)[0]
-            facing = float(surface_normal(surface, u, v) @ (x - inside)) if bounded else 1.0
-            if abs(facing) <= FLAT_ROUNDINGS * EPS * float(np.abs([x, inside]).max()):
-                facing = encircled(chart)  # of a flat body: its loop says it
-            chart.outward = 1.0 if facing > 0.0 else -1.0
             charts.append(chart)
     return charts
-
-
-def encircled(chart: Chart) -> float:
-    """Area in (u, v) that a chart's loop runs round counterclockwise, as it was given.
-
-    The integral of -v du, which also serves a band whose two rims go once round. Collapsed sides
-    have no edge, so it is taken where they add nothing: of u dv where v is constant along them,
-    and in a band with v counted from theirs.
-    """
-    level = None
-    for c in chart.coedges:
-        if c.edge < 0:
-            (u0, v0, _), (u1, v1, _) = c.pcurve.point(c.first), c.pcurve.point(c.last)
-            level = v0 if abs(v1 - v0) < abs(u1 - u0) else level
-    area = 0.0
-    for c in chart.coedges:
-        if c.edge >= 0:
-            points = np.array([c.pcurve.point(t)[:2] for t in np.linspace(c.first, c.last, 33)])
-            middle, step = 0.5 * (points[1:] + points[:-1]), np.diff(points, axis=0)
-            if level is None or chart.surface.periodic:
-                area -= c.side * float((middle[:, 1] - (level or 0.0)) @ step[:, 0])
-            else:
-                area += c.side * float(middle[:, 0] @ step[:, 1])
-    return area
 
 
 def _collapsed_side(apex: Apex) -> Coedge:
@@ -242,18 +184,3 @@ def _visible_line(
     rim = (margin * float(np.abs(pcurve.matrix).max()) - level) / slope
     first, last = (max(first, rim), last) if slope > 0.0 else (first, min(last, rim))
     return [(first, last)] if first < last else []
-
-
-def _somewhere(chart: Chart, edges: Sequence[Edge]) -> tuple[float, float]:
-    """Parameters near the face, for signs only."""
-    points = [
-        c.pcurve.point(t)
-        for c in chart.coedges
-        if c.edge >= 0
-        for t in np.linspace(c.first, c.last, 9)
-    ]
-    visible = [p for p in points if p[2] > 0.0]
-    if not visible or chart.limit < np.inf:
-        return 0.0, 0.0
-    mean = np.mean([p[:2] for p in visible], axis=0)
-    return float(mean[0]), float(mean[1])

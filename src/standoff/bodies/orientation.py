@@ -1,31 +1,178 @@
-"""Senses of loops, sides of coedges, and which edges are smooth."""
+"""Senses of faces: which way out is, from their loops, their neighbours and the volume enclosed.
+
+The loops of a face of one chart tell where it is, whichever way round they were given. Two faces of
+an edge run against each other along it, so that one of a shell settles all others; the sign of the
+volume that the shell encloses settles that one. No point inside is asked for.
+"""
 
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from standoff.bodies.charts import encircled, surface_normal
+from standoff.bodies.charts import surface_normal
+from standoff.bodies.loops import traced, turn_loops
 from standoff.bodies.packing import Chart
 from standoff.bodies.tolerances import SMOOTH_ANGLE
 from standoff.bodies.topology import Edge, Face
 from standoff.errors import BodyError
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
+Volume = Callable[[Sequence[int]], float]
+"""Of the faces of a shell, as their charts face now: negative where they face inward, zero where
+it is nothing but for roundoff."""
+
+
+@dataclass
+class Oriented:
+    """What was found of the faces' senses.
+
+    Attributes
+    ----------
+    smooth : for every edge, whether its faces share their normals at one of its points.
+    shells : the faces of each, ascending.
+    claims : for every shell +1 where all its loops were given counterclockwise seen from outside,
+        -1 where all were given clockwise, 0 where they differ or do not tell.
+    notes : what was turned.
+    """
+
+    smooth: list[bool]
+    shells: list[list[int]]
+    claims: list[int]
+    notes: list[str]
+
+
+def orient(
+    charts: list[Chart],
+    faces: Sequence[Face],
+    edges: Sequence[Edge],
+    volume: Volume,
+    senses: Sequence[int | None] | None = None,
+    trusted: bool = False,
+) -> Oriented:
+    """Make every chart face outward, and its coedges have the face on their left.
+
+    Parameters
+    ----------
+    senses : for every face +1 where x_u × x_v points outward, -1 where inward, None where its
+        loops tell.
+    trusted : all senses are known, and the loops run counterclockwise seen from outside for sure.
+
+    Raises
+    ------
+    BodyError
+        An edge that does not join two faces; loops that bound no face; a shell with one side.
+    """
+    users = _edge_users(faces, edges)
+    given = senses if senses is not None else [None] * len(faces)
+    sheets = [_Sheet(i, face, _charts_of(charts, i), given[i]) for i, face in enumerate(faces)]
+    for sheet in sheets:
+        sheet.settle(edges, trusted)
+    shells = _shells(sheets, users)
+    if not trusted:
+        for shell in shells:
+            _turn_outward([sheets[i] for i in shell], volume)
+    claims, notes = [], []
+    for shell in shells:
+        told = {sheets[i].claim for i in shell}
+        claims.append(told.pop() if len(told) == 1 else 0)
+    if not trusted:
+        notes = [
+            f"face {sheet.number}: loop given inward, turned outward"
+            for sheet in sheets
+            if sheet.claim < 0
+        ]
+    return Oriented(_smooth_edges(charts, users, edges), shells, claims, notes)
+
+
+@dataclass
+class _Sheet:
+    """A face whose sense is being found.
+
+    A sheet of one chart with loops is turned as a whole: its charts' `outward`. One of an atlas
+    with loops is what lies on their left: where it is, and so which way it faces, follows from the
+    surface, and its loops are turned.
+    """
+
+    number: int
+    face: Face
+    charts: Sequence[Chart]
+    sense: int | None
+    as_given: int = 1  # -1 where its loops run clockwise seen from x_u × x_v, or were turned
+
+    @property
+    def by_loops(self) -> bool:
+        return bool(self.face.loop) and len(self.charts) == 1
+
+    def settle(self, edges: Sequence[Edge], trusted: bool) -> None:
+        """By its own loops, x_u × x_v outward; an atlas outward where it bulges, if not told."""
+        outward = self.sense or (1 if self.by_loops else bulging(self.charts[0].surface))
+        for chart in self.charts:
+            chart.outward = float(outward)
+        if self.by_loops and not trusted:
+            if turn_loops(self.charts[0], self.face, edges, self.number):
+                self.as_given = -1
+            return
+        several = not trusted and len(traced(self.face, edges, self.number)) > 1
+        for chart in self.charts:
+            chart.holed = several
+            for c in chart.coedges:
+                c.side = int(c.side * outward) if c.edge >= 0 else c.side
+
+    def along(self, entry: int) -> int:
+        """+1 where it runs along the edge of an entry, seen from outside, -1 where against it."""
+        if self.by_loops:
+            side = next(c.side for c in self.charts[0].coedges if c.entry == entry)
+            return int(side * self.charts[0].outward)
+        return self.face.loop[entry][1] * self.as_given
+
+    def turn(self) -> None:
+        """To the other side: a face of an atlas with loops becomes its complement."""
+        if self.by_loops or not self.face.loop:
+            for chart in self.charts:
+                chart.outward = -chart.outward
+            return
+        self.as_given = -self.as_given
+        for chart in self.charts:
+            for c in chart.coedges:
+                c.side = -c.side if c.edge >= 0 else c.side
+
+    @property
+    def claim(self) -> int:
+        """+1 where its loops were given counterclockwise seen from outside, else -1; 0 without."""
+        if not self.face.loop:
+            return 0
+        outward = int(self.charts[0].outward) if self.by_loops else 1
+        return self.as_given * outward
+
+
+def bulging(surface: Surface) -> int:
+    """+1 where a surface bulges along x_u × x_v, -1 where against it, by theorem; else +1."""
+    side = 1 if np.linalg.det(surface.linear) > 0.0 else -1
+    return side * surface.bulge if surface.bulge else 1
+
+
+def _charts_of(charts: list[Chart], face: int) -> list[Chart]:
+    first = bisect_left(charts, face, key=lambda chart: chart.face)
+    last = bisect_left(charts, face + 1, key=lambda chart: chart.face)
+    return charts[first:last]
+
 
 def _edge_users(faces: Sequence[Face], edges: Sequence[Edge]) -> dict[int, list[tuple[int, int]]]:
-    """For every edge its two (face, sense) pairs; raises where it is open or used too often."""
+    """For every edge its two (face, entry) pairs; raises where it is open or used too often."""
     users: dict[int, list[tuple[int, int]]] = {j: [] for j in range(len(edges))}
     for i, face in enumerate(faces):
-        for j, sense in face.loop:
+        for k, (j, sense) in enumerate(face.loop):
             if sense not in (-1, 1):
                 raise BodyError(
                     f"Face {i}, edge {j}: orientation {sense}; give +1 or -1.", part=("face", i)
                 )
-            users[j].append((i, sense))
+            users[j].append((i, k))
     for j, used in users.items():
         if faces and len(used) != 2:
             word = "open" if len(used) < 2 else "used too often"
@@ -36,23 +183,74 @@ def _edge_users(faces: Sequence[Face], edges: Sequence[Edge]) -> dict[int, list[
     return users
 
 
-def _compare_faces(
-    charts: list[Chart], faces: Sequence[Face], edges: Sequence[Edge]
-) -> tuple[list[bool], dict[int, dict[int, bool]]]:
-    """Which edges are smooth; and for every face its sharp edges, True where its sense is wrong.
+def _shells(sheets: Sequence[_Sheet], users: dict[int, list[tuple[int, int]]]) -> list[list[int]]:
+    """The faces that hang together, each turned so that all of a shell face one way."""
+    neighbours: list[list[tuple[int, int]]] = [[] for _ in sheets]
+    for used in users.values():
+        if len(used) == 2:
+            (one, k), (other, m) = used
+            apart = -sheets[one].along(k) * sheets[other].along(m)
+            neighbours[one].append((other, apart))
+            neighbours[other].append((one, apart))
+    turned: dict[int, int] = {}
+    shells = []
+    for first in range(len(sheets)):
+        if first in turned:
+            continue
+        turned[first], shell, waiting = 1, [], [first]
+        while waiting:
+            i = waiting.pop()
+            shell.append(i)
+            for other, apart in neighbours[i]:
+                if other not in turned:
+                    turned[other] = apart * turned[i]
+                    waiting.append(other)
+                elif turned[other] != apart * turned[i]:
+                    raise BodyError(
+                        f"The boundary has one side only (as a Moebius strip has): faces {i} and "
+                        f"{other} cannot both face outward.",
+                        part=("face", i),
+                    )
+        for i in shell:
+            if turned[i] < 0:
+                sheets[i].turn()
+        shells.append(sorted(shell))
+    return shells
 
-    At a convex edge the inward conormal of one face goes below the other's plane.
-    """
+
+def _turn_outward(shell: Sequence[_Sheet], volume: Volume) -> None:
+    """By the volume enclosed; where there is none, as most loops were given."""
+    numbers = [sheet.number for sheet in shell]
+    if sum(sheet.claim for sheet in shell) < 0:
+        _turn(shell)
+    if len(shell) == 1 and not shell[0].face.loop:
+        return  # a whole surface faces outward where it bulges, a half-space as it was given
+    if volume(numbers) >= 0.0:
+        return
+    _turn(shell)
+    if any(not sheet.by_loops and sheet.face.loop for sheet in shell) and volume(numbers) < 0.0:
+        raise BodyError(
+            f"Faces {numbers} enclose no volume whichever way their loops run: give the sense of "
+            "those with several charts (senses).",
+            part=("face", numbers[0]),
+        )
+
+
+def _turn(shell: Sequence[_Sheet]) -> None:
+    for sheet in shell:
+        sheet.turn()
+
+
+def _smooth_edges(
+    charts: list[Chart], users: dict[int, list[tuple[int, int]]], edges: Sequence[Edge]
+) -> list[bool]:
+    """Which edges' faces share their normal at one point of it."""
     smooth = [False] * len(edges)
-    wrong: dict[int, dict[int, bool]] = {i: {} for i in range(len(faces))}
-    for j, used in _edge_users(faces, edges).items():
+    for j, used in users.items():
         if not used:
             continue
         t = edges[j].curve.first + 0.43 * (edges[j].curve.last - edges[j].curve.first)
-        tangent = edges[j].curve.jet(t)[1]
-        tangent = tangent / np.linalg.norm(tangent)
-        (f0, s0), (f1, s1) = used
-        n0, n1 = (_normal_at(charts, f, j, t) for f in (f0, f1))
+        n0, n1 = (_normal_at(charts, face, j, t) for face, _ in used)
         angle = float(np.linalg.norm(np.cross(n0, n1)))
         smooth[j] = angle < SMOOTH_ANGLE
         if edges[j].smooth and not smooth[j]:
@@ -61,48 +259,8 @@ def _compare_faces(
                 "(sine).",
                 part=("edge", j),
             )
-        seam = smooth[j]
-        smooth[j] = seam and edges[j].smooth is not False
-        if not seam:
-            wrong[f0][j] = bool(s0 * (np.cross(n0, tangent) @ n1) > 0.0)
-            wrong[f1][j] = bool(s1 * (np.cross(n1, tangent) @ n0) > 0.0)
-    return smooth, wrong
-
-
-def orient(
-    charts: list[Chart], faces: Sequence[Face], edges: Sequence[Edge], known: bool = False
-) -> tuple[list[bool], list[str]]:
-    """Set every coedge's side; find smooth edges. Returns (smooth, notes of what was turned).
-
-    known : the loops run counterclockwise seen from outside, for sure.
-    """
-    smooth, wrong = _compare_faces(charts, faces, edges)
-    notes = []
-    signs = {}
-    for i, face in enumerate(faces):
-        if known:
-            signs[i] = 1
-            continue
-        first = bisect_left(charts, i, key=lambda chart: chart.face)
-        if len(face.charts) == 1 and face.loop:
-            inward = encircled(charts[first]) * charts[first].outward < 0.0
-        else:
-            inward = bool(wrong[i]) and all(wrong[i].values())
-        bad = [j for j, given_wrong in wrong[i].items() if given_wrong != inward]
-        if bad:
-            raise BodyError(
-                f"Face {i}: its loop runs both ways round (edges {bad} against the others), or "
-                "the body is not convex there.",
-                part=("face", i),
-            )
-        signs[i] = -1 if inward else 1
-        if inward:
-            notes.append(f"face {i}: loop given inward, turned outward")
-    for chart in charts:
-        for c in chart.coedges:
-            if c.edge >= 0:
-                c.side = int(c.side * signs[chart.face] * chart.outward)
-    return smooth, notes
+        smooth[j] = smooth[j] and edges[j].smooth is not False
+    return smooth
 
 
 def _normal_at(charts: list[Chart], face: int, edge: int, t: float) -> Array:

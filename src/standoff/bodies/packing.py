@@ -21,24 +21,29 @@ Ints = NDArray[np.int64]
 
 @dataclass
 class Coedge:
-    """One side of an edge in one chart, or an apex's collapsed side (edge = -1 - vertex)."""
+    """One side of an edge in one chart, or an apex's collapsed side (edge = -1 - vertex).
+
+    entry : the number of its edge in the face's loop.
+    """
 
     edge: int
     pcurve: Pcurve
     first: float
     last: float
     side: int
+    entry: int = -1
 
 
 @dataclass
 class Chart:
-    """A surface with its trimming loop."""
+    """A surface with its trimming loops; `holed` where one may lie within another."""
 
     surface: Surface
     face: int
     outward: float = 1.0
     limit: float = np.inf
     coedges: list[Coedge] = field(default_factory=list)
+    holed: bool = False
 
 
 @dataclass
@@ -55,17 +60,30 @@ class Sector:
 
 @dataclass
 class Assembled:
-    """A body's boundary with orientations, ready to pack."""
+    """A body's boundary with orientations, ready to pack.
+
+    What is not known of edges and vertices yet is false or nothing. `reflex` are the layout's flags
+    REFLEX and MIXED of each edge.
+    """
 
     dimension: int
     vertices: Array
     edges: Sequence[Edge]
     faces: Sequence[Face]
     charts: list[Chart]
-    smooth: list[bool]
-    outward_right: list[bool]
-    sectors: list[list[Sector]]
-    cones: list[list[Array]]
+    smooth: list[bool] = field(default_factory=list)
+    outward_right: list[bool] = field(default_factory=list)
+    sectors: list[list[Sector]] = field(default_factory=list)
+    cones: list[list[Array]] = field(default_factory=list)
+    reflex: list[int] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        edges, vertices = len(self.edges), len(self.vertices)
+        self.smooth = self.smooth or [False] * edges
+        self.outward_right = self.outward_right or [False] * edges
+        self.reflex = self.reflex or [0] * edges
+        self.sectors = self.sectors or [[] for _ in range(vertices)]
+        self.cones = self.cones or [[] for _ in range(vertices)]
 
 
 def without_charts(body: Assembled, dropped: Sequence[int]) -> Assembled:
@@ -221,6 +239,7 @@ def _pack_edges(w: Writer, body: Assembled) -> None:
             | (L.SMOOTH if body.smooth[j] else 0)
             | (L.OUTWARD_RIGHT if body.outward_right[j] else 0)
             | (L.CREASED if edge.creased else 0)
+            | body.reflex[j]
         )
         coedges = [*coedges_of[j], -1, -1][:2]
         first = -1 if edge.first is None else edge.first

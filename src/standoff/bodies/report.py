@@ -58,6 +58,45 @@ class DihedralAngle:
 
 
 @dataclass(frozen=True)
+class BoundaryReport:
+    """What construction found of a boundary; ``boundary.check()`` returns it.
+
+    Attributes
+    ----------
+    faces, edges, vertices : how many there are.
+    charts : how many surfaces the faces have, those of atlases counted one by one.
+    shells : the faces of each shell.
+    cavities : numbers of the shells that lie inside another one.
+    size : diagonal of the box around it, length.
+    volume : enclosed, length cubed.
+    volume_error : a bound of what the volume may be off, for want of nodes and by rounding.
+    area : of all faces, length squared.
+    sewing_residual : the greatest distance met between parts that were joined, length.
+    sewing_tolerance : within which parts were joined, length.
+    slack : how far the boundary may lie from the one given, length: the residual, and spare knots
+        of a spline that were left out; 0 where that is roundoff.
+    coordinate_roundoff : 16 roundings of the greatest coordinate, length.
+    notes : what was turned, split or merged.
+    """
+
+    faces: int = 0
+    edges: int = 0
+    vertices: int = 0
+    charts: int = 0
+    shells: tuple[tuple[int, ...], ...] = ()
+    cavities: tuple[int, ...] = ()
+    size: float = 0.0
+    volume: float = 0.0
+    volume_error: float = 0.0
+    area: float = 0.0
+    sewing_residual: float = 0.0
+    sewing_tolerance: float = 0.0
+    slack: float = 0.0
+    coordinate_roundoff: float = 0.0
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class BodyReport:
     """What the checks at construction found; ``body.check()`` returns it.
 

@@ -39,9 +39,24 @@ INWARD_STEP: Final = 1e-3
 """How far towards the middle of the domain (part of the way) the sign of a collapsed side's normal
 is taken: off the side's roundoff, and before anything turns."""
 
-FLAT_ROUNDINGS: Final = 8.0
-"""A face that passes the body's middle by no more than this many roundings of the coordinates is a
-side of a flat body."""
+VOLUME_END: Final = 1e-10
+"""Relative, where refinement of a volume ends that is reported."""
+
+ON_BOUNDARY: Final = 1e-12
+"""A point whose ray meets a face this near, as a part of the size and the greatest coordinate, is
+on it; crossings as near to each other are one: some thousand roundings."""
+
+CROSSING_STEP: Final = 1e-14
+"""A step of the search for a crossing below this part of its rectangle's sides is the last."""
+
+LEAF_MARGIN: Final = 1e-9
+"""A crossing may pass its rectangle by this part of the sides: it is then found in two."""
+
+SIGN_OF_VOLUME: Final = 1e-2
+"""Relative, where refinement of a volume ends whose sign alone is asked."""
+
+VOLUME_ROUNDINGS: Final = 64.0
+"""Roundings (eps of the sum of the parts' magnitudes) that a volume enclosed may be off by."""
 
 ROUNDOFF: Final = 1e-14
 """A residual or defect below this part of the size is the roundoff of evaluating the same point

@@ -57,6 +57,12 @@ class PatchBounds:
     def __getitem__(self, which: Any) -> PatchBounds:
         return PatchBounds(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
 
+    @staticmethod
+    def joined(parts: Sequence[PatchBounds]) -> PatchBounds:
+        """All of some in one."""
+        names = PatchBounds.__dataclass_fields__
+        return PatchBounds(*(np.concatenate([getattr(p, n) for p in parts]) for n in names))
+
     def merged(self, owners: NDArray[np.int64], count: int) -> PatchBounds:
         """Bounds of `count` rectangles from those of their parts: `owners` (n,) says whose."""
         low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)

@@ -135,11 +135,18 @@ class SurfaceCurve(Curve):
         return max(seen, key=lambda one: one[1][0][2] / np.abs(one[1][0]).max())
 
     def pcurve_on(self, surface: Surface) -> Pcurve | None:
-        """The trimming curve on a surface that the curve was made on, else None."""
-        for s, p in ((self.surface, self.pcurve), *self.others):
-            if s.kind == surface.kind and np.array_equal(s.reals, surface.reals):
-                return p
-        return None
+        """The trimming curve on a surface that the curve was made on, else None.
+
+        Of two parts of one surface the one with the same domain comes first: on a torus, say, both
+        may hold the curve at parameters a turn apart.
+        """
+        alike = [
+            (s, p)
+            for s, p in ((self.surface, self.pcurve), *self.others)
+            if s.kind == surface.kind and np.array_equal(s.reals, surface.reals)
+        ]
+        same = (p for s, p in alike if s.domain == surface.domain)
+        return next(same, alike[0][1] if alike else None)
 
     def transformed(self, linear: Array, shift: Array) -> Curve:
         return SurfaceCurve(

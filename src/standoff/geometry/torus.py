@@ -1,4 +1,4 @@
-"""The convex part of a torus: what a rolling ball leaves between a plane and a cylinder."""
+"""A torus: what a rolling ball leaves between a plane and a cylinder."""
 
 from __future__ import annotations
 
@@ -32,19 +32,32 @@ def checked_turn(first: Any, last: Any, name: str) -> tuple[float, float]:
     return a, b
 
 
+def _outside(v0: float, v1: float, inside: bool = False) -> bool:
+    """Is cos v nowhere negative; nowhere zero either, `inside`?"""
+    middle = 0.5 * (v0 + v1)
+    away = abs(middle - FULL_TURN * round(middle / FULL_TURN)) + 0.5 * (v1 - v0)
+    return away < 0.5 * np.pi if inside else away <= 0.5 * np.pi + ANGLE_ROUNDOFF
+
+
+def _inmost(v0: float, v1: float) -> float:
+    """The least cos v."""
+    turns = np.ceil((v0 - np.pi) / FULL_TURN)
+    return -1.0 if np.pi + FULL_TURN * turns <= v1 else float(min(np.cos(v0), np.cos(v1)))
+
+
 class Torus(Rotational):
-    """((R + r cos v) cos u, (R + r cos v) sin u, r sin v), |v| <= pi/2: its convex part.
+    """((R + r cos v) cos u, (R + r cos v) sin u, r sin v): its outer half, |v| <= pi/2, is convex.
 
     Parameters
     ----------
     major, minor : R > 0 and r > 0, length: the circle's distance from the axis z, its radius.
     u0, u1 : angles about the axis, radians; a full turn, the default, is periodic.
-    v0, v1 : angles of the circle, radians, in [-pi/2, pi/2].
+    v0, v1 : angles of the circle, radians, at most a turn apart; its convex part by default.
 
     Raises
     ------
     ValueError
-        A radius that is not positive, more than a turn, or angles beyond the convex part.
+        A radius that is not positive, more than a turn, or a range of v that meets the axis.
     """
 
     kind = L.TORUS
@@ -68,19 +81,22 @@ class Torus(Rotational):
         v1: Any = 0.5 * np.pi,
     ) -> None:
         u0, u1 = checked_turn(u0, u1, "Torus")
-        v0, v1 = float(finite(v0, "v0", ())), float(finite(v1, "v1", ()))
-        top = 0.5 * np.pi + ANGLE_ROUNDOFF
-        if not -top <= v0 < v1 <= top:
-            raise StandoffError(f"Torus from v = {v0} to {v1}: give -pi/2 <= v0 < v1 <= pi/2.")
-        domain = (u0, u1, v0, v1)
-        self._set(
-            positive(major, "major"), positive(minor, "minor"), domain, np.eye(3), np.zeros(3)
-        )
+        v0, v1 = checked_turn(v0, v1, "Torus, round its circle,")
+        major, minor = positive(major, "major"), positive(minor, "minor")
+        if minor >= major and _inmost(v0, v1) * minor + major <= 0.0:
+            raise StandoffError(
+                f"Torus of radii {major} and {minor} from v = {v0} to {v1}: it meets its axis; "
+                "give major > minor, or a range of v where major + minor cos v > 0.",
+                "minor",
+                minor,
+            )
+        self._set(major, minor, (u0, u1, v0, v1), np.eye(3), np.zeros(3))
 
     def _set(self, major: float, minor: float, domain: Domain, linear: Array, shift: Array) -> None:
         object.__setattr__(self, "major", major)
         object.__setattr__(self, "minor", minor)
         object.__setattr__(self, "periodic", full_turn(*domain[:2]))
+        object.__setattr__(self, "bulge", 1 if _outside(*domain[2:]) else None)
         super().__init__(linear, shift, domain)
 
     def _data(self) -> Array:
@@ -101,9 +117,13 @@ class Torus(Rotational):
         return surface
 
     def within_hemisphere(self) -> bool:
-        """A part above or below its middle plane, or less than half of it both ways."""
+        """A part above or below its middle plane, or less than half of the outer or inner half both
+        ways."""
         u0, u1, v0, v1 = self.domain
-        return bool(v0 > 0.0 or v1 < 0.0 or (u1 - u0 < np.pi and v1 - v0 < np.pi))
+        half = _outside(v0, v1) or _outside(v0 - np.pi, v1 - np.pi)
+        level = _outside(v0 - 0.5 * np.pi, v1 - 0.5 * np.pi, inside=True)
+        level |= _outside(v0 + 0.5 * np.pi, v1 + 0.5 * np.pi, inside=True)
+        return level or (half and u1 - u0 < np.pi and v1 - v0 < np.pi)
 
     def meridian(self, v: Interval) -> Interval:
         c, s = cos(v), sin(v)
@@ -145,5 +165,5 @@ class Torus(Rotational):
         y = self.linear.T @ direction
         u0, u1, v0, v1 = self.domain
         u = u0 + (float(np.arctan2(y[1], y[0])) - u0) % FULL_TURN
-        v = float(np.arctan2(y[2], np.hypot(y[0], y[1])))
+        v = v0 + (float(np.arctan2(y[2], np.hypot(y[0], y[1]))) - v0) % FULL_TURN
         return (u, v) if u <= u1 and v0 <= v <= v1 else None

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from standoff.bodies.body import Body
+from standoff.bodies.moments.boundary import Moments, moments_of
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.validation import Array, matrix3, positive, vector3
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
-from standoff.simulation.moments.boundary import Moments, moments_of
 from standoff.simulation.tolerances import INERTIA_ROUNDOFF, LEAST_MOMENT, MOMENTS_END
 
 # A volume below so many times its own bound is none: no digit of the centre is left.

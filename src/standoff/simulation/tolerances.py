@@ -38,13 +38,6 @@ LEAST_MOMENT: Final = 1e-15
 """Relative: a least principal moment below this part of the largest is roundoff of zero: that of a
 rod 3e-8 of its length wide."""
 
-LEVEL_CURVE: Final = 1e-14
-"""Parameter units: a trimming curve is level, or on an axis, where it is within this of it."""
-
-NORMALS_RESOLVED: Final = 1e-13
-"""Relative: what the last coefficients of the polynomials that follow the normals along a collapsed
-side must have fallen to: the roundoff of a normal."""
-
 STABLE_ROUNDING: Final = 1e-12
 """No unit, of the spectral radius: a step that grows by no more is stable, to the roundoff of its
 eigenvalues."""
@@ -69,14 +62,6 @@ needed begins: at zero itself the expression is 0 / 0."""
 PEAK_FOUND: Final = 1e-10
 """Radians (frequency times the period): to which the frequency of the greatest damping needed is
 found."""
-
-LEAST_SHARE: Final = 1e-3
-"""Share of the last difference that a cell's remainder is never trusted below, whatever the last
-two differences foretell."""
-
-ANGLE_TOLERANCE: Final = 1e-10
-"""Steradians, of the area of an ellipsoidal face's directions (1 rad by 1 rad): only its sign is
-asked."""
 
 CHART_SERIES: Final = 1e-3
 """Radians, half the angle of a chart: below it two terms of the series for J_r⁻¹ miss it by less

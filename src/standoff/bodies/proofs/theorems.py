@@ -13,24 +13,25 @@ from standoff.geometry.surfaces import Surface
 def prove_by_kind(surface: Surface, outward: int | None = None) -> PatchProof:
     """An affine image of a plane, quadric, torus's outer half or superellipsoid: `Surface.bulge`.
 
+    A torus that goes beyond its outer half has none: it is saddled there.
+
     They never bend inward: a superellipsoid with exponents up to 2 is the unit ball of a norm, and
     its charts look at it from its centre.
     """
-    bulge = surface.bulge
-    assert bulge is not None, type(surface)
-    side = 1 if np.linalg.det(surface.linear) > 0.0 else -1
+    bulge, side = surface.bulge, 1 if np.linalg.det(surface.linear) > 0.0 else -1
     proof = PatchProof(
         convex=True,
         defect=0.0,
         method="theorem",
         hemisphere=bool(surface.within_hemisphere()),
         place=_middle(surface),
-        sense=bulge * side,
+        sense=side if bulge is None else bulge * side,
     )
-    if outward is not None and proof.sense == -outward:
-        # hollow: no bound is sought, such a face is not a part of a convex body
+    if bulge is None or (outward is not None and proof.sense == -outward):
+        # hollow or saddled: no bound is sought, such a face is not a part of a convex body
+        sense = outward or proof.sense
         return replace(
-            proof, convex=False, defect=np.inf, sense=outward, tilt=np.pi, curvature=-np.inf
+            proof, convex=False, defect=np.inf, sense=sense, tilt=np.pi, curvature=-np.inf
         )
     return proof
 

@@ -13,7 +13,7 @@ from standoff.bodies.sewing.corners import Outline, Stretch, outline
 from standoff.bodies.sewing.correspondence import Correspondence, correspond, isoline
 from standoff.bodies.sewing.matching import OpenShell, match
 from standoff.bodies.sewing.patches import Patch, check_patches, cut_patches, grid_points
-from standoff.bodies.sewing.shell import check_shell, outward_senses
+from standoff.bodies.sewing.shell import check_shells, outward_senses
 from standoff.bodies.sewing.sides import SENSES
 from standoff.bodies.tolerances import MAX_SPREAD, SEWING_TOLERANCE, WIDEST_SEAM
 from standoff.bodies.topology import Apex, Edge, Face
@@ -51,13 +51,14 @@ class Sewn:
     proofs: list[PatchProof]
 
 
-def sew(patches: Sequence[Any], tolerance: float | None = None) -> Sewn:
+def sew(patches: Sequence[Any], tolerance: float | None = None, *, several: bool = False) -> Sewn:
     """Join patches along their sides into one closed shell that faces outward.
 
     Parameters
     ----------
     patches : surfaces with a finite domain.
     tolerance : how far joined sides may be apart, length; None: SEWING_TOLERANCE of the size.
+    several : they may close more than one shell, each of which is made to face outward.
 
     Raises
     ------
@@ -84,17 +85,19 @@ def sew(patches: Sequence[Any], tolerance: float | None = None) -> Sewn:
         )
     cut, notes = cut_patches(patches, tolerance)
     try:
-        return _sewn(cut, notes, size, tolerance)
+        return _sewn(cut, notes, size, tolerance, several)
     except OpenShell as shell:
         raise _refusal(shell, patches, size, tolerance) from None
 
 
-def _sewn(cut: list[Patch], notes: list[str], size: float, tolerance: float) -> Sewn:
+def _sewn(
+    cut: list[Patch], notes: list[str], size: float, tolerance: float, several: bool = False
+) -> Sewn:
     shape = outline(cut, tolerance)
     pairs = match([s for row in shape.stretches for s in row], tolerance)
-    check_shell(cut, shape, pairs)
+    shells = check_shells(cut, shape, pairs, several)
     found = [_joined(a, b, size, tolerance) for a, b in pairs]
-    sign, turned = outward_senses(cut, pairs, [c.sense for c in found], tolerance)
+    sign, turned = outward_senses(cut, pairs, [c.sense for c in found], shells, tolerance)
     edges = [
         Edge(
             SurfaceCurve(cut[a.patch].surface, isoline(a.side), a.side.first, a.side.last),

@@ -22,18 +22,23 @@ VOLUME_POINTS = 6
 MOST_NAMED = 6
 
 
-def check_shell(patches: Sequence[Patch], shape: Outline, pairs: Pairs) -> None:
-    """Raise BodyError for two shells, and for a vertex where patches touch only."""
+def check_shells(
+    patches: Sequence[Patch], shape: Outline, pairs: Pairs, several: bool
+) -> list[list[int]]:
+    """The patches of each shell. Raises BodyError for two of them, unless there may be `several`,
+    and for a vertex where patches touch only."""
     rows = np.array([(a.patch, b.patch) for a, b in pairs], dtype=np.intp).reshape(-1, 2)
     n = len(patches)
     graph = scipy.sparse.coo_matrix((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(n, n))
     count, shell = scipy.sparse.csgraph.connected_components(graph, directed=False)
-    if count > 1:
-        names = [_names(patches, np.flatnonzero(shell == s).tolist()) for s in range(count)]
+    shells: list[list[int]] = [np.flatnonzero(shell == s).tolist() for s in range(count)]
+    if count > 1 and not several:
+        names = [_names(patches, numbers) for numbers in shells]
         raise BodyError(
             f"{count} shells that share no side: {' | '.join(names[:3])}. Make one body of each."
         )
     _check_fans(patches, shape, pairs)
+    return shells
 
 
 def _names(patches: Sequence[Patch], numbers: Sequence[int]) -> str:
@@ -83,7 +88,11 @@ def _ring(shape: Outline, patch: int) -> list[tuple[Stretch, int]]:
 
 
 def outward_senses(
-    patches: Sequence[Patch], pairs: Pairs, senses: Sequence[int], tolerance: float
+    patches: Sequence[Patch],
+    pairs: Pairs,
+    senses: Sequence[int],
+    shells: Sequence[Sequence[int]],
+    tolerance: float,
 ) -> tuple[list[int], list[str]]:
     """+1 where x_u cross x_v of a patch points outward, else -1; and notes of those turned.
 
@@ -96,7 +105,21 @@ def outward_senses(
         neighbours[a.patch].append((b.patch, relation))
         neighbours[b.patch].append((a.patch, relation))
     sign = [0] * len(patches)
-    sign[0], waiting = 1, [0]
+    for shell in shells:
+        _turn_shell(patches, shell, neighbours, sign, tolerance)
+    turned = sorted({patches[p].given for p, s in enumerate(sign) if s < 0})
+    return sign, [f"patch {k}: its x_u cross x_v points inward, turned outward" for k in turned]
+
+
+def _turn_shell(
+    patches: Sequence[Patch],
+    shell: Sequence[int],
+    neighbours: Sequence[Sequence[tuple[int, int]]],
+    sign: list[int],
+    tolerance: float,
+) -> None:
+    """Set the signs of one shell's patches."""
+    sign[shell[0]], waiting = 1, [shell[0]]
     while waiting:
         p = waiting.pop()
         for q, relation in neighbours[p]:
@@ -108,7 +131,7 @@ def outward_senses(
                     f"The shell has one side only (as a Moebius strip has): {patches[p].label} "
                     f"and {patches[q].label} cannot both face outward."
                 )
-    volume, area = _volume(patches, sign)
+    volume, area = _volume([patches[p] for p in shell], [sign[p] for p in shell])
     if abs(volume) <= LEAST_THICKNESS * tolerance * area:
         raise BodyError(
             f"The patches enclose no volume: {abs(volume):.3g} at an area of {area:.3g}, "
@@ -117,9 +140,8 @@ def outward_senses(
             tolerance,
         )
     if volume < 0.0:
-        sign = [-s for s in sign]
-    turned = sorted({patches[p].given for p, s in enumerate(sign) if s < 0})
-    return sign, [f"patch {k}: its x_u cross x_v points inward, turned outward" for k in turned]
+        for p in shell:
+            sign[p] = -sign[p]
 
 
 def _volume(patches: Sequence[Patch], sign: Sequence[int]) -> tuple[float, float]:

@@ -71,6 +71,8 @@ CLOSED = 1  # a period and no vertex
 SMOOTH = 2  # both faces share their normal along it: passed by its reset, not a mode
 OUTWARD_RIGHT = 4  # planar bodies: the outward normal is on the right of the tangent
 CREASED = 8  # one normal along it, but infinite curvature across it (superellipsoids)
+REFLEX = 16  # the material fills more than half a turn round it, all along: no minimum while apart
+MIXED = 32  # convex somewhere and reflex elsewhere
 # Its reals: first and last parameter, then what the curve kind needs (see the jets).
 EDGE_T0 = 0
 EDGE_T1 = 1

@@ -2,33 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from standoff.bodies.body import Body
-from standoff.bodies.charts import interior_point
-from standoff.bodies.support_sets import curve_breaks
-from standoff.geometry.curves import Curve
-from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
-from standoff.kernels.body import layout as L
-from standoff.simulation.moments.cells import Cell, integrate
-from standoff.simulation.moments.directions import (
+from standoff.bodies.boundary import Boundary
+from standoff.bodies.charts import edge_points, loop_pcurve
+from standoff.bodies.moments.cells import Cell, integrate
+from standoff.bodies.moments.directions import (
     Arc,
     Ellipsoid,
     farthest_start,
     part_cells,
     sphere_cells,
 )
-from standoff.simulation.moments.faces import (
+from standoff.bodies.moments.faces import (
     Chart,
     TrimmingCurve,
     chart_cells,
     superellipsoid_cells,
 )
-from standoff.simulation.moments.flux import (
+from standoff.bodies.moments.flux import (
     AREA,
     COLUMNS,
     FIRST,
@@ -38,9 +34,17 @@ from standoff.simulation.moments.flux import (
     VOLUME,
     Frame,
 )
-from standoff.simulation.moments.skin import skin_cells
-from standoff.simulation.tolerances import ANGLE_TOLERANCE
+from standoff.bodies.moments.skin import skin_cells
+from standoff.bodies.moments.tolerances import ANGLE_TOLERANCE
+from standoff.bodies.support_sets import curve_breaks
+from standoff.bodies.topology import Edge, Face
+from standoff.geometry.curves import Curve
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
+from standoff.kernels.body import layout as L
 
+# What of the integrand turns round with the normal: all but the area.
+FLIPPED = np.where(np.arange(COLUMNS) == AREA, 1.0, -1.0)
 # Points on the boundary are off their places by so many roundings (eps of the frame's reach, and of
 # how far the surfaces' own origins are): affine maps, jets and sums.
 POINT_ROUNDINGS = 32.0
@@ -85,17 +89,17 @@ class Moments:
     nodes: int
 
 
-def moments_of(body: Body, tolerance: float) -> Moments:
+def moments_of(body: Boundary, tolerance: float) -> Moments:
     """The moments of a bounded spatial body.
 
     Parameters
     ----------
-    body : Body
+    body : Boundary
     tolerance : float
         At which refinement ends, relative to the volume, its reach and its reach squared.
     """
     frame = _frame(body)
-    cells = [cell for face in range(body.n_faces) for cell in _face_cells(body, face, frame)]
+    cells = [cell for face in range(body.n_faces) for cell in face_cells(body, face, frame)]
     if frame.radius > 0.0:
         cells += skin_cells(body, frame)
     found = integrate(cells, _scale, tolerance, MOST_NODES)
@@ -130,16 +134,44 @@ def _symmetric(six: Array) -> Array:
     return np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
 
 
-def _frame(body: Body) -> Frame:
+def _frame(body: Boundary) -> Frame:
     """About a point inside, as far as the body goes."""
-    centre = interior_point(body.vertex_points, body.edge_parts, body.face_parts)
+    centre = _amid(body.vertex_points, body.edge_parts, body.face_parts)
     box = body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
     half = body.reals[L.BOX_HALF : L.BOX_HALF + 3]
     reach = float(np.linalg.norm(np.abs(centre - box) + half)) + body.radius
     return Frame(centre, reach, body.radius)
 
 
-def _face_cells(body: Body, face: int, frame: Frame) -> list[Cell]:
+def _amid(vertices: Array, edges: Sequence[Edge], faces: Sequence[Face]) -> Array:
+    """A point inside the convex hull of the boundary."""
+    points = [vertices] if len(vertices) else []
+    points += [edge_points(e) for e in edges]
+    points += [_amid_face(face, edges) for face in faces]
+    return np.asarray(np.concatenate(points).mean(axis=0))
+
+
+def _amid_face(face: Face, edges: Sequence[Edge]) -> Array:
+    """Points of a face's surface amid its loop, (n, 3). An atlas's first chart is centred on it."""
+    if not face.loop:
+        return np.array([chart.jet(0.0, 0.0)[0] for chart in face.charts])
+    surface = face.charts[0]
+    if surface.periodic:  # its edges surround it, and its angles are not joined yet
+        return np.zeros((0, 3))
+    if len(face.charts) > 1:
+        return surface.jet(0.0, 0.0)[0][None]
+    spots = []
+    for k, (j, _) in enumerate(face.loop):
+        if 0 <= j < len(edges):
+            c = edges[j].curve
+            pcurve = loop_pcurve(face, k, edges, surface)
+            spots += [pcurve.point(t) for t in np.linspace(c.first, c.last, 9)]
+    u, v = np.mean([p[:2] for p in spots if p[2] > 0.0] or [(0.0, 0.0)], axis=0)
+    return surface.jet(float(u), float(v))[0][None]
+
+
+def face_cells(body: Boundary, face: int, frame: Frame) -> list[Cell]:
+    """The cells of one face's core."""
     row = int(body.ints[L.FACES]) + L.FACE_STRIDE * face
     first, count = (int(n) for n in body.ints[row : row + 2])
     charts = [Chart(body, number, frame) for number in range(first, first + count)]
@@ -151,38 +183,40 @@ def _face_cells(body: Body, face: int, frame: Frame) -> list[Cell]:
     return [cell for chart in charts for cell in chart_cells(chart)]
 
 
-def _ellipsoid_cells(body: Body, surface: Surface, charts: list[Chart]) -> list[Cell]:
+def _ellipsoid_cells(body: Boundary, surface: Surface, charts: list[Chart]) -> list[Cell]:
     """A face of an ellipsoid: its edges, on the unit sphere, bound its directions."""
     ellipsoid = Ellipsoid(surface.linear, surface.shift, charts[0].frame)
+    # a gnomonic chart's x_u × x_v points out of the unit sphere; out of a pit's material is inward
+    bulges = charts[0].outward * ellipsoid.sense > 0.0
+
+    def values(y: Array) -> Array:
+        found = ellipsoid.flux(y)
+        return found if bulges else np.asarray(found * FLIPPED)
+
     bounding = set()
     for chart in charts:
-        at = int(body.ints[int(body.ints[L.CHARTS]) + L.CHART_STRIDE * chart.number + 1])
-        outward = int(body.reals[at + L.OUTWARD])
         for k in chart.coedges:
             curve = TrimmingCurve(body, k)
             if curve.edge >= 0:
-                bounding.add((curve.edge, curve.side * outward))
+                bounding.add((curve.edge, curve.side))
     arcs = []
     for edge, side in sorted(bounding):
         part = body.edge_parts[edge].curve
         piece = ellipsoid.boundary(part)
-        arcs += [
-            Arc(piece, float(a), float(b), side * ellipsoid.sense)
-            for a, b in pairwise(curve_breaks(part))
-        ]
+        arcs += [Arc(piece, float(a), float(b), side) for a, b in pairwise(curve_breaks(part))]
     if not arcs:
-        return sphere_cells(ellipsoid.flux)
+        return sphere_cells(values)
     start = farthest_start(arcs)
-    cells = part_cells(arcs, start, ellipsoid.flux)
+    cells = part_cells(arcs, start, values)
     angle = integrate(part_cells(arcs, start, _one), np.ones_like, ANGLE_TOLERANCE, ANGLE_NODES)
-    return cells + sphere_cells(ellipsoid.flux) if angle.values[0] < 0.0 else cells
+    return cells + sphere_cells(values) if angle.values[0] < 0.0 else cells
 
 
 def _one(y: Array) -> Array:
     return np.ones((*y.shape[:-1], 1))
 
 
-def _displaced(body: Body, frame: Frame, area: float) -> float:
+def _displaced(body: Boundary, frame: Frame, area: float) -> float:
     """A bound of the moments of the layer, as thick as points of the boundary may be off, and of
     the gaps along edges, in the frame's unit.
 

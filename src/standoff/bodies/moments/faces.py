@@ -14,16 +14,16 @@ from itertools import pairwise
 import numpy as np
 import scipy
 
-from standoff.bodies.body import Body
+from standoff.bodies.boundary import Boundary
+from standoff.bodies.moments.cells import Cell, Integrand
+from standoff.bodies.moments.flux import Frame, flux, offset_areas
+from standoff.bodies.moments.tolerances import LEVEL_CURVE
 from standoff.bodies.tessellation import chart_row, surface_of
 from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters, surface_jet
-from standoff.simulation.moments.cells import Cell, Integrand
-from standoff.simulation.moments.flux import Frame, flux, offset_areas
-from standoff.simulation.tolerances import LEVEL_CURVE
 
 # Points of a trimming curve between which it crosses a line of (u, v) at most once.
 SAMPLES = 65
@@ -37,7 +37,7 @@ SMOOTH_POWER = 6.0
 class Chart:
     """A chart of a body and where its integrals are taken."""
 
-    body: Body
+    body: Boundary
     number: int
     frame: Frame
 
@@ -60,6 +60,12 @@ class Chart:
         return flux(self.frame, x, areas)
 
     @property
+    def outward(self) -> float:
+        """+1 where x_u × x_v points outward, else -1."""
+        row = chart_row(self.body, self.number)
+        return float(self.body.reals[int(row[L.CHART_REALS]) + L.OUTWARD])
+
+    @property
     def surface(self) -> Surface:
         row = chart_row(self.body, self.number)
         return surface_of(self.body, self.body.face_parts[row[L.CHART_FACE]].charts, self.number)
@@ -76,7 +82,7 @@ class TrimmingCurve:
     """A coedge: (u, v) by its edge's parameter, from first to last; the face is on its left where
     side is 1, on its right where it is -1."""
 
-    body: Body
+    body: Boundary
     coedge: int
 
     @property

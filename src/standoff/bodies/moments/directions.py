@@ -14,13 +14,13 @@ from itertools import product
 
 import numpy as np
 
+from standoff.bodies.moments.cells import Cell, Integrand
+from standoff.bodies.moments.flux import Frame, flux, offset_areas
 from standoff.bodies.shapes.quadrics import sphere_atlas
 from standoff.geometry.curves import Curve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.queries import surface_jet
-from standoff.simulation.moments.cells import Cell, Integrand
-from standoff.simulation.moments.flux import Frame, flux, offset_areas
 
 OverSphere = Callable[[Array], Array]
 """Unit vectors (..., 3) to values (..., columns)."""

@@ -13,8 +13,8 @@ from functools import cache
 
 import numpy as np
 
+from standoff.bodies.moments.tolerances import LEAST_SHARE
 from standoff.geometry.validation import Array
-from standoff.simulation.tolerances import LEAST_SHARE
 
 # Orders of the rules along either parameter: 2^k - 1 nodes. Past the last a cell is halved.
 FIRST_LEVEL, LAST_LEVEL = 3, 6

@@ -1,0 +1,209 @@
+"""Is a point inside a boundary: by where rays from it cross the faces.
+
+Along a ray crossings alternate, out and in, and the last leads out. Where what was found does not,
+as where the ray runs along an edge or touches a face, another direction is taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.face_leaves import FaceChart, face_charts, leaves_of, quartered
+from standoff.bodies.tolerances import CROSSING_STEP, LEAF_MARGIN, ON_BOUNDARY
+from standoff.errors import BodyError
+from standoff.geometry.patch_bounds import PatchBounds
+from standoff.geometry.validation import Array
+from standoff.kernels.entries.queries import on_face
+
+if TYPE_CHECKING:
+    from standoff.bodies.boundary import Boundary
+
+# Half the angle of a leaf's cone of normals, radians.
+LEAF_ANGLE = 0.4
+# A ray that makes less than this with a leaf's surface (radians) crosses it surely once at most.
+GRAZING = 0.05
+# Quarterings of a leaf that a ray may graze, before another direction is taken.
+MOST_QUARTERINGS = 12
+# Newton steps of one crossing: a leaf is nearly plane.
+MOST_STEPS = 30
+# Directions of rays: none along an axis or a diagonal of what is drawn by hand.
+_SPREAD = np.array(
+    [
+        (0.5417, 0.3109, 0.7809),
+        (-0.7331, 0.5923, 0.3341),
+        (0.2273, -0.8419, 0.4893),
+        (-0.3779, -0.4561, -0.8057),
+        (0.8713, 0.4327, -0.2311),
+        (-0.6173, 0.2927, -0.7302),
+        (0.1361, 0.9277, -0.3476),
+        (-0.9043, -0.1913, 0.3815),
+        (0.4159, -0.3571, -0.8363),
+        (-0.0877, 0.6451, 0.7590),
+    ]
+)
+DIRECTIONS = _SPREAD / np.linalg.norm(_SPREAD, axis=1)[:, None]
+
+
+class Crossings:
+    """Rays through some faces of a boundary, which close a shell."""
+
+    def __init__(self, boundary: Boundary, faces: Sequence[int] | None = None) -> None:
+        self.boundary = boundary
+        self.charts = {c.number: c for c in face_charts(boundary, faces)}
+        self.leaves = leaves_of(list(self.charts.values()), LEAF_ANGLE)
+        low, high = self.leaves.bounds.low.min(axis=0), self.leaves.bounds.high.max(axis=0)
+        self.size = float(np.linalg.norm(high - low))
+        self.near = ON_BOUNDARY * (self.size + float(np.abs([low, high]).max()))
+
+    @cached_property
+    def _extents(self) -> list[tuple[Array, Array, Array]]:
+        """For every direction its frame (3, 3), and the leaves' extents along it (3, n)."""
+        found = []
+        for direction in DIRECTIONS:
+            across = np.cross(direction, np.eye(3)[int(np.abs(direction).argmin())])
+            across = across / np.linalg.norm(across)
+            frame = np.stack([direction, across, np.cross(direction, across)])
+            low, high = np.empty((2, 3, len(self.leaves)))
+            for number, chart in self.charts.items():
+                own = self.leaves.charts == number
+                low[:, own], high[:, own] = chart.surface.extents(
+                    self.leaves.rectangles[own], frame
+                )
+            found.append((frame, low - self.near, high + self.near))
+        return found
+
+    def inside(self, point: Array) -> bool:
+        """Is a point inside, or on a face?
+
+        Raises
+        ------
+        BodyError
+            Of no direction the crossings alternate.
+        """
+        for grazing in (False, True):
+            for frame, low, high in self._extents:
+                told = self._along(point, frame, low, high, grazing)
+                if told is not None:
+                    return told
+        raise BodyError(
+            f"Whether {point} is inside cannot be told: along none of {len(DIRECTIONS)} rays do "
+            "the crossings lead out and in by turns. Faces may cross each other, or gape."
+        )
+
+    def _along(
+        self, point: Array, frame: Array, low: Array, high: Array, grazing: bool
+    ) -> bool | None:
+        """By one ray; None where it does not tell, or may graze a face and is not to."""
+        at = frame @ point
+        hits: list[tuple[float, float]] = []
+        met = np.flatnonzero(_meets(at, low, high))
+        every = _steep(self.leaves.bounds[met], frame[0])
+        if not (grazing or every.all()):
+            return None
+        for k, steep in zip(met, every, strict=True):
+            chart = self.charts[int(self.leaves.charts[k])]
+            row = self.leaves.rectangles[k]
+            cross = self._crossing if steep else self._grazed
+            found = cross(chart, row, at, frame)
+            if found is None:
+                return None
+            hits += found
+        if any(abs(t) <= self.near for t, _ in hits):
+            return True
+        return _parity([hit for hit in hits if hit[0] > 0.0], self.near)
+
+    def _crossing(
+        self, chart: FaceChart, row: Array, at: Array, frame: Array
+    ) -> list[tuple[float, float]]:
+        """(way along the ray, +1 where it leads out) of what one steep rectangle has of a face."""
+        root = self._root(chart, row, at, frame)
+        packed = self.boundary.ints, self.boundary.reals
+        if root is None or not on_face(*packed, chart.number, *root):
+            return []
+        x, xu, xv, *_ = chart.surface.jet(*root)
+        out = chart.outward * float(np.sign(np.cross(xu, xv) @ frame[0]))
+        return [(float(frame[0] @ x - at[0]), out)]
+
+    def _grazed(
+        self, chart: FaceChart, row: Array, at: Array, frame: Array
+    ) -> list[tuple[float, float]] | None:
+        """The same of one that a ray may graze; None where it does."""
+        hits, rows = [], row[None]
+        for _ in range(MOST_QUARTERINGS):
+            steep = _steep(chart.surface.bounds(rows), frame[0])
+            for part in rows[steep]:
+                hits += self._crossing(chart, part, at, frame)
+            rows = quartered(rows[~steep])
+            if not len(rows):
+                return hits
+            low, high = chart.surface.extents(rows, frame)
+            spare = self.near
+            meets = ((low[1:] - spare <= at[1:, None]) & (at[1:, None] <= high[1:] + spare)).all(
+                axis=0
+            )
+            rows = rows[meets & (high[0] + spare >= at[0])]
+            if not len(rows):
+                return hits
+        return None
+
+    def _root(
+        self, chart: FaceChart, row: Array, at: Array, frame: Array
+    ) -> tuple[float, float] | None:
+        """Where the ray's line meets a leaf, by Newton's method; None where it passes it by."""
+        low, high = row[[0, 2]], row[[1, 3]]
+        width = high - low
+        place = 0.5 * (low + high)
+        for _ in range(MOST_STEPS):
+            x, xu, xv, *_ = chart.surface.jet(float(place[0]), float(place[1]))
+            away = frame[1:] @ x - at[1:]
+            slope = frame[1:] @ np.column_stack([xu, xv])
+            det = slope[0, 0] * slope[1, 1] - slope[0, 1] * slope[1, 0]
+            if det == 0.0:
+                return None
+            step = np.array(
+                [
+                    slope[1, 1] * away[0] - slope[0, 1] * away[1],
+                    slope[0, 0] * away[1] - slope[1, 0] * away[0],
+                ]
+            )
+            place = np.clip(place - step / det, low - 0.5 * width, high + 0.5 * width)
+            if (np.abs(step / det) <= CROSSING_STEP * np.maximum(width, np.abs(place))).all():
+                break
+        else:
+            return None
+        spare = LEAF_MARGIN * width
+        inside = (low - spare <= place).all() and (place <= high + spare).all()
+        return (float(place[0]), float(place[1])) if inside else None
+
+
+def _steep(bounds: PatchBounds, direction: Array) -> NDArray[np.bool_]:
+    """(n,) over which the surface surely makes more than GRAZING with a ray."""
+    lean = np.minimum(np.abs(bounds.axis @ direction), 1.0)
+    return np.asarray(np.arcsin(lean) - bounds.angle > GRAZING)
+
+
+def _meets(at: Array, low: Array, high: Array) -> NDArray[np.bool_]:
+    """(n,) which extents (3, n) a ray from a point meets, all in its frame."""
+    beside = ((low[1:] <= at[1:, None]) & (at[1:, None] <= high[1:])).all(axis=0)
+    return np.asarray(beside & (high[0] >= at[0]))
+
+
+def _parity(hits: list[tuple[float, float]], near: float) -> bool | None:
+    """Is the start inside? None where crossings do not alternate and lead out at last."""
+    kept: list[tuple[float, float]] = []
+    for way, out in sorted(hits):
+        if kept and way - kept[-1][0] <= near:
+            if out != kept[-1][1]:
+                return None
+            continue  # the same crossing, found in two leaves or on two faces of an edge
+        kept.append((way, out))
+    if not kept:
+        return False
+    outs = [out for _, out in kept]
+    alternate = all(a == -b for a, b in zip(outs[1:], outs[:-1], strict=True))
+    return outs[0] > 0.0 if alternate and outs[-1] > 0.0 else None

@@ -1,0 +1,185 @@
+"""Loops of a face in (u, v): which one runs round it, which are holes, and which way each goes.
+
+A face of one chart says by its loops alone where it is: on the left of each, seen from x_u × x_v,
+once they all run counterclockwise about it. However they were given, they are turned so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from standoff.bodies.packing import Chart, Coedge
+from standoff.bodies.topology import Edge, Face
+from standoff.errors import BodyError
+from standoff.geometry.validation import Array
+
+# Points of one coedge.
+ALONG = 33
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Entries of a face's loop that close on themselves.
+
+    Attributes
+    ----------
+    entries : numbers in ``Face.loop``.
+    area : in (u, v), that it runs round counterclockwise as it was given, with collapsed sides.
+    turns : how often it goes round a surface whose u is an angle: 0, or 1 or -1.
+    links : (n, 2, 2) pieces of straight lines in (u, v) along it, in no order.
+    """
+
+    entries: tuple[int, ...]
+    area: float
+    turns: int
+    links: Array
+
+
+def traced(face: Face, edges: Sequence[Edge], number: int) -> list[tuple[int, ...]]:
+    """A face's entries as chains that close, run through as they were given.
+
+    Raises
+    ------
+    BodyError
+        A chain that is open, or whose senses do not follow each other.
+    """
+    ends = [_ends(edges[j], sense) for j, sense in face.loop]
+    alone = [(k,) for k, (first, _) in enumerate(ends) if first is None]
+    waiting = {k for k, (first, _) in enumerate(ends) if first is not None}
+    chains = []
+    while waiting:
+        chain = [min(waiting)]
+        waiting.remove(chain[0])
+        start, at = ends[chain[0]]
+        while at != start:
+            following = min((k for k in waiting if ends[k][0] == at), default=None)
+            if following is None:
+                raise _open(face, ends, number)
+            waiting.remove(following)
+            chain.append(following)
+            at = ends[following][1]
+        chains.append(tuple(chain))
+    return [*alone, *chains]
+
+
+def _ends(edge: Edge, sense: int) -> tuple[int | None, int | None]:
+    return (edge.first, edge.last) if sense > 0 else (edge.last, edge.first)
+
+
+def _open(face: Face, ends: Sequence[tuple[int | None, int | None]], number: int) -> BodyError:
+    vertices = [v for pair in ends for v in pair if v is not None]
+    loose = sorted({v for v in vertices if vertices.count(v) % 2})
+    if loose:
+        return BodyError(
+            f"Face {number}: its loop is open at vertices {loose}.", part=("face", number)
+        )
+    starts = [first for first, _ in ends]
+    against = [
+        face.loop[k][0]
+        for k, (first, _) in enumerate(ends)
+        if first is not None and starts.count(first) > 1
+    ]
+    return BodyError(
+        f"Face {number}: its loop runs both ways round (edges {against} leave one vertex).",
+        part=("face", number),
+    )
+
+
+def turn_loops(chart: Chart, face: Face, edges: Sequence[Edge], number: int) -> bool:
+    """Turn the coedges of a face's one chart so that the face is on the left of x_u × x_v's side.
+
+    Returns whether most of its loops had to be turned.
+
+    Raises
+    ------
+    BodyError
+        Loops that bound no face: open ones, several side by side, one alone round a surface.
+    """
+    loops = [_loop(chart, entries) for entries in traced(face, edges, number)]
+    wrong = _against(loops, chart, number)
+    chart.holed = len(loops) > max(sum(loop.turns != 0 for loop in loops), 1)
+    turned = {
+        k for loop, against in zip(loops, wrong, strict=True) if against for k in loop.entries
+    }
+    for c in chart.coedges:
+        if c.edge >= 0 and c.entry in turned:
+            c.side = -c.side
+    return 2 * len(turned) > len(face.loop)
+
+
+def _against(loops: Sequence[Loop], chart: Chart, number: int) -> list[bool]:
+    """Which loops run clockwise about the face as they were given."""
+    round_ = [loop for loop in loops if loop.turns]
+    collapsed = [c for c in chart.coedges if c.edge < 0]
+    if not round_:
+        outer = max(loops, key=lambda loop: abs(loop.area))
+        sides = [np.stack([p[:-1], p[1:]], 1) for p in map(_points, collapsed)]
+        for loop in loops:
+            if loop is not outer and not _within(loop, np.concatenate([outer.links, *sides])):
+                raise BodyError(
+                    f"Face {number} has loops beside each other: give each part a face of its own.",
+                    part=("face", number),
+                )
+        return [(loop.area < 0.0) == (loop is outer) for loop in loops]
+    if len(round_) == 2 and not collapsed:
+        low, high = sorted(round_, key=lambda loop: float(loop.links[..., 1].mean()))
+        return [
+            loop.turns < 0 if loop is low else loop.turns > 0 if loop is high else loop.area > 0.0
+            for loop in loops
+        ]
+    if len(round_) == 1 and collapsed:
+        return [(loop.area < 0.0) if loop is round_[0] else loop.area > 0.0 for loop in loops]
+    raise BodyError(
+        f"Face {number}: {len(round_)} of its loops go once round its surface; a face lies between "
+        "two of them, or between one and an apex.",
+        part=("face", number),
+    )
+
+
+def _loop(chart: Chart, entries: tuple[int, ...]) -> Loop:
+    coedges = [c for c in chart.coedges if c.edge >= 0 and c.entry in entries]
+    spots = [_points(c) for c in coedges]
+    steps = sum(c.side * float(p[-1, 0] - p[0, 0]) for c, p in zip(coedges, spots, strict=True))
+    turns = round(steps / (2.0 * np.pi)) if chart.surface.periodic else 0
+    links = np.concatenate([np.stack([p[:-1], p[1:]], 1) for p in spots])
+    return Loop(entries, _encircled(chart, coedges, spots), turns, links)
+
+
+def _points(c: Coedge) -> Array:
+    return np.array([c.pcurve.point(float(t))[:2] for t in np.linspace(c.first, c.last, ALONG)])
+
+
+def _encircled(chart: Chart, coedges: Sequence[Coedge], spots: Sequence[Array]) -> float:
+    """Area in (u, v) that coedges run round counterclockwise, by their sides.
+
+    The integral of -v du, which also serves a rim that goes once round. Collapsed sides have no
+    edge, so it is taken where they add nothing: of u dv where v is constant along them, and in a
+    band with v counted from theirs.
+    """
+    level = None
+    for c in chart.coedges:
+        if c.edge < 0:
+            (u0, v0, _), (u1, v1, _) = c.pcurve.point(c.first), c.pcurve.point(c.last)
+            level = v0 if abs(v1 - v0) < abs(u1 - u0) else level
+    area = 0.0
+    for c, points in zip(coedges, spots, strict=True):
+        middle, step = 0.5 * (points[1:] + points[:-1]), np.diff(points, axis=0)
+        if level is None or chart.surface.periodic:
+            area -= c.side * float((middle[:, 1] - (level or 0.0)) @ step[:, 0])
+        else:
+            area += c.side * float(middle[:, 0] @ step[:, 1])
+    return area
+
+
+def _within(loop: Loop, links: Array) -> bool:
+    """Do most points of a loop lie within others, by the parity of what a ray crosses?"""
+    u, v = loop.links[:, 0].T
+    (a, b), (c, d) = links[:, 0].T, links[:, 1].T
+    spans = (b <= v[:, None]) != (d <= v[:, None])
+    with np.errstate(all="ignore"):
+        at = a + (v[:, None] - b) / (d - b) * (c - a)
+    crossed = (spans & (at > u[:, None])).sum(axis=1) % 2
+    return 2 * int(crossed.sum()) > len(u)

@@ -1,0 +1,36 @@
+"""Boxes in (u, v) round trimming curves."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from standoff.geometry.interval_vectors import stacked, wave
+from standoff.geometry.intervals import Interval, interval
+from standoff.geometry.tolerances import BOX_MARGIN
+from standoff.geometry.validation import Array
+from standoff.kernels.body import layout as L
+
+# Parts of a conic whose weight varies, each bounded by itself.
+CONIC_PARTS = 64
+
+
+def pcurve_box(kind: int, matrix: Array, first: float, last: float) -> tuple[Array, Array]:
+    """(low, high), each (2,), round a LINE or CONIC of ``Pcurve`` where its weight is positive."""
+    steps = np.linspace(first, last, 2 if kind == L.LINE else CONIC_PARTS + 1)
+    t = Interval(steps[:-1], steps[1:])
+    if kind == L.LINE:
+        ends = matrix[:, [0]] * steps + matrix[:, [2]]
+        return bezier_box(ends.T)
+    a, b, c = (interval(column[:, None]) for column in matrix.T)
+    h = wave(a, b, t) + c
+    with np.errstate(all="ignore"):
+        places = stacked([h[0] / h[2], h[1] / h[2]])
+    seen = places.known.all(axis=0)
+    return places.lo[:, seen].min(axis=1), places.hi[:, seen].max(axis=1)
+
+
+def bezier_box(points: Array) -> tuple[Array, Array]:
+    """The same of a rational Bezier curve's points (n, 3), homogeneous (w u, w v, w)."""
+    places = points[:, :2] / points[:, 2:]
+    margin = BOX_MARGIN * np.abs(places).max(axis=0)
+    return places.min(axis=0) - margin, places.max(axis=0) + margin
