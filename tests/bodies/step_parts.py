@@ -27,7 +27,6 @@ def bracket(path: Path) -> tuple[float, float]:
     from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
     from OCP.TopAbs import TopAbs_EDGE
     from OCP.TopExp import TopExp_Explorer
-    from OCP.TopoDS import TopoDS
 
     foot = BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 60, 30, 8).Shape()
     wall = BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 8, 30, 40).Shape()
@@ -36,7 +35,7 @@ def bracket(path: Path) -> tuple[float, float]:
     fillet = BRepFilletAPI_MakeFillet(angle.Shape())
     found = TopExp_Explorer(angle.Shape(), TopAbs_EDGE)
     while found.More():
-        edge = TopoDS.Edge_s(found.Current())
+        edge = _cast("Edge", found.Current())
         a, b = _ends(edge)
         if all(abs(p[0] - 8) < 1e-9 and abs(p[2] - 8) < 1e-9 for p in (a, b)):
             fillet.Add(5.0, edge)
@@ -53,6 +52,13 @@ def bracket(path: Path) -> tuple[float, float]:
     BRepGProp.VolumeProperties_s(whole, volume)
     BRepGProp.SurfaceProperties_s(whole, area)
     return volume.Mass(), area.Mass()
+
+
+def _cast(name: str, shape: Any) -> Any:
+    """A shape as the one it is; version 8 of the bindings dropped the names' endings."""
+    from OCP.TopoDS import TopoDS
+
+    return (getattr(TopoDS, name, None) or getattr(TopoDS, f"{name}_s"))(shape)
 
 
 def _ends(edge: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -82,31 +88,29 @@ def parts(shape: Any) -> tuple[np.ndarray, list[Edge], list[Face]]:
 
     vertices: list[np.ndarray] = []
     edges: list[Edge] = []
-    known: dict[int, int] = {}
+    known: list[Any] = []
     faces = []
     for face in _explored(shape, TopAbs_FACE):
         loop = []
         for wire in _wires(face):
-            counted = [e.TShape().__hash__() for e, _ in wire]
             for edge, sense in wire:
-                key = edge.TShape().__hash__()
-                if counted.count(key) == 2:
+                if sum(edge.IsSame(other) for other, _ in wire) == 2:
                     continue
-                if key not in known:
-                    known[key] = len(edges)
+                number = next((k for k, e in enumerate(known) if e.IsSame(edge)), len(known))
+                if number == len(known):
+                    known.append(edge)
                     edges.append(_edge(edge, vertices))
-                loop.append((known[key], sense))
+                loop.append((number, sense))
         faces.append(Face((_surface(face),), tuple(loop)))
     return np.reshape(vertices, (-1, 3)), edges, faces
 
 
 def _explored(shape: Any, kind: Any) -> Iterator[Any]:
     from OCP.TopExp import TopExp_Explorer
-    from OCP.TopoDS import TopoDS
 
     found = TopExp_Explorer(shape, kind)
     while found.More():
-        yield TopoDS.Face_s(found.Current())
+        yield _cast("Face", found.Current())
         found.Next()
 
 
@@ -114,11 +118,10 @@ def _wires(face: Any) -> Iterator[list[tuple[Any, int]]]:
     from OCP.BRepTools import BRepTools_WireExplorer
     from OCP.TopAbs import TopAbs_FORWARD, TopAbs_WIRE
     from OCP.TopExp import TopExp_Explorer
-    from OCP.TopoDS import TopoDS
 
     found = TopExp_Explorer(face, TopAbs_WIRE)
     while found.More():
-        along = BRepTools_WireExplorer(TopoDS.Wire_s(found.Current()), face)
+        along = BRepTools_WireExplorer(_cast("Wire", found.Current()), face)
         wire = []
         while along.More():
             edge = along.Current()

@@ -17,7 +17,7 @@ from standoff.bodies import BodyError, Edge, Face
 from standoff.bodies.boundary import Boundary, EdgeKind
 from standoff.bodies.moments.boundary import moments_of
 from standoff.bodies.tessellation import chart_row
-from standoff.geometry import Line, Plane, RationalBezier
+from standoff.geometry import BezierPatch, Line, Plane
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import chart_normal
 
@@ -45,15 +45,15 @@ def test_volume_area_and_box_are_those_of_the_closed_form(name: str) -> None:
     report = made(solid).check()
     assert abs(report.volume - solid.volume) <= max(report.volume_error, 1e-12 * solid.volume)
     assert report.volume_error <= 1e-8 * solid.volume
-    np.testing.assert_allclose(report.area, solid.area, rtol=1e-12)
+    np.testing.assert_allclose(report.area, solid.area, rtol=1e-8)
     boundary = made(solid)
     centre = boundary.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
     half = boundary.reals[L.BOX_HALF : L.BOX_HALF + 3]
     spare = 1e-14 * boundary.size
     assert (centre - half <= solid.low + spare).all()
     assert (centre + half >= solid.high - spare).all()
-    np.testing.assert_allclose(centre - half, solid.low, atol=2e-3 * boundary.size)
-    np.testing.assert_allclose(centre + half, solid.high, atol=2e-3 * boundary.size)
+    np.testing.assert_allclose(centre - half, solid.low, atol=1e-2 * boundary.size)
+    np.testing.assert_allclose(centre + half, solid.high, atol=1e-2 * boundary.size)
 
 
 @pytest.mark.parametrize("name", SOLIDS)
@@ -238,8 +238,8 @@ def test_shells_within_shells() -> None:
         Boundary.from_brep(*together(cube(), inner))
     with pytest.raises(BodyError, match=r"lie outside .* one boundary of each"):
         Boundary.from_brep(*together(cube(), inverted(cube(0.5, (3, 0, 0)))))
+    smallest = cube(0.1, (0.4, 0.4, 0.4))
     with pytest.raises(BodyError, match=r"inside of the cavity"):
-        smallest = cube(0.1, (0.4, 0.4, 0.4))
         Boundary.from_brep(*together(cube(), inverted(inner), inverted(smallest)))
 
 
@@ -321,14 +321,33 @@ def test_what_has_no_closed_boundary(parts, told: str) -> None:
 
 
 def test_an_edge_that_is_convex_in_part() -> None:
-    """A wall whose top edge is a curve that both bulges over the side and falls back from it."""
-    curve = RationalBezier([[0, 0, 0], [0.3, 0.5, 0], [0.7, -0.5, 0], [1, 0, 0]])
-    from standoff.geometry import Extrusion, SurfaceCurve
+    """Beside a level half of its top a block has a twisted one, that falls from their common edge
+    in front and rises from it behind."""
+    slope = 0.4
 
-    lean = Extrusion(curve, np.array([0.0, 0.3, 1.0]))
-    # the top plane z = 0 and the swept side: their angle turns with the curve's tangent
-    side = lean.restricted(0.0, 1.0, -1.0, 0.0)
-    assert SurfaceCurve.isoline(side, v=0.0).point(0.5) @ Y == pytest.approx(0.0, abs=1e-15)
+    def quad(*corners: tuple[float, float, float]) -> BezierPatch:
+        return BezierPatch(np.reshape(corners, (2, 2, 3)))
+
+    low, high = -0.5 * slope, 0.5 * slope
+    patches = [
+        quad((0, -1, 0), (1, -1, 0), (0, 0, 0), (1, 0, 0)),
+        quad((0, 0, 0), (1, 0, 0), (0, 1, low), (1, 1, high)),
+        quad((0, -1, -1), (1, -1, -1), (0, 0, -1), (1, 0, -1)),
+        quad((0, 0, -1), (1, 0, -1), (0, 1, -1), (1, 1, -1)),
+        quad((0, -1, -1), (1, -1, -1), (0, -1, 0), (1, -1, 0)),
+        quad((0, 1, -1), (1, 1, -1), (0, 1, low), (1, 1, high)),
+    ]
+    for x, end in ((0, low), (1, high)):
+        patches.append(quad((x, -1, -1), (x, 0, -1), (x, -1, 0), (x, 0, 0)))
+        patches.append(quad((x, 0, -1), (x, 1, -1), (x, 0, 0), (x, 1, end)))
+    boundary = Boundary.from_patches(patches)
+    assert Counter(boundary.edge_kinds)[EdgeKind.MIXED] == 1
+    assert Counter(boundary.edge_kinds)[EdgeKind.SMOOTH] == 3
+    assert Counter(boundary.edge_kinds)[EdgeKind.REFLEX] == 0
+    np.testing.assert_allclose(boundary.check().volume, 2.0, rtol=1e-12)
+    heights = np.array([[0.1, 0.5, -0.1], [0.9, 0.5, 0.05], [0.1, 0.5, -0.05], [0.9, 0.5, 0.1]])
+    inside = heights[:, 2] < slope * 0.5 * (heights[:, 0] - 0.5)
+    np.testing.assert_array_equal(boundary.contains(heights), inside)
 
 
 def test_a_body_is_a_boundary(rng: np.random.Generator) -> None:

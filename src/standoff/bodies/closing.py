@@ -14,7 +14,7 @@ from standoff.bodies.boundary import Boundary, boundary_of
 from standoff.bodies.charts import edge_points
 from standoff.bodies.crossings import Crossings
 from standoff.bodies.enclosed import Enclosed, enclosed_by
-from standoff.bodies.face_leaves import face_charts, leaves_of
+from standoff.bodies.face_leaves import face_charts, grown_box
 from standoff.bodies.inner_boxes import inner_boxes
 from standoff.bodies.packing import Assembled, Ints, pack, without_charts
 from standoff.bodies.report import BoundaryReport
@@ -35,8 +35,6 @@ from standoff.geometry.validation import LEAST, Array, finite, positive
 from standoff.kernels.body import layout as L
 from standoff.real_numbers import shape_of, shown
 
-# Half the angle of the cones of normals of the rectangles whose boxes make the boundary's, radians.
-BOX_ANGLE = 0.1
 # Faces of a shell that a message names.
 MOST_NAMED = 6
 
@@ -241,11 +239,10 @@ def _box(boundary: Boundary, parts: Assembled) -> tuple[Array, Array]:
     that hold them."""
     curved = [i for i, face in enumerate(parts.faces) if not all(c.flat for c in face.charts)]
     boxes = [curve_box(edge) for edge in parts.edges]
-    if curved:
-        leaves = leaves_of(face_charts(boundary, curved), BOX_ANGLE)
-        boxes.append((leaves.bounds.low.min(axis=0), leaves.bounds.high.max(axis=0)))
+    charts = face_charts(boundary, curved)
+    boxes += [(x, x) for c in charts for x in [c.surface.jet(0.0, 0.0)[0]] if not len(c.borders[0])]
     lows, highs = zip(*boxes, strict=True)
-    return np.min(lows, axis=0), np.max(highs, axis=0)
+    return grown_box(boundary, charts, np.min(lows, axis=0), np.max(highs, axis=0))
 
 
 def _with_kinds(parts: Assembled, size: float) -> Assembled:

@@ -7,7 +7,6 @@ as where the ray runs along an edge or touches a face, another direction is take
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -55,27 +54,26 @@ class Crossings:
     def __init__(self, boundary: Boundary, faces: Sequence[int] | None = None) -> None:
         self.boundary = boundary
         self.charts = {c.number: c for c in face_charts(boundary, faces)}
-        self.leaves = leaves_of(list(self.charts.values()), LEAF_ANGLE)
+        self.leaves = leaves_of(boundary, faces, LEAF_ANGLE)
         low, high = self.leaves.bounds.low.min(axis=0), self.leaves.bounds.high.max(axis=0)
         self.size = float(np.linalg.norm(high - low))
+        self._known: dict[int, tuple[Array, Array, Array]] = {}
         self.near = ON_BOUNDARY * (self.size + float(np.abs([low, high]).max()))
 
-    @cached_property
-    def _extents(self) -> list[tuple[Array, Array, Array]]:
-        """For every direction its frame (3, 3), and the leaves' extents along it (3, n)."""
-        found = []
-        for direction in DIRECTIONS:
+    def _extents(self, number: int) -> tuple[Array, Array, Array]:
+        """A direction's frame (3, 3), and the leaves' extents along it (3, n), a little more."""
+        if number not in self._known:
+            direction = DIRECTIONS[number]
             across = np.cross(direction, np.eye(3)[int(np.abs(direction).argmin())])
             across = across / np.linalg.norm(across)
             frame = np.stack([direction, across, np.cross(direction, across)])
             low, high = np.empty((2, 3, len(self.leaves)))
-            for number, chart in self.charts.items():
-                own = self.leaves.charts == number
-                low[:, own], high[:, own] = chart.surface.extents(
-                    self.leaves.rectangles[own], frame
-                )
-            found.append((frame, low - self.near, high + self.near))
-        return found
+            for key, chart in self.charts.items():
+                own = self.leaves.charts == key
+                rows = self.leaves.rectangles[own]
+                low[:, own], high[:, own] = chart.surface.extents(rows, frame)
+            self._known[number] = frame, low - self.near, high + self.near
+        return self._known[number]
 
     def inside(self, point: Array) -> bool:
         """Is a point inside, or on a face?
@@ -86,8 +84,8 @@ class Crossings:
             Of no direction the crossings alternate.
         """
         for grazing in (False, True):
-            for frame, low, high in self._extents:
-                told = self._along(point, frame, low, high, grazing)
+            for number in range(len(DIRECTIONS)):
+                told = self._along(point, *self._extents(number), grazing)
                 if told is not None:
                     return told
         raise BodyError(

@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.tessellation import TILE, chart_row, surface_of
+from standoff.bodies.tolerances import BOX_REACH
+from standoff.geometry.bernstein import segment
 from standoff.geometry.patch_bounds import PatchBounds
 from standoff.geometry.pcurve_boxes import bezier_box, pcurve_box
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import on_face
 
 if TYPE_CHECKING:
     from standoff.bodies.boundary import Boundary
 
+# Parts of a trimming curve, each with a box of its own.
+PARTS = 16
+# Quarterings of a chart's rectangle while a box is sought.
+BOX_QUARTERINGS = 8
 # Quarterings of a chart's rectangle at most: beside a pole the normals never fit a narrow cone.
 MOST_QUARTERINGS = 7
 
@@ -51,6 +59,7 @@ class FaceChart:
     number : packed number; face : of it; surface : what it is a chart of.
     outward : +1 where x_u × x_v points outward, else -1.
     rectangle : (4,) what holds the face's part of it.
+    borders : (low, high), each (m, 2), of boxes round parts of its trimming curves.
     """
 
     number: int
@@ -58,6 +67,7 @@ class FaceChart:
     surface: Surface
     outward: float
     rectangle: Array
+    borders: tuple[Array, Array]
 
 
 def face_charts(boundary: Boundary, faces: Sequence[int] | None = None) -> list[FaceChart]:
@@ -70,23 +80,43 @@ def face_charts(boundary: Boundary, faces: Sequence[int] | None = None) -> list[
             continue
         surface = surface_of(boundary, boundary.face_parts[face].charts, number)
         outward = float(boundary.reals[int(row[L.CHART_REALS]) + L.OUTWARD])
-        found.append(FaceChart(number, face, surface, outward, _rectangle(boundary, number)))
+        borders = _borders(boundary, number)
+        rectangle = _rectangle(boundary, number, borders)
+        found.append(FaceChart(number, face, surface, outward, rectangle, borders))
     return found
 
 
-def _rectangle(boundary: Boundary, number: int) -> Array:
+def _rectangle(boundary: Boundary, number: int, borders: tuple[Array, Array]) -> Array:
     """Round the trimming curves; of an atlas's chart the square in which it is not another's."""
     row = chart_row(boundary, number)
     if np.isfinite(boundary.reals[int(row[L.CHART_REALS]) + L.LIMIT]):
         return np.array([-TILE, TILE, -TILE, TILE])
+    low, high = borders
+    return np.array([low[:, 0].min(), high[:, 0].max(), low[:, 1].min(), high[:, 1].max()])
+
+
+def _may_be_on(boundary: Boundary, chart: FaceChart, rows: Array) -> NDArray[np.bool_]:
+    """(n,) which rectangles may hold a point of the face: a trimming curve may cross them, or else
+    their middle is on it."""
+    low, high = chart.borders
+    packed = boundary.ints, boundary.reals, chart.number
+    kept = np.zeros(len(rows), dtype=bool)
+    for k, (u0, u1, v0, v1) in enumerate(rows):
+        meets = (low <= [u1, v1]).all(axis=1) & (high >= [u0, v0]).all(axis=1)
+        kept[k] = meets.any() or on_face(*packed, 0.5 * (u0 + u1), 0.5 * (v0 + v1))
+    return kept
+
+
+def _borders(boundary: Boundary, number: int) -> tuple[Array, Array]:
+    """(low, high), each (m, 2), of boxes round parts of a chart's trimming curves."""
+    row = chart_row(boundary, number)
     first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
-    boxes = np.array([_coedge_box(boundary, k) for k in range(first, first + count)])
-    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
-    return np.array([low[0], high[0], low[1], high[1]])
+    boxes = [b for k in range(first, first + count) for b in _coedge_boxes(boundary, k, PARTS)]
+    return np.reshape([b[0] for b in boxes], (-1, 2)), np.reshape([b[1] for b in boxes], (-1, 2))
 
 
-def _coedge_box(boundary: Boundary, number: int) -> tuple[Array, Array]:
-    """(low, high), each (2,), round a packed trimming curve."""
+def _coedge_boxes(boundary: Boundary, number: int, parts: int) -> Iterator[tuple[Array, Array]]:
+    """(low, high), each (2,), round parts of a packed trimming curve."""
     row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * number
     at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
     first, last = boundary.reals[at : at + L.PCURVE_DATA].tolist()
@@ -94,29 +124,72 @@ def _coedge_box(boundary: Boundary, number: int) -> tuple[Array, Array]:
     if kind == L.BEZIER:
         count = 3 * (int(boundary.reals[at]) + 1)
         points = boundary.reals[at + 1 : at + 1 + count].reshape(-1, 3)
-        return bezier_box(points)
-    return pcurve_box(kind, boundary.reals[at : at + 9].reshape(3, 3), first, last)
+        for a, b in pairwise(np.linspace(0.0, 1.0, parts + 1)):
+            yield bezier_box(segment(len(points) - 1, float(a), float(b)) @ points)
+        return
+    matrix = boundary.reals[at : at + 9].reshape(3, 3)
+    for a, b in pairwise(np.linspace(first, last, parts + 1)):
+        yield pcurve_box(kind, matrix, float(a), float(b))
 
 
-def leaves_of(charts: Sequence[FaceChart], widest: float) -> Leaves:
-    """Rectangles whose normals fit cones of half the angle `widest` (radians), where they do."""
+def leaves_of(boundary: Boundary, faces: Sequence[int] | None, widest: float) -> Leaves:
+    """Rectangles that hold some faces, whose normals fit cones of half the angle `widest`, radians,
+    where they do so at all."""
     numbers, rectangles, bounds = [], [], []
-    for chart in charts:
+    for chart in face_charts(boundary, faces):
         rows = chart.rectangle[None]
         for _ in range(MOST_QUARTERINGS):
+            rows = rows[_may_be_on(boundary, chart, rows)]
+            if not len(rows):
+                break
             found = chart.surface.bounds(rows)
             wide = found.angle > widest
             numbers.append(np.full(int((~wide).sum()), chart.number))
             rectangles.append(rows[~wide])
             bounds.append(found[~wide])
             rows = quartered(rows[wide])
-            if not len(rows):
-                break
         else:
             numbers.append(np.full(len(rows), chart.number))
             rectangles.append(rows)
             bounds.append(chart.surface.bounds(rows))
     return Leaves(np.concatenate(numbers), np.concatenate(rectangles), PatchBounds.joined(bounds))
+
+
+def grown_box(
+    boundary: Boundary, charts: Sequence[FaceChart], low: Array, high: Array
+) -> tuple[Array, Array]:
+    """A box (low, high) of points of a boundary, grown to hold charts' parts of its faces.
+
+    Rectangles are quartered while they reach past points that are known by more than BOX_REACH.
+    """
+    found_low, found_high = low, high
+    waiting = [(chart, chart.rectangle[None]) for chart in charts]
+    for round_ in range(BOX_QUARTERINGS):
+        reaching = []
+        for chart, rows in waiting:
+            rows = rows[_may_be_on(boundary, chart, rows)]
+            reaching.append((chart, rows, *chart.surface.extents(rows, np.eye(3))))
+            inner = _middles(boundary, chart, rows)
+            low = np.minimum(low, inner.min(axis=0, initial=np.inf))
+            high = np.maximum(high, inner.max(axis=0, initial=-np.inf))
+        share = BOX_REACH * float(np.linalg.norm(high - low))
+        share = np.inf if round_ == BOX_QUARTERINGS - 1 else share
+        waiting = []
+        for chart, rows, least, most in reaching:
+            past = ((low - share > least.T) | (high + share < most.T)).any(axis=1)
+            found_low = np.minimum(found_low, least[:, ~past].min(axis=1, initial=np.inf))
+            found_high = np.maximum(found_high, most[:, ~past].max(axis=1, initial=-np.inf))
+            if past.any():
+                waiting.append((chart, quartered(rows[past])))
+    return found_low, found_high
+
+
+def _middles(boundary: Boundary, chart: FaceChart, rows: Array) -> Array:
+    """(n, 3) points of the face amid rectangles."""
+    packed = boundary.ints, boundary.reals, chart.number
+    middles = 0.5 * (rows[:, [0, 2]] + rows[:, [1, 3]])
+    spots = [chart.surface.jet(u, v)[0] for u, v in middles.tolist() if on_face(*packed, u, v)]
+    return np.reshape(spots, (-1, 3))
 
 
 def quartered(rectangles: Array) -> Array:

@@ -39,8 +39,11 @@ INWARD_STEP: Final = 1e-3
 """How far towards the middle of the domain (part of the way) the sign of a collapsed side's normal
 is taken: off the side's roundoff, and before anything turns."""
 
-VOLUME_END: Final = 1e-10
-"""Relative, where refinement of a volume ends that is reported."""
+VOLUME_END: Final = 1e-6
+"""Relative, where refinement of a volume ends that is reported with what it may be off."""
+
+BOX_REACH: Final = 1e-3
+"""A boundary's box may reach past its points by this part of its size."""
 
 ON_BOUNDARY: Final = 1e-12
 """A point whose ray meets a face this near, as a part of the size and the greatest coordinate, is

@@ -11,7 +11,7 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
 # Parts of a conic whose weight varies, each bounded by itself.
-CONIC_PARTS = 64
+CONIC_PARTS = 8
 
 
 def pcurve_box(kind: int, matrix: Array, first: float, last: float) -> tuple[Array, Array]:
