@@ -326,16 +326,6 @@ def test_the_front_is_small() -> None:
     assert {name for name in dir(so.shapes) if not name.startswith("__")} == set(so.shapes.__all__)
 
 
-@pytest.mark.parametrize(
-    ("name", "home"),
-    [("Edge", "bodies"), ("record_point", "points"), ("Impact", "impact"), ("Counts", "tracking")],
-)
-def test_a_name_that_left_the_front_says_where_it_is(name: str, home: str) -> None:
-    with pytest.raises(AttributeError, match=rf"write `from standoff\.{home} import {name}`"):
-        getattr(so, name)
-    assert getattr(import_module(f"standoff.{home}"), name).__name__ == name
-
-
 def test_what_never_was_is_no_attribute() -> None:
     for module in (so, so.points, so.shapes):
         assert not hasattr(module, "no_such_name")

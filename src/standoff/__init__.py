@@ -94,52 +94,6 @@ else:
             "tracking",
             "voronoi",
         ),
-        moved={
-            "standoff.bodies": (
-                "Apex",
-                "Edge",
-                "Face",
-            ),
-            "standoff.impact": (
-                "Impact",
-                "ImpactStatus",
-            ),
-            "standoff.points": (
-                "DepthMinimum",
-                "Minimum",
-                "PointCounts",
-                "PointEvent",
-                "PointProximity",
-                "PointRecording",
-                "PointState",
-                "PointVisit",
-                "SpatialPointProximity",
-                "SpatialPointState",
-                "SpatialPointTracker",
-                "record_point",
-            ),
-            "standoff.tracking": (
-                "Counts",
-                "FrameBuffer",
-                "PairSystem",
-                "pair_system",
-            ),
-            "standoff.recording": (
-                "RecordedEvent",
-                "RunInfo",
-            ),
-            "standoff.automaton": ("Visit",),
-            "standoff.kernels.pair": ("kernels.system",),
-            "standoff_studies": ("accuracy", "paper", "soak"),
-            "standoff.voronoi": (
-                "BranchEnd",
-                "MedialBranch",
-                "NormalCone",
-                "RegionBoundary",
-                "VoronoiError",
-                "VoronoiRegions",
-            ),
-        },
     )
 
 __all__ = [

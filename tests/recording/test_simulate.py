@@ -121,7 +121,7 @@ def test_frame_times() -> None:
     [
         ({"duration": -1.0}, ValueError, "duration = -1.0"),
         ({"duration": float("inf")}, ValueError, "duration = inf"),
-        ({"tracker": BOX}, TypeError, "so.simulate(so.Tracker(a, b, 0.01), path_a, path_b, dura"),
+        ({"tracker": BOX}, TypeError, "is not a Tracker: make one by so.Tracker(a, b, dt)"),
         ({"tracker": None}, TypeError, "None is not a Tracker: make one by so.Tracker(a, b, dt)"),
         ({"dt": 3.0}, ValueError, "there are 1 frames"),
         ({"dt": 1e-9}, ValueError, "2e+09 frames"),
@@ -135,7 +135,7 @@ def test_what_is_refused(arguments: dict, error: type[Exception], piece: str) ->
     given = {"path_a": PAST, "path_b": REST, "duration": 2.0, "dt": 1e-2} | arguments
     if "tracker" not in given:
         given["tracker"] = so.Tracker(POINT, BOX, given.pop("dt"))
-    elif given["tracker"] is None:
+    else:
         del given["dt"]
     with pytest.raises(error) as caught:
         so.simulate(given.pop("tracker"), **given)

@@ -32,7 +32,6 @@ from standoff.tracking.inputs import (
     repair_rows,
 )
 from standoff.tracking.laws import PaperLaw
-from standoff.tracking.old_spellings import takes_a_tracker
 from standoff.tracking.proximity import Event, Proximity
 from standoff.tracking.rows import poses_of, twists_of
 from standoff.tracking.state import TrackerState
@@ -69,7 +68,6 @@ MotionLike: TypeAlias = Moving | Callable[[float], PoseLike] | PoseLike
 """What is read as a path: one, a function of the time that returns a pose, or a pose at rest."""
 
 
-@takes_a_tracker
 def simulate(
     tracker: Tracker,
     path_a: MotionLike,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,6 @@ from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.state import arrays as K
 from standoff.motion import PoseLike, PosesLike, TwistLike
 from standoff.shown_names import hides
-from standoff.spellings import no_attribute
 from standoff.tracking.answers import Answers
 from standoff.tracking.block import Block
 from standoff.tracking.choices import positive_number
@@ -26,7 +25,6 @@ from standoff.tracking.inputs import (
 )
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, checked_law
-from standoff.tracking.old_spellings import ATTRIBUTES, takes_a_law, takes_places
 from standoff.tracking.options import resolved_options
 from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.proximity import Proximity
@@ -82,7 +80,6 @@ class Tracker(ReachedPair):
         spatial one, two half-spaces.
     """
 
-    @takes_a_law("so.Tracker(a, b, dt, law={law})", ("self", "a", "b", "dt"))
     def __init__(
         self,
         a: Body,
@@ -101,11 +98,6 @@ class Tracker(ReachedPair):
         self.planar = a.dimension == 2 or b.dimension == 2
         self._reach()
         self._prepare()
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise no_attribute(self, name, ATTRIBUTES)
 
     def start(
         self,
@@ -135,7 +127,6 @@ class Tracker(ReachedPair):
         """
         return self._start(pose_a, pose_b, twist_a, twist_b, np.zeros(K.N_STATE), 0)
 
-    @takes_places
     def start_from(
         self,
         pose_a: PoseLike,
