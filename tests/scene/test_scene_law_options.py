@@ -120,7 +120,7 @@ def test_the_tracker_gets_what_the_scene_says(
     path = ConstantTwist(
         so.Pose(np.eye(3), (-1.0, 0.2, 1.2)), so.Twist((1.0, 0.0, 0.0), (0.0, 0.5, 1.0))
     )
-    direct = so.simulate(
+    direct = so.track(
         so.Tracker(
             so.shapes.ellipsoid(0.3, 0.1, 0.1),
             so.shapes.lens(1.0, 0.45),

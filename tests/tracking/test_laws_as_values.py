@@ -191,7 +191,7 @@ def test_a_recording_keeps_each_option(law: Any, tmp_path: Path) -> None:
     path = ConstantTwist(so.Pose(np.eye(3), (2.0, 0.1, 0.2)), so.Twist((-1.0, 0, 0), (0, 0, 1)))
     tracker = so.Tracker(BOX, so.shapes.sphere(0.3), DT, law)
     assert tracker.law is law
-    recording = so.simulate(tracker, so.Pose.identity(), path, 0.1)
+    recording = so.track(tracker, so.Pose.identity(), path, 0.1)
     recording.save(tmp_path / "run.parquet")
     again = so.open_recording(tmp_path / "run.parquet")
     for info in (recording.info, again.info):
