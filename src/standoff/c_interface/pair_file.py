@@ -11,9 +11,9 @@ import numpy as np
 
 from standoff.bodies.addresses import formulas_of
 from standoff.bodies.body import Body
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.compiler.machine import source_digest
-from standoff.real_numbers import shown
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.options import with_smooth_frame
 from standoff.tracking.specialised import COMPILED_AHEAD, smooth_frame_of

@@ -140,7 +140,7 @@ NEAR_CONTACT = 1e-3
 CONTACT_STEPS = 12
 
 # Positions (length) must stay below this: squares of distances must not overflow.
-FARTHEST = 1e100
+FARTHEST = 1e50
 # Parameters that a frame of the paper's law changes by more than this have overflowed: fourth
 # powers of them must not, and no patch is so wide (parameter units; on a half-space lengths).
 LONGEST_CHANGE = 1e50

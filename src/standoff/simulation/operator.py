@@ -7,16 +7,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.names import choice
+from standoff.checks.numbers import number, positive, whole_number, yes_or_no
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.dynamics import arrays as K
 from standoff.kernels.dynamics.operator import METHODS
 from standoff.kernels.entries import simulation as entries
 from standoff.kernels.entries.preparing import prepare_simulation
 from standoff.kernels.state import arrays as T
-from standoff.motion import inputs
 from standoff.progress import Progress
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 from standoff.simulation import stability
 from standoff.simulation.coupled_tool import check_tool
 from standoff.simulation.device import Device, DeviceReading
@@ -34,7 +35,6 @@ from standoff.simulation.system import System
 from standoff.simulation.system_run import SystemRun
 from standoff.simulation.system_start import started
 from standoff.simulation.system_state import SystemState, coupler_at
-from standoff.tracking.choices import positive_number, whole_number, yes_or_no
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw, PredictorCorrector
 from standoff.tracking.options import pack_options
@@ -105,9 +105,9 @@ class Operator(KeepsReadOnly):
                 f"system is {shown(system)}: give a standoff.simulation.System.", "system", system
             )
         self.system = system
-        self.dt = positive_number(dt, "dt")
-        inputs.word(method, "method", METHODS)
-        inputs.word(tracker, "tracker", SIDES)
+        self.dt = positive(dt, "dt")
+        choice(method, "method", METHODS)
+        choice(tracker, "tracker", SIDES)
         self.method, self.tracker = method, tracker
         self.law = self._law(gain)
         check_tool(system, self.dt, method)
@@ -191,7 +191,7 @@ class Operator(KeepsReadOnly):
         StandoffError
             Bodies overlap, by a depth that is told, and that is not allowed.
         """
-        t = inputs.number(time, "time")
+        t = number(time, "time")
         return started(self.system, self.law, self.dt, t, yes_or_no(allow_overlap, "allow_overlap"))
 
     def run(

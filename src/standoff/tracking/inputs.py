@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.checks.arrays import text
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.state.arrays import NOT_GIVEN
 from standoff.kernels.tolerances import FARTHEST
 from standoff.motion import Pose, PoseLike, Twist, TwistLike
-from standoff.motion.inputs import text
 from standoff.motion.rotations import defect, mirrored, without_rounding
 from standoff.motion.tolerances import ORTHONORMALITY, ROUNDED
-from standoff.real_numbers import shown
 from standoff.tracking.rows import NO_TWIST
 from standoff.tracking.tolerances import PLANE_TILT
 

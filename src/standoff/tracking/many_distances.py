@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import feature_of
+from standoff.checks.numbers import whole_number, yes_or_no
 from standoff.errors import StandoffError
 from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
 from standoff.motion import PosesLike
 from standoff.tracking.answers import AnswerArrays, proven, statuses
-from standoff.tracking.choices import whole_number, yes_or_no
 from standoff.tracking.cold_query import ColdQuery
 from standoff.tracking.overlap_proof import cores_overlap
 from standoff.tracking.pose_arrays import PoseArray, mended, read_poses
@@ -109,7 +109,7 @@ class Distances(AnswerArrays):
         """
         from standoff.tracking.derivatives import derivative_arrays
 
-        return derivative_arrays(self, at_least_one(workers, "workers"))
+        return derivative_arrays(self, whole_number(workers, "workers"))
 
     @property
     def gradient(self) -> Array:
@@ -221,7 +221,7 @@ def answered_rows(
     a: Body, b: Body, poses_a: Any, poses_b: Any, *, warm: bool = False, workers: int = 1
 ) -> Distances:
     """`distances`, without a warning."""
-    at_least_one(workers, "workers")
+    whole_number(workers, "workers")
     query = Tracker(a, b) if yes_or_no(warm, "warm") else ColdQuery(a, b)
     given_a, given_b = read_poses(poses_a, "poses_a"), read_poses(poses_b, "poses_b")
     counts = len(given_a.matrices), len(given_b.matrices)
@@ -249,13 +249,6 @@ def answered_rows(
     errors = RefusedRows(refused, refused_a, refused_b, query.planar)
     repaired = np.broadcast_to(marks_a, n) + np.broadcast_to(marks_b, n)
     return Distances((a, b), rows, (of_a, of_b), repaired, errors)
-
-
-def at_least_one(value: int, name: str) -> int:
-    """A number of threads."""
-    if whole_number(value, name) < 1:
-        raise StandoffError(f"{name} = {value}: give 1 or more.", name, value)
-    return int(value)
 
 
 def _row(poses: Array, k: int) -> Array:
