@@ -169,13 +169,6 @@ def test_what_is_no_pose_is_refused(value: Any, message: str) -> None:
         Pose.of(value)
 
 
-def test_the_old_name_of_the_mark_says_the_new_one() -> None:
-    with pytest.raises(AttributeError, match=r"Pose\.normalised is .* write Pose\.rep"):
-        Pose.identity().normalised  # noqa: B018
-    with pytest.raises(AttributeError, match="no attribute 'position'"):
-        Pose.identity().position  # noqa: B018
-
-
 @pytest.mark.parametrize("make", [Pose.from_wxyz, Pose.from_xyzw])
 def test_broken_quaternions_are_refused(make: Any) -> None:
     with pytest.raises(ValueError, match=r"quaternion .*finite"):

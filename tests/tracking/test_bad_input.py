@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import standoff as so
-from standoff.errors import StandoffTypeError
 from standoff.geometry import ConicArc
 
 NAN, INF = np.nan, np.inf
@@ -313,12 +312,3 @@ def test_an_answers_places_begin_the_same_frame():
     begun = tracker.start_from(HOME, AWAY, best.place_a, best.place_b).proximity
     assert (begun.place_a, begun.place_b) == (best.place_a, best.place_b)
     assert begun.distance == best.distance
-
-
-def test_features_beside_their_parameters_are_told_to_come_as_places():
-    start_from = so.Tracker(LENS, POINT).start_from
-    old = {"feature_a": ("face", 0), "parameters_a": (0.1, 0.2), "feature_b": ("vertex", 0)}
-    with pytest.raises(StandoffTypeError, match=r"write start_from\(pose_a, pose_b, \(feature"):
-        start_from(HOME, AWAY, **old)
-    with pytest.raises(StandoffTypeError, match=r"or p\.place_a"):
-        start_from(HOME, AWAY, so.Feature("face", 0), (0.1, 0.2), so.Feature("vertex", 0), ())

@@ -34,7 +34,6 @@ from standoff.geometry.validation import (
 )
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of
-from standoff.spellings import renamed
 from standoff.wording import counted, printable
 
 if TYPE_CHECKING:
@@ -76,7 +75,6 @@ class Body(KeepsReadOnly):
     size: float
 
     @staticmethod
-    @renamed(radius="rounding=...")
     def from_brep(
         vertices: Any = (),
         edges: Sequence[Edge] = (),
@@ -139,7 +137,6 @@ class Body(KeepsReadOnly):
         return _body(name, radius, finish(joined, radius, convexity_tolerance))
 
     @staticmethod
-    @renamed(radius="rounding=...")
     def from_patches(
         patches: Sequence[Surface],
         *,

@@ -21,7 +21,7 @@ from standoff.impact.tolerances import (
 )
 from standoff.motion.bounds import breaks_of, known
 from standoff.motion.inputs import GREATEST, number
-from standoff.recording.simulate import MotionLike, moving
+from standoff.motion.moving import MotionLike, moving
 from standoff.tracking.choices import positive_number, whole_number
 from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.tracker import Tracker

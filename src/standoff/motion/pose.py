@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeGuard
+from typing import Any, Protocol, TypeAlias, TypeGuard
 
 import numpy as np
 import scipy
@@ -17,7 +17,6 @@ from standoff.motion.rotations import as_rotation, nearest_rotation
 from standoff.motion.tolerances import ORTHONORMALITY, QUATERNION_ROUNDING, UNIT_QUATERNION
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import as_given, shape_of, shown
-from standoff.spellings import no_attribute
 
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Of every homogeneous matrix."""
@@ -74,11 +73,6 @@ class Pose(KeepsReadOnly):
         object.__setattr__(self, "rotation", rotation)
         object.__setattr__(self, "translation", translation)
         object.__setattr__(self, "repaired", repaired)
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise no_attribute(self, name, {"normalised": "repaired"})
 
     @classmethod
     def from_checked(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,7 +18,6 @@ from standoff.motion.poses import Poses
 from standoff.motion.tolerances import HALF_TURN_ANGLE, NEAR_HALF_TURN
 from standoff.motion.twist import Twist, screws
 from standoff.read_only import KeepsReadOnly
-from standoff.spellings import no_attribute
 
 FASTER = 10.0
 """A screw is no more than this faster than its ends' distances from the origin in its time."""
@@ -119,11 +118,6 @@ class PoseSamples(KeepsReadOnly):
     def poses(self) -> tuple[Pose, ...]:
         """The poses of the samples, n of them."""
         return tuple(self._stack)
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise no_attribute(self, name, {"normalised": "repaired"})
 
     @property
     def start(self) -> float:

@@ -15,6 +15,7 @@ from standoff.bodies.features import Feature
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.tolerances import SLOPE
 from standoff.motion import PoseLike, inputs
+from standoff.motion.moving import Moving
 from standoff.motion.pose_function import path_of
 from standoff.points.answer import PointEvent, PointProximity
 from standoff.points.events import Switching, events_between
@@ -23,7 +24,6 @@ from standoff.points.tolerances import RELEASE_SLOPES
 from standoff.points.tracker import PointTracker
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shape_of, shown
-from standoff.recording.simulate import Moving
 from standoff.recording.tolerances import INSTANT_RESOLUTION, INSTANT_ROUNDINGS
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.wording import counted, short_name

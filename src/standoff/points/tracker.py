@@ -40,7 +40,6 @@ from standoff.tracking.block import Block
 from standoff.tracking.choices import positive_number
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw
-from standoff.tracking.old_spellings import takes_a_law
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
@@ -85,7 +84,6 @@ class PointTracker(KeepsReadOnly):
     minimum that appears on a curve is seen by sampling every frame.
     """
 
-    @takes_a_law("so.PointTracker(body, dt, law={law})", ("self", "body", "dt"))
     def __init__(self, body: Body, dt: float = 1e-3, law: Law = DEFAULT_LAW) -> None:
         if not isinstance(body, Body):
             raise StandoffTypeError(

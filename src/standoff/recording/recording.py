@@ -190,7 +190,7 @@ class Recording(RecordedFrames):
         if self.pair is None or self.paths is None:
             raise StandoffError(
                 "A recording that was opened from a file, copied or unpickled does not hold what "
-                "moved: animate the one that so.simulate returned."
+                "moved: animate the one that so.track returned."
             )
         count = whole_number(pictures, "pictures")
         angles = view_angles(view)

@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from standoff import real_numbers
+from standoff.checks.names import nearest
 from standoff.errors import StandoffError
 from standoff.scene.errors import SceneError
-from standoff.spellings import nearest
 from standoff.wording import printable
 
 Array = npt.NDArray[np.float64]

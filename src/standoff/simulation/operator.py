@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +15,7 @@ from standoff.kernels.entries.preparing import prepare_simulation
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as T
 from standoff.motion import inputs
+from standoff.progress import Progress
 from standoff.read_only import KeepsReadOnly
 from standoff.real_numbers import shown
 from standoff.simulation import stability
@@ -62,10 +62,6 @@ class Going(NamedTuple):
     data: Array
     start: float
     every: int
-
-
-Progress = Callable[[int, int], None]
-"""Told, as a run goes on, how many ticks are done, and of how many."""
 
 
 class Operator(KeepsReadOnly):

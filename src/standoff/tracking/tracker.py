@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +16,6 @@ from standoff.kernels.state import arrays as K
 from standoff.motion import PoseLike, PosesLike, TwistLike
 from standoff.read_only import KeepsReadOnly, locked
 from standoff.shown_names import hides
-from standoff.spellings import no_attribute
 from standoff.tracking.answers import Answers
 from standoff.tracking.choices import positive_number
 from standoff.tracking.frame_buffer import FrameBuffer
@@ -24,7 +23,6 @@ from standoff.tracking.inputs import check_pair, plain, same_body
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, checked_law
 from standoff.tracking.mended_calls import Given, started, stepped
-from standoff.tracking.old_spellings import ATTRIBUTES, takes_a_law, takes_places
 from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.reached import reach
@@ -76,7 +74,6 @@ class Tracker(KeepsReadOnly):
         spatial one, two half-spaces.
     """
 
-    @takes_a_law("so.Tracker(a, b, dt, law={law})", ("self", "a", "b", "dt"))
     def __init__(
         self,
         a: Body,
@@ -111,11 +108,6 @@ class Tracker(KeepsReadOnly):
         super().__setstate__(stored)
         self._reach()
 
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise no_attribute(self, name, ATTRIBUTES)
-
     def start(
         self,
         pose_a: PoseLike,
@@ -144,7 +136,6 @@ class Tracker(KeepsReadOnly):
         """
         return self._started((pose_a, pose_b, twist_a, twist_b), StateRow(), K.START_ANYWHERE)
 
-    @takes_places
     def start_from(
         self,
         pose_a: PoseLike,

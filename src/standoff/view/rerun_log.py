@@ -36,7 +36,7 @@ def save_rerun(recording: Recording, path: str | Path) -> None:
     Parameters
     ----------
     recording : Recording
-        As `so.simulate` returned it: one from a file does not hold what moved.
+        As `so.track` returned it: one from a file does not hold what moved.
     path : str or path
         An .rrd file, written whole or not at all.
 

@@ -9,9 +9,9 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from standoff.errors import StandoffError, not_installed
+from standoff.progress import Progress
 from standoff.real_numbers import shown
 from standoff.recording import Recording
-from standoff.recording.simulate import Progress
 from standoff.tracking.choices import positive_number, whole_number
 from standoff.tracking.pair_plot import view_angles
 from standoff.view.shown import what_moved
@@ -35,7 +35,7 @@ def save_video(
     Parameters
     ----------
     recording : Recording
-        As `so.simulate` returned it: one from a file does not hold what moved.
+        As `so.track` returned it: one from a file does not hold what moved.
     path : str or path
         An .mp4 or a .gif file, written whole or not at all.
     pictures : int

@@ -11,7 +11,6 @@ from standoff.bodies.topology import Edge
 from standoff.errors import StandoffTypeError
 from standoff.geometry.curves import Line
 from standoff.geometry.validation import Array, not_negative, vector3
-from standoff.spellings import renamed
 
 
 def point(*, rounding: float = 0.0) -> Body:
@@ -88,7 +87,6 @@ def segment(
     return _swept(ends, radius, "capsule" if radius else "segment")
 
 
-@renamed(r="radius=...")
 def sphere(radius: float, *, rounding: float = 0.0) -> Body:
     """A ball about the origin: a point with a swept radius.
 
@@ -111,7 +109,6 @@ def sphere(radius: float, *, rounding: float = 0.0) -> Body:
     return point(rounding=not_negative(radius, "radius") + not_negative(rounding, "rounding"))
 
 
-@renamed(r="radius=...")
 def capsule(radius: float, length: float, *, rounding: float = 0.0) -> Body:
     """A segment of the z axis with a swept radius, centred.
 

@@ -23,7 +23,6 @@ from standoff.errors import BodyError, StandoffError
 from standoff.geometry.curves import Line
 from standoff.geometry.surfaces import Plane
 from standoff.geometry.validation import LEAST, Array, finite, not_negative
-from standoff.spellings import renamed
 
 # A face's vertices, counterclockwise seen from outside, and its outward normal.
 Loop = tuple[list[int], Array]
@@ -51,7 +50,6 @@ def box(x: float, y: float, z: float, /, rounding: float = ...) -> Body: ...
 def box(size: Any, rounding: float = ...) -> Body: ...
 
 
-@renamed(x="size=(x, y, z)", y="size=(x, y, z)", z="size=(x, y, z)")
 def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
     """A box about the origin, its edges along x, y, z, sharp or rounded.
 

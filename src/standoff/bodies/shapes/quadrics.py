@@ -13,7 +13,6 @@ from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere
 from standoff.geometry.validation import Array, finite, matrix3, not_negative, positive, vector3
-from standoff.spellings import renamed
 
 # Cosine up to which an axis is square enough to a normal for a plane's first direction.
 SQUARE_ENOUGH = 0.8
@@ -66,7 +65,6 @@ def ellipsoid(a: float, b: float, c: float, /, *, rounding: float = ...) -> Body
 def ellipsoid(semi_axes: Any, *, rounding: float = ...) -> Body: ...
 
 
-@renamed(a="semi_axes=(a, b, c)", b="semi_axes=(a, b, c)", c="semi_axes=(a, b, c)")
 def ellipsoid(*axes: Any, semi_axes: Any = None, rounding: float = 0.0) -> Body:
     """An ellipsoid about the origin: one smooth face with an atlas of six charts.
 
@@ -100,7 +98,6 @@ def ellipsoid(*axes: Any, semi_axes: Any = None, rounding: float = 0.0) -> Body:
     )
 
 
-@renamed(r="radius=...", length="height=...")
 def cylinder(radius: float, height: float, *, rounding: float = 0.0) -> Body:
     """A cylinder about the axis z, centred.
 
@@ -138,7 +135,6 @@ def cylinder(radius: float, height: float, *, rounding: float = 0.0) -> Body:
     return Body.from_brep(edges=edges, faces=faces, rounding=rounding, name="cylinder")
 
 
-@renamed(r="radius=...")
 def cone(radius: float, height: float, *, rounding: float = 0.0) -> Body:
     """A cone about the axis z: its base at -height/2, its apex at +height/2.
 

@@ -19,7 +19,6 @@ from standoff.geometry.superellipsoids import (
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.validation import Array, finite, not_negative
 from standoff.kernels.body import layout as L
-from standoff.spellings import renamed
 
 Signs = tuple[int, int, int]
 
@@ -34,10 +33,6 @@ def superellipsoid(
 def superellipsoid(semi_axes: Any, exponents: Any, *, rounding: float = ...) -> Body: ...
 
 
-@renamed(
-    **dict.fromkeys(("a", "b", "c"), "semi_axes=(a, b, c)"),
-    **dict.fromkeys(("e1", "e2"), "exponents=(e1, e2)"),
-)
 def superellipsoid(
     *numbers: Any, semi_axes: Any = None, exponents: Any = None, rounding: float = 0.0
 ) -> Body:
