@@ -55,7 +55,8 @@ def prepare(planar: bool, runs: bool = False) -> None:
         return
     names = BODIES + (PLANAR if planar else ()) + (LOCATING if runs else ())
     needed = [getattr(queries, name) for name in names]
-    needed += [tracker.start, tracker.value, tracker.step]
+    needed += [tracker.query, tracker.start, tracker.step]
+    needed += [tracker.value, tracker.value_by_poses]
     if runs:
         needed.append(tracker.values)
     _prepare_each(needed)
@@ -66,7 +67,7 @@ def prepare(planar: bool, runs: bool = False) -> None:
 
 def prepare_buffer() -> None:
     """Have ready what a frame in a buffer is made by."""
-    _prepare_each([tracker.moved])
+    _prepare_each([tracker.moved, tracker.moved_by_poses])
 
 
 def prepare_simulation() -> None:
