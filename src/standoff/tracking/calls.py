@@ -75,4 +75,4 @@ def step(
     in_place = blocks.step_paper if names_paper_law(options) else blocks.step_predicted
     bad = in_place(table.address, block.data)
     state.data[:] = block.state
-    return AnswerRows(block.out), bad in (K.FINE, K.UNDECIDED)
+    return AnswerRows(block.out), bad == K.FINE

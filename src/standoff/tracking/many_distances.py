@@ -17,12 +17,10 @@ from standoff.motion import PosesLike
 from standoff.tracking.answers import AnswerArrays, proven, statuses
 from standoff.tracking.choices import whole_number, yes_or_no
 from standoff.tracking.cold_query import ColdQuery
-from standoff.tracking.overlap_proof import cores_overlap
 from standoff.tracking.pose_arrays import PoseArray, mended, read_poses
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.refused_rows import RefusedPoses, RefusedRows
 from standoff.tracking.rows import motion_row
-from standoff.tracking.status import Status
 from standoff.tracking.threads import in_parts
 from standoff.tracking.tracker import Tracker
 from standoff.wording import counted, short_name
@@ -244,8 +242,6 @@ def answered_rows(
         _warm(query, (of_a, of_b), rows, refused)
     else:
         _cold(query, (of_a, of_b), rows, workers)
-    for k in np.flatnonzero(rows[:, K.STATUS] == Status.NOT_CERTIFIED.value).tolist():
-        _name_overlap(query, rows[k], _row(of_a, k), _row(of_b, k))
     errors = RefusedRows(refused, refused_a, refused_b, query.planar)
     repaired = np.broadcast_to(marks_a, n) + np.broadcast_to(marks_b, n)
     return Distances((a, b), rows, (of_a, of_b), repaired, errors)
@@ -308,12 +304,3 @@ def _warm(
             parts[0] = np.repeat(parts[0], end - first - 1, axis=0)
         _, answers = query.run(state, *parts)
         rows[first + 1 : end] = answers.blocks[:, : K.N_OUT]
-
-
-def _name_overlap(query: Tracker, row: Array, pose_a: Array, pose_b: Array) -> None:
-    """Give an uncertified row without a positive bound the status OVERLAPPING, if proven."""
-    if row[K.DISTANCE] <= 0.0 or row[K.LOWER_BOUND] > 0.0:
-        return
-    if cores_overlap(query.a, query.b, _flat(pose_a), _flat(pose_b)):
-        row[K.DISTANCE] = row[K.UPPER_BOUND] = 0.0
-        row[K.STATUS] = float(Status.OVERLAPPING.value)

@@ -27,23 +27,15 @@ from standoff.tracking.inputs import (
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.options import with_smooth_frame
-from standoff.tracking.overlap_proof import cores_overlap
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.rows import motion_row, poses_of, twists_of
 from standoff.tracking.specialised import smooth_address
 from standoff.tracking.state import FrameBuffer, TrackerState
-from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
 
-# Statuses of answers that a proof of overlap may decide.
-UNDECIDED = (float(Status.NOT_CERTIFIED.value),)
-
 Given = tuple[Any, Any, Any, Any]
 """Poses and twists of both bodies, in any form."""
-
-DONE = (K.FINE, K.UNDECIDED)
-"""What the compiled step returns when it has made an answer."""
 
 
 class ReachedPair(KeepsReadOnly):
@@ -109,17 +101,6 @@ class ReachedPair(KeepsReadOnly):
         repair(flat_a if first else flat_b, "pose_a" if first else "pose_b")
         return 1
 
-    def name_overlap(self, block: Block) -> None:
-        """Give an uncertified pair without a positive bound the status OVERLAPPING, if proven."""
-        data, out, motion = block.state, block.out, block.motion
-        held = isinstance(self.law, PaperLaw) and self.law.left_alone
-        if out[K.DISTANCE] <= 0.0 or out[K.LOWER_BOUND] > 0.0 or held:
-            return
-        if cores_overlap(self.a, self.b, *poses_of(motion)):
-            out[K.DISTANCE] = out[K.UPPER_BOUND] = 0.0
-            out[K.STATUS] = float(Status.OVERLAPPING.value)
-            data[K.LOST] = 1.0
-
     def _motion(
         self,
         pose_a: PoseLike,
@@ -138,7 +119,7 @@ class ReachedPair(KeepsReadOnly):
     def _step_in(self, block: Block) -> int:
         """One frame in a long block; returns how many poses were repaired in it."""
         repaired = 0
-        while (done := self.in_place(self.table.address, block.data)) not in DONE:
+        while (done := self.in_place(self.table.address, block.data)) != K.FINE:
             repaired += self._repair(done, block.motion)
         return repaired
 
@@ -175,28 +156,20 @@ class ReachedPair(KeepsReadOnly):
         data[K.BLOCK_TIME_STEP], data[K.BLOCK_HAS_TWIST] = h, buffer.has_twist
         buffer.repaired = 0
         done = self.in_place(self.table.address, data)
-        if done not in DONE:
+        if done != K.FINE:
             buffer.repaired = self._step_in(Block(data))
-        return self._named_in(data)
+        return data.item(K.DISTANCE)
 
     def _mended(self, buffer: FrameBuffer, given: Given, h: float) -> float:
-        """The distance of a frame in place that was refused at first, or is undecided."""
+        """The distance of a frame in place that was refused at first."""
         data = buffer._block
         if data[K.BLOCK_DONE] == K.BAD_ARRAYS:
             return self._put_anew(buffer, given, h)
-        if data[K.BLOCK_DONE] not in DONE:
+        if data[K.BLOCK_DONE] != K.FINE:
             buffer.repaired += self._step_in(Block(data))
-        return self._named_in(data)
-
-    def _named_in(self, data: Array) -> float:
-        """The distance in a block that is done, an overlap named where one is proven."""
-        if data[K.STATUS] in UNDECIDED:
-            self.name_overlap(Block(data))
         return data.item(K.DISTANCE)
 
-    def _named(self, block: Array, repaired: int) -> tuple[TrackerState, Proximity]:
-        """State and answer of a block that is done, an overlap named where one is proven."""
-        if block[K.STATUS] in UNDECIDED:
-            self.name_overlap(Block(block))
+    def _answered(self, block: Array, repaired: int) -> tuple[TrackerState, Proximity]:
+        """State and answer of a block that is done."""
         answer = Proximity(self.a, self.b, block, repaired)
         return TrackerState(answer), answer

@@ -37,7 +37,6 @@ class Steps(Protocol):
 
     def check_state(self, state: TrackerState) -> None: ...
     def check_frame_time(self, dt: float) -> float: ...
-    def name_overlap(self, block: Block) -> None: ...
     def step_anew(
         self, state: TrackerState, given: tuple[Any, Any, Any, Any], h: float
     ) -> tuple[TrackerState, Proximity]: ...
@@ -184,9 +183,7 @@ def run(tracker: Steps, state: TrackerState, given: Given) -> tuple[TrackerState
             unchecked.remove(done)
             given = given.mended(done, at)
             continue
-        if done == K.UNDECIDED:
-            tracker.name_overlap(Block(blocks[at + 1]))
-        elif done != K.FINE:
+        if done != K.FINE:
             kept = with_polytope(blocks[at], polytopes[at % 2])
             before = TrackerState(Proximity(tracker.a, tracker.b, kept))
             answer = _single(tracker, before, given, at)

@@ -42,8 +42,8 @@ ARRAY = np.ndarray
 INSIDE = K.BLOCK_STATE + K.INSIDE  # was a block's frame solved in contact?
 
 HIDDEN = (
-    "check_frame_time", "check_state", "in_place", "moved", "name_overlap", "options", "packed",
-    "planar", "step_anew", "table", "value", "values",
+    "check_frame_time", "check_state", "in_place", "moved", "options", "packed", "planar",
+     "step_anew", "table", "value", "values",
 )  # fmt: skip
 """What the run and the studies need and users do not."""
 
@@ -228,8 +228,6 @@ class Tracker(ReachedPair):
         if done == K.FINE:
             answer = Proximity(self.a, self.b, block, repaired)
             return TrackerState(answer), answer
-        if done == K.UNDECIDED:
-            return self._named(block, repaired)
         return self.step_anew(state, given, h)
 
     def step_anew(
@@ -243,7 +241,7 @@ class Tracker(ReachedPair):
         motion, has_twist, repaired = self._motion(*given)
         block = Block.empty(state.warm_start, motion, h, has_twist)
         repaired += self._step_in(block)
-        return self._named(block.kept(), repaired)
+        return self._answered(block.kept(), repaired)
 
     def run(
         self,
@@ -392,4 +390,4 @@ class Tracker(ReachedPair):
             self.packed, motion, has_twist, self.options, state, given, out
         ):
             repaired += self._repair(bad, motion)
-        return self._named(block.kept(), repaired)[0]
+        return self._answered(block.kept(), repaired)[0]

@@ -40,14 +40,11 @@ from standoff.kernels.state.arrays import (
     N_BLOCK,
     N_KEEPING_BLOCK,
     N_STATE,
-    NOT_CERTIFIED,
     NOT_GIVEN,
     POSE_A,
     POSE_B,
-    STATUS,
     TWIST_A,
     TWIST_B,
-    UNDECIDED,
 )
 from standoff.kernels.state.options import read_options
 from standoff.kernels.values import Pair, Work
@@ -102,7 +99,7 @@ def answered(frame, table, block, room, polytopes):
         return MORE_EVENTS
     for k in range(EVENT_COLUMNS * switches):
         block[BLOCK_EVENTS + k] = log[k]
-    return UNDECIDED if out[STATUS] == NOT_CERTIFIED else FINE
+    return FINE
 
 
 class Given(NamedTuple):
@@ -208,8 +205,8 @@ def value_predicted(table, before, pose_a, pose_b, twist_a, twist_b, h, block):
     """One frame of the predictor-corrector from the state in one block to another block.
 
     Poses (4, 4) and twists, (6,) or [NOT_GIVEN], are read as they are given. A block of
-    N_KEEPING_BLOCK numbers may keep a polytope. Returns FINE or UNDECIDED; else what is refused, or
-    MORE_EVENTS, and the block is of no worth.
+    N_KEEPING_BLOCK numbers may keep a polytope. Returns FINE; else what is refused, or MORE_EVENTS,
+    and the block is of no worth.
     """
     given = pose_a, pose_b, twist_a, twist_b
     return value_by(frame_predicted, table, before, given, h, block)
@@ -288,7 +285,7 @@ def answered_in_place(frame, table, block):
 def step_predicted(table, block):
     """One frame of the predictor-corrector in a long block, in place, its polytope with it.
 
-    Returns FINE or UNDECIDED; or, with nothing changed, what of the poses and twists is refused.
+    Returns FINE; or, with nothing changed, what of the poses and twists is refused.
     """
     return answered_in_place(frame_predicted, table, block)
 

@@ -79,8 +79,8 @@ def stepped(frame, table, address):
 
 @shared
 def step_predicted_in_block(table, address):
-    """A frame of the predictor-corrector: FINE, UNDECIDED or, with nothing changed, what of the
-    poses and twists is refused.
+    """A frame of the predictor-corrector: FINE or, with nothing changed, what of the poses and
+    twists is refused.
     """
     return stepped(frame_predicted, table, address)
 

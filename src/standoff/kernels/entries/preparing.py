@@ -26,16 +26,13 @@ MODULES = (
 """Where entries stand."""
 
 BODIES = ("on_face", "inner_box", "chart_normal", "surface_jet", "curve_jet")
-"""What places a start, and builds the half-space against which an overlap is proven."""
+"""What places a start."""
 
 PLANAR = ("pcurve_jet", "planar_edge_normal")
 """What that of planar bodies needs beside it."""
 
 LOCATING = ("feature_jet", "edge_jet", "coedge_conormal", "end_direction")
 """What locates the instant of a switch in a recorded run."""
-
-SCIPY = ("scipy.optimize",)
-"""Imported by a proof of overlap."""
 
 ready_for: set[tuple[bool, bool, bool]] = set()
 
@@ -65,16 +62,12 @@ def prepare(paper: bool, planar: bool, runs: bool = False) -> None:
     if runs:
         needed.append(tracker.run_paper if paper else tracker.run_predicted)
     _prepare_each(needed)
-    for name in SCIPY:
-        importlib.import_module(name)
     ready_for.add((paper, planar, runs))
 
 
 def prepare_simulation() -> None:
     """Have ready what a simulated system runs by."""
     _prepare_each([simulation.run_system])
-    for name in SCIPY:
-        importlib.import_module(name)
 
 
 def prepare_servo() -> None:
