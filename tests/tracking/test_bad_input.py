@@ -122,7 +122,7 @@ def test_numbers_that_are_not_positive(name, value, shown):
         so.PaperLaw(**{name: value})
         return
     made = partial(so.Tracker, LENS, POINT) if name == "dt" else so.PaperLaw
-    with pytest.raises(ValueError, match=f"{name} = {shown}.*(positive|not a number)"):
+    with pytest.raises(ValueError, match=f"{name} = {shown}.*(positive|finite|not a number)"):
         made(**{name: value})
 
 
@@ -130,11 +130,11 @@ def test_numbers_that_are_not_positive(name, value, shown):
 def test_steps_that_are_not_positive(value, shown):
     tracker = so.Tracker(LENS, POINT)
     state = tracker.start(HOME, AWAY)
-    with pytest.raises(ValueError, match=f"dt = {shown}.*(positive|not a number)"):
+    with pytest.raises(ValueError, match=f"dt = {shown}.*(positive|finite|not a number)"):
         tracker.step(state, HOME, AWAY, dt=value)
-    with pytest.raises(ValueError, match=f"dt = {shown}.*(positive|not a number)"):
+    with pytest.raises(ValueError, match=f"dt = {shown}.*(positive|finite|not a number)"):
         tracker.step_into(tracker.buffer(state), dt=value)
-    with pytest.raises(ValueError, match=f"dt = {shown}.*(positive|not a number)"):
+    with pytest.raises(ValueError, match=f"dt = {shown}.*(positive|finite|not a number)"):
         so.max_gain("heun", value)
 
 
@@ -142,8 +142,8 @@ def test_steps_that_are_not_positive(value, shown):
     ("law", "options", "words"),
     [
         (so.PredictorCorrector, {"predictor": "feed-forward"}, "Did you mean 'feedforward'"),
-        (so.PredictorCorrector, {"depth": None}, "Unknown depth None: choose one of"),
-        (so.PaperLaw, {"integrator": "rk5"}, "integrator 'rk5'.*Did you mean 'rk4'"),
+        (so.PredictorCorrector, {"depth": None}, "depth = None: give 'global' or 'local'"),
+        (so.PaperLaw, {"integrator": "rk5"}, "integrator = 'rk5'.*Did you mean 'rk4'"),
         (so.PaperLaw, {"feedforward": 1}, "feedforward = 1: must be True or False"),
     ],
 )
@@ -160,7 +160,7 @@ def test_gains_that_are_not_stable(integrator, limit):
     law = so.PaperLaw(integrator=integrator, gain=1.001 * limit)
     with pytest.raises(ValueError, match=f"gain = {1.001 * limit}.*{integrator}.*stay below"):
         so.Tracker(LENS, POINT, 1e-3, law)
-    with pytest.raises(ValueError, match="integrator 'rk5'"):
+    with pytest.raises(ValueError, match="integrator = 'rk5'"):
         so.max_gain("rk5", 1e-3)
 
 

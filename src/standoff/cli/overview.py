@@ -36,7 +36,7 @@ def overview(commands: Mapping[str, type], own: int) -> str:
 def unknown_command(name: str, known: Iterable[str]) -> str:
     """Return the sentence that refuses a command, with the nearest one that there is."""
     from standoff.checks.names import nearest
-    from standoff.real_numbers import shown
+    from standoff.checks.real_numbers import shown
 
     likely = nearest(name, known)
     said = f"did you mean '{likely}'? " if likely is not None else ""

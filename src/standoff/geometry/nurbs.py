@@ -14,6 +14,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
 from standoff.geometry.bernstein import segment
 from standoff.geometry.hulls import tight_box
@@ -27,7 +28,7 @@ from standoff.geometry.knots import (
     refine,
 )
 from standoff.geometry.surfaces import Domain, Surface, checked_domain
-from standoff.geometry.validation import Array, affine_map, check_alike, finite
+from standoff.geometry.validation import Array, affine_map, check_alike
 from standoff.kernels.body import layout as L
 
 

@@ -12,13 +12,14 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from standoff.checks.arrays import finite
+from standoff.checks.real_numbers import real_array, shape_of, shown
 from standoff.errors import StandoffError
 from standoff.geometry.tolerances import DEPENDENT_COLUMNS
-from standoff.geometry.validation import Array, affine_map, finite, matrix3, vector3
+from standoff.geometry.validation import Array, affine_map, matrix3, vector3
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import surface_jet
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import real_array, shape_of, shown
 
 Domain = tuple[float, float, float, float]
 UNBOUNDED: Domain = (-np.inf, np.inf, -np.inf, np.inf)

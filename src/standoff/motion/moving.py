@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable
 from typing import Any, Protocol, TypeAlias
 
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffTypeError
 from standoff.motion.paths import Fixed
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.pose_function import path_of
 from standoff.motion.twist import TwistLike
-from standoff.real_numbers import shown
 
 
 class Moving(Protocol):

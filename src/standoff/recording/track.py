@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.numbers import positive
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffTypeError
 from standoff.kernels.entries.preparing import prepare
 from standoff.kernels.pair import events as N
@@ -15,11 +17,9 @@ from standoff.kernels.state import arrays as K
 from standoff.motion import PoseLike, TwistLike
 from standoff.motion.moving import MotionLike, Moving, moving
 from standoff.progress import Progress
-from standoff.real_numbers import shown
 from standoff.recording.instants import Motion, Step, located_events
 from standoff.recording.recording import RecordedEvent, Recording, RunInfo
 from standoff.recording.times import even_times
-from standoff.tracking.choices import positive_number
 from standoff.tracking.inputs import (
     flat_pose,
     flat_twist,
@@ -88,7 +88,7 @@ def track(
             "tracker",
             tracker,
         )
-    times = even_times(start, positive_number(duration, "duration"), tracker.dt)
+    times = even_times(start, positive(duration, "duration"), tracker.dt)
     span = float(times[0]), float(times[-1])
     paths = moving(path_a, "path_a", *span), moving(path_b, "path_b", *span)
     return track_along(tracker, *paths, times, locate=locate, progress=progress)

@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from standoff.checks.names import one_of
 from standoff.scene.errors import SceneError
 from standoff.scene.feedbacks import read_feedback
-from standoff.scene.reader import Table, one_of
+from standoff.scene.reader import Table
 from standoff.tracking.law_options import (
     Choice,
     Law,

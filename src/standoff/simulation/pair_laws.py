@@ -7,10 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.kernels.entries import laws as frames
 from standoff.kernels.state import arrays as T
-from standoff.real_numbers import shown
 from standoff.simulation.system import System
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw, PredictorCorrector, checked_law

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.body import Body
+from standoff.checks.numbers import positive
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.compiler.entry import WrongKind
 from standoff.kernels.entries.preparing import prepare
@@ -17,7 +18,6 @@ from standoff.motion import PoseLike, PosesLike, TwistLike
 from standoff.read_only import KeepsReadOnly, locked
 from standoff.shown_names import hides
 from standoff.tracking.answers import Answers
-from standoff.tracking.choices import positive_number
 from standoff.tracking.frame_buffer import FrameBuffer
 from standoff.tracking.inputs import check_pair, plain, same_body
 from standoff.tracking.law_options import Law
@@ -88,7 +88,7 @@ class Tracker(KeepsReadOnly):
         check_pair(a, b)
         self.a, self.b = a, b
         self.specialise = checked_choice(specialise)
-        self.dt = positive_number(dt, "dt")
+        self.dt = positive(dt, "dt")
         self.law = checked_law(law)
         self._reach()
 
@@ -347,7 +347,7 @@ class Tracker(KeepsReadOnly):
 
     def check_frame_time(self, dt: float) -> float:
         """A frame's own time, s: positive, and short enough for the paper's law to be stable."""
-        dt = positive_number(dt, "dt")
+        dt = positive(dt, "dt")
         self.resolved_law.check_step(dt)
         return dt
 

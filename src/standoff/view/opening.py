@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from standoff.bodies.body import Body
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Fixed, Pose
-from standoff.real_numbers import shown
 from standoff.recording import Recording
 from standoff.scene import Scene, load_scene
 from standoff.scene.motions import Motion

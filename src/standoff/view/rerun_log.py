@@ -8,8 +8,8 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from standoff.bodies.features import Feature
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, not_installed
-from standoff.real_numbers import shown
 from standoff.recording import Recording
 from standoff.view.nodes import COLOURS, EDGE_COLOUR, WITNESS_COLOUR, Colour
 from standoff.view.shapes import Mesh, Shape, shape_of
