@@ -143,7 +143,9 @@ class Placed:
             return self.depth(unit(*(best + x[0] * e + x[1] * f)))
 
         start = np.array([[0.0, 0.0], [0.02, 0.0], [0.0, 0.02]])
-        found = minimize(near, start[0], method="Nelder-Mead", options={**exact, "initial_simplex": start})
+        found = minimize(
+            near, start[0], method="Nelder-Mead", options={**exact, "initial_simplex": start}
+        )
         return float(found.fun)
 
     def rises_around(self, n: Sequence[float], angle: float = 1e-3) -> bool:
@@ -169,7 +171,6 @@ class Placed:
         """The place of two points, each in its own body's frame."""
         return together(side_at(self.a.body, x_a), side_at(self.b.body, x_b))
 
-
     def over_plane(self, x_b: Sequence[float]) -> Place:
         """The place of B's point, in its frame, and of the point of the half-space A below it."""
         R = np.array(self.R).reshape(3, 3)
@@ -193,8 +194,12 @@ def side_at(body: so.Body, x: Sequence[float]) -> Side:
     if body.n_faces == 1:
         return on_atlas(body, x)
     for face in range(body.n_faces):
-        origin, along_u, along_v = (np.array(y) for y in feature_jet(*packed(body), face, face, 0.0, 0.0)[:3])
-        u, v = np.linalg.lstsq(np.array([along_u, along_v]).T, np.subtract(x, origin), rcond=None)[0]
+        origin, along_u, along_v = (
+            np.array(y) for y in feature_jet(*packed(body), face, face, 0.0, 0.0)[:3]
+        )
+        u, v = np.linalg.lstsq(np.array([along_u, along_v]).T, np.subtract(x, origin), rcond=None)[
+            0
+        ]
         side = Side(np.int64(face), np.int64(face), float(u), float(v))
         if np.linalg.norm(point_at(body, side) - x) < 1e-12:
             return side

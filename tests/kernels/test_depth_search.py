@@ -439,7 +439,9 @@ def test_a_kept_polytope_that_is_of_no_use_is_made_anew():
     assert second.counts[SEARCHES] == 1
 
 
-@pytest.mark.parametrize(("x", "y", "depth", "n"), [(1.6, 0.3, 0.4, X), (0.3, -1.5, 0.5, (0.0, -1.0, 0.0))])
+@pytest.mark.parametrize(
+    ("x", "y", "depth", "n"), [(1.6, 0.3, 0.4, X), (0.3, -1.5, 0.5, (0.0, -1.0, 0.0))]
+)
 def test_a_planar_search_stays_in_its_plane(x, y, depth, n):
     """Squares of half width 1: s = 2 |n_x| + 2 |n_y| - n.p in the plane."""
     pair, pose = planar(x, y)

@@ -172,7 +172,14 @@ def test_radii_of_a_face_are_the_inverse_of_its_shape_operator(F):
 
 def test_radii_of_edges_vertices_and_planes():
     """A circle of radius 0.5, seen at 60 degrees from its plane, turns as one of radius 1."""
-    circle = ((0.0, 0.0, 0.0), X, (0.0, 0.0, 0.0), (0.0, 0.0, -2.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    circle = (
+        (0.0, 0.0, 0.0),
+        X,
+        (0.0, 0.0, 0.0),
+        (0.0, 0.0, -2.0),
+        (0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0),
+    )
     leaning = unit(0.0, math.sqrt(3.0), 1.0)
     e, f = X, vector(np.cross(leaning, X))
     assert radii(circle, leaning, e, f, 1e12) == pytest.approx((1.0, 0.0, 0.0), abs=1e-15)
@@ -199,7 +206,9 @@ def test_principal_radii_are_those_of_both_bodies_together():
     assert np.abs(other) == pytest.approx(Y, abs=1e-9)
     swapped = Placed(ellipsoid(0.8, 1.0, 0.5), ellipsoid(0.9, 0.6, 0.3), (0.0, 0.0, 0.7))
     jets = pair_jets(*swapped.both, swapped.place((0.0, 0.0, 0.5), (0.0, 0.0, -0.3)))
-    assert np.abs(principal_radii(swapped.pair, *jets, Z, case.size)[1]) == pytest.approx(Y, abs=1e-9)
+    assert np.abs(principal_radii(swapped.pair, *jets, Z, case.size)[1]) == pytest.approx(
+        Y, abs=1e-9
+    )
 
 
 def test_principal_radii_of_a_turned_pair_are_eigenvectors():
@@ -297,7 +306,15 @@ def test_an_ellipsoid_s_middle_axis_is_a_saddle_that_falls_towards_the_least():
     """s(n) of two concentric ellipsoids is |a n| + |b n|: stationary along every axis."""
     case = Placed(ellipsoid(1.0, 0.8, 0.6), ellipsoid(0.5, 0.4, 0.3), (0.0, 0.0, 0.0))
     for n, depth, expected in ((X, 1.5, SADDLE), (Y, 1.2, SADDLE), (Z, 0.9, MINIMUM)):
-        start = Depth(False, -depth, n, case.place(0.0 + case.a.support(np.array(n)) * np.array(n), -case.b.support(np.array(n)) * np.array(n)))
+        start = Depth(
+            False,
+            -depth,
+            n,
+            case.place(
+                0.0 + case.a.support(np.array(n)) * np.array(n),
+                -case.b.support(np.array(n)) * np.array(n),
+            ),
+        )
         kind, ended, way = stationary_along(*case.both, start, TOLERANCE, new_work())
         assert kind == expected
         assert ended.distance == pytest.approx(-depth, abs=1e-12)

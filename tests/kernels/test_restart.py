@@ -144,7 +144,12 @@ def test_a_start_is_due_each_time_the_patience_is_spent():
     assert PATIENCE == 48.0
     assert [due[k][1] for k in (5, 10, 15, 20)] == [0, 1, 0, 1]
     work.counts[LIMIT] = 48
-    assert [start_due(state._replace(cut=k), work)[0] for k in range(4)] == [False, True, True, True]
+    assert [start_due(state._replace(cut=k), work)[0] for k in range(4)] == [
+        False,
+        True,
+        True,
+        True,
+    ]
     work.counts[LIMIT] = 0
     assert not start_due(state._replace(cut=1000), work)[0]
 
