@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,9 +14,7 @@ import pytest
 import standoff as so
 from standoff import simulation as sim
 from standoff.kernels.state import arrays as K
-from standoff.simulation import operator as operators
 from standoff.tracking import many_distances
-from standoff.tracking.options import pack_options
 
 STRICT = so.PredictorCorrector(tolerance=1e-16)
 CAPSULE, BALL, WALL = (
@@ -92,8 +89,8 @@ def test_cold_queries_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     tracker, poses = so.Tracker(*PAIRS[name], law=STRICT), motion(name)
     starts = [tracker.start(HOME, pose).proximity.row for pose in poses]
     assert 0 < overlaps(starts) < FRAMES
-    for query in (many_distances.ColdQuery, many_distances.Tracker):
-        monkeypatch.setattr(many_distances, query.__name__, partial(query, law=STRICT))
+    monkeypatch.setattr(many_distances, "cold_table", lambda a, b: tracker.table)
+    monkeypatch.setattr(many_distances, "Tracker", partial(so.Tracker, law=STRICT))
     found = so.distances(*PAIRS[name], HOME, poses)
     np.testing.assert_array_equal(found.rows, starts)
     warm = so.distances(*PAIRS[name], HOME, poses, warm=True)
@@ -103,7 +100,7 @@ def test_cold_queries_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_recorded_run_agrees(name: str) -> None:
     """Where the pair stands still, every frame but the first is a frame of ``step``."""
     tracker, pose = so.Tracker(*PAIRS[name], law=STRICT), motion(name)[0]
-    recording = so.simulate(tracker, so.Pose.identity(), so.Pose.of(pose), 5e-3)
+    recording = so.track(tracker, so.Pose.identity(), so.Pose.of(pose), 5e-3)
     state, still = tracker.start(HOME, pose), np.zeros(6)
     for frame in range(1, len(recording)):
         state, answer = tracker.step(state, HOME, pose, still, still)
@@ -112,12 +109,8 @@ def test_a_recorded_run_agrees(name: str) -> None:
     assert answer.status is so.Status.OVERLAPPING
 
 
-def test_a_simulated_system_counts_it_as_uncertified(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_simulated_system_counts_it_as_uncertified() -> None:
     """Contacts are pushed by a depth, and none was certified: each such tick is counted."""
-
-    def strict(law: Any) -> np.ndarray:
-        return pack_options(replace(law, tolerance=STRICT.tolerance))
-
     pose, at = so.Pose.of(motion("balls")[0]), so.Pose.identity()
     bodies = [
         sim.RigidBody.free(BALL, density=1000.0, pose=at),
@@ -126,8 +119,7 @@ def test_a_simulated_system_counts_it_as_uncertified(monkeypatch: pytest.MonkeyP
     system = sim.System(bodies, sim.HuntCrossley(stiffness=1e4, depth=0.9))
     certain = sim.Operator(system, 1e-5)
     assert certain.run(certain.start(allow_overlap=True), 20).uncertified == 0
-    monkeypatch.setattr(operators, "pack_options", strict)
-    operator = sim.Operator(system, 1e-5)
+    operator = sim.Operator(system, 1e-5, law=replace(STRICT, depth="local"))
     run = operator.run(operator.start(allow_overlap=True), 20)
     assert run.uncertified == 20
     assert (run.answers(0).data[1:, K.STATUS] == K.OVERLAPPING).all()
