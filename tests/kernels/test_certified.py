@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hand_made import new_work
 from hand_made_frames import motion_of
-from hand_made_pairs import X, Z, Placed, ball, box, half_space, point, turn, unit
+from hand_made_pairs import Placed, X, Z, ball, box, half_space, point, turn, unit
 
 import standoff as so
 from standoff.kernels.body import layout as L

@@ -7,10 +7,10 @@ import pytest
 from hand_made import ALONG_X, BOX, EDGE, new_work
 from hand_made_frames import motion_of
 from hand_made_pairs import (
+    Placed,
     X,
     Y,
     Z,
-    Placed,
     ball,
     box,
     ellipsoid,

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from hand_made import new_work
-from hand_made_pairs import X, Y, Z, Placed, ball, box, half_space, segment, turn, unit, vector
+from hand_made_pairs import Placed, X, Y, Z, ball, box, half_space, segment, turn, unit, vector
 
 import standoff as so
 from standoff.kernels.depth.descent import descend
@@ -99,7 +99,7 @@ def test_a_ball_in_the_middle_of_a_slab_has_two_least_depths():
     assert normals(SLAB.at(0.05, -0.1, 0.0), Z, -0.9) == BOTH
     # off the middle, be it by little
     low = SLAB.at(0.0, 0.0, 1e-9)
-    assert 2e-9 > SAME_WIDTH * low.size
+    assert SAME_WIDTH * low.size < 2e-9
     assert normals(low, Z, -0.9 + 1e-9) == {Z}
     assert len(normals(SLAB.at(0.0, 0.0, 1e-12), Z, -0.9 + 1e-12)) == 2
 

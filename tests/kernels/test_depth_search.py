@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hand_made import new_work
 from hand_made_pairs import (
+    Placed,
+    Solid,
     X,
     Y,
     Z,
-    Placed,
-    Solid,
     ball,
     box,
     ellipsoid,

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from hand_made_frames import flat, inputs, motion_of, state_at
-from hand_made_pairs import IDENTITY, X, Z, Placed, ball, box, point, turn, unit, vector
+from hand_made_pairs import IDENTITY, Placed, X, Z, ball, box, point, turn, unit, vector
 
 from standoff.kernels.algebra.rigid import relative_pose, relative_twist
 from standoff.kernels.frame.answer import (

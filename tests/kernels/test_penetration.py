@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hand_made import new_work
 from hand_made_pairs import (
+    Placed,
     X,
     Y,
     Z,
-    Placed,
     ball,
     box,
     ellipsoid,

@@ -17,6 +17,7 @@ from standoff.tracking.rows import NO_TWIST, AnswerRows, StateRow, motion_row, p
 
 Array = NDArray[np.float64]
 
+
 class Frame(NamedTuple):
     """What is given of one frame: poses (12,) and twists (6,) in world axes."""
 
