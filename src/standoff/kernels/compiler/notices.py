@@ -41,7 +41,6 @@ WORK = {
     "simulation": Work("simulations of bodies", 12, 45, 2),
     "coupler": Work("the virtual coupler", 2, 3, 1),
     "servo": Work("the servo loop", 7, 45, 3),
-    "study": Work("the paper's studies", 2, 3, 3),
 }
 
 ALL_SECONDS = 85

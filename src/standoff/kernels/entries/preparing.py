@@ -21,7 +21,6 @@ MODULES = (
     "standoff.kernels.entries.smooth",
     "standoff.kernels.entries.simulation",
     "standoff.kernels.entries.servo",
-    "standoff.kernels.pair.normals_system",
 )
 """Where entries stand."""
 
