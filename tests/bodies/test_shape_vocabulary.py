@@ -17,8 +17,6 @@ from public_calls import SHAPES
 from standoff import Body, shapes
 from standoff.geometry import Line, Plane
 from standoff.motion import ConstantTwist
-from standoff.tracking.inputs import flat_pose
-from standoff.tracking.overlap_proof import cores_overlap
 
 HOME = np.eye(4)
 TETRAHEDRON = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]]
@@ -204,16 +202,6 @@ def test_a_box_sinks_into_a_tilted_half_space(rng: np.random.Generator) -> None:
 def _random_turn(rng: np.random.Generator) -> tuple[Any, Any]:
     q = rng.normal(size=4)
     return q / np.linalg.norm(q), np.zeros(3)
-
-
-def test_an_overlap_with_a_tilted_half_space_is_proven() -> None:
-    """The proof that decides doubtful pairs: just inside, and just outside, of either."""
-    normal, offset, ball = np.array([1.0, 2.0, 2.0]) / 3.0, 0.7, shapes.point()
-    wall, home = shapes.halfspace(normal, offset), flat_pose(HOME)
-    for height in (-1e-6, 1e-6):
-        there = flat_pose((np.eye(3), (offset + height) * normal + [0.0, 1.0, -1.0]))
-        assert cores_overlap(wall, ball, home, there) is (height < 0.0)
-        assert cores_overlap(ball, wall, there, home) is (height < 0.0)
 
 
 def test_a_ball_falls_on_a_tilted_half_space() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -311,7 +312,7 @@ class Body(KeepsReadOnly):
 
     @property
     def bounded(self) -> bool:
-        return bool(np.isfinite(self.size))
+        return isfinite(self.size)
 
     @property
     def n_faces(self) -> int:

@@ -14,8 +14,7 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve, Line
 from standoff.geometry.pcurves import Pcurve
-from standoff.geometry.superellipsoids import SuperellipsoidPole
-from standoff.geometry.surfaces import Plane, Sphere, Surface
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 
 SIDES = ("v0", "v1", "u0", "u1")
@@ -190,12 +189,10 @@ def _check_face(k: int, face: Face, vertices: int) -> None:
 
 def _check_bounded(k: int, face: Face, alone: bool) -> None:
     """Only a half-space has a face without end."""
-    closed = len(face.charts) > 1 and all(
-        isinstance(chart, Sphere | SuperellipsoidPole) for chart in face.charts
-    )
+    closed = len(face.charts) > 1 and all(chart.part_of for chart in face.charts)
     if face.loop or face.apexes or closed:
         return
-    if not (alone and len(face.charts) == 1 and isinstance(face.charts[0], Plane)):
+    if not (alone and len(face.charts) == 1 and face.charts[0].flat):
         raise BodyError(
             f"Face {k}, a {type(face.charts[0]).__name__}, has no loop of edges: give its edges, "
             "or all charts of a closed surface; only one plane alone is a body, a half-space.",

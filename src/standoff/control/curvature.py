@@ -16,8 +16,7 @@ from standoff.checks.real_numbers import shown
 from standoff.control.tolerances import POLE_AREA, SEARCH_TOLERANCE
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc, Curve, Line
-from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
-from standoff.geometry.swept import Extrusion
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters, on_face
@@ -126,11 +125,9 @@ def _widths(surface: Surface) -> tuple[float, float]:
 
 def _of_face(body: Body, face: int) -> LeastCurvature:
     charts = body.face_parts[face].charts
-    if isinstance(charts[0], Plane | Cylinder | Cone | Extrusion):
-        return LeastCurvature(0.0, True)
-    if isinstance(charts[0], Sphere):
-        axes = np.linalg.svd(charts[0].linear, compute_uv=False)
-        return LeastCurvature(float(axes[2] / axes[0] ** 2), True)
+    known = charts[0].least_curvature()
+    if known is not None:
+        return LeastCurvature(known, True)
     first = charts_of(body, face)[0]
     least = min(_search_chart(body, first + k, chart) for k, chart in enumerate(charts))
     return LeastCurvature(max(0.0, least), False)

@@ -18,6 +18,7 @@ from standoff.kernels.entries.queries import curve_jet
 from standoff.read_only import KeepsReadOnly
 
 if TYPE_CHECKING:
+    from standoff.geometry.formulas.compiled import Formula
     from standoff.geometry.pcurves import Pcurve
     from standoff.geometry.surfaces import Surface
 
@@ -53,6 +54,11 @@ class Curve(KeepsReadOnly):
     @property
     def closed(self) -> bool:
         return False
+
+    @property
+    def formulas(self) -> tuple[Formula, ...]:
+        """The compiled formulas whose addresses stand in its data or its surface's."""
+        return ()
 
     @property
     def moved(self) -> float:

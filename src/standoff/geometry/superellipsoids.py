@@ -57,6 +57,11 @@ class SuperellipsoidPole(Surface):
     e1: float = 1.0
     e2: float = 1.0
     kind = L.SUPERELLIPSOID_POLE
+    periodic = False
+    projection = None
+    part_of = "superellipsoid"
+    ruled = False
+    proof = "theorem"
     bulge = 1
 
     def __post_init__(self) -> None:
@@ -66,6 +71,14 @@ class SuperellipsoidPole(Surface):
 
     def _data(self) -> Array:
         return np.array([2.0 / self.e1, 2.0 / self.e2])
+
+    def within_hemisphere(self) -> bool:
+        """By symmetry its normals lean to the side of the middle plane they are on."""
+        return True
+
+    def analytic_breaks(self) -> tuple[Array, Array]:
+        """The coordinate planes."""
+        return np.zeros(1), np.zeros(1)
 
     def highest(self, direction: Array) -> None:
         return None

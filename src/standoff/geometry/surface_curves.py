@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import WHOLE_TURN
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+
+if TYPE_CHECKING:
+    from standoff.geometry.formulas.compiled import Formula
 
 
 class SurfaceCurve(Curve):
@@ -103,6 +106,10 @@ class SurfaceCurve(Curve):
         v = number(v, "v")
         matrix = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, v], [0.0, 0.0, 1.0]])
         return SurfaceCurve(surface, Pcurve(L.LINE, matrix), u0, u1)
+
+    @property
+    def formulas(self) -> tuple[Formula, ...]:
+        return self.surface.formulas
 
     def jet(self, t: float) -> tuple[Array, Array, Array]:
         surface, (h, ht, htt) = self._central(t)

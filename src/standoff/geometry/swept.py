@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -12,11 +12,14 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.geometry.curve_bounds import box_of, curve_breaks, curve_reach
 from standoff.geometry.curves import FULL_TURN, Curve
-from standoff.geometry.surfaces import Domain, Surface
+from standoff.geometry.surfaces import Domain, Surface, inside
 from standoff.geometry.tolerances import ALONG_PROFILE, PROFILE_ROUNDOFF
 from standoff.geometry.torus import checked_turn, full_turn
 from standoff.geometry.validation import Array, affine_map, vector3
 from standoff.kernels.body import layout as L
+
+if TYPE_CHECKING:
+    from standoff.geometry.formulas.compiled import Formula
 
 # Points of a profile that are looked at.
 PROFILE_SAMPLES = 65
@@ -25,7 +28,16 @@ PROFILE_SAMPLES = 65
 class Swept(Surface):
     """What both kinds have: a profile, whose sweep is kept in its own frame by an affine map."""
 
+    projection = None
+    part_of = None
+    proof = "swept"
+    bulge = None
+
     profile: Curve
+
+    @property
+    def formulas(self) -> tuple[Formula, ...]:
+        return self.profile.formulas
 
     @abstractmethod
     def _with(self, domain: Domain, linear: Array, shift: Array) -> Self:
@@ -79,6 +91,8 @@ class Revolution(Swept):
     """
 
     kind = L.REVOLUTION
+    periodic = False
+    ruled = False
 
     def __init__(self, profile: Curve, first: Any = 0.0, last: Any = FULL_TURN) -> None:
         first, last = checked_turn(first, last, "Revolution")
@@ -120,6 +134,10 @@ class Revolution(Swept):
         """Knots of the profile where it is not C², as v."""
         return (), curve_breaks(self.profile, *self.domain[2:])
 
+    def pieces(self) -> tuple[Array, Array]:
+        """Those of the profile, as v."""
+        return np.zeros(0), inside(self.profile.spans(), *self.domain[2:])
+
     def _reach(self, direction: Array) -> float:
         """A bound of direction @ x over the domain."""
         u0, u1, v0, v1 = self.domain
@@ -151,6 +169,8 @@ class Extrusion(Swept):
     """
 
     kind = L.EXTRUSION
+    periodic = False
+    ruled = True
 
     direction: Array
 
@@ -200,6 +220,10 @@ class Extrusion(Swept):
     def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Knots of the profile where it is not C², as u."""
         return curve_breaks(self.profile, *self.domain[:2]), ()
+
+    def pieces(self) -> tuple[Array, Array]:
+        """Those of the profile, as u."""
+        return inside(self.profile.spans(), *self.domain[:2]), np.zeros(0)
 
     def _reach(self, direction: Array) -> float:
         """A bound of direction @ x over the domain."""

@@ -46,6 +46,11 @@ class Torus(Surface):
     """
 
     kind = L.TORUS
+    periodic = False
+    projection = None
+    part_of = None
+    ruled = False
+    proof = "theorem"
     bulge = 1
 
     major: float
@@ -92,6 +97,11 @@ class Torus(Surface):
         surface = object.__new__(Torus)
         surface._set(self.major, self.minor, domain, linear, shift)
         return surface
+
+    def within_hemisphere(self) -> bool:
+        """A part above or below its middle plane, or less than half of it both ways."""
+        u0, u1, v0, v1 = self.domain
+        return bool(v0 > 0.0 or v1 < 0.0 or (u1 - u0 < np.pi and v1 - v0 < np.pi))
 
     def highest(self, direction: Array) -> tuple[float, float] | None:
         y = self.linear.T @ direction

@@ -37,7 +37,6 @@ from standoff.points.state import Answering, Found, PointState
 from standoff.points.tolerances import ENTRY_INSTANT, TIE
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
-from standoff.tracking.block import Block
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw
 from standoff.tracking.state import TrackerState
@@ -107,7 +106,7 @@ class PointTracker(KeepsReadOnly):
         core = body if body.radius == 0.0 else _core(body)
         self.boundary = PlanarBoundary(core)
         point = shapes.point()
-        self.outer = _Outside(core, point, dt, law)
+        self.outer = Tracker(core, point, dt, law)
         self.law, self.dt, self.tolerance = law, self.outer.dt, law.tolerance
         inner = None
         if isinstance(law, PaperLaw):
@@ -341,13 +340,6 @@ class PointTracker(KeepsReadOnly):
             tuple((e.source, e.target) for e in answer.events if e.body == "A"),
             answer.counts.restarts if before is not None else 0,
         )
-
-
-class _Outside(Tracker):
-    """The tracker for a point that is known to be outside."""
-
-    def name_overlap(self, block: Block) -> None:
-        """No overlap is to be proven: the boundary has told the side."""
 
 
 def _core(body: Body) -> Body:

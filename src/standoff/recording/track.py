@@ -132,7 +132,7 @@ def track_along(
     """
     if state is not None:
         tracker.check_state(state)
-    prepare(planar=tracker.planar, runs=True)
+    prepare(runs=True)
     run = _Run(tracker, path_a, path_b, times, locate)
     run.go(progress, state)
     pair = tracker.a, tracker.b

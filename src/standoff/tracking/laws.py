@@ -201,11 +201,6 @@ class PaperLaw(Law):
             restarts=False,
         )
 
-    @property
-    def left_alone(self) -> bool:
-        """Does nothing but the law move the witness points?"""
-        return self.switching == "none" or not self.restarts
-
     def resolved(self, dt: float) -> PaperLaw:
         saturation = self.saturation or ("hold" if self.switching == "multipliers" else "zero")
         if self.feedback is None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from standoff import __version__
-from standoff.cli.errors import CommandError, ExitCode, MissingExtra
+from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
 from standoff.cli.output import check_target, make_folder, write_whole
 from standoff.cli.terminal import tell
@@ -52,7 +51,6 @@ def run_paper(command: PaperOptions) -> int:
     jobs = JOBS if command.jobs is None else command.jobs
     if jobs < 1:
         raise CommandError(f"--jobs {jobs}: give 1 or more")
-    _check_extras()
     _make_folder(command.output)
     started = time.perf_counter()
     made = _make(entries, command, jobs)
@@ -77,15 +75,6 @@ def _listing(command: PaperOptions) -> str:
         return json_text({"standoff": __version__, "figures": [e._asdict() for e in CATALOGUE]})
     wide = max((len(entry.key) for entry in CATALOGUE), default=0)
     return "\n".join(f"{entry.key:<{wide}}  {entry.title}" for entry in CATALOGUE)
-
-
-def _check_extras() -> None:
-    """Tell a missing library before the first figure."""
-    try:
-        for module in ("writers", "report"):
-            import_module(f"standoff_studies.paper.{module}")
-    except ModuleNotFoundError as error:
-        raise MissingExtra(str(error.name)) from error
 
 
 def _make_folder(folder: Path) -> None:

@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
+
 from standoff import __version__
 from standoff_studies.paper.figure import Statement
 from standoff_studies.paper.items import ITEMS
@@ -14,15 +17,6 @@ from standoff_studies.paper.making import Made
 from standoff_studies.paper.typesetting import pieces, stop
 from standoff_studies.paper.verdicts import Verdict, counted
 from standoff_studies.paper.writers import ANIMATION, PICTURES
-
-try:
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-    from markupsafe import Markup, escape
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(
-        "jinja2 is not installed; install the extra 'cli': pip install 'standoff[cli]'",
-        name="jinja2",
-    ) from error
 
 TEMPLATE = "report.html.jinja"
 

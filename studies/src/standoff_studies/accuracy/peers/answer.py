@@ -69,9 +69,12 @@ def require(name: str) -> Any:
     try:
         return import_module(name)
     except ImportError as error:
-        raise ImportError(
-            f"{name} is not installed; get it with: pip install 'standoff[peers]'"
-        ) from error
+        raise ImportError(not_installed(name)) from error
+
+
+def not_installed(name: str) -> str:
+    """What is said where a peer is missing."""
+    return f"{name} is not installed; get it with: pip install 'standoff-studies[peers]'"
 
 
 def by_points(distance: float, point_a: Array, point_b: Array) -> PeerAnswer:

@@ -12,14 +12,14 @@ from rich.console import Console
 from rich.table import Table
 
 from standoff import __version__
-from standoff.cli.errors import CommandError, ExitCode, MissingExtra
+from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
 from standoff.cli.output import check_target, make_folder, write_whole
 from standoff.cli.terminal import tell
 from standoff_studies.accuracy import report
 from standoff_studies.accuracy.measuring import OURS, Row, measure
 from standoff_studies.accuracy.peers.all_peers import all_peers
-from standoff_studies.accuracy.peers.answer import Peer
+from standoff_studies.accuracy.peers.answer import Peer, not_installed
 from standoff_studies.accuracy.progress import pairs_bar
 from standoff_studies.accuracy.solids import Kind, named
 
@@ -81,11 +81,6 @@ def _check_output(folder: Path) -> None:
     make_folder(folder, "-o")
     for name in FILES:
         check_target(folder / name, "-o", [Path(name).suffix])
-    for library in ("pyarrow", "matplotlib"):
-        try:
-            __import__(library)
-        except ModuleNotFoundError as error:
-            raise MissingExtra(str(error.name)) from error
 
 
 def _versions(peers: tuple[Peer, ...]) -> dict[str, str]:
@@ -94,7 +89,7 @@ def _versions(peers: tuple[Peer, ...]) -> dict[str, str]:
         try:
             found[peer.package] = peer.version
         except ModuleNotFoundError as error:
-            raise MissingExtra(peer.package, "peers") from error
+            raise CommandError(not_installed(peer.package)) from error
     return found
 
 

@@ -10,7 +10,7 @@ import standoff as so
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_record
 from standoff.kernels.entries.queries import surface_jet
-from standoff.kernels.pair.normals_system import (
+from standoff_studies.paper.normals_system import (
     evaluate_contact,
     evaluate_normals,
     evaluate_projection_errors,

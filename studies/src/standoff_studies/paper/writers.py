@@ -8,22 +8,15 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 from numpy.typing import ArrayLike
+from PIL import Image
 
 from standoff import __version__
 from standoff.whole_files import Writer
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Animation, Artwork, Entry
-
-try:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-    from PIL import Image
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(
-        f"{error.name} is not installed; install the extra 'cli': pip install 'standoff[cli]'",
-        name=error.name,
-    ) from error
 
 PICTURES = (".png", ".svg")
 ANIMATION = ".webp"

@@ -5,15 +5,9 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 from typing import Any
 
-try:
-    from matplotlib import rc_context
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(
-        "matplotlib is not installed; install the extra 'cli': pip install 'standoff[cli]'",
-        name="matplotlib",
-    ) from error
+from matplotlib import rc_context
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 # Okabe and Ito's colours. In grey they differ little, so a line's dashes or marker must tell
 # it apart too: colour n goes with DASHES[n] and MARKERS[n].

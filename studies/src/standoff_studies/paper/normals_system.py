@@ -5,12 +5,14 @@ A's. For dR not zero it has the roots of Eqs. (1)-(4); at dR = 0 it still asks f
 which (1)-(4) do not. That the normals be parallel may be written n_f x n_h = 0 as well: along A's
 unit tangents that is the same pair of numbers, turned by a right angle.
 
-Two faces only: an edge or a vertex has no normal. Notation and frames as in ``system``.
+Two faces only: an edge or a vertex has no normal. Notation and frames as in
+``standoff.kernels.pair.system``.
 """
 
+from numba import njit
+
 from standoff.kernels.algebra.vectors import add, cross, dot, scale, sub, unit
-from standoff.kernels.compiler.decorators import entry, pointer, small
-from standoff.kernels.compiler.entry import BLOCKS, READ, READ_BLOCKS, READ_ROWS, ROWS
+from standoff.kernels.compiler.decorators import pointer
 from standoff.kernels.pair.system import (
     contact_feedforward,
     contact_jacobian,
@@ -21,14 +23,18 @@ from standoff.kernels.pair.system import (
     projection_errors,
 )
 
+compiled = njit(error_model="numpy", fastmath={"contract"})
+"""As the kernels are compiled; it is made once a process, in a few seconds. It cannot be an entry:
+those are kept under a digest of the library's sources, which these lines are not part of."""
 
-@small
+
+@compiled
 def unit_normal(jet):
     """h_r x h_s by its length; outward or inward, as the chart has it: r = 0 is the same."""
     return unit(cross(jet[1], jet[2]))
 
 
-@small
+@compiled
 def normal_partials(jet, n):
     """(n_r, n_s) by Weingarten's equations: second derivatives of h, no third ones.
 
@@ -44,7 +50,7 @@ def normal_partials(jet, n):
     return n_r, n_s
 
 
-@small
+@compiled
 def normals_residual(jet_a, jet_b):
     """r: two lengths squared per parameter, two lengths per parameter."""
     dR = sub(jet_a[0], jet_b[0])
@@ -52,7 +58,7 @@ def normals_residual(jet_a, jet_b):
     return dot(jet_a[1], dR), dot(jet_a[2], dR), dot(jet_a[1], n), dot(jet_a[2], n)
 
 
-@small
+@compiled
 def normals_jacobian(jet_a, jet_b, J):
     """dr/dq into the 4 x 4 array J, q = (u, v, r, s). Not symmetric: r is no gradient."""
     fu, fv, fuu, fuv, fvv = jet_a[1], jet_a[2], jet_a[3], jet_a[4], jet_a[5]
@@ -71,7 +77,7 @@ def normals_jacobian(jet_a, jet_b, J):
     J[3, 2], J[3, 3] = dot(fv, n_r), dot(fv, n_s)
 
 
-@small
+@compiled
 def normals_feedforward(jet_a, jet_b, motion_a, motion_b):
     """r_t, the rate of r by the bodies' motion: F' dV(x_h), then F' ((w_B - w_A) x n_h)."""
     x_h = jet_b[0]
@@ -80,12 +86,12 @@ def normals_feedforward(jet_a, jet_b, motion_a, motion_b):
     return dot(jet_a[1], slip), dot(jet_a[2], slip), dot(jet_a[1], turn), dot(jet_a[2], turn)
 
 
-@small
+@compiled
 def vector(rows, k):
     return (rows[k, 0], rows[k, 1], rows[k, 2])
 
 
-@small
+@compiled
 def jet(rows):
     return (
         vector(rows, 0),
@@ -97,7 +103,7 @@ def jet(rows):
     )
 
 
-@small
+@compiled
 def both_motions(rows):
     """(p, v, w) of A and of B, as feedforward takes them."""
     return (
@@ -106,10 +112,10 @@ def both_motions(rows):
     )
 
 
-# Entries for Python, on batches: jets of A and B and the motions are arrays (n, 6, 3).
+# What Python calls, on batches: jets of A and B and the motions are arrays (n, 6, 3).
 
 
-@entry(READ_BLOCKS, READ_BLOCKS, READ_BLOCKS, ROWS, BLOCKS, ROWS, work="study")
+@compiled
 def evaluate_normals(jets_a, jets_b, motions, r, J, r_t):
     """Into r (n, 4), J (n, 4, 4) and r_t (n, 4): the set of reference [28]."""
     for k in range(len(jets_a)):
@@ -121,7 +127,7 @@ def evaluate_normals(jets_a, jets_b, motions, r, J, r_t):
             r[k, i], r_t[k, i] = residual[i], rate[i]
 
 
-@entry(READ_BLOCKS, READ_BLOCKS, READ_BLOCKS, ROWS, BLOCKS, ROWS, work="study")
+@compiled
 def evaluate_projection_errors(jets_a, jets_b, motions, Psi, M, b):
     """Into Psi (n, 4), M (n, 4, 4) and b (n, 4): Eqs. (1)-(14)."""
     for k in range(len(jets_a)):
@@ -139,7 +145,7 @@ def evaluate_projection_errors(jets_a, jets_b, motions, Psi, M, b):
                 at += 1
 
 
-@entry(READ_BLOCKS, READ_BLOCKS, READ_ROWS, READ, READ_BLOCKS, ROWS, BLOCKS, ROWS, work="study")
+@compiled
 def evaluate_contact(jets_a, jets_b, normals, depths, motions, r, J, r_t):
     """Into r (n, 8), J (n, 8, 8) and r_t (n, 8): the contact-regular form at (q, n, d)."""
     for k in range(len(jets_a)):
