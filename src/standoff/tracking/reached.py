@@ -58,7 +58,8 @@ def _reached(a: Body, b: Body, law: Law, dt: float, specialise: bool | None) -> 
     if isinstance(law, PaperLaw):
         options = with_frames(options, own=address_of(laws.paper))
     else:
-        options = with_frames(options, smooth=address_of(smooth_frame_of(a, b, specialise)))
+        smooth = address_of(smooth_frame_of(a, b, specialise))
+        options = with_frames(options, smooth, address_of(laws.predicted))
     return Reached(resolved, options, table_of(a, b, options))
 
 
