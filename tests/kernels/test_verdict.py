@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import standoff as so
-from standoff.kernels.frame.answer import judge
+from standoff.kernels.frame.answer import judge, write_answer
+from standoff.kernels.frame.inputs import Inputs
 from standoff.kernels.pair.certified import (
     CERTIFIED,
     OVERLAP,
@@ -12,7 +13,18 @@ from standoff.kernels.pair.certified import (
     TOUCHING_OR_OVERLAPPING,
     UNCERTIFIED,
 )
-from standoff.kernels.values import Found, Pair, Place
+from standoff.kernels.pair.descent import pair_jets
+from standoff.kernels.state.arrays import (
+    DISTANCE,
+    LOWER_BOUND,
+    N_OUT,
+    NOT_CERTIFIED,
+    OVERLAPPING,
+    STATUS,
+    UPPER_BOUND,
+)
+from standoff.kernels.state.tracked import Shown
+from standoff.kernels.values import NO_RATES, Found, Pair, Place, Pose, resting
 from standoff.tracking import Status
 
 BOX, BALL = so.shapes.box(1.0, 1.0, 1.0), so.shapes.sphere(0.5)
@@ -82,3 +94,21 @@ def test_a_deadline_is_told_only_where_the_answer_is_not_certified():
     assert status(TOUCHING_OR_OVERLAPPING, 0.0, -1e-15, 0.0, cut=True) is Status.GLOBAL
     # proven before the evaluations ran out
     assert status(OVERLAP, 0.3, -1.0, 0.3, cut=True) is Status.OVERLAPPING
+
+
+@pytest.mark.parametrize(("distance", "upper"), [(0.3, 0.3), (-0.2, 0.1), (-0.2, -0.1)])
+@pytest.mark.parametrize("named", [OVERLAPPING, NOT_CERTIFIED])
+def test_of_an_overlap_no_bound_is_above_0(distance, upper, named):
+    """What the points found are apart by, which overlap all the same, is no distance."""
+    pair = Pair(BOX.ints, BOX.reals, BOX.ints, BOX.reals)
+    home = np.array([*np.eye(3).ravel(), 0.0, 0.0, 0.0])
+    inputs = Inputs(home, home, np.zeros(6), np.zeros(6), False)
+    pose = Pose(tuple(home[:9]), (0.0, 0.0, 0.0))
+    found = Found(OVERLAP, PLACE, distance, -0.5, upper, (1.0, 0.0, 0.0))
+    shown = Shown(found, pair_jets(pair, pose, PLACE), False, False, NO_RATES)
+    out = np.full(N_OUT, np.nan)
+    write_answer(pair, inputs, resting(pose), shown, (0.0, 0.0, 0.0), named, out)
+    most = 0.0 if named == OVERLAPPING else np.inf
+    assert out[DISTANCE] == min(distance, most)
+    assert out[UPPER_BOUND] == min(upper, most)
+    assert (out[LOWER_BOUND], out[STATUS]) == (-0.5, named)
