@@ -364,6 +364,6 @@ def test_tab_completion_shows_no_internals_of_an_object(made: object, shown: str
 
 def test_what_is_hidden_is_there() -> None:
     tracker = so.Tracker(BOX, BOX)
-    assert tracker.packed[0] is BOX.ints
-    assert "packed" not in dir(tracker)
+    assert tracker.table.arrays[0] is BOX.ints
+    assert "table" not in dir(tracker)
     assert so.PredictorCorrector().only_one is not None

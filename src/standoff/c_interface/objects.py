@@ -24,6 +24,7 @@ from standoff.errors import StandoffError
 from standoff.kernels.compiler import modules
 from standoff.kernels.compiler.decorators import BOUNDS_CHECK, CONTRACTED
 from standoff.kernels.entries import c_interface as kernels
+from standoff.kernels.entries import laws
 from standoff.whole_files import write_whole
 
 Progress = Callable[[int, int], None]
@@ -34,9 +35,12 @@ RECORD_AND_STEP = types.int64, types.float64
 
 SYMBOLS = {
     "standoff_kernel_start": kernels.start_in_block,
-    "standoff_kernel_step_predicted": kernels.step_predicted_in_block,
-    "standoff_kernel_step_paper": kernels.step_paper_in_block,
+    "standoff_kernel_step": kernels.step_in_block,
 }
+
+
+OWN_FRAME = "standoff_kernel_paper"
+"""The frame of the paper's law."""
 
 
 def smooth_symbols() -> list[str]:
@@ -51,7 +55,8 @@ def compiled_libraries(progress: Progress) -> tuple[dict[str, str], list[Any]]:
     asked: list[tuple[str, Any, Any]] = [
         (symbol, kernel, TABLE_AND_BLOCK) for symbol, kernel in SYMBOLS.items()
     ]
-    for symbol, frame in zip(smooth_symbols(), SMOOTH_FRAMES, strict=True):
+    frames = zip([*smooth_symbols(), OWN_FRAME], [*SMOOTH_FRAMES, laws.paper], strict=True)
+    for symbol, frame in frames:
         # the frame itself, without what lets Python call it
         bare = modules.Part(
             frame.py_func, targetoptions=CONTRACTED, pipeline_class=modules.SharedCompiler

@@ -141,6 +141,9 @@ CONTACT_STEPS = 12
 
 # Positions (length) must stay below this: squares of distances must not overflow.
 FARTHEST = 1e100
+# Entries of R (dimensionless): a planar body's pose may be tilted by this, the roundoff of
+# composing rotations.
+PLANE_TILT = 1e-12
 # Parameters that a frame of the paper's law changes by more than this have overflowed: fourth
 # powers of them must not, and no patch is so wide (parameter units; on a half-space lengths).
 LONGEST_CHANGE = 1e50

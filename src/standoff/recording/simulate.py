@@ -11,10 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.errors import StandoffTypeError
-from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.entries.preparing import prepare
 from standoff.kernels.pair import events as N
-from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
 from standoff.motion import Fixed, Pose, PoseLike, TwistLike
 from standoff.motion.pose_function import path_of
@@ -22,19 +20,14 @@ from standoff.real_numbers import shown
 from standoff.recording.instants import Motion, Step, located_events
 from standoff.recording.recording import RecordedEvent, Recording, RunInfo
 from standoff.recording.times import even_times
-from standoff.tracking.block import Block
 from standoff.tracking.choices import positive_number
 from standoff.tracking.inputs import (
-    check_in_plane,
-    flat_and_mark,
     flat_pose,
     flat_twist,
-    repair_rows,
+    matrix_and_mark,
 )
-from standoff.tracking.laws import PaperLaw
 from standoff.tracking.old_spellings import takes_a_tracker
 from standoff.tracking.proximity import Event, Proximity
-from standoff.tracking.rows import poses_of, twists_of
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
@@ -185,7 +178,7 @@ def track_along(
     """
     if state is not None:
         tracker.check_state(state)
-    prepare(paper=isinstance(tracker.law, PaperLaw), planar=tracker.planar, runs=True)
+    prepare(planar=tracker.planar, runs=True)
     run = _Run(tracker, path_a, path_b, times, locate)
     run.go(progress, state)
     pair = tracker.a, tracker.b
@@ -214,7 +207,6 @@ class _Run:
         self.paths = path_a, path_b
         self.times = times
         self.answers = np.empty((len(times), K.N_OUT))
-        self.stretch = BLOCK
         self.events: list[RecordedEvent] = []
         self.repaired = 0
 
@@ -240,108 +232,30 @@ class _Run:
 
     def _block(self, state: TrackerState, first: int, end: int) -> TrackerState:
         """Answer frames first .. end - 1 from the state of the frame before."""
-        moves = self._moves(first, end)
         steps = np.diff(self.times[first - 1 : end])
-        at = first
-        while at < end:
-            stop = min(at + self.stretch, end)
-            state, at = self._quiet(state, moves, steps, first, at, stop)
-            if at < stop:
-                state = self._watched(state, at)
-                at += 1
-                self.stretch = AFTER_A_LOOK
-            else:
-                self.stretch = min(2 * self.stretch, BLOCK)
-        return state
+        last, found = self.tracker.run(state, *self._moves(first, end), steps)
+        self.answers[first:end] = found.blocks[:, : K.N_OUT]
+        self.repaired += int(found.repaired.sum())
+        for k in np.flatnonzero(found.blocks[:, K.OUT_COUNTS + N.EVENTS]).tolist():
+            before = TrackerState(found[k - 1]) if k else state
+            self.events += self._events(before, found[k], first + k)
+        return last
 
-    def _moves(self, first: int, end: int) -> Array:
-        """The poses and twists of frames first .. end - 1, a row each."""
-        moves = np.empty((end - first, K.N_MOTION))
-        poses, twists = poses_of(moves), twists_of(moves)
+    def _moves(self, first: int, end: int) -> tuple[Array, Array, Array, Array]:
+        """The poses (n, 4, 4) and twists (n, 6) of frames first .. end - 1."""
+        poses = np.empty((2, end - first, 4, 4))
+        twists = np.empty((2, end - first, 6))
         for k, time in enumerate(self.times[first:end].tolist()):
-            pose_a, pose_b, twist_a, twist_b = self.placed(time)
-            poses[0][k], mark_a = flat_and_mark(pose_a)
-            poses[1][k], mark_b = flat_and_mark(pose_b)
-            twists[0][k], twists[1][k] = flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
-            self.repaired += mark_a + mark_b
-        self.repaired += repair_rows(poses[0]) + repair_rows(poses[1])
-        if self.tracker.planar:
-            for flat_a, flat_b in zip(*poses, strict=True):
-                check_in_plane(flat_a, flat_b)
-        return moves
+            for body, path in enumerate(self.paths):
+                pose = path.pose(time)
+                poses[body, k], mark = matrix_and_mark(pose)
+                twists[body, k] = flat_twist(path.twist(time), pose)
+                self.repaired += mark
+        return poses[0], poses[1], twists[0], twists[1]
 
-    def _quiet(
-        self,
-        state: TrackerState,
-        moves: Array,
-        steps: Array,
-        first: int,
-        at: int,
-        end: int,
-    ) -> tuple[TrackerState, int]:
-        """Answer frames from `at` on up to one that needs a look: it switches, may
-        overlap, or is refused.
-
-        Returns the state before that frame, and its number; `end` where there is none.
-        """
-        data = self._loop(state, moves, steps, first, at, end)
-        rows = self.answers[at:end]
-        doubtful = np.isin(rows[:, K.STATUS], (K.TRACKING, K.NOT_CERTIFIED))
-        looks = (rows[:, K.OUT_COUNTS + N.EVENTS] > 0.0) | (
-            doubtful & ~(rows[:, K.LOWER_BOUND] > 0.0)
-        )
-        stop = at + int(looks.argmax()) if looks.any() else end
-        if stop == at:
-            return state, at
-        if stop < end:
-            data = self._loop(state, moves, steps, first, at, stop)
-        block = Block.empty(data, moves[stop - 1 - first], steps[stop - 1 - first], True)
-        block.out[:] = self.answers[stop - 1]
-        answer = Proximity(self.tracker.a, self.tracker.b, block.kept())
-        return TrackerState(answer), stop
-
-    def _loop(
-        self,
-        state: TrackerState,
-        moves: Array,
-        steps: Array,
-        first: int,
-        at: int,
-        end: int,
-    ) -> Array:
-        """Answer frames at .. end - 1 in compiled code; returns the last one's state."""
-        tracker, part = self.tracker, slice(at - first, end - first)
-        data = np.zeros(K.N_STATE + N_POLYTOPE)
-        known = state.warm_start
-        data[: len(known)] = known
-        log = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
-        rows = self.answers[at:end]
-        refused, _ = kernels.run(
-            tracker.packed,
-            moves[part],
-            True,
-            steps[part],
-            tracker.options,
-            data,
-            rows,
-            log,
-        )
-        if refused >= 0:  # the single step will say why
-            rows[refused:, K.STATUS], rows[refused:, K.LOWER_BOUND] = K.NOT_CERTIFIED, np.nan
-        return data
-
-    def _watched(self, state: TrackerState, frame: int) -> TrackerState:
-        """Answer one frame by itself and note its events."""
-        time, before = float(self.times[frame]), float(self.times[frame - 1])
-        following, answer = self.tracker.step(state, *self.placed(time), dt=time - before)
-        self.answers[frame] = answer.row
-        if answer.events:
-            self.events += self._events(state, answer, frame, before, time)
-        return following
-
-    def _events(
-        self, state: TrackerState, answer: Proximity, frame: int, before: float, time: float
-    ) -> list[RecordedEvent]:
+    def _events(self, state: TrackerState, answer: Proximity, frame: int) -> list[RecordedEvent]:
+        """Return the events of a frame, from the state of the frame before it."""
+        before, time = float(self.times[frame - 1]), float(self.times[frame])
         known = answer.status in (Status.CONVERGED, Status.TRACKING)
         # in contact the switching functions are those of the pair shifted out: dated to frames
         outside = state.data[K.LOST] == 0.0 and state.data[K.INSIDE] == 0.0

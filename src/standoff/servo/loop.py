@@ -31,7 +31,7 @@ from standoff.simulation.device import Device, DeviceReading, Fault
 from standoff.simulation.operator import Operator
 from standoff.simulation.passivity import non_negative
 from standoff.simulation.simulated_device import SimulatedDevice
-from standoff.simulation.system_state import SystemState, coupler_at
+from standoff.simulation.system_state import SystemState, coupler_at, state_length
 from standoff.simulation.wrench import Wrench
 from standoff.tracking.choices import yes_or_no
 
@@ -149,7 +149,7 @@ class Servo(BoundToRun):
         self.rate = checked.rate_of(self._period, rate)
         begin = operator.start() if state is None else state
         operator._check_state(begin)
-        self._first, self._data = begin, begin.data.copy()
+        self._first, self._data = begin, operator.room_for(begin)
         self._device = self._live(device)
         self._script = np.zeros((0, K.N_READING))
         if isinstance(device, Trace):
@@ -196,7 +196,7 @@ class Servo(BoundToRun):
         self._asked = np.zeros(V.N_ASKED, dtype=np.int64)
         self._limits = np.full(V.N_LIMITS, np.inf)
         self._inbox = Box(K.N_READING)
-        self._outbox = Box(V.OUT_HEADER + len(self._data))
+        self._outbox = Box(V.OUT_HEADER + state_length(self._system))
         self._bins = np.zeros((V.N_MEASURED, V.BINS), dtype=np.int64)
         self._tallies = np.zeros(V.N_TALLIES, dtype=np.int64)
         self._log = np.zeros((log_ticks, V.J_LOGGED))

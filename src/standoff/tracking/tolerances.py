@@ -19,10 +19,6 @@ LINE_RANK: Final = 1e-6
 """A set whose lesser extent is below this part of the greater (singular values) is a line: its own
 tilt across has no digits."""
 
-PLANE_TILT: Final = 1e-12
-"""Dimensionless, entries of R: a planar body's pose may be tilted by this, the roundoff of
-composing rotations."""
-
 CHECK_ROUNDOFF: Final = 1e-15
 """Dimensionless. The compiled check of a rotation fuses sums and products, NumPy's does not: a
 defect this close to the one that is allowed counts as above it, so that the kernels refuse no pose

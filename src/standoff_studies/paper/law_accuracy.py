@@ -13,9 +13,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 import standoff as so
-from standoff.kernels.entries import tracker as kernels
-from standoff.kernels.pair import events as N
-from standoff.kernels.state import arrays as K
+from standoff.tracking.calls import run
 from standoff.tracking.inputs import flat_pose
 
 Array = NDArray[np.float64]
@@ -185,16 +183,14 @@ def frame_time(followed: Followed, step: float, repeats: int = 7) -> float:
     (pose_a, twist_a), (pose_b, twist_b) = placements[0]
     state = tracker.start(pose_a, pose_b, twist_a, twist_b)
     h = np.full(len(poses[0]), step)
-    outs = np.empty((len(h), K.N_OUT))
-    events = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
     motions = np.hstack([*poses, *twists])
     seen = not followed.blind
     found = []
     for _ in range(repeats):
         data = state.data.copy()
         began = perf_counter()
-        bad, _ = kernels.run(tracker.packed, motions, seen, h, tracker.options, data, outs, events)
+        followed_rows = run(tracker.table, motions, seen, h, data)
         found.append(perf_counter() - began)
-        if bad >= 0:
-            raise RuntimeError(f"Frame {bad} of {followed.law} was refused.")
+        if followed_rows.refused >= 0:
+            raise RuntimeError(f"Frame {followed_rows.refused} of {followed.law} was refused.")
     return min(found) / len(times)

@@ -70,6 +70,8 @@ def law_of(ran: Ran) -> Law:
     """Return the law that a tracker or a recording has followed, resolved."""
     if isinstance(ran, Recording):
         return ran.info.law
+    if isinstance(ran, Operator):
+        return ran.laws[0].resolved(ran.dt)
     return ran.resolved_law if isinstance(ran, Tracker) else ran.law
 
 

@@ -8,12 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies import Body
-from standoff.kernels.entries import tracker as kernels
-from standoff.kernels.entries.preparing import prepare
-from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion import Path, Pose
 from standoff.tracking import Proximity, Tracker, TrackerState, pair_system
+from standoff.tracking.calls import run
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.rows import poses_of, twists_of
 
@@ -128,20 +126,5 @@ def distances(tracker: Tracker, state: TrackerState, motion: Motion) -> Array:
         Of the motion's first time.
     motion : Motion
     """
-    prepare(paper=True, planar=tracker.planar, runs=True)
-    answers = np.full((len(motion.rows), K.N_OUT), np.nan)
-    log = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
-    refused, _ = kernels.run(
-        tracker.packed,
-        motion.rows,
-        True,
-        np.diff(motion.times),
-        tracker.options,
-        state.data.copy(),
-        answers,
-        log,
-    )
-    found = answers[:, K.DISTANCE].copy()
-    if refused >= 0:
-        found[refused:] = np.nan
-    return found
+    steps = np.diff(motion.times)
+    return run(tracker.table, motion.rows, True, steps, state.data.copy()).rows[:, K.DISTANCE]

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import ROTATION
 from standoff.tracking.block import Block
@@ -137,7 +138,7 @@ def _ready(case: Case) -> tuple[Made, Made, Frames, Tracker]:
 def _step(tracker: Tracker, one: Frames, has_twist: bool, state: Array, row: Array) -> int:
     """Answer one frame; FINE, or what was refused."""
     block = Block.empty(state, one.motions[0], float(one.steps[0]), has_twist)
-    done = int(tracker.in_place(tracker.table.address, block.data))
+    done = int(kernels.step(tracker.table.address, block.data))
     state[:], row[:] = block.state, block.out
     return done
 

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
+from standoff.tracking import calls
+from standoff.tracking.block import Block
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
@@ -104,18 +106,8 @@ def track(tracker: Tracker, frames: Frames, has_twist: bool) -> Answers:
     state = np.zeros(K.N_STATE)
     if start(tracker, frames, 0, has_twist, state, rows[0]) != K.FINE:
         return Answers(rows, 0)
-    log = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
     rest = frames.part(slice(1, None))
-    refused, _ = kernels.run(
-        tracker.packed,
-        rest.motions,
-        has_twist,
-        rest.steps,
-        tracker.options,
-        state,
-        rows[1:],
-        log,
-    )
+    rows[1:], refused = calls.run(tracker.table, rest.motions, has_twist, rest.steps, state)
     return Answers(rows, refused + 1 if refused >= 0 else -1)
 
 
@@ -123,17 +115,10 @@ def start(
     tracker: Tracker, frames: Frames, k: int, has_twist: bool, state: Array, row: Array
 ) -> int:
     """Answer frame k from a global start, into `state` and `row`; FINE, or what was refused."""
-    return int(
-        kernels.start(
-            tracker.packed,
-            frames.part(slice(k, k + 1)).motions[0],
-            has_twist,
-            tracker.options,
-            state,
-            K.START_ANYWHERE,
-            row,
-        )
-    )
+    block = Block.empty(state, frames.part(slice(k, k + 1)).motions[0], 0.0, has_twist)
+    done = int(kernels.start(tracker.table.address, block.data, K.START_ANYWHERE))
+    state[:], row[:] = block.state, block.out
+    return done
 
 
 def _to_search(rows: Array) -> Numbers:

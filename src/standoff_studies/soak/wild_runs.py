@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries import tracker as kernels
-from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import BLUR, START_GAP
+from standoff.tracking import calls
+from standoff.tracking.block import Block
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import OptionsConflict, PaperLaw, law_of_facts
 from standoff.tracking.status import Status
@@ -152,10 +153,11 @@ def run(rng: Rng, scenes: list[Scene]) -> Run:
         state[K.MODE : K.MODE + 4] = place[[0, 1, 4, 5]]
         state[K.Q : K.Q + 4] = place[[2, 3, 6, 7]]
     begun = state[K.MODE : K.MODE + 8].tolist()
-    motions, packed, options = frames.motions, tracker.packed, tracker.options
-    kernels.start(packed, motions[0], twists, options, state, given, rows[0])
-    log = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
-    kernels.run(packed, motions[1:], twists, frames.steps[1:], options, state, rows[1:], log)
+    motions, table = frames.motions, tracker.table
+    block = Block.empty(state, motions[0], 0.0, twists)
+    kernels.start(table.address, block.data, given)
+    rows[0] = block.out
+    rows[1:] = calls.run(table, motions[1:], twists, frames.steps[1:], block.state.copy()).rows
     return Run(scenes, law, frames, twists, given, begun, rows)
 
 

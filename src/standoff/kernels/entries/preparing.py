@@ -10,12 +10,12 @@ from typing import Any
 from standoff.kernels.compiler import cache
 from standoff.kernels.compiler.entry import Entry
 from standoff.kernels.compiler.notices import parts
-from standoff.kernels.entries import blocks, queries, servo, simulation, tracker
+from standoff.kernels.entries import queries, servo, simulation, tracker
 
 MODULES = (
     "standoff.kernels.entries.queries",
     "standoff.kernels.entries.tracker",
-    "standoff.kernels.entries.blocks",
+    "standoff.kernels.entries.laws",
     "standoff.kernels.entries.batch",
     "standoff.kernels.entries.derivatives",
     "standoff.kernels.entries.smooth",
@@ -34,35 +34,34 @@ PLANAR = ("pcurve_jet", "planar_edge_normal")
 LOCATING = ("feature_jet", "edge_jet", "coedge_conormal", "end_direction")
 """What locates the instant of a switch in a recorded run."""
 
-ready_for: set[tuple[bool, bool, bool]] = set()
+ready_for: set[tuple[bool, bool]] = set()
 
 
-def prepare(paper: bool, planar: bool, runs: bool = False) -> None:
-    """Have ready what a tracker can reach, in contact and out of it.
+def prepare(planar: bool, runs: bool = False) -> None:
+    """Have ready what a tracker can reach, in contact and out of it; the frame of its own law is
+    there by then.
 
     Parameters
     ----------
-    paper : bool
-        Of the paper's law; else of the predictor-corrector.
     planar : bool
         Of planar bodies.
     runs : bool
-        And the loop over many frames.
+        And the loop over many frames, and what locates a switch in it.
     """
-    if (paper, planar, runs) in ready_for:
+    if (planar, runs) in ready_for:
         return
     names = BODIES + (PLANAR if planar else ()) + (LOCATING if runs else ())
     needed = [getattr(queries, name) for name in names]
-    needed += [tracker.start]
-    needed += (
-        [blocks.value_paper, blocks.step_paper, blocks.moved_paper]
-        if paper
-        else [blocks.value_predicted, blocks.step_predicted, blocks.moved_predicted]
-    )
+    needed += [tracker.start, tracker.value, tracker.step]
     if runs:
-        needed.append(tracker.run_paper if paper else tracker.run_predicted)
+        needed.append(tracker.values)
     _prepare_each(needed)
-    ready_for.add((paper, planar, runs))
+    ready_for.add((planar, runs))
+
+
+def prepare_buffer() -> None:
+    """Have ready what a frame in a buffer is made by."""
+    _prepare_each([tracker.moved])
 
 
 def prepare_simulation() -> None:

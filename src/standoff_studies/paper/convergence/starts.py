@@ -9,14 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature, feature_of
-from standoff.kernels.entries import tracker as kernels
-from standoff.kernels.entries.preparing import prepare
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion import Fixed, Path, Pose, Twist
 from standoff.recording import simulate
 from standoff.recording.times import even_times
 from standoff.tracking import Tracker, pair_system
+from standoff.tracking.calls import run
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.convergence.pairs import Pair
 from standoff_studies.paper.many_starts import LEFT, Motion, motion_along
@@ -189,17 +188,7 @@ def outcome(tried: Trial, place_a: Any, place_b: Any) -> Outcome:
 
 def _run(tried: Trial, rows: Array, state: Array) -> Array:
     """Follow some rows of motion; a frame that the law refuses is nan, with all after."""
-    prepare(paper=True, planar=tried.tracker.planar, runs=True)
-    answers = np.full((len(rows), K.N_OUT), np.nan)
-    log = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
-    steps = np.full(len(rows), STEP)
-    tracker = tried.tracker
-    refused, _ = kernels.run(
-        tracker.packed, rows, True, steps, tracker.options, state, answers, log
-    )
-    if refused >= 0:
-        answers[refused:] = np.nan
-    return answers
+    return run(tried.tracker.table, rows, True, np.full(len(rows), STEP), state).rows
 
 
 def _followed(tried: Trial, state: Array) -> tuple[Array, float]:
