@@ -240,7 +240,7 @@ def checked_law(law: Any) -> Law:
     """Return a law, or raise TypeError that says how to make one."""
     if type(law) in LAWS.values():
         return law  # type: ignore[no-any-return]
-    from standoff.real_numbers import shown
+    from standoff.checks.real_numbers import shown
 
     if isinstance(law, type) and law in LAWS.values():
         name = PYTHON[law]
