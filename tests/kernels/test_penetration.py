@@ -1,4 +1,4 @@
-"""Steps of the depth's descent and Newton's method in contact, on balls, boxes and hand-made jets."""
+"""Steps of the depth's descent, Newton's method in contact: balls, boxes and hand-made jets."""
 
 import math
 
