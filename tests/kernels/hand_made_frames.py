@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from pointed import pointed
 
 from standoff.kernels.frame.inputs import Inputs
 from standoff.kernels.state.arrays import DEPTH_GLOBAL, N_OPTIONS, PREDICT_FEEDFORWARD
@@ -39,7 +40,7 @@ def options(
         depth,
         deadline,
         0,
-        np.zeros(N_OPTIONS),
+        pointed(np.zeros(N_OPTIONS)),
     )
 
 
@@ -63,4 +64,5 @@ def inputs(
     pose_a: Array, pose_b: Array, twist_a: Sequence[float], twist_b: Sequence[float], told: bool
 ) -> Inputs:
     """In world axes, with or without twists."""
-    return Inputs(pose_a, pose_b, np.array(twist_a, float), np.array(twist_b, float), told)
+    numbers = pose_a, pose_b, np.array(twist_a, float), np.array(twist_b, float)
+    return Inputs(*map(pointed, numbers), told)

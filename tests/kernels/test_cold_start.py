@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hand_made import new_work
 from hand_made_pairs import (
+    Placed,
     X,
     Z,
-    Placed,
     ball,
     box,
     ellipsoid,

@@ -1,11 +1,11 @@
-"""A query in contact: what it concludes of depths made by hand, and where it ends from any start."""
+"""A query in contact: what it concludes of depths made by hand, and where it ends from a start."""
 
 import math
 
 import numpy as np
 import pytest
 from hand_made import new_work
-from hand_made_pairs import X, Y, Z, Placed, ball, box, ellipsoid, half_space, turn, unit, vector
+from hand_made_pairs import Placed, X, Y, Z, ball, box, ellipsoid, half_space, turn, unit, vector
 
 from standoff.kernels.depth.descent import descend
 from standoff.kernels.depth.penetration import begin_along

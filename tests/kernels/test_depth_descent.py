@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from hand_made import new_work
-from hand_made_pairs import X, Y, Z, Placed, ball, box, ellipsoid, half_space, turn, unit, vector
+from hand_made_pairs import Placed, X, Y, Z, ball, box, ellipsoid, half_space, turn, unit, vector
 
 from standoff.kernels.depth.descent import (
     AGAIN,

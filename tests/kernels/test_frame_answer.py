@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from hand_made_frames import flat, inputs, motion_of, state_at
-from hand_made_pairs import IDENTITY, X, Z, Placed, ball, box, point, turn, unit, vector
+from hand_made_pairs import IDENTITY, Placed, X, Z, ball, box, point, turn, unit, vector
 
 from standoff.kernels.algebra.rigid import relative_pose, relative_twist
 from standoff.kernels.frame.answer import (
@@ -116,7 +116,7 @@ def test_the_normal_turns_by_what_is_square_to_it():
 
 
 def test_b_s_motion_is_seen_from_a():
-    """A vector fixed to B turns by w_B - w_A, and B's origin moves by what A's own motion leaves."""
+    """B turns by w_B - w_A, and its origin moves by what A's own motion leaves."""
     pose = relative_pose(GIVEN.pose_a, GIVEN.pose_b)
     motion = twisted(GIVEN, pose)
     assert motion.pose == pose

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hand_made import new_work
 from hand_made_frames import NOT_INTEGRATED, TOLERANCE, motion_of, options, state_at
-from hand_made_pairs import X, Y, Z, Placed, ball, box, ellipsoid, unit, vector
+from hand_made_pairs import Placed, X, Y, Z, ball, box, ellipsoid, unit, vector
 
 from standoff.kernels.depth.descent import descend
 from standoff.kernels.depth.penetration import begin_along

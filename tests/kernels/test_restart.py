@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from hand_made import new_work
-from hand_made_pairs import X, Y, Z, Placed, ball, box, half_space, turn, unit, vector
+from hand_made_pairs import Placed, X, Y, Z, ball, box, half_space, turn, unit, vector
 
 from standoff.kernels.depth.penetration import begin_along, contact_scale
 from standoff.kernels.depth.search import overlap_shown
@@ -179,7 +179,7 @@ def test_over_a_half_space_a_point_below_shows_an_overlap():
     for answer, inside in (cut_off_above(*case.both, found, Z), cut_off(*case.both, found)):
         assert inside
         assert answer.upper == pytest.approx(-depth, abs=1e-12)
-        assert -0.2 - 1e-12 <= answer.distance
+        assert answer.distance >= -0.2 - 1e-12
         assert answer.distance == answer.lower <= -0.2 + 1e-12
         assert answer.normal == Z
         assert answer.place == found.place

@@ -12,8 +12,8 @@ import pytest
 from hand_made_frames import flat, inputs, motion_of, options, state_at
 from hand_made_pairs import (
     IDENTITY,
-    Z,
     Placed,
+    Z,
     ball,
     box,
     ellipsoid,

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from hand_made_pairs import pair_of
 
 import standoff as so
 from standoff.kernels.frame.answer import judge
@@ -11,7 +12,7 @@ from standoff.kernels.pair.certified import (
     TOUCHING_OR_OVERLAPPING,
     UNCERTIFIED,
 )
-from standoff.kernels.values import Found, Pair, Place
+from standoff.kernels.values import Found, Place
 from standoff.tracking import Status
 
 BOX, BALL = so.shapes.box(1.0, 1.0, 1.0), so.shapes.sphere(0.5)
@@ -32,7 +33,7 @@ def status(
     cut: bool = False,
 ) -> Status:
     """The verdict on lengths of the cores: those of BALL's is a point, 0.5 inside its surface."""
-    pair = Pair(BOX.ints, BOX.reals, other.ints, other.reals)
+    pair = pair_of(BOX, other)
     found = Found(outcome, PLACE, distance, lower, upper, (1.0, 0.0, 0.0))
     return Status(judge(pair, SHIFT, found, lenient, tolerance, cut))
 
