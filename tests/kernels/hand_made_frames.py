@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from pointed import pointed
 
-from standoff.kernels.frame.inputs import N_CHANGE, Inputs
+from standoff.kernels.frame.inputs import Inputs
 from standoff.kernels.state.arrays import DEPTH_GLOBAL, N_OPTIONS, PREDICT_FEEDFORWARD
 from standoff.kernels.state.options import Options
 from standoff.kernels.state.state import Integrated, State, fresh_state
@@ -39,7 +40,7 @@ def options(
         depth,
         deadline,
         0,
-        np.zeros(N_OPTIONS),
+        pointed(np.zeros(N_OPTIONS)),
     )
 
 
@@ -62,6 +63,6 @@ def flat(R: Sequence[float], p: Sequence[float]) -> Array:
 def inputs(
     pose_a: Array, pose_b: Array, twist_a: Sequence[float], twist_b: Sequence[float], told: bool
 ) -> Inputs:
-    """In world axes, with or without twists; no law reads a change of the parameters."""
-    twists, unused = (np.array(x, float) for x in (twist_a, twist_b)), np.full(N_CHANGE, np.nan)
-    return Inputs(pose_a, pose_b, *twists, unused, told)
+    """In world axes, with or without twists."""
+    numbers = pose_a, pose_b, np.array(twist_a, float), np.array(twist_b, float)
+    return Inputs(*map(pointed, numbers), told)

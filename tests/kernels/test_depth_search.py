@@ -14,6 +14,7 @@ from hand_made_pairs import (
     ball,
     box,
     ellipsoid,
+    pair_of,
     point,
     segment,
     turn,
@@ -21,6 +22,7 @@ from hand_made_pairs import (
     vector,
 )
 from hull_making import assert_closed, hull_of
+from pointed import pointed
 
 import standoff as so
 from draws import draws
@@ -46,7 +48,7 @@ from standoff.kernels.depth.search import (
 from standoff.kernels.pair.events import EVALUATIONS, KEEPING, KEPT, LIMIT, SEARCHES
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
 from standoff.kernels.tolerances import DEPTH_PROOF, MAX_RIVALS, PRISM, TOUCHING
-from standoff.kernels.values import Depth, Pair, Pose, Work
+from standoff.kernels.values import Depth, Pose, Work
 
 TOLERANCE = 1e-10
 HOW = (TOLERANCE, DEPTH_PROOF, MAX_RIVALS)
@@ -123,8 +125,7 @@ SQUARE = so.shapes.planar_loop(
 
 def planar(x, y):
     """Two squares of half width 1, the second at (x, y)."""
-    pair = Pair(SQUARE.ints, SQUARE.reals, SQUARE.ints, SQUARE.reals)
-    return pair, Pose(BOXES.R, (x, y, 0.0))
+    return pair_of(SQUARE, SQUARE), Pose(BOXES.R, (x, y, 0.0))
 
 
 def test_a_planar_seed_is_an_edge_of_the_prism():
@@ -380,7 +381,7 @@ def keeping_work(last):
     """Of a frame that may keep its polytope, and has one kept."""
     work = new_work()
     work.counts[KEEPING] = 1
-    return Work(work.counts, work.events, last, np.zeros(N_POLYTOPE))
+    return Work(work.counts, work.events, *map(pointed, (last, np.zeros(N_POLYTOPE))))
 
 
 @pytest.mark.parametrize("case", CASES)

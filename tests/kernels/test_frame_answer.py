@@ -116,7 +116,7 @@ def test_the_normal_turns_by_what_is_square_to_it():
 
 
 def test_b_s_motion_is_seen_from_a():
-    """A vector fixed to B turns by w_B - w_A; B's origin moves by what A's own motion leaves."""
+    """B turns by w_B - w_A, and its origin moves by what A's own motion leaves."""
     pose = relative_pose(GIVEN.pose_a, GIVEN.pose_b)
     motion = twisted(GIVEN, pose)
     assert motion.pose == pose

@@ -1,4 +1,4 @@
-"""Steps of the depth's descent, Newton's method in contact: balls, boxes and hand-made jets."""
+"""Steps of the depth's descent and Newton's method there: balls, boxes and hand-made jets."""
 
 import math
 
@@ -15,6 +15,7 @@ from hand_made_pairs import (
     ellipsoid,
     half_space,
     packed,
+    pair_of,
     point,
     segment,
     turn,
@@ -47,7 +48,7 @@ from standoff.kernels.depth.penetration import (
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import LIMIT, RESTARTS
 from standoff.kernels.tolerances import FLAT_RADIUS, MAX_RESTARTS, NEWTON_TURN, SHIFTED_GAP
-from standoff.kernels.values import Depth, Pair
+from standoff.kernels.values import Depth
 
 TOLERANCE = 1e-10
 P = (0.4, 0.3, 1.2)
@@ -67,10 +68,6 @@ def poles(case: Placed, n=WAY):
 def along(case: Placed, n, distance=None) -> Depth:
     """A direction of two balls with its points, and their distance along it."""
     return Depth(False, -case.depth(n) if distance is None else distance, n, poles(case, n))
-
-
-def pair_of(a: so.Body, b: so.Body) -> Pair:
-    return Pair(*packed(a), *packed(b))
 
 
 def test_the_scale_is_of_both_sizes_and_radii():
