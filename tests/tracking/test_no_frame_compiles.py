@@ -141,9 +141,9 @@ def test_the_papers_law_and_recorded_runs_compile_nothing_in_a_frame():
         way = Helix(radius=1.2, pitch=0.4, rate=2.0)
         # the second run asks for nothing that the first did not prepare
         still = so.Pose(np.eye(3), [3.0, 0.0, 0.0])
-        so.simulate(so.Tracker(a, b), so.Pose.identity(), still, 0.01)
+        so.track(so.Tracker(a, b), so.Pose.identity(), still, 0.01)
         asked.clear()
-        found = so.simulate(so.Tracker(a, b), so.Pose.identity(), way, 2.0)
+        found = so.track(so.Tracker(a, b), so.Pose.identity(), way, 2.0)
         assert found.events
         asked[:0] = frames
         tell(seen)

@@ -211,7 +211,7 @@ def by_track(case: Case, frames: Frames, tracker: so.Tracker) -> Array:
     if not case.twists:
         pytest.skip("a path has twists")
     paths = Listed(frames.poses_a, frames.twists_a), Listed(frames.poses_b, frames.twists_b)
-    from standoff.recording.simulate import track_along
+    from standoff.recording.track import track_along
 
     times = DT * np.arange(FRAMES)
     told = track_along(tracker, *paths, times, locate=False)

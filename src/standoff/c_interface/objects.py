@@ -11,7 +11,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -25,10 +25,8 @@ from standoff.kernels.compiler import modules
 from standoff.kernels.compiler.decorators import BOUNDS_CHECK, CONTRACTED
 from standoff.kernels.entries import c_interface as kernels
 from standoff.kernels.entries import laws
+from standoff.progress import Progress
 from standoff.whole_files import write_whole
-
-Progress = Callable[[int, int], None]
-"""Is told how many parts are done, and of how many."""
 
 TABLE_AND_BLOCK = types.int64, types.int64
 RECORD_AND_STEP = types.int64, types.float64

@@ -11,9 +11,9 @@ import numpy as np
 
 from standoff.bodies.addresses import formulas_of
 from standoff.bodies.body import Body
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.compiler.machine import source_digest
-from standoff.real_numbers import shown
 from standoff.tracking.address_table import packed
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.options import with_frames

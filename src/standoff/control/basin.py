@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.checks.numbers import whole_number
+from standoff.checks.real_numbers import shown
 from standoff.control.tolerances import FOUND_MINIMUM, SETTLED_RUN
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.validation import Array
 from standoff.motion import PoseLike
-from standoff.real_numbers import shown
 from standoff.tracking import Tracker, calls, distance
 from standoff.tracking.calls import DESCEND, HERE, Frame
-from standoff.tracking.choices import whole_number
 from standoff.tracking.inputs import flat_pose
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.places import PlaceLike, put

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.names import choice
+from standoff.checks.numbers import number, positive, whole_number, yes_or_no
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.dynamics import arrays as K
 from standoff.kernels.dynamics.operator import METHODS
@@ -15,9 +17,8 @@ from standoff.kernels.entries import simulation as entries
 from standoff.kernels.entries.preparing import prepare_simulation
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as T
-from standoff.motion import inputs
+from standoff.progress import Progress
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 from standoff.simulation import stability
 from standoff.simulation.coupled_tool import check_tool
 from standoff.simulation.device import Device, DeviceReading
@@ -42,7 +43,6 @@ from standoff.simulation.system import System
 from standoff.simulation.system_run import SystemRun
 from standoff.simulation.system_start import started
 from standoff.simulation.system_state import SystemState, coupler_at, state_length
-from standoff.tracking.choices import positive_number, whole_number, yes_or_no
 from standoff.tracking.law_options import Law
 
 Array = NDArray[np.float64]
@@ -62,10 +62,6 @@ class Going(NamedTuple):
     data: Array
     start: float
     every: int
-
-
-Progress = Callable[[int, int], None]
-"""Told, as a run goes on, how many ticks are done, and of how many."""
 
 
 class Operator(KeepsReadOnly):
@@ -122,9 +118,9 @@ class Operator(KeepsReadOnly):
                 f"system is {shown(system)}: give a standoff.simulation.System.", "system", system
             )
         self.system = system
-        self.dt = positive_number(dt, "dt")
-        inputs.word(method, "method", METHODS)
-        inputs.word(tracker, "tracker", SIDES)
+        self.dt = positive(dt, "dt")
+        choice(method, "method", METHODS)
+        choice(tracker, "tracker", SIDES)
         self.method, self.tracker = method, tracker
         self.laws = self._laws(gain, law)
         check_tool(system, self.dt, method)
@@ -215,7 +211,7 @@ class Operator(KeepsReadOnly):
         StandoffError
             Bodies overlap, by a depth that is told, and that is not allowed.
         """
-        t = inputs.number(time, "time")
+        t = number(time, "time")
         overlap = yes_or_no(allow_overlap, "allow_overlap")
         return started(self.system, self.laws, self.dt, t, overlap)
 

@@ -7,14 +7,13 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.kernels.entries import laws as frames
-from standoff.kernels.state import arrays as T
-from standoff.real_numbers import shown
 from standoff.simulation.system import System
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw, PredictorCorrector, checked_law
-from standoff.tracking.options import pack_options, with_frames
+from standoff.tracking.options import carried, pack_options
 from standoff.tracking.reached import reach
 from standoff.tracking.specialised import address_of
 
@@ -64,9 +63,7 @@ def packed_laws(system: System, laws: tuple[Law, ...], dt: float, inside: bool) 
     rows = [np.zeros(0)]
     for (a, b), law in zip(system.pairs, laws, strict=True):
         if inside:
-            options = pack_options(law.resolved(dt)).copy()
-            options[T.O_LAW] = T.LAW_CARRIED
-            rows.append(with_frames(options, own=address_of(frames.carried)))
+            rows.append(carried(pack_options(law.resolved(dt)), address_of(frames.carried)))
         else:
             bodies = system.bodies[a].body, system.bodies[b].body
             rows.append(reach(*bodies, law, dt, None).options)

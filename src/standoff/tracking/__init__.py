@@ -59,33 +59,6 @@ else:
             "standoff.tracking.tracker": ("Tracker",),
         },
         modules=("feedback",),
-        moved={
-            "standoff": ("automaton", "impact", "recording"),
-            "standoff.automaton": ("Automaton", "Transition", "Visit"),
-            "standoff.impact": ("Impact", "ImpactStatus", "time_of_impact"),
-            "standoff.points": (
-                "DepthMinimum",
-                "Minimum",
-                "PointCounts",
-                "PointEvent",
-                "PointProximity",
-                "PointRecording",
-                "PointState",
-                "PointTracker",
-                "PointVisit",
-                "SpatialPointProximity",
-                "SpatialPointState",
-                "SpatialPointTracker",
-                "record_point",
-            ),
-            "standoff.recording": (
-                "RecordedEvent",
-                "Recording",
-                "RunInfo",
-                "open_recording",
-                "simulate",
-            ),
-        },
     )
 
 __all__ = [

@@ -17,9 +17,6 @@ from standoff.tracking.rows import NO_TWIST, AnswerRows, StateRow, motion_row, p
 
 Array = NDArray[np.float64]
 
-DONE = (K.FINE, K.UNDECIDED)
-"""What a compiled frame returns when it has made an answer."""
-
 
 class Frame(NamedTuple):
     """What is given of one frame: poses (12,) and twists (6,) in world axes."""
@@ -47,7 +44,7 @@ def start(
     block = Block.empty(state.data, frame.row, 0.0, frame.has_twist)
     done = kernels.start_anywhere(table.address, block.data, given)
     state.data[:] = block.state
-    return AnswerRows(block.out), done in DONE
+    return AnswerRows(block.out), done == K.FINE
 
 
 def step(table: AddressTable, frame: Frame, h: float, state: StateRow) -> tuple[AnswerRows, bool]:
@@ -55,7 +52,7 @@ def step(table: AddressTable, frame: Frame, h: float, state: StateRow) -> tuple[
     block = Block.empty(state.data, frame.row, h, frame.has_twist)
     done = kernels.step(table.address, block.data)
     state.data[:] = block.state
-    return AnswerRows(block.out), done in DONE
+    return AnswerRows(block.out), done == K.FINE
 
 
 class Followed(NamedTuple):
@@ -101,7 +98,7 @@ def run(
             done = kernels.step(table.address, block.data)
             blocks[at + 1] = block.data[: K.N_BLOCK]
             polytopes[(at + 1) % 2] = block.polytope
-        if done not in DONE:
+        if done != K.FINE:
             blocks[at + 1 :, : K.N_OUT] = np.nan
             break
         at += 1

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from standoff.bodies.body import Body
-from standoff.kernels.compiler.entry import WrongKind
-from standoff.kernels.entries.tracker import query_anywhere
-from standoff.kernels.state import arrays as K
 from standoff.motion import PoseLike
-from standoff.tracking.inputs import check_pair, plain
-from standoff.tracking.mended_calls import started
+from standoff.tracking.inputs import check_pair
+from standoff.tracking.mended_calls import found_anywhere
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.reached import cold_table
-from standoff.tracking.rows import StateRow
 
 
 def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
@@ -39,16 +33,9 @@ def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
     ValueError
         No pose; a planar body with a spatial one or out of its plane; two half-spaces.
     """
-    check_pair(a, b)
-    table = cold_table(a, b)
-    given = pose_a, pose_b, None, None
-    numbers, repaired = plain(*given)
-    block = np.empty(K.N_BLOCK)
     try:
-        done = query_anywhere(table.address, *numbers, block)
-    except WrongKind:
-        done = K.BAD_ARRAYS
-    if done != K.FINE:
-        made, repaired = started(table, given, StateRow().data, K.START_ANYWHERE)
-        block = made.kept()
-    return Proximity(a, b, block, repaired)
+        table = cold_table(a, b)
+    except TypeError:
+        check_pair(a, b)  # what cannot be hashed is no body either
+        raise
+    return found_anywhere((a, b), table, (pose_a, pose_b, None, None))

@@ -14,7 +14,6 @@ from standoff.kernels.entries.preparing import prepare_buffer
 from standoff.kernels.entries.tracker import moved
 from standoff.kernels.state import arrays as K
 from standoff.tracking.block import Block
-from standoff.tracking.calls import DONE
 from standoff.tracking.inputs import motion_of, plain
 from standoff.tracking.mended_calls import Given, step_in
 from standoff.tracking.proximity import Proximity
@@ -142,7 +141,7 @@ class FrameBuffer:
         done = self._block[K.BLOCK_DONE]
         if done == K.BAD_ARRAYS:
             return self.step_anew(given, h)
-        if done not in DONE:
+        if done != K.FINE:
             self.repaired += step_in(self.tracker.table, Block(self._block))
         return self._block.item(K.DISTANCE)
 

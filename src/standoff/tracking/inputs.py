@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.checks.arrays import text
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.state import arrays as K
 from standoff.kernels.state.arrays import NOT_GIVEN
 from standoff.kernels.tolerances import FARTHEST, PLANE_TILT
 from standoff.motion import Pose, PoseLike, Twist, TwistLike
-from standoff.motion.inputs import text
 from standoff.motion.rotations import defect, mirrored, without_rounding
 from standoff.motion.tolerances import ORTHONORMALITY, ROUNDED
-from standoff.real_numbers import shown
 from standoff.tracking.rows import NO_TWIST, motion_row, poses_of, twists_of
 
 Array = NDArray[np.float64]

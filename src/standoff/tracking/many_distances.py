@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import feature_of
+from standoff.checks.numbers import whole_number, yes_or_no
 from standoff.errors import StandoffError
 from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
 from standoff.motion import PosesLike
 from standoff.tracking.answers import AnswerArrays, proven, statuses
-from standoff.tracking.choices import whole_number, yes_or_no
 from standoff.tracking.inputs import check_pair
 from standoff.tracking.pose_arrays import PoseArray, mended, read_poses
 from standoff.tracking.proximity import Proximity
@@ -108,7 +108,7 @@ class Distances(AnswerArrays):
         """
         from standoff.tracking.derivatives import derivative_arrays
 
-        return derivative_arrays(self, at_least_one(workers, "workers"))
+        return derivative_arrays(self, whole_number(workers, "workers"))
 
     @property
     def gradient(self) -> Array:
@@ -220,7 +220,7 @@ def answered_rows(
     a: Body, b: Body, poses_a: Any, poses_b: Any, *, warm: bool = False, workers: int = 1
 ) -> Distances:
     """`distances`, without a warning."""
-    at_least_one(workers, "workers")
+    whole_number(workers, "workers")
     check_pair(a, b)
     tracker = Tracker(a, b) if yes_or_no(warm, "warm") else None
     planar = a.dimension == 2 or b.dimension == 2
@@ -248,13 +248,6 @@ def answered_rows(
     errors = RefusedRows(refused, refused_a, refused_b, planar)
     repaired = np.broadcast_to(marks_a, n) + np.broadcast_to(marks_b, n)
     return Distances((a, b), rows, (of_a, of_b), repaired, errors)
-
-
-def at_least_one(value: int, name: str) -> int:
-    """A number of threads."""
-    if whole_number(value, name) < 1:
-        raise StandoffError(f"{name} = {value}: give 1 or more.", name, value)
-    return int(value)
 
 
 def _row(poses: Array, k: int) -> Array:

@@ -52,6 +52,15 @@ def with_frames(options: NDArray[np.float64], smooth: int = 0, own: int = 0) -> 
     return given
 
 
+def carried(options: NDArray[np.float64], own: int) -> NDArray[np.float64]:
+    """Those of the paper's law, of which the bodies' own method integrates the parameters; with the
+    address of that law's frame."""
+    given = with_frames(options, own=own).copy()
+    given[K.O_LAW] = K.LAW_CARRIED
+    given.flags.writeable = False
+    return given
+
+
 def _pack_feedback(feedback: Any, options: NDArray[np.float64]) -> None:
     options[K.O_FEEDBACK], options[K.O_GAIN], data = feedback.packed()
     options[K.O_DATA : K.O_DATA + len(data)] = data

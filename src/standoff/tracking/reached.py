@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.kernels.entries import laws
 from standoff.tracking.address_table import AddressTable, packed
+from standoff.tracking.inputs import check_pair
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw
 from standoff.tracking.options import resolved_options, with_frames
@@ -68,5 +69,12 @@ def table_of(a: Body, b: Body, options: Array) -> AddressTable:
 
 @lru_cache(maxsize=PAIRS)
 def cold_table(a: Body, b: Body) -> AddressTable:
-    """Where two bodies lie, with the default law's options: for starts, which call no frame."""
+    """Where two bodies lie, with the default law's options: for starts, which call no frame.
+
+    Raises
+    ------
+    TypeError, ValueError
+        They are no pair.
+    """
+    check_pair(a, b)
     return table_of(a, b, resolved_options(DEFAULT_LAW, 1e-3)[1])

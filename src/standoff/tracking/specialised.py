@@ -7,10 +7,10 @@ from functools import lru_cache
 from typing import Any
 
 from standoff.bodies.body import Body
+from standoff.checks.real_numbers import shown
 from standoff.kernels.body import layout as L
 from standoff.kernels.compiler.calls import CAN_CALL, address_in_memory
 from standoff.kernels.entries import smooth
-from standoff.real_numbers import shown
 
 Kind = tuple[int, int]
 """Of a face: its kind, and the degree of a NURBS along both parameters, 0 for the others."""

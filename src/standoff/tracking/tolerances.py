@@ -4,10 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-SHRINK: Final = 1e-8
-"""The hulls are shrunk by this part of their size before they are compared, and the linear program
-is solved to a tenth of it: what it calls overlap is overlap."""
-
 LEAST_WIDTH_ANGLE: Final = 1e-9
 """Radians to which the direction of a least width is sought: the width is then known to far below
 SAME_WIDTH."""

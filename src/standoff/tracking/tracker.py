@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.body import Body
+from standoff.checks.numbers import positive
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.compiler.entry import WrongKind
 from standoff.kernels.entries.preparing import prepare
-from standoff.kernels.entries.tracker import moved, value
+from standoff.kernels.entries.tracker import moved, moved_by_poses, value, value_by_poses
 from standoff.kernels.state import arrays as K
 from standoff.motion import PoseLike, PosesLike, TwistLike
 from standoff.read_only import KeepsReadOnly, locked
 from standoff.shown_names import hides
-from standoff.spellings import no_attribute
 from standoff.tracking.answers import Answers
-from standoff.tracking.choices import positive_number
 from standoff.tracking.frame_buffer import FrameBuffer
 from standoff.tracking.inputs import check_pair, plain, same_body
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, checked_law
-from standoff.tracking.mended_calls import Given, started, stepped
-from standoff.tracking.old_spellings import ATTRIBUTES, takes_a_law, takes_places
+from standoff.tracking.mended_calls import Given, found_anywhere, started, stepped
 from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.reached import reach
@@ -34,11 +32,13 @@ from standoff.tracking.specialised import checked_choice
 from standoff.tracking.state import TrackerState
 
 Array = NDArray[np.float64]
-ARRAY = np.ndarray
+# of every step: a name less to look up
+ARRAY, empty = np.ndarray, np.empty
+N_BLOCK, N_KEEPING_BLOCK = K.N_BLOCK, K.N_KEEPING_BLOCK
 
 INSIDE = K.BLOCK_STATE + K.INSIDE  # was a block's frame solved in contact?
 
-HIDDEN = ("check_frame_time", "check_state", "options", "planar", "step_anew", "table")
+HIDDEN = ("check_frame_time", "check_state", "options", "step_anew", "table")
 """What the run and the studies need and users do not."""
 
 
@@ -76,7 +76,6 @@ class Tracker(KeepsReadOnly):
         spatial one, two half-spaces.
     """
 
-    @takes_a_law("so.Tracker(a, b, dt, law={law})", ("self", "a", "b", "dt"))
     def __init__(
         self,
         a: Body,
@@ -89,9 +88,8 @@ class Tracker(KeepsReadOnly):
         check_pair(a, b)
         self.a, self.b = a, b
         self.specialise = checked_choice(specialise)
-        self.dt = positive_number(dt, "dt")
+        self.dt = positive(dt, "dt")
         self.law = checked_law(law)
-        self.planar = a.dimension == 2 or b.dimension == 2
         self._reach()
 
     def _reach(self) -> None:
@@ -99,7 +97,7 @@ class Tracker(KeepsReadOnly):
         self.resolved_law, self.options, self.table = reach(
             self.a, self.b, self.law, self.dt, self.specialise
         )
-        prepare(planar=self.planar)
+        prepare()
 
     def __getstate__(self) -> Any:
         # in another process the bodies' formulas, and all arrays, have other addresses
@@ -110,11 +108,6 @@ class Tracker(KeepsReadOnly):
     def __setstate__(self, stored: Any) -> None:
         super().__setstate__(stored)
         self._reach()
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise no_attribute(self, name, ATTRIBUTES)
 
     def start(
         self,
@@ -142,9 +135,9 @@ class Tracker(KeepsReadOnly):
         ValueError
             No pose or twist, or a planar pair out of its plane.
         """
-        return self._started((pose_a, pose_b, twist_a, twist_b), StateRow(), K.START_ANYWHERE)
+        given = pose_a, pose_b, twist_a, twist_b
+        return TrackerState(found_anywhere((self.a, self.b), self.table, given))
 
-    @takes_places
     def start_from(
         self,
         pose_a: PoseLike,
@@ -181,9 +174,7 @@ class Tracker(KeepsReadOnly):
         put(state, 1, self.b, place_b)
         settle = not isinstance(self.law, PaperLaw) if settle is None else settle
         how = K.START_DESCEND if settle else K.START_HERE
-        return self._started((pose_a, pose_b, twist_a, twist_b), state, how)
-
-    def _started(self, given: Given, state: StateRow, how: int) -> TrackerState:
+        given = pose_a, pose_b, twist_a, twist_b
         block, repaired = started(self.table, given, state.data, how)
         return TrackerState(Proximity(self.a, self.b, block.kept(), repaired))
 
@@ -222,23 +213,24 @@ class Tracker(KeepsReadOnly):
             A state of another pair; no pose or twist; a time that is not positive, or too long for
             the paper's law; a planar pair out of its plane.
         """
-        given = pose_a, pose_b, twist_a, twist_b
         if type(state) is not TrackerState:
             self.check_state(state)
-        before = state.proximity
+        before = state._proximity
         if before._a is not self.a or before._b is not self.b:
             self.check_state(state)
         h = self.dt if dt is None else self.check_frame_time(dt)
-        arrays = type(pose_a) is type(pose_b) is type(twist_a) is type(twist_b) is np.ndarray
-        numbers, repaired = (given, 0) if arrays else plain(*given)
-        last = before._out
+        last, table, repaired = before._out, self.table.address, 0
         try:
-            block = np.empty(K.N_BLOCK if last.item(INSIDE) == 0.0 else K.N_KEEPING_BLOCK)
-            done = value(self.table.address, last, *numbers, h, block)
+            block = empty(N_BLOCK if last.item(INSIDE) == 0.0 else N_KEEPING_BLOCK)
+            if twist_a is twist_b is None and type(pose_a) is type(pose_b) is ARRAY:
+                done = value_by_poses(table, last, pose_a, pose_b, h, block)
+            else:
+                numbers, repaired = plain(pose_a, pose_b, twist_a, twist_b)
+                done = value(table, last, *numbers, h, block)
         except (WrongKind, IndexError):
             done = K.BAD_ARRAYS
         if done != K.FINE:
-            answer = self.step_anew(state, given, h)
+            answer = self.step_anew(state, (pose_a, pose_b, twist_a, twist_b), h)
         else:
             answer = Proximity(self.a, self.b, block, repaired)
         return TrackerState(answer), answer
@@ -329,18 +321,24 @@ class Tracker(KeepsReadOnly):
                 "The buffer belongs to another tracker: make one with tracker.buffer.", "buffer"
             )
         h = self.dt if dt is None else self.check_frame_time(dt)
-        given = pose_a, pose_b, twist_a, twist_b
+        if type(pose_a) is type(pose_b) is ARRAY:
+            table, block = buffer._call
+            try:
+                if twist_a is twist_b is None:
+                    distance: float = moved_by_poses(table, pose_a, pose_b, h, block)
+                elif type(twist_a) is type(twist_b) is ARRAY:
+                    distance = moved(table, pose_a, pose_b, twist_a, twist_b, h, block)
+                else:
+                    return buffer.step_to((pose_a, pose_b, twist_a, twist_b), h)
+            except WrongKind:
+                return buffer.step_anew((pose_a, pose_b, twist_a, twist_b), h)
+            buffer.repaired = 0
+            if distance == distance:
+                return distance
+            return buffer.mended((pose_a, pose_b, twist_a, twist_b), h)
         if pose_a is None and pose_b is None:
             return buffer.step(h)
-        if not type(pose_a) is type(pose_b) is type(twist_a) is type(twist_b) is ARRAY:
-            return buffer.step_to(given, h)
-        table, block = buffer._call
-        try:
-            distance: float = moved(table, pose_a, pose_b, twist_a, twist_b, h, block)
-        except WrongKind:
-            return buffer.step_anew(given, h)
-        buffer.repaired = 0
-        return distance if distance == distance else buffer.mended(given, h)
+        return buffer.step_to((pose_a, pose_b, twist_a, twist_b), h)
 
     def buffer(self, state: TrackerState) -> FrameBuffer:
         """Arrays for ``step_into`` that begin at a state."""
@@ -349,7 +347,7 @@ class Tracker(KeepsReadOnly):
 
     def check_frame_time(self, dt: float) -> float:
         """A frame's own time, s: positive, and short enough for the paper's law to be stable."""
-        dt = positive_number(dt, "dt")
+        dt = positive(dt, "dt")
         self.resolved_law.check_step(dt)
         return dt
 

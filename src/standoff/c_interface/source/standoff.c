@@ -243,7 +243,6 @@ static int code_of(int32_t failed, int64_t done)
         return STANDOFF_FAILED;
     switch (done) {
     case FINE:
-    case UNDECIDED:
         return STANDOFF_OK;
     case BAD_POSE_A:
         return STANDOFF_BAD_POSE_A;

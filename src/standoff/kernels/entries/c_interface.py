@@ -34,7 +34,7 @@ def start_in_block(table, address):
 
 @shared
 def step_in_block(table, address):
-    """A frame of the pair's law: FINE, UNDECIDED or, with nothing changed, what of the poses and
+    """A frame of the pair's law: FINE or, with nothing changed, what of the poses and
     twists is refused.
     """
     return answered_in_place(table, reals_at(address, N_LONG_BLOCK), N_LONG_BLOCK)

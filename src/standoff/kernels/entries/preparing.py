@@ -24,55 +24,39 @@ MODULES = (
 )
 """Where entries stand."""
 
-BODIES = ("on_face", "inner_box", "chart_normal", "surface_jet", "curve_jet")
-"""What places a start, and builds the half-space against which an overlap is proven."""
-
-PLANAR = ("pcurve_jet", "planar_edge_normal")
-"""What that of planar bodies needs beside it."""
-
 LOCATING = ("feature_jet", "edge_jet", "coedge_conormal", "end_direction")
 """What locates the instant of a switch in a recorded run."""
 
-SCIPY = ("scipy.optimize",)
-"""Imported by a proof of overlap."""
-
-ready_for: set[tuple[bool, bool]] = set()
+ready_for: set[bool] = set()
 
 
-def prepare(planar: bool, runs: bool = False) -> None:
+def prepare(runs: bool = False) -> None:
     """Have ready what a tracker can reach, in contact and out of it; the frame of its own law is
     there by then.
 
     Parameters
     ----------
-    planar : bool
-        Of planar bodies.
     runs : bool
         And the loop over many frames, and what locates a switch in it.
     """
-    if (planar, runs) in ready_for:
+    if runs in ready_for:
         return
-    names = BODIES + (PLANAR if planar else ()) + (LOCATING if runs else ())
-    needed = [getattr(queries, name) for name in names]
-    needed += [tracker.start, tracker.value, tracker.step]
+    needed = [queries.on_face, tracker.query, tracker.start, tracker.step]
+    needed += [tracker.value, tracker.value_by_poses]
     if runs:
-        needed.append(tracker.values)
+        needed += [tracker.values, *(getattr(queries, name) for name in LOCATING)]
     _prepare_each(needed)
-    for name in SCIPY:
-        importlib.import_module(name)
-    ready_for.add((planar, runs))
+    ready_for.add(runs)
 
 
 def prepare_buffer() -> None:
     """Have ready what a frame in a buffer is made by."""
-    _prepare_each([tracker.moved])
+    _prepare_each([tracker.moved, tracker.moved_by_poses])
 
 
 def prepare_simulation() -> None:
     """Have ready what a simulated system runs by."""
     _prepare_each([simulation.run_system])
-    for name in SCIPY:
-        importlib.import_module(name)
 
 
 def prepare_servo() -> None:

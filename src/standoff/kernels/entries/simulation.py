@@ -143,6 +143,7 @@ def track_pair(system, pair, state, h, work, scratch):
     own = work_for(system, pair, state, work.counts, work.events, scratch)
     frame(packed, inputs, h, options, kept, out, own)
     status = out[STATUS]
+    # of an overlap alone the contact's depth is not known: its force is not either
     sound = status in (CONVERGED, TRACKING, LOCAL, GLOBAL)
     state[S_UNCERTIFIED] += 0.0 if sound else 1.0
     state[S_DEEPEST] = max(state[S_DEEPEST], -out[DISTANCE])

@@ -4,6 +4,7 @@ from math import inf
 
 from standoff.kernels.algebra.vectors import dot, sub
 from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.depth.overlap import with_overlap
 from standoff.kernels.depth.penetration import contact_scale
 from standoff.kernels.frame.contact import NEAR, WARM, contact_query
 from standoff.kernels.frame.prediction import apply_step, predict
@@ -101,7 +102,7 @@ def contact(pair, pose, before, depth, tolerance, work):
 def track_predicted(pair, motion, before, options, h, work):
     """This frame from the last one: outside contact one step of the law; in contact, where the
     witness points pass each other, the local minimum of the depth; where neither certifies, a
-    global start.
+    global start, and where that certifies nothing, a proof of overlap.
     """
     tolerance, pose = options.tolerance, motion.pose
     due, first = start_due(before, work)
@@ -117,4 +118,6 @@ def track_predicted(pair, motion, before, options, h, work):
             then, tracked = contact(pair, pose, before, options.depth, tolerance, work)
             if then == ANSWERED:
                 return tracked
-    return restart(pair, pose, first, tolerance, before.integrated, work)
+    shown, kept = restart(pair, pose, first, tolerance, before.integrated, work)
+    found = with_overlap(pair, pose, shown.found, work)
+    return Tracked(Shown(found, shown.jets, shown.inside, shown.fresh, shown.rates), kept)

@@ -81,7 +81,7 @@ def factor_and_solve(J, r, n):
         for i in range(k + 1, n):
             if abs(J[n * i + k]) > abs(J[n * pivot + k]):
                 pivot = i
-        if abs(J[n * pivot + k]) <= PIVOT:
+        if not abs(J[n * pivot + k]) > PIVOT:  # nor where it is not a number
             return False
         if pivot != k:
             for j in range(k, n):

@@ -103,10 +103,8 @@ NOT_KNOWN_APART = 4
 NOT_GIVEN = -1.5e308
 # Of a step whose arrays are not as they must be, or whose switches the block does not hold.
 BAD_ARRAYS, MORE_EVENTS = 5, 6
-# Of a step that is done: its answer is uncertified, and a proof of overlap may decide it.
-UNDECIDED = 7
 # A pose that takes a planar body out of z = 0.
-OUT_OF_PLANE = 8
+OUT_OF_PLANE = 7
 
 
 @kernel

@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from standoff.bodies import Body, shapes
+from standoff.checks.numbers import magnitude
 from standoff.geometry.curves import RationalBezier
 from standoff.geometry.nurbs import BezierPatch
-from standoff.geometry.validation import Array, positive
+from standoff.geometry.validation import Array
 
 PLANAR_CONTROL = (
     ((1.0, 0.0), (0.775, 0.645), (0.175, 1.005), (-0.5, 0.9)),
@@ -70,7 +71,7 @@ def lens_of_patches(radius: float = 1.0, offset: float = 0.45) -> Body:
     ValueError
         If a number is not positive, or the offset is not below the radius.
     """
-    r, c = positive(radius, "radius"), positive(offset, "offset")
+    r, c = magnitude(radius, "radius"), magnitude(offset, "offset")
     if c >= r:
         raise ValueError(
             f"Empty lens: offset = {c} is not below radius = {r}, so the balls share no interior."

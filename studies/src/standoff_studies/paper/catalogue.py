@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from importlib import import_module
 
-from standoff.spellings import nearest
+from standoff.checks.names import nearest
 from standoff_studies.paper.figure import Artwork, Entry
 
 

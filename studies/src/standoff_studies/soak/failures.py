@@ -140,7 +140,7 @@ def _step(tracker: Tracker, one: Frames, has_twist: bool, state: Array, row: Arr
     block = Block.empty(state, one.motions[0], float(one.steps[0]), has_twist)
     done = int(kernels.step(tracker.table.address, block.data))
     state[:], row[:] = block.state, block.out
-    return K.FINE if done == K.UNDECIDED else done
+    return done
 
 
 def read_failure(file: Path) -> Facts:

@@ -16,7 +16,7 @@ from typing import Any
 from unittest.mock import patch
 
 from standoff.motion import Pose, Twist
-from standoff.recording.simulate import track_along
+from standoff.recording.track import track_along
 from standoff.tracking import Tracker, TrackerState, max_gain
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.many_starts import motion_along

@@ -12,7 +12,7 @@ from standoff.bodies.features import Feature, feature_of
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion import Fixed, Path, Pose, Twist
-from standoff.recording import simulate
+from standoff.recording import track
 from standoff.recording.times import even_times
 from standoff.tracking import Tracker, pair_system
 from standoff.tracking.calls import run
@@ -156,7 +156,7 @@ def trial(pair: Pair, motion: str, law: PaperLaw) -> Trial:
     """Prepare a trial."""
     assert law.gain is not None
     n, path = frames_of(law.gain), pair.path_of(motion)
-    exact = simulate(Tracker(pair.a, pair.b, STEP), HOME, path, n * STEP)
+    exact = track(Tracker(pair.a, pair.b, STEP), HOME, path, n * STEP)
     last = Fixed(path.pose(n * STEP))
     return Trial(
         pair,

@@ -40,7 +40,7 @@ START = (0.08, 0.9)
 
 @dataclass(frozen=True)
 class Helix:
-    """A point's motion about the z axis; a path, as ``so.simulate`` takes it.
+    """A point's motion about the z axis; a path, as ``so.track`` takes it.
 
     Attributes
     ----------

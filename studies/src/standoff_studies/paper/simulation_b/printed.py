@@ -18,7 +18,7 @@ from standoff.motion import Fixed, Pose, Spiral, Twist
 from standoff.points import PointEvent, PointVisit
 from standoff.points.planar_boundary import PlanarBoundary
 from standoff.recording import RecordedEvent, Recording
-from standoff.recording.simulate import track_along
+from standoff.recording.track import track_along
 from standoff.tracking import Feature, Tracker, TrackerState
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.law_words import law_words

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from standoff.automaton import Visit
 from standoff.bodies import Body
 from standoff.motion import Carried, ConstantTwist, Fixed, Path, Pose, Spiral, Twist
-from standoff.recording import RecordedEvent, Recording, simulate
-from standoff.recording.simulate import track_along
+from standoff.recording import RecordedEvent, Recording, track
 from standoff.recording.times import even_times
+from standoff.recording.track import track_along
 from standoff.tracking import Feature, Tracker, TrackerState
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import leaf, planar_body
@@ -125,7 +125,7 @@ def pair() -> tuple[Body, Body]:
 @cache
 def exact_run() -> Recording:
     """Track the pair with the library's own law."""
-    return simulate(Tracker(*pair(), FRAME), REST, motion(), DURATION)
+    return track(Tracker(*pair(), FRAME), REST, motion(), DURATION)
 
 
 @cache

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from standoff.automaton import Visit
 from standoff.bodies import Body, shapes
 from standoff.motion import Fixed, Helix, Path, Pose, Twist
-from standoff.recording import RecordedEvent, Recording, simulate
-from standoff.recording.simulate import track_along
+from standoff.recording import RecordedEvent, Recording, track
 from standoff.recording.times import even_times
+from standoff.recording.track import track_along
 from standoff.tracking import Feature, Tracker, TrackerState, distance
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import lens_of_patches
@@ -125,7 +125,7 @@ def pair() -> tuple[Body, Body]:
 @cache
 def exact_run() -> Recording:
     """Track the point on its helix with the library's own law."""
-    return simulate(Tracker(*pair(), STEP), REST, HELIX, DURATION)
+    return track(Tracker(*pair(), STEP), REST, HELIX, DURATION)
 
 
 @cache

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from standoff.automaton import Visit
 from standoff.bodies import Body
 from standoff.motion import Carried, ConstantTwist, Fixed, Helix, Pose, Twist
-from standoff.recording import RecordedEvent, Recording, simulate
-from standoff.recording.simulate import track_along
+from standoff.recording import RecordedEvent, Recording, track
 from standoff.recording.times import even_times
+from standoff.recording.track import track_along
 from standoff.tracking import Tracker, TrackerState
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.laws import PaperLaw
@@ -107,7 +107,7 @@ def pair() -> tuple[Body, Body]:
 @cache
 def exact_run() -> Recording:
     """Track the pair with the library's own law."""
-    return simulate(Tracker(*pair(), STEP), PATH_A, PATH_B, DURATION)
+    return track(Tracker(*pair(), STEP), PATH_A, PATH_B, DURATION)
 
 
 @cache

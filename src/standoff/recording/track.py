@@ -3,30 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.numbers import positive
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffTypeError
 from standoff.kernels.entries.preparing import prepare
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
-from standoff.motion import Fixed, Pose, PoseLike, TwistLike
-from standoff.motion.pose_function import path_of
-from standoff.real_numbers import shown
+from standoff.motion import PoseLike, TwistLike
+from standoff.motion.moving import MotionLike, Moving, moving
+from standoff.progress import Progress
 from standoff.recording.instants import Motion, Step, located_events
 from standoff.recording.recording import RecordedEvent, Recording, RunInfo
 from standoff.recording.times import even_times
-from standoff.tracking.choices import positive_number
 from standoff.tracking.inputs import (
     flat_pose,
     flat_twist,
     matrix_and_mark,
 )
-from standoff.tracking.old_spellings import takes_a_tracker
 from standoff.tracking.proximity import Event, Proximity
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
@@ -42,28 +40,8 @@ or a doubtful answer: shorter blocks would call more often, longer ones repeat m
 AFTER_A_LOOK = 4
 """Frames of the compiled loop after such a frame, doubled while none needs a look."""
 
-Progress = Callable[[int, int], None]
-"""Told, as a run goes on, how many frames are done, and of how many."""
 
-
-class Moving(Protocol):
-    """Where a body is and how it moves: any of ``standoff.motion``'s paths, or your own."""
-
-    def pose(self, t: float) -> PoseLike:
-        """Return where the body is at time `t` [s]."""
-        ...
-
-    def twist(self, t: float) -> TwistLike:
-        """Return how it moves at time `t` [s]: the derivative of `pose`."""
-        ...
-
-
-MotionLike: TypeAlias = Moving | Callable[[float], PoseLike] | PoseLike
-"""What is read as a path: one, a function of the time that returns a pose, or a pose at rest."""
-
-
-@takes_a_tracker
-def simulate(
+def track(
     tracker: Tracker,
     path_a: MotionLike,
     path_b: MotionLike,
@@ -110,34 +88,10 @@ def simulate(
             "tracker",
             tracker,
         )
-    times = even_times(start, positive_number(duration, "duration"), tracker.dt)
+    times = even_times(start, positive(duration, "duration"), tracker.dt)
     span = float(times[0]), float(times[-1])
     paths = moving(path_a, "path_a", *span), moving(path_b, "path_b", *span)
     return track_along(tracker, *paths, times, locate=locate, progress=progress)
-
-
-def moving(given: Any, name: str, start: float = 0.0, end: float = math.inf) -> Moving:
-    """Return a path; a function is one from `start` to `end`, a pose is one at rest.
-
-    Raises
-    ------
-    TypeError
-        If it is none of these.
-    """
-    try:
-        path: Moving = path_of(given, start, end)
-        return path
-    except TypeError:
-        pass
-    try:
-        return Fixed(Pose.of(given))
-    except (ValueError, TypeError) as error:
-        raise StandoffTypeError(
-            f"{name} = {shown(given)} is neither a path with pose(t) and twist(t), such as those "
-            f"of standoff.motion, nor a function of the time, nor a pose: {error}",
-            name,
-            given,
-        ) from error
 
 
 def track_along(
@@ -150,7 +104,7 @@ def track_along(
     progress: Progress | None = None,
     state: TrackerState | None = None,
 ) -> Recording:
-    """Track a pair at given times along two paths; `simulate` with the parts in hand.
+    """Track a pair at given times along two paths; `track` with the parts in hand.
 
     Parameters
     ----------
@@ -178,7 +132,7 @@ def track_along(
     """
     if state is not None:
         tracker.check_state(state)
-    prepare(planar=tracker.planar, runs=True)
+    prepare(runs=True)
     run = _Run(tracker, path_a, path_b, times, locate)
     run.go(progress, state)
     pair = tracker.a, tracker.b

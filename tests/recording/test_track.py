@@ -1,4 +1,4 @@
-"""`so.simulate`: the tracker's own answers, its frames, its refusals, and the visited modes."""
+"""`so.track`: the tracker's own answers, its frames, its refusals, and the visited modes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from moving_pairs import REST, random_pairs, straight
 import standoff as so
 from standoff.geometry import Line
 from standoff.motion import ConstantTwist, Fixed
-from standoff.recording.simulate import track_along
+from standoff.recording.track import track_along
 
 BOX = so.shapes.box(1.0, 1.0, 1.0)
 POINT = so.shapes.point()
@@ -28,7 +28,7 @@ THROUGH = straight((-1.0, 0.1, 0.2), (1.0, 0.0, 0.0))
 @pytest.mark.parametrize("number", [0, 3, 6, 7])
 def test_frames_are_the_tracker_s_own_steps(number: int, law: Any) -> None:
     a, b, path_a, path_b = random_pairs(8)[number]
-    recording = so.simulate(so.Tracker(a, b, 2e-3, law), path_a, path_b, 0.8, start=0.25)
+    recording = so.track(so.Tracker(a, b, 2e-3, law), path_a, path_b, 0.8, start=0.25)
     check_against_steps(recording, a, b, path_a, path_b, so.Tracker(a, b, 2e-3, law))
     assert recording.time[0] == 0.25
     assert len(recording) == 401
@@ -36,7 +36,7 @@ def test_frames_are_the_tracker_s_own_steps(number: int, law: Any) -> None:
 
 def test_penetration_is_the_tracker_s_own() -> None:
     small = so.shapes.box(0.3, 0.2, 0.25)
-    recording = so.simulate(so.Tracker(small, BOX, 5e-3), THROUGH, REST, 2.0)
+    recording = so.track(so.Tracker(small, BOX, 5e-3), THROUGH, REST, 2.0)
     statuses = set(recording.status)
     assert statuses == {so.Status.CONVERGED, so.Status.GLOBAL}
     check_against_steps(recording, small, BOX, THROUGH, Fixed(REST), so.Tracker(small, BOX, 5e-3))
@@ -103,17 +103,17 @@ def test_a_run_begins_at_a_given_state() -> None:
 
 
 def test_a_pose_is_a_body_at_rest() -> None:
-    one = so.simulate(so.Tracker(POINT, BOX, 1e-2), PAST, REST, 0.5)
-    two = so.simulate(so.Tracker(POINT, BOX, 1e-2), PAST, np.eye(4), 0.5)
-    three = so.simulate(so.Tracker(POINT, BOX, 1e-2), PAST, Fixed(REST), 0.5)
+    one = so.track(so.Tracker(POINT, BOX, 1e-2), PAST, REST, 0.5)
+    two = so.track(so.Tracker(POINT, BOX, 1e-2), PAST, np.eye(4), 0.5)
+    three = so.track(so.Tracker(POINT, BOX, 1e-2), PAST, Fixed(REST), 0.5)
     np.testing.assert_array_equal(one.distance, two.distance)
     np.testing.assert_array_equal(one.distance, three.distance)
 
 
 def test_frame_times() -> None:
-    recording = so.simulate(so.Tracker(POINT, BOX, 0.1), PAST, REST, 0.3)
+    recording = so.track(so.Tracker(POINT, BOX, 0.1), PAST, REST, 0.3)
     np.testing.assert_allclose(recording.time, [0.0, 0.1, 0.2, 0.3], rtol=1e-15)
-    assert len(so.simulate(so.Tracker(POINT, BOX, 0.1), PAST, REST, 0.35)) == 4
+    assert len(so.track(so.Tracker(POINT, BOX, 0.1), PAST, REST, 0.35)) == 4
 
 
 @pytest.mark.parametrize(
@@ -121,7 +121,7 @@ def test_frame_times() -> None:
     [
         ({"duration": -1.0}, ValueError, "duration = -1.0"),
         ({"duration": float("inf")}, ValueError, "duration = inf"),
-        ({"tracker": BOX}, TypeError, "so.simulate(so.Tracker(a, b, 0.01), path_a, path_b, dura"),
+        ({"tracker": BOX}, TypeError, "is not a Tracker: make one by so.Tracker(a, b, dt)"),
         ({"tracker": None}, TypeError, "None is not a Tracker: make one by so.Tracker(a, b, dt)"),
         ({"dt": 3.0}, ValueError, "there are 1 frames"),
         ({"dt": 1e-9}, ValueError, "2e+09 frames"),
@@ -135,10 +135,10 @@ def test_what_is_refused(arguments: dict, error: type[Exception], piece: str) ->
     given = {"path_a": PAST, "path_b": REST, "duration": 2.0, "dt": 1e-2} | arguments
     if "tracker" not in given:
         given["tracker"] = so.Tracker(POINT, BOX, given.pop("dt"))
-    elif given["tracker"] is None:
+    else:
         del given["dt"]
     with pytest.raises(error) as caught:
-        so.simulate(given.pop("tracker"), **given)
+        so.track(given.pop("tracker"), **given)
     assert piece in str(caught.value)
 
 
@@ -153,21 +153,21 @@ def test_a_pose_that_goes_wrong_on_the_way_is_named() -> None:
             return so.Twist.zero()
 
     with pytest.raises(ValueError, match="nan"):
-        so.simulate(so.Tracker(POINT, BOX, 1e-2), Broken(), REST, 1.0)
+        so.track(so.Tracker(POINT, BOX, 1e-2), Broken(), REST, 1.0)
 
 
 def test_planar_pairs_stay_in_their_plane() -> None:
     corners = [(-0.5, -0.5, 0.0), (0.5, -0.5, 0.0), (0.5, 0.5, 0.0), (-0.5, 0.5, 0.0)]
     loop = so.shapes.planar_loop([Line(corners[k], corners[(k + 1) % 4]) for k in range(4)])
     with pytest.raises(ValueError, match="z = 0"):
-        so.simulate(
+        so.track(
             so.Tracker(POINT, loop, 1e-2), straight((2.0, 0.0, 0.0), (0.0, 0.0, 1.0)), REST, 1.0
         )
 
 
 def test_progress_reaches_the_end() -> None:
     told: list[tuple[int, int]] = []
-    so.simulate(
+    so.track(
         so.Tracker(POINT, BOX, 2e-3), PAST, REST, 2.0, progress=lambda *done: told.append(done)
     )
     assert told[-1] == (1001, 1001)
@@ -176,7 +176,7 @@ def test_progress_reaches_the_end() -> None:
 
 
 def test_modes_are_the_visits_between_the_switches() -> None:
-    recording = so.simulate(so.Tracker(POINT, BOX, 1e-2), PAST, REST, 2.0)
+    recording = so.track(so.Tracker(POINT, BOX, 1e-2), PAST, REST, 2.0)
     visits = recording.modes()
     times = [event.time for event in recording.events]
     assert [visit.start for visit in visits] == [0.0, *times]
@@ -189,7 +189,7 @@ def test_modes_are_the_visits_between_the_switches() -> None:
 
 
 def test_modes_go_on_in_penetration() -> None:
-    recording = so.simulate(so.Tracker(so.shapes.sphere(0.2), BOX, 1e-2), THROUGH, REST, 2.5)
+    recording = so.track(so.Tracker(so.shapes.sphere(0.2), BOX, 1e-2), THROUGH, REST, 2.5)
     inside = np.flatnonzero(recording.penetrating)
     assert inside.size
     visits = recording.modes()
@@ -201,9 +201,7 @@ def test_modes_go_on_in_penetration() -> None:
 
 
 def test_info_tells_the_run() -> None:
-    recording = so.simulate(
-        so.Tracker(POINT, BOX, 1e-2, law=so.PaperLaw(gain=50.0)), PAST, REST, 0.1
-    )
+    recording = so.track(so.Tracker(POINT, BOX, 1e-2, law=so.PaperLaw(gain=50.0)), PAST, REST, 0.1)
     info = recording.info
     assert info.bodies == ("point", "box")
     assert info.digests == (POINT.digest, BOX.digest)
@@ -232,7 +230,7 @@ def test_info_tells_the_run() -> None:
 
 def test_the_papers_variants_are_passed_on() -> None:
     """Each is told in the recording, and the printed saturation shows in the counts."""
-    recording = so.simulate(
+    recording = so.track(
         so.Tracker(
             POINT,
             BOX,
@@ -275,15 +273,15 @@ def test_a_world_twist_path_and_a_body_twist_path_agree() -> None:
 
     path = ConstantTwist(so.Pose(np.eye(3), (1.5, 0.2, 0.4)), so.Twist((-0.2, 0, 0), (1, 2, 3)))
     a = so.shapes.ellipsoid(0.3, 0.1, 0.2)
-    one = so.simulate(so.Tracker(a, BOX, 1e-2), path, REST, 0.5)
-    two = so.simulate(so.Tracker(a, BOX, 1e-2), InBody(path), REST, 0.5)
+    one = so.track(so.Tracker(a, BOX, 1e-2), path, REST, 0.5)
+    two = so.track(so.Tracker(a, BOX, 1e-2), InBody(path), REST, 0.5)
     np.testing.assert_allclose(one.rate, two.rate, atol=1e-13)
 
 
 @pytest.mark.parametrize(("depth", "deadline"), [("local", 40), ("global", None)])
 def test_depth_and_deadline_are_recorded(depth: str, deadline: int | None, tmp_path: Path) -> None:
     small = so.shapes.box(0.3, 0.2, 0.25)
-    recording = so.simulate(
+    recording = so.track(
         so.Tracker(small, BOX, 2e-2, law=so.PredictorCorrector(depth=depth, deadline=deadline)),
         THROUGH,
         REST,
