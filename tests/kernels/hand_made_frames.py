@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pointed import pointed
 
-from standoff.kernels.frame.inputs import Inputs
+from standoff.kernels.frame.inputs import N_CHANGE, Inputs
 from standoff.kernels.state.arrays import DEPTH_GLOBAL, N_OPTIONS, PREDICT_FEEDFORWARD
 from standoff.kernels.state.options import Options
 from standoff.kernels.state.state import Integrated, State, fresh_state
@@ -31,6 +31,7 @@ def options(
     unused = 0
     return Options(
         False,
+        False,
         predictor,
         unused,
         0.0,
@@ -39,6 +40,7 @@ def options(
         True,
         depth,
         deadline,
+        0,
         0,
         pointed(np.zeros(N_OPTIONS)),
     )
@@ -63,6 +65,6 @@ def flat(R: Sequence[float], p: Sequence[float]) -> Array:
 def inputs(
     pose_a: Array, pose_b: Array, twist_a: Sequence[float], twist_b: Sequence[float], told: bool
 ) -> Inputs:
-    """In world axes, with or without twists."""
-    numbers = pose_a, pose_b, np.array(twist_a, float), np.array(twist_b, float)
-    return Inputs(*map(pointed, numbers), told)
+    """In world axes, with or without twists; no law reads a change of the parameters."""
+    twists, unused = (np.array(x, float) for x in (twist_a, twist_b)), np.full(N_CHANGE, np.nan)
+    return Inputs(*map(pointed, (pose_a, pose_b, *twists, unused)), told)
