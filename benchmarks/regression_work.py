@@ -78,25 +78,16 @@ def least(work: Callable[[], Any], count: int) -> float:
 
 def compiled_frames(tracker: so.Tracker, poses: np.ndarray, twists: np.ndarray) -> Rows:
     """A frame of a compiled run, without Python."""
-    from standoff.kernels.entries import tracker as kernels
-    from standoff.kernels.pair import events as logs
-    from standoff.kernels.state import arrays
+    from benchmarks.compiled_runs import compiled_run
 
     rest = np.eye(4)
-    begin = tracker.start(rest, poses[0], np.zeros(6), twists[0]).data
+    begin = tracker.start(rest, poses[0], np.zeros(6), twists[0])
     count = len(poses) - 1
     at_rest = np.r_[np.eye(3).ravel(), np.zeros(3)]
     moving = np.concatenate([poses[1:, :3, :3].reshape(count, 9), poses[1:, :3, 3]], axis=1)
     still = np.zeros((count, 6))
     motions = np.hstack([np.tile(at_rest, (count, 1)), moving, still, twists[1:]])
-    steps, outs = np.full(count, DT), np.empty((count, arrays.N_OUT))
-    events = np.empty(logs.MAX_EVENTS * logs.EVENT_COLUMNS)
-    a, b = tracker.a, tracker.b
-    pair = (a.ints, a.reals, b.ints, b.reals)
-
-    def run() -> None:
-        kernels.run(pair, motions, True, steps, tracker.options, begin.copy(), outs, events)
-
+    run, outs = compiled_run(tracker, begin, motions, np.full(count, DT))
     time_of_one = least(run, count)
     return [("a compiled frame, ns", 1e9 * time_of_one, repr(outs[:, :13].sum()))]
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import standoff.geometry as geometry
-from standoff.bodies.proofs import prove_patch
+from standoff.bodies.proofs import PROOFS, prove_patch
+from standoff.control import principal_curvatures
 from standoff.geometry import ConicArc, Line, Surface, pcurve_of
 from standoff.kernels.body import layout as L
 
@@ -53,6 +54,30 @@ def test_every_number_of_a_kind_has_its_class() -> None:
     source = inspect.getsource(L).split("# Surface kinds;")[1].split("\n\n")[0]
     numbers = {int(line.split("=")[1].split("#")[0]) for line in source.splitlines()[1:]}
     assert {each.kind for each in KINDS.values()} == numbers
+
+
+FACTS = [
+    name for name, kind in inspect.get_annotations(Surface).items() if kind.startswith("ClassVar")
+]
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_a_class_says_every_fact_of_its_kind(name: str) -> None:
+    """`Surface` has no default of any: what a new class leaves out is named here."""
+    assert len(FACTS) > 6
+    assert [fact for fact in FACTS if not hasattr(KINDS[name], fact)] == []
+    assert KINDS[name].proof in PROOFS
+
+
+@pytest.mark.parametrize("name", CANONICAL)
+def test_a_ruled_kind_has_no_curvature_along_its_lines(name: str) -> None:
+    rng = np.random.default_rng(5)
+    ruled = KINDS[name].ruled
+    for _ in range(20):
+        curvatures = principal_curvatures(drawn(name, rng), *rng.uniform(0.1, 1.2, 2))
+        assert curvatures is not None
+        straight = min(np.abs(curvatures)) <= 1e-12 * max(np.abs(curvatures))
+        assert straight or max(np.abs(curvatures)) <= 1e-12 if ruled else not straight
 
 
 @pytest.mark.parametrize("name", CANONICAL)
@@ -105,7 +130,9 @@ def test_a_kind_bulges_to_the_side_that_its_theorem_says(name: str) -> None:
         assert proof.sense == 0 or np.abs(heights).max() > 1e-6 * size
 
 
-@pytest.mark.parametrize("name", [name for name in CANONICAL if KINDS[name].over_plane])
+@pytest.mark.parametrize(
+    "name", [name for name in CANONICAL if KINDS[name].projection == "parallel"]
+)
 def test_a_curve_over_the_plane_has_its_own_shadow_as_pcurve(name: str) -> None:
     rng = np.random.default_rng(4)
     for _ in range(20):

@@ -10,8 +10,8 @@ import pytest
 
 from standoff.motion import Path
 from standoff.recording import Recording
-from standoff.recording.simulate import track_along
 from standoff.recording.times import even_times
+from standoff.recording.track import track_along
 from standoff.tracking import Feature, Tracker
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import lens_of_patches, planar_body

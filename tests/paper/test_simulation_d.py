@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 import standoff as so
 from oracles import closed_forms
 from standoff.motion import Helix
-from standoff.recording.simulate import track_along
+from standoff.recording.track import track_along
 from standoff_studies import oracles as support
 from standoff_studies.paper.held_features import (
     CONTINUOUS,
@@ -142,9 +142,7 @@ def test_instants_of_slow_crossings(run):
         axis=(15.0, 0.0, 4.0),
         phase=np.radians(100.0),
     )
-    recording = so.simulate(
-        so.Tracker(run.lens, run.point, 20.0), HOME, helix, runs.DURATION / SLOW
-    )
+    recording = so.track(so.Tracker(run.lens, run.point, 20.0), HOME, helix, runs.DURATION / SLOW)
     features, times = recording.feature_a.tolist(), recording.time.tolist()
     expected = exact_instants(helix, times, features)
     assert len(recording.events) == len(expected) == 10

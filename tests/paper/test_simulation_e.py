@@ -269,7 +269,7 @@ def test_the_face_parameters_give_the_witness_points(done, body):
 def test_a_run_over_a_vertex_or_from_an_edge_has_no_face_parameters(done, first, last):
     velocity = np.subtract(last, first)
     path = ConstantTwist(so.Pose(np.eye(3), first), so.Twist(velocity, np.zeros(3)))
-    run = so.simulate(so.Tracker(done.a, so.shapes.point(), 0.05), so.Pose.identity(), path, 1.0)
+    run = so.track(so.Tracker(done.a, so.shapes.point(), 0.05), so.Pose.identity(), path, 1.0)
     with pytest.raises(ValueError, match="body A"):
         runs.face_parameters(run, "A")
 

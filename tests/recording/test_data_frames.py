@@ -18,7 +18,7 @@ SMALL, BOX = so.shapes.box(0.3, 0.2, 0.25), so.shapes.box(1.0, 1.0, 1.0)
 @pytest.fixture(scope="module")
 def passing() -> so.Recording:
     path = straight((-1.0, 0.1, 0.3), (1.0, 0.05, 0.0))
-    return so.simulate(so.Tracker(SMALL, BOX, 1e-1), path, REST, 2.0)
+    return so.track(so.Tracker(SMALL, BOX, 1e-1), path, REST, 2.0)
 
 
 def test_the_arrow_table_is_the_file(passing: so.Recording, tmp_path: Path) -> None:

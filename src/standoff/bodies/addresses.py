@@ -7,36 +7,20 @@ others. Addresses are integers above 2^32, so no length is taken for one in prac
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from standoff.bodies.topology import Edge, Face
-from standoff.geometry.curves import Curve
-from standoff.geometry.formulas import FormulaCurve, FormulaSurface
-from standoff.geometry.surface_curves import SurfaceCurve
-from standoff.geometry.surfaces import Surface
-from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.validation import Array
 
+if TYPE_CHECKING:
+    from standoff.geometry.formulas.compiled import Formula
 
-def formulas_of(edges: Iterable[Edge], faces: Iterable[Face]) -> list[Any]:
+
+def formulas_of(edges: Iterable[Edge], faces: Iterable[Face]) -> list[Formula]:
     """The formulas of a body's parts, in the order of the parts."""
-    found = [f for edge in edges for f in _in_curve(edge.curve)]
-    return found + [f for face in faces for chart in face.charts for f in _in_surface(chart)]
-
-
-def _in_curve(curve: Curve) -> Iterator[Any]:
-    if isinstance(curve, FormulaCurve):
-        yield curve.formula
-    elif isinstance(curve, SurfaceCurve):
-        yield from _in_surface(curve.surface)
-
-
-def _in_surface(surface: Surface) -> Iterator[Any]:
-    if isinstance(surface, FormulaSurface):
-        yield surface.formula
-    elif isinstance(surface, Revolution | Extrusion):
-        yield from _in_curve(surface.profile)
+    found = [f for edge in edges for f in edge.curve.formulas]
+    return found + [f for face in faces for chart in face.charts for f in chart.formulas]
 
 
 def readdressed(reals: Array, old: Sequence[float], new: Sequence[float]) -> Array:

@@ -21,7 +21,7 @@ from standoff.bodies.report import DihedralAngle
 from standoff.bodies.tolerances import TURN_NOISE
 from standoff.bodies.topology import Apex
 from standoff.errors import BodyError
-from standoff.geometry.surfaces import Plane, Surface
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.long_loops import told
 from standoff.motion.bounds import cross
@@ -67,7 +67,7 @@ def edge_turns(body: Assembled, size: float) -> list[EdgeTurns]:
 
 def _sampled(body: Assembled, size: float, j: int, one: int, other: int) -> EdgeTurns:
     curve = body.edges[j].curve
-    flat = all(isinstance(body.faces[i].charts[0], Plane) for i in (one, other))
+    flat = all(body.faces[i].charts[0].flat for i in (one, other))
     shares = SHARES[8:9] if flat else SHARES
     times = curve.first + shares * (curve.last - curve.first)
     turns = np.array([_turn(body, size, j, one, other, float(t)) for t in times])

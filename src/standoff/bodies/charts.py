@@ -11,11 +11,8 @@ from standoff.bodies.tolerances import CHART_RIM, COLLAPSED_TANGENT, FLAT_ROUNDI
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.errors import BodyError
 from standoff.geometry.exact_pcurves import pcurve_of
-from standoff.geometry.formulas import FormulaSurface
-from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.tolerances import EPS, NORMAL_NOISE
@@ -89,7 +86,7 @@ def normal_noise(surface: Surface, u: float, v: float, size: float) -> float:
     of no more the surface is within NORMAL_NOISE roundings of one without it. `size` is the
     body's, length.
     """
-    if not isinstance(surface, NurbsSurface | Revolution | Extrusion | FormulaSurface):
+    if not surface.noisy:
         return 0.0
     x, xu, xv, _, xuv, _ = surface.jet(u, v)
     a, b = float(np.linalg.norm(xu)), float(np.linalg.norm(xv))

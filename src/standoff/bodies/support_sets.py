@@ -20,7 +20,6 @@ from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import on_face
@@ -109,8 +108,6 @@ def _pieces(body: Body, direction: Array, lowest: float) -> Iterator[Piece]:
             yield from _edge_pieces(edge.curve, direction, lowest)
     for face, part in enumerate(body.face_parts):
         surface = part.charts[0]
-        if not isinstance(surface, NurbsSurface | Revolution | Extrusion):
-            continue
         chart = int(body.ints[int(body.ints[L.FACES]) + L.FACE_STRIDE * face])
         for line in _inner_lines(surface):
             if _reaches(line, direction, lowest):
@@ -157,26 +154,13 @@ def curve_breaks(curve: Curve) -> Array:
     if not isinstance(curve, SurfaceCurve):
         return curve.spans()
     spots = [curve.first, curve.last]
-    for axis, knots in enumerate(surface_breaks(curve.surface)):
+    for axis, knots in enumerate(curve.surface.pieces()):
         ends = [curve.pcurve.point(t)[axis] for t in (curve.first, curve.last)]
         rate = (ends[1] - ends[0]) / (curve.last - curve.first)
         if curve.pcurve.kind == L.LINE and rate != 0.0:
             crossings = curve.first + (np.asarray(knots) - ends[0]) / rate
             spots += [float(t) for t in crossings if curve.first < t < curve.last]
     return np.unique(spots)
-
-
-def surface_breaks(surface: Surface) -> tuple[Array, Array]:
-    """(us, vs) inside the domain between which a surface is analytic."""
-    u0, u1, v0, v1 = surface.domain
-    us, vs = np.zeros(0), np.zeros(0)
-    if isinstance(surface, NurbsSurface):
-        us, vs = surface.essential_u.breaks, surface.essential_v.breaks
-    elif isinstance(surface, Revolution):
-        vs = surface.profile.spans()
-    elif isinstance(surface, Extrusion):
-        us = surface.profile.spans()
-    return us[(u0 < us) & (us < u1)], vs[(v0 < vs) & (vs < v1)]
 
 
 @dataclass(frozen=True)
@@ -198,7 +182,7 @@ class _Isoline:
 
 
 def _inner_lines(surface: Surface) -> Iterator[_Isoline]:
-    breaks, domain = surface_breaks(surface), surface.domain
+    breaks, domain = surface.pieces(), surface.domain
     for axis in (0, 1):
         along = 1 - axis
         ends = np.array([domain[2 * along], *breaks[along], domain[2 * along + 1]])
@@ -260,4 +244,4 @@ def _arc_parameters(piece: Piece, witness: Array) -> Array:
     return np.unique(np.clip(np.concatenate([even, near + steps]), piece.first, piece.last))
 
 
-__all__ = ["curve_breaks", "support_set", "surface_breaks"]
+__all__ = ["curve_breaks", "support_set"]

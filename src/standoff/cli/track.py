@@ -13,8 +13,8 @@ from standoff.cli.progress import progress_bar
 from standoff.cli.selection import chosen, target_of
 from standoff.cli.summary import recording_lines
 from standoff.cli.terminal import tell
+from standoff.progress import Progress
 from standoff.recording import Recording
-from standoff.recording.simulate import Progress
 from standoff.scene import (
     Scene,
     SceneError,

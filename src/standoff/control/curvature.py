@@ -11,15 +11,15 @@ import scipy
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import charts_of
+from standoff.checks.numbers import number
+from standoff.checks.real_numbers import shown
 from standoff.control.tolerances import POLE_AREA, SEARCH_TOLERANCE
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc, Curve, Line
-from standoff.geometry.surfaces import Cone, Cylinder, Plane, Sphere, Surface
-from standoff.geometry.swept import Extrusion
-from standoff.geometry.validation import Array, finite
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters, on_face
-from standoff.real_numbers import shown
 from standoff.tracking.inputs import check_body
 
 # Points along every side of a face, and along a planar curve, at which a search begins.
@@ -99,7 +99,7 @@ def principal_curvatures(surface: Surface, u: float, v: float) -> tuple[float, f
     """
     if not isinstance(surface, Surface):
         raise StandoffError(f"surface is {shown(surface)}: give a Surface.", "surface", surface)
-    return _curvatures(surface, float(finite(u, "u", ())), float(finite(v, "v", ())))
+    return _curvatures(surface, number(u, "u"), number(v, "v"))
 
 
 def _curvatures(surface: Surface, u: float, v: float) -> tuple[float, float] | None:
@@ -125,11 +125,9 @@ def _widths(surface: Surface) -> tuple[float, float]:
 
 def _of_face(body: Body, face: int) -> LeastCurvature:
     charts = body.face_parts[face].charts
-    if isinstance(charts[0], Plane | Cylinder | Cone | Extrusion):
-        return LeastCurvature(0.0, True)
-    if isinstance(charts[0], Sphere):
-        axes = np.linalg.svd(charts[0].linear, compute_uv=False)
-        return LeastCurvature(float(axes[2] / axes[0] ** 2), True)
+    known = charts[0].least_curvature()
+    if known is not None:
+        return LeastCurvature(known, True)
     first = charts_of(body, face)[0]
     least = min(_search_chart(body, first + k, chart) for k, chart in enumerate(charts))
     return LeastCurvature(max(0.0, least), False)

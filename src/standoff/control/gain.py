@@ -9,13 +9,13 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from standoff.bodies.body import Body
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import not_negative, positive
+from standoff.checks.real_numbers import real_array, shape_of, shown
 from standoff.control.curvature import least_curvature
 from standoff.control.tolerances import REAL_EXTREME
 from standoff.errors import StandoffError
-from standoff.geometry.surfaces import Plane, Sphere
-from standoff.geometry.validation import finite, not_negative, positive
 from standoff.kernels.body import layout as L
-from standoff.real_numbers import real_array, shape_of, shown
 from standoff.tracking.inputs import check_body, check_pair
 
 
@@ -251,11 +251,10 @@ def reach(body: Body) -> float:
     half = body.reals[L.BOX_HALF : L.BOX_HALF + 3]
     bounds = [float(np.linalg.norm(np.abs(centre) + half))]
     charts = [chart for face in body.face_parts for chart in face.charts]
-    if charts and all(isinstance(chart, Sphere) for chart in charts):
-        bounds.append(
-            max(float(np.linalg.norm(c.shift) + np.linalg.norm(c.linear, ord=2)) for c in charts)
-        )
-    if len(body.vertex_points) and all(isinstance(chart, Plane) for chart in charts):
+    known = [bound for chart in charts if (bound := chart.farthest()) is not None]
+    if charts and len(known) == len(charts):
+        bounds.append(max(known))
+    if len(body.vertex_points) and all(chart.flat for chart in charts):
         straight = all(e.curve.kind == L.LINE for e in body.edge_parts)
         if straight:
             bounds.append(float(np.linalg.norm(body.vertex_points, axis=1).max()))

@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.pcurves import Pcurve
-from standoff.geometry.surfaces import Cone, Cylinder, Sphere, Surface
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import ROUND_SECTION
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.real_numbers import shown
 
 
 def pcurve_of(curve: Curve, surface: Surface) -> Pcurve:
@@ -57,11 +57,11 @@ def pcurve_of(curve: Curve, surface: Surface) -> Pcurve:
         )
     offset = np.outer(surface.shift, [0.0, 0.0, 1.0])
     basis = np.asarray(np.linalg.inv(surface.linear) @ (curve.basis() - offset), dtype=np.float64)
-    if surface.over_plane:
+    if surface.projection == "parallel":
         return Pcurve(curve.kind, np.vstack([basis[:2], [0.0, 0.0, 1.0]]))
-    if isinstance(surface, Sphere):
+    if surface.projection == "central":
         return Pcurve(curve.kind, basis)
-    if isinstance(surface, Cylinder | Cone):
+    if surface.projection == "axial":
         return _round_pcurve(curve, surface, basis)
     raise StandoffError(f"No pcurve rule for {type(surface).__name__}.", "surface", surface)
 

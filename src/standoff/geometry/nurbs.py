@@ -14,6 +14,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
 from standoff.geometry.bernstein import segment
 from standoff.geometry.hulls import tight_box
@@ -26,8 +27,8 @@ from standoff.geometry.knots import (
     knot_vector,
     refine,
 )
-from standoff.geometry.surfaces import Domain, Surface, checked_domain
-from standoff.geometry.validation import Array, affine_map, check_alike, finite
+from standoff.geometry.surfaces import Domain, Surface, checked_domain, inside
+from standoff.geometry.validation import Array, affine_map, check_alike
 from standoff.kernels.body import layout as L
 
 
@@ -69,6 +70,12 @@ class NurbsSurface(Surface):
     """
 
     kind = L.NURBS
+    periodic = False
+    projection = None
+    part_of = None
+    ruled = False
+    proof = "bernstein"
+    bulge = None
 
     control_points: Array
     weights: Array
@@ -142,12 +149,17 @@ class NurbsSurface(Surface):
             tuple(t for t in self.essential_v.rough() if v0 < t < v1),
         )
 
+    def pieces(self) -> tuple[Array, Array]:
+        """Its essential knots."""
+        u0, u1, v0, v1 = self.domain
+        return inside(self.essential_u.breaks, u0, u1), inside(self.essential_v.breaks, v0, v1)
+
     def spare_knots(self) -> tuple[Array, Array]:
         """(us, vs) inside the domain: knots at which no span ends."""
         u0, u1, v0, v1 = self.domain
         us = np.setdiff1d(self.vector_u.breaks, self.essential_u.breaks)
         vs = np.setdiff1d(self.vector_v.breaks, self.essential_v.breaks)
-        return us[(u0 < us) & (us < u1)], vs[(v0 < vs) & (vs < v1)]
+        return inside(us, u0, u1), inside(vs, v0, v1)
 
     def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Self:
         """The same surface on a smaller domain; parameters stay the same.

@@ -7,15 +7,16 @@ from typing import Any
 
 import numpy as np
 
+from standoff.checks.arrays import finite
+from standoff.checks.real_numbers import shape_of
 from standoff.geometry.curves import Curve
 from standoff.geometry.hulls import tight_box
 from standoff.geometry.knot_removal import essential_row
 from standoff.geometry.knots import KnotVector, bezier_spans, elevate_knots, knot_vector, refine
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.tolerances import SMOOTH_JOINT
-from standoff.geometry.validation import Array, affine_map, finite
+from standoff.geometry.validation import Array, affine_map
 from standoff.kernels.body import layout as L
-from standoff.real_numbers import shape_of
 
 
 class NurbsCurve(Curve):

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from standoff.checks.numbers import number
 from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, finite
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
 # Exponents that random poses found sound: beyond them roundings are edges to float64 (a box, an
@@ -19,7 +20,7 @@ GREATEST_EXPONENT = 1.8
 
 def checked_exponent(value: object, name: str) -> float:
     """A convex superellipsoid's exponent; raises ValueError with the range."""
-    e = float(finite(value, name, ()))
+    e = number(value, name)
     if not LEAST_EXPONENT <= e <= GREATEST_EXPONENT:
         raise StandoffError(
             f"{name} = {e}: a superellipsoid's exponents must be from {LEAST_EXPONENT} to "
@@ -56,6 +57,11 @@ class SuperellipsoidPole(Surface):
     e1: float = 1.0
     e2: float = 1.0
     kind = L.SUPERELLIPSOID_POLE
+    periodic = False
+    projection = None
+    part_of = "superellipsoid"
+    ruled = False
+    proof = "theorem"
     bulge = 1
 
     def __post_init__(self) -> None:
@@ -65,6 +71,14 @@ class SuperellipsoidPole(Surface):
 
     def _data(self) -> Array:
         return np.array([2.0 / self.e1, 2.0 / self.e2])
+
+    def within_hemisphere(self) -> bool:
+        """By symmetry its normals lean to the side of the middle plane they are on."""
+        return True
+
+    def analytic_breaks(self) -> tuple[Array, Array]:
+        """The coordinate planes."""
+        return np.zeros(1), np.zeros(1)
 
     def highest(self, direction: Array) -> None:
         return None

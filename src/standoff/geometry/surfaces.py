@@ -8,17 +8,21 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 
+from standoff.checks.arrays import finite
+from standoff.checks.real_numbers import real_array, shape_of, shown
 from standoff.errors import StandoffError
 from standoff.geometry.tolerances import DEPENDENT_COLUMNS
-from standoff.geometry.validation import Array, affine_map, finite, matrix3, vector3
+from standoff.geometry.validation import Array, affine_map, matrix3, vector3
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import surface_jet
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import real_array, shape_of, shown
+
+if TYPE_CHECKING:
+    from standoff.geometry.formulas.compiled import Formula
 
 Domain = tuple[float, float, float, float]
 UNBOUNDED: Domain = (-np.inf, np.inf, -np.inf, np.inf)
@@ -45,9 +49,17 @@ def checked_domain(domain: Any, name: str) -> Domain:
     return u0, u1, v0, v1
 
 
+def inside(values: Array, low: float, high: float) -> Array:
+    """Those between two ends, which do not count."""
+    return values[(low < values) & (values < high)]
+
+
 @dataclass(frozen=True, eq=False)
 class Surface(KeepsReadOnly, ABC):
     """A parametric surface, x(u, v) = linear @ canonical(u, v) + shift.
+
+    What a kind of surface is, is said by its class: by the attributes below, which every class
+    sets, and by its methods. No other module asks for the class itself.
 
     Parameters
     ----------
@@ -68,9 +80,20 @@ class Surface(KeepsReadOnly, ABC):
     shift: Array
     domain: Domain = UNBOUNDED
     kind: ClassVar[int]
-    periodic: ClassVar[bool] = False  # u is an angle
-    over_plane: ClassVar[bool] = False  # (u, v) are two of the canonical coordinates
-    bulge: ClassVar[int | None] = None
+    """Its number in ``standoff.kernels.body.layout``, which also says whether it is `noisy`."""
+    periodic: ClassVar[bool]
+    """Is u an angle that comes round? Some kinds say it anew of each surface, by its domain."""
+    projection: ClassVar[Literal["parallel", "central", "axial"] | None]
+    """How lines and conic arcs of the surface are seen in (u, v): "parallel" where u and v are two
+    of the canonical coordinates, "central" from the origin, "axial" about the axis z, where u is
+    the angle and v the height; None where they have no exact trimming curve."""
+    part_of: ClassVar[Literal["ellipsoid", "superellipsoid"] | None]
+    """The closed surface about `shift` of which it is a gnomonic chart; several make an atlas."""
+    ruled: ClassVar[bool]
+    """Does a straight line of the surface run through every point?"""
+    proof: ClassVar[Literal["theorem", "bernstein", "interval", "swept"]]
+    """How a patch is proven convex (``standoff.bodies.proofs``)."""
+    bulge: ClassVar[int | None]
     """By theorem: 0 flat, +1 convex and bulging along x_u × x_v of the canonical form, -1 against
     it; None where a patch must be proven convex."""
     reals: Array = field(init=False, repr=False)
@@ -146,9 +169,47 @@ class Surface(KeepsReadOnly, ABC):
             raise StandoffError(f"The domain {smaller} leaves the surface's own, {self.domain}.")
         return smaller
 
+    @property
+    def flat(self) -> bool:
+        """Is it a plane, by its kind?"""
+        return self.bulge == 0
+
+    @property
+    def noisy(self) -> bool:
+        """May roundoff turn its normal beside a collapsed side?"""
+        return bool(L.noisy(self.kind))
+
+    @property
+    def formulas(self) -> tuple[Formula, ...]:
+        """The compiled formulas whose addresses stand in `reals`."""
+        return ()
+
     def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Parameters (us, vs) inside the domain where the surface is not C²."""
         return (), ()
+
+    def pieces(self) -> tuple[Array, Array]:
+        """Parameters (us, vs) inside the domain at which one analytic piece ends and another, which
+        may be flat or straight, begins."""
+        return np.zeros(0), np.zeros(0)
+
+    def analytic_breaks(self) -> tuple[Array, Array]:
+        """Parameters (us, vs) between which the surface is analytic."""
+        return self.pieces()
+
+    def within_hemisphere(self) -> bool | None:
+        """Do all normals make less than 90 degrees with one axis? None where no theorem says it."""
+        return None
+
+    def least_curvature(self) -> float | None:
+        """The least normal curvature, 1/length, of any convex patch of the surface; None where no
+        theorem says it."""
+        return 0.0 if self.ruled else None
+
+    def farthest(self) -> float | None:
+        """A bound, length, of the distance from the body's origin to the closed surface of which
+        this is a part; None where it is part of none, or has no bound but its box."""
+        return None
 
     def box(self) -> tuple[Array, Array] | None:
         """(low, high), each (3,), body frame: surely around the surface over its domain.
@@ -196,8 +257,16 @@ class Plane(Surface):
     """
 
     kind = L.PLANE
-    over_plane = True
+    periodic = False
+    projection = "parallel"
+    part_of = None
+    ruled = True
+    proof = "theorem"
     bulge = 0
+
+    def within_hemisphere(self) -> bool:
+        """It has one normal."""
+        return True
 
     @staticmethod
     def through(origin: Array, along_u: Array, along_v: Array) -> Plane:
@@ -253,7 +322,24 @@ class Sphere(Surface):
     """
 
     kind = L.SPHERE
+    periodic = False
+    projection = "central"
+    part_of = "ellipsoid"
+    ruled = False
+    proof = "theorem"
     bulge = 1
+
+    def within_hemisphere(self) -> bool:
+        """A gnomonic chart shows less than half a sphere."""
+        return True
+
+    def least_curvature(self) -> float:
+        """c/a² of an ellipsoid with semi-axes a >= b >= c."""
+        axes = np.linalg.svd(self.linear, compute_uv=False)
+        return float(axes[2] / axes[0] ** 2)
+
+    def farthest(self) -> float:
+        return float(np.linalg.norm(self.shift) + np.linalg.norm(self.linear, ord=2))
 
     def highest(self, direction: Array) -> tuple[float, float] | None:
         y = self.linear.T @ direction
@@ -280,7 +366,15 @@ class Cylinder(Surface):
 
     kind = L.CYLINDER
     periodic = True
+    projection = "axial"
+    part_of = None
+    ruled = True
+    proof = "theorem"
     bulge = 1
+
+    def within_hemisphere(self) -> bool:
+        """Less than half of it."""
+        return bool(self.domain[1] - self.domain[0] < np.pi)
 
     def highest(self, direction: Array) -> None:
         return None
@@ -307,7 +401,15 @@ class Cone(Surface):
 
     kind = L.CONE
     periodic = True
+    projection = "axial"
+    part_of = None
+    ruled = True
+    proof = "theorem"
     bulge = 1
+
+    def within_hemisphere(self) -> bool:
+        """Its normals lean away from its axis."""
+        return True
 
     def highest(self, direction: Array) -> None:
         return None

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from standoff.checks.numbers import LEAST, number
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.geometry.curve_bounds import box_of, curve_breaks, curve_reach
 from standoff.geometry.curves import FULL_TURN, Curve
-from standoff.geometry.surfaces import Domain, Surface
+from standoff.geometry.surfaces import Domain, Surface, inside
 from standoff.geometry.tolerances import ALONG_PROFILE, PROFILE_ROUNDOFF
 from standoff.geometry.torus import checked_turn, full_turn
-from standoff.geometry.validation import LEAST, Array, affine_map, finite, vector3
+from standoff.geometry.validation import Array, affine_map, vector3
 from standoff.kernels.body import layout as L
-from standoff.real_numbers import shown
+
+if TYPE_CHECKING:
+    from standoff.geometry.formulas.compiled import Formula
 
 # Points of a profile that are looked at.
 PROFILE_SAMPLES = 65
@@ -24,7 +28,16 @@ PROFILE_SAMPLES = 65
 class Swept(Surface):
     """What both kinds have: a profile, whose sweep is kept in its own frame by an affine map."""
 
+    projection = None
+    part_of = None
+    proof = "swept"
+    bulge = None
+
     profile: Curve
+
+    @property
+    def formulas(self) -> tuple[Formula, ...]:
+        return self.profile.formulas
 
     @abstractmethod
     def _with(self, domain: Domain, linear: Array, shift: Array) -> Self:
@@ -78,6 +91,8 @@ class Revolution(Swept):
     """
 
     kind = L.REVOLUTION
+    periodic = False
+    ruled = False
 
     def __init__(self, profile: Curve, first: Any = 0.0, last: Any = FULL_TURN) -> None:
         first, last = checked_turn(first, last, "Revolution")
@@ -119,6 +134,10 @@ class Revolution(Swept):
         """Knots of the profile where it is not C², as v."""
         return (), curve_breaks(self.profile, *self.domain[2:])
 
+    def pieces(self) -> tuple[Array, Array]:
+        """Those of the profile, as v."""
+        return np.zeros(0), inside(self.profile.spans(), *self.domain[2:])
+
     def _reach(self, direction: Array) -> float:
         """A bound of direction @ x over the domain."""
         u0, u1, v0, v1 = self.domain
@@ -150,12 +169,14 @@ class Extrusion(Swept):
     """
 
     kind = L.EXTRUSION
+    periodic = False
+    ruled = True
 
     direction: Array
 
     def __init__(self, profile: Curve, direction: Any, first: Any = 0.0, last: Any = 1.0) -> None:
         direction = vector3(direction, "direction")
-        first, last = float(finite(first, "first", ())), float(finite(last, "last", ()))
+        first, last = number(first, "first"), number(last, "last")
         if not first < last:
             raise StandoffError(f"Extrusion from v = {first} to {last}: give first < last.")
         length = float(np.linalg.norm(direction))
@@ -199,6 +220,10 @@ class Extrusion(Swept):
     def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Knots of the profile where it is not C², as u."""
         return curve_breaks(self.profile, *self.domain[:2]), ()
+
+    def pieces(self) -> tuple[Array, Array]:
+        """Those of the profile, as u."""
+        return inside(self.profile.spans(), *self.domain[:2]), np.zeros(0)
 
     def _reach(self, direction: Array) -> float:
         """A bound of direction @ x over the domain."""

@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from standoff.checks.numbers import magnitude, number
 from standoff.errors import StandoffError
 from standoff.geometry.curves import FULL_TURN
 from standoff.geometry.surfaces import Domain, Surface
 from standoff.geometry.tolerances import ANGLE_ROUNDOFF
-from standoff.geometry.validation import Array, affine_map, finite, positive
+from standoff.geometry.validation import Array, affine_map
 from standoff.kernels.body import layout as L
 
 
@@ -21,7 +22,7 @@ def full_turn(first: float, last: float) -> bool:
 
 def checked_turn(first: Any, last: Any, name: str) -> tuple[float, float]:
     """Two finite angles, radians, less than or just a turn apart."""
-    a, b = float(finite(first, "first", ())), float(finite(last, "last", ()))
+    a, b = number(first, "first"), number(last, "last")
     if not 0.0 < b - a <= FULL_TURN * (1.0 + ANGLE_ROUNDOFF):
         raise StandoffError(
             f"{name} from angle {a} to {b}: give 0 < last - first <= 2 pi (radians).", "last", b
@@ -45,6 +46,11 @@ class Torus(Surface):
     """
 
     kind = L.TORUS
+    periodic = False
+    projection = None
+    part_of = None
+    ruled = False
+    proof = "theorem"
     bulge = 1
 
     major: float
@@ -60,13 +66,13 @@ class Torus(Surface):
         v1: Any = 0.5 * np.pi,
     ) -> None:
         u0, u1 = checked_turn(u0, u1, "Torus")
-        v0, v1 = float(finite(v0, "v0", ())), float(finite(v1, "v1", ()))
+        v0, v1 = number(v0, "v0"), number(v1, "v1")
         top = 0.5 * np.pi + ANGLE_ROUNDOFF
         if not -top <= v0 < v1 <= top:
             raise StandoffError(f"Torus from v = {v0} to {v1}: give -pi/2 <= v0 < v1 <= pi/2.")
         domain = (u0, u1, v0, v1)
         self._set(
-            positive(major, "major"), positive(minor, "minor"), domain, np.eye(3), np.zeros(3)
+            magnitude(major, "major"), magnitude(minor, "minor"), domain, np.eye(3), np.zeros(3)
         )
 
     def _set(self, major: float, minor: float, domain: Domain, linear: Array, shift: Array) -> None:
@@ -91,6 +97,11 @@ class Torus(Surface):
         surface = object.__new__(Torus)
         surface._set(self.major, self.minor, domain, linear, shift)
         return surface
+
+    def within_hemisphere(self) -> bool:
+        """A part above or below its middle plane, or less than half of it both ways."""
+        u0, u1, v0, v1 = self.domain
+        return bool(v0 > 0.0 or v1 < 0.0 or (u1 - u0 < np.pi and v1 - v0 < np.pi))
 
     def highest(self, direction: Array) -> tuple[float, float] | None:
         y = self.linear.T @ direction

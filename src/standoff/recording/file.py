@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
+from standoff.checks.real_numbers import SHOWN_CHARACTERS, shown
 from standoff.errors import StandoffError, not_installed
 from standoff.nesting import JSON, text_problem, value_problem
-from standoff.real_numbers import SHOWN_CHARACTERS, shown
 from standoff.recording.recorded import RecordedEvent, RecordedFrames, RunInfo
 from standoff.tracking.law_options import options_of
 from standoff.tracking.laws import LAWS, PaperLaw, every_option

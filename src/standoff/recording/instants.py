@@ -154,7 +154,7 @@ class Step:
         state.mode, state.q = row.mode, row.q
         tracker = self.tracker
         frame = Frame(*self.motion(time), True)
-        found, fine = start(tracker.packed, frame, tracker.options, state, DESCEND)
+        found, fine = start(tracker.table, frame, state, DESCEND)
         if not fine or found.status != Status.CONVERGED.value:
             raise NotKnown(f"no certified answer at {time} s")
         return Known(time, found.data)
@@ -163,9 +163,7 @@ class Step:
         """Step the law from the frame before to a time within."""
         tracker, state = self.tracker, StateRow(self.state.data.copy())
         h = time - self.first.time
-        found, fine = step(
-            tracker.packed, Frame(*self.motion(time), True), h, tracker.options, state
-        )
+        found, fine = step(tracker.table, Frame(*self.motion(time), True), h, state)
         if not fine or found.status not in (Status.CONVERGED.value, Status.TRACKING.value):
             raise NotKnown(f"no answer at {time} s")
         return Known(time, found.data)

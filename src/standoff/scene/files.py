@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from standoff.checks.names import nearest
 from standoff.nesting import TOML, text_problem, value_problem
 from standoff.scene.errors import SceneError
 from standoff.scene.reader import Table, shown
-from standoff.spellings import nearest
 
 NEAREST_FILE_CUTOFF = 0.8
 """Least likeness (difflib ratio, 0 to 1) of a file name that is suggested for another: file names

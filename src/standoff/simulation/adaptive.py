@@ -8,18 +8,19 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.arrays import finite
+from standoff.checks.names import choice
+from standoff.checks.numbers import positive, yes_or_no
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import finite
-from standoff.motion import Twist, inputs
+from standoff.motion import Twist
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 from standoff.simulation.adaptive_bodies import SystemSolution, solve_bodies
 from standoff.simulation.adaptive_legs import METHODS, Features, Legs
 from standoff.simulation.adaptive_legs import SystemEvent as SystemEvent
 from standoff.simulation.generalised_system import GeneralisedSystem
 from standoff.simulation.system import System
 from standoff.tracking import PredictorCorrector, Proximity, Tracker
-from standoff.tracking.choices import positive_number, yes_or_no
 
 Array = NDArray[np.float64]
 
@@ -133,11 +134,11 @@ def solve(
         raise StandoffTypeError(
             f"system is {shown(system)}: give a GeneralisedSystem or a System.", "system", system
         )
-    end = positive_number(duration, "duration")
-    inputs.word(method, "method", METHODS)
-    allowed = positive_number(tolerance, "tolerance")
+    end = positive(duration, "duration")
+    choice(method, "method", METHODS)
+    allowed = positive(tolerance, "tolerance")
     overlap = yes_or_no(allow_overlap, "allow_overlap")
-    longest = 0.01 * end if max_step is None else positive_number(max_step, "max_step")
+    longest = 0.01 * end if max_step is None else positive(max_step, "max_step")
     options = {"method": method, "rtol": allowed, "atol": allowed, "max_step": longest}
     if isinstance(system, System):
         for name, given in (("theta", theta), ("rate", rate)):

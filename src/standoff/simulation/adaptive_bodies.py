@@ -24,6 +24,7 @@ from standoff.kernels.state import arrays as T
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation.adaptive_legs import Features, Legs, SystemEvent
 from standoff.simulation.packed_system import driven_row, pack_system
+from standoff.simulation.pair_laws import laws_beside, packed_laws
 from standoff.simulation.rigid_body import DRIVEN, FREE
 from standoff.simulation.system import System
 from standoff.simulation.system_run import SystemRun
@@ -31,7 +32,6 @@ from standoff.simulation.system_start import started
 from standoff.simulation.system_state import distances
 from standoff.simulation.tolerances import CHART_SERIES
 from standoff.tracking.laws import PredictorCorrector
-from standoff.tracking.options import pack_options
 from standoff.tracking.rows import AnswerRows
 
 Array = NDArray[np.float64]
@@ -95,9 +95,9 @@ class _Bodies(Legs):
 
     def __init__(self, system: System, dt: float, allow_overlap: bool) -> None:
         self.system = system
-        law = PredictorCorrector(predictor="none", depth="local").resolved(dt)
-        self.packed = pack_system(system, dt, 0, False, pack_options(law))
-        self.data = started(system, law, dt, 0.0, allow_overlap).data.copy()
+        laws = laws_beside(system, PredictorCorrector(predictor="none", depth="local"))
+        self.packed = pack_system(system, dt, 0, False, packed_laws(system, laws, dt, False))
+        self.data = started(system, laws, dt, 0.0, allow_overlap).data.copy()
         self.loads = np.zeros(K.N_LOAD * len(system.bodies) + 2)
         self.free = [k for k, body in enumerate(system.bodies) if body.kind == FREE]
         self.masses = [system.bodies[k].mass_properties for k in self.free]

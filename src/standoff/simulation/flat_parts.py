@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.bodies.topology import Face
 from standoff.geometry.curves import FULL_TURN, ConicArc, Line
-from standoff.geometry.surfaces import Plane
 from standoff.kernels.body import layout as L
 from standoff.kernels.dynamics import flat_parts as F
 from standoff.kernels.entries.queries import chart_normal
@@ -54,7 +53,7 @@ def flat_parts(body: Body) -> FlatParts:
     faces = [
         _flat_face(body, number, face)
         for number, face in enumerate(body.face_parts)
-        if len(face.charts) == 1 and isinstance(face.charts[0], Plane)
+        if len(face.charts) == 1 and face.charts[0].flat
     ]
     rims = [
         edge.curve.basis().T[[2, 0, 1]].ravel()

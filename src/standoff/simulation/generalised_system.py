@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.checks.arrays import finite
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import finite
 from standoff.motion import Pose, PoseLike
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 from standoff.simulation.contact import HuntCrossley
 from standoff.simulation.tolerances import SINGULAR_INERTIA, SYMMETRIC_INERTIA
 from standoff.tracking.inputs import check_pair

@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from standoff.checks.numbers import is_whole
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.validation import Array, vector3
 from standoff.kernels.body import layout as L
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 from standoff.simulation.contact import HuntCrossley
 from standoff.simulation.coupler import VirtualCoupler
 from standoff.simulation.flat_parts import FlatParts, flat_parts
-from standoff.simulation.passivity import whole_number
 from standoff.simulation.rigid_body import FREE, RigidBody
 from standoff.tracking.inputs import check_pair
 
@@ -175,7 +175,7 @@ def _tool(coupler: Any, tool: Any, bodies: tuple[RigidBody, ...]) -> int | None:
             tool,
         )
     free = [k for k, body in enumerate(bodies) if body.kind == FREE]
-    if not whole_number(tool) or tool not in free:
+    if not is_whole(tool) or tool not in free:
         raise StandoffError(
             f"tool is {shown(tool)}: give the number of a free body; here those are {free}.",
             "tool",
@@ -223,10 +223,7 @@ def _pairs(bodies: tuple[RigidBody, ...], given: Any) -> tuple[tuple[int, int], 
 
 def _pair(item: Any, count: int, given: Any) -> tuple[int, int]:
     numbers = tuple(item) if isinstance(item, tuple | list) else ()
-    whole = len(numbers) == 2 and all(
-        isinstance(k, int | np.integer) and not isinstance(k, bool) and 0 <= k < count
-        for k in numbers
-    )
+    whole = len(numbers) == 2 and all(is_whole(k) and 0 <= k < count for k in numbers)
     if not whole or numbers[0] == numbers[1]:
         raise StandoffError(
             f"pairs has {shown(item)}: give two different numbers of bodies, from 0 to "

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from typing import Any
 
-import numpy as np
-
-from standoff.bodies.proofs import interval
-from standoff.bodies.proofs.bernstein import prove
+from standoff.bodies.proofs import bernstein, interval
 from standoff.bodies.proofs.profiles import prove_swept
 from standoff.bodies.proofs.proof import PatchProof
 from standoff.bodies.proofs.theorems import prove_by_kind
 from standoff.errors import StandoffTypeError
-from standoff.geometry.formulas import FormulaSurface
-from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.swept import Extrusion, Revolution
 
-__all__ = ["PatchProof", "prove_patch"]
+__all__ = ["PROOFS", "PatchProof", "prove_patch"]
+
+PROOFS: dict[str, Callable[[Any, int | None], PatchProof]] = {
+    "theorem": prove_by_kind,
+    "bernstein": bernstein.prove,
+    "interval": interval.prove,
+    "swept": prove_swept,
+}
+"""By what a surface's class says of itself."""
 
 
 def prove_patch(surface: Surface, outward: int | None = None) -> PatchProof:
@@ -32,23 +35,11 @@ def prove_patch(surface: Surface, outward: int | None = None) -> PatchProof:
     Raises
     ------
     TypeError
-        A kind of surface without a proof.
+        Not a surface, or a profile of a kind without a proof.
     ValueError
         A NURBS, or a profile, that may be creased inside.
     """
-    if isinstance(surface, NurbsSurface):
-        return prove(surface, outward)
-    if isinstance(surface, FormulaSurface):
-        return interval.prove(surface, outward)
-    if isinstance(surface, Revolution | Extrusion):
-        return prove_swept(surface, outward)
-    bulge = getattr(surface, "bulge", None)  # what is not a surface has none, and is named below
-    if bulge is not None:
-        proof = prove_by_kind(surface, bulge)
-        if outward is not None and proof.sense == -outward:
-            # hollow: no bound is sought, such a face is not a part of a convex body
-            return replace(
-                proof, convex=False, defect=np.inf, sense=outward, tilt=np.pi, curvature=-np.inf
-            )
-        return proof
-    raise StandoffTypeError(f"No convexity proof for a {type(surface).__name__}.")
+    given: Any = surface
+    if not isinstance(given, Surface):
+        raise StandoffTypeError(f"No convexity proof for a {type(surface).__name__}.")
+    return PROOFS[surface.proof](surface, outward)

@@ -2,40 +2,37 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from standoff.bodies.proofs.proof import PatchProof
-from standoff.geometry.surfaces import Cylinder, Surface
-from standoff.geometry.torus import Torus
+from standoff.geometry.surfaces import Surface
 
 
-def prove_by_kind(surface: Surface, bulge: int) -> PatchProof:
+def prove_by_kind(surface: Surface, outward: int | None = None) -> PatchProof:
     """An affine image of a plane, quadric, torus's outer half or superellipsoid: `Surface.bulge`.
 
     They never bend inward: a superellipsoid with exponents up to 2 is the unit ball of a norm, and
     its charts look at it from its centre.
     """
+    bulge = surface.bulge
+    assert bulge is not None, type(surface)
     side = 1 if np.linalg.det(surface.linear) > 0.0 else -1
-    return PatchProof(
+    proof = PatchProof(
         convex=True,
         defect=0.0,
         method="theorem",
-        hemisphere=_within_half(surface),
+        hemisphere=bool(surface.within_hemisphere()),
         place=_middle(surface),
         sense=bulge * side,
     )
-
-
-def _within_half(surface: Surface) -> bool:
-    """A gnomonic chart shows less than half a sphere, a cone's normals lean away from its axis;
-    superellipsoids are symmetric: their normals lean to the side of the middle plane they are on.
-    """
-    u0, u1, v0, v1 = surface.domain
-    if isinstance(surface, Cylinder):
-        return bool(u1 - u0 < np.pi)
-    if isinstance(surface, Torus):
-        return bool(v0 > 0.0 or v1 < 0.0 or (u1 - u0 < np.pi and v1 - v0 < np.pi))
-    return True
+    if outward is not None and proof.sense == -outward:
+        # hollow: no bound is sought, such a face is not a part of a convex body
+        return replace(
+            proof, convex=False, defect=np.inf, sense=outward, tilt=np.pi, curvature=-np.inf
+        )
+    return proof
 
 
 def _middle(surface: Surface) -> tuple[float, float]:

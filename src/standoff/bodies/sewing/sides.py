@@ -8,10 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from standoff.bodies.tolerances import PROJECTION_STEP
-from standoff.geometry.nurbs import NurbsSurface
-from standoff.geometry.nurbs_curves import NurbsCurve
-from standoff.geometry.surfaces import Surface
-from standoff.geometry.swept import Extrusion, Revolution
+from standoff.geometry.surfaces import Surface, inside
 from standoff.geometry.validation import Array
 
 # Counterclockwise in (u, v), each with the sense in which its free parameter runs that way.
@@ -71,9 +68,8 @@ class Side:
     @cached_property
     def breaks(self) -> Array:
         """Knots of the side's curve between its ends, and the ends; one span without knots."""
-        found = _knots(self.surface, 0 if self.name[0] == "v" else 1)
-        inside = found[(found > self.first) & (found < self.last)]
-        return np.concatenate([[self.first], inside, [self.last]])
+        knots = self.surface.pieces()[0 if self.name[0] == "v" else 1]
+        return np.concatenate([[self.first], inside(knots, self.first, self.last), [self.last]])
 
     @cached_property
     def knots(self) -> Array:
@@ -177,17 +173,6 @@ def in_spans(breaks: Array) -> Array:
     """Parameters inside every span between two breaks."""
     spans: Array = breaks[:-1, None] + SPAN_PROBES * np.diff(breaks)[:, None]
     return spans.ravel()
-
-
-def _knots(surface: Surface, axis: int) -> Array:
-    """Where the polynomial pieces of a surface meet along u (axis 0) or v (axis 1)."""
-    if isinstance(surface, NurbsSurface):
-        return (surface.essential_u, surface.essential_v)[axis].breaks
-    if isinstance(surface, Extrusion | Revolution):
-        along_profile = axis == (1 if isinstance(surface, Revolution) else 0)
-        if along_profile and isinstance(surface.profile, NurbsCurve):
-            return surface.profile.essential.breaks
-    return np.zeros(0)
 
 
 def gap(one: Side, other: Side) -> float:

@@ -16,7 +16,6 @@ from standoff.bodies.topology import Apex
 from standoff.bodies.voronoi.regions import NormalCone, RegionBoundary, VoronoiRegions
 from standoff.bodies.voronoi.tolerances import CORNER_TURN
 from standoff.geometry.curves import Line
-from standoff.geometry.surfaces import Plane
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters
@@ -81,7 +80,7 @@ def _of_edge(body: Body, j: int) -> list[RegionBoundary]:
 
 
 def _is_flat(body: Body, faces: Sequence[int]) -> bool:
-    return all(isinstance(body.face_parts[i].charts[0], Plane) for i in faces)
+    return all(body.face_parts[i].charts[0].flat for i in faces)
 
 
 class _Coedge(NamedTuple):

@@ -51,6 +51,10 @@ class FormulaCurve(Curve):
     kind = L.FORMULA_CURVE
     formula: Formula
 
+    @property
+    def formulas(self) -> tuple[Formula, ...]:
+        return (self.formula,)
+
     def __init__(
         self,
         x: Any,

@@ -56,7 +56,17 @@ class FormulaSurface(Surface):
     """
 
     kind = L.FORMULA
+    periodic = False
+    projection = None
+    part_of = None
+    ruled = False
+    proof = "interval"
+    bulge = None
     formula: Formula
+
+    @property
+    def formulas(self) -> tuple[Formula, ...]:
+        return (self.formula,)
 
     def __init__(
         self,

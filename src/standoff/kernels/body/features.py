@@ -47,6 +47,7 @@ def pair_slack(pair):
     return pair.reals_a[L.SLACK] + pair.reals_b[L.SLACK]
 
 
+noisy = small(L.noisy)
 # Where the records of features stand is plain Python in `layout`, for the layers above too.
 dimension = kernel(L.dimension)
 chart_record = kernel(L.chart_record)
@@ -166,10 +167,9 @@ def normal_noise(kind, reals, jet):
 
     Beside a collapsed side one tangent is a small difference of greater numbers: its direction
     loses its digits, and its roundoff is that of the mixed derivative times a parameter's. A point
-    past the side, as far as PCURVE_OVERLAP allows, has its normal turned round. The quadrics'
-    tangents are products and keep theirs.
+    past the side, as far as PCURVE_OVERLAP allows, has its normal turned round.
     """
-    if kind != L.NURBS and kind != L.REVOLUTION and kind != L.EXTRUSION and kind != L.FORMULA:
+    if not noisy(kind):
         return 0.0
     uu, vv = dot(jet[1], jet[1]), dot(jet[2], jet[2])
     past = 2.0 * PCURVE_OVERLAP

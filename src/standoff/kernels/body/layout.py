@@ -120,6 +120,13 @@ FORMULA_CURVE = 4  # address of a compiled jet
 ON_SURFACE = 5  # the image of the edge's own pcurve: nothing
 
 
+def noisy(kind):
+    """May roundoff turn the normal of a surface kind beside a collapsed side? The other kinds'
+    tangents are products and keep their digits."""
+    keeps = kind != NURBS and kind != REVOLUTION and kind != EXTRUSION and kind != FORMULA
+    return not keeps
+
+
 def dimension(ints, feature):
     """2 for a face, 1 for an edge, 0 for a vertex."""
     if feature < ints[N_FACES]:

@@ -11,8 +11,7 @@ from standoff.bodies.body import Body
 from standoff.bodies.charts import interior_point
 from standoff.bodies.support_sets import curve_breaks
 from standoff.geometry.curves import Curve
-from standoff.geometry.superellipsoids import SuperellipsoidPole
-from standoff.geometry.surfaces import Sphere, Surface
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.simulation.moments.cells import Cell, integrate
@@ -145,14 +144,14 @@ def _face_cells(body: Body, face: int, frame: Frame) -> list[Cell]:
     first, count = (int(n) for n in body.ints[row : row + 2])
     charts = [Chart(body, number, frame) for number in range(first, first + count)]
     surface = body.face_parts[face].charts[0]
-    if isinstance(surface, Sphere):
+    if surface.part_of == "ellipsoid":
         return _ellipsoid_cells(body, surface, charts)
-    if isinstance(surface, SuperellipsoidPole) and len(charts) > 1:
+    if surface.part_of == "superellipsoid" and len(charts) > 1:
         return superellipsoid_cells(charts, bool(body.face_parts[face].loop))
     return [cell for chart in charts for cell in chart_cells(chart)]
 
 
-def _ellipsoid_cells(body: Body, surface: Sphere, charts: list[Chart]) -> list[Cell]:
+def _ellipsoid_cells(body: Body, surface: Surface, charts: list[Chart]) -> list[Cell]:
     """A face of an ellipsoid: its edges, on the unit sphere, bound its directions."""
     ellipsoid = Ellipsoid(surface.linear, surface.shift, charts[0].frame)
     bounding = set()
@@ -187,20 +186,19 @@ def _displaced(body: Body, frame: Frame, area: float) -> float:
     """A bound of the moments of the layer, as thick as points of the boundary may be off, and of
     the gaps along edges, in the frame's unit.
 
-    Points are off by roundoff, and by the body's slack.
+    Points are off by roundoff, of coordinates that go as far as the surfaces' own points, and by
+    the body's slack.
     """
-    origins = [_origin(surface) for face in body.face_parts for surface in face.charts]
+    origins = [
+        surface.farthest() or float(np.linalg.norm(surface.shift))
+        for face in body.face_parts
+        for surface in face.charts
+    ]
     coordinates = float(np.linalg.norm(frame.centre)) + frame.reach + max(origins, default=0.0)
     off = POINT_ROUNDINGS * np.finfo(float).eps * coordinates
     off += max(body.report.slack, body.report.sewing_residual)
     length = sum(_length(edge.curve) for edge in body.edge_parts) if body.face_parts else 0.0
     return off / frame.reach * (area + length / frame.reach)
-
-
-def _origin(surface: Surface) -> float:
-    """How far off the coordinates go that a surface's points come from, length."""
-    size = float(np.linalg.norm(surface.linear, 2)) if isinstance(surface, Sphere) else 0.0
-    return float(np.linalg.norm(surface.shift)) + size
 
 
 def _length(curve: Curve) -> float:

@@ -15,10 +15,8 @@ import numpy as np
 import scipy
 
 from standoff.bodies.body import Body
-from standoff.bodies.support_sets import surface_breaks
 from standoff.bodies.tessellation import chart_row, surface_of
 from standoff.errors import StandoffError
-from standoff.geometry.superellipsoids import SuperellipsoidPole
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
@@ -114,7 +112,7 @@ def chart_cells(chart: Chart) -> list[Cell]:
     curves = [TrimmingCurve(chart.body, k) for k in chart.coedges]
     samples = [curve.samples() for curve in curves]
     start = _start(samples)
-    breaks = chart_breaks(chart.surface)
+    breaks = chart.surface.analytic_breaks()
     cells = []
     for curve, (u, v, du, _) in zip(curves, samples, strict=True):
         if np.abs(du).max() == 0.0 or (np.abs(v - start).max() == 0.0):
@@ -132,14 +130,6 @@ def _start(samples: list[Array]) -> float:
     level = [v[0] for _, v, du, _ in samples if np.ptp(v) == 0.0 and np.abs(du).max() > 0.0]
     every = np.concatenate([v for _, v, _, _ in samples])
     return float(min(level)) if level else float(0.5 * (every.min() + every.max()))
-
-
-def chart_breaks(surface: Surface) -> tuple[Array, Array]:
-    """Parameters (us, vs) between which a surface is analytic."""
-    if isinstance(surface, SuperellipsoidPole):
-        return np.zeros(1), np.zeros(1)
-    us, vs = surface_breaks(surface)
-    return np.asarray(us), np.asarray(vs)
 
 
 def _cuts(curve: TrimmingCurve, u: Array, v: Array, breaks: tuple[Array, Array]) -> list[float]:

@@ -24,7 +24,7 @@ from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_conormal
 from standoff.simulation.moments.cells import Cell
 from standoff.simulation.moments.directions import Arc, OverSphere, part_cells, sphere_cells
-from standoff.simulation.moments.faces import Chart, TrimmingCurve, chart_breaks
+from standoff.simulation.moments.faces import Chart, TrimmingCurve
 from standoff.simulation.moments.flux import Frame, flux
 from standoff.simulation.tolerances import NORMALS_RESOLVED
 
@@ -187,7 +187,7 @@ def _collapsed_arcs(chart: Chart, coedge: int, vertex: int) -> list[Arc]:
     first, last = curve.ends
     u = curve.parameters(np.array([first, last]))[0]
     axis = 0 if u[0] != u[1] else 1
-    inner = chart_breaks(chart.surface)[axis]
+    inner = chart.surface.analytic_breaks()[axis]
     cuts = [first, *(float(b) for b in np.sort(inner) if first < b < last), last]
     # the vertex's normals lie on the other side of the curve than the face's
     sense = -int(curve.side * _outward(chart.body, chart.number))
