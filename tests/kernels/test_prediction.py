@@ -32,7 +32,7 @@ from standoff.kernels.state.arrays import (
     PREDICT_SECANT,
 )
 from standoff.kernels.state.state import Integrated
-from standoff.kernels.state.tracked import Shown, Tracked, without_rates
+from standoff.kernels.state.tracked import Shown, Tracked, begun, errors_at, without_rates
 from standoff.kernels.values import NO_RATES, Found, Side, moved
 
 RATES, LAST = (1.0, -2.0, 3.0, 0.5), (0.5, 1.0, -1.0, 0.0)
@@ -245,3 +245,11 @@ def test_points_found_without_the_law_show_their_own_jets():
     assert shown.jets[0][0] == pytest.approx((0.3, -0.2, 1.0), abs=1e-15)
     assert shown.jets[1][0] == pytest.approx(ABOVE, abs=1e-15)
     assert not shown.fresh
+
+
+def test_the_law_begins_with_the_errors_of_its_place():
+    """Psi of a point 2 above (0.3, -0.2), from the middle of the top: the tangents are (-y, x)."""
+    place = place_of(on_top(0.0, 0.0))
+    errors = errors_at(PAIR, POSE, place)
+    assert errors == pytest.approx((-0.2, -0.3, 0.0, 0.0), abs=1e-15)
+    assert begun(PAIR, POSE, place, 7.0) == Integrated(errors, NO_RATES, 7.0)

@@ -164,3 +164,11 @@ def test_a_bound_below_the_radii_shows_no_gap(lower):
     assert status(*wide, other=BALL, tolerance=1.0) is Status.LOCAL
     assert status(*wide, other=BALL) is Status.NOT_CERTIFIED
     assert status(CERTIFIED, 0.6, 0.5 + MARGIN, 0.6, other=BALL) is Status.CONVERGED
+
+
+def test_a_proof_of_overlap_decides_what_no_bound_does():
+    assert status(OVERLAP, 0.1, -1.0, 0.1) is Status.OVERLAPPING
+    # bounds that certify go first, and so does a law that still converges
+    assert status(OVERLAP, -0.3, -0.3 - 1e-12, -0.3) is Status.GLOBAL
+    assert status(OVERLAP, 0.1, -1.0, 0.1, lenient=True) is Status.TRACKING
+    assert status(OVERLAP, 0.1, -1.0, 0.1, cut=True) is Status.OVERLAPPING
