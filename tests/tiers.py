@@ -47,6 +47,7 @@ FAST = (
     "simulation/test_system_input.py",
     "soak/test_checks.py",
     "tracking/test_bad_input.py",
+    "tracking/test_branches.py",
     "tracking/test_coincident.py",
     "tracking/test_feedback.py",
     "tracking/test_golden.py",
