@@ -19,6 +19,7 @@ from hand_made_pairs import (
     point,
     turn,
     unit,
+    vector,
     wedge,
 )
 from pointed import pointed
@@ -197,19 +198,19 @@ def test_near_contact_it_is_polished(gap):
 )
 @pytest.mark.parametrize("gap", [1e-5, 1e-8, 1e-10])
 def test_near_contact_two_edges_are_polished_too(gap, first, second, spin):
-    """B stands in some turned frame, so that the direction of the gap has lost its digits."""
+    """All of it turned and off the origin, so that the direction of the gap has lost its digits."""
     (a, edge_a), (b, edge_b) = wedge(first), wedge(second)
     above = across(gap, spin)
     turned = np.array(turn((3, -1, 2), 0.7)).reshape(3, 3)
-    moved = so.Body.transformed(b, turned.T)
-    R = np.array(above.R).reshape(3, 3) @ turned
-    pose = Pose(tuple(float(x) for x in R.ravel()), above.p)
-    pair = pair_of(a, moved)
+    R = turned @ np.array(above.R).reshape(3, 3)
+    p = turned @ np.add(above.p, (0.31, 0.23, 0.0))
+    pose = Pose(tuple(float(x) for x in R.ravel()), vector(p))
+    pair = pair_of(a.transformed(turned), b)
     place = together(edge_side(edge_a, 0.45), edge_side(edge_b, 0.53))
     found = settle_and_weigh(pair, resting(pose), place, 0.0, 0.0, TOLERANCE, new_work()).found
     assert found.outcome == CERTIFIED
     assert found.distance == pytest.approx(gap, abs=1e-14)
-    assert found.normal == pytest.approx(Z, abs=1e-9)
+    assert found.normal == pytest.approx(vector(turned @ np.array(Z)), abs=1e-9)
 
 
 def test_near_contact_a_feature_is_still_released():
