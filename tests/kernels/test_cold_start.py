@@ -240,17 +240,16 @@ def test_of_uncertified_starts_the_one_of_the_least_gap_is_told():
     assert EGGS.rises_around(found.normal)
 
 
-def test_it_is_not_that_of_the_last(rng):
-    """Of bodies that overlap: no worse than the first two starts are by themselves."""
-    for _ in range(draws(10)):
-        case = EGGS.at(*(0.3 * rng.normal(size=3)))
-        found, _ = query(case, tolerance=-1.0)
-        for i, j in (alternating(*case.both), nearest_facing(*case.both)):
-            start = at_samples(case.pair, i, j)
-            still = resting(case.pose)
-            other = settle_and_weigh(case.pair, still, start, 0.0, 0.0, -1.0, new_work()).found
-            if other.outcome == UNCERTIFIED and found.outcome == UNCERTIFIED:
-                assert found.distance - found.lower <= other.distance - other.lower + 1e-15
+def test_a_start_that_is_cut_off_does_not_take_the_place_of_a_better_one():
+    """The first descent ends with nothing between distance and bound; one evaluation is left."""
+    first = new_work()
+    start = at_samples(EGGS.pair, *alternating(*EGGS.both))
+    settle_and_weigh(EGGS.pair, resting(EGGS.pose), start, 0.0, 0.0, -1.0, first)
+    work = new_work()
+    work.counts[LIMIT] = first.counts[EVALUATIONS] + 1
+    found, _ = query(EGGS, tolerance=-1.0, work=work)
+    assert work.counts[RESTARTS] == 1
+    assert found.distance - found.lower < 1e-12
 
 
 @pytest.mark.parametrize("limit", [0, 1, 2])
