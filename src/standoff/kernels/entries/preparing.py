@@ -43,7 +43,7 @@ def prepare(runs: bool = False) -> None:
         return
     needed = [tracker.query, tracker.step, tracker.value, tracker.value_by_poses]
     if runs:
-        needed += [tracker.values, *(getattr(queries, name) for name in LOCATING)]
+        needed += [tracker.start, tracker.values, *(getattr(queries, name) for name in LOCATING)]
     _prepare_each(needed)
     ready_for.add(runs)
 
