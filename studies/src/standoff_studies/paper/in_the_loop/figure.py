@@ -27,8 +27,8 @@ from standoff_studies.paper.in_the_loop.run import (
     run,
 )
 from standoff_studies.paper.in_the_loop.statements import all_statements, by_gain
+from standoff_studies.paper.patch_places import place_on, short
 from standoff_studies.paper.simulation_d.parameters import SHADES
-from standoff_studies.paper.simulation_d.runs import place_on, short
 
 Array = NDArray[np.float64]
 
