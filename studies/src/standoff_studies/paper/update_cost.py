@@ -375,22 +375,21 @@ def _where_less_is_asked() -> Statement:
 
 def draw() -> Figure:
     """Cost of an update against the accuracy."""
-    with style.settings():
-        figure = style.new_figure(height=4.4)
-        axes = figure.subplots()
-        for k, name in enumerate(PRICES, start=1):
-            costs = [spent(name, target).cost for target in TARGETS]
-            look: dict[str, Any] = {"color": style.COLOURS[k], "linestyle": style.DASHES[k]}
-            axes.plot(TARGETS, costs, marker=style.MARKERS[k], label=name, **look)
-        for integrator, marker in (("heun", "*"), ("euler", "P")):
-            law = law_spent(integrator)
-            look = {"color": style.BLUE, "markersize": 15 if marker == "*" else 10}
-            axes.plot(law.error, law.cost, marker, label=LAWS[integrator], **look)
-        axes.set(xscale="log", yscale="log")
-        axes.invert_xaxis()
-        axes.set_xlabel("greatest witness error asked for [length]")
-        axes.set_ylabel("second-order evaluations\nan update, mean")
-        axes.set_yticks([0.5, 1, 2, 5, 10, 20, 50], ["0.5", "1", "2", "5", "10", "20", "50"])
-        axes.minorticks_off()
-        figure.legend(loc="outside lower center", ncols=1, frameon=False)
+    figure = style.new_figure(height=4.4)
+    axes = figure.subplots()
+    for k, name in enumerate(PRICES, start=1):
+        costs = [spent(name, target).cost for target in TARGETS]
+        look: dict[str, Any] = {"color": style.COLOURS[k], "linestyle": style.DASHES[k]}
+        axes.plot(TARGETS, costs, marker=style.MARKERS[k], label=name, **look)
+    for integrator, marker in (("heun", "*"), ("euler", "P")):
+        law = law_spent(integrator)
+        look = {"color": style.BLUE, "markersize": 15 if marker == "*" else 10}
+        axes.plot(law.error, law.cost, marker, label=LAWS[integrator], **look)
+    axes.set(xscale="log", yscale="log")
+    axes.invert_xaxis()
+    axes.set_xlabel("greatest witness error asked for [length]")
+    axes.set_ylabel("second-order evaluations\nan update, mean")
+    axes.set_yticks([0.5, 1, 2, 5, 10, 20, 50], ["0.5", "1", "2", "5", "10", "20", "50"])
+    axes.minorticks_off()
+    figure.legend(loc="outside lower center", ncols=1, frameon=False)
     return figure

@@ -200,36 +200,35 @@ def _as_printed(simulation: Simulation, tried: Ends) -> tuple[Statement, Stateme
 
 
 def _draw(simulation: Simulation) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 8.6)
-        axes = figure.subplots()
-        features_a, features_b = planar_features(simulation.a), planar_features(simulation.b)
-        places = {
-            (a, b): (float(column), float(row))
-            for row, a in enumerate(features_a)
-            for column, b in enumerate(features_b)
-        }
-        _draw_lines(axes, len(features_b), len(features_a))
-        for way in ways(simulation):
-            _draw_way(axes, places[way.source], places[way.target], way.times)
-        for mode, place in places.items():
-            _draw_mode(axes, simulation, mode, place)
-        axes.tick_params(labeltop=True, labelbottom=False, length=0.0)
-        axes.grid(visible=False)
-        axes.set_xticks(range(len(features_b)), [f"B {short_name(f)}" for f in features_b])
-        axes.set_yticks(range(len(features_a)), [f"A {short_name(f)}" for f in features_a])
-        axes.set_xlim(-0.72, len(features_b) - 0.28)
-        axes.set_ylim(len(features_a) - 0.42, -0.58)
-        for spine in axes.spines.values():
-            spine.set_visible(False)
-        for word, stay in (
-            ("start", simulation.paper.modes()[0]),
-            ("end", simulation.paper.modes()[-1]),
-        ):
-            x, y = places[stay.feature_a, stay.feature_b]
-            corner = x - 0.04, y - HALF_HEIGHT - 0.03
-            axes.text(*corner, word, ha="right", va="bottom", fontweight="bold")
-        key_below(figure, show_kinds(), len(KINDS))
+    figure = style.new_figure(style.WIDTH, 8.6)
+    axes = figure.subplots()
+    features_a, features_b = planar_features(simulation.a), planar_features(simulation.b)
+    places = {
+        (a, b): (float(column), float(row))
+        for row, a in enumerate(features_a)
+        for column, b in enumerate(features_b)
+    }
+    _draw_lines(axes, len(features_b), len(features_a))
+    for way in ways(simulation):
+        _draw_way(axes, places[way.source], places[way.target], way.times)
+    for mode, place in places.items():
+        _draw_mode(axes, simulation, mode, place)
+    axes.tick_params(labeltop=True, labelbottom=False, length=0.0)
+    axes.grid(visible=False)
+    axes.set_xticks(range(len(features_b)), [f"B {short_name(f)}" for f in features_b])
+    axes.set_yticks(range(len(features_a)), [f"A {short_name(f)}" for f in features_a])
+    axes.set_xlim(-0.72, len(features_b) - 0.28)
+    axes.set_ylim(len(features_a) - 0.42, -0.58)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    for word, stay in (
+        ("start", simulation.paper.modes()[0]),
+        ("end", simulation.paper.modes()[-1]),
+    ):
+        x, y = places[stay.feature_a, stay.feature_b]
+        corner = x - 0.04, y - HALF_HEIGHT - 0.03
+        axes.text(*corner, word, ha="right", va="bottom", fontweight="bold")
+    key_below(figure, show_kinds(), len(KINDS))
     return figure
 
 

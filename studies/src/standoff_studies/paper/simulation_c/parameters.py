@@ -165,27 +165,24 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
 
 
 def _draw(simulation: Simulation) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 13.2)
-        heights = [1.0] * (2 * len(SPANS)) + [1.6]
-        panels = figure.subplots(len(heights), 1, height_ratios=heights)
-        for row, span in enumerate(SPANS):
-            upper, lower = panels[2 * row : 2 * row + 2]
-            _draw_panel(upper, simulation, "A", span)
-            _draw_panel(lower, simulation, "B", span)
-            if row:
-                _write_instants(upper, simulation, span)
-                _mark_snapshots(lower, simulation, span)
-            upper.tick_params(labelbottom=False)
-            lower.set_xlabel("time [s]")
-        draw_errors(
-            panels[-1], simulation, least=LEAST_ERROR, linewidth=1.2, label="witness points"
-        )
-        panels[-1].set_ylabel("error [length],\n|Ψ| [length²]")
-        panels[-1].set_xlabel("time [s]")
-        panels[-1].set_xlim(0.0, simulation.duration)
-        panels[-1].set_ylim(0.5 * LEAST_ERROR, 300.0)
-        key_below(figure, _key(), 4)
+    figure = style.new_figure(style.WIDTH, 13.2)
+    heights = [1.0] * (2 * len(SPANS)) + [1.6]
+    panels = figure.subplots(len(heights), 1, height_ratios=heights)
+    for row, span in enumerate(SPANS):
+        upper, lower = panels[2 * row : 2 * row + 2]
+        _draw_panel(upper, simulation, "A", span)
+        _draw_panel(lower, simulation, "B", span)
+        if row:
+            _write_instants(upper, simulation, span)
+            _mark_snapshots(lower, simulation, span)
+        upper.tick_params(labelbottom=False)
+        lower.set_xlabel("time [s]")
+    draw_errors(panels[-1], simulation, least=LEAST_ERROR, linewidth=1.2, label="witness points")
+    panels[-1].set_ylabel("error [length],\n|Ψ| [length²]")
+    panels[-1].set_xlabel("time [s]")
+    panels[-1].set_xlim(0.0, simulation.duration)
+    panels[-1].set_ylim(0.5 * LEAST_ERROR, 300.0)
+    key_below(figure, _key(), 4)
     return figure
 
 

@@ -144,14 +144,13 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
 
 
 def _draw(simulation: Simulation) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 3.9)
-        ratios = [right - left for (left, right), _ in VIEWS]
-        panels = figure.subplots(1, 2, width_ratios=ratios)
-        bodies = simulation.a, simulation.b
-        for k, (axes, body) in enumerate(zip(panels, bodies, strict=True)):
-            _draw_body(axes, body, k)
-        panels[0].set_ylabel("y [length]")
+    figure = style.new_figure(style.WIDTH, 3.9)
+    ratios = [right - left for (left, right), _ in VIEWS]
+    panels = figure.subplots(1, 2, width_ratios=ratios)
+    bodies = simulation.a, simulation.b
+    for k, (axes, body) in enumerate(zip(panels, bodies, strict=True)):
+        _draw_body(axes, body, k)
+    panels[0].set_ylabel("y [length]")
     return figure
 
 

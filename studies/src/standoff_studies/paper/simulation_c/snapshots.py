@@ -124,23 +124,22 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
 
 
 def _draw(simulation: Simulation) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 8.8)
-        rows = len(snapshots()) // COLUMNS
-        panels = figure.subplots(rows, COLUMNS).ravel().tolist()
-        boxes = [_box(simulation, snapshot.time) for snapshot in snapshots()]
-        half = 0.5 * np.max([np.ptp(box, axis=0) for box in boxes], axis=0) + MARGIN
-        for axes, snapshot, box in zip(panels, snapshots(), boxes, strict=True):
-            _draw_pair(axes, simulation, snapshot.frame)
-            middle = box.mean(axis=0)
-            axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
-            axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
-            axes.set_axis_off()
-            name = mode_name(snapshot.feature_a, snapshot.feature_b)
-            distance = simulation.paper.distance[snapshot.frame]
-            axes.set_title(f"({snapshot.letter}) {snapshot.time:.2f} s  {name}\nd = {distance:.3f}")
-        corner = panels[0].get_xlim()[0], panels[0].get_ylim()[0]
-        _draw_ruler(panels[0], (corner[0] + MARGIN, corner[1] + 2.0 * MARGIN))
+    figure = style.new_figure(style.WIDTH, 8.8)
+    rows = len(snapshots()) // COLUMNS
+    panels = figure.subplots(rows, COLUMNS).ravel().tolist()
+    boxes = [_box(simulation, snapshot.time) for snapshot in snapshots()]
+    half = 0.5 * np.max([np.ptp(box, axis=0) for box in boxes], axis=0) + MARGIN
+    for axes, snapshot, box in zip(panels, snapshots(), boxes, strict=True):
+        _draw_pair(axes, simulation, snapshot.frame)
+        middle = box.mean(axis=0)
+        axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
+        axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
+        axes.set_axis_off()
+        name = mode_name(snapshot.feature_a, snapshot.feature_b)
+        distance = simulation.paper.distance[snapshot.frame]
+        axes.set_title(f"({snapshot.letter}) {snapshot.time:.2f} s  {name}\nd = {distance:.3f}")
+    corner = panels[0].get_xlim()[0], panels[0].get_ylim()[0]
+    _draw_ruler(panels[0], (corner[0] + MARGIN, corner[1] + 2.0 * MARGIN))
     return figure
 
 

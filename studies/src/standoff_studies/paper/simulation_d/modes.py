@@ -182,25 +182,24 @@ def _at(point: Array) -> Array:
 def _draw() -> Figure:
     automaton = SIMULATION.paper.automaton()
     places = _places(automaton.a)
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 7.0)
-        axes = figure.add_subplot()
-        angles = np.linspace(0.0, 2.0 * np.pi, 181)
-        axes.plot(OUTER * np.cos(angles), OUTER * np.sin(angles), color=style.QUIET, linewidth=1.0)
-        for transition in automaton.of("A"):
-            _arrow(axes, automaton, places, transition)
-        for feature in automaton.features_a:
-            _node(axes, automaton, places, feature)
-        _ends(axes, automaton, places)
-        axes.set_aspect("equal")
-        axes.set_xlim(-1.85, 1.85)
-        axes.set_ylim(-1.78, 1.78)
-        axes.set_axis_off()
-        keys = [
-            key_line("switch taken, number: instant [s]", style.BLUE, 2.2),
-            key_line("switch allowed", style.QUIET, 0.8),
-        ]
-        key_below(figure, keys, 2)
+    figure = style.new_figure(style.WIDTH, 7.0)
+    axes = figure.add_subplot()
+    angles = np.linspace(0.0, 2.0 * np.pi, 181)
+    axes.plot(OUTER * np.cos(angles), OUTER * np.sin(angles), color=style.QUIET, linewidth=1.0)
+    for transition in automaton.of("A"):
+        _arrow(axes, automaton, places, transition)
+    for feature in automaton.features_a:
+        _node(axes, automaton, places, feature)
+    _ends(axes, automaton, places)
+    axes.set_aspect("equal")
+    axes.set_xlim(-1.85, 1.85)
+    axes.set_ylim(-1.78, 1.78)
+    axes.set_axis_off()
+    keys = [
+        key_line("switch taken, number: instant [s]", style.BLUE, 2.2),
+        key_line("switch allowed", style.QUIET, 0.8),
+    ]
+    key_below(figure, keys, 2)
     return figure
 
 

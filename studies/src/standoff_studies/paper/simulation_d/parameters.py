@@ -120,35 +120,34 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
 def _draw() -> Figure:
     runs = SIMULATION
     recording = runs.paper
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 8.2)
-        panels = figure.subplots(4, 1, sharex=True, height_ratios=[1.0, 1.0, 1.0, 1.5])
-        for face, axes in enumerate(panels[:3]):
-            _shade(axes, runs)
-            u, v = face_parameters(recording, face).T
-            axes.plot(recording.time, u, color=style.BLUE, label="u")
-            axes.plot(recording.time, v, color=style.RED, linestyle="--", label="v")
-            for own in face_parameters(runs.exact, face).T:
-                axes.plot(runs.exact.time, own, color=style.BLACK, linewidth=0.6, zorder=3)
-            unit_interval(axes, f"F{face}: u, v [–]")
-        named = [v for v in runs.exact.modes() if v.end - v.start >= LEAST_NAMED]
-        name_above(panels[0], [(visit, short(visit.feature_a)) for visit in named])
-        _shade(panels[3], runs)
-        draw_errors(panels[3], runs, linewidth=1.2, label="witness point")
-        panels[3].set_ylabel("error [radius],\n|Ψ| [radius²]")
-        panels[3].set_yticks([1e-12, 1e-8, 1e-4, 1.0])
-        panels[3].set_ylim(1e-13, 300.0)
-        panels[3].set_xlabel("time [s]")
-        panels[3].set_xlim(0.0, recording.time[-1])
-        keys = [
-            key_line("u", style.BLUE),
-            key_line("v", style.RED, dashes="--"),
-            key_line("library's law", style.BLACK, 0.6),
-            key_fill("on an edge", str(SHADES["edge"])),
-            key_fill("at the vertex", str(SHADES["vertex"])),
-        ]
-        key_below(figure, keys, 5)
-        figure.align_ylabels()
+    figure = style.new_figure(style.WIDTH, 8.2)
+    panels = figure.subplots(4, 1, sharex=True, height_ratios=[1.0, 1.0, 1.0, 1.5])
+    for face, axes in enumerate(panels[:3]):
+        _shade(axes, runs)
+        u, v = face_parameters(recording, face).T
+        axes.plot(recording.time, u, color=style.BLUE, label="u")
+        axes.plot(recording.time, v, color=style.RED, linestyle="--", label="v")
+        for own in face_parameters(runs.exact, face).T:
+            axes.plot(runs.exact.time, own, color=style.BLACK, linewidth=0.6, zorder=3)
+        unit_interval(axes, f"F{face}: u, v [–]")
+    named = [v for v in runs.exact.modes() if v.end - v.start >= LEAST_NAMED]
+    name_above(panels[0], [(visit, short(visit.feature_a)) for visit in named])
+    _shade(panels[3], runs)
+    draw_errors(panels[3], runs, linewidth=1.2, label="witness point")
+    panels[3].set_ylabel("error [radius],\n|Ψ| [radius²]")
+    panels[3].set_yticks([1e-12, 1e-8, 1e-4, 1.0])
+    panels[3].set_ylim(1e-13, 300.0)
+    panels[3].set_xlabel("time [s]")
+    panels[3].set_xlim(0.0, recording.time[-1])
+    keys = [
+        key_line("u", style.BLUE),
+        key_line("v", style.RED, dashes="--"),
+        key_line("library's law", style.BLACK, 0.6),
+        key_fill("on an edge", str(SHADES["edge"])),
+        key_fill("at the vertex", str(SHADES["vertex"])),
+    ]
+    key_below(figure, keys, 5)
+    figure.align_ylabels()
     return figure
 
 

@@ -137,31 +137,30 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
 def _draw() -> Figure:
     runs = SIMULATION
     recording = runs.paper
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 6.6)
-        axes = figure.add_subplot()
-        view = View(AZIMUTH, ELEVATION)
-        view.body(runs.a)
-        for sheet in region_sheets(runs.a):
-            view.surface(sheet, REGION_COLOUR, opacity=0.2, shaded=False)
-            view.line(sheet[:, -1], REGION_COLOUR, 0.9)
-        first = settling_steps(recording)
-        view.line(recording.point_a[first:], style.GREEN, 2.0, rank=1.5)
-        view.line(recording.point_b, style.BLACK, 2.2)
-        wrong = [recording.point_a[0], recording.point_b[0]]
-        view.line(wrong, style.PURPLE, 1.3, dashes=(0.06, 0.04))
-        view.mark(wrong[0], style.PURPLE, "D", 0.045)
-        view.line(recording.point_a[: first + 1], style.PURPLE, 1.6, rank=1.5)
-        view.line(runs.exact.point_a, style.BLACK, 0.7, rank=1.6)
-        for k in range(0, first, round(EARLY / runs.step)):
-            view.line([recording.point_a[k], recording.point_b[k]], style.PURPLE, 0.7)
-        for k in np.linspace(first, len(recording) - 1, WITNESS_LINES).astype(int).tolist():
-            _witness(view, recording.point_a[k], recording.point_b[k], recording.feature_a[k])
-        view.paint(axes)
-        _name_parts(axes, view, runs.a)
-        _name_ends(axes, view)
-        view.triad(axes, (1.75, -1.3), 0.4, "radius")
-        key_below(figure, _key(), 3)
+    figure = style.new_figure(style.WIDTH, 6.6)
+    axes = figure.add_subplot()
+    view = View(AZIMUTH, ELEVATION)
+    view.body(runs.a)
+    for sheet in region_sheets(runs.a):
+        view.surface(sheet, REGION_COLOUR, opacity=0.2, shaded=False)
+        view.line(sheet[:, -1], REGION_COLOUR, 0.9)
+    first = settling_steps(recording)
+    view.line(recording.point_a[first:], style.GREEN, 2.0, rank=1.5)
+    view.line(recording.point_b, style.BLACK, 2.2)
+    wrong = [recording.point_a[0], recording.point_b[0]]
+    view.line(wrong, style.PURPLE, 1.3, dashes=(0.06, 0.04))
+    view.mark(wrong[0], style.PURPLE, "D", 0.045)
+    view.line(recording.point_a[: first + 1], style.PURPLE, 1.6, rank=1.5)
+    view.line(runs.exact.point_a, style.BLACK, 0.7, rank=1.6)
+    for k in range(0, first, round(EARLY / runs.step)):
+        view.line([recording.point_a[k], recording.point_b[k]], style.PURPLE, 0.7)
+    for k in np.linspace(first, len(recording) - 1, WITNESS_LINES).astype(int).tolist():
+        _witness(view, recording.point_a[k], recording.point_b[k], recording.feature_a[k])
+    view.paint(axes)
+    _name_parts(axes, view, runs.a)
+    _name_ends(axes, view)
+    view.triad(axes, (1.75, -1.3), 0.4, "radius")
+    key_below(figure, _key(), 3)
     return figure
 
 
@@ -233,24 +232,23 @@ def _draw_frame(figure: Figure, number: int) -> None:
     k = APART * min(number, SLOW) + round(max(0, number - SLOW) / (FRAMES - 1 - SLOW) * rest)
     feature = recording.feature_a[k]
     colour, shape = LOOKS[feature.kind]
-    with style.settings():
-        axes = figure.add_subplot()
-        view = View(AZIMUTH, ELEVATION)
-        lit = [
-            LIT if feature.kind == "face" and feature.index == face else UNLIT
-            for face in range(runs.a.n_faces)
-        ]
-        view.body(runs.a, colours=lit, grid=12, lines=1)
-        if feature.kind == "edge":
-            view.line(edge_lines(runs.a)[feature.index].points, colour, 4.0)
-        if feature.kind == "vertex":
-            view.mark(runs.a.vertex_points[feature.index], colour, shape, 0.09)
-        view.line(recording.point_b[k::20], style.QUIET, 0.8, dashes=(0.05, 0.05))
-        if k:
-            view.line(recording.point_b[: k + 1 : 10 if k > 20 else 1], style.BLACK, 1.8)
-        _witness(view, recording.point_a[k], recording.point_b[k], feature)
-        view.paint(axes)
-        across = view.flat(recording.point_b)
-        axes.set_xlim(*(across[:, 0].min() - 0.1, across[:, 0].max() + 0.1))
-        axes.set_ylim(*(across[:, 1].min() - 0.1, across[:, 1].max() + 0.1))
-        axes.set_title(f"t = {recording.time[k]:.3f} s: {feature} ({short(feature)})")
+    axes = figure.add_subplot()
+    view = View(AZIMUTH, ELEVATION)
+    lit = [
+        LIT if feature.kind == "face" and feature.index == face else UNLIT
+        for face in range(runs.a.n_faces)
+    ]
+    view.body(runs.a, colours=lit, grid=12, lines=1)
+    if feature.kind == "edge":
+        view.line(edge_lines(runs.a)[feature.index].points, colour, 4.0)
+    if feature.kind == "vertex":
+        view.mark(runs.a.vertex_points[feature.index], colour, shape, 0.09)
+    view.line(recording.point_b[k::20], style.QUIET, 0.8, dashes=(0.05, 0.05))
+    if k:
+        view.line(recording.point_b[: k + 1 : 10 if k > 20 else 1], style.BLACK, 1.8)
+    _witness(view, recording.point_a[k], recording.point_b[k], feature)
+    view.paint(axes)
+    across = view.flat(recording.point_b)
+    axes.set_xlim(*(across[:, 0].min() - 0.1, across[:, 0].max() + 0.1))
+    axes.set_ylim(*(across[:, 1].min() - 0.1, across[:, 1].max() + 0.1))
+    axes.set_title(f"t = {recording.time[k]:.3f} s: {feature} ({short(feature)})")

@@ -227,33 +227,32 @@ def _switch_table(runs: Simulation) -> dict[str, Array | list[str]]:
 
 def _draw() -> Figure:
     runs = SIMULATION
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 9.0)
-        panels = figure.subplots(4, 1, sharex=True, height_ratios=[1.0, 1.0, 0.8, 1.3])
-        for axes, body in zip(panels, "AB", strict=False):
-            _shade(axes, runs)
-            _draw_parameters(axes, runs, body)
-        _shade(panels[2], runs)
-        panels[2].plot(runs.paper.time, runs.paper.distance, color=style.GREEN)
-        panels[2].plot(
-            runs.exact.time,
-            runs.exact.distance,
-            color=style.BLACK,
-            linewidth=0.6,
-            label="library's law",
-        )
-        panels[2].legend(frameon=False)
-        panels[2].set_ylabel("distance [radius]")
-        _shade(panels[3], runs)
-        draw_errors(panels[3], runs, least=LEAST_DRAWN, label="witness points")
-        panels[3].set_ylim(0.5 * LEAST_DRAWN, 300.0)
-        panels[3].set(xlabel="time [s]", ylabel="error [radius], |Ψ| [radius²]")
-        panels[2].set_xlim(0.0, runs.paper.time[-1])
-        names = [f"{short(s.feature_a)}–{short(s.feature_b)}" for s in runs.exact.modes()]
-        name_above(panels[0], zip(runs.exact.modes(), names, strict=True))
-        handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
-        figure.align_ylabels()
+    figure = style.new_figure(style.WIDTH, 9.0)
+    panels = figure.subplots(4, 1, sharex=True, height_ratios=[1.0, 1.0, 0.8, 1.3])
+    for axes, body in zip(panels, "AB", strict=False):
+        _shade(axes, runs)
+        _draw_parameters(axes, runs, body)
+    _shade(panels[2], runs)
+    panels[2].plot(runs.paper.time, runs.paper.distance, color=style.GREEN)
+    panels[2].plot(
+        runs.exact.time,
+        runs.exact.distance,
+        color=style.BLACK,
+        linewidth=0.6,
+        label="library's law",
+    )
+    panels[2].legend(frameon=False)
+    panels[2].set_ylabel("distance [radius]")
+    _shade(panels[3], runs)
+    draw_errors(panels[3], runs, least=LEAST_DRAWN, label="witness points")
+    panels[3].set_ylim(0.5 * LEAST_DRAWN, 300.0)
+    panels[3].set(xlabel="time [s]", ylabel="error [radius], |Ψ| [radius²]")
+    panels[2].set_xlim(0.0, runs.paper.time[-1])
+    names = [f"{short(s.feature_a)}–{short(s.feature_b)}" for s in runs.exact.modes()]
+    name_above(panels[0], zip(runs.exact.modes(), names, strict=True))
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
+    figure.align_ylabels()
     return figure
 
 

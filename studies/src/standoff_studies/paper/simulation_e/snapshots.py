@@ -141,20 +141,19 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
 
 def _draw() -> Figure:
     runs = SIMULATION
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 8.4)
-        panels = figure.subplots(3, 2, height_ratios=HEIGHTS).ravel().tolist()
-        for axes, frame in zip(panels, snapshot_frames(runs), strict=False):
-            _draw_snapshot(axes, runs, frame, start=axes is panels[0])
-        _draw_motion(panels[-1], runs)
-        # One scale in all panels, and each row as high as its two need.
-        across = np.array([axes.get_xlim() for axes in panels])
-        for first in range(0, len(panels), 2):
-            up = np.array([axes.get_ylim() for axes in panels[first : first + 2]])
-            for axes in panels[first : first + 2]:
-                axes.set_xlim(across[:, 0].min(), across[:, 1].max())
-                axes.set_ylim(up[:, 0].min(), up[:, 1].max())
-        key_below(figure, _key(), 5)
+    figure = style.new_figure(style.WIDTH, 8.4)
+    panels = figure.subplots(3, 2, height_ratios=HEIGHTS).ravel().tolist()
+    for axes, frame in zip(panels, snapshot_frames(runs), strict=False):
+        _draw_snapshot(axes, runs, frame, start=axes is panels[0])
+    _draw_motion(panels[-1], runs)
+    # One scale in all panels, and each row as high as its two need.
+    across = np.array([axes.get_xlim() for axes in panels])
+    for first in range(0, len(panels), 2):
+        up = np.array([axes.get_ylim() for axes in panels[first : first + 2]])
+        for axes in panels[first : first + 2]:
+            axes.set_xlim(across[:, 0].min(), across[:, 1].max())
+            axes.set_ylim(up[:, 0].min(), up[:, 1].max())
+    key_below(figure, _key(), 5)
     return figure
 
 
@@ -252,8 +251,7 @@ def _key() -> list[Artist]:
 def _draw_frame(figure: Figure, number: int) -> None:
     runs = SIMULATION
     frame = round(number / (FRAMES - 1) * (len(runs.paper) - 1))
-    with style.settings():
-        axes = figure.add_subplot()
-        _draw_snapshot(axes, runs, frame, grid=10, lines=1)
-        axes.set_xlim(*ACROSS)
-        axes.set_ylim(*UP)
+    axes = figure.add_subplot()
+    _draw_snapshot(axes, runs, frame, grid=10, lines=1)
+    axes.set_xlim(*ACROSS)
+    axes.set_ylim(*UP)
