@@ -68,7 +68,7 @@ def test_without_coal_its_rows_say_so(monkeypatch):
     missing = [line for line in lines if line.missing]
     assert [line.goal for line in missing] == list(GOALS[:3])
     for line, row in zip(missing, table(missing)[2:], strict=True):
-        assert "standoff[peers]" in line.missing
+        assert "standoff-studies[peers]" in line.missing
         assert f"missing: {line.missing}" in row
 
 

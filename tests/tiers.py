@@ -28,7 +28,7 @@ FAST = (
     "kernels/test_frame_answer.py",
     "kernels/test_jets.py",
     "kernels/test_line_roots.py",
-    "kernels/test_penetration.py",
+    "kernels/test_depth_penetration.py",
     "kernels/test_prediction.py",
     "kernels/test_rank_rule.py",
     "kernels/test_switching.py",

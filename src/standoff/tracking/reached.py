@@ -19,6 +19,9 @@ from standoff.tracking.specialised import address_of, smooth_frame_of
 
 Array = NDArray[np.float64]
 
+ANY_TIME = 1.0
+"""A frame time [s]: the default law does not depend on it."""
+
 PAIRS = 64
 """Pairs that are kept at hand, with their bodies: those that were asked for last."""
 
@@ -85,4 +88,4 @@ def cold_table(a: Body, b: Body) -> AddressTable:
         They are no pair.
     """
     check_pair(a, b)
-    return table_of(a, b, resolved_options(DEFAULT_LAW, 1e-3)[1])
+    return table_of(a, b, resolved_options(DEFAULT_LAW, ANY_TIME)[1])

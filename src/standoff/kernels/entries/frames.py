@@ -5,7 +5,7 @@ from __future__ import annotations
 from standoff.kernels.algebra.rigid import relative_pose
 from standoff.kernels.body.features import dimension
 from standoff.kernels.compiler.calls import CAN_CALL
-from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.frame.answer import judge
 from standoff.kernels.frame.inputs import twisted
 from standoff.kernels.frame.prediction import feeds, next_state
@@ -141,10 +141,14 @@ def has_frame(options):
     return not CAN_CALL or options.frame != 0
 
 
-@kernel
+@shared
 def frame(pair, inputs, h, options, state, out, work):
     """One frame of the law that the options name, on every route: the state is changed in place,
-    the answer written."""
+    the answer written.
+
+    A module of its own: within the caller's, whose stack the counts stand on, LLVM has left them
+    uncleared for the law's frame, to which it sees no pointer go.
+    """
     clear_counts(work)
     if options.smooth != 0:
         faces = on_faces(pair, state)
