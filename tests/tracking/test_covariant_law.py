@@ -102,14 +102,18 @@ def test_near_the_minimum_the_errors_fall_as_designed() -> None:
 
 
 def test_a_lowered_gain_is_counted() -> None:
-    tracker = so.Tracker(*pair(), SIMULATION.step, law=law(1000.0, **{**PRINTED, "saturation": "hold"}))
+    tracker = so.Tracker(
+        *pair(), SIMULATION.step, law=law(1000.0, **{**PRINTED, "saturation": "hold"})
+    )
     answers = run(tracker, STARTS[32], 35)
     assert sum(answer.counts.saturations for answer in answers) > 0
     assert answers[-1].counts.saturations == 0
 
 
 def test_what_is_held_for_a_frame_alone_is_no_switch() -> None:
-    tracker = so.Tracker(*pair(), SIMULATION.step, law=law(25.0, **{**PRINTED, "saturation": "hold"}))
+    tracker = so.Tracker(
+        *pair(), SIMULATION.step, law=law(25.0, **{**PRINTED, "saturation": "hold"})
+    )
     for k in (155, *range(12)):
         before = None
         for answer in run(tracker, STARTS[k], 100)[1:]:

@@ -45,7 +45,6 @@ AVAILABLE = (
 )
 
 
-
 def why_stock() -> str:
     """Why each kernel is compiled by itself though nobody has asked for it; "" if it is not."""
     if AVAILABLE or os.environ.get(FORCE_STOCK, "0") not in ("", "0"):
