@@ -1,13 +1,13 @@
 # Needs only Python 3.11 or newer (with pip and venv), make and git.
 PYTHON ?= python3
 BIN := .venv/bin
-# A stamp names what was installed; it is renewed when the package's declaration changes.
+# A stamp names what was installed; it is renewed when what a package declares changes.
 ALL := .venv/.installed-all
 CLI := .venv/.installed-cli
 PIP := $(BIN)/python -m pip --disable-pip-version-check
-DECLARED := pyproject.toml constraints.txt
+DECLARED := pyproject.toml studies/pyproject.toml constraints.txt
 
-.PHONY: venv torch demo paper bench wheel check test lint types layers docs clean
+.PHONY: venv torch demo paper bench wheel numba-range check test lint types layers docs clean
 
 venv: $(ALL)
 
@@ -18,12 +18,13 @@ $(BIN)/python:
 
 $(ALL): $(DECLARED) | $(BIN)/python
 	@echo "Installing Standoff, all its extras and the tools into .venv: once, some minutes ..."
-	$(PIP) install -q -c constraints.txt -e ".[cli,test,dev,peers,docs,pandas,jax,casadi,devices,view,rerun,video]"
+	$(PIP) install -q -c constraints.txt \
+		-e ".[cli,test,dev,docs,pandas,jax,casadi,devices,view,rerun,video]" -e "./studies[peers]"
 	@touch $(ALL) $(CLI)
 
 $(CLI): $(DECLARED) | $(BIN)/python
-	@echo "Installing Standoff and what its commands need into .venv: once, about a minute ..."
-	$(PIP) install -q -c constraints.txt -e ".[cli]"
+	@echo "Installing Standoff, its studies and what they need into .venv: once, about a minute ..."
+	$(PIP) install -q -c constraints.txt -e ".[cli]" -e ./studies
 	@touch $(CLI)
 
 # Not in `venv`: from PyPI it comes with gigabytes of CUDA. Without it its tests are skipped.
@@ -41,11 +42,17 @@ paper: $(CLI)
 bench: $(ALL)
 	$(BIN)/python -m benchmarks.bench -o build/bench
 
-# A wheel with compiled kernels for this Python, platform and Numba (docs/wheels.md).
+# Two wheels: the library's, with compiled kernels for this Python, platform and Numba
+# (docs/wheels.md), and that of the studies.
 wheel: $(CLI)
 	rm -rf build/compiled
 	$(BIN)/python -m standoff.kernels.entries.shipping build/compiled
 	STANDOFF_COMPILED="$(CURDIR)/build/compiled" $(PIP) wheel -q --no-deps -w dist .
+	$(PIP) wheel -q --no-deps -w dist ./studies
+
+# The ends of the range of Numba versions, in new environments: some half an hour each.
+numba-range: $(BIN)/python
+	$(BIN)/python -m benchmarks.numba_range
 
 # What an edit is tried with: a minute or two once the kernels are compiled (tests/tiers.py).
 check: lint types layers
@@ -71,4 +78,4 @@ docs: $(ALL)
 
 clean:
 	rm -rf build dist .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
-	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
+	find src studies tests -name __pycache__ -type d -prune -exec rm -rf {} +

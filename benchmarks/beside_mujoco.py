@@ -1,9 +1,9 @@
 """The same scenes in MuJoCo and in Standoff, beside what closed forms say.
 
-Run with ``python -m benchmarks.beside_mujoco`` (``pip install standoff[peers]``). MuJoCo's contacts
-are constraints that give way softly, ours are springs: what happens during an impact is not one
-number in both, so each scene is asked for what does not hang on the model of contact, and where it
-does, each is set beside its own closed form.
+Run with ``python -m benchmarks.beside_mujoco`` (``pip install standoff-studies[peers]``). MuJoCo's
+contacts are constraints that give way softly, ours are springs: what happens during an impact is
+not one number in both, so each scene is asked for what does not hang on the model of contact, and
+where it does, each is set beside its own closed form.
 """
 
 from __future__ import annotations

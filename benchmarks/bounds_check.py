@@ -117,7 +117,7 @@ class Sweep:
             v, omega = v * [1.0, 1.0, 0.0], omega * [0.0, 0.0, 1.0]
         twist = so.Twist(v, omega)
         path = ConstantTwist(pose_b, twist)
-        so.simulate(
+        so.track(
             so.Tracker(a, b, 1e-2, law),
             Fixed(pose_a),
             path,

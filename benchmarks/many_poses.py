@@ -100,7 +100,7 @@ def main() -> None:
     found = taken(
         {
             "cold kernel": lambda: batch.starts(
-                tracker.packed, rest, random, 0, ROWS, tracker.options, rows, done
+                tracker.table.address, rest, random, 0, ROWS, rows, done
             ),
             "so.distances": lambda: so.distances(a, b, rest, random),
             "so.distances, two workers": lambda: so.distances(a, b, rest, random, workers=2),

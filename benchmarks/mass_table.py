@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
+from standoff.bodies.moments.boundary import moments_of
 from standoff.simulation import MassProperties, mass_properties
-from standoff.simulation.moments.boundary import moments_of
 from standoff.simulation.tolerances import MOMENTS_END
 
 CASES = Path(__file__).parents[1] / "tests" / "simulation"

@@ -1,7 +1,7 @@
 """Other packages' answers for a pair of ellipsoids, given by their semi-axes.
 
 The packages' adaptors are `standoff_studies.accuracy.peers`; each is imported only when it is used
-(``pip install standoff[peers]``).
+(``pip install standoff-studies[peers]``).
 """
 
 from __future__ import annotations

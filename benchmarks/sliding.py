@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import standoff as so
-from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair import events as logs
 from standoff.kernels.state import arrays as rows
+from standoff.tracking import calls
 
 Array = NDArray[np.float64]
 
@@ -115,7 +115,6 @@ def run(slide: Any, gap: Any, steps: int, law: Any = None) -> Slid:
 
     tracker = so.Tracker(slide.a.body, slide.b.body, dt=STEP, law=law or so.PredictorCorrector())
     found = Slid()
-    log = np.empty(logs.MAX_EVENTS * logs.EVENT_COLUMNS)
     data = None
     for first in range(0, steps, BLOCK):
         count = min(BLOCK, steps - first)
@@ -124,21 +123,12 @@ def run(slide: Any, gap: Any, steps: int, law: Any = None) -> Slid:
             places = [(p[0, :9].reshape(3, 3), p[0, 9:]) for p in (truth.poses_a, truth.poses_b)]
             data = tracker.start(*places).data.copy()
             found.deeper = lesser_depth(slide, truth)
-        outs = np.empty((count, rows.N_OUT))
         begun = time.perf_counter()
-        refused, why = kernels.run(
-            tracker.packed,
-            np.hstack([truth.poses_a, truth.poses_b, truth.twists_a, truth.twists_b]),
-            True,
-            np.full(count, STEP),
-            tracker.options,
-            data,
-            outs,
-            log,
-        )
+        motions = np.hstack([truth.poses_a, truth.poses_b, truth.twists_a, truth.twists_b])
+        outs, refused = calls.run(tracker.table, motions, True, np.full(count, STEP), data)
         found.seconds += time.perf_counter() - begun
         if refused >= 0:
-            raise RuntimeError(f"frame {first + refused} was refused: {why}")
+            raise RuntimeError(f"frame {first + refused} was refused")
         found.add(truth, outs, first)
     return found
 

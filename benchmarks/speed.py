@@ -25,9 +25,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import standoff as so
+from benchmarks.compiled_runs import compiled_run
 from benchmarks.peers import coal_request
-from standoff.kernels.entries import tracker as kernels
-from standoff.kernels.pair import events as logs
 from standoff.kernels.state import arrays as rows
 from standoff_studies.paper.law_accuracy import A, B, two_ellipsoids
 
@@ -117,18 +116,13 @@ def _points(answer: so.Proximity) -> tuple[Array, Array]:
 
 def compiled_loop(frames: Frames, a: so.Body = A, b: so.Body = B) -> Contender:
     tracker = so.Tracker(a, b, dt=STEP)
-    begin = tracker.start(*frames.poses[0], *frames.twists[0]).data
-    pair = (a.ints, a.reals, b.ints, b.reals)
-    options = tracker.options
+    begin = tracker.start(*frames.poses[0], *frames.twists[0])
     motions = np.hstack([frames.flat_a, frames.flat_b, frames.twist_a, frames.twist_b])[1:]
-    steps = np.full(FRAMES, STEP)
-    outs = np.empty((FRAMES, rows.N_OUT))
-    events = np.empty(logs.MAX_EVENTS * logs.EVENT_COLUMNS)
+    once, outs = compiled_run(tracker, begin, motions, np.full(FRAMES, STEP))
 
     def run() -> None:
         for _ in range(LOOPS):
-            state = begin.copy()
-            kernels.run(pair, motions, True, steps, options, state, outs, events)
+            once()
 
     def witnesses(k: int) -> tuple[Array, Array]:
         row = outs[k - 1]

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 import standoff as so
 from benchmarks.touching_scenes import SCENES, Frames, Gap, Scene, gaps_of
-from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
+from standoff.tracking import calls
 
 Array = NDArray[np.float64]
 
@@ -80,13 +80,9 @@ def run(scene: Scene, name: str, gap: Gap, steps: int, *, twists: bool = True) -
         if state is None:
             pose = so.Pose.from_checked(frames.rotations[0], frames.positions[0])
             state = tracker.start(so.Pose.identity(), pose).data.copy()
-        outs = np.empty((count, K.N_OUT))
-        log = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
         rest = np.tile(AT_REST, (count, 1))
-        at, _ = kernels.run(
-            tracker.packed, np.hstack([rest, poses, 0.0 * xi, xi if twists else 0.0 * xi]), twists,
-            np.full(count, DT), tracker.options, state, outs, log,
-        )  # fmt: skip
+        motions = np.hstack([rest, poses, 0.0 * xi, xi if twists else 0.0 * xi])
+        outs, at = calls.run(tracker.table, motions, twists, np.full(count, DT), state)
         if at >= 0:
             raise ValueError(f"{scene.name}: frame {first + at} was refused")
         judge(report, scene, frames, gap(times), outs, first)

@@ -493,7 +493,7 @@ def pair_calls() -> list[Call]:
                 "times": [0.0, 1e-3],
             },
         ),
-        "simulate": (so, {"tracker": so.Tracker(SPHERE, BOX, 1e-3), **along}),
+        "track": (so, {"tracker": so.Tracker(SPHERE, BOX, 1e-3), **along}),
         "time_of_impact": (so, {**moved, "start": 0.0, "tolerance": 1e-9, "clearance": 0.0}),
         "voronoi_regions": (so, {"body": DISC, "reach": 1.0, "tolerance": 1e-6}),
         "witness_set": (

@@ -63,4 +63,4 @@ def test_a_missing_peer_is_told(monkeypatch):
     missing = {row.contender: row.missing for row in rows if row.missing}
     assert len(missing) >= 5
     for name in ("Coal", "MuJoCo", "python-fcl", "OpenCASCADE"):
-        assert "standoff[peers]" in missing[name]
+        assert "standoff-studies[peers]" in missing[name]

@@ -122,7 +122,7 @@ def folders_and_files(page: str) -> set[str]:
 
 @pytest.mark.parametrize("page", ["docs/architecture.md", "docs/wheels.md", "CONTRIBUTING.md"])
 def test_folders_and_files_that_a_page_names_exist(page: str) -> None:
-    places = (ROOT, ROOT / "src", ROOT / "src/standoff")
+    places = (ROOT, ROOT / "studies/src", ROOT / "src/standoff")
     named = folders_and_files(page)
     assert len(named) > 4
     assert not [name for name in sorted(named) if not any((x / name).exists() for x in places)]

@@ -262,7 +262,7 @@ assert standoff.feedback.Linear
 
 @pytest.mark.parametrize("package", FILES)
 def test_a_module_never_takes_the_place_of_a_public_name(package: str) -> None:
-    """Importing `recording.simulate` would bind it in its package, where it is a function."""
+    """Importing `recording.track` would bind it in its package, where it is a function."""
     same = [
         name for home, name in declared(FILES[package]).on_demand if home == f"{package}.{name}"
     ]
@@ -284,10 +284,10 @@ for name in {same}:
 
 def test_a_name_put_in_its_place_stays(monkeypatch: pytest.MonkeyPatch) -> None:
     stand_in: Any = object()
-    monkeypatch.setattr(recording, "simulate", stand_in)
-    assert recording.simulate is stand_in
+    monkeypatch.setattr(recording, "track", stand_in)
+    assert recording.track is stand_in
     monkeypatch.undo()
-    assert recording.simulate is so.simulate
+    assert recording.track is so.track
 
 
 def test_threads_may_ask_for_names_at_once() -> None:
@@ -326,16 +326,6 @@ def test_the_front_is_small() -> None:
     assert {name for name in dir(so.shapes) if not name.startswith("__")} == set(so.shapes.__all__)
 
 
-@pytest.mark.parametrize(
-    ("name", "home"),
-    [("Edge", "bodies"), ("record_point", "points"), ("Impact", "impact"), ("Counts", "tracking")],
-)
-def test_a_name_that_left_the_front_says_where_it_is(name: str, home: str) -> None:
-    with pytest.raises(AttributeError, match=rf"write `from standoff\.{home} import {name}`"):
-        getattr(so, name)
-    assert getattr(import_module(f"standoff.{home}"), name).__name__ == name
-
-
 def test_what_never_was_is_no_attribute() -> None:
     for module in (so, so.points, so.shapes):
         assert not hasattr(module, "no_such_name")
@@ -364,6 +354,6 @@ def test_tab_completion_shows_no_internals_of_an_object(made: object, shown: str
 
 def test_what_is_hidden_is_there() -> None:
     tracker = so.Tracker(BOX, BOX)
-    assert tracker.packed[0] is BOX.ints
-    assert "packed" not in dir(tracker)
+    assert tracker.table.arrays[0] is BOX.ints
+    assert "table" not in dir(tracker)
     assert so.PredictorCorrector().only_one is not None

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import standoff as so
+from standoff_studies.paper import normals_system
 from standoff_studies.paper.catalogue import chosen
 
 ROOT = Path(__file__).parents[1]
@@ -55,7 +56,8 @@ def test_its_kernels_cite_the_equations() -> None:
         assert f"kernel `{kernel}`" in PAGE
         body = source[source.index(f"def {kernel}(") :]
         assert equation in body[: body.index("\n@")]
-    assert "def normals_residual(" in (KERNELS / "pair" / "normals_system.py").read_text("utf-8")
+    assert "`normals_residual`" in PAGE
+    assert callable(normals_system.normals_residual)
 
 
 def test_its_figures_can_be_made_and_all_are_there() -> None:

@@ -19,7 +19,7 @@ PLACES = [name for name in MODULES if name.endswith("tolerances.py")]
 
 # Small numbers outside of these files that are no tolerances.
 NO_TOLERANCE = {
-    ("geometry/validation.py", "1e-50"): "the least length that a user may give",
+    ("checks/numbers.py", "1e-50"): "the least length that a user may give",
     ("recording/plot.py", "1e-16"): "where an axis without values begins",
     ("scene/settings.py", "1e-3"): "an option's default, a time",
     ("simulation/simulated_device.py", "1e-4"): "an option's default, an inertia",

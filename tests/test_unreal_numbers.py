@@ -28,7 +28,7 @@ def test_many_frames_say_what_a_step_says(kind: type) -> None:
     tracker = so.Tracker(SPHERE, BOX)
     state = tracker.start(np.eye(4), so.Pose(np.eye(3), [3.0, 0.0, 0.0]))
     given = np.tile(np.eye(4), (2, 1, 1)).astype(kind)
-    words = "is (array|.*)(.|\n)*: give (.|\n)*numbers, all of them real|all of them real numbers"
+    words = "is not numeric: (.|\n)*numbers, all of them real|all of them real numbers"
     for refused in (
         lambda: tracker.step(state, given[0], np.eye(4)),
         lambda: tracker.run(state, given, np.eye(4)),

@@ -174,8 +174,8 @@ def after_the_ways(d: Drawing) -> None:
     answer = "the answer in world axes, its status and rates; what the next frame needs"
     stage(d, 20, 800, 920, answer, "frame/answer.py, prediction.py")
     border(d, 868, "compiled by Numba: kernels/", "Python")
-    last = "still no bound? prove an overlap; then numbers become values and events"
-    stage(d, 20, 888, 720, last, "tracking/overlap_proof.py, proximity.py", PYTHON)
+    last = "numbers become values and events"
+    stage(d, 20, 888, 720, last, "tracking/proximity.py", PYTHON)
     d.arrow([(380, 848), (380, 888)])
     d.arrow([(380, 936), (380, 956)])
     d.text(380, 976, "(TrackerState, Proximity)", 14, mono="yes", bold="yes", anchor="middle")

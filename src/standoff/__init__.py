@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from standoff.impact import time_of_impact
     from standoff.motion import Pose, Poses, Twist
     from standoff.points import PointTracker
-    from standoff.recording import Recording, open_recording, simulate
+    from standoff.recording import Recording, open_recording, track
     from standoff.tracking import (
         Event,
         Feature,
@@ -75,7 +75,7 @@ else:
             ),
             "standoff.impact": ("time_of_impact",),
             "standoff.points": ("PointTracker",),
-            "standoff.recording": ("Recording", "open_recording", "simulate"),
+            "standoff.recording": ("Recording", "open_recording", "track"),
             "standoff.view": ("view",),
         },
         modules=(
@@ -94,52 +94,6 @@ else:
             "tracking",
             "voronoi",
         ),
-        moved={
-            "standoff.bodies": (
-                "Apex",
-                "Edge",
-                "Face",
-            ),
-            "standoff.impact": (
-                "Impact",
-                "ImpactStatus",
-            ),
-            "standoff.points": (
-                "DepthMinimum",
-                "Minimum",
-                "PointCounts",
-                "PointEvent",
-                "PointProximity",
-                "PointRecording",
-                "PointState",
-                "PointVisit",
-                "SpatialPointProximity",
-                "SpatialPointState",
-                "SpatialPointTracker",
-                "record_point",
-            ),
-            "standoff.tracking": (
-                "Counts",
-                "FrameBuffer",
-                "PairSystem",
-                "pair_system",
-            ),
-            "standoff.recording": (
-                "RecordedEvent",
-                "RunInfo",
-            ),
-            "standoff.automaton": ("Visit",),
-            "standoff.kernels.pair": ("kernels.system",),
-            "standoff_studies": ("accuracy", "paper", "soak"),
-            "standoff.voronoi": (
-                "BranchEnd",
-                "MedialBranch",
-                "NormalCone",
-                "RegionBoundary",
-                "VoronoiError",
-                "VoronoiRegions",
-            ),
-        },
     )
 
 __all__ = [
@@ -168,8 +122,8 @@ __all__ = [
     "open_recording",
     "plot",
     "shapes",
-    "simulate",
     "time_of_impact",
+    "track",
     "view",
     "voronoi_regions",
     "witness_set",

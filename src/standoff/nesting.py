@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from standoff.real_numbers import shown
+from standoff.checks.real_numbers import shown
 
 DEEPEST_NESTING = 50
 """Most lists and tables in one another. A scene needs seven: bodies, one body, its patches, one

@@ -10,32 +10,8 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from importlib.util import find_spec
-from types import MappingProxyType, ModuleType
+from types import ModuleType
 from typing import Any
-
-
-class _Moved:
-    """Finds no module: says of a name of version 0.1 where it is now.
-
-    It stands last among the finders, so that it is asked only for what is nowhere else:
-    ``from standoff import Edge`` or ``import standoff.paper``, which end without ``__getattr__``.
-    """
-
-    @staticmethod
-    def find_spec(name: str, path: Any = None, target: Any = None) -> None:
-        if name in _MOVED:
-            raise ImportError(_moved_to(name), name=name)
-
-
-_MOVED: dict[str, str] = {}
-"""By full name, the package where it is now."""
-
-sys.meta_path.append(_Moved)
-
-
-def _moved_to(name: str) -> str:
-    home, last = _MOVED[name], name.rpartition(".")[2]
-    return f"{name} is {home}.{last} since version 0.2: write `from {home} import {last}`."
 
 
 class _Package(ModuleType):
@@ -55,7 +31,6 @@ def on_demand(
     names: Mapping[str, Sequence[str]],
     *,
     modules: Sequence[str] = (),
-    moved: Mapping[str, Sequence[str]] = MappingProxyType({}),
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
     """Return a package's ``__getattr__`` and ``__dir__``.
 
@@ -65,9 +40,7 @@ def on_demand(
     names : by module, what the package hands out of it. The package's own modules, which are
         handed out as well, need no entry.
     modules : those of its own modules that are public: what `dir` tells besides `names`.
-    moved : by package, names that were in this one in version 0.1 and that are there now.
     """
-    _MOVED.update({f"{package}.{name}": home for home, group in moved.items() for name in group})
     homes = {name: module for module, group in names.items() for name in group}
     this = sys.modules[package]
     vars(this)["_homes"] = homes
@@ -79,8 +52,6 @@ def on_demand(
             setattr(this, name, value)
             return value
         module = f"{package}.{name}"
-        if module in _MOVED:
-            raise AttributeError(_moved_to(module))
         # An import binds a module in its package itself.
         if name.isidentifier() and not name.startswith("_") and find_spec(module) is not None:
             return import_module(module)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from standoff.bodies.body import Body
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError, not_installed
 from standoff.frameworks import ambient
-from standoff.real_numbers import shown
 
 try:
     import torch

@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import BinaryIO
 
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.real_numbers import shown
 
 Writer = Callable[[BinaryIO], object]
 """Writes the content of one file to the stream that it is given."""

@@ -17,9 +17,6 @@ from public_calls import SHAPES
 from standoff import Body, shapes
 from standoff.geometry import Line, Plane
 from standoff.motion import ConstantTwist
-from standoff.scene import SceneError, load_scene
-from standoff.tracking.inputs import flat_pose
-from standoff.tracking.overlap_proof import cores_overlap
 
 HOME = np.eye(4)
 TETRAHEDRON = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]]
@@ -49,20 +46,6 @@ SPELLINGS: list[tuple[Callable[[], Body], Callable[[], Body]]] = [
 ]
 """Two calls each that make the same body."""
 
-OLD: list[tuple[Callable[..., Body], dict[str, Any], str]] = [
-    (shapes.sphere, {"r": 1}, "radius="),
-    (shapes.capsule, {"r": 1, "length": 2}, "radius="),
-    (shapes.cylinder, {"radius": 1, "length": 2}, "height="),
-    (shapes.cone, {"r": 1, "height": 2}, "radius="),
-    (shapes.box, {"x": 1, "y": 2, "z": 3}, r"size=\(x, y, z\)"),
-    (shapes.ellipsoid, {"a": 1, "b": 2, "c": 3}, r"semi_axes=\(a, b, c\)"),
-    (shapes.superellipsoid, {"semi_axes": (1, 1, 1), "e1": 1}, r"exponents=\(e1, e2\)"),
-    (shapes.planar_loop, {"curves": TRIANGLE, "radius": 0.1}, "rounding="),
-    (Body.from_brep, {"vertices": [[0, 0, 0]], "radius": 0.1}, "rounding="),
-    (Body.from_patches, {"patches": [], "radius": 0.1}, "rounding="),
-]
-"""Calls of version 0.1, and what their error says to write."""
-
 GROWING = SHAPES.keys() - {"sphere_atlas", "box", "rounded_polytope", "planar_loop"}
 """Shapes that a rounding makes larger, but for the planar one."""
 
@@ -72,14 +55,6 @@ def test_positions_and_names_make_the_same_body(
     one: Callable[[], Body], other: Callable[[], Body]
 ) -> None:
     assert one().digest == other().digest
-
-
-@pytest.mark.parametrize(("make", "arguments", "new"), OLD)
-def test_old_keywords_say_the_new_ones(
-    make: Callable[..., Body], arguments: dict[str, Any], new: str
-) -> None:
-    with pytest.raises(TypeError, match=rf"0\.1: write .*{new}"):
-        make(**arguments)
 
 
 @pytest.mark.parametrize(
@@ -113,22 +88,6 @@ def test_arguments_missing_or_given_twice(make: Callable[[], Body], message: str
 def test_numbers_at_fault_are_named(make: Callable[[], Body], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         make()
-
-
-@pytest.mark.parametrize(
-    ("table", "key", "new"),
-    [
-        ('shape = "cylinder"\nradius = 1\nlength = 2', "length", "height"),
-        ('shape = "planar_loop"\ncurves = []\nradius = 1', "radius", "rounding"),
-        ('shape = "patches"\nfile = "x.json"\nradius = 1', "radius", "rounding"),
-    ],
-)
-def test_old_scene_keys_say_the_new_ones(tmp_path: Any, table: str, key: str, new: str) -> None:
-    file = tmp_path / "scene.toml"
-    file.write_text(f"version = 1\n[bodies.a]\n{table}\n")
-    with pytest.raises(SceneError, match=f"write '{new}'") as caught:
-        load_scene(file)
-    assert caught.value.key == f"bodies.a.{key}"
 
 
 def test_every_shape_takes_a_rounding() -> None:
@@ -243,16 +202,6 @@ def test_a_box_sinks_into_a_tilted_half_space(rng: np.random.Generator) -> None:
 def _random_turn(rng: np.random.Generator) -> tuple[Any, Any]:
     q = rng.normal(size=4)
     return q / np.linalg.norm(q), np.zeros(3)
-
-
-def test_an_overlap_with_a_tilted_half_space_is_proven() -> None:
-    """The proof that decides doubtful pairs: just inside, and just outside, of either."""
-    normal, offset, ball = np.array([1.0, 2.0, 2.0]) / 3.0, 0.7, shapes.point()
-    wall, home = shapes.halfspace(normal, offset), flat_pose(HOME)
-    for height in (-1e-6, 1e-6):
-        there = flat_pose((np.eye(3), (offset + height) * normal + [0.0, 1.0, -1.0]))
-        assert cores_overlap(wall, ball, home, there) is (height < 0.0)
-        assert cores_overlap(ball, wall, there, home) is (height < 0.0)
 
 
 def test_a_ball_falls_on_a_tilted_half_space() -> None:

@@ -119,4 +119,4 @@ def test_a_missing_peer_is_named_with_its_extra(
     monkeypatch.setitem(sys.modules, package, None)
     ended = standoff("accuracy", "sphere", "NURBS ellipsoid", "--cases", 1, "--peers")
     assert ended.code == 2
-    assert "standoff[peers]" in ended.err
+    assert "standoff-studies[peers]" in ended.err

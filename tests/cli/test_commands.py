@@ -203,7 +203,7 @@ def test_options_take_the_place_of_the_scene_s(standoff: Standoff, passing: Path
         (["--law", "paper", "--gain", "nan"], "--gain: must be a finite number, got nan"),
         (["--law", "paper", "--gain", "much"], "--gain: must be a number, got 'much'"),
         (["--gain", "30"], "--gain: is an option of the law 'paper', and law is 'predictor-c"),
-        (["--law", "paper", "--predictor", "none"], ": write feedforward = false"),
+        (["--law", "paper", "--predictor", "none"], "of the law 'predictor-corrector', and law"),
         (["--deadline", "2.5"], "--deadline: must be a whole number above zero, got 2.5"),
         (["--law", "paper", "--feedforward", "no"], "must be true or false, got 'no'"),
         (["--step", "0"], "--step: must be above zero, got 0"),

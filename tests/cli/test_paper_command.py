@@ -153,28 +153,6 @@ def test_files_that_cannot_be_written_have_their_code(
     assert "No space left on device" in ended.err
 
 
-def test_a_missing_library_is_named_with_its_extra(tmp_path: Path) -> None:
-    """In a process of its own, where none has been imported yet."""
-    code = (
-        "import sys; from standoff.cli import main\n"
-        "for library in ('matplotlib', 'pyarrow', 'PIL', 'jinja2'):\n"
-        "    sys.modules[library] = None\n"
-        "    print(main(['paper', '1', '-o', 'figures']))\n"
-        "    del sys.modules[library]"
-    )
-    ended = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path
-    )
-    assert ended.stdout.split() == ["2"] * 4
-    announced = "standoff: making figures 1 and animations of the paper into figures ..."
-    assert [line for line in ended.stderr.splitlines() if line != announced] == [
-        f"standoff: {library} is not installed; install the extra 'cli': "
-        "pip install 'standoff[cli]'"
-        for library in ("matplotlib", "pyarrow", "PIL", "jinja2")
-    ]
-    assert not list(tmp_path.iterdir())
-
-
 def test_other_commands_do_not_import_what_only_the_figures_need() -> None:
     code = (
         "import sys\n"

@@ -85,7 +85,7 @@ def test_a_signal_ends_it_cleanly(kind: signal.Signals) -> None:
         (("--device", "joystick"), "--device joystick: give path, simulated"),
         (("--device", "none.parquet"), "none.parquet"),
         (("--device", "haply=ws://127.0.0.1:1"), "no Inverse Service answers"),
-        (("--seconds", "0"), "seconds is 0.0"),
+        (("--seconds", "0"), "seconds = 0.0"),
     ],
 )
 def test_what_cannot_serve_is_refused(

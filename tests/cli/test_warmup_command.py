@@ -36,7 +36,7 @@ def two(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[], None]:
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
 
     def put() -> None:
-        made = [entry(READ, work="bodies")(mistyped), entry(REAL, work="study")(twice)]
+        made = [entry(READ, work="bodies")(mistyped), entry(REAL, work="runs")(twice)]
         monkeypatch.setattr(warmup, "every_entry", lambda: iter(made))
 
     put()
@@ -88,7 +88,7 @@ def test_code_that_cannot_be_kept_is_told(
         def get_cache_path(self) -> str:
             return str(tmp_path / "none")
 
-    made = entry(REAL, work="study")(twice)
+    made = entry(REAL, work="runs")(twice)
     monkeypatch.setattr(warmup, "every_entry", lambda: iter([made]))
     monkeypatch.setattr(cache._Modules, "_locator_classes", (Full,))
     ended = standoff("warmup")
@@ -101,7 +101,7 @@ def test_code_that_cannot_be_kept_is_told(
 def test_an_interrupted_warmup_says_how_far_it_came(
     standoff: Standoff, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    first, second = entry(REAL, work="study")(twice), entry(REAL, work="study")(twice)
+    first, second = entry(REAL, work="runs")(twice), entry(REAL, work="runs")(twice)
 
     def interrupt() -> None:
         raise KeyboardInterrupt

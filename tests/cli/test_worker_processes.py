@@ -66,7 +66,7 @@ def test_the_paper_s_have_the_parent_compile_what_they_call_and_no_more(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
-    made = entry(REAL, work="study")(twice)
+    made = entry(REAL, work="runs")(twice)
     near, far = multiprocessing.Pipe()
     monkeypatch.setattr(cache, "compiled_elsewhere", paper.asking(near))
     answering = threading.Thread(target=lambda: words.extend(asked(far)))

@@ -143,7 +143,7 @@ def test_the_skin_of_a_swept_body_adds_to_the_distance() -> None:
     [
         ({"error": 0.0}, "error = 0.0: must be positive"),
         ({"speed": -1.0}, "speed = -1.0: must be zero or positive"),
-        ({"spin": math.nan}, "spin has a NaN"),
+        ({"spin": math.nan}, "spin = nan"),
         ({"distance": -0.1}, "distance = -0.1"),
         ({"distance": (0.5, 0.2)}, "give \\(least, most\\)"),
     ],

@@ -9,7 +9,7 @@ import numpy as np
 
 import standoff as so
 from families.masked import numeric
-from standoff.real_numbers import shape_of
+from standoff.checks.real_numbers import shape_of
 
 
 def unreal_versions(value: Any) -> Iterator[tuple[str, Any]]:

@@ -112,7 +112,7 @@ def test_or_an_error() -> None:
 
 
 def test_what_cannot_serve_is_refused() -> None:
-    with pytest.raises(StandoffError, match="Unknown undefined 'zero'"):
+    with pytest.raises(StandoffError, match="undefined = 'zero': give 'nan' or 'raise'"):
         ambient.Pair.of(BOX, BOX, "zero")
     with pytest.raises(TypeError, match="b = 3 is no body"):
         ambient.Pair.of(BOX, 3, "nan")  # type: ignore[arg-type]

@@ -214,11 +214,11 @@ def test_another_process_compiles_anew(tmp_path):
     [
         (
             "uu + 1",
-            r"Unknown symbol 'uu' in z = uu \+ 1 at position 1\. Did you mean u\? Known: u,",
+            r"Unknown symbol 'uu' in z = uu \+ 1 at position 1\. Did you mean 'u'\? Known: u,",
         ),
         ("1 + radius*u", r"'radius'.*position 5.*Known: u, v, bend, pi, E, sin"),
-        ("bent*u", r"Did you mean bend\?"),
-        ("sine(u)", r"Unknown symbol 'sine'.*Did you mean sin\?"),
+        ("bent*u", r"Did you mean 'bend'\?"),
+        ("sine(u)", r"Unknown symbol 'sine'.*Did you mean 'sin'\?"),
         ("u + (v", r"syntax error at position 5: '\(' was never closed"),
         ("u +* v", "syntax error at position 4"),
         ("u v", "syntax error at position 3"),

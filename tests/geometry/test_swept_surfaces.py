@@ -151,7 +151,7 @@ def test_knots_of_a_profile_are_breaks():
         (lambda: Revolution(Line((0, 0, 0), (0, 0, 1))), "meets or passes the axis at"),
         (lambda: Revolution(ARC, 0, 7), "from angle 0.0 to 7.0: give 0 < last - first <= 2 pi"),
         (lambda: Revolution(ARC, 1, 1), "from angle 1.0 to 1.0: give"),
-        (lambda: Revolution(ARC, 0, np.nan), "last has a NaN"),
+        (lambda: Revolution(ARC, 0, np.nan), "last = nan"),
         (lambda: Revolution(Plane(np.eye(3), np.zeros(3))), "give a Curve as its profile"),
         (lambda: Extrusion(ARC, (0, 0, 0)), r"along the direction \(0, 0, 0\)"),
         (lambda: Extrusion(ARC, (0, np.inf, 0)), "direction has a NaN or infinite"),

@@ -377,7 +377,7 @@ LACKING_ON_WINDOWS = {
 
 def test_only_the_rights_of_folders_need_posix():
     found = set()
-    for file in (ROOT / "src").rglob("*.py"):
+    for file in (*(ROOT / "src").rglob("*.py"), *(ROOT / "studies").rglob("*.py")):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             names = []
             if isinstance(node, ast.Import):

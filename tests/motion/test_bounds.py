@@ -81,7 +81,7 @@ def test_samples_bound_one_interval_only() -> None:
 )
 def test_breaks_are_a_sequence_of_times(breaks: Any) -> None:
     told = dict.fromkeys(("speed", "acceleration", "angular_speed", "angular_acceleration"), 1.0)
-    with pytest.raises(ValueError, match=r"^breaks is "):
+    with pytest.raises(ValueError, match=r"^breaks (is|has) "):
         Bounded(Fixed(Pose.identity()), **told, breaks=breaks)
     assert list(Bounded(Fixed(Pose.identity()), **told).breaks(0.0, 1.0)) == []
 
@@ -106,7 +106,7 @@ def test_bad_bounds_are_refused() -> None:
     good = {"speed": 1.0, "acceleration": 1.0, "angular_speed": 1.0, "angular_acceleration": 1.0}
     with pytest.raises(TypeError, match="pose\\(t\\) and twist\\(t\\)"):
         Bounded(3.0, **good)
-    with pytest.raises(ValueError, match="acceleration is -1"):
+    with pytest.raises(ValueError, match="acceleration = -1"):
         Bounded(Fixed(Pose.identity()), **{**good, "acceleration": -1.0})
     with pytest.raises(TypeError, match="wrap it in standoff"):
         bounds_of(object(), 0.0, 1.0, np.zeros(3))

@@ -82,7 +82,7 @@ def test_every_pose_is_a_pose(path: Path) -> None:
 @pytest.mark.parametrize("t", [math.nan, math.inf, "noon"])
 def test_time_must_be_a_finite_number(path: Path, t: Any) -> None:
     for ask in (path.pose, path.twist):
-        with pytest.raises(ValueError, match="t is "):
+        with pytest.raises(ValueError, match=r"^t = "):
             ask(t)
 
 
@@ -183,17 +183,17 @@ def test_offset_follows_any_path_and_its_times() -> None:
         (lambda: Fixed((1.0, 0.0, 0.0, 0.0)), "from_wxyz"),
         (lambda: ConstantTwist(PLACED, np.zeros(5)), "not a twist"),
         (lambda: Screw(PLACED, (0.0, 0.0, 0.0)), r"axis is \[0\. 0\. 0\.\]: .*above zero"),
-        (lambda: Screw(PLACED, TILTED, pitch=math.nan), "pitch is nan"),
-        (lambda: Screw(PLACED, TILTED, angular_rate=math.inf), "angular_rate is inf"),
+        (lambda: Screw(PLACED, TILTED, pitch=math.nan), "pitch = nan"),
+        (lambda: Screw(PLACED, TILTED, angular_rate=math.inf), "angular_rate = inf"),
         (lambda: Screw(PLACED, TILTED, point=(1.0, 2.0)), "point has shape"),
-        (lambda: Helix(0.0, 1.0, 1.0), r"radius is 0\.0: .*above zero"),
-        (lambda: Helix(-1.0, 1.0, 1.0), r"radius is -1\.0: .*above zero"),
-        (lambda: Helix(1.0, "high", 1.0), "pitch is 'high'"),
+        (lambda: Helix(0.0, 1.0, 1.0), r"radius = 0\.0: must be pos"),
+        (lambda: Helix(-1.0, 1.0, 1.0), r"radius = -1\.0: must be pos"),
+        (lambda: Helix(1.0, "high", 1.0), "pitch = 'high'"),
         (lambda: Helix(1.0, 1.0, 1.0, axis=(0, 0, 0)), "axis is"),
-        (lambda: Helix(1.0, 1.0, 1.0, orientation="loose"), r"'loose': give \"fixed\" or"),
-        (lambda: Spiral(-0.1, 1.0, 1.0), r"radius is -0\.1: .*zero or above"),
+        (lambda: Helix(1.0, 1.0, 1.0, orientation="loose"), "'loose': give 'fixed' or"),
+        (lambda: Spiral(-0.1, 1.0, 1.0), r"radius = -0\.1: must be zero or pos"),
         (lambda: Spiral(1.0, 1.0, 1.0, centre=(0, 0, 0)), r"centre has shape \(3,\).*2 numbers"),
-        (lambda: Spiral(1.0, 1.0, 1.0, orientation="loose"), r"'loose': give \"fixed\" or"),
+        (lambda: Spiral(1.0, 1.0, 1.0, orientation="loose"), "'loose': give 'fixed' or"),
         (lambda: Offset(Fixed(PLACED), np.eye(3)), "not a pose"),
     ],
 )

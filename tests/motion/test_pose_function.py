@@ -146,9 +146,9 @@ def test_paths_of_other_paths_take_functions() -> None:
     [
         ({"pose": 3.0}, TypeError, r"pose is 3\.0: give a function of the time"),
         ({"twist": np.zeros(6)}, TypeError, r"twist is .*: give a function of the time"),
-        ({"step": 0.0}, ValueError, r"step is 0\.0: give a time above zero"),
-        ({"step": math.nan}, ValueError, "step is nan"),
-        ({"start": math.nan}, ValueError, "start is nan"),
+        ({"step": 0.0}, ValueError, r"step = 0\.0: must be positive"),
+        ({"step": math.nan}, ValueError, "step = nan"),
+        ({"start": math.nan}, ValueError, "start = nan"),
         ({"start": 1.0, "end": 1.0}, ValueError, "the end comes after the start"),
         ({"start": 2.0, "end": -math.inf}, ValueError, "the end comes after the start"),
     ],
@@ -171,5 +171,5 @@ def test_what_the_function_returns_is_named_with_its_time() -> None:
         PoseFunction(lambda t: None).pose(0.25)  # type: ignore[arg-type, return-value]
     with pytest.raises(ValueError, match=r"at t = 0\.25: not a twist: .*give a Twist"):
         PoseFunction(SCREW.pose, lambda t: np.zeros(5)).twist(0.25)
-    with pytest.raises(ValueError, match="t is nan"):
+    with pytest.raises(ValueError, match="t = nan"):
         PoseFunction(SCREW.pose).pose(math.nan)

@@ -199,5 +199,5 @@ def test_what_is_not_told_of_a_path_of_ones_own_is_its_distance() -> None:
     assert bounds_of(path, 1.0, 4.0, np.ones(3)).lengths == 1e6 + 8.0
     path = Bounded(far, speed=2.0, **told, lengths=3e7)
     assert bounds_of(path, 1.0, 4.0, np.ones(3)).lengths == 3e7
-    with pytest.raises(ValueError, match=r"lengths is -1\.0: a bound is zero or above"):
+    with pytest.raises(ValueError, match=r"lengths = -1\.0: must be zero or positive"):
         Bounded(far, speed=2.0, **told, lengths=-1.0)

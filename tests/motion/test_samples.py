@@ -64,7 +64,7 @@ def test_starting_at_shifts_the_times_alone() -> None:
     np.testing.assert_array_equal(shifted.times, [10.0, 11.5, 11.75])
     np.testing.assert_allclose(shifted.pose(11.6).matrix, SAMPLES.pose(0.6).matrix, atol=1e-14)
     assert (SAMPLES.start, shifted.start, shifted.end) == (-1.0, 10.0, 11.75)
-    with pytest.raises(ValueError, match="start is nan"):
+    with pytest.raises(ValueError, match="start = nan"):
         SAMPLES.starting_at(math.nan)
 
 
@@ -75,8 +75,6 @@ def test_repaired_poses_are_counted() -> None:
     assert samples.starting_at(5.0).repaired == 2
     assert SAMPLES.repaired == 0
     assert [pose.repaired for pose in samples.poses] == [True, False, True]
-    with pytest.raises(AttributeError, match=r"PoseSamples\.normalised is the .*repaired"):
-        samples.normalised  # noqa: B018
     single = PoseSamples([0.0, 1.0, 2.0], MATRICES.astype(np.float32))
     assert single.repaired == 2  # the identity is exact
     assert single.starting_at(1.0).repaired == 2
@@ -134,8 +132,8 @@ def changed(index: int, place: tuple[int, int], value: float) -> np.ndarray:
     [
         (changed(1, (0, 0), math.nan), r"pose 1: .*nan.*finite"),
         (changed(1, (0, 3), math.inf), r"pose 1: .*inf.*finite"),
-        (changed(1, (0, 3), 2e100), r"pose 1: .*beyond 1e\+100"),
-        (changed(1, (0, 0), 1e200), r"pose 1: .*beyond 1e\+100"),
+        (changed(1, (0, 3), 2e100), r"pose 1: .*beyond 1e\+50"),
+        (changed(1, (0, 0), 1e200), r"pose 1: .*beyond 1e\+50"),
         (changed(0, (0, 0), 1.0), r"pose 0: rotation .*not orthonormal"),
         (changed(1, (1, 1), -1.0), r"pose 1: rotation .*mirrored"),
         (changed(1, (3, 0), 1e-8), r"pose 1: the last row"),
@@ -205,13 +203,13 @@ def test_ten_thousand_matrices_are_read_at_once() -> None:
         ([0.0, 2.0, 1.0], POSES, r"times\[2\] = 1\.0 follows times\[1\] = 2\.0; sort"),
         ([0.0, 0.0, 1.0], POSES, r"times\[1\] = 0\.0 follows times\[0\] = 0\.0"),
         ([0.0, 1.0], POSES, r"times has shape \(2,\).*give 3 numbers"),
-        ([0.0, math.nan, 1.0], POSES, r"times is .*nan.*finite"),
+        ([0.0, math.nan, 1.0], POSES, r"times has a NaN or infinite number: .*nan"),
         ([0.0], POSES[:1], "1 samples make no motion"),
         ([], [], "0 samples make no motion"),
         ([0.0, 1.0], [POSES[0], np.eye(3)], r"pose 1: not a pose"),
         ([0.0, 1.0], [POSES[1], Pose.exp([0.0, math.pi, 0.0])], r"poses 0 and 1 .*half turn"),
-        ([0.0, 1e-100], [POSES[1], POSES[2]], r"poses 0 and 1 .*too far apart .*beyond 1e\+100"),
-        ([0.0, 5e-324], [POSES[1], POSES[2]], r"poses 0 and 1 .*too far apart .*beyond 1e\+100"),
+        ([0.0, 1e-100], [POSES[1], POSES[2]], r"poses 0 and 1 .*too far apart .*beyond 1e\+50"),
+        ([0.0, 5e-324], [POSES[1], POSES[2]], r"poses 0 and 1 .*too far apart .*beyond 1e\+50"),
     ],
 )
 def test_bad_samples_are_refused(times: Any, poses: Any, message: str) -> None:

@@ -93,8 +93,8 @@ def test_carry_in_world_axes_goes_straight_while_turning(v: np.ndarray, omega: n
         (np.zeros((3, 2)), r"not a twist: shape \(3, 2\).*v first"),
         ([[1.0], [2.0, 3.0]], r"not a twist: .*v first"),
         ("fast", r"not a twist: .*v first"),
-        ((V, OMEGA * float("nan")), r"omega is .*nan.*finite"),
-        ((V * float("inf"), OMEGA), r"v is .*inf.*finite"),
+        ((V, OMEGA * float("nan")), r"omega has a NaN or infinite number: .*nan"),
+        ((V * float("inf"), OMEGA), r"v has a NaN or infinite number: .*inf"),
     ],
 )
 def test_what_is_no_twist_is_refused(value: Any, message: str) -> None:
@@ -103,11 +103,11 @@ def test_what_is_no_twist_is_refused(value: Any, message: str) -> None:
 
 
 def test_unknown_frame_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"frame is 'spatial': give \"world\" or \"body\""):
+    with pytest.raises(ValueError, match="frame = 'spatial': give 'world' or 'body'"):
         Twist(V, OMEGA, frame="spatial")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("duration", [0.0, -1.0, float("nan"), "long"])
 def test_between_refuses_a_duration_that_is_not_positive(duration: Any) -> None:
-    with pytest.raises(ValueError, match="duration is"):
+    with pytest.raises(ValueError, match="duration = "):
         Twist.between(PLACED, PLACED, duration)

@@ -61,7 +61,7 @@ def test_a_value_without_words_is_told_by_its_name(monkeypatch: pytest.MonkeyPat
 
 def test_a_recording_has_the_words_of_its_tracker() -> None:
     ran = tracker(solve="ranked", reset="foot")
-    assert law_words(so.simulate(ran, *paths(), 0.01)) == law_words(ran)
+    assert law_words(so.track(ran, *paths(), 0.01)) == law_words(ran)
 
 
 def test_what_differs_is_left_to_the_statement() -> None:
@@ -89,7 +89,7 @@ def paths() -> tuple[Any, Any]:
 
 
 def part(law: so.PaperLaw | so.PredictorCorrector = PRINTED, **counts: int) -> Part:
-    found = Part.of(so.simulate(so.Tracker(BALL, POINT, 1e-3, law=law), *paths(), 0.01))
+    found = Part.of(so.track(so.Tracker(BALL, POINT, 1e-3, law=law), *paths(), 0.01))
     return found._replace(counts=found.counts._replace(**counts))
 
 

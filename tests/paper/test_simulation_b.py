@@ -196,7 +196,7 @@ def test_nothing_is_injected():
     for curve in range(3):
         move = np.abs(np.diff(run.paper.curve_parameter[:100, curve]))
         assert move.max() < 0.05
-    assert run.printed.parallel.law.left_alone
+    assert run.printed.parallel.law.switching == "none"
     assert run.printed.outside.law == so.PaperLaw.as_printed(gain=25.0)
 
 

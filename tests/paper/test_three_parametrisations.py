@@ -7,8 +7,8 @@ import pytest
 
 import standoff as so
 from standoff.motion import Fixed, Pose, Twist
-from standoff.recording.simulate import track_along
 from standoff.recording.times import even_times
+from standoff.recording.track import track_along
 from standoff_studies.paper.convergence.lenses import PARAMETRISATIONS, lens
 from standoff_studies.paper.simulation_e.runs import PATH_B, SEMI_AXES
 

@@ -20,7 +20,7 @@ SMALL, BOX = so.shapes.box(0.3, 0.2, 0.25), so.shapes.box(1.0, 1.0, 1.0)
 @pytest.fixture(scope="module")
 def passing() -> so.Recording:
     path = straight((-1.5, 0.1, 0.8), (1.0, 0.05, 0.0))
-    return so.simulate(so.Tracker(SMALL, BOX, 1e-1), path, REST, 3.0)
+    return so.track(so.Tracker(SMALL, BOX, 1e-1), path, REST, 3.0)
 
 
 def test_a_gif_has_the_pictures_asked_for_and_moves(passing: so.Recording, tmp_path: Path) -> None:
@@ -36,7 +36,7 @@ def test_a_gif_has_the_pictures_asked_for_and_moves(passing: so.Recording, tmp_p
 
 
 def test_no_more_pictures_than_frames(passing: so.Recording, tmp_path: Path) -> None:
-    short = so.simulate(so.Tracker(SMALL, BOX, 1e-1), straight((-1.5, 0, 0), (1, 0, 0)), REST, 0.2)
+    short = so.track(so.Tracker(SMALL, BOX, 1e-1), straight((-1.5, 0, 0), (1, 0, 0)), REST, 0.2)
     short.animate(pictures=60).save(tmp_path / "run.gif", writer="pillow", dpi=30)
     with Image.open(tmp_path / "run.gif") as gif:
         assert gif.n_frames == len(short) == 3
@@ -49,7 +49,7 @@ def test_what_cannot_be_animated_says_why(passing: so.Recording, tmp_path: Path)
         copy.deepcopy(passing),
         pickle.loads(pickle.dumps(passing)),
     ):
-        with pytest.raises(ValueError, match=r"animate the one that so\.simulate returned"):
+        with pytest.raises(ValueError, match=r"animate the one that so\.track returned"):
             other.animate()
     with pytest.raises(ValueError, match="pictures = 0: must be a whole number of at least 1"):
         passing.animate(0)
@@ -60,7 +60,7 @@ def test_what_cannot_be_animated_says_why(passing: so.Recording, tmp_path: Path)
 def test_a_recording_of_a_function_can_be_stored() -> None:
     tracker = so.Tracker(SMALL, BOX, 1e-1)
     path = lambda t: so.Pose(np.eye(3), [2.0 + t, 0.0, 0.0])  # noqa: E731
-    recording = so.simulate(tracker, path, np.eye(4), 0.3)
+    recording = so.track(tracker, path, np.eye(4), 0.3)
     again = pickle.loads(pickle.dumps(recording))
     np.testing.assert_array_equal(again.distance, recording.distance)
     assert again.paths is None

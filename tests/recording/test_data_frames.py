@@ -18,7 +18,7 @@ SMALL, BOX = so.shapes.box(0.3, 0.2, 0.25), so.shapes.box(1.0, 1.0, 1.0)
 @pytest.fixture(scope="module")
 def passing() -> so.Recording:
     path = straight((-1.0, 0.1, 0.3), (1.0, 0.05, 0.0))
-    return so.simulate(so.Tracker(SMALL, BOX, 1e-1), path, REST, 2.0)
+    return so.track(so.Tracker(SMALL, BOX, 1e-1), path, REST, 2.0)
 
 
 def test_the_arrow_table_is_the_file(passing: so.Recording, tmp_path: Path) -> None:
@@ -60,6 +60,7 @@ def test_a_missing_library_is_named_with_its_extra(
     monkeypatch.setitem(sys.modules, library, None)
     module = {"pandas": "data_frame", "pyarrow": "file"}[library]
     monkeypatch.delitem(sys.modules, f"standoff.recording.{module}", raising=False)
+    monkeypatch.delitem(sys.modules, "standoff.parquet", raising=False)
     extra = {"pandas": "pandas", "pyarrow": "cli"}[library]
     with pytest.raises(ModuleNotFoundError, match=rf"pip install 'standoff\[{extra}\]'"):
         getattr(passing, call)()

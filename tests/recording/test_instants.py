@@ -26,7 +26,7 @@ def quadratic(a: float, b: float, c: float) -> list[float]:
 def test_a_point_past_a_box(dt: float) -> None:
     # The Voronoi planes of a unit box are at x, y = ±1/2: crossed at known instants.
     first, velocity = np.array([-1.0, -0.9, 0.8]), np.array([1.0, 0.77, 0.013])
-    recording = so.simulate(
+    recording = so.track(
         so.Tracker(POINT, so.shapes.box(1.0, 1.0, 1.0), dt), straight(first, velocity), REST, 2.0
     )
     crossings = sorted((side - first[k]) / velocity[k] for k in (0, 1) for side in (-0.5, 0.5))
@@ -46,7 +46,7 @@ def test_a_point_past_a_box(dt: float) -> None:
 def test_switches_within_one_frame_are_told_apart() -> None:
     box = so.shapes.box(1.0, 1.0, 1.0)
     path = straight((-1.0, -0.9, 0.8), (1.0, 0.77, 0.0))
-    recording = so.simulate(so.Tracker(POINT, box, 2.0), path, REST, 2.0)
+    recording = so.track(so.Tracker(POINT, box, 2.0), path, REST, 2.0)
     assert len(recording) == 2
     exact = [0.5, 0.4 / 0.77, 1.5, 1.4 / 0.77]
     np.testing.assert_allclose(switch_times(recording), exact, rtol=0.0, atol=1e-14)
@@ -58,13 +58,13 @@ def test_switches_within_one_frame_are_told_apart() -> None:
 def test_over_the_rim_of_a_cylinder() -> None:
     cylinder = so.shapes.cylinder(0.5, 1.0)
     x, y, vx, vy = -1.0, 0.1, 1.0, 0.05
-    recording = so.simulate(
+    recording = so.track(
         so.Tracker(POINT, cylinder, 1e-2), straight((x, y, 0.8), (vx, vy, 0.0)), REST, 2.0
     )
     exact = quadratic(vx * vx + vy * vy, 2.0 * (x * vx + y * vy), x * x + y * y - 0.25)
     np.testing.assert_allclose(switch_times(recording), exact, rtol=0.0, atol=1e-13)
     assert [event.target.kind for event in recording.events] == ["face", "edge"]
-    down = so.simulate(
+    down = so.track(
         so.Tracker(POINT, cylinder, 1e-2), straight((-0.6, 0.3, 1.0), (0, 0.05, -1)), REST, 2.0
     )
     np.testing.assert_allclose(switch_times(down), [0.5, 1.5], rtol=0.0, atol=1e-13)
@@ -89,7 +89,7 @@ def test_a_sphere_over_a_lens() -> None:
                     exact += [
                         t for t in quadratic(a, b, c) if (p + velocity * t) @ d < 0.0 <= t <= 4.0
                     ]
-    recording = so.simulate(
+    recording = so.track(
         so.Tracker(so.shapes.sphere(0.2), so.shapes.lens(1.0, 0.45), 5e-3),
         *(straight(first, velocity), REST, 4.0),
     )
@@ -104,9 +104,7 @@ def test_over_the_apex_of_a_cone() -> None:
     # A fan of directions leaves the apex: no single switching function, so its features are halved.
     radius, height, above = 0.5, 1.0, 0.2
     path = straight((-1.0, 0.0, height / 2.0 + above), (1.0, 0.0, 0.0))
-    recording = so.simulate(
-        so.Tracker(POINT, so.shapes.cone(radius, height), 1e-2), path, REST, 2.0
-    )
+    recording = so.track(so.Tracker(POINT, so.shapes.cone(radius, height), 1e-2), path, REST, 2.0)
     reach = above * height / radius
     times = switch_times(recording)
     np.testing.assert_allclose(times, [1.0 - reach, 1.0 + reach], rtol=0.0, atol=1e-9)
@@ -119,7 +117,7 @@ def test_a_point_round_a_polygon() -> None:
     corners = [(-0.5, -0.5, 0.0), (0.5, -0.5, 0.0), (0.5, 0.5, 0.0), (-0.5, 0.5, 0.0)]
     loop = so.shapes.planar_loop([Line(corners[k], corners[(k + 1) % 4]) for k in range(4)])
     spiral = Spiral(1.2, 0.05, 1.0)
-    recording = so.simulate(so.Tracker(POINT, loop, 0.02), spiral, REST, 6.0)
+    recording = so.track(so.Tracker(POINT, loop, 0.02), spiral, REST, 6.0)
     times = switch_times(recording)
     assert len(times) == 8
     for time in times.tolist():
@@ -131,8 +129,8 @@ def test_a_point_round_a_polygon() -> None:
 @pytest.mark.parametrize("number", range(8))
 def test_random_motions(number: int) -> None:
     a, b, path_a, path_b = random_pairs(8)[number]
-    coarse = so.simulate(so.Tracker(a, b, 0.02), path_a, path_b, 1.5)
-    fine = so.simulate(so.Tracker(a, b, 2.5e-3), path_a, path_b, 1.5)
+    coarse = so.track(so.Tracker(a, b, 0.02), path_a, path_b, 1.5)
+    fine = so.track(so.Tracker(a, b, 2.5e-3), path_a, path_b, 1.5)
     for recording in (coarse, fine):
         assert recording.certified.all()
         check_chain(recording)
@@ -157,7 +155,7 @@ def test_random_motions(number: int) -> None:
 
 def test_the_paper_s_law_switches_by_itself() -> None:
     box, path = so.shapes.box(1.0, 1.0, 1.0), straight((-1.0, -0.9, 0.8), (1.0, 0.77, 0.013))
-    recording = so.simulate(so.Tracker(POINT, box, 1e-2, law=so.PaperLaw()), path, REST, 2.0)
+    recording = so.track(so.Tracker(POINT, box, 1e-2, law=so.PaperLaw()), path, REST, 2.0)
     times = switch_times(recording)
     assert len(times) == 4
     check_chain(recording)
@@ -186,7 +184,7 @@ def test_the_paper_s_law_switches_by_itself() -> None:
 
 def test_not_located_where_not_asked() -> None:
     path = straight((-1.0, -0.9, 0.8), (1.0, 0.77, 0.013))
-    recording = so.simulate(
+    recording = so.track(
         so.Tracker(POINT, so.shapes.box(1.0, 1.0, 1.0), 1e-2), path, REST, 2.0, locate=False
     )
     # at frame 150 the point is in the Voronoi plane itself
@@ -201,7 +199,7 @@ def test_not_located_where_not_asked() -> None:
 def test_over_a_corner_two_switches_have_one_instant() -> None:
     # Over the line where the regions of face, edges and vertex meet, x = y = 1/2.
     path = straight((0.3, 0.3, 0.8), (1.0, 1.0, 0.0))
-    recording = so.simulate(so.Tracker(POINT, so.shapes.box(1.0, 1.0, 1.0), 3e-2), path, REST, 0.5)
+    recording = so.track(so.Tracker(POINT, so.shapes.box(1.0, 1.0, 1.0), 3e-2), path, REST, 0.5)
     np.testing.assert_allclose(switch_times(recording), [0.2, 0.2], rtol=0.0, atol=1e-11)
     kinds = [(event.source.kind, event.target.kind) for event in recording.events]
     assert kinds == [("face", "edge"), ("edge", "vertex")]
@@ -211,14 +209,14 @@ def test_over_a_corner_two_switches_have_one_instant() -> None:
 def test_frames_that_lag_are_not_called_located() -> None:
     # One correction a frame from the last frame's point, whatever the gap: fast motion is behind.
     a, b, path_a, path_b = random_pairs(4)[3]
-    lagging = so.simulate(
+    lagging = so.track(
         so.Tracker(a, b, 0.05, law=so.PredictorCorrector(predictor="none", tolerance=math.inf)),
         path_a,
         path_b,
         1.5,
     )
     check_chain(lagging)
-    exact = so.simulate(so.Tracker(a, b, 2.5e-3), path_a, path_b, 1.5)
+    exact = so.track(so.Tracker(a, b, 2.5e-3), path_a, path_b, 1.5)
     assert {event.located for event in lagging.events} == {True, False}
     for event in lagging.events:
         if event.located:
@@ -234,7 +232,7 @@ def test_not_located_out_of_an_overlap(law: Any) -> None:
     small, large = so.shapes.box(0.3, 0.2, 0.25), so.shapes.box(1.0, 1.0, 1.0)
     turned = so.Pose.from_wxyz(np.array([0.9, 0.3, 0.2, 0.1]) / math.sqrt(0.95), (-1.0, 0.1, 0.7))
     path = ConstantTwist(turned, so.Twist((1.0, 0.0, -0.5), (0.0, 0.0, 0.0)))
-    recording = so.simulate(so.Tracker(small, large, 1e-2, law), path, REST, 3.0)
+    recording = so.track(so.Tracker(small, large, 1e-2, law), path, REST, 3.0)
     overlapping = recording.penetrating
     assert overlapping.any()
     assert not overlapping[-1]

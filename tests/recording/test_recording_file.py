@@ -26,15 +26,15 @@ def recordings() -> list[so.Recording]:
     a, b, path_a, path_b = random_pairs(1)[0]
     egg = so.shapes.ellipsoid(0.3, 0.2, 0.1)
     return [
-        so.simulate(so.Tracker(a, b, 1e-2), path_a, path_b, 1.0),
-        so.simulate(
+        so.track(so.Tracker(a, b, 1e-2), path_a, path_b, 1.0),
+        so.track(
             so.Tracker(egg, b, 1e-2, law=so.PredictorCorrector(tolerance=math.inf)),
             path_a,
             path_b,
             0.5,
             start=3.0,
         ),
-        so.simulate(so.Tracker(SMALL, BOX, 1e-2), THROUGH, REST, 2.0),
+        so.track(so.Tracker(SMALL, BOX, 1e-2), THROUGH, REST, 2.0),
     ]
 
 
@@ -101,7 +101,7 @@ def test_the_metadata_is_strict_json(recordings: list[so.Recording], tmp_path: P
 
 
 def test_the_same_run_gives_the_same_bytes(recordings: list[so.Recording], tmp_path: Path) -> None:
-    again = so.simulate(so.Tracker(SMALL, BOX, 1e-2), THROUGH, REST, 2.0)
+    again = so.track(so.Tracker(SMALL, BOX, 1e-2), THROUGH, REST, 2.0)
     again.save(tmp_path / "1.parquet")
     recordings[2].save(tmp_path / "2.parquet")
     assert (tmp_path / "1.parquet").read_bytes() == (tmp_path / "2.parquet").read_bytes()
@@ -310,6 +310,7 @@ def test_a_missing_library_is_named(
         with monkeypatch.context() as patch:
             patch.delattr(f"standoff.recording.{module}", raising=False)
             patch.delitem(sys.modules, f"standoff.recording.{module}", raising=False)
+            patch.delitem(sys.modules, "standoff.parquet", raising=False)
             patch.setitem(sys.modules, name, None)
             with pytest.raises(ModuleNotFoundError, match=rf"{name} .*standoff\[cli\]"):
                 use()

@@ -19,7 +19,7 @@ PAST = straight((-1.0, -0.9, 0.8), (1.0, 0.77, 0.013))
 
 @pytest.fixture(scope="module")
 def past() -> so.Recording:
-    return so.simulate(so.Tracker(POINT, BOX, 1e-2), PAST, REST, 2.0)
+    return so.track(so.Tracker(POINT, BOX, 1e-2), PAST, REST, 2.0)
 
 
 def panel(figure: Figure, words: str) -> Axes:
@@ -82,9 +82,7 @@ def test_parameters_are_drawn_where_there_are_any(past: so.Recording) -> None:
 
 def test_an_overlap_is_shaded() -> None:
     through = straight((-1.0, 0.1, 0.3), (1.0, 0.05, 0.0))
-    recording = so.simulate(
-        so.Tracker(so.shapes.box(0.3, 0.2, 0.25), BOX, 1e-2), through, REST, 2.0
-    )
+    recording = so.track(so.Tracker(so.shapes.box(0.3, 0.2, 0.25), BOX, 1e-2), through, REST, 2.0)
     figure = recording.plot()
     shown = [text.get_text() for text in panel(figure, "distance").get_legend().get_texts()]
     assert "in penetration" in shown
@@ -95,7 +93,7 @@ def test_an_overlap_is_shaded() -> None:
 
 
 def test_uncertified_frames_are_marked() -> None:
-    recording = so.simulate(so.Tracker(POINT, BOX, 1e-2, law=so.PaperLaw()), PAST, REST, 2.0)
+    recording = so.track(so.Tracker(POINT, BOX, 1e-2, law=so.PaperLaw()), PAST, REST, 2.0)
     bad = ~recording.certified
     assert bad.any()
     times = line(panel(recording.plot(), "error"), "the same, not certified")[0]
@@ -126,7 +124,7 @@ def test_files(past: so.Recording, tmp_path: Path, ending: str, head: bytes) -> 
 
 def test_the_panels_are_inked(tmp_path: Path) -> None:
     a, b, path_a, path_b = random_pairs(3)[2]
-    recording = so.simulate(so.Tracker(a, b, 1e-2), path_a, path_b, 1.0)
+    recording = so.track(so.Tracker(a, b, 1e-2), path_a, path_b, 1.0)
     recording.plot(tmp_path / "run.png")
     image = imread(tmp_path / "run.png")[..., :3]
     height = image.shape[0]

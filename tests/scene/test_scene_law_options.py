@@ -120,7 +120,7 @@ def test_the_tracker_gets_what_the_scene_says(
     path = ConstantTwist(
         so.Pose(np.eye(3), (-1.0, 0.2, 1.2)), so.Twist((1.0, 0.0, 0.0), (0.0, 0.5, 1.0))
     )
-    direct = so.simulate(
+    direct = so.track(
         so.Tracker(
             so.shapes.ellipsoid(0.3, 0.1, 0.1),
             so.shapes.lens(1.0, 0.45),
@@ -252,7 +252,6 @@ REFUSED = [
     (predicted('switching = "voronoi"'), "track.switching", ["option of the law 'paper'"]),
     (predicted('solve = "plain"'), "track.solve", ["take law = 'paper'"]),
     (predicted("gain = 30"), "track.gain", ["option of the law 'paper'"]),
-    (tracked('predictor = "none"'), "track.predictor", ["write feedforward = false"]),
     (tracked('predictor = "secant"'), "track.predictor", ["leave it out"]),
     (tracked("feedforward = 0"), "track.feedforward", ["must be true or false, got 0"]),
     (tracked("tolerance = -inf"), "track.tolerance", ["must be a finite number"]),
@@ -328,7 +327,7 @@ def test_overridden(load_text: LoadText) -> None:
         ({"solve": "plane"}, "solve", "did you mean 'plain'?"),
         ({"switching": "multipliers", "saturation": "zero"}, "saturation", "saturation='zero'"),
         ({"saturation": "hold", "switching": "none"}, "saturation", "take saturation='zero'"),
-        ({"predictor": "none"}, "predictor", "write feedforward = false"),
+        ({"predictor": "none"}, "predictor", "leave it out"),
         ({"law": "predictor-corrector", "gain": 1.0}, "gain", "is an option of the law 'paper'"),
         ({"feedback": {"kind": "linear"}}, "feedback", "'gain' is missing"),
     ],

@@ -9,7 +9,6 @@ import pytest
 
 from draws import draws
 from standoff.cli import main
-from standoff.tracking.overlap_proof import cores_overlap
 from standoff_studies.soak import adversary, any_places, certificate_checks, wild_runs
 from standoff_studies.soak.adversary import run_round
 from standoff_studies.soak.failures import breach_facts
@@ -186,20 +185,3 @@ def test_damaged_files_of_a_round(entry, value, tmp_path, capsys):
     file.write_text(json.dumps(facts))
     assert main(["soak", "--replay", str(file)]) == 2
     assert f"the round's '{entry}'" in capsys.readouterr().err
-
-
-def test_no_overlap_is_named_where_bodies_are_apart():
-    """What names an overlap is a proof of its own: of pairs whose distance is known."""
-    named = 0
-    for number in range(draws(60)):
-        scene = draw_scene(np.random.default_rng(number), SEED, number // 20)
-        a, b = scene.a.body, scene.b.body
-        pose_a, pose_b = np.array(scene.pose_a, float), np.array(scene.pose_b, float)
-        if not cores_overlap(a, b, pose_a, pose_b):
-            continue
-        named += 1
-        # that of cores, but over a half-space that of the swept bodies
-        swept = a.radius + b.radius if a.bounded and b.bounded else 0.0
-        size = sum(x.size for x in (a, b) if x.bounded) + np.linalg.norm((pose_b - pose_a)[9:])
-        assert scene.truth + swept <= 1e-10 * size
-    assert named > 0

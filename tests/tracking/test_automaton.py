@@ -72,7 +72,7 @@ def test_switching_functions_and_resets_say_where() -> None:
 
 def tumbling(a: so.Body, b: so.Body) -> so.Recording:
     path = ConstantTwist(so.Pose(np.eye(3), (1.6, 0.1, 0.2)), ((0.0, 0.0, 0.0), (3.0, 2.0, 1.0)))
-    return so.simulate(so.Tracker(a, b, 0.01), path, Fixed(np.eye(4)), 3.0)
+    return so.track(so.Tracker(a, b, 0.01), path, Fixed(np.eye(4)), 3.0)
 
 
 @pytest.fixture(scope="module")

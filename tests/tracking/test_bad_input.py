@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import standoff as so
-from standoff.errors import StandoffTypeError
 from standoff.geometry import ConicArc
 
 NAN, INF = np.nan, np.inf
@@ -123,7 +122,7 @@ def test_numbers_that_are_not_positive(name, value, shown):
         so.PaperLaw(**{name: value})
         return
     made = partial(so.Tracker, LENS, POINT) if name == "dt" else so.PaperLaw
-    with pytest.raises(ValueError, match=f"{name} = {shown}.*(positive|not a number)"):
+    with pytest.raises(ValueError, match=f"{name} = {shown}.*(positive|finite|not a number)"):
         made(**{name: value})
 
 
@@ -131,11 +130,11 @@ def test_numbers_that_are_not_positive(name, value, shown):
 def test_steps_that_are_not_positive(value, shown):
     tracker = so.Tracker(LENS, POINT)
     state = tracker.start(HOME, AWAY)
-    with pytest.raises(ValueError, match=f"dt = {shown}.*(positive|not a number)"):
+    with pytest.raises(ValueError, match=f"dt = {shown}.*(positive|finite|not a number)"):
         tracker.step(state, HOME, AWAY, dt=value)
-    with pytest.raises(ValueError, match=f"dt = {shown}.*(positive|not a number)"):
+    with pytest.raises(ValueError, match=f"dt = {shown}.*(positive|finite|not a number)"):
         tracker.step_into(tracker.buffer(state), dt=value)
-    with pytest.raises(ValueError, match=f"dt = {shown}.*(positive|not a number)"):
+    with pytest.raises(ValueError, match=f"dt = {shown}.*(positive|finite|not a number)"):
         so.max_gain("heun", value)
 
 
@@ -143,8 +142,8 @@ def test_steps_that_are_not_positive(value, shown):
     ("law", "options", "words"),
     [
         (so.PredictorCorrector, {"predictor": "feed-forward"}, "Did you mean 'feedforward'"),
-        (so.PredictorCorrector, {"depth": None}, "Unknown depth None: choose one of"),
-        (so.PaperLaw, {"integrator": "rk5"}, "integrator 'rk5'.*Did you mean 'rk4'"),
+        (so.PredictorCorrector, {"depth": None}, "depth = None: give 'global' or 'local'"),
+        (so.PaperLaw, {"integrator": "rk5"}, "integrator = 'rk5'.*Did you mean 'rk4'"),
         (so.PaperLaw, {"feedforward": 1}, "feedforward = 1: must be True or False"),
     ],
 )
@@ -161,7 +160,7 @@ def test_gains_that_are_not_stable(integrator, limit):
     law = so.PaperLaw(integrator=integrator, gain=1.001 * limit)
     with pytest.raises(ValueError, match=f"gain = {1.001 * limit}.*{integrator}.*stay below"):
         so.Tracker(LENS, POINT, 1e-3, law)
-    with pytest.raises(ValueError, match="integrator 'rk5'"):
+    with pytest.raises(ValueError, match="integrator = 'rk5'"):
         so.max_gain("rk5", 1e-3)
 
 
@@ -313,12 +312,3 @@ def test_an_answers_places_begin_the_same_frame():
     begun = tracker.start_from(HOME, AWAY, best.place_a, best.place_b).proximity
     assert (begun.place_a, begun.place_b) == (best.place_a, best.place_b)
     assert begun.distance == best.distance
-
-
-def test_features_beside_their_parameters_are_told_to_come_as_places():
-    start_from = so.Tracker(LENS, POINT).start_from
-    old = {"feature_a": ("face", 0), "parameters_a": (0.1, 0.2), "feature_b": ("vertex", 0)}
-    with pytest.raises(StandoffTypeError, match=r"write start_from\(pose_a, pose_b, \(feature"):
-        start_from(HOME, AWAY, **old)
-    with pytest.raises(StandoffTypeError, match=r"or p\.place_a"):
-        start_from(HOME, AWAY, so.Feature("face", 0), (0.1, 0.2), so.Feature("vertex", 0), ())

@@ -61,7 +61,7 @@ def test_nothing_is_claimed_of_a_motion_too_fast_for_the_times() -> None:
     wild = Bounded(
         Fixed(at(1.0, 0.0, 0.0)),
         speed=0.0,
-        acceleration=1e60,
+        acceleration=1e45,
         angular_speed=0.0,
         angular_acceleration=0.0,
     )

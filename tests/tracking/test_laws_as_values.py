@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import json
-import math
 import pickle
 import re
 from dataclasses import FrozenInstanceError, replace
@@ -192,7 +191,7 @@ def test_a_recording_keeps_each_option(law: Any, tmp_path: Path) -> None:
     path = ConstantTwist(so.Pose(np.eye(3), (2.0, 0.1, 0.2)), so.Twist((-1.0, 0, 0), (0, 0, 1)))
     tracker = so.Tracker(BOX, so.shapes.sphere(0.3), DT, law)
     assert tracker.law is law
-    recording = so.simulate(tracker, so.Pose.identity(), path, 0.1)
+    recording = so.track(tracker, so.Pose.identity(), path, 0.1)
     recording.save(tmp_path / "run.parquet")
     again = so.open_recording(tmp_path / "run.parquet")
     for info in (recording.info, again.info):
@@ -230,54 +229,15 @@ def test_the_pages_name_each_option(page: str) -> None:
 
 def test_one_file_beside_the_kernels_knows_their_slots() -> None:
     slot = re.compile(r"(?<!os\.)\bO_[A-Z]+\b")
-    source = ROOT / "src"
-    files = {str(f.relative_to(source)) for f in source.rglob("*.py") if slot.search(f.read_text())}
+    files = {
+        str(f.relative_to(source))
+        for source in (ROOT / "src", ROOT / "studies" / "src")
+        for f in source.rglob("*.py")
+        if slot.search(f.read_text())
+    }
     beside = {name for name in files if not name.startswith("standoff/kernels/")}
     # the C interface hands them on by name, and reads them nowhere
     assert beside == {"standoff/tracking/options.py", "standoff/c_interface/layout.py"}
-
-
-NEW = "so.Tracker(a, b, dt, law=so."
-
-
-@pytest.mark.parametrize(
-    ("call", "spelling"),
-    [
-        (
-            lambda: so.Tracker(BOX, POINT, 1e-3, "paper", "none", "rk4", 100.0),
-            f"{NEW}PaperLaw(integrator='rk4', gain=100.0, feedforward=False))",
-        ),
-        (
-            lambda: so.Tracker(BOX, POINT, law="paper", feedback=so.feedback.PI(1.0, 2.0)),
-            f"{NEW}PaperLaw(feedback=so.feedback.PI(gain=1.0, integral=2.0)))",
-        ),
-        (lambda: so.Tracker(BOX, POINT, gain=3.0), f"{NEW}PredictorCorrector())"),
-        (
-            lambda: so.Tracker(BOX, POINT, depth="local", tolerance=math.inf),
-            f"{NEW}PredictorCorrector(tolerance=inf, depth='local'))",
-        ),
-        (
-            lambda: so.Tracker(BOX, POINT, law=so.PaperLaw(gain=3.0), solve="plain"),
-            f"{NEW}PaperLaw(gain=3.0, solve='plain'))",
-        ),
-        (
-            lambda: so.PointTracker(BOX, law="paper", gain=60.0, switching="voronoi"),
-            "so.PointTracker(body, dt, law=so.PaperLaw(gain=60.0, switching='voronoi'))",
-        ),
-        (
-            lambda: so.simulate(BOX, POINT, None, None, 1.0, 0.01, law="paper", deadline=40),
-            "so.simulate(so.Tracker(a, b, 0.01, law=so.PaperLaw(deadline=40)), path_a, path_b, ",
-        ),
-        (
-            lambda: so.simulate(a=BOX, b=POINT, path_a=None, path_b=None, duration=1.0),
-            "so.simulate(so.Tracker(a, b), path_a, path_b, duration)",
-        ),
-    ],
-)
-def test_the_old_spelling_is_told_the_new_one(call: Any, spelling: str) -> None:
-    with pytest.raises(TypeError) as caught:
-        call()
-    assert spelling in str(caught.value)
 
 
 @pytest.mark.parametrize(

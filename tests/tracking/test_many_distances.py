@@ -9,8 +9,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff as so
-from standoff.kernels.entries import batch
-from standoff.kernels.state import arrays as K
 from standoff.tracking import Status, threads
 
 LENS, TOOL, BOX = (
@@ -173,22 +171,6 @@ def test_what_is_refused(given, why):
     asked = {"poses_a": np.eye(4), "poses_b": along(2)} | given
     with pytest.raises((TypeError, ValueError), match=why):
         so.distances(LENS, TOOL, **asked)
-
-
-def test_uncertified_rows_with_a_proven_overlap_say_so(monkeypatch):
-    """No body here leaves a row uncertified, so the kernel is replaced by one that does."""
-
-    def unsure(pair, poses_a, poses_b, first, end, options, rows, done):
-        rows[:] = 0.0
-        rows[:, K.DISTANCE], rows[:, K.LOWER_BOUND] = 0.1, -0.1
-        rows[:, K.STATUS] = Status.NOT_CERTIFIED.value
-
-    monkeypatch.setattr(batch, "starts", unsure)
-    poses = np.tile(np.eye(4), (2, 1, 1))
-    poses[1, 0, 3] = 10.0
-    found = so.distances(BOX, BOX, np.eye(4), poses)
-    assert found.status.tolist() == [Status.OVERLAPPING, Status.NOT_CERTIFIED]
-    assert found.distance.tolist() == [0.0, 0.1]
 
 
 def boxed():

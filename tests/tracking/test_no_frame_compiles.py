@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import standoff as so
-from standoff.kernels.entries import blocks, queries
+from standoff.kernels.entries import queries
+from standoff.kernels.entries import tracker as kernels
 
 JITTED = os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
 pytestmark = pytest.mark.skipif(not JITTED, reason="nothing is compiled under NUMBA_DISABLE_JIT")
@@ -73,11 +74,12 @@ def test_a_first_switch_overlap_and_search_compile_nothing():
     told = watched("""
         a, b = so.shapes.lens(1.0, 0.45), so.shapes.box(0.4, 0.5, 0.3)
         tracker = so.Tracker(a, b, 1e-2)
-        asked.clear()
         state = tracker.start(pose(0.0), pose(2.0, 0.4, 0.1))
+        buffer = tracker.buffer(state)
+        asked.clear()
         path = [pose(2.0 - 0.02 * k, 0.4 - 0.01 * k, 0.1, 0.03 * k) for k in range(120)]
         state, seen = loop(tracker, state, path)
-        buffer = tracker.buffer(state)
+        tracker.step_into(buffer, pose(0.0), path[-1])
         tracker.step_into(buffer)
         # from a start deep inside, with a deadline, and where nothing proves an answer
         hasty = so.Tracker(a, b, 1e-2, so.PredictorCorrector(deadline=3))
@@ -139,9 +141,9 @@ def test_the_papers_law_and_recorded_runs_compile_nothing_in_a_frame():
         way = Helix(radius=1.2, pitch=0.4, rate=2.0)
         # the second run asks for nothing that the first did not prepare
         still = so.Pose(np.eye(3), [3.0, 0.0, 0.0])
-        so.simulate(so.Tracker(a, b), so.Pose.identity(), still, 0.01)
+        so.track(so.Tracker(a, b), so.Pose.identity(), still, 0.01)
         asked.clear()
-        found = so.simulate(so.Tracker(a, b), so.Pose.identity(), way, 2.0)
+        found = so.track(so.Tracker(a, b), so.Pose.identity(), way, 2.0)
         assert found.events
         asked[:0] = frames
         tell(seen)
@@ -168,14 +170,14 @@ def test_a_first_formula_body_compiles_its_own_formula_before_the_loop():
 def test_an_array_of_the_wrong_kind_is_refused_and_compiles_nothing():
     tracker = so.Tracker(so.shapes.sphere(0.3), so.shapes.sphere(0.2), 1e-2)
     state = tracker.start(np.eye(4), so.Pose(np.eye(3), [2.0, 0.0, 0.0]))
-    before = len(blocks.step_predicted.signatures)
+    before = len(kernels.step.signatures)
     frozen = state.data.copy()
     frozen.flags.writeable = False
     with pytest.raises(TypeError, match="block is readonly array"):
-        blocks.step_predicted(tracker.table.address, frozen)
+        kernels.step(tracker.table.address, frozen)
     with pytest.raises(TypeError):  # of a terse entry, whose caller converts them
-        blocks.value_predicted(tracker.table.address, *[frozen] * 5, 1e-2, frozen)
+        kernels.value(tracker.table.address, *[frozen] * 5, 1e-2, frozen)
     with pytest.raises(TypeError, match="reals is array\\(float32"):
         queries.curve_jet(np.zeros(3, dtype=np.float32), 0, 0, 0.5)
-    assert len(blocks.step_predicted.signatures) == before
-    assert len(blocks.value_predicted.signatures) == before
+    assert len(kernels.step.signatures) == before
+    assert len(kernels.value.signatures) == before

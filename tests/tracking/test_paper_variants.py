@@ -278,10 +278,10 @@ def test_the_raw_law_goes_to_the_far_side() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"realisation": "both"}, "Unknown realisation 'both'"),
-        ({"saturation": "clip"}, "Unknown saturation"),
+        ({"realisation": "both"}, "realisation = 'both': give"),
+        ({"saturation": "clip"}, "saturation = 'clip': give"),
         ({"switching": "vornoi"}, "Did you mean 'voronoi'"),
-        ({"solve": "raw"}, "Unknown solve"),
+        ({"solve": "raw"}, "solve = 'raw': give"),
         ({"saturation": "zero"}, "never looks: take switching='voronoi'"),
         ({"saturation": "hold", "switching": "none"}, "never leaves: take saturation='zero'"),
         ({"reset": "nearest"}, "reset='nearest' is of the Voronoi tests"),

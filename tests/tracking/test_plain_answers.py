@@ -39,7 +39,7 @@ def answers() -> dict[str, Any]:
         "no impact": so.time_of_impact(a, b, moving, HOME, duration=0.5),
         "inside": so.PointTracker(loop).start([0.1, 0.2, 0.0]).proximity,
         "in space": so.points.SpatialPointTracker(b).start([0.1, 0.2, 0.0]).proximity,
-        "recording": so.simulate(so.Tracker(a, b), moving, HOME, 0.1),
+        "recording": so.track(so.Tracker(a, b), moving, HOME, 0.1),
     }
 
 

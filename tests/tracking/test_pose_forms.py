@@ -19,8 +19,8 @@ from standoff.errors import RefusedRowsWarning
 from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import ROTATION
-from standoff.tracking.cold_query import ColdQuery
 from standoff.tracking.pose_arrays import mended
+from standoff.tracking.reached import cold_table
 
 LENS, TOOL = so.shapes.lens(1.0, 0.45), so.shapes.ellipsoid(0.15, 0.3, 0.2)
 REST = np.eye(4)
@@ -165,9 +165,9 @@ def test_what_many_at_once_pass_no_kernel_refuses(rng: np.random.Generator) -> N
     checked = mended(poses)
     assert 0.1 < checked.repaired.mean() < 0.9
     assert not checked.refused.any()
-    query = ColdQuery(so.shapes.sphere(1.0), so.shapes.point())
+    table = cold_table(so.shapes.sphere(1.0), so.shapes.point())
     rows, done = np.empty((n, K.N_OUT)), np.zeros(n, dtype=np.int64)
-    batch.starts(query.packed, REST[None], checked.matrices, 0, n, query.options, rows, done)
+    batch.starts(table.address, REST[None], checked.matrices, 0, n, rows, done)
     assert (done == K.FINE).all()
 
 
@@ -205,7 +205,7 @@ WRONG = {
     "3 by 4": (lambda p: p[:, :3].reshape(-1, 12), r"rows are 3 by 4 matrices \[R p\]"),
     "transposed": (lambda p: p.transpose(0, 2, 1), "transpose the matrix"),
     "half precision": (lambda p: p.astype(np.float16), "Pose.nearest"),
-    "nan": (lambda p: p * np.nan, "must be finite"),
+    "nan": (lambda p: p * np.nan, "NaN or infinite"),
 }
 
 

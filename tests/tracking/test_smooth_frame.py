@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from standoff.geometry.ellipsoid_patches import ellipsoid_octants, ellipsoid_patches
 from standoff.kernels.compiler.calls import CAN_CALL
+from standoff.kernels.state import arrays as K
 from standoff.tracking.specialised import COMPILED_AHEAD, smooth_frame_of
 
 REST = np.eye(4)
@@ -155,7 +156,7 @@ def test_the_papers_law_has_none() -> None:
     pose[0, 3] = 2.0
     _, answer = tracker.step(tracker.start(REST, pose), REST, pose)
     assert answer.counts.general_frames == 0
-    assert tracker.options[-1] == 0.0
+    assert tracker.options[K.O_SMOOTH] == 0.0
 
 
 @pytest.mark.parametrize("specialise", [1, "yes", np.True_])
@@ -170,4 +171,4 @@ def test_a_tracker_in_another_process_finds_its_own() -> None:
 
     tracker = so.Tracker(*AHEAD["ellipsoids"], 1e-3)
     again = pickle.loads(pickle.dumps(tracker))
-    assert again.options[-1] == tracker.options[-1] != 0.0
+    assert again.options[K.O_SMOOTH] == tracker.options[K.O_SMOOTH] != 0.0

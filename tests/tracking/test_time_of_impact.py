@@ -355,10 +355,10 @@ def test_the_status_says_what_to_do() -> None:
     ("options", "message"),
     [
         ({"clearance": -0.1}, "clearance = -0.1: give zero or more"),
-        ({"clearance": math.nan}, "clearance is nan"),
+        ({"clearance": math.nan}, "clearance = nan"),
         ({"tolerance": 0.0}, "tolerance = 0.0"),
         ({"duration": -1.0}, "duration = -1.0"),
-        ({"start": math.inf}, "start is inf"),
+        ({"start": math.inf}, "start = inf"),
         ({"max_evaluations": 1}, "max_evaluations = 1"),
         ({"max_evaluations": 2.5}, "max_evaluations = 2.5: must be a whole number"),
         ({"max_evaluations": None}, "max_evaluations = None: must be a whole number"),
@@ -367,8 +367,8 @@ def test_the_status_says_what_to_do() -> None:
         ({"duration": True}, "duration = True is not a number"),
         ({"tolerance": True}, "tolerance = True is not a number"),
         ({"duration": 10**400}, "is not a number"),
-        ({"duration": 1e308}, r"duration = 1e\+308: no time may be beyond 1e\+100 s"),
-        ({"start": -1e200}, r"start = -1e\+200, duration = 1\.0: no time may be beyond"),
+        ({"duration": 1e308}, r"duration = 1e\+308: beyond 1e\+50"),
+        ({"start": -1e200}, r"start = -1e\+200: beyond 1e\+50"),
     ],
 )
 def test_bad_input_is_refused(options: dict[str, Any], message: str) -> None:

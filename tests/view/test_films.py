@@ -24,7 +24,7 @@ LASTS = 0.4
 def run() -> so.Recording:
     path = ConstantTwist(Pose.identity(), Twist([1.0, 0.0, 0.0], [0.0, 0.0, 0.0]))
     tracker = so.Tracker(so.shapes.sphere(0.3), so.shapes.box(1.0, 0.8, 0.6), 0.01)
-    return so.simulate(tracker, path, AWAY, LASTS)
+    return so.track(tracker, path, AWAY, LASTS)
 
 
 def test_a_gif_has_the_pictures_in_the_time_of_the_motion(

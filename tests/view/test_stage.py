@@ -69,7 +69,7 @@ def test_a_pair_that_cannot_go_on_is_left_as_it_was() -> None:
 def test_a_player_follows_its_recording() -> None:
     a, b = so.shapes.sphere(0.1), so.shapes.sphere(0.2)
     path = so.motion.ConstantTwist(Pose.identity(), Twist([1.0, 0.0, 0.0], [0.0, 0.0, 0.0]))
-    run = so.simulate(so.Tracker(a, b, 0.01), path, Pose(np.eye(3), [3.0, 0.0, 0.0]), 1.0)
+    run = so.track(so.Tracker(a, b, 0.01), path, Pose(np.eye(3), [3.0, 0.0, 0.0]), 1.0)
     player = Player(run)
     player.advance(0.5)
     assert player.time == 0.0
@@ -262,7 +262,7 @@ def test_the_page_opens_from_python(tmp_path: Path) -> None:
         assert page.stage.player is None
         assert page.address in page._repr_html_()
         assert page.address in repr(page)
-    run = so.simulate(so.Tracker(a, b, 0.01), lambda t: Pose(np.eye(3), [t, 0, 0]), away, 0.5)
+    run = so.track(so.Tracker(a, b, 0.01), lambda t: Pose(np.eye(3), [t, 0, 0]), away, 0.5)
     with so.view(run, open=False) as page:
         assert page.stage.player.recording.distance[-1] == pytest.approx(0.2)
     with so.view(str(EXAMPLES / "cam.toml"), open=False) as page:

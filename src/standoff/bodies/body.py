@@ -18,20 +18,13 @@ from standoff.bodies.report import BodyReport
 from standoff.bodies.sewing import sew
 from standoff.bodies.tolerances import MAX_SPREAD, SIMILARITY_TOLERANCE, SINGULAR_MAP
 from standoff.bodies.topology import Edge, Face, check_parts, parts_of
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import LEAST, magnitude, magnitude_or_zero
+from standoff.checks.real_numbers import shape_of
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import (
-    LEAST,
-    Array,
-    finite,
-    matrix3,
-    not_negative,
-    positive,
-    vector3,
-)
-from standoff.real_numbers import shape_of
-from standoff.spellings import renamed
+from standoff.geometry.validation import Array, matrix3, vector3
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -63,7 +56,6 @@ class Body(Boundary):
     report: BodyReport
 
     @staticmethod
-    @renamed(radius="rounding=...")
     def from_brep(  # type: ignore[override]  # it takes what a convex body needs
         vertices: Any = (),
         edges: Sequence[Edge] = (),
@@ -108,7 +100,7 @@ class Body(Boundary):
         points = np.zeros((0, 3))
         if shape_of(vertices) not in ((0,), (0, 3)):
             points = finite(vertices, "vertices", (-1, 3))
-        radius = not_negative(rounding, "rounding")
+        radius = magnitude_or_zero(rounding, "rounding")
         edges, faces = parts_of(edges, "edges"), parts_of(faces, "faces")
         check_parts(points, edges, faces, dimension)
         spots = [points] + [edge_points(e) for e in edges]
@@ -118,14 +110,13 @@ class Body(Boundary):
             raise BodyError(
                 f"The body's extent is {rough:.3g}: below {LEAST:g}; choose a smaller unit."
             )
-        tolerance = None if tolerance is None else positive(tolerance, "tolerance")
+        tolerance = None if tolerance is None else magnitude(tolerance, "tolerance")
         if convexity_tolerance is not None:
-            convexity_tolerance = not_negative(convexity_tolerance, "convexity_tolerance")
+            convexity_tolerance = magnitude_or_zero(convexity_tolerance, "convexity_tolerance")
         joined = assemble(points, edges, faces, dimension, rough, tolerance)
         return _body(name, radius, finish(joined, radius, convexity_tolerance))
 
     @staticmethod
-    @renamed(radius="rounding=...")
     def from_patches(
         patches: Sequence[Surface],
         *,
@@ -167,9 +158,9 @@ class Body(Boundary):
         ValueError
             NaN, infinite or negative numbers.
         """
-        radius = not_negative(rounding, "rounding")
+        radius = magnitude_or_zero(rounding, "rounding")
         if convexity_tolerance is not None:
-            convexity_tolerance = not_negative(convexity_tolerance, "convexity_tolerance")
+            convexity_tolerance = magnitude_or_zero(convexity_tolerance, "convexity_tolerance")
         sewn = sew(patches, tolerance)
         reach = MAX_SPREAD * sewn.tolerance
         joined = assemble(

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,8 +16,9 @@ from standoff.bodies.addresses import formulas_of, readdressed
 from standoff.bodies.packing import Assembled, Ints, pack
 from standoff.bodies.report import BodyReport, BoundaryReport
 from standoff.bodies.topology import Edge, Face
+from standoff.checks.arrays import finite
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, finite
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.read_only import KeepsReadOnly
 from standoff.wording import counted, printable
@@ -208,7 +210,7 @@ class Boundary(KeepsReadOnly):
 
     @property
     def bounded(self) -> bool:
-        return bool(np.isfinite(self.size))
+        return isfinite(self.size)
 
     @property
     def n_faces(self) -> int:

@@ -29,11 +29,13 @@ from standoff.bodies.tolerances import (
     coordinate_roundoff,
 )
 from standoff.bodies.topology import Edge, Face, check_parts, parts_of
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import LEAST, magnitude
+from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import LEAST, Array, finite, positive
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.real_numbers import shape_of, shown
 
 # Faces of a shell that a message names.
 MOST_NAMED = 6
@@ -59,7 +61,7 @@ def joined_parts(
         raise BodyError(
             f"The boundary's extent is {rough:.3g}: below {LEAST:g}; choose a smaller unit."
         )
-    tolerance = None if tolerance is None else positive(tolerance, "tolerance")
+    tolerance = None if tolerance is None else magnitude(tolerance, "tolerance")
     return assemble(points, edges, faces, 3, rough, tolerance, _checked_senses(senses, faces))
 
 

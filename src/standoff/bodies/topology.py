@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import is_whole
+from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve, Line
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, finite
-from standoff.real_numbers import shown
+from standoff.geometry.validation import Array
 
 SIDES = ("v0", "v1", "u0", "u1")
 """Sides of a patch, in the order of the kernels' SIDE_ numbers."""
@@ -91,11 +93,7 @@ def check_parts(
 ) -> None:
     """Raise BodyError where parts are of the wrong kind, loose, or bound no convex body."""
     given: Any = dimension
-    if (
-        isinstance(given, bool)
-        or not isinstance(given, int | np.integer)
-        or dimension not in (2, 3)
-    ):
+    if not is_whole(given) or dimension not in (2, 3):
         raise BodyError(
             f"dimension = {shown(dimension)}: give 2 (planar loop) or 3.", "dimension", dimension
         )
@@ -137,9 +135,7 @@ def parts_of(parts: Any, name: str) -> tuple[Any, ...]:
 
 
 def _is_number_of(value: Any, count: int) -> bool:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        return False
-    return 0 <= int(value) < count
+    return is_whole(value) and 0 <= int(value) < count
 
 
 def _is_pair_of_integers(value: Any) -> bool:

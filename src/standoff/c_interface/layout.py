@@ -10,15 +10,14 @@ from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion.tolerances import ROUNDED
 from standoff.tracking.status import Status
-from standoff.tracking.tolerances import PLANE_TILT
 from standoff.version import __version__
 
 OF_BLOCKS = (
     *("N_LONG_BLOCK", "BLOCK_MOTION", "BLOCK_TIME_STEP", "BLOCK_HAS_TWIST", "BLOCK_EVENTS"),
-    *("POSE_A", "POSE_B", "TWIST_A", "TWIST_B", "N_OPTIONS", "O_SMOOTH"),
+    *("POSE_A", "POSE_B", "TWIST_A", "TWIST_B", "N_OPTIONS", "O_SMOOTH", "O_FRAME"),
     *("DISTANCE", "LOWER_BOUND", "UPPER_BOUND", "POINT_A", "POINT_B", "NORMAL", "VELOCITY_A"),
     *("VELOCITY_B", "RESIDUAL", "STATUS", "OUT_MODE", "OUT_Q", "OUT_COUNTS"),
-    *("FINE", "BAD_POSE_A", "BAD_POSE_B", "BAD_TWIST", "UNDECIDED"),
+    *("FINE", "BAD_POSE_A", "BAD_POSE_B", "BAD_TWIST", "OUT_OF_PLANE"),
 )
 OF_EVENTS = (
     *("EVALUATIONS", "CORRECTIONS", "SATURATIONS", "RESTARTS", "REGULARISED", "EVENTS"),
@@ -36,7 +35,7 @@ def layout_header(smooth_frames: list[str]) -> str:
     """
     constants = {name: getattr(K, name) for name in OF_BLOCKS}
     constants |= {name: getattr(N, name) for name in OF_EVENTS}
-    constants |= {"N_FACES": L.N_FACES, "PLANE_TILT": PLANE_TILT, "ROUNDED": ROUNDED}
+    constants |= {"N_FACES": L.N_FACES, "ROUNDED": ROUNDED}
     texts = {"KERNELS_DIGEST": source_digest(), "VERSION": __version__}
     lines = ["/* Made with the library. */"]
     lines += [f"#define {name} {value!r}" for name, value in constants.items()]

@@ -11,7 +11,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -24,19 +24,21 @@ from standoff.errors import StandoffError
 from standoff.kernels.compiler import modules
 from standoff.kernels.compiler.decorators import BOUNDS_CHECK, CONTRACTED
 from standoff.kernels.entries import c_interface as kernels
+from standoff.kernels.entries import laws
+from standoff.progress import Progress
 from standoff.whole_files import write_whole
-
-Progress = Callable[[int, int], None]
-"""Is told how many parts are done, and of how many."""
 
 TABLE_AND_BLOCK = types.int64, types.int64
 RECORD_AND_STEP = types.int64, types.float64
 
 SYMBOLS = {
     "standoff_kernel_start": kernels.start_in_block,
-    "standoff_kernel_step_predicted": kernels.step_predicted_in_block,
-    "standoff_kernel_step_paper": kernels.step_paper_in_block,
+    "standoff_kernel_step": kernels.step_in_block,
 }
+
+
+LAWS = {"standoff_kernel_predicted": laws.predicted, "standoff_kernel_paper": laws.paper}
+"""The laws' frames."""
 
 
 def smooth_symbols() -> list[str]:
@@ -51,7 +53,7 @@ def compiled_libraries(progress: Progress) -> tuple[dict[str, str], list[Any]]:
     asked: list[tuple[str, Any, Any]] = [
         (symbol, kernel, TABLE_AND_BLOCK) for symbol, kernel in SYMBOLS.items()
     ]
-    for symbol, frame in zip(smooth_symbols(), SMOOTH_FRAMES, strict=True):
+    for symbol, frame in [*zip(smooth_symbols(), SMOOTH_FRAMES, strict=True), *LAWS.items()]:
         # the frame itself, without what lets Python call it
         bare = modules.Part(
             frame.py_func, targetoptions=CONTRACTED, pipeline_class=modules.SharedCompiler

@@ -11,11 +11,12 @@ import numpy as np
 
 from standoff.bodies.addresses import formulas_of
 from standoff.bodies.body import Body
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.compiler.machine import source_digest
-from standoff.real_numbers import shown
+from standoff.tracking.address_table import packed
 from standoff.tracking.laws import PaperLaw
-from standoff.tracking.options import with_smooth_frame
+from standoff.tracking.options import with_frames
 from standoff.tracking.specialised import COMPILED_AHEAD, smooth_frame_of
 from standoff.tracking.tracker import Tracker
 from standoff.whole_files import file_name, write_whole
@@ -88,18 +89,17 @@ def _smooth_number(tracker: Tracker) -> int:
 
 def _content(tracker: Tracker, smooth: int) -> bytes:
     paper = isinstance(tracker.law, PaperLaw)
-    options = with_smooth_frame(tracker.options, 0)
+    options = with_frames(tracker.options)
     arrays = [
         np.ascontiguousarray(x, "<i8" if x.dtype.kind == "i" else "<f8")
-        for x in (*tracker.packed, options)
+        for x in (*packed(tracker.a, tracker.b), options)
     ]
     # a shorter step than the paper's law was made for is stable as well
     longest = tracker.dt if paper else float("inf")
     checked = struct.pack(
-        "<qqq5qdd",
+        "<qq5qdd",
         int(paper),
         smooth,
-        int(tracker.planar),
         *map(len, arrays),
         tracker.dt,
         longest,

@@ -15,7 +15,7 @@ from standoff.cli.errors import CommandError
 GROUP = "standoff.commands"
 
 STUDIES = ("paper", "soak", "accuracy")
-"""Commands of the package ``standoff_studies``, which comes with this one."""
+"""Commands of the studies, a distribution of its own beside this one."""
 
 
 class AddedCommand(Protocol):
@@ -46,9 +46,8 @@ def added(first: str) -> dict[str, type[AddedCommand]]:
         return {first: _imported(found[first])}
     if first in STUDIES:
         raise CommandError(
-            f"the command '{first}' belongs to the package standoff_studies, and no entry point of "
-            f"the group '{GROUP}' leads to it; install standoff again: "
-            "pip install --force-reinstall --no-deps standoff"
+            f"the command '{first}' belongs to the studies, which are not installed: "
+            "pip install standoff-studies, or, in a clone of Standoff, pip install -e ./studies"
         )
     commands = {}
     for name, point in found.items():

@@ -14,7 +14,7 @@ from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes, Positional, arg, subc
 
 from standoff.cli.added import AddedCommand, added
 from standoff.cli.errors import CommandError
-from standoff.cli.overview import overview
+from standoff.cli.overview import overview, unknown_command
 from standoff.cli.terminal import tell
 from standoff.tracking.law_options import Option
 from standoff.tracking.laws import every_option, laws_with
@@ -386,8 +386,6 @@ def parse(arguments: Sequence[str]) -> Command:
         tell(overview(commands, len(OWN)))
         raise SystemExit(0)
     if not first.startswith("-") and first not in commands:
-        from standoff.spellings import unknown_command
-
         raise CommandError(unknown_command(first, commands))
     any_of_them: Any = reduce(or_, (Annotated[c, subcommand(n)] for n, c in commands.items()))
     found: Command = tyro.cli(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from inspect import getdoc
 
 USAGE = """usage: standoff COMMAND [OPTIONS]
@@ -20,6 +20,9 @@ Exit codes: 0 done, 1 results could not be written, 2 bad input, 3 finished but 
 MARGIN = 12
 """Width of the column of commands, in characters."""
 
+LONGEST = 60
+"""Longest piece of a misspelt command that is repeated, in characters."""
+
 
 def overview(commands: Mapping[str, type], own: int) -> str:
     """Return the help of the whole: the library's own commands, which come first, and others."""
@@ -28,6 +31,16 @@ def overview(commands: Mapping[str, type], own: int) -> str:
     if lines[own:]:
         parts.append("\n".join(["Commands of other packages:", *lines[own:]]))
     return "\n\n".join([*parts, EXAMPLES])
+
+
+def unknown_command(name: str, known: Iterable[str]) -> str:
+    """Return the sentence that refuses a command, with the nearest one that there is."""
+    from standoff.checks.names import nearest
+    from standoff.checks.real_numbers import shown
+
+    likely = nearest(name, known)
+    said = f"did you mean '{likely}'? " if likely is not None else ""
+    return f"unknown command {shown(name, LONGEST)}; {said}standoff --help lists the commands"
 
 
 def _summary(command: type) -> str:

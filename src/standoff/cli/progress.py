@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import Progress as Bar
 
 from standoff.kernels.compiler.notices import alive
-from standoff.recording.simulate import Progress
+from standoff.progress import Progress
 
 Show = Callable[[int, int, str], None]
 """Is told how many are done, of how many, and what is being done."""

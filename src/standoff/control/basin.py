@@ -9,20 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.checks.numbers import whole_number
+from standoff.checks.real_numbers import shown
 from standoff.control.tolerances import FOUND_MINIMUM, SETTLED_RUN
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.validation import Array
-from standoff.kernels.entries import tracker as kernels
-from standoff.kernels.pair import events as N
 from standoff.motion import PoseLike
-from standoff.real_numbers import shown
-from standoff.tracking import Tracker, distance
-from standoff.tracking.calls import DESCEND, HERE
-from standoff.tracking.choices import whole_number
+from standoff.tracking import Tracker, calls, distance
+from standoff.tracking.calls import DESCEND, HERE, Frame
 from standoff.tracking.inputs import flat_pose
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.places import PlaceLike, put
-from standoff.tracking.rows import AnswerRows, StateRow, motion_row
+from standoff.tracking.rows import AnswerRows, StateRow
 
 
 class Basin(NamedTuple):
@@ -137,11 +135,9 @@ class _Frames:
 
     def __init__(self, tracker: Tracker, flat_a: Array, flat_b: Array, steps: int) -> None:
         self.tracker = tracker
-        still = motion_row(flat_a, flat_b)
-        self.motions = np.tile(still, (steps, 1))
+        self.frame = Frame(flat_a, flat_b, has_twist=True)
+        self.motions = np.tile(self.frame.row, (steps, 1))
         self.times = np.full(steps, tracker.dt)
-        self.outs = AnswerRows.empty(steps).data
-        self.events = np.empty(N.MAX_EVENTS * N.EVENT_COLUMNS)
         self.given = HERE if isinstance(tracker.law, PaperLaw) else DESCEND
 
     def after(self, place_a: PlaceLike, place_b: PlaceLike) -> Array:
@@ -150,17 +146,6 @@ class _Frames:
         begun = StateRow()
         put(begun, 0, t.a, place_a)
         put(begun, 1, t.b, place_b)
-        state = begun.data
-        first = self.motions[0]
-        kernels.start(t.packed, first, True, t.options, state, self.given, self.outs[0])
-        kernels.run(
-            t.packed,
-            self.motions,
-            True,
-            self.times,
-            t.options,
-            state,
-            self.outs,
-            self.events,
-        )
-        return np.array(self.outs[-1])
+        calls.start(t.table, self.frame, begun, self.given)
+        rows = calls.run(t.table, self.motions, True, self.times, begun.data).rows
+        return np.asarray(rows[-1])

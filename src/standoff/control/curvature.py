@@ -11,14 +11,15 @@ import scipy
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import charts_of
+from standoff.checks.numbers import number
+from standoff.checks.real_numbers import shown
 from standoff.control.tolerances import POLE_AREA, SEARCH_TOLERANCE
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, finite
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters, on_face
-from standoff.real_numbers import shown
 from standoff.tracking.inputs import check_body
 
 # Points along every side of a face, and along a planar curve, at which a search begins.
@@ -98,7 +99,7 @@ def principal_curvatures(surface: Surface, u: float, v: float) -> tuple[float, f
     """
     if not isinstance(surface, Surface):
         raise StandoffError(f"surface is {shown(surface)}: give a Surface.", "surface", surface)
-    return _curvatures(surface, float(finite(u, "u", ())), float(finite(v, "v", ())))
+    return _curvatures(surface, number(u, "u"), number(v, "v"))
 
 
 def _curvatures(surface: Surface, u: float, v: float) -> tuple[float, float] | None:

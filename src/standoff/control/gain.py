@@ -9,12 +9,13 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from standoff.bodies.body import Body
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import not_negative, positive
+from standoff.checks.real_numbers import real_array, shape_of, shown
 from standoff.control.curvature import least_curvature
 from standoff.control.tolerances import REAL_EXTREME
 from standoff.errors import StandoffError
-from standoff.geometry.validation import finite, not_negative, positive
 from standoff.kernels.body import layout as L
-from standoff.real_numbers import real_array, shape_of, shown
 from standoff.tracking.inputs import check_body, check_pair
 
 

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
+from standoff.checks.names import choice
+from standoff.checks.numbers import not_negative, positive
+from standoff.checks.real_numbers import shown
 from standoff.control.tolerances import REAL_LIMIT
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import not_negative, positive
 from standoff.kernels.paper import integrators as I
-from standoff.real_numbers import shown
-from standoff.tracking.choices import INTEGRATORS, choice
 from standoff.tracking.feedback import Feedback, growth_factor
 
 Complex = NDArray[np.complex128]
@@ -38,7 +38,7 @@ def growth_polynomial(integrator: str) -> Polynomial:
     ValueError
         Unknown integrator.
     """
-    number = choice(integrator, "integrator", INTEGRATORS)
+    number = I.NAMES.index(choice(integrator, "integrator", I.NAMES))
     x = Polynomial([0.0, 1.0])
     factor, stage = Polynomial([1.0]), Polynomial([0.0])
     for i in range(int(I.STAGES[number])):
@@ -93,7 +93,7 @@ def sampled_roots(integrator: str, feedback: Feedback, dt: float) -> Complex:
         Unknown integrator; a step that is not positive; a feedback that does not go with them.
     """
     step = positive(dt, "dt")
-    choice(integrator, "integrator", INTEGRATORS)
+    choice(integrator, "integrator", I.NAMES)
     given: Any = feedback
     if isinstance(given, type) or not isinstance(given, Feedback):
         raise StandoffTypeError(
@@ -130,7 +130,7 @@ def steady_error(integrator: str, gain: float, dt: float, acceleration: float) -
         Unknown integrator; a gain that is not stable; numbers that are not positive.
     """
     gain, dt = positive(gain, "gain"), positive(dt, "dt")
-    z, number = gain * dt, choice(integrator, "integrator", INTEGRATORS)
+    z, number = gain * dt, I.NAMES.index(choice(integrator, "integrator", I.NAMES))
     if z >= stability_limit(integrator):
         raise StandoffError(
             f"gain = {gain} is not stable for {integrator} at dt = {dt}: there is no steady error.",

@@ -14,7 +14,7 @@ law never leaves it, and a level set below the least value at the curves' ends l
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import charts_of
+from standoff.checks.numbers import whole_number
 from standoff.control.tolerances import CURVE_TOLERANCE, DIRECTION_TOLERANCE
 from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
@@ -29,9 +30,7 @@ from standoff.kernels.entries import queries
 from standoff.kernels.entries.queries import on_face
 from standoff.kernels.tolerances import RECHART
 from standoff.motion import PoseLike
-from standoff.real_numbers import shown
 from standoff.tracking import Feature, Proximity, distance
-from standoff.tracking.choices import whole_number
 from standoff.tracking.inputs import flat_pose
 from standoff.tracking.pair_system import UPPER
 from standoff.tracking.places import PlaceLike, put
@@ -126,7 +125,7 @@ def lyapunov_level(
         which have no parameters.
     """
     directions = whole_number(directions, "directions")
-    _check_seed(seed)
+    seed = whole_number(seed, "seed", 0)
     best = distance(a, b, pose_a, pose_b)
     if not best.certified or best.distance <= 0.0:
         raise StandoffError(f"The pair has no certified minimum: {best!r}.")
@@ -166,13 +165,6 @@ def _not_definite(best: Proximity) -> StandoffError:
         f"H is not positive definite at the optimum, {best.feature_a} - {best.feature_b}: "
         "the faces are parallel, or the bodies touch."
     )
-
-
-def _check_seed(seed: Any) -> None:
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise StandoffError(
-            f"seed = {shown(seed)}: give a whole number, zero or above.", "seed", seed
-        )
 
 
 def _followed(follow: Callable[[Array], Curve], around: Array) -> list[Curve]:

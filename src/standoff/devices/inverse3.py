@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from standoff.bound_to_run import BoundToRun
+from standoff.checks.numbers import positive
+from standoff.checks.real_numbers import shown
 from standoff.devices.inverse3_messages import (
     Cursor,
     cursor_of,
@@ -27,9 +29,7 @@ from standoff.devices.tolerances import (
 from standoff.errors import DeviceError, StandoffTypeError, not_installed
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import Twist
-from standoff.real_numbers import shown
 from standoff.simulation.device import DeviceReading, Fault
-from standoff.simulation.passivity import non_negative
 
 URL = "ws://localhost:10001"
 """Where the Inverse Service listens if it is not told otherwise."""
@@ -88,7 +88,7 @@ class Inverse3(BoundToRun):
             if not isinstance(given, str) and (name == "url" or given is not None):
                 raise StandoffTypeError(f"{name} is {shown(given)}: give a text.", name, given)
         self._url, self._wanted = url, device_id
-        self._period = non_negative(period, "period", above_zero=True)
+        self._period = positive(period, "period")
         self._placement = Pose.identity() if placement is None else Pose.of(placement)
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from standoff.bound_to_run import BoundToRun
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import number
 from standoff.devices.port import Port
 from standoff.errors import DeviceError
-from standoff.motion import inputs
 from standoff.motion.pose import Pose, PoseLike
 from standoff.simulation.device import DeviceReading, Fault
 
@@ -84,7 +85,7 @@ class PointerDevice(BoundToRun):
             its reading grows old.
         """
         pose = self._read(at)
-        when = time.monotonic() if stamp is None else inputs.number(stamp, "stamp")
+        when = time.monotonic() if stamp is None else number(stamp, "stamp")
         with self._lock:
             if when <= self._stamp:
                 return
@@ -107,7 +108,7 @@ class PointerDevice(BoundToRun):
             a_position = False
         if not a_position:
             return Pose.of(at)
-        return Pose.from_checked(self._pose.rotation, inputs.array(at, "at", (3,)))
+        return Pose.from_checked(self._pose.rotation, finite(at, "at", (3,)))
 
     def __repr__(self) -> str:
         return f"<PointerDevice, {self._sequence} readings>"

@@ -6,12 +6,11 @@ import threading
 import time
 
 from standoff.bound_to_run import BoundToRun
+from standoff.checks.numbers import positive, yes_or_no
+from standoff.checks.real_numbers import shown
 from standoff.devices.port import Port
 from standoff.errors import DeviceError, StandoffTypeError
-from standoff.real_numbers import shown
 from standoff.simulation.device import Device, Fault
-from standoff.simulation.passivity import non_negative
-from standoff.tracking.choices import yes_or_no
 
 
 class Polled(BoundToRun):
@@ -49,7 +48,7 @@ class Polled(BoundToRun):
                 device,
             )
         self._inner, self._stamped = device, yes_or_no(stamped, "stamped")
-        self._period = non_negative(period, "period", above_zero=True)
+        self._period = positive(period, "period")
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None
         self.problem = ""

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.numbers import number, positive, yes_or_no
 from standoff.devices.tolerances import PERIOD_ROUNDING
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import coupler_arrays as K
-from standoff.motion import inputs
 from standoff.motion.paths import Path
 from standoff.motion.pose import PoseLike
 from standoff.motion.pose_function import path_of
@@ -22,8 +22,6 @@ from standoff.read_only import KeepsReadOnly
 from standoff.simulation.arrivals import reading_row
 from standoff.simulation.device import DeviceReading
 from standoff.simulation.device_readings import MOST_MADE
-from standoff.simulation.passivity import non_negative
-from standoff.tracking.choices import yes_or_no
 
 Array = NDArray[np.float64]
 
@@ -68,7 +66,7 @@ class Trace(KeepsReadOnly):
     ) -> None:
         found: Any = path_of(path)
         self.path = found
-        self.start, self.end = inputs.number(start, "start"), inputs.number(end, "end")
+        self.start, self.end = number(start, "start"), number(end, "end")
         if not self.end > self.start:
             raise StandoffError(
                 f"end is {self.end:g}: give a time after the start, {self.start:g}.", "end", end
@@ -118,7 +116,7 @@ class Trace(KeepsReadOnly):
         StandoffError
             More than a million readings, or less than two.
         """
-        seconds = non_negative(period, "period", above_zero=True)
+        seconds = positive(period, "period")
         count = int(self.duration / seconds * (1.0 + PERIOD_ROUNDING)) + 1
         turns = 2 * (count - 1) if self.there_and_back else count
         if not count >= 2 or turns > MOST_MADE:

@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.checks.names import choice
+from standoff.checks.real_numbers import shown
 from standoff.errors import DerivativeWarning, StandoffError, StandoffTypeError
-from standoff.real_numbers import shown
-from standoff.tracking.choices import choice
 from standoff.tracking.cold_query import distance
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.many_distances import answered_rows
@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 ENTRIES = 16
 NONE = np.zeros(0)
 
-UNDEFINED = {"nan": 0, "raise": 1}
+UNDEFINED = ("nan", "raise")
 """What is done where a derivative is not defined."""
 
 LACKING = (Smoothness.PARTIAL, Smoothness.UNDEFINED)
@@ -231,7 +231,7 @@ def _tell(pair: Pair, flag: Smoothness, which: str, reason: str, more: str) -> N
     """Warn of an answer that lacks derivatives, or raise."""
     some = flag is Smoothness.PARTIAL
     told = f"The distance{which} has {'not all' if some else 'no'} derivatives: {reason}{more}"
-    if UNDEFINED[pair.undefined]:
+    if pair.undefined == "raise":
         raise StandoffError(told)
     warnings.warn(
         f"{told} {'The others' if some else 'They'} are nan; undefined='raise' makes this an "

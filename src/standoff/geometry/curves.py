@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import number
+from standoff.checks.real_numbers import shape_of
 from standoff.errors import StandoffError
 from standoff.geometry.intervals import Interval, cos, interval, sin
 from standoff.geometry.tolerances import PARALLEL_AXES, WHOLE_CONIC
-from standoff.geometry.validation import Array, affine_map, check_alike, finite, vector3
+from standoff.geometry.validation import Array, affine_map, check_alike, vector3
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import curve_jet
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shape_of
 
 if TYPE_CHECKING:
     from standoff.geometry.formulas.compiled import Formula
@@ -193,7 +195,7 @@ class ConicArc(Curve):
     ) -> None:
         centre = vector3(_planar(centre), "centre")
         a, b = vector3(_planar(a), "a"), vector3(_planar(b), "b")
-        first, last = float(finite(first, "first", ())), float(finite(last, "last", ()))
+        first, last = number(first, "first"), number(last, "last")
         if np.linalg.norm(np.cross(a, b)) <= PARALLEL_AXES * np.linalg.norm(a) * np.linalg.norm(b):
             raise StandoffError(f"Conic arc with parallel or zero axes a = {a}, b = {b}.")
         if not 0.0 < last - first <= FULL_TURN * (1.0 + WHOLE_CONIC):

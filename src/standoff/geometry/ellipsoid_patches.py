@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.numbers import magnitude
 from standoff.geometry.bernstein import product
 from standoff.geometry.nurbs import BezierPatch
-from standoff.geometry.validation import Array, positive
+from standoff.geometry.validation import Array
 
 
 def ellipsoid_patches(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
@@ -79,7 +80,7 @@ def ellipsoid_octants(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
 
 
 def _semi_axes(a: Any, b: Any, c: Any) -> Array:
-    return np.array([positive(a, "a"), positive(b, "b"), positive(c, "c")])
+    return np.array([magnitude(a, "a"), magnitude(b, "b"), magnitude(c, "c")])
 
 
 def _cube_tile() -> tuple[Array, Array]:

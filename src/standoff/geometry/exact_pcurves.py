@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.pcurves import Pcurve
@@ -16,7 +17,6 @@ from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import ROUND_SECTION
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.real_numbers import shown
 
 
 def pcurve_of(curve: Curve, surface: Surface) -> Pcurve:

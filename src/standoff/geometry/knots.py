@@ -15,8 +15,9 @@ from typing import Any
 
 import numpy as np
 
+from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array, finite
+from standoff.geometry.validation import Array
 from standoff.read_only import KeepsReadOnly
 
 # The compiled jets hold one row of basis functions of this degree.

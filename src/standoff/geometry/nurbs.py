@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
 from standoff.geometry.bernstein import segment
+from standoff.geometry.domains import Domain, checked_domain, inside
 from standoff.geometry.hulls import tight_box
 from standoff.geometry.knot_removal import essential_net
 from standoff.geometry.knots import (
@@ -26,8 +28,8 @@ from standoff.geometry.knots import (
     knot_vector,
     refine,
 )
-from standoff.geometry.surfaces import Domain, Surface, checked_domain, inside
-from standoff.geometry.validation import Array, affine_map, check_alike, finite
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array, affine_map, check_alike
 from standoff.kernels.body import layout as L
 
 if TYPE_CHECKING:

@@ -7,19 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from standoff.checks.arrays import finite
+from standoff.checks.real_numbers import shape_of
 from standoff.geometry.curves import Curve
 from standoff.geometry.hulls import tight_box
 from standoff.geometry.knot_removal import essential_row
 from standoff.geometry.knots import KnotVector, bezier_spans, elevate_knots, knot_vector, refine
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.tolerances import SMOOTH_JOINT
-from standoff.geometry.validation import Array, affine_map, finite
+from standoff.geometry.validation import Array, affine_map
 from standoff.kernels.body import layout as L
 
 if TYPE_CHECKING:
     from standoff.geometry.intervals import Interval
     from standoff.geometry.net_bounds import CutNets
-from standoff.real_numbers import shape_of
 
 
 class NurbsCurve(Curve):

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import scipy
 
+from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
 from standoff.geometry.knots import bezier_spans, knot_vector
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.tolerances import INFLECTION, STRAIGHT_PCURVE
-from standoff.geometry.validation import Array, finite
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import pcurve_jet
 

@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
 from standoff.geometry.boxes import Boxes
 from standoff.geometry.interval_vectors import cross, length
 from standoff.geometry.intervals import Interval, interval, sqrt
 from standoff.geometry.tolerances import CONE_ROUNDING, VANISHED
-from standoff.geometry.validation import Array, finite
+from standoff.geometry.validation import Array
 
 # Steps of a cone's axis towards the vector farthest from it.
 AXIS_STEPS = 40

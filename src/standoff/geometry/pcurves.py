@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from standoff.checks.real_numbers import real_array, shown
 from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import pcurve_jet
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import real_array, shown
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from standoff.checks.numbers import number
 from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, finite
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ GREATEST_EXPONENT = 1.8
 
 def checked_exponent(value: object, name: str) -> float:
     """A convex superellipsoid's exponent; raises ValueError with the range."""
-    e = float(finite(value, name, ()))
+    e = number(value, name)
     if not LEAST_EXPONENT <= e <= GREATEST_EXPONENT:
         raise StandoffError(
             f"{name} = {e}: a superellipsoid's exponents must be from {LEAST_EXPONENT} to "

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from standoff.checks.numbers import number
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.geometry.curves import Curve, fill_curve
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import WHOLE_TURN
-from standoff.geometry.validation import Array, finite
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.real_numbers import shown
 
 if TYPE_CHECKING:
     from standoff.geometry.formulas.compiled import Formula
@@ -57,7 +58,7 @@ class SurfaceCurve(Curve):
         last: float,
         others: Sequence[tuple[Surface, Pcurve]] = (),
     ) -> None:
-        first, last = float(finite(first, "first", ())), float(finite(last, "last", ()))
+        first, last = number(first, "first"), number(last, "last")
         if not first < last:
             raise StandoffError(f"SurfaceCurve from t = {first} to {last}: give first < last.")
         _check_chart((surface, pcurve), "SurfaceCurve")
@@ -66,8 +67,8 @@ class SurfaceCurve(Curve):
             raise StandoffError(
                 f"others = {shown(listed)}: give a list of (surface, pcurve).", "others", others
             )
-        for number, one in enumerate(listed):
-            _check_chart(one, f"others[{number}]")
+        for k, one in enumerate(listed):
+            _check_chart(one, f"others[{k}]")
         object.__setattr__(self, "surface", surface)
         object.__setattr__(self, "pcurve", pcurve)
         object.__setattr__(self, "others", tuple(others))
@@ -99,10 +100,10 @@ class SurfaceCurve(Curve):
             raise StandoffError(f"isoline at u = {shown(u)}, v = {shown(v)}: give one of them.")
         u0, u1, v0, v1 = surface.domain
         if u is not None:
-            u = float(finite(u, "u", ()))
+            u = number(u, "u")
             matrix = np.array([[0.0, 0.0, u], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
             return SurfaceCurve(surface, Pcurve(L.LINE, matrix), v0, v1)
-        v = float(finite(v, "v", ()))
+        v = number(v, "v")
         matrix = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, v], [0.0, 0.0, 1.0]])
         return SurfaceCurve(surface, Pcurve(L.LINE, matrix), u0, u1)
 

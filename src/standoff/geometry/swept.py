@@ -7,18 +7,20 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from standoff.checks.numbers import LEAST, number
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.geometry.curve_bounds import box_of, curve_breaks, curve_reach
 from standoff.geometry.curves import FULL_TURN, Curve
+from standoff.geometry.domains import Domain, inside
 from standoff.geometry.interval_vectors import by_generator, mapped, stacked
 from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.rotational import Rotational
-from standoff.geometry.surfaces import Domain, Surface, inside
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import ALONG_PROFILE, PROFILE_ROUNDOFF, ROUND_POLE
 from standoff.geometry.torus import checked_turn, full_turn
-from standoff.geometry.validation import LEAST, Array, affine_map, finite, vector3
+from standoff.geometry.validation import Array, affine_map, vector3
 from standoff.kernels.body import layout as L
-from standoff.real_numbers import shown
 
 if TYPE_CHECKING:
     from standoff.geometry.boxes import Boxes
@@ -219,7 +221,7 @@ class Extrusion(Swept):
 
     def __init__(self, profile: Curve, direction: Any, first: Any = 0.0, last: Any = 1.0) -> None:
         direction = vector3(direction, "direction")
-        first, last = float(finite(first, "first", ())), float(finite(last, "last", ()))
+        first, last = number(first, "first"), number(last, "last")
         if not first < last:
             raise StandoffError(f"Extrusion from v = {first} to {last}: give first < last.")
         length = float(np.linalg.norm(direction))

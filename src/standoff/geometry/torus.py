@@ -6,14 +6,15 @@ from typing import Any
 
 import numpy as np
 
+from standoff.checks.numbers import magnitude, number
 from standoff.errors import StandoffError
 from standoff.geometry.curves import FULL_TURN
+from standoff.geometry.domains import Domain
 from standoff.geometry.interval_vectors import stacked, wave
 from standoff.geometry.intervals import Interval, cos, interval, near, sin
 from standoff.geometry.rotational import Rotational
-from standoff.geometry.surfaces import Domain
 from standoff.geometry.tolerances import ANGLE_ROUNDOFF
-from standoff.geometry.validation import Array, affine_map, finite, positive
+from standoff.geometry.validation import Array, affine_map
 from standoff.kernels.body import layout as L
 
 
@@ -24,7 +25,7 @@ def full_turn(first: float, last: float) -> bool:
 
 def checked_turn(first: Any, last: Any, name: str) -> tuple[float, float]:
     """Two finite angles, radians, less than or just a turn apart."""
-    a, b = float(finite(first, "first", ())), float(finite(last, "last", ()))
+    a, b = number(first, "first"), number(last, "last")
     if not 0.0 < b - a <= FULL_TURN * (1.0 + ANGLE_ROUNDOFF):
         raise StandoffError(
             f"{name} from angle {a} to {b}: give 0 < last - first <= 2 pi (radians).", "last", b
@@ -82,7 +83,7 @@ class Torus(Rotational):
     ) -> None:
         u0, u1 = checked_turn(u0, u1, "Torus")
         v0, v1 = checked_turn(v0, v1, "Torus, round its circle,")
-        major, minor = positive(major, "major"), positive(minor, "minor")
+        major, minor = magnitude(major, "major"), magnitude(minor, "minor")
         if minor >= major and _inmost(v0, v1) * minor + major <= 0.0:
             raise StandoffError(
                 f"Torus of radii {major} and {minor} from v = {v0} to {v1}: it meets its axis; "

@@ -139,8 +139,12 @@ NEAR_CONTACT = 1e-3
 # Newton steps of that polish: it starts near its root and converges quadratically.
 CONTACT_STEPS = 12
 
-# Positions (length) must stay below this: squares of distances must not overflow.
+# Positions (length) must stay below this: squares of distances must not overflow. What Python reads
+# number by number (checks.numbers.GREATEST) stays below it by far.
 FARTHEST = 1e100
+# Entries of R (dimensionless): a planar body's pose may be tilted by this, the roundoff of
+# composing rotations.
+PLANE_TILT = 1e-12
 # Parameters that a frame of the paper's law changes by more than this have overflowed: fourth
 # powers of them must not, and no patch is so wide (parameter units; on a half-space lengths).
 LONGEST_CHANGE = 1e50
@@ -219,6 +223,12 @@ SADDLE_SHIFTS = 6
 # A depth is global when no direction's can be less by more than this part of it: near one minimum
 # any direction within acos(1 - 1e-3) = 2.6 degrees is as good, so the polytope may be coarse.
 DEPTH_PROOF = 1e-3
+# Of the span: how far from its body a witness point may be. Roundoff is 16 eps of it at most
+# (BOUND_ROUNDINGS); a point that counts as on a face by PARAMETER_NOISE may stand off its rim by
+# that times the speed of the patch, which is then allowed to be a hundred spans.
+OVERLAP_NOISE = 1e-12
+# Steps of the proof of an overlap: each adds one of its points to the polytope.
+OVERLAP_ROUNDS = 60
 # Points that the search of all depths may add to its polytope: smooth pairs take 20 to 40, a ring
 # of equal minima 100 to 300.
 MAX_PROBES = 320

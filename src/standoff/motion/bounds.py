@@ -10,14 +10,14 @@ from typing import Protocol, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
+from standoff.checks.arrays import FloatArray, finite
+from standoff.checks.numbers import not_negative
+from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.motion import inputs
-from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.pose_function import path_of
 from standoff.motion.twist import TwistLike
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shape_of, shown
 
 
 @dataclass(frozen=True)
@@ -122,12 +122,12 @@ class Bounded(KeepsReadOnly):
         self.start = float(getattr(given, "start", -math.inf))
         self.end = float(getattr(given, "end", math.inf))
         self._origin = MotionBounds(
-            _bound(speed, "speed"),
-            _bound(acceleration, "acceleration"),
-            _bound(angular_speed, "angular_speed"),
-            _bound(angular_acceleration, "angular_acceleration"),
+            not_negative(speed, "speed"),
+            not_negative(acceleration, "acceleration"),
+            not_negative(angular_speed, "angular_speed"),
+            not_negative(angular_acceleration, "angular_acceleration"),
         )
-        self._lengths = None if lengths is None else _bound(lengths, "lengths")
+        self._lengths = None if lengths is None else not_negative(lengths, "lengths")
         self._breaks = np.sort(_times(breaks, "breaks"))
 
     def pose(self, t: float) -> PoseLike:
@@ -154,13 +154,6 @@ class Bounded(KeepsReadOnly):
         return [float(t) for t in within]
 
 
-def _bound(value: float, name: str) -> float:
-    read = inputs.number(value, name)
-    if read < 0.0:
-        raise StandoffError(f"{name} is {read}: a bound is zero or above", name, value)
-    return read
-
-
 def _times(value: ArrayLike, name: str) -> FloatArray:
     """Read a sequence of times, as many as there are."""
     shape = shape_of(value)
@@ -168,7 +161,7 @@ def _times(value: ArrayLike, name: str) -> FloatArray:
         raise StandoffError(
             f"{name} is {shown(value)}: give a sequence of times, such as [1.0, 2.5]", name, value
         )
-    return inputs.array(value, name, (shape[0],))
+    return finite(value, name, (shape[0],))
 
 
 def of_point(origin: MotionBounds, point: FloatArray) -> MotionBounds:

@@ -11,7 +11,8 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from standoff.motion import inputs
+from standoff.checks.arrays import FloatArray, direction, finite
+from standoff.checks.numbers import number
 from standoff.motion.bounds import (
     MotionBounds,
     bounds_of,
@@ -20,7 +21,6 @@ from standoff.motion.bounds import (
     length,
     turning,
 )
-from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.pose_function import path_of
 from standoff.motion.twist import Twist, TwistLike
@@ -77,12 +77,12 @@ class Fixed(KeepsReadOnly):
 
     def pose(self, t: float) -> Pose:
         """Return the one pose."""
-        inputs.number(t, "t")
+        number(t, "t")
         return self._pose
 
     def twist(self, t: float) -> Twist:
         """Return zero."""
-        inputs.number(t, "t")
+        number(t, "t")
         return Twist.zero()
 
     def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
@@ -123,7 +123,7 @@ class ConstantTwist(KeepsReadOnly):
 
     def pose(self, t: float) -> Pose:
         """Return where the body is at time `t` [s]."""
-        return self._twist.carry(self._initial, inputs.number(t, "t"))
+        return self._twist.carry(self._initial, number(t, "t"))
 
     def twist(self, t: float) -> Twist:
         """Return how the body moves at time `t` [s], in world axes."""
@@ -181,15 +181,15 @@ class Screw(KeepsReadOnly):
         pitch: float = 0.0,
     ) -> None:
         self._initial = Pose.of(pose)
-        self._point = inputs.array(point, "point", (3,))
-        unit = inputs.direction(axis, "axis")
-        rate = inputs.number(angular_rate, "angular_rate")
+        self._point = finite(point, "point", (3,))
+        unit = direction(axis, "axis")
+        rate = number(angular_rate, "angular_rate")
         self._omega = unit * rate
-        self._advance = self._omega * (inputs.number(pitch, "pitch") / math.tau)
+        self._advance = self._omega * (number(pitch, "pitch") / math.tau)
 
     def pose(self, t: float) -> Pose:
         """Return where the body is at time `t` [s]."""
-        seconds = inputs.number(t, "t")
+        seconds = number(t, "t")
         turn = scipy.spatial.transform.Rotation.from_rotvec(self._omega * seconds).as_matrix()
         arm = self._initial.translation - self._point
         origin = self._point + turn @ arm + self._advance * seconds

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeGuard
+from typing import Any, Protocol, TypeAlias, TypeGuard
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from standoff.checks.arrays import FloatArray, finite, numbers, text, unmasked
+from standoff.checks.real_numbers import as_given, shape_of, shown
 from standoff.errors import StandoffError
-from standoff.motion import inputs
-from standoff.motion.inputs import FloatArray, text
 from standoff.motion.rotations import as_rotation, nearest_rotation
 from standoff.motion.tolerances import ORTHONORMALITY, QUATERNION_ROUNDING, UNIT_QUATERNION
+from standoff.motion.written import written
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import as_given, shape_of, shown
-from standoff.spellings import no_attribute
 
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Of every homogeneous matrix."""
@@ -74,11 +73,6 @@ class Pose(KeepsReadOnly):
         object.__setattr__(self, "rotation", rotation)
         object.__setattr__(self, "translation", translation)
         object.__setattr__(self, "repaired", repaired)
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise no_attribute(self, name, {"normalised": "repaired"})
 
     @classmethod
     def from_checked(
@@ -164,7 +158,7 @@ class Pose(KeepsReadOnly):
         ValueError
             If a component is not finite, a shape is wrong, or the norm is off by more than 1e-3.
         """
-        w, x, y, z = inputs.array(quaternion, "quaternion (w, x, y, z)", (4,))
+        w, x, y, z = finite(quaternion, "quaternion (w, x, y, z)", (4,))
         return cls._from_quaternion(np.array([x, y, z, w]), translation)
 
     @classmethod
@@ -183,7 +177,7 @@ class Pose(KeepsReadOnly):
         ValueError
             If a component is not finite, a shape is wrong, or the norm is off by more than 1e-3.
         """
-        xyzw = inputs.array(quaternion, "quaternion (x, y, z, w)", (4,))
+        xyzw = finite(quaternion, "quaternion (x, y, z, w)", (4,))
         return cls._from_quaternion(xyzw, translation)
 
     @classmethod
@@ -199,7 +193,7 @@ class Pose(KeepsReadOnly):
             )
         return cls.from_checked(
             scipy.spatial.transform.Rotation.from_quat(xyzw).as_matrix(),
-            inputs.array(translation, "translation", (3,)),
+            finite(translation, "translation", (3,)),
             repaired=defect > QUATERNION_ROUNDING,
         )
 
@@ -219,17 +213,17 @@ class Pose(KeepsReadOnly):
         ValueError
             If a component is not finite or a shape is wrong.
         """
-        vector = inputs.array(rotation_vector, "rotation_vector", (3,))
+        vector = finite(rotation_vector, "rotation_vector", (3,))
         return cls.from_checked(
             # SciPy takes no read-only rotation vector.
             scipy.spatial.transform.Rotation.from_rotvec(vector.copy()).as_matrix(),
-            inputs.array(translation, "translation", (3,)),
+            finite(translation, "translation", (3,)),
         )
 
     def __repr__(self) -> str:
         """One line that makes the same pose, to six digits."""
         turn = scipy.spatial.transform.Rotation.from_matrix(self.rotation).as_rotvec()
-        return f"Pose.exp({inputs.written(turn, 1.0)}, {inputs.written(self.translation)})"
+        return f"Pose.exp({written(turn, 1.0)}, {written(self.translation)})"
 
     @property
     def matrix(self) -> FloatArray:
@@ -268,7 +262,7 @@ class Pose(KeepsReadOnly):
         ValueError
             If the last axis has not three components.
         """
-        array = inputs.numbers(points, "points", None)
+        array = numbers(points, "points", None)
         if array.ndim == 0 or array.shape[-1] != 3:
             raise StandoffError(
                 f"points have shape {array.shape}: give an array of shape (..., 3)",
@@ -316,8 +310,8 @@ def _numbers(rotation: RotationLike, translation: ArrayLike) -> tuple[FloatArray
             rotation,
         )
     return (
-        inputs.array(matrix_of(rotation), "rotation", (3, 3)),
-        inputs.array(translation, "translation", (3,)),
+        finite(matrix_of(rotation), "rotation", (3, 3)),
+        finite(translation, "translation", (3,)),
     )
 
 
@@ -331,7 +325,7 @@ def _parts(value: PoseLike) -> tuple[RotationLike, ArrayLike]:
             raise StandoffError(_unnamed_quaternion(rotation), "rotation", rotation)
         return rotation, translation
     given = matrix_of(value)
-    inputs.unmasked(given, "pose")
+    unmasked(given, "pose")
     try:
         given = as_given(given)
     except (ValueError, RecursionError) as error:
@@ -342,7 +336,7 @@ def _parts(value: PoseLike) -> tuple[RotationLike, ArrayLike]:
         raise StandoffError(
             f"not a pose: shape {given.shape}, value {text(given)}; {_ACCEPTED}", "value", value
         )
-    matrix = inputs.array(given, "pose", (4, 4))
+    matrix = finite(given, "pose", (4, 4))
     if np.abs(matrix[3] - LAST_ROW).max() > ORTHONORMALITY:
         raise StandoffError(
             f"the last row of a homogeneous matrix is (0, 0, 0, 1), not {text(matrix[3])}; "

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import scipy
 
+from standoff.checks.arrays import FloatArray
+from standoff.checks.numbers import number, positive
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.motion import inputs
-from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import Twist, TwistLike
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 
 STEP = 2.0**-10
 """Between the poses of a difference [s]: fourth order leaves (ω step)⁴/30 of a speed that swings at
@@ -71,9 +71,7 @@ class PoseFunction(KeepsReadOnly):
                     f"{name} is {shown(given)}: give a function of the time", name, given
                 )
         self._pose, self._twist = pose, twist
-        self._step = inputs.number(step, "step")
-        if self._step <= 0.0:
-            raise StandoffError(f"step is {self._step!r}: give a time above zero", "step", step)
+        self._step = positive(step, "step")
         self.start, self.end = _time(start, "start"), _time(end, "end")
         if not self.start < self.end:
             raise StandoffError(
@@ -93,7 +91,7 @@ class PoseFunction(KeepsReadOnly):
         ValueError
             If the function returns no pose.
         """
-        seconds = inputs.number(t, "t")
+        seconds = number(t, "t")
         given = self._pose(seconds)
         try:
             return Pose.of(given)
@@ -110,7 +108,7 @@ class PoseFunction(KeepsReadOnly):
         ValueError
             If the function returns no twist, or no pose.
         """
-        seconds = inputs.number(t, "t")
+        seconds = number(t, "t")
         if self._twist is None:
             return self._difference(seconds)
         given = self._twist(seconds)
@@ -179,7 +177,7 @@ def path_of(given: Any, start: float = 0.0, end: float = math.inf) -> Any:
 def _time(value: Any, name: str) -> float:
     """Read a time that may be infinite."""
     endless = isinstance(value, float) and math.isinf(value)
-    return float(value) if endless else inputs.number(value, name)
+    return float(value) if endless else number(value, name)
 
 
 def _weights(offsets: list[float]) -> FloatArray:

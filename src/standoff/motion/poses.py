@@ -11,9 +11,10 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
+from standoff.checks.arrays import FloatArray, finite, numbers
+from standoff.checks.numbers import GREATEST
+from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.motion import inputs
-from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import LAST_ROW, HasMatrix, Pose, PoseLike, RotationLike, matrix_of
 from standoff.motion.rotations import defect, mirrored, without_rounding
 from standoff.motion.tolerances import (
@@ -23,7 +24,6 @@ from standoff.motion.tolerances import (
     UNIT_QUATERNION,
 )
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shape_of, shown
 
 SEVEN = (
     "the order of a quaternion must be named: give so.Poses.from_xyzw(rows[:, 3:], rows[:, :3]) "
@@ -105,7 +105,7 @@ class Poses(KeepsReadOnly):
         with np.errstate(invalid="ignore", over="ignore"):  # of numbers that are refused below
             off = defect(rotations)
             bad = mirrored(rotations) | ~(off <= ROUNDED)
-        bad |= ~(np.abs(translations) <= inputs.GREATEST).all(axis=1)
+        bad |= ~(np.abs(translations) <= GREATEST).all(axis=1)
         if wrong is not None:
             bad |= wrong
         if bad.any():
@@ -162,7 +162,7 @@ class Poses(KeepsReadOnly):
                 "poses",
                 given,
             )
-        matrices = inputs.numbers(given, "poses", shape)
+        matrices = numbers(given, "poses", shape)
         turns, shifts = matrices[:, :3, :3].copy(), matrices[:, :3, 3].copy()
         made = cls.__new__(cls)
         made._take(turns, shifts, matrices, ~has_last_row(matrices))
@@ -213,7 +213,7 @@ class Poses(KeepsReadOnly):
         shifts = _shifts(translations, len(xyzw))
         with np.errstate(invalid="ignore", over="ignore"):  # of numbers that are refused below
             off = np.abs(np.linalg.norm(xyzw, axis=1) - 1.0)
-        wrong = ~(off <= UNIT_QUATERNION) | ~(np.abs(shifts) <= inputs.GREATEST).all(axis=1)
+        wrong = ~(off <= UNIT_QUATERNION) | ~(np.abs(shifts) <= GREATEST).all(axis=1)
         for index in np.flatnonzero(wrong).tolist():
             with _named(index, xyzw[index]):
                 Pose.from_xyzw(xyzw[index], shifts[index])  # says what is wrong with it
@@ -259,7 +259,7 @@ PosesLike: TypeAlias = (
 
 def _rows(value: Any, name: str, shape: tuple[int, ...]) -> FloatArray:
     """A new array of n rows of the given shape."""
-    array = inputs.numbers(value, name, None)
+    array = numbers(value, name, None)
     if array.ndim == 0 or array.shape[1:] != shape or not len(array):
         wanted = ", ".join(map(str, ("n", *shape)))
         raise StandoffError(
@@ -271,7 +271,7 @@ def _rows(value: Any, name: str, shape: tuple[int, ...]) -> FloatArray:
 def _shifts(translations: ArrayLike, count: int) -> FloatArray:
     """A new array of `count` translations, of as many or of one."""
     if shape_of(translations) == (3,):
-        return np.tile(inputs.array(translations, "translations", (3,)), (count, 1))
+        return np.tile(finite(translations, "translations", (3,)), (count, 1))
     shifts = _rows(translations, "translations", (3,))
     if len(shifts) != count:
         raise StandoffError(

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from standoff.checks.arrays import FloatArray, text
 from standoff.errors import StandoffError
-from standoff.motion.inputs import FloatArray, text
 from standoff.motion.tolerances import FLAT, ORTHONORMALITY, ROUNDED
 
 _STEPS = 2

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from standoff.checks.arrays import FloatArray, finite
+from standoff.checks.numbers import GREATEST, number
 from standoff.errors import StandoffError
-from standoff.motion import inputs
 from standoff.motion.bounds import MotionBounds, cross, length, turning
-from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import HasMatrix, Pose, PoseLike
 from standoff.motion.poses import Poses
 from standoff.motion.tolerances import HALF_TURN_ANGLE, NEAR_HALF_TURN
 from standoff.motion.twist import Twist, screws
 from standoff.read_only import KeepsReadOnly
-from standoff.spellings import no_attribute
 
 FASTER = 10.0
 """A screw is no more than this faster than its ends' distances from the origin in its time."""
@@ -64,7 +63,7 @@ class PoseSamples(KeepsReadOnly):
 
     def _set(self, times: ArrayLike, stack: Poses) -> None:
         self._stack = stack
-        self.times = inputs.array(times, "times", (len(stack.rotations),))
+        self.times = finite(times, "times", (len(stack.rotations),))
         self.repaired = int(np.count_nonzero(stack.repaired))
         _check_times(self.times)
         self._check_ways()
@@ -77,7 +76,7 @@ class PoseSamples(KeepsReadOnly):
         lengths = np.abs(translations).max(axis=1) + 1.0
         with np.errstate(over="ignore"):
             speeds = (lengths[:-1] + lengths[1:]) / np.diff(self.times)
-        if traces.min() < NEAR_HALF_TURN or speeds.max() > inputs.GREATEST / FASTER:
+        if traces.min() < NEAR_HALF_TURN or speeds.max() > GREATEST / FASTER:
             _ = self._screws
 
     @cached_property
@@ -85,11 +84,11 @@ class PoseSamples(KeepsReadOnly):
         """The twists (v, ω) from each sample to the next, (n − 1, 3), in body axes."""
         steps = np.diff(self.times)
         v, omega = screws(self._stack.rotations, self._stack.translations, steps)
-        fast = ~((np.abs(v) <= inputs.GREATEST) & (np.abs(omega) <= inputs.GREATEST)).all(axis=1)
+        fast = ~((np.abs(v) <= GREATEST) & (np.abs(omega) <= GREATEST)).all(axis=1)
         if fast.any():
             raise StandoffError(
                 f"{self._between(fast)} are too far apart for the time between them: no velocity "
-                f"may be beyond {inputs.GREATEST:g}",
+                f"may be beyond {GREATEST:g}",
                 "poses",
             )
         turns = np.linalg.norm(omega, axis=1) * steps
@@ -120,11 +119,6 @@ class PoseSamples(KeepsReadOnly):
         """The poses of the samples, n of them."""
         return tuple(self._stack)
 
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise no_attribute(self, name, {"normalised": "repaired"})
-
     @property
     def start(self) -> float:
         """Time of the first sample [s]."""
@@ -141,13 +135,13 @@ class PoseSamples(KeepsReadOnly):
         Recorded files often count from a far epoch, where double precision resolves a time to
         little better than a microsecond.
         """
-        first = inputs.number(start, "start")
+        first = number(start, "start")
         shifted = PoseSamples.__new__(PoseSamples)
         shifted._set((self.times - self.times[0]) + first, self._stack)
         return shifted
 
     def _interval(self, t: float) -> tuple[int, float]:
-        seconds = inputs.number(t, "t")
+        seconds = number(t, "t")
         if not self.start <= seconds <= self.end:
             raise StandoffError(
                 f"t is {seconds!r}, outside the samples: they reach from {self.start!r} to "

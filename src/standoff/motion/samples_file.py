@@ -9,12 +9,12 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from standoff.checks.real_numbers import SHOWN_CHARACTERS, shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion.pose import Pose
 from standoff.motion.samples import PoseSamples
 from standoff.motion.samples_table import COLUMNS as _COLUMNS
 from standoff.motion.samples_table import parquet_rows
-from standoff.real_numbers import SHOWN_CHARACTERS, shown
 
 _NUMBER = re.compile(
     r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|inf(?:inity)?|nan)", re.I

@@ -10,12 +10,14 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from standoff.checks.arrays import FloatArray, finite, text, unmasked
+from standoff.checks.names import choice
+from standoff.checks.numbers import number, positive
+from standoff.checks.real_numbers import as_given, shown
 from standoff.errors import StandoffError
-from standoff.motion import inputs
-from standoff.motion.inputs import FloatArray, text
 from standoff.motion.pose import Pose, PoseLike
+from standoff.motion.written import written
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import as_given, shown
 
 Frame: TypeAlias = Literal["world", "body"]
 """The axes in which a twist's components are given."""
@@ -54,14 +56,14 @@ class Twist(KeepsReadOnly):
     frame: Frame
 
     def __init__(self, v: ArrayLike, omega: ArrayLike, frame: Frame = "world") -> None:
-        inputs.word(frame, "frame", get_args(Frame))
-        object.__setattr__(self, "v", inputs.array(v, "v", (3,)))
-        object.__setattr__(self, "omega", inputs.array(omega, "omega", (3,)))
+        choice(frame, "frame", get_args(Frame))
+        object.__setattr__(self, "v", finite(v, "v", (3,)))
+        object.__setattr__(self, "omega", finite(omega, "omega", (3,)))
         object.__setattr__(self, "frame", frame)
 
     def __repr__(self) -> str:
         frame = "" if self.frame == "world" else f', "{self.frame}"'
-        return f"Twist({inputs.written(self.v)}, {inputs.written(self.omega)}{frame})"
+        return f"Twist({written(self.v)}, {written(self.omega)}{frame})"
 
     @classmethod
     def of(cls, value: TwistLike) -> Twist:
@@ -79,7 +81,7 @@ class Twist(KeepsReadOnly):
         """
         if isinstance(value, Twist):
             return value
-        inputs.unmasked(value, "twist")
+        unmasked(value, "twist")
         try:
             given = as_given(value)
         except (ValueError, RecursionError) as error:
@@ -117,11 +119,7 @@ class Twist(KeepsReadOnly):
         ValueError
             If the duration is not positive.
         """
-        seconds = inputs.number(duration, "duration")
-        if seconds <= 0.0:
-            raise StandoffError(
-                f"duration is {seconds}: give a time above zero", "duration", duration
-            )
+        seconds = positive(duration, "duration")
         poses = Pose.of(first), Pose.of(second)
         rotations = np.array([pose.rotation for pose in poses])
         translations = np.array([pose.translation for pose in poses])
@@ -162,7 +160,7 @@ class Twist(KeepsReadOnly):
             Time [s]; negative goes back.
         """
         placed = Pose.of(pose)
-        seconds = inputs.number(duration, "duration")
+        seconds = number(duration, "duration")
         turn, shift = self.omega * seconds, self.v * seconds
         rotation: FloatArray = scipy.spatial.transform.Rotation.from_rotvec(turn).as_matrix()
         if self.frame == "world":

@@ -9,10 +9,10 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from standoff.errors import StandoffError
-from standoff.motion import inputs
+from standoff.checks.arrays import FloatArray, direction, finite
+from standoff.checks.names import choice
+from standoff.checks.numbers import not_negative, number, positive
 from standoff.motion.bounds import MotionBounds, length
-from standoff.motion.inputs import FloatArray
 from standoff.motion.pose import Pose
 from standoff.motion.twist import Twist
 from standoff.read_only import KeepsReadOnly
@@ -63,17 +63,13 @@ class Helix(KeepsReadOnly):
         phase: float = 0.0,
         orientation: Orientation = "fixed",
     ) -> None:
-        self._radius = inputs.number(radius, "radius")
-        if self._radius <= 0.0:
-            raise StandoffError(
-                f"radius is {self._radius}: give a length above zero", "radius", radius
-            )
-        self._rate = inputs.number(rate, "rate")
-        self._climb = inputs.number(pitch, "pitch") / math.tau * self._rate
-        self._centre = inputs.array(centre, "centre", (3,))
-        self._axis = inputs.direction(axis, "axis")
+        self._radius = positive(radius, "radius")
+        self._rate = number(rate, "rate")
+        self._climb = number(pitch, "pitch") / math.tau * self._rate
+        self._centre = finite(centre, "centre", (3,))
+        self._axis = direction(axis, "axis")
         self._first, self._second = _across(self._axis)
-        self._phase = inputs.number(phase, "phase")
+        self._phase = number(phase, "phase")
         self._turning = _turns(orientation)
 
     def _radial_and_tangential(self, seconds: float) -> tuple[FloatArray, FloatArray]:
@@ -86,7 +82,7 @@ class Helix(KeepsReadOnly):
 
     def pose(self, t: float) -> Pose:
         """Return where the body is at time `t` [s]."""
-        seconds = inputs.number(t, "t")
+        seconds = number(t, "t")
         radial, tangential = self._radial_and_tangential(seconds)
         origin = self._centre + self._radius * radial + self._climb * seconds * self._axis
         if not self._turning:
@@ -95,7 +91,7 @@ class Helix(KeepsReadOnly):
 
     def twist(self, t: float) -> Twist:
         """Return how the body moves at time `t` [s], in world axes."""
-        _, tangential = self._radial_and_tangential(inputs.number(t, "t"))
+        _, tangential = self._radial_and_tangential(number(t, "t"))
         v = self._radius * self._rate * tangential + self._climb * self._axis
         return Twist(v, self._rate * self._axis if self._turning else np.zeros(3))
 
@@ -156,15 +152,11 @@ class Spiral(KeepsReadOnly):
         phase: float = 0.0,
         orientation: Orientation = "fixed",
     ) -> None:
-        self._radius = inputs.number(radius, "radius")
-        if self._radius < 0.0:
-            raise StandoffError(
-                f"radius is {self._radius}: give a length of zero or above", "radius", radius
-            )
-        self._growth = inputs.number(growth, "growth")
-        self._rate = inputs.number(rate, "rate")
-        self._centre = np.append(inputs.array(centre, "centre", (2,)), 0.0)
-        self._phase = inputs.number(phase, "phase")
+        self._radius = not_negative(radius, "radius")
+        self._growth = number(growth, "growth")
+        self._rate = number(rate, "rate")
+        self._centre = np.append(finite(centre, "centre", (2,)), 0.0)
+        self._phase = number(phase, "phase")
         self._turning = _turns(orientation)
 
     def _polar(self, seconds: float) -> tuple[float, FloatArray, FloatArray]:
@@ -175,7 +167,7 @@ class Spiral(KeepsReadOnly):
 
     def pose(self, t: float) -> Pose:
         """Return where the body is at time `t` [s]."""
-        distance, radial, tangential = self._polar(inputs.number(t, "t"))
+        distance, radial, tangential = self._polar(number(t, "t"))
         origin = self._centre + distance * radial
         if not self._turning:
             return Pose.from_checked(np.eye(3), origin)
@@ -184,7 +176,7 @@ class Spiral(KeepsReadOnly):
 
     def twist(self, t: float) -> Twist:
         """Return how the body moves at time `t` [s], in world axes."""
-        distance, radial, tangential = self._polar(inputs.number(t, "t"))
+        distance, radial, tangential = self._polar(number(t, "t"))
         v = self._rate * (self._growth * radial + distance * tangential)
         return Twist(v, (0.0, 0.0, self._rate if self._turning else 0.0))
 
@@ -213,7 +205,7 @@ class Spiral(KeepsReadOnly):
 
 
 def _turns(orientation: Orientation) -> bool:
-    inputs.word(orientation, "orientation", get_args(Orientation))
+    choice(orientation, "orientation", get_args(Orientation))
     return orientation == "turning"
 
 

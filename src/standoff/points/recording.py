@@ -12,9 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
+from standoff.checks.arrays import finite
+from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.tolerances import SLOPE
-from standoff.motion import PoseLike, inputs
+from standoff.motion import PoseLike
+from standoff.motion.moving import Moving
 from standoff.motion.pose_function import path_of
 from standoff.points.answer import PointEvent, PointProximity
 from standoff.points.events import Switching, events_between
@@ -22,8 +25,6 @@ from standoff.points.state import PointState
 from standoff.points.tolerances import RELEASE_SLOPES
 from standoff.points.tracker import PointTracker
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shape_of, shown
-from standoff.recording.simulate import Moving
 from standoff.recording.tolerances import INSTANT_RESOLUTION, INSTANT_ROUNDINGS
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.wording import counted, short_name
@@ -181,7 +182,7 @@ def _clock(times: ArrayLike) -> Array:
     shape = shape_of(times)
     if shape is None or len(shape) != 1 or not shape[0]:
         raise StandoffError(f"times = {shown(times)}: give a list of one or more.", "times", times)
-    clock = inputs.array(times, "times", shape)
+    clock = finite(times, "times", shape)
     if not (np.diff(clock) > 0.0).all():
         raise StandoffError(
             f"times = {shown(times)}: give them strictly increasing.", "times", times

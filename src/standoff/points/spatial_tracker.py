@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.body import Body
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import positive
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import finite
 from standoff.points.answer import PointEvent
 from standoff.points.depth_branches import Branch, DepthBranches
 from standoff.points.parallel_minima import HOME, pose_of, twists
@@ -24,9 +26,7 @@ from standoff.points.spatial_answer import (
 from standoff.points.spatial_events import Switches, Way, states_of
 from standoff.points.tolerances import TIE
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 from standoff.shown_names import hides
-from standoff.tracking.choices import positive_number
 from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.state import TrackerState
 from standoff.tracking.tracker import Tracker
@@ -130,7 +130,7 @@ class SpatialPointTracker(KeepsReadOnly):
                 f"{state!r} is no SpatialPointState: get one from tracker.start.", "state", state
             )
         x, v = _given(point, velocity)
-        h = self.dt if dt is None else positive_number(dt, "dt")
+        h = self.dt if dt is None else positive(dt, "dt")
         was_inside, key = state.proximity.inside, state.next_key
         if not was_inside:
             proof = self.outer.step(state.proof, HOME, pose_of(x), *twists(v), dt=h)[0]

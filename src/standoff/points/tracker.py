@@ -17,8 +17,10 @@ from numpy.typing import ArrayLike, NDArray
 from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import positive
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import finite
 from standoff.points.answer import PointProximity
 from standoff.points.events import Switching, events_between
 from standoff.points.minima import descend
@@ -34,13 +36,9 @@ from standoff.points.planar_boundary import Place, PlanarBoundary
 from standoff.points.state import Answering, Found, PointState
 from standoff.points.tolerances import ENTRY_INSTANT, TIE
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 from standoff.shown_names import hides
-from standoff.tracking.block import Block
-from standoff.tracking.choices import positive_number
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw
-from standoff.tracking.old_spellings import takes_a_law
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
@@ -85,7 +83,6 @@ class PointTracker(KeepsReadOnly):
     minimum that appears on a curve is seen by sampling every frame.
     """
 
-    @takes_a_law("so.PointTracker(body, dt, law={law})", ("self", "body", "dt"))
     def __init__(self, body: Body, dt: float = 1e-3, law: Law = DEFAULT_LAW) -> None:
         if not isinstance(body, Body):
             raise StandoffTypeError(
@@ -109,7 +106,7 @@ class PointTracker(KeepsReadOnly):
         core = body if body.radius == 0.0 else _core(body)
         self.boundary = PlanarBoundary(core)
         point = shapes.point()
-        self.outer = _Outside(core, point, dt, law)
+        self.outer = Tracker(core, point, dt, law)
         self.law, self.dt, self.tolerance = law, self.outer.dt, law.tolerance
         inner = None
         if isinstance(law, PaperLaw):
@@ -224,7 +221,7 @@ class PointTracker(KeepsReadOnly):
                 f"{state!r} is no PointState: get one from tracker.start.", "state", state
             )
         x, v = _in_plane(point, "point"), _velocity(velocity)
-        h = self.dt if dt is None else positive_number(dt, "dt")
+        h = self.dt if dt is None else positive(dt, "dt")
         side = self.boundary.inside(x[:2])
         inside = state.proximity.inside if side is None else side
         before = state.point, state.velocity
@@ -343,13 +340,6 @@ class PointTracker(KeepsReadOnly):
             tuple((e.source, e.target) for e in answer.events if e.body == "A"),
             answer.counts.restarts if before is not None else 0,
         )
-
-
-class _Outside(Tracker):
-    """The tracker for a point that is known to be outside."""
-
-    def name_overlap(self, block: Block) -> None:
-        """No overlap is to be proven: the boundary has told the side."""
 
 
 def _core(body: Body) -> Body:

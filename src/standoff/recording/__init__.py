@@ -7,7 +7,7 @@ from standoff.on_demand import on_demand
 if TYPE_CHECKING:
     from standoff.recording.recorded import RecordedEvent, RunInfo
     from standoff.recording.recording import Recording, open_recording
-    from standoff.recording.simulate import simulate
+    from standoff.recording.track import track
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -20,7 +20,7 @@ else:
                 "Recording",
                 "open_recording",
             ),
-            "standoff.recording.simulate": ("simulate",),
+            "standoff.recording.track": ("track",),
         },
     )
 
@@ -29,5 +29,5 @@ __all__ = [
     "Recording",
     "RunInfo",
     "open_recording",
-    "simulate",
+    "track",
 ]

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import charts_of, feature_of
+from standoff.checks.numbers import whole_number
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.real_numbers import shown
 from standoff.recording.recorded import Paths, RecordedFrames
 from standoff.recording.recorded import RecordedEvent as RecordedEvent
 from standoff.recording.recorded import RunInfo as RunInfo
-from standoff.tracking.choices import whole_number
 from standoff.tracking.pair_plot import view_angles
 from standoff.tracking.rows import AnswerRows
 from standoff.tracking.status import Status
@@ -190,7 +190,7 @@ class Recording(RecordedFrames):
         if self.pair is None or self.paths is None:
             raise StandoffError(
                 "A recording that was opened from a file, copied or unpickled does not hold what "
-                "moved: animate the one that so.simulate returned."
+                "moved: animate the one that so.track returned."
             )
         count = whole_number(pictures, "pictures")
         angles = view_angles(view)

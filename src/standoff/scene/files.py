@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from standoff.checks.names import nearest
 from standoff.nesting import TOML, text_problem, value_problem
 from standoff.scene.errors import SceneError
 from standoff.scene.reader import Table, shown
-from standoff.spellings import nearest
 
 NEAREST_FILE_CUTOFF = 0.8
 """Least likeness (difflib ratio, 0 to 1) of a file name that is suggested for another: file names
@@ -74,6 +74,22 @@ def existing_file(table: Table, key: str, example: str) -> Path:
     if problem is not None:
         raise table.error(problem, key)
     return path
+
+
+def text_of(path: Path) -> str:
+    """Return the text of a scene file, or raise SceneError."""
+    problem = file_problem(path, str(path), "the current folder")
+    if problem is not None:
+        raise SceneError(problem)
+    try:
+        # Some editors write a byte order mark before the text.
+        return path.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise SceneError(
+            f"is not text in UTF-8 (byte {error.start}); save it as UTF-8", file=path
+        ) from error
+    except OSError as error:
+        raise SceneError(f"cannot be read: {error.strerror}", file=path) from error
 
 
 def toml_tables(text: str) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any, NamedTuple, cast, get_args
+from typing import NamedTuple, cast, get_args
 
 import numpy as np
 
@@ -29,7 +29,6 @@ from standoff.scene.degrees import ENDING, in_radians, with_degrees
 from standoff.scene.files import existing_file
 from standoff.scene.placements import in_space, read_pose
 from standoff.scene.reader import Array, Table
-from standoff.spellings import no_attribute
 
 FILE_START = "file"
 """Value of ``start`` that keeps the time stamps as the file gives them."""
@@ -59,11 +58,6 @@ class Motion:
     sample_times: Array = field(repr=False)
     file: FilePath | None = None
     repaired: int = 0
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise no_attribute(self, name, {"rounded": "repaired"})
 
 
 class MotionKind(NamedTuple):

@@ -13,10 +13,10 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from standoff import real_numbers
+from standoff.checks import real_numbers
+from standoff.checks.names import nearest, one_of
 from standoff.errors import StandoffError
 from standoff.scene.errors import SceneError
-from standoff.spellings import nearest
 from standoff.wording import printable
 
 Array = npt.NDArray[np.float64]
@@ -29,12 +29,6 @@ SHOWN_CHARACTERS = 60
 def shown(value: object) -> str:
     """Return `value` as a message repeats it: its repr, cut to one line."""
     return real_numbers.shown(value, SHOWN_CHARACTERS)
-
-
-def one_of(names: Iterable[str]) -> str:
-    """Return names as a sentence lists them: ``'a', 'b' or 'c'``."""
-    quoted = [f"'{printable(name)}'" for name in names]
-    return " or ".join(filter(None, [", ".join(quoted[:-1]), *quoted[-1:]]))
 
 
 def unknown_name(name: str, known: Iterable[str], noun: str) -> str:

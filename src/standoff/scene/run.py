@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from standoff.impact import Impact, time_of_impact
+from standoff.progress import Progress
 from standoff.recording import Recording
-from standoff.recording.simulate import Progress, track_along
+from standoff.recording.track import track_along
 from standoff.scene.errors import SceneError
 from standoff.scene.reader import Array
 from standoff.scene.scene import Scene

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from standoff.checks.names import one_of
 from standoff.scene.errors import SceneError
 from standoff.scene.feedbacks import read_feedback
-from standoff.scene.reader import Table, one_of
-from standoff.spellings import no_attribute
+from standoff.scene.reader import Table
 from standoff.tracking.law_options import (
     Choice,
     Law,
@@ -21,7 +21,6 @@ from standoff.tracking.law_options import (
     options_of,
 )
 from standoff.tracking.laws import DEFAULT_LAW, LAWS, OptionsConflict, every_option, laws_with
-from standoff.tracking.old_spellings import ATTRIBUTES, takes_a_law
 
 SAMPLES = "samples"
 """Value of ``step`` that makes every pose sample a frame, at its own uneven time."""
@@ -33,9 +32,6 @@ TIMES = ("step", "start", "duration")
 
 NAMES: tuple[str, ...] = ("law", *every_option(), *TIMES)
 """Every key of the table: the law's name, the options of all laws, and the times."""
-
-NO_FEEDFORWARD = "write feedforward = false"
-"""What ``predictor = "none"`` of the paper's law is called now."""
 
 
 @dataclass(frozen=True)
@@ -79,16 +75,6 @@ class TrackSettings:
         """Return the settings as plain data that JSON can hold, named as in a scene."""
         return self.law.facts() | {name: getattr(self, name) for name in TIMES}
 
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise no_attribute(self, name, ATTRIBUTES)
-
-
-if not TYPE_CHECKING:
-    told = takes_a_law("TrackSettings(law={law})", ("self",), ("law",))
-    TrackSettings.__init__ = told(TrackSettings.__init__)
-
 
 def read_settings(
     *tables: Table, usual: TrackSettings | None = None, beside: Sequence[str] = ()
@@ -108,7 +94,7 @@ def read_settings(
     ------
     SceneError
         At an unknown key or name, a value that its option does not take, an option that the law
-        has not, or options that do not go together. The error names the first table's key.
+        does not have, or options that do not go together. The error names the first table's key.
     """
     usual = usual or TrackSettings()
     for table, others in zip(tables, (beside, *[()] * len(tables)), strict=False):
@@ -187,6 +173,4 @@ def _value(table: Table, option: Option) -> Any:
 def _not_of(law: type[Law], table: Table, name: str) -> SceneError:
     others = one_of(other.name for other in laws_with(name))
     fix = f"leave it out, or take law = {others}"
-    if name == "predictor" and table.required(name, "") == "none":
-        fix = NO_FEEDFORWARD
     return table.error(f"is an option of the law {others}, and law is '{law.name}': {fix}", name)

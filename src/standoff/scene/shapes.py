@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -13,18 +12,16 @@ from standoff.bodies.body import Body
 from standoff.scene.curves import read_curve
 from standoff.scene.patches import read_patches
 from standoff.scene.reader import Array, Table
-from standoff.spellings import old_spelling
 
 UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """Turns the plane of scene curves, x and y, to that of profiles, x and z."""
 
 
 class ShapeKind(NamedTuple):
-    """One shape: its keys beside `rounding`, what reads them, and new names of old keys."""
+    """One shape: its keys beside `rounding`, and what reads them."""
 
     keys: tuple[str, ...]
     read: Callable[[Table], Body]
-    renamed: Mapping[str, str] = MappingProxyType({})
 
 
 def _rounding(table: Table) -> float:
@@ -156,7 +153,7 @@ SHAPES: Mapping[str, ShapeKind] = {
     "sphere": ShapeKind(("radius",), _sphere),
     "ellipsoid": ShapeKind(("semi_axes",), _ellipsoid),
     "capsule": ShapeKind(("radius", "length"), _capsule),
-    "cylinder": ShapeKind(("radius", "height"), _cylinder, {"length": "height"}),
+    "cylinder": ShapeKind(("radius", "height"), _cylinder),
     "cone": ShapeKind(("radius", "height"), _cone),
     "box": ShapeKind(("size",), _box),
     "polygon": ShapeKind(("vertices",), _polygon),
@@ -164,7 +161,7 @@ SHAPES: Mapping[str, ShapeKind] = {
     "lens": ShapeKind(("radius", "offset"), _lens),
     "cap": ShapeKind(("radius", "offset"), _cap),
     "halfspace": ShapeKind(("normal", "offset"), _halfspace),
-    "planar_loop": ShapeKind(("curves",), _planar_loop, {"radius": "rounding"}),
+    "planar_loop": ShapeKind(("curves",), _planar_loop),
     "rounded_polytope": ShapeKind(("vertices",), _rounded_polytope),
     "spindle": ShapeKind(("radius", "length", "patches"), _spindle),
     "gore": ShapeKind(("radius", "height", "patches"), _gore),
@@ -174,7 +171,6 @@ SHAPES: Mapping[str, ShapeKind] = {
     "patches": ShapeKind(
         ("patches", "file", "tolerance", "convexity_tolerance"),
         _patches,
-        {"radius": "rounding"},
     ),
 }
 """Every shape that a scene may name."""
@@ -199,9 +195,6 @@ def read_body(table: Table) -> Body:
         At an unknown shape or key, or a value that the shape refuses.
     """
     kind = SHAPES[table.choice("shape", list(SHAPES))]
-    for old, new in kind.renamed.items():
-        if old in table:
-            raise table.error(old_spelling(f"'{old}'", f"'{new}'"), old)
     table.expect("shape", "affine", "scale", "rounding", *kind.keys)
     affine = _affine(table)
     body = table.build(lambda: kind.read(table))

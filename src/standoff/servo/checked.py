@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
+from standoff.checks.numbers import positive, whole_number
+from standoff.checks.real_numbers import shown
 from standoff.devices.port import LiveDevice
 from standoff.devices.trace import Trace
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.real_numbers import shown
 from standoff.servo.tolerances import FASTEST, RATES_AGREE, SLOWEST
 from standoff.simulation.device import Device
 from standoff.simulation.operator import Operator
-from standoff.simulation.passivity import non_negative, whole_number
 from standoff.simulation.rigid_body import DRIVEN
 
 MOST_LOGGED: Final = 5_000_000
@@ -57,7 +57,7 @@ def rate_of(period: float, given: Any) -> float:
             "operator",
         )
     if given is not None:
-        wanted = non_negative(given, "rate", above_zero=True)
+        wanted = positive(given, "rate")
         if abs(wanted - rate) > RATES_AGREE * rate:
             raise StandoffError(
                 f"rate is {wanted:g}, and the operator makes {rate:g} ticks a second: give "
@@ -73,7 +73,7 @@ def ticks_in(seconds: Any, rate: float) -> int:
     """Ticks of a run; 0 for no end."""
     if seconds is None:
         return 0
-    given = non_negative(seconds, "seconds", above_zero=True)
+    given = positive(seconds, "seconds")
     if given > LONGEST_RUN:
         raise StandoffError(
             f"seconds is {given:g}: give {LONGEST_RUN:g} at most, or None for no end.",
@@ -85,13 +85,7 @@ def ticks_in(seconds: Any, rate: float) -> int:
 
 def log_ticks(given: Any) -> int:
     """Rows of a log."""
-    if not whole_number(given) or given > MOST_LOGGED:
-        raise StandoffError(
-            f"log_ticks is {shown(given)}: give a whole number from 0 to {MOST_LOGGED}.",
-            "log_ticks",
-            given,
-        )
-    return int(given)
+    return whole_number(given, "log_ticks", 0, MOST_LOGGED)
 
 
 def kind_of_device(device: Any) -> None:

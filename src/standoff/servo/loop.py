@@ -11,6 +11,7 @@ from typing import Any, Final, NamedTuple, Self
 import numpy as np
 
 from standoff.bound_to_run import BoundToRun
+from standoff.checks.numbers import not_negative, positive, yes_or_no
 from standoff.devices.polled import Polled
 from standoff.devices.port import LiveDevice
 from standoff.devices.trace import Trace
@@ -29,11 +30,9 @@ from standoff.servo.system_calls import ask_for_real_time, clocks, unlock_memory
 from standoff.servo.tolerances import LONGEST_GAP, SPIN, SPIN_SHARE, STOPPED_WITHIN
 from standoff.simulation.device import Device, DeviceReading, Fault
 from standoff.simulation.operator import Operator
-from standoff.simulation.passivity import non_negative
 from standoff.simulation.simulated_device import SimulatedDevice
-from standoff.simulation.system_state import SystemState, coupler_at
+from standoff.simulation.system_state import SystemState, coupler_at, state_length
 from standoff.simulation.wrench import Wrench
-from standoff.tracking.choices import yes_or_no
 
 LOG_TICKS: Final = 100_000
 """Ticks that are logged if nothing is said: 24 MB, the last 100 s at 1 kHz."""
@@ -149,7 +148,7 @@ class Servo(BoundToRun):
         self.rate = checked.rate_of(self._period, rate)
         begin = operator.start() if state is None else state
         operator._check_state(begin)
-        self._first, self._data = begin, begin.data.copy()
+        self._first, self._data = begin, operator.room_for(begin)
         self._device = self._live(device)
         self._script = np.zeros((0, K.N_READING))
         if isinstance(device, Trace):
@@ -158,7 +157,7 @@ class Servo(BoundToRun):
         self._numbers = operator.packed[1].copy()
         coupler = int(operator.packed[0][A.I_COUPLER])
         if max_age is not None:
-            age = non_negative(max_age, "max_age", above_zero=True)
+            age = positive(max_age, "max_age")
             self._numbers[coupler + K.Q_AGE] = age
         self._plan = self._planned(checked.ticks_in(seconds, self.rate), device)
         self._at = V.OUT_HEADER + coupler_at(self._system)
@@ -196,7 +195,7 @@ class Servo(BoundToRun):
         self._asked = np.zeros(V.N_ASKED, dtype=np.int64)
         self._limits = np.full(V.N_LIMITS, np.inf)
         self._inbox = Box(K.N_READING)
-        self._outbox = Box(V.OUT_HEADER + len(self._data))
+        self._outbox = Box(V.OUT_HEADER + state_length(self._system))
         self._bins = np.zeros((V.N_MEASURED, V.BINS), dtype=np.int64)
         self._tallies = np.zeros(V.N_TALLIES, dtype=np.int64)
         self._log = np.zeros((log_ticks, V.J_LOGGED))
@@ -288,11 +287,11 @@ class Servo(BoundToRun):
         StandoffError
             A force below zero, or not finite.
         """
-        self._lower(V.L_FORCE, non_negative(force, "force"))
+        self._lower(V.L_FORCE, not_negative(force, "force"))
 
     def lower_torque_limit(self, torque: float) -> None:
         """Lower the greatest torque [N m] from the next tick on; as `lower_force_limit`."""
-        self._lower(V.L_TORQUE, non_negative(torque, "torque"))
+        self._lower(V.L_TORQUE, not_negative(torque, "torque"))
 
     def _lower(self, which: int, most: float) -> None:
         with self._lock:

@@ -8,9 +8,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.numbers import is_whole
 from standoff.kernels.dynamics import coupler_arrays as K
 from standoff.simulation.device import Fault, Seen, read_motion
-from standoff.simulation.passivity import whole_number
 
 Array = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ def _stamp(reading: Any) -> tuple[float, int] | Fault:
         seconds = float(time)
     except Exception:  # as in `read_motion`: never an exception, always a fault
         return Fault.MALFORMED
-    if not whole_number(sequence) or sequence > MOST_READINGS:
+    if not is_whole(sequence) or not 0 <= sequence <= MOST_READINGS:
         return Fault.MALFORMED
     if not isinstance(valid, bool | np.bool_):
         return Fault.MALFORMED

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from standoff.checks.numbers import not_negative, positive
 from standoff.errors import StandoffError
-from standoff.geometry.validation import not_negative, positive
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,14 +9,14 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.numbers import not_negative, number, positive
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffTypeError
 from standoff.kernels.compiler.entry import Entry
 from standoff.kernels.dynamics import coupler_arrays as K
 from standoff.kernels.entries.simulation import couple_once
-from standoff.motion import inputs
 from standoff.motion.pose import PoseLike
 from standoff.motion.twist import TwistLike
-from standoff.real_numbers import shown
 from standoff.simulation.arrivals import motion_row, reading_row
 from standoff.simulation.coupler_state import (
     NO_WRENCH,
@@ -25,7 +25,7 @@ from standoff.simulation.coupler_state import (
     unpacked_state,
 )
 from standoff.simulation.device import DeviceReading, Fault, read_motion
-from standoff.simulation.passivity import Sampling, check_passive, non_negative
+from standoff.simulation.passivity import Sampling, check_passive
 from standoff.simulation.passivity_observer import PassivityController
 from standoff.simulation.wrench import Wrench
 
@@ -40,6 +40,9 @@ LOST: Final = np.full(18, math.nan)
 SLOW: Final = 1.1
 """No unit. A tick longer by this factor than the period for which passivity was checked is
 counted: clocks of common systems are late by some hundredths of a millisecond."""
+
+
+ABOVE_ZERO = ("max_force", "max_age", "max_force_rate", "max_torque_rate")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +112,6 @@ class VirtualCoupler:
     controller: PassivityController | None = None
 
     def __post_init__(self) -> None:
-        positive = {"max_force", "max_age", "max_force_rate", "max_torque_rate"}
         for field in fields(self):
             name, value = field.name, getattr(self, field.name)
             if name in ("sampling", "controller"):
@@ -118,11 +120,14 @@ class VirtualCoupler:
                     raise StandoffTypeError(
                         f"{name} is {shown(value)}: give a {kind.__name__}, or None", name, value
                     )
-            elif not (name.endswith("_rate") and isinstance(value, float) and value == math.inf):
-                checked = non_negative(value, name, above_zero=name in positive)
+            elif name in ABOVE_ZERO:
+                checked = positive(value, name, infinite=name.endswith("_rate"))
                 object.__setattr__(self, name, checked)
+            else:
+                object.__setattr__(self, name, not_negative(value, name))
         turns = self.rotational_stiffness > 0.0 or self.rotational_damping > 0.0
-        non_negative(self.max_torque, "max_torque", above_zero=turns)
+        if turns:
+            positive(self.max_torque, "max_torque")
         if self.sampling is not None:
             check_passive(self.stiffness, self.damping, self.sampling, of="translation")
             if turns:
@@ -213,8 +218,8 @@ class VirtualCoupler:
             fault of the calling program, before anything is changed.
         """
         _check_state(state)
-        seconds = non_negative(dt, "dt", above_zero=True)
-        clock = math.nan if now is None else inputs.number(now, "now")
+        seconds = positive(dt, "dt")
+        clock = math.nan if now is None else number(now, "now")
         tool = read_motion(tool_pose, tool_twist)
         numbers = LOST if isinstance(tool, Fault) else motion_row(tool)
         data = packed_state(state, self.past)

@@ -11,11 +11,11 @@ from typing import Any, NamedTuple, Protocol, Self, runtime_checkable
 
 import numpy as np
 
+from standoff.checks.numbers import not_negative
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import coupler_arrays as K
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import Twist, TwistLike
-from standoff.simulation.passivity import non_negative
 from standoff.simulation.wrench import Wrench
 
 
@@ -71,10 +71,10 @@ class DeviceLimits:
 
     def __post_init__(self) -> None:
         for name in ("max_force", "max_torque"):
-            object.__setattr__(self, name, non_negative(getattr(self, name), name))
+            object.__setattr__(self, name, not_negative(getattr(self, name), name))
         reach: Any = self.workspace
         if not (isinstance(reach, float) and reach == math.inf):
-            object.__setattr__(self, "workspace", non_negative(self.workspace, "workspace"))
+            object.__setattr__(self, "workspace", not_negative(self.workspace, "workspace"))
 
 
 @runtime_checkable

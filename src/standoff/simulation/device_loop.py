@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.real_numbers import shown
 from standoff.errors import DeviceError, StandoffError, StandoffTypeError
 from standoff.kernels.dynamics import coupler_arrays as K
-from standoff.real_numbers import shown
 from standoff.simulation.arrivals import reading_row
 from standoff.simulation.device import Device
 from standoff.simulation.device_readings import DeviceReadings

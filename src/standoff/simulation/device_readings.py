@@ -8,15 +8,15 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.numbers import positive, whole_number
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion.paths import Path
 from standoff.motion.pose import PoseLike
 from standoff.motion.pose_function import path_of
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 from standoff.simulation.arrivals import reading_row
 from standoff.simulation.device import DeviceReading
-from standoff.simulation.passivity import non_negative, whole_number
 
 Array = NDArray[np.float64]
 
@@ -91,14 +91,8 @@ class DeviceReadings(KeepsReadOnly):
             Not a path.
         """
         found: Any = path_of(path)
-        seconds = non_negative(period, "period", above_zero=True)
-        if not whole_number(count) or not 1 <= count <= MOST_MADE:
-            raise StandoffError(
-                f"count is {shown(count)}: give a whole number from 1 to {MOST_MADE}.",
-                "count",
-                count,
-            )
-        times = [k * seconds for k in range(int(count))]
+        seconds = positive(period, "period")
+        times = [k * seconds for k in range(whole_number(count, "count", 1, MOST_MADE))]
         return cls(DeviceReading(t, k, found.pose(t), found.twist(t)) for k, t in enumerate(times))
 
     def __len__(self) -> int:

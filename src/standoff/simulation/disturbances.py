@@ -8,11 +8,11 @@ from typing import Any, Final, Literal, TypeAlias, get_args
 
 import numpy as np
 
+from standoff.checks.names import choice
+from standoff.checks.numbers import is_whole, number, whole_number
+from standoff.checks.real_numbers import shown
 from standoff.errors import DeviceError, StandoffError, StandoffTypeError
-from standoff.motion import inputs
-from standoff.real_numbers import shown
 from standoff.simulation.device import DeviceReading
-from standoff.simulation.passivity import whole_number
 
 Disturbance: TypeAlias = Literal[
     "missing", "late", "nan", "inf", "shape", "order", "invalid", "disconnect"
@@ -58,23 +58,20 @@ class Disturbances:
                 "script",
                 self.script,
             )
-        for number, kind in self.script.items():
-            inputs.word(kind, "script", KINDS)
-            if not whole_number(number):
+        for reading, kind in self.script.items():
+            choice(kind, "script", KINDS)
+            if not is_whole(reading) or reading < 0:
                 raise StandoffError(
-                    f"script names reading {shown(number)}: give whole numbers from 0",
+                    f"script names reading {shown(reading)}: give whole numbers from 0",
                     "script",
                     self.script,
                 )
         for name in ("drop_out", "malformed"):
-            chance = inputs.number(getattr(self, name), name)
+            chance = number(getattr(self, name), name)
             object.__setattr__(self, name, chance)
             if not 0.0 <= chance <= 1.0:
                 raise StandoffError(f"{name} is {chance}: give a probability, 0 to 1", name, chance)
-        if not whole_number(self.seed):
-            raise StandoffError(
-                f"seed is {shown(self.seed)}: give a whole number from 0", "seed", self.seed
-            )
+        whole_number(self.seed, "seed", 0)
 
     def running(self) -> RunningDisturbances:
         """Return what disturbs one run, from its start."""

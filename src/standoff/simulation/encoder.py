@@ -7,11 +7,11 @@ from dataclasses import dataclass, fields
 import numpy as np
 import scipy
 
+from standoff.checks.numbers import not_negative
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffTypeError
 from standoff.motion.pose import Pose
 from standoff.motion.twist import Twist
-from standoff.real_numbers import shown
-from standoff.simulation.passivity import non_negative
 from standoff.simulation.six_axes import rotation_error
 
 
@@ -44,7 +44,7 @@ class Encoder:
     def __post_init__(self) -> None:
         for field in fields(self):
             if field.name != "velocities":
-                value = non_negative(getattr(self, field.name), field.name)
+                value = not_negative(getattr(self, field.name), field.name)
                 object.__setattr__(self, field.name, value)
         if not isinstance(self.velocities, bool):
             raise StandoffTypeError(

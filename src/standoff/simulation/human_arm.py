@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
-from standoff.simulation.passivity import non_negative
+from standoff.checks.numbers import not_negative
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +44,7 @@ class HumanArm:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = non_negative(getattr(self, field.name), field.name)
+            value = not_negative(getattr(self, field.name), field.name)
             object.__setattr__(self, field.name, value)
 
     @classmethod

@@ -9,10 +9,11 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.bodies.moments.boundary import Moments, moments_of
+from standoff.checks.numbers import magnitude
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import Array, matrix3, positive, vector3
+from standoff.geometry.validation import Array, matrix3, vector3
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 from standoff.simulation.tolerances import INERTIA_ROUNDOFF, LEAST_MOMENT, MOMENTS_END
 
 # A volume below so many times its own bound is none: no digit of the centre is left.
@@ -77,11 +78,11 @@ class MassProperties(KeepsReadOnly):
     error: MassErrors = EXACT
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "mass", positive(self.mass, "mass"))
+        object.__setattr__(self, "mass", magnitude(self.mass, "mass"))
         object.__setattr__(self, "centre", vector3(self.centre, "centre"))
         object.__setattr__(self, "inertia", checked_inertia(self.inertia))
         if self.volume is not None:
-            object.__setattr__(self, "volume", positive(self.volume, "volume"))
+            object.__setattr__(self, "volume", magnitude(self.volume, "volume"))
 
     @staticmethod
     def of(*, mass: float, centre: Any, inertia: Any) -> MassProperties:
@@ -180,9 +181,9 @@ def mass_properties(
     """
     if not isinstance(body, Body):
         raise StandoffTypeError(f"body is {shown(body)}: give a Body.", "body", body)
-    rho = positive(density, "density")
+    rho = magnitude(density, "density")
     _check_solid(body)
-    end = positive(tolerance, "tolerance")
+    end = magnitude(tolerance, "tolerance")
     found = moments_of(body, end)
     if end > MOMENTS_END and not _has_volume(found):
         found = moments_of(body, MOMENTS_END)

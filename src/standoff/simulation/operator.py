@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.names import choice
+from standoff.checks.numbers import number, positive, whole_number, yes_or_no
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.dynamics import arrays as K
 from standoff.kernels.dynamics.operator import METHODS
 from standoff.kernels.entries import simulation as entries
 from standoff.kernels.entries.preparing import prepare_simulation
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as T
-from standoff.motion import inputs
+from standoff.progress import Progress
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 from standoff.simulation import stability
 from standoff.simulation.coupled_tool import check_tool
 from standoff.simulation.device import Device, DeviceReading
@@ -30,14 +32,18 @@ from standoff.simulation.device_loop import (
 )
 from standoff.simulation.device_readings import DeviceReadings
 from standoff.simulation.packed_system import driven_table, pack_system
+from standoff.simulation.pair_laws import (
+    Laws,
+    keeps_polytopes,
+    law_inside,
+    laws_beside,
+    packed_laws,
+)
 from standoff.simulation.system import System
 from standoff.simulation.system_run import SystemRun
 from standoff.simulation.system_start import started
-from standoff.simulation.system_state import SystemState, coupler_at
-from standoff.tracking.choices import positive_number, whole_number, yes_or_no
+from standoff.simulation.system_state import SystemState, coupler_at, state_length
 from standoff.tracking.law_options import Law
-from standoff.tracking.laws import PaperLaw, PredictorCorrector
-from standoff.tracking.options import pack_options
 
 Array = NDArray[np.float64]
 
@@ -58,10 +64,6 @@ class Going(NamedTuple):
     every: int
 
 
-Progress = Callable[[int, int], None]
-"""Told, as a run goes on, how many ticks are done, and of how many."""
-
-
 class Operator(KeepsReadOnly):
     """Bodies, contacts and tracked parameters as one state, advanced by one method.
 
@@ -79,9 +81,15 @@ class Operator(KeepsReadOnly):
         the tracker a tick, at whose witness points the forces are held over the tick's stages.
     gain : float, optional
         K [1/time] of the law inside; one over the step if not given.
+    law : PredictorCorrector, PaperLaw, or mapping of pairs (int, int) to these, optional
+        Of the trackers beside the operator, with all options: one for all pairs, or some pairs'
+        own. A pair without one has ``PredictorCorrector(depth="local")``. With depth "global" the
+        proof of a depth is kept from tick to tick, as part of the state.
 
     Attributes
     ----------
+    laws : tuple
+        Of the pairs, in their order.
     ticks_a_reading : int
         Ticks from one reading of a coupler's device to the next: its period over the step; 1 where
         there is none.
@@ -103,28 +111,30 @@ class Operator(KeepsReadOnly):
         method: str = "semi-implicit",
         tracker: str = "beside",
         gain: float | None = None,
+        law: Laws = None,
     ) -> None:
         if not isinstance(system, System):
             raise StandoffTypeError(
                 f"system is {shown(system)}: give a standoff.simulation.System.", "system", system
             )
         self.system = system
-        self.dt = positive_number(dt, "dt")
-        inputs.word(method, "method", METHODS)
-        inputs.word(tracker, "tracker", SIDES)
+        self.dt = positive(dt, "dt")
+        choice(method, "method", METHODS)
+        choice(tracker, "tracker", SIDES)
         self.method, self.tracker = method, tracker
-        self.law = self._law(gain)
+        self.laws = self._laws(gain, law)
         check_tool(system, self.dt, method)
         for pair in range(len(system.pairs)):
             self._check_stiffness(pair)
             self._check_slip(pair)
-        self.options = pack_options(self.law)
         self._pack()
 
     def _pack(self) -> None:
         number = METHODS.index(self.method)
         inside = self.tracker == "inside"
-        self.packed = pack_system(self.system, self.dt, number, inside, self.options)
+        options = packed_laws(self.system, self.laws, self.dt, inside)
+        kept = keeps_polytopes(self.laws)
+        self.packed = pack_system(self.system, self.dt, number, inside, options, kept)
         self.ticks_a_reading = int(self.packed[0][K.I_READING])
         prepare_simulation()
 
@@ -133,18 +143,24 @@ class Operator(KeepsReadOnly):
         # in another process the bodies' formulas have other addresses
         self._pack()
 
-    def _law(self, gain: float | None) -> Law:
+    def _laws(self, gain: float | None, law: Laws) -> tuple[Law, ...]:
         if self.tracker == "beside":
             if gain is not None:
                 raise StandoffError(
                     f"gain = {shown(gain)} is of the law inside; a tracker beside the operator "
-                    "corrects by Newton's method: leave it out.",
+                    "has its gain in its law: leave it out.",
                     "gain",
                     gain,
                 )
-            return PredictorCorrector(depth="local").resolved(self.dt)
-        integrator = "euler" if self.method == "semi-implicit" else self.method
-        return PaperLaw(integrator=integrator, gain=gain, depth="local").resolved(self.dt)
+            return laws_beside(self.system, law)
+        if law is not None:
+            raise StandoffError(
+                "law is of trackers beside the operator; inside, the operator's own method "
+                'integrates the paper\'s law: give gain, or tracker="beside".',
+                "law",
+                law,
+            )
+        return (law_inside(self.method, gain),) * len(self.system.pairs)
 
     def _check_stiffness(self, pair: int) -> None:
         """Refuse a contact that the step does not follow."""
@@ -195,8 +211,9 @@ class Operator(KeepsReadOnly):
         StandoffError
             Bodies overlap, by a depth that is told, and that is not allowed.
         """
-        t = inputs.number(time, "time")
-        return started(self.system, self.law, self.dt, t, yes_or_no(allow_overlap, "allow_overlap"))
+        t = number(time, "time")
+        overlap = yes_or_no(allow_overlap, "allow_overlap")
+        return started(self.system, self.laws, self.dt, t, overlap)
 
     def run(
         self,
@@ -240,15 +257,16 @@ class Operator(KeepsReadOnly):
         count = ticks // every + 1
         width = entries.ACCOUNT_HEADER + K.N_TOUCH * len(self.system.pairs)
         width += self.system.coupler is not None
-        if count * (len(state.data) + width) > MOST_NUMBERS:
+        length = state_length(self.system)
+        if count * (length + width) > MOST_NUMBERS:
             raise StandoffError(
-                f"{count} records of {len(state.data) + width} numbers are more than "
+                f"{count} records of {length + width} numbers are more than "
                 f"{MOST_NUMBERS}: record every so many ticks (every=...), or run in parts.",
                 "ticks",
                 ticks,
             )
-        states, accounts = np.empty((count, len(state.data))), np.empty((count, width))
-        going = Going(state.data.copy(), state.time, every)
+        states, accounts = np.empty((count, length)), np.empty((count, width))
+        going = Going(self.room_for(state), state.time, every)
         size = 1 if isinstance(device, Device) else max(1, BLOCK // every)
         for first, last in blocks(count - 1, size):
             rows = slice(first, last + 1)
@@ -263,7 +281,17 @@ class Operator(KeepsReadOnly):
                 progress(last * every, ticks)
         for array in (states, accounts):
             array.flags.writeable = False
-        return SystemRun(self.system, states, accounts)
+        going.data.flags.writeable = False
+        return SystemRun(self.system, states, accounts, SystemState(self.system, going.data))
+
+    def room_for(self, state: SystemState) -> Array:
+        """A copy of a state's numbers, with as much room for kept polytopes as the laws need."""
+        length = state_length(self.system)
+        kept = N_POLYTOPE * len(self.system.pairs) if keeps_polytopes(self.laws) else 0
+        data = np.zeros(length + kept)
+        given = state.data[: len(data)]
+        data[: len(given)] = given
+        return data
 
     def _counts(self, ticks: Any, every: Any) -> tuple[int, int]:
         """Ticks and ticks a record, in whole records of whole readings."""
@@ -289,7 +317,7 @@ class Operator(KeepsReadOnly):
     ) -> None:
         """The ticks from one record to the next, reading by reading."""
         ticks, at = self.ticks_a_reading, coupler_at(self.system)
-        states = np.empty((2, len(going.data))), np.empty((2, records[1].shape[1]))
+        states = np.empty((2, records[0].shape[1])), np.empty((2, records[1].shape[1]))
         short = going._replace(every=ticks)
         for reading in range(going.every // ticks):
             done = record * going.every + reading * ticks

@@ -13,15 +13,22 @@ from standoff.recording.tolerances import WHOLE_STEPS
 from standoff.simulation.flat_parts import pack_flat_parts
 from standoff.simulation.rigid_body import DRIVEN, FREE, RigidBody
 from standoff.simulation.system import System
+from standoff.simulation.system_state import state_length
 
 Array = NDArray[np.float64]
 KINDS = {"free": K.FREE, "fixed": K.FIXED, "driven": K.DRIVEN}
 
 
-def pack_system(system: System, dt: float, method: int, inside: bool, options: Array) -> Any:
-    """(layout, numbers, ints, reals, options), all read-only."""
+def pack_system(
+    system: System, dt: float, method: int, inside: bool, options: Array, kept: bool = False
+) -> Any:
+    """(layout, numbers, ints, reals, options), all read-only.
+
+    `options` are those of all pairs; with `kept`, polytopes stand at the end of a state.
+    """
     tool = -1 if system.tool is None else system.tool
-    layout = [len(system.bodies), len(system.pairs), method, int(inside), tool, 0, 1]
+    polytopes = state_length(system) if kept else 0
+    layout = [len(system.bodies), len(system.pairs), method, int(inside), tool, 0, 1, polytopes]
     numbers = [*system.gravity, dt]
     ints = [body.body.ints for body in system.bodies]
     reals = [body.body.reals for body in system.bodies]

@@ -29,10 +29,10 @@ from typing import Any, Final
 import numpy as np
 import scipy
 
+from standoff.checks.arrays import FloatArray
+from standoff.checks.numbers import not_negative, number, positive, whole_number
+from standoff.checks.real_numbers import shown
 from standoff.errors import PassivityError, StandoffError, StandoffTypeError
-from standoff.motion import inputs
-from standoff.motion.inputs import FloatArray
-from standoff.real_numbers import shown
 from standoff.simulation.tolerances import (
     DAMPING_ROUNDING,
     FIRST_FREQUENCY,
@@ -50,21 +50,6 @@ MOST_ANGLES: Final = 1_000_000
 
 LONGEST_DELAY: Final = 20
 """Ticks. Beyond it the largest passive stiffness is below a fortieth of that without delay."""
-
-
-def non_negative(value: Any, name: str, *, above_zero: bool = False) -> float:
-    """Read a finite number that is not below zero."""
-    read = inputs.number(value, name)
-    if read < 0.0 or (above_zero and read == 0.0):
-        least = "above zero" if above_zero else "of zero or more"
-        raise StandoffError(f"{name} is {read}: give a number {least}", name, value)
-    return read
-
-
-def whole_number(value: Any) -> bool:
-    """Tell whole numbers from 0 on; to NumPy a duration is one too, to Python a truth value."""
-    whole = isinstance(value, int | np.integer) and not isinstance(value, bool | np.timedelta64)
-    return bool(whole and value >= 0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,22 +84,12 @@ class Sampling:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name != "delay":
-                first = field.name == "period"
-                object.__setattr__(
-                    self, field.name, non_negative(value, field.name, above_zero=first)
-                )
-        object.__setattr__(self, "delay", checked_delay(self.delay))
-
-
-def checked_delay(value: Any) -> int:
-    """Read a delay in whole ticks."""
-    if not whole_number(value) or value > LONGEST_DELAY:
-        raise StandoffError(
-            f"delay is {shown(value)}: give whole ticks, 0 to {LONGEST_DELAY}", "delay", value
-        )
-    return int(value)
+            name, value = field.name, getattr(self, field.name)
+            if name == "delay":
+                read: float = whole_number(value, name, 0, LONGEST_DELAY)
+            else:
+                read = positive(value, name) if name == "period" else not_negative(value, name)
+            object.__setattr__(self, name, read)
 
 
 def required_damping(stiffness: float, damping: float, sampling: Sampling) -> float:
@@ -138,9 +113,9 @@ def required_damping(stiffness: float, damping: float, sampling: Sampling) -> fl
     StandoffError
         A number that is not finite, a stiffness below zero, or what is no `Sampling`.
     """
-    k = non_negative(stiffness, "stiffness")
+    k = not_negative(stiffness, "stiffness")
     _check_sampling(sampling)
-    b = inputs.number(damping, "damping")
+    b = number(damping, "damping")
 
     def right_side(angles: FloatArray) -> FloatArray:
         of_spring, of_damper = _shares(angles, sampling)
@@ -172,8 +147,8 @@ def largest_stiffness(damping: float, device_damping: float, sampling: Sampling)
     StandoffError
         A number that is not finite, a device's damping below zero, or what is no `Sampling`.
     """
-    b = inputs.number(damping, "damping")
-    own = non_negative(device_damping, "device_damping")
+    b = number(damping, "damping")
+    own = not_negative(device_damping, "device_damping")
     _check_sampling(sampling)
 
     def excess(angles: FloatArray) -> FloatArray:
@@ -220,19 +195,14 @@ def required_damping_of(
         A period that is not above zero, fewer than 8 angles or more than 10⁶, no function, or
         one that answers with another shape or with numbers that are not finite.
     """
-    seconds = non_negative(period, "period", above_zero=True)
+    seconds = positive(period, "period")
     if not callable(position_to_force):
         raise StandoffTypeError(
             f"position_to_force is {shown(position_to_force)}: give a function of an array",
             "position_to_force",
             position_to_force,
         )
-    if not whole_number(angles) or not 8 <= angles <= MOST_ANGLES:
-        raise StandoffError(
-            f"angles is {shown(angles)}: give a whole number from 8 to {MOST_ANGLES}",
-            "angles",
-            angles,
-        )
+    angles = whole_number(angles, "angles", 8, MOST_ANGLES)
 
     def right_side(given: FloatArray) -> FloatArray:
         try:

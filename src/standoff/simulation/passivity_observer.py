@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
-from standoff.simulation.passivity import non_negative
+from standoff.checks.numbers import not_negative
 
 
 class PortEnergy(NamedTuple):
@@ -76,5 +76,5 @@ class PassivityController:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = non_negative(getattr(self, field.name), field.name)
+            value = not_negative(getattr(self, field.name), field.name)
             object.__setattr__(self, field.name, value)

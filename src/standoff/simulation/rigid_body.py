@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.body import Body
+from standoff.checks.numbers import magnitude
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import positive
 from standoff.motion import Pose, PoseLike, Twist, TwistLike
 from standoff.motion.pose_function import path_of
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 from standoff.simulation.mass_properties import MassProperties, mass_properties
+from standoff.tracking.inputs import check_body
 from standoff.wording import printable
 
 FREE, FIXED, DRIVEN = "free", "fixed", "driven"
@@ -83,7 +84,7 @@ class RigidBody(KeepsReadOnly):
             A body without end; both or none of density and mass; a mass that is not positive; a
             body without volume and no inertia; an inertia that no body can have.
         """
-        check_body(body)
+        check_spatial(body)
         if not body.bounded:
             raise StandoffError(
                 f"{body!r} has no end and cannot move freely: fix it, or drive it.", "body", body
@@ -131,7 +132,7 @@ class RigidBody(KeepsReadOnly):
         StandoffError
             A planar body; no pose.
         """
-        check_body(body)
+        check_spatial(body)
         at = Pose.identity() if pose is None else Pose.of(pose)
         return RigidBody(body, FIXED, None, at, Twist.zero())
 
@@ -152,7 +153,7 @@ class RigidBody(KeepsReadOnly):
         StandoffError
             A planar body.
         """
-        check_body(body)
+        check_spatial(body)
         try:
             found = path_of(path, 0.0, np.inf)
         except TypeError as error:
@@ -170,12 +171,9 @@ class RigidBody(KeepsReadOnly):
         return f"<RigidBody {printable(self.body.name)}: {self.kind}{mass}>"
 
 
-def check_body(body: object) -> None:
+def check_spatial(body: Body) -> None:
     """Raise TypeError where something given is not a body, ValueError where it is planar."""
-    if not isinstance(body, Body):
-        raise StandoffTypeError(
-            f"body is {shown(body)}: make one with so.shapes or Body.from_brep.", "body", body
-        )
+    check_body(body)
     if body.dimension == 2:
         raise StandoffError(f"{body!r} is planar: systems are spatial; extrude it.", "body", body)
 
@@ -184,7 +182,7 @@ def _even(body: Body, density: float | None, mass: float | None) -> MassProperti
     """Mass properties of a solid of one density, which a mass alone tells too."""
     if density is not None:
         return mass_properties(body, density)
-    wanted = positive(mass, "mass")
+    wanted = magnitude(mass, "mass")
     unit = mass_properties(body, 1.0)
     scale = wanted / unit.mass
     return MassProperties(

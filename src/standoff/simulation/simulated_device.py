@@ -11,14 +11,15 @@ from typing import Any, Final, Self
 
 import numpy as np
 
+from standoff.checks.arrays import FloatArray
+from standoff.checks.numbers import not_negative, positive, whole_number
+from standoff.checks.real_numbers import shown
 from standoff.errors import DeviceError, StandoffTypeError
-from standoff.motion.inputs import FloatArray
 from standoff.motion.paths import Path
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.pose_function import path_of
 from standoff.motion.rotations import without_rounding
 from standoff.motion.twist import Twist
-from standoff.real_numbers import shown
 from standoff.simulation.device import (
     STILL,
     DeviceLimits,
@@ -30,7 +31,7 @@ from standoff.simulation.disturbances import Disturbances
 from standoff.simulation.encoder import Encoder
 from standoff.simulation.held_motion import HeldMotion
 from standoff.simulation.human_arm import HumanArm
-from standoff.simulation.passivity import Sampling, checked_delay, non_negative
+from standoff.simulation.passivity import LONGEST_DELAY, Sampling
 from standoff.simulation.six_axes import combined, difference, rotation_error, turned_on
 from standoff.simulation.wrench import Wrench
 
@@ -66,9 +67,8 @@ class Mechanism:
 
     def __post_init__(self) -> None:
         for name in ("mass", "damping", "rotational_inertia", "rotational_damping"):
-            positive = name in ("mass", "rotational_inertia")
-            value = non_negative(getattr(self, name), name, above_zero=positive)
-            object.__setattr__(self, name, value)
+            read = positive if name in ("mass", "rotational_inertia") else not_negative
+            object.__setattr__(self, name, read(getattr(self, name), name))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,8 +164,8 @@ class SimulatedDevice:
                     f"{name} is {shown(part)}: give a {kind.__name__}", name, part
                 )
         self._mechanism, self.hand = mechanism, hand
-        self._period = non_negative(period, "period", above_zero=True)
-        self._delay = checked_delay(delay)
+        self._period = positive(period, "period")
+        self._delay = whole_number(delay, "delay", 0, LONGEST_DELAY)
         self._encoder = encoder or Encoder()
         self._disturbances = (disturbances or Disturbances()).running()
         self.limits = limits or DeviceLimits(max_force=1e6, max_torque=1e6)

@@ -30,11 +30,14 @@ class SystemRun(KeepsReadOnly):
         A row each, laid out in ``standoff.kernels.dynamics.arrays``.
     accounts : (n, k) array
         Energies and contacts of each, laid out in ``standoff.kernels.entries.simulation``.
+    last : SystemState, optional
+        The last one as the run left it, with what pairs in penetration have kept of their proofs.
     """
 
     system: System
     states: Array
     accounts: Array
+    last: SystemState | None = None
 
     @property
     def times(self) -> Array:
@@ -44,7 +47,7 @@ class SystemRun(KeepsReadOnly):
     @property
     def final(self) -> SystemState:
         """The last state."""
-        return self.state(len(self.states) - 1)
+        return self.state(len(self.states) - 1) if self.last is None else self.last
 
     def state(self, row: int) -> SystemState:
         """Return a state of the record, from which a run can go on."""

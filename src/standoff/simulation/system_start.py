@@ -7,20 +7,24 @@ from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as T
 from standoff.simulation.coupler_state import packed_state
 from standoff.simulation.packed_system import body_start, driven_row
+from standoff.simulation.pair_laws import keeps_polytopes
 from standoff.simulation.rigid_body import DRIVEN
 from standoff.simulation.system import System
 from standoff.simulation.system_state import SystemState
 from standoff.simulation.tolerances import TOUCHING_START
-from standoff.tracking.cold_query import ColdQuery
 from standoff.tracking.law_options import Law
+from standoff.tracking.tracker import Tracker
 
 Array = NDArray[np.float64]
 
 
-def started(system: System, law: Law, dt: float, time: float, allow_overlap: bool) -> SystemState:
+def started(
+    system: System, laws: tuple[Law, ...], dt: float, time: float, allow_overlap: bool
+) -> SystemState:
     """The state at a time on the clock of the driven bodies' paths.
 
     Raises
@@ -36,15 +40,16 @@ def started(system: System, law: Law, dt: float, time: float, allow_overlap: boo
     ]
     still = SystemState(system, np.concatenate([header, *rows]))
     pairs = []
-    for a, b in system.pairs:
-        query = ColdQuery(system.bodies[a].body, system.bodies[b].body, dt, law)
-        found = query.start(still.pose(a), still.pose(b), still.twist(a), still.twist(b))
+    for (a, b), law in zip(system.pairs, laws, strict=True):
+        tracker = Tracker(system.bodies[a].body, system.bodies[b].body, dt, law)
+        found = tracker.start(still.pose(a), still.pose(b), still.twist(a), still.twist(b))
         if not allow_overlap:
             _check_apart(system, (a, b), float(found.proximity.distance))
         pairs.append(np.concatenate([found.data, found.proximity.row]))
     coupler = system.coupler
     ends = [] if coupler is None else [packed_state(coupler.start(), coupler.past)]
-    data = np.concatenate([still.data, *pairs, *ends])
+    kept = np.zeros(N_POLYTOPE * len(system.pairs) if keeps_polytopes(laws) else 0)
+    data = np.concatenate([still.data, *pairs, *ends, kept])
     if pairs:
         depths = [-row[T.N_STATE + T.DISTANCE] for row in pairs]
         data[K.S_DEEPEST] = max(0.0, *depths)
@@ -58,6 +63,8 @@ def _check_apart(system: System, pair: tuple[int, int], distance: float) -> None
     if distance < -TOUCHING_START * min(first.size, second.size):
         raise StandoffError(
             f"Bodies {a} ({first.name}) and {b} ({second.name}) overlap at the start, by "
-            f"{-distance:.6g}: move them apart, or call start(allow_overlap=True), and they "
-            "will push each other apart."
+            f"{-distance:.6g}: move them apart, or set allow_overlap, and they will push "
+            "each other apart.",
+            "allow_overlap",
+            False,
         )

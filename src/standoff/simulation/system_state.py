@@ -127,12 +127,19 @@ class SystemState(KeepsReadOnly):
 
     def _with(self, own: VirtualCoupler, coupler: CouplerState) -> SystemState:
         kept = self.data[: coupler_at(self.system)]
-        data = np.concatenate([kept, packed_state(coupler, own.past)])
+        behind = self.data[state_length(self.system) :]
+        data = np.concatenate([kept, packed_state(coupler, own.past), behind])
         data.flags.writeable = False
         return SystemState(self.system, data)
 
     def __repr__(self) -> str:
         return f"<SystemState at {self.time:g} s>"
+
+
+def state_length(system: System) -> int:
+    """How many numbers a row of states has: all of a state but the polytopes that are kept."""
+    own = system.coupler
+    return coupler_at(system) + (0 if own is None else len(packed_state(own.start(), own.past)))
 
 
 def coupler_at(system: System) -> int:

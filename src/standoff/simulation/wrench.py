@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from standoff.motion import inputs
-from standoff.motion.inputs import FloatArray
+from standoff.checks.arrays import FloatArray, finite
 from standoff.read_only import KeepsReadOnly
 
 
@@ -40,8 +39,8 @@ class Wrench(KeepsReadOnly):
     torque: FloatArray
 
     def __init__(self, force: ArrayLike, torque: ArrayLike = (0.0, 0.0, 0.0)) -> None:
-        object.__setattr__(self, "force", inputs.array(force, "force", (3,)))
-        object.__setattr__(self, "torque", inputs.array(torque, "torque", (3,)))
+        object.__setattr__(self, "force", finite(force, "force", (3,)))
+        object.__setattr__(self, "torque", finite(torque, "torque", (3,)))
 
     @classmethod
     def zero(cls) -> Wrench:

@@ -12,12 +12,13 @@ if TYPE_CHECKING:
     from standoff.tracking.contact.witness_set import WitnessSet, witness_set
     from standoff.tracking.derivatives import DerivativeArrays, Derivatives, Smoothness
     from standoff.tracking.feedback import max_gain
+    from standoff.tracking.frame_buffer import FrameBuffer
     from standoff.tracking.laws import PaperLaw, PredictorCorrector
     from standoff.tracking.many_distances import Distances, distances
     from standoff.tracking.pair_plot import plot
     from standoff.tracking.pair_system import PairSystem, pair_system
     from standoff.tracking.proximity import Counts, Event, Proximity
-    from standoff.tracking.state import FrameBuffer, TrackerState
+    from standoff.tracking.state import TrackerState
     from standoff.tracking.status import Status
     from standoff.tracking.tracker import Tracker
 else:
@@ -52,41 +53,12 @@ else:
                 "Event",
                 "Proximity",
             ),
-            "standoff.tracking.state": (
-                "FrameBuffer",
-                "TrackerState",
-            ),
+            "standoff.tracking.frame_buffer": ("FrameBuffer",),
+            "standoff.tracking.state": ("TrackerState",),
             "standoff.tracking.status": ("Status",),
             "standoff.tracking.tracker": ("Tracker",),
         },
         modules=("feedback",),
-        moved={
-            "standoff": ("automaton", "impact", "recording"),
-            "standoff.automaton": ("Automaton", "Transition", "Visit"),
-            "standoff.impact": ("Impact", "ImpactStatus", "time_of_impact"),
-            "standoff.points": (
-                "DepthMinimum",
-                "Minimum",
-                "PointCounts",
-                "PointEvent",
-                "PointProximity",
-                "PointRecording",
-                "PointState",
-                "PointTracker",
-                "PointVisit",
-                "SpatialPointProximity",
-                "SpatialPointState",
-                "SpatialPointTracker",
-                "record_point",
-            ),
-            "standoff.recording": (
-                "RecordedEvent",
-                "Recording",
-                "RunInfo",
-                "open_recording",
-                "simulate",
-            ),
-        },
     )
 
 __all__ = [

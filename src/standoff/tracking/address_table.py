@@ -7,6 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.bodies.body import Body
+from standoff.bodies.packing import Ints
+
+Pair = tuple[Ints, NDArray[np.float64], Ints, NDArray[np.float64]]
+
+
+def packed(a: Body, b: Body) -> Pair:
+    """What the kernels read of two bodies."""
+    return a.ints, a.reals, b.ints, b.reals
+
 
 class AddressTable:
     """Addresses and lengths of a pair's arrays and its options; it keeps them alive.
@@ -20,14 +30,16 @@ class AddressTable:
 
     Attributes
     ----------
+    arrays : tuple of arrays
+        As given.
     address : int
         Of the table.
     """
 
-    __slots__ = ("_arrays", "_table", "address")
+    __slots__ = ("_table", "address", "arrays")
 
     def __init__(self, arrays: tuple[NDArray[Any], ...]) -> None:
-        self._arrays = arrays
+        self.arrays = arrays
         rows = [(x.ctypes.data, len(x)) for x in arrays]
         self._table = np.array(rows, dtype=np.int64)
         self.address: int = self._table.ctypes.data

@@ -64,7 +64,7 @@ class AnswerArrays(KeepsReadOnly):
 class Answers(AnswerArrays):
     """Answers of n frames of two bodies, in arrays of n rows; ``answers[k]`` is one `Proximity`.
 
-    A frame takes 1.2 kB: `standoff.simulate` records longer runs.
+    A frame takes 1.2 kB: `standoff.track` records longer runs.
 
     Attributes
     ----------

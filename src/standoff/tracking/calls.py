@@ -1,4 +1,4 @@
-"""The kernels' starts and steps with named arguments."""
+"""The compiled starts and frames with named arguments, for whoever has flat arrays at hand."""
 
 from __future__ import annotations
 
@@ -7,23 +7,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
-from standoff.bodies.packing import Ints
-from standoff.kernels.entries import blocks
 from standoff.kernels.entries import tracker as kernels
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
-from standoff.kernels.state.options import names_paper_law
 from standoff.tracking.address_table import AddressTable
 from standoff.tracking.block import Block
-from standoff.tracking.rows import NO_TWIST, AnswerRows, StateRow, motion_row
+from standoff.tracking.inputs import ABSENT
+from standoff.tracking.rows import NO_TWIST, AnswerRows, StateRow, motion_row, poses_of, twists_of
 
 Array = NDArray[np.float64]
-Pair = tuple[Ints, Array, Ints, Array]
-
-
-def packed(a: Body, b: Body) -> Pair:
-    """What the kernels read of two bodies."""
-    return a.ints, a.reals, b.ints, b.reals
 
 
 class Frame(NamedTuple):
@@ -45,34 +37,79 @@ ANYWHERE, DESCEND, HERE = K.START_ANYWHERE, K.START_DESCEND, K.START_HERE
 """How a start begins: with a global query, by descent from the state's places, or just there."""
 
 
-def start_anywhere(pair: Pair, frame: Frame, options: Array, state: StateRow) -> AnswerRows:
-    """Find the witness points globally: the answer, and the state in place.
-
-    Nothing is compiled for contact while the bodies are apart.
-    """
-    answer = AnswerRows.empty()
-    motion, has_twist = frame.row, frame.has_twist
-    kernels.start_anywhere(pair, motion, has_twist, options, state.data, ANYWHERE, answer.data)
-    return answer
-
-
 def start(
-    pair: Pair, frame: Frame, options: Array, state: StateRow, given: int = ANYWHERE
+    table: AddressTable, frame: Frame, state: StateRow, given: int = ANYWHERE
 ) -> tuple[AnswerRows, bool]:
     """Begin as `given` says: the answer, and is it one? The state is changed in place."""
-    answer = AnswerRows.empty()
-    motion, has_twist = frame.row, frame.has_twist
-    bad = kernels.start(pair, motion, has_twist, options, state.data, given, answer.data)
-    return answer, bad == K.FINE
-
-
-def step(
-    pair: Pair, frame: Frame, h: float, options: Array, state: StateRow
-) -> tuple[AnswerRows, bool]:
-    """One frame of the law that the options name, h seconds after the last: as `start`."""
-    block = Block.empty(state.data, frame.row, h, frame.has_twist)
-    table = AddressTable((*pair, options))
-    in_place = blocks.step_paper if names_paper_law(options) else blocks.step_predicted
-    bad = in_place(table.address, block.data)
+    block = Block.empty(state.data, frame.row, 0.0, frame.has_twist)
+    done = kernels.start_anywhere(table.address, block.data, given)
     state.data[:] = block.state
-    return AnswerRows(block.out), bad in (K.FINE, K.UNDECIDED)
+    return AnswerRows(block.out), done == K.FINE
+
+
+def step(table: AddressTable, frame: Frame, h: float, state: StateRow) -> tuple[AnswerRows, bool]:
+    """One frame, h seconds after the last: as `start`."""
+    block = Block.empty(state.data, frame.row, h, frame.has_twist)
+    done = kernels.step(table.address, block.data)
+    state.data[:] = block.state
+    return AnswerRows(block.out), done == K.FINE
+
+
+class Followed(NamedTuple):
+    """Many frames.
+
+    Attributes
+    ----------
+    rows : (n, N_OUT) array
+        The answers; nan from a refused frame on.
+    refused : int
+        The frame that was refused; -1 if none was.
+    """
+
+    rows: Array
+    refused: int
+
+
+def run(
+    table: AddressTable, motions: Array, has_twist: bool, steps: Array, state: Array
+) -> Followed:
+    """Many frames in one compiled loop from a state, which is changed in place.
+
+    Parameters
+    ----------
+    motions : (n, N_MOTION) array
+        Poses and twists, a row a frame.
+    steps : (n,) array
+        Time since the frame before, s.
+    state : (N_STATE,) array
+    """
+    n = len(motions)
+    blocks, polytopes = np.full((n + 1, K.N_BLOCK), np.nan), np.zeros((2, N_POLYTOPE))
+    blocks[0, K.BLOCK_STATE : K.BLOCK_MOTION] = state
+    given = [matrices(poses) for poses in poses_of(motions)]
+    absent = np.tile(ABSENT, (n, 1))
+    given += [np.ascontiguousarray(x) if has_twist else absent for x in twists_of(motions)]
+    at = 0
+    while at < n:
+        at, done = kernels.values(table.address, *given, steps, at, (blocks, polytopes))
+        if done == K.MORE_EVENTS:
+            last = blocks[at, K.BLOCK_STATE : K.BLOCK_MOTION]
+            block = Block.empty(last, motions[at], float(steps[at]), has_twist)
+            done = kernels.step(table.address, block.data)
+            blocks[at + 1] = block.data[: K.N_BLOCK]
+            polytopes[(at + 1) % 2] = block.polytope
+        if done != K.FINE:
+            blocks[at + 1 :, : K.N_OUT] = np.nan
+            break
+        at += 1
+    refused = at if at < n else -1
+    state[:] = blocks[min(at, n), K.BLOCK_STATE : K.BLOCK_MOTION]
+    return Followed(blocks[1:, : K.N_OUT], refused)
+
+
+def matrices(flats: Array) -> Array:
+    """Poses (n, 4, 4) of flat ones (n, 12)."""
+    found = np.zeros((len(flats), 4, 4))
+    found[:, :3, :3], found[:, :3, 3] = flats[:, :9].reshape(-1, 3, 3), flats[:, 9:]
+    found[:, 3, 3] = 1.0
+    return found

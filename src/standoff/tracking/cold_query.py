@@ -4,18 +4,10 @@ from __future__ import annotations
 
 from standoff.bodies.body import Body
 from standoff.motion import PoseLike
+from standoff.tracking.inputs import check_pair
+from standoff.tracking.mended_calls import found_anywhere
 from standoff.tracking.proximity import Proximity
-from standoff.tracking.tracker import Tracker
-
-
-class ColdQuery(Tracker):
-    """A tracker that is asked for starts only: what frames need is neither found nor compiled."""
-
-    def _reach(self) -> None:
-        self.packed = self.a.ints, self.a.reals, self.b.ints, self.b.reals
-
-    def _prepare(self) -> None:
-        pass
+from standoff.tracking.reached import cold_table
 
 
 def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
@@ -41,4 +33,9 @@ def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
     ValueError
         No pose; a planar body with a spatial one or out of its plane; two half-spaces.
     """
-    return ColdQuery(a, b).start(pose_a, pose_b).proximity
+    try:
+        table = cold_table(a, b)
+    except TypeError:
+        check_pair(a, b)  # what cannot be hashed is no body either
+        raise
+    return found_anywhere((a, b), table, (pose_a, pose_b, None, None))

@@ -17,12 +17,13 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from standoff.checks.names import choice
+from standoff.checks.numbers import positive
+from standoff.checks.real_numbers import DEEPEST, real_array, shown
 from standoff.errors import MaskedNumbers, StandoffError, StandoffTypeError
 from standoff.kernels.paper import integrators as I
 from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import DEEPEST, real_array, shown
-from standoff.tracking.choices import INTEGRATORS, choice, positive_number
 
 Array = NDArray[np.float64]
 
@@ -59,7 +60,7 @@ def growth_factor(integrator: str, z: Any) -> Any:
     -----
     From the tableaux of ``standoff.kernels.paper.integrators``, stage by stage.
     """
-    number = choice(integrator, "integrator", INTEGRATORS)
+    number = I.NAMES.index(choice(integrator, "integrator", I.NAMES))
     z = _complex(z)
     stage: Any = np.zeros_like(z)
     total: Any = np.ones_like(z)
@@ -107,8 +108,8 @@ def max_gain(integrator: str, dt: float) -> float:
     ValueError
         Unknown integrator, or a step that is not positive and finite.
     """
-    number = choice(integrator, "integrator", INTEGRATORS)
-    return I.STABILITY_LIMITS[number] / positive_number(dt, "dt")
+    number = I.NAMES.index(choice(integrator, "integrator", I.NAMES))
+    return I.STABILITY_LIMITS[number] / positive(dt, "dt")
 
 
 @runtime_checkable
@@ -162,7 +163,7 @@ class Linear:
     gain: float
 
     def __post_init__(self) -> None:
-        positive_number(self.gain, "gain")
+        positive(self.gain, "gain")
 
     def resolved(self, integrator: str, dt: float) -> Linear:
         return self
@@ -260,8 +261,8 @@ class PI:
     integral: float
 
     def __post_init__(self) -> None:
-        positive_number(self.gain, "gain")
-        positive_number(self.integral, "integral")
+        positive(self.gain, "gain")
+        positive(self.integral, "integral")
 
     def resolved(self, integrator: str, dt: float) -> PI:
         return self
@@ -299,13 +300,13 @@ class FiniteTime:
     most: float | None = None
 
     def __post_init__(self) -> None:
-        positive_number(self.gain, "gain")
-        positive_number(self.reference, "reference")
-        if not 0.0 < positive_number(self.power, "power") < 1.0:
+        positive(self.gain, "gain")
+        positive(self.reference, "reference")
+        if not 0.0 < positive(self.power, "power") < 1.0:
             raise StandoffError(
                 f"power = {self.power}: must be above 0 and below 1.", "power", self.power
             )
-        if self.most is not None and positive_number(self.most, "most") < self.gain:
+        if self.most is not None and positive(self.most, "most") < self.gain:
             raise StandoffError(f"most = {self.most} is less than gain = {self.gain}.")
 
     def resolved(self, integrator: str, dt: float) -> FiniteTime:
@@ -344,10 +345,10 @@ class MotionGain:
     most: float | None = None
 
     def __post_init__(self) -> None:
-        positive_number(self.error, "error")
+        positive(self.error, "error")
         for name in ("least", "most"):
             if getattr(self, name) is not None:
-                positive_number(getattr(self, name), name)
+                positive(getattr(self, name), name)
 
     def resolved(self, integrator: str, dt: float) -> MotionGain:
         least = DEFAULT_LEAST / dt if self.least is None else float(self.least)

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, is_dataclass
 from typing import Any
 
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
-from standoff.real_numbers import shown
 from standoff.tracking.feedback import PI, Feedback, FiniteTime, GainMatrix, Linear, MotionGain
 
 KINDS: Mapping[str, Callable[..., Feedback]] = {

@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.checks.arrays import text
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
+from standoff.kernels.state import arrays as K
 from standoff.kernels.state.arrays import NOT_GIVEN
-from standoff.kernels.tolerances import FARTHEST
+from standoff.kernels.tolerances import FARTHEST, PLANE_TILT
 from standoff.motion import Pose, PoseLike, Twist, TwistLike
-from standoff.motion.inputs import text
 from standoff.motion.rotations import defect, mirrored, without_rounding
 from standoff.motion.tolerances import ORTHONORMALITY, ROUNDED
-from standoff.real_numbers import shown
-from standoff.tracking.rows import NO_TWIST
-from standoff.tracking.tolerances import PLANE_TILT
+from standoff.tracking.rows import NO_TWIST, motion_row, poses_of, twists_of
 
 Array = NDArray[np.float64]
 LAST_ROW = [0.0, 0.0, 0.0, 1.0]
@@ -102,11 +102,6 @@ def repair(flat: Array, name: str) -> None:
             Pose(rotation, flat[9:])  # says what is wrong with it
         except StandoffError as error:
             raise StandoffError(f"{name}: {error}", name, error.value) from error
-        raise StandoffError(
-            f"{name}: its position {text(flat[9:])} is not a length below {FARTHEST:g}.",
-            name,
-            flat[9:].copy(),
-        )
     # Also of one whose columns pass: the kernel asks of the rows.
     flat[:9] = without_rounding(rotation).ravel()
 
@@ -142,6 +137,34 @@ def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:
 
 def _plain_vector(value: Any) -> bool:
     return type(value) is np.ndarray and value.shape == (3,) and value.dtype in PLAIN
+
+
+def mend(why: int, motion: Array) -> int:
+    """Repair what the kernels have refused of a frame's row of motion, in place, where it is a
+    rounded pose; 1, the number of poses repaired.
+
+    Raises
+    ------
+    StandoffError
+        It is something worse.
+    """
+    flat_a, flat_b = poses_of(motion)
+    if why == K.BAD_TWIST:
+        refuse_twists(*twists_of(motion))
+    if why == K.OUT_OF_PLANE:
+        check_in_plane(flat_a, flat_b)
+    first = why == K.BAD_POSE_A
+    repair(flat_a if first else flat_b, "pose_a" if first else "pose_b")
+    return 1
+
+
+def motion_of(pose_a: Any, pose_b: Any, twist_a: Any, twist_b: Any) -> tuple[Array, bool, int]:
+    """A frame's row of motion, of poses and twists in any form; are there twists; how many poses
+    were repaired."""
+    (flat_a, mark_a), (flat_b, mark_b) = flat_and_mark(pose_a), flat_and_mark(pose_b)
+    xi_a, xi_b = flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
+    has_twist = twist_a is not None or twist_b is not None
+    return motion_row(flat_a, flat_b, xi_a, xi_b), has_twist, mark_a + mark_b
 
 
 def refuse_twists(twist_a: Array, twist_b: Array) -> NoReturn:
@@ -205,5 +228,5 @@ def check_in_plane(flat_a: Array, flat_b: Array) -> None:
                 f"{name} takes a planar body out of z = 0 (tilt {tilt:.3g}, z = {flat[11]}): "
                 "planar pairs turn about z and move in x and y.",
                 name,
-                flat,
+                flat.copy(),
             )

@@ -28,10 +28,9 @@ class Choice:
     names: tuple[str, ...]
 
     def checked(self, value: Any, name: str) -> str:
-        from standoff.tracking.choices import choice
+        from standoff.checks.names import choice
 
-        choice(value, name, {word: k for k, word in enumerate(self.names)})
-        return str(value)
+        return choice(value, name, self.names)
 
     def number(self, value: str) -> float:
         return float(self.names.index(value))
@@ -51,9 +50,9 @@ class Positive:
     infinite: bool = False
 
     def checked(self, value: Any, name: str) -> float:
-        from standoff.tracking.choices import positive_number
+        from standoff.checks.numbers import positive
 
-        return positive_number(value, name, self.infinite)
+        return positive(value, name, infinite=self.infinite)
 
     def number(self, value: float) -> float:
         return value
@@ -70,7 +69,7 @@ class Whole:
     """A whole number above zero."""
 
     def checked(self, value: Any, name: str) -> int:
-        from standoff.tracking.choices import whole_number
+        from standoff.checks.numbers import whole_number
 
         return whole_number(value, name)
 
@@ -89,7 +88,7 @@ class YesNo:
     """True or False."""
 
     def checked(self, value: Any, name: str) -> bool:
-        from standoff.tracking.choices import yes_or_no
+        from standoff.checks.numbers import yes_or_no
 
         return yes_or_no(value, name)
 
@@ -205,10 +204,9 @@ def told_by_name(law: Class) -> Class:
         if not args and given.keys() <= known.keys():
             made(self, **given)
             return
-        import difflib
-
+        from standoff.checks.names import did_you_mean
+        from standoff.checks.real_numbers import shown
         from standoff.errors import StandoffTypeError
-        from standoff.real_numbers import shown
 
         listed = f"so.{law.__name__} has the options {', '.join(known)}."
         if args:
@@ -216,10 +214,10 @@ def told_by_name(law: Class) -> Class:
                 f"so.{law.__name__}({shown(args[0])}): options are given by name. {listed}", "law"
             )
         name = min(given.keys() - known.keys())
-        near = difflib.get_close_matches(name, known, 1)
-        meant = f" Did you mean {near[0]!r}?" if near else ""
         raise StandoffTypeError(
-            f"so.{law.__name__} has no option {name!r}.{meant} {listed}", name, given[name]
+            f"so.{law.__name__} has no option {name!r}.{did_you_mean(name, known)} {listed}",
+            name,
+            given[name],
         )
 
     setattr(law, "__init__", checked)  # noqa: B010 - mypy takes no assignment to a method

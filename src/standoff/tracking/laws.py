@@ -201,11 +201,6 @@ class PaperLaw(Law):
             restarts=False,
         )
 
-    @property
-    def left_alone(self) -> bool:
-        """Does nothing but the law move the witness points?"""
-        return self.switching == "none" or not self.restarts
-
     def resolved(self, dt: float) -> PaperLaw:
         saturation = self.saturation or ("hold" if self.switching == "multipliers" else "zero")
         if self.feedback is None:
@@ -245,7 +240,7 @@ def checked_law(law: Any) -> Law:
     """Return a law, or raise TypeError that says how to make one."""
     if type(law) in LAWS.values():
         return law  # type: ignore[no-any-return]
-    from standoff.real_numbers import shown
+    from standoff.checks.real_numbers import shown
 
     if isinstance(law, type) and law in LAWS.values():
         name = PYTHON[law]

@@ -10,19 +10,18 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import feature_of
+from standoff.checks.numbers import whole_number, yes_or_no
 from standoff.errors import StandoffError
 from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
 from standoff.motion import PosesLike
 from standoff.tracking.answers import AnswerArrays, proven, statuses
-from standoff.tracking.choices import whole_number, yes_or_no
-from standoff.tracking.cold_query import ColdQuery
-from standoff.tracking.overlap_proof import cores_overlap
+from standoff.tracking.inputs import check_pair
 from standoff.tracking.pose_arrays import PoseArray, mended, read_poses
 from standoff.tracking.proximity import Proximity
+from standoff.tracking.reached import cold_table
 from standoff.tracking.refused_rows import RefusedPoses, RefusedRows
 from standoff.tracking.rows import motion_row
-from standoff.tracking.status import Status
 from standoff.tracking.threads import in_parts
 from standoff.tracking.tracker import Tracker
 from standoff.wording import counted, short_name
@@ -109,7 +108,7 @@ class Distances(AnswerArrays):
         """
         from standoff.tracking.derivatives import derivative_arrays
 
-        return derivative_arrays(self, at_least_one(workers, "workers"))
+        return derivative_arrays(self, whole_number(workers, "workers"))
 
     @property
     def gradient(self) -> Array:
@@ -221,8 +220,10 @@ def answered_rows(
     a: Body, b: Body, poses_a: Any, poses_b: Any, *, warm: bool = False, workers: int = 1
 ) -> Distances:
     """`distances`, without a warning."""
-    at_least_one(workers, "workers")
-    query = Tracker(a, b) if yes_or_no(warm, "warm") else ColdQuery(a, b)
+    whole_number(workers, "workers")
+    check_pair(a, b)
+    tracker = Tracker(a, b) if yes_or_no(warm, "warm") else None
+    planar = a.dimension == 2 or b.dimension == 2
     given_a, given_b = read_poses(poses_a, "poses_a"), read_poses(poses_b, "poses_b")
     counts = len(given_a.matrices), len(given_b.matrices)
     n = max(counts)
@@ -233,29 +234,20 @@ def answered_rows(
             "poses_a",
         )
     (of_a, marks_a, refused_a), (of_b, marks_b, refused_b) = (
-        _checked(given, name, query.planar)
+        _checked(given, name, planar)
         for given, name in ((given_a, "poses_a"), (given_b, "poses_b"))
     )
     refused = np.zeros(n, dtype=bool)
     for poses in (refused_a, refused_b):
         refused[slice(None) if poses.given == 1 and len(poses.rows) else poses.rows] = True
     rows = np.full((n, K.N_OUT), np.nan)
-    if warm:
-        _warm(query, (of_a, of_b), rows, refused)
+    if tracker is None:
+        _cold(cold_table(a, b).address, (of_a, of_b), rows, workers)
     else:
-        _cold(query, (of_a, of_b), rows, workers)
-    for k in np.flatnonzero(rows[:, K.STATUS] == Status.NOT_CERTIFIED.value).tolist():
-        _name_overlap(query, rows[k], _row(of_a, k), _row(of_b, k))
-    errors = RefusedRows(refused, refused_a, refused_b, query.planar)
+        _warm(tracker, (of_a, of_b), rows, refused)
+    errors = RefusedRows(refused, refused_a, refused_b, planar)
     repaired = np.broadcast_to(marks_a, n) + np.broadcast_to(marks_b, n)
     return Distances((a, b), rows, (of_a, of_b), repaired, errors)
-
-
-def at_least_one(value: int, name: str) -> int:
-    """A number of threads."""
-    if whole_number(value, name) < 1:
-        raise StandoffError(f"{name} = {value}: give 1 or more.", name, value)
-    return int(value)
 
 
 def _row(poses: Array, k: int) -> Array:
@@ -280,40 +272,29 @@ def _checked(
     return matrices, np.where(refused, 0, given.repaired + repaired), told
 
 
-def _cold(query: Tracker, poses: tuple[Array, Array], rows: Array, workers: int) -> None:
+def _cold(table: int, poses: tuple[Array, Array], rows: Array, workers: int) -> None:
     """Answer every row by itself."""
     done = np.zeros(len(rows), dtype=np.int64)
 
     def part(first: int, end: int) -> None:
-        batch.starts(query.packed, *poses, first, end, query.options, rows, done)
+        batch.starts(table, *poses, first, end, rows, done)
 
     in_parts(part, len(rows), workers)
 
 
 def _warm(
-    query: Tracker, poses: tuple[Array, Array], rows: Array, refused: NDArray[np.bool_]
+    tracker: Tracker, poses: tuple[Array, Array], rows: Array, refused: NDArray[np.bool_]
 ) -> None:
     """Answer each row from the one before; the first, and one behind a refused row, cold."""
     good = np.flatnonzero(~refused)
-    done = np.zeros(len(rows), dtype=np.int64)
     for stretch in np.split(good, np.flatnonzero(np.diff(good) > 1) + 1) if len(good) else ():
         first, end = int(stretch[0]), int(stretch[-1]) + 1
-        if end - first == 1:
-            batch.starts(query.packed, *poses, first, end, query.options, rows, done)
-            continue
-        state = query.start(_row(poses[0], first), _row(poses[1], first))
+        state = tracker.start(_row(poses[0], first), _row(poses[1], first))
         rows[first] = state.proximity.row
+        if end - first == 1:
+            continue
         parts = [x if len(x) == 1 else x[first + 1 : end] for x in poses]
         if all(len(x) == 1 for x in parts):
             parts[0] = np.repeat(parts[0], end - first - 1, axis=0)
-        _, answers = query.run(state, *parts)
+        _, answers = tracker.run(state, *parts)
         rows[first + 1 : end] = answers.blocks[:, : K.N_OUT]
-
-
-def _name_overlap(query: Tracker, row: Array, pose_a: Array, pose_b: Array) -> None:
-    """Give an uncertified row without a positive bound the status OVERLAPPING, if proven."""
-    if row[K.DISTANCE] <= 0.0 or row[K.LOWER_BOUND] > 0.0:
-        return
-    if cores_overlap(query.a, query.b, _flat(pose_a), _flat(pose_b)):
-        row[K.DISTANCE] = row[K.UPPER_BOUND] = 0.0
-        row[K.STATUS] = float(Status.OVERLAPPING.value)

@@ -43,10 +43,20 @@ def pack_options(law: Law) -> NDArray[np.float64]:
     return options
 
 
-def with_smooth_frame(options: NDArray[np.float64], address: int) -> NDArray[np.float64]:
-    """The options with the address of the frame that is tried first; 0 for none."""
+def with_frames(options: NDArray[np.float64], smooth: int = 0, own: int = 0) -> NDArray[np.float64]:
+    """The options with the addresses of the frame that is tried first and of the law's own frame;
+    0 for none."""
     given = options.copy()
-    given[K.O_SMOOTH] = address
+    given[K.O_SMOOTH], given[K.O_FRAME] = smooth, own
+    given.flags.writeable = False
+    return given
+
+
+def carried(options: NDArray[np.float64], own: int) -> NDArray[np.float64]:
+    """Those of the paper's law, of which the bodies' own method integrates the parameters; with the
+    address of that law's frame."""
+    given = with_frames(options, own=own).copy()
+    given[K.O_LAW] = K.LAW_CARRIED
     given.flags.writeable = False
     return given
 

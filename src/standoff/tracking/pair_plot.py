@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from standoff.bodies.body import Body
+from standoff.checks.arrays import finite
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import finite
-from standoff.real_numbers import shown
 from standoff.tracking.proximity import Proximity
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature, charts_of
+from standoff.checks.real_numbers import check_unmasked, real_array, shown
 from standoff.errors import MaskedNumbers, StandoffError
 from standoff.kernels.entries.queries import on_face
-from standoff.real_numbers import check_unmasked, real_array, shown
 from standoff.tracking.rows import StateRow
 
 Array = NDArray[np.float64]

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.real_numbers import real_array, shape_of, shown
 from standoff.errors import MaskedNumbers, StandoffError
 from standoff.kernels.tolerances import FARTHEST, ROTATION
 from standoff.motion import Pose, Poses
@@ -14,7 +15,6 @@ from standoff.motion.pose import matrix_of
 from standoff.motion.poses import SEVEN, has_last_row, matrices_of
 from standoff.motion.rotations import defect, mirrored, without_rounding
 from standoff.motion.tolerances import ROUNDED
-from standoff.real_numbers import real_array, shape_of, shown
 from standoff.tracking.inputs import (
     LAST_ROW,
     ROTATION_THEN_POSITION,

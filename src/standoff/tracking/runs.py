@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
 from standoff.errors import StandoffError
-from standoff.kernels.compiler.entry import Entry
+from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair import events as N
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
@@ -17,33 +17,15 @@ from standoff.motion import Pose, Twist
 from standoff.tracking.address_table import AddressTable
 from standoff.tracking.answers import Answers
 from standoff.tracking.block import Block, with_polytope
-from standoff.tracking.inputs import ABSENT, flat_twist, out_of_plane
-from standoff.tracking.pose_arrays import another_order, flat_poses, mended, numbers, read_poses
+from standoff.tracking.inputs import ABSENT, flat_twist
+from standoff.tracking.pose_arrays import another_order, mended, numbers, read_poses
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.state import TrackerState
 
 Array = NDArray[np.float64]
 
 
-class Steps(Protocol):
-    """A tracker, as a run sees it."""
-
-    a: Body
-    b: Body
-    dt: float
-    planar: bool
-    table: AddressTable
-    values: Any
-
-    def check_state(self, state: TrackerState) -> None: ...
-    def check_frame_time(self, dt: float) -> float: ...
-    def name_overlap(self, block: Block) -> None: ...
-    def step_anew(
-        self, state: TrackerState, given: tuple[Any, Any, Any, Any], h: float
-    ) -> tuple[TrackerState, Proximity]: ...
-
-
-class Given(NamedTuple):
+class Frames(NamedTuple):
     """What a run is given, as the kernels read it, for n frames.
 
     Attributes
@@ -64,10 +46,8 @@ class Given(NamedTuple):
     repaired: NDArray[np.int64]
 
     @classmethod
-    def of(
-        cls, tracker: Steps, poses_a: Any, poses_b: Any, twists: tuple[Any, Any], dt: Any
-    ) -> Given:
-        """Read what the caller gave.
+    def of(cls, poses_a: Any, poses_b: Any, twists: tuple[Any, Any], steps: Array) -> Frames:
+        """Read what the caller gave; `steps` are n times, or one.
 
         Raises
         ------
@@ -82,7 +62,6 @@ class Given(NamedTuple):
             for twist, name, poses in zip(twists, ("twists_a", "twists_b"), (a, b), strict=True)
         ]
         counts |= {"twists_a": len(given[0]), "twists_b": len(given[1])}
-        steps = _steps(tracker, dt)
         counts["dt"] = len(steps)
         n = max(counts.values())
         for name, count in counts.items():
@@ -96,7 +75,7 @@ class Given(NamedTuple):
         marks = np.broadcast_to(marks_a, n) + np.broadcast_to(marks_b, n)
         return cls(of_a, of_b, xi_a, xi_b, h, marks)
 
-    def mended(self, refused: int, first: int) -> Given:
+    def mended(self, refused: int, first: int) -> Frames:
         """The same with the rounded poses of frames `first` and on repaired, and counted: those of
         the body that the kernel has refused, as BAD_POSE_A or BAD_POSE_B."""
         given = self.poses_a if refused == K.BAD_POSE_A else self.poses_b
@@ -107,10 +86,6 @@ class Given(NamedTuple):
         if refused == K.BAD_POSE_A:
             return self._replace(poses_a=poses, repaired=repaired)
         return self._replace(poses_b=poses, repaired=repaired)
-
-    def in_plane(self) -> bool:
-        """Do all poses keep a planar body in z = 0?"""
-        return not any(out_of_plane(flat_poses(x)).any() for x in (self.poses_a, self.poses_b))
 
     def advice(self, first: int) -> str:
         """A sentence about another order that the refused poses of frames `first` and on fit."""
@@ -151,56 +126,54 @@ def _twists(value: Any, name: str, poses: Array) -> Array:
     raise StandoffError(f"{name} has the shape {array.shape}: give {forms}.", name, value)
 
 
-def _steps(tracker: Steps, dt: Any) -> Array:
+def steps_of(dt: Any, usual: float, check: Callable[[float], float]) -> Array:
+    """Times since the frame before, s: n of them, or one."""
     if dt is None:
-        return np.array([tracker.dt])
+        return np.array([usual])
     array = np.atleast_1d(numbers(dt, "dt", "one time in seconds, or one for each frame"))
     if array.ndim != 1 or not len(array):
         raise StandoffError(f"dt has the shape {array.shape}: give one time, or n.", "dt", dt)
     for extreme in (array.min(), array.max()):
-        tracker.check_frame_time(float(extreme))
+        check(float(extreme))
     return array
 
 
-def run(tracker: Steps, state: TrackerState, given: Given) -> tuple[TrackerState, Answers]:
+Single = Callable[[TrackerState, tuple[Any, Any, Any, Any], float], Proximity]
+"""Makes one frame that the compiled loop does not make: its state, what was given, its time."""
+
+
+def run(
+    table: AddressTable, state: TrackerState, given: Frames, single: Single
+) -> tuple[TrackerState, Answers]:
     """See ``Tracker.run``."""
-    tracker.check_state(state)
-    if isinstance(tracker.values, Entry):
-        tracker.values.prepare()
     n = len(given.steps)
+    bodies = state.proximity.bodies
     blocks, polytopes = np.empty((n + 1, K.N_BLOCK)), np.zeros((2, N_POLYTOPE))
     blocks[0] = state.proximity._out[: K.N_BLOCK]
     _take(polytopes[0], state.proximity)
-    # planar bodies: where some leave their plane, each frame is looked at by itself
-    compiled = not tracker.planar or given.in_plane()
     unchecked = {K.BAD_POSE_A, K.BAD_POSE_B}
     longer: dict[int, Proximity] = {}
     at = 0
     while at < n:
-        done = K.BAD_ARRAYS
-        if compiled:
-            at, done = tracker.values(tracker.table.address, *given[:5], at, (blocks, polytopes))
+        at, done = kernels.values(table.address, *given[:5], at, (blocks, polytopes))
         if done in unchecked:  # all the later ones are likely rounded alike
             unchecked.remove(done)
             given = given.mended(done, at)
             continue
-        if done == K.UNDECIDED:
-            tracker.name_overlap(Block(blocks[at + 1]))
-        elif done != K.FINE:
-            kept = with_polytope(blocks[at], polytopes[at % 2])
-            before = TrackerState(Proximity(tracker.a, tracker.b, kept))
-            answer = _single(tracker, before, given, at)
+        if done != K.FINE:
+            before = TrackerState(Proximity(*bodies, with_polytope(blocks[at], polytopes[at % 2])))
+            answer = _told(single, before, given, at)
             blocks[at + 1] = answer._out[: K.N_BLOCK]
             blocks[at + 1, K.BLOCK_POLYTOPE] = 0.0
             _take(polytopes[(at + 1) % 2], answer)
             given.repaired[at] += answer.repaired
             if answer._out[K.OUT_COUNTS + N.EVENTS] > K.KEPT_EVENTS:
                 mark = int(given.repaired[at])
-                longer[at] = Proximity(tracker.a, tracker.b, answer._out, mark)
+                longer[at] = Proximity(*bodies, answer._out, mark)
         at += 1
     kept = with_polytope(blocks[n], polytopes[n % 2])
-    last = longer.get(n - 1) or Proximity(tracker.a, tracker.b, kept, int(given.repaired[-1]))
-    answers = Answers((tracker.a, tracker.b), blocks[1:], given.repaired, longer)
+    last = longer.get(n - 1) or Proximity(*bodies, kept, int(given.repaired[-1]))
+    answers = Answers(bodies, blocks[1:], given.repaired, longer)
     return TrackerState(last), answers
 
 
@@ -210,10 +183,10 @@ def _take(polytope: Array, answer: Proximity) -> None:
     polytope[:] = kept if len(kept) else 0.0
 
 
-def _single(tracker: Steps, before: TrackerState, given: Given, k: int) -> Proximity:
-    """A frame that the compiled loop does not make."""
+def _told(single: Single, before: TrackerState, given: Frames, k: int) -> Proximity:
+    """A frame by itself; what is wrong with it is told with its number."""
     try:
-        return tracker.step_anew(before, given.frame(k), float(given.steps[k]))[1]
+        return single(before, given.frame(k), float(given.steps[k]))
     except StandoffError as error:
         told = f"Frame {k}: {error}{given.advice(k)}"
         raise type(error)(told, error.argument, error.value) from error

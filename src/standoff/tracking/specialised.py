@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
+from functools import lru_cache
 from typing import Any
 
 from standoff.bodies.body import Body
+from standoff.checks.real_numbers import shown
 from standoff.kernels.body import layout as L
 from standoff.kernels.compiler.calls import CAN_CALL, address_in_memory
 from standoff.kernels.entries import smooth
-from standoff.real_numbers import shown
 
 Kind = tuple[int, int]
 """Of a face: its kind, and the degree of a NURBS along both parameters, 0 for the others."""
@@ -47,6 +48,7 @@ def checked_choice(specialise: bool | None) -> bool | None:
     )
 
 
+@lru_cache(maxsize=256)
 def kinds_of(body: Body) -> Counter[Kind]:
     """How many charts of each kind a body has."""
     charts, n = int(body.ints[L.CHARTS]), int(body.ints[L.N_CHARTS])
@@ -65,7 +67,7 @@ def _kind(body: Body, record: int) -> Kind:
 def main_kind(body: Body) -> Kind | None:
     """The kind of most of a body's charts, a flat one only where there is no other; None where no
     frame can be made for it."""
-    kinds = kinds_of(body)
+    kinds = Counter(kinds_of(body))
     for each in [kind for kind in kinds if kind[1] == MIXED or kind[0] == L.FORMULA]:
         del kinds[each]
     if not kinds:
@@ -89,10 +91,9 @@ def smooth_frame_of(a: Body, b: Body, specialise: bool | None) -> Any:
     return smooth.made_for(*of_a, *of_b)
 
 
-def smooth_address(a: Body, b: Body, specialise: bool | None) -> int:
-    """Where the smooth frame of a pair of bodies lies in memory, ready to be called; 0 for none."""
-    frame = smooth_frame_of(a, b, specialise) if CAN_CALL else None
-    if frame is None:
+def address_of(frame: Any) -> int:
+    """Where a compiled frame lies in memory, ready to be called; 0 for none."""
+    if frame is None or not CAN_CALL:
         return 0
     frame.prepare()
     return address_in_memory(frame)

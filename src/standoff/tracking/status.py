@@ -45,8 +45,9 @@ _ADVICE = {
         "paper's gain towards so.max_gain, shorten the step, or give a finite tolerance."
     ),
     Status.OVERLAPPING: (
-        "The bodies are proven to overlap, but no depth was found: the distance is no more than 0; "
-        "report the pair with its poses."
+        "The bodies are proven to overlap, but no depth within the tolerance: the distance is no "
+        "more than 0 and the lower bound holds; loosen the tolerance, or report the pair with its "
+        "poses."
     ),
     Status.NOT_CERTIFIED: (
         "No start reached a gap within the tolerance: the distance is an upper bound and the "

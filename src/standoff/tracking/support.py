@@ -9,10 +9,11 @@ from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.kernels.body import layout as L
 from standoff.motion import Pose
-from standoff.tracking.calls import Frame, packed, start_anywhere
+from standoff.tracking.calls import Frame, start
 from standoff.tracking.inputs import flat_pose
 from standoff.tracking.laws import DEFAULT_LAW
 from standoff.tracking.options import pack_options
+from standoff.tracking.reached import table_of
 from standoff.tracking.rows import StateRow
 
 Array = NDArray[np.float64]
@@ -46,5 +47,5 @@ def support_point(body: Body, direction: Array) -> Array:
         x /= np.linalg.norm(x)
         facing = np.column_stack([x, np.cross(-n, x), -n])
     frame = Frame(flat_pose(Pose.identity()), flat_pose(Pose(facing, position)))
-    found = start_anywhere(packed(body, wall), frame, pack_options(DEFAULT_LAW), StateRow())
+    found, _ = start(table_of(body, wall, pack_options(DEFAULT_LAW)), frame, StateRow())
     return np.asarray(found.point_a - body.radius * found.normal)

@@ -4,10 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-SHRINK: Final = 1e-8
-"""The hulls are shrunk by this part of their size before they are compared, and the linear program
-is solved to a tenth of it: what it calls overlap is overlap."""
-
 LEAST_WIDTH_ANGLE: Final = 1e-9
 """Radians to which the direction of a least width is sought: the width is then known to far below
 SAME_WIDTH."""
@@ -22,10 +18,6 @@ LOOSENESS: Final = 4.0
 LINE_RANK: Final = 1e-6
 """A set whose lesser extent is below this part of the greater (singular values) is a line: its own
 tilt across has no digits."""
-
-PLANE_TILT: Final = 1e-12
-"""Dimensionless, entries of R: a planar body's pose may be tilted by this, the roundoff of
-composing rotations."""
 
 CHECK_ROUNDOFF: Final = 1e-15
 """Dimensionless. The compiled check of a rotation fuses sums and products, NumPy's does not: a

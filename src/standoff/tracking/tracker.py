@@ -2,54 +2,49 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.body import Body
+from standoff.checks.numbers import positive
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.compiler.entry import WrongKind
-from standoff.kernels.entries import tracker as kernels
+from standoff.kernels.entries.preparing import prepare
+from standoff.kernels.entries.tracker import moved, moved_by_poses, value, value_by_poses
 from standoff.kernels.state import arrays as K
 from standoff.motion import PoseLike, PosesLike, TwistLike
+from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
-from standoff.spellings import no_attribute
+from standoff.tracking.address_table import AddressTable
 from standoff.tracking.answers import Answers
-from standoff.tracking.block import Block
-from standoff.tracking.choices import positive_number
-from standoff.tracking.inputs import (
-    check_pair,
-    plain,
-    same_body,
-)
+from standoff.tracking.frame_buffer import FrameBuffer
+from standoff.tracking.inputs import check_pair, plain, same_body
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, checked_law
-from standoff.tracking.old_spellings import ATTRIBUTES, takes_a_law, takes_places
-from standoff.tracking.options import resolved_options
+from standoff.tracking.mended_calls import Given, found_anywhere, started, stepped
 from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.proximity import Proximity
-from standoff.tracking.reached_pair import ReachedPair
+from standoff.tracking.reached import reach
 from standoff.tracking.rows import StateRow
-from standoff.tracking.runs import Given, run
+from standoff.tracking.runs import Frames, run, steps_of
 from standoff.tracking.specialised import checked_choice
-from standoff.tracking.state import FrameBuffer, TrackerState
+from standoff.tracking.state import TrackerState
 
 Array = NDArray[np.float64]
-ARRAY = np.ndarray
+# of every step: a name less to look up
+ARRAY, empty = np.ndarray, np.empty
+N_BLOCK, N_KEEPING_BLOCK = K.N_BLOCK, K.N_KEEPING_BLOCK
 
 INSIDE = K.BLOCK_STATE + K.INSIDE  # was a block's frame solved in contact?
 
-HIDDEN = (
-    "check_frame_time", "check_state", "in_place", "moved", "name_overlap", "options", "packed",
-    "planar", "step_anew", "table", "value", "values",
-)  # fmt: skip
+HIDDEN = ("check_frame_time", "check_state", "options", "reached", "step_anew", "table")
 """What the run and the studies need and users do not."""
 
 
 @hides(*HIDDEN)
-class Tracker(ReachedPair):
+class Tracker(KeepsReadOnly):
     """Keeps the minimum distance of two convex bodies while they move.
 
     Parameters
@@ -82,7 +77,6 @@ class Tracker(ReachedPair):
         spatial one, two half-spaces.
     """
 
-    @takes_a_law("so.Tracker(a, b, dt, law={law})", ("self", "a", "b", "dt"))
     def __init__(
         self,
         a: Body,
@@ -95,17 +89,33 @@ class Tracker(ReachedPair):
         check_pair(a, b)
         self.a, self.b = a, b
         self.specialise = checked_choice(specialise)
-        self.dt = positive_number(dt, "dt")
+        self.dt = positive(dt, "dt")
         self.law = checked_law(law)
-        self.resolved_law, self.options = resolved_options(law, self.dt)
-        self.planar = a.dimension == 2 or b.dimension == 2
         self._reach()
-        self._prepare()
 
-    if not TYPE_CHECKING:
+    def _reach(self) -> None:
+        """Have at hand, by address, what the frames read; load or compile what they call."""
+        self.reached = reach(self.a, self.b, self.law, self.dt, self.specialise)
+        prepare()
 
-        def __getattr__(self, name: str) -> Any:
-            raise no_attribute(self, name, ATTRIBUTES)
+    def __setstate__(self, stored: Any) -> None:
+        super().__setstate__(stored)
+        prepare()
+
+    @property
+    def table(self) -> AddressTable:
+        """Where the bodies and the law's options lie."""
+        return self.reached.table
+
+    @property
+    def options(self) -> Array:
+        """The law as the kernels read it."""
+        return self.reached.options
+
+    @property
+    def resolved_law(self) -> Law:
+        """With what it leaves open settled for the frame time."""
+        return self.reached.law
 
     def start(
         self,
@@ -133,9 +143,9 @@ class Tracker(ReachedPair):
         ValueError
             No pose or twist, or a planar pair out of its plane.
         """
-        return self._start(pose_a, pose_b, twist_a, twist_b, np.zeros(K.N_STATE), 0)
+        given = pose_a, pose_b, twist_a, twist_b
+        return TrackerState(found_anywhere((self.a, self.b), self.table, given))
 
-    @takes_places
     def start_from(
         self,
         pose_a: PoseLike,
@@ -171,7 +181,10 @@ class Tracker(ReachedPair):
         put(state, 0, self.a, place_a)
         put(state, 1, self.b, place_b)
         settle = not isinstance(self.law, PaperLaw) if settle is None else settle
-        return self._start(pose_a, pose_b, twist_a, twist_b, state.data, 1 if settle else 2)
+        how = K.START_DESCEND if settle else K.START_HERE
+        given = pose_a, pose_b, twist_a, twist_b
+        block, repaired = started(self.table, given, state.data, how)
+        return TrackerState(Proximity(self.a, self.b, block.kept(), repaired))
 
     def step(
         self,
@@ -208,42 +221,35 @@ class Tracker(ReachedPair):
             A state of another pair; no pose or twist; a time that is not positive, or too long for
             the paper's law; a planar pair out of its plane.
         """
-        given = pose_a, pose_b, twist_a, twist_b
         if type(state) is not TrackerState:
             self.check_state(state)
-        before = state.proximity
+        before = state._proximity
         if before._a is not self.a or before._b is not self.b:
             self.check_state(state)
         h = self.dt if dt is None else self.check_frame_time(dt)
-        if self.planar:
-            return self.step_anew(state, given, h)
-        arrays = type(pose_a) is type(pose_b) is type(twist_a) is type(twist_b) is np.ndarray
-        numbers, repaired = (given, 0) if arrays else plain(*given)
-        last = before._out
+        last, table, repaired = before._out, self.reached.address, 0
         try:
-            block = np.empty(K.N_BLOCK if last.item(INSIDE) == 0.0 else K.N_KEEPING_BLOCK)
-            done = self.value(self.table.address, last, *numbers, h, block)
+            block = empty(N_BLOCK if last.item(INSIDE) == 0.0 else N_KEEPING_BLOCK)
+            if twist_a is twist_b is None and type(pose_a) is type(pose_b) is ARRAY:
+                done = value_by_poses(table, last, pose_a, pose_b, h, block)
+            else:
+                numbers, repaired = plain(pose_a, pose_b, twist_a, twist_b)
+                done = value(table, last, *numbers, h, block)
         except (WrongKind, IndexError):
-            return self.step_anew(state, given, h)
-        if done == K.FINE:
+            done = K.BAD_ARRAYS
+        if done != K.FINE:
+            answer = self.step_anew(state, (pose_a, pose_b, twist_a, twist_b), h)
+        else:
             answer = Proximity(self.a, self.b, block, repaired)
-            return TrackerState(answer), answer
-        if done == K.UNDECIDED:
-            return self._named(block, repaired)
-        return self.step_anew(state, given, h)
+        return TrackerState(answer), answer
 
-    def step_anew(
-        self, state: TrackerState, given: tuple[Any, Any, Any, Any], h: float
-    ) -> tuple[TrackerState, Proximity]:
-        """A step of what the compiled one does not read: says what is wrong with it, or mends it.
-
-        Also of one with more switches than its block holds.
+    def step_anew(self, state: TrackerState, given: Given, h: float) -> Proximity:
+        """The answer of a frame that the compiled one does not make from what is given: says what
+        is wrong with it, or mends it. Also of one with more switches than its block holds.
         """
         self.check_state(state)
-        motion, has_twist, repaired = self._motion(*given)
-        block = Block.empty(state.warm_start, motion, h, has_twist)
-        repaired += self._step_in(block)
-        return self._named(block.kept(), repaired)
+        block, repaired = stepped(self.table, given, state.warm_start, h)
+        return Proximity(self.a, self.b, block.kept(), repaired)
 
     def run(
         self,
@@ -278,7 +284,10 @@ class Tracker(ReachedPair):
         TypeError, ValueError
             As ``step``, with the number of the frame; nothing is answered then.
         """
-        return run(self, state, Given.of(self, poses_a, poses_b, (twists_a, twists_b), dt))
+        self.check_state(state)
+        steps = steps_of(dt, self.dt, self.check_frame_time)
+        given = Frames.of(poses_a, poses_b, (twists_a, twists_b), steps)
+        return run(self.table, state, given, self.step_anew)
 
     def step_into(
         self,
@@ -315,32 +324,38 @@ class Tracker(ReachedPair):
         TypeError, ValueError
             As ``step``.
         """
-        if buffer.tracker is not self:
+        if buffer.reached is not self.reached:
             raise StandoffError(
                 "The buffer belongs to another tracker: make one with tracker.buffer.", "buffer"
             )
         h = self.dt if dt is None else self.check_frame_time(dt)
-        arrays = type(pose_a) is type(pose_b) is type(twist_a) is type(twist_b) is ARRAY
-        if not arrays or self.planar:
-            return self._put_in(buffer, (pose_a, pose_b, twist_a, twist_b), h)
-        moved, table, block = buffer._call
-        try:
-            distance: float = moved(table, pose_a, pose_b, twist_a, twist_b, h, block)
-        except WrongKind:
-            distance, block[K.BLOCK_DONE] = math.nan, K.BAD_ARRAYS
-        buffer.repaired = 0
-        if distance == distance:
-            return distance
-        return self._mended(buffer, (pose_a, pose_b, twist_a, twist_b), h)
+        if type(pose_a) is type(pose_b) is ARRAY:
+            table, block = buffer._call
+            try:
+                if twist_a is twist_b is None:
+                    distance: float = moved_by_poses(table, pose_a, pose_b, h, block)
+                elif type(twist_a) is type(twist_b) is ARRAY:
+                    distance = moved(table, pose_a, pose_b, twist_a, twist_b, h, block)
+                else:
+                    return buffer.step_to((pose_a, pose_b, twist_a, twist_b), h)
+            except WrongKind:
+                return buffer.step_anew((pose_a, pose_b, twist_a, twist_b), h)
+            buffer.repaired = 0
+            if distance == distance:
+                return distance
+            return buffer.mended((pose_a, pose_b, twist_a, twist_b), h)
+        if pose_a is None and pose_b is None:
+            return buffer.step(h)
+        return buffer.step_to((pose_a, pose_b, twist_a, twist_b), h)
 
     def buffer(self, state: TrackerState) -> FrameBuffer:
         """Arrays for ``step_into`` that begin at a state."""
         self.check_state(state)
-        return FrameBuffer(self, state)
+        return FrameBuffer(self.reached, state)
 
     def check_frame_time(self, dt: float) -> float:
         """A frame's own time, s: positive, and short enough for the paper's law to be stable."""
-        dt = positive_number(dt, "dt")
+        dt = positive(dt, "dt")
         self.resolved_law.check_step(dt)
         return dt
 
@@ -375,21 +390,3 @@ class Tracker(ReachedPair):
                 "state",
                 state,
             )
-
-    def _start(
-        self,
-        pose_a: PoseLike,
-        pose_b: PoseLike,
-        twist_a: TwistLike | None,
-        twist_b: TwistLike | None,
-        data: Array,
-        given: int,
-    ) -> TrackerState:
-        motion, has_twist, repaired = self._motion(pose_a, pose_b, twist_a, twist_b)
-        block = Block.empty(data, motion, 0.0, has_twist)
-        state, out, motion = block.state, block.out, block.motion
-        while bad := kernels.start_anywhere(
-            self.packed, motion, has_twist, self.options, state, given, out
-        ):
-            repaired += self._repair(bad, motion)
-        return self._named(block.kept(), repaired)[0]

@@ -53,7 +53,7 @@ def page_of(recording: Recording) -> str:
     Parameters
     ----------
     recording : Recording
-        As `so.simulate` returned it: one from a file does not hold what moved.
+        As `so.track` returned it: one from a file does not hold what moved.
 
     Returns
     -------

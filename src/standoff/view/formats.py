@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import BinaryIO
 
+from standoff.progress import Progress
 from standoff.recording import Recording
-from standoff.recording.simulate import Progress
 
 ENDINGS = (".html", ".mp4", ".gif", ".rrd")
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from standoff.bodies.body import Body
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Fixed, Pose
-from standoff.real_numbers import shown
 from standoff.recording import Recording
 from standoff.scene import Scene, load_scene
 from standoff.scene.motions import Motion
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from standoff.view.page import Page
 
 GIVE = (
-    "give the file of a scene, a Scene, a Recording that so.simulate returned, or two bodies with "
+    "give the file of a scene, a Scene, a Recording that so.track returned, or two bodies with "
     "their poses"
 )
 
@@ -34,7 +34,7 @@ def view(*what: Any, host: str = "127.0.0.1", port: int | None = None, open: boo
     Parameters
     ----------
     *what
-        The file of a scene, a Scene, or a Recording that ``so.simulate`` returned; or two bodies
+        The file of a scene, a Scene, or a Recording that ``so.track`` returned; or two bodies
         and where they are, ``so.view(a, b, pose_a, pose_b)``.
     host : str
         Name or address to serve the page at: this machine alone, if not given.
@@ -113,7 +113,7 @@ def scene_of(recording: Recording) -> Scene:
     if recording.pair is None or recording.paths is None:
         raise StandoffError(
             "A recording that was opened from a file, copied or unpickled does not hold what "
-            "moved: show the one that so.simulate returned.",
+            "moved: show the one that so.track returned.",
             "what",
             recording,
         )

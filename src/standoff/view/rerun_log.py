@@ -8,8 +8,8 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from standoff.bodies.features import Feature
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, not_installed
-from standoff.real_numbers import shown
 from standoff.recording import Recording
 from standoff.view.nodes import COLOURS, EDGE_COLOUR, WITNESS_COLOUR, Colour
 from standoff.view.shapes import Mesh, Shape, shape_of
@@ -36,7 +36,7 @@ def save_rerun(recording: Recording, path: str | Path) -> None:
     Parameters
     ----------
     recording : Recording
-        As `so.simulate` returned it: one from a file does not hold what moved.
+        As `so.track` returned it: one from a file does not hold what moved.
     path : str or path
         An .rrd file, written whole or not at all.
 

@@ -88,7 +88,7 @@ def what_moved(recording: Recording) -> tuple[tuple[Body, Body], Paths]:
     if recording.pair is None or recording.paths is None:
         raise StandoffError(
             "A recording that was opened from a file, copied or unpickled does not hold what "
-            "moved: save the one that so.simulate returned.",
+            "moved: save the one that so.track returned.",
             "recording",
             recording,
         )

@@ -8,11 +8,11 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from standoff.checks.numbers import positive, whole_number
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, not_installed
-from standoff.real_numbers import shown
+from standoff.progress import Progress
 from standoff.recording import Recording
-from standoff.recording.simulate import Progress
-from standoff.tracking.choices import positive_number, whole_number
 from standoff.tracking.pair_plot import view_angles
 from standoff.view.shown import what_moved
 from standoff.view.tolerances import FILM_RATE, LEAST_FILM_RATE
@@ -35,7 +35,7 @@ def save_video(
     Parameters
     ----------
     recording : Recording
-        As `so.simulate` returned it: one from a file does not hold what moved.
+        As `so.track` returned it: one from a file does not hold what moved.
     path : str or path
         An .mp4 or a .gif file, written whole or not at all.
     pictures : int
@@ -72,7 +72,7 @@ def save_video(
         )
     check_installed(ending)
     what_moved(recording)
-    count, factor = whole_number(pictures, "pictures"), positive_number(speed, "speed")
+    count, factor = whole_number(pictures, "pictures"), positive(speed, "speed")
     angles = view_angles(view)
     write_whole(
         {target: lambda file: write_video(recording, file, ending, count, factor, angles, progress)}

@@ -12,10 +12,10 @@ import numpy as np
 
 from standoff.bodies.proofs import PatchProof, prove_patch
 from standoff.bodies.sewing.sides import SIDE_NAMES, Side, gap
+from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
-from standoff.real_numbers import shown
 
 # Halvings of one patch before it counts as singular: 2^8 pieces on its way round.
 PATCH_HALVINGS = 8

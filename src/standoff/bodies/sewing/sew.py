@@ -17,12 +17,13 @@ from standoff.bodies.sewing.shell import check_shells, outward_senses
 from standoff.bodies.sewing.sides import SENSES
 from standoff.bodies.tolerances import MAX_SPREAD, SEWING_TOLERANCE, WIDEST_SEAM
 from standoff.bodies.topology import Apex, Edge, Face
+from standoff.checks.numbers import magnitude
+from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, positive
-from standoff.real_numbers import shown
+from standoff.geometry.validation import Array
 
 # A tolerance that is offered is a little more than the gap that was found at samples.
 ROOM = 1.02
@@ -76,7 +77,7 @@ def sew(patches: Sequence[Any], tolerance: float | None = None, *, several: bool
     patches = list(patches)
     check_patches(patches)
     size = _size(patches)
-    tolerance = SEWING_TOLERANCE * size if tolerance is None else positive(tolerance, "tolerance")
+    tolerance = SEWING_TOLERANCE * size if tolerance is None else magnitude(tolerance, "tolerance")
     if tolerance >= 0.1 * size:
         raise BodyError(
             f"tolerance = {tolerance:.3g} is not a small part of the patches' size {size:.3g}.",

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import magnitude
+from standoff.checks.real_numbers import shape_of
 from standoff.errors import StandoffTypeError
-from standoff.geometry.validation import Array, finite, positive
-from standoff.real_numbers import shape_of
+from standoff.geometry.validation import Array
 
 
 def by_position(
@@ -59,5 +61,5 @@ def positive_numbers(value: Any, name: str, count: int) -> Array:
     """Return `count` finite numbers above zero."""
     numbers = finite(value, name, (count,))
     for k, number in enumerate(numbers):
-        positive(number, f"{name}[{k}]")
+        magnitude(number, f"{name}[{k}]")
     return numbers

@@ -11,12 +11,13 @@ import numpy as np
 from standoff.bodies.body import Body
 from standoff.bodies.shapes.isolines import along_v
 from standoff.bodies.topology import Apex, Edge, Face
+from standoff.checks.numbers import magnitude, magnitude_or_zero
+from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, RationalBezier
 from standoff.geometry.nurbs import BezierPatch
 from standoff.geometry.swept import Revolution
-from standoff.geometry.validation import Array, not_negative, positive
-from standoff.real_numbers import shown
+from standoff.geometry.validation import Array
 
 # Fewer patches than this would not keep their normals within a hemisphere.
 LEAST_PATCHES = 3
@@ -54,7 +55,7 @@ def spindle(radius: float, length: float, patches: int = 3, *, rounding: float =
     """
     bulge, half = _bulge(radius, length, "spindle")
     n = _patches(patches, "spindle")
-    rounding = not_negative(rounding, "rounding")
+    rounding = magnitude_or_zero(rounding, "rounding")
     angles = FULL_TURN / n * np.arange(n + 1)
     edges = []
     for angle in angles[:-1]:
@@ -98,7 +99,7 @@ def gore(radius: float, height: float, patches: int = 4, *, rounding: float = 0.
     """
     bulge, half = _bulge(radius, height, "gore")
     n = _patches(patches, "gore")
-    rounding = not_negative(rounding, "rounding")
+    rounding = magnitude_or_zero(rounding, "rounding")
     arcs = []
     for angle in FULL_TURN / n * np.arange(n):
         points, weights = _rational_arc(bulge, half, np.array([np.cos(angle), np.sin(angle), 0.0]))
@@ -149,7 +150,7 @@ def _poles(half: float) -> Array:
 
 
 def _bulge(radius: float, length: float, name: str) -> tuple[float, float]:
-    bulge, half = positive(radius, "radius"), 0.5 * positive(length, "length")
+    bulge, half = magnitude(radius, "radius"), 0.5 * magnitude(length, "length")
     if bulge >= half:
         raise BodyError(
             f"{name}: radius = {bulge} is not below half of the length {2.0 * half}: the arc would "

@@ -7,13 +7,14 @@ import numpy as np
 from standoff.bodies.body import Body
 from standoff.bodies.shapes.isolines import along_u
 from standoff.bodies.topology import Edge, Face
+from standoff.checks.numbers import magnitude, magnitude_or_zero, number
 from standoff.errors import BodyError
 from standoff.geometry.bernstein import product
 from standoff.geometry.curves import ConicArc, RationalBezier
 from standoff.geometry.nurbs import BezierPatch
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.swept import Revolution
-from standoff.geometry.validation import Array, finite, not_negative, positive
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
 # Greatest |taper|: at sqrt(1/2) an egg's flank is straight, beyond it is hollow.
@@ -61,8 +62,8 @@ def egg(radius: float, length: float, taper: float = 0.4, *, rounding: float = 0
     With r(z) = sqrt(1 - z²)/(1 + k z), r'' has the sign of 2k² - 1 - 3k²z² - 2kz³, which is
     negative on [-1, 1] as long as k² < 1/2. r is greatest at z = -k, 1/sqrt(1 - k²).
     """
-    radius, half = positive(radius, "radius"), 0.5 * positive(length, "length")
-    k, rounding = float(finite(taper, "taper", ())), not_negative(rounding, "rounding")
+    radius, half = magnitude(radius, "radius"), 0.5 * magnitude(length, "length")
+    k, rounding = number(taper, "taper"), magnitude_or_zero(rounding, "rounding")
     if abs(k) > GREATEST_TAPER:
         raise BodyError(
             f"egg with taper = {k}: give -{GREATEST_TAPER} to {GREATEST_TAPER}; from sqrt(1/2) on "

@@ -8,10 +8,11 @@ from standoff.bodies.body import Body
 from standoff.bodies.shapes.quadrics import SINGLE_CHART_REACH, sphere_atlas
 from standoff.bodies.tolerances import THIN_LENS
 from standoff.bodies.topology import Edge, Face
+from standoff.checks.numbers import magnitude, magnitude_or_zero
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.quadrics import Sphere
-from standoff.geometry.validation import Array, not_negative, positive
+from standoff.geometry.validation import Array
 
 
 def lens(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
@@ -40,8 +41,8 @@ def lens(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
         A number that is not finite or not positive; an offset that leaves nothing, or a body too
         near to a ball or too thin; a rounding that is negative.
     """
-    r, c = positive(radius, "radius"), positive(offset, "offset")
-    rounding = not_negative(rounding, "rounding")
+    r, c = magnitude(radius, "radius"), magnitude(offset, "offset")
+    rounding = magnitude_or_zero(rounding, "rounding")
     if c >= r:
         raise StandoffError(
             f"Empty lens: offset = {c} is not below radius = {r}, so the balls share no interior.",

@@ -8,13 +8,11 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.bodies.topology import Edge, parts_of
+from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve
-from standoff.real_numbers import shown
-from standoff.spellings import renamed
 
 
-@renamed(radius="rounding=...")
 def planar_loop(curves: Sequence[Curve], rounding: float = 0.0) -> Body:
     """A planar convex body: curves in z = 0, each beginning where the one before ends.
 

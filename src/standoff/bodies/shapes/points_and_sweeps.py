@@ -8,10 +8,10 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.bodies.topology import Edge
+from standoff.checks.numbers import magnitude_or_zero
 from standoff.errors import StandoffTypeError
 from standoff.geometry.curves import Line
-from standoff.geometry.validation import Array, not_negative, vector3
-from standoff.spellings import renamed
+from standoff.geometry.validation import Array, vector3
 
 
 def point(*, rounding: float = 0.0) -> Body:
@@ -31,7 +31,7 @@ def point(*, rounding: float = 0.0) -> Body:
     ValueError
         A rounding that is negative or not finite.
     """
-    radius = not_negative(rounding, "rounding")
+    radius = magnitude_or_zero(rounding, "rounding")
     return Body.from_brep([np.zeros(3)], rounding=radius, name="sphere" if radius else "point")
 
 
@@ -80,15 +80,14 @@ def segment(
         raise StandoffTypeError(
             "so.shapes.segment takes length=..., or start=(x, y, z) and end=(x, y, z)."
         )
-    radius = not_negative(rounding, "rounding")
+    radius = magnitude_or_zero(rounding, "rounding")
     if length is not None:
-        ends = _upright(not_negative(length, "length"))
+        ends = _upright(magnitude_or_zero(length, "length"))
     else:
         ends = np.array([vector3(start, "start"), vector3(end, "end")])
     return _swept(ends, radius, "capsule" if radius else "segment")
 
 
-@renamed(r="radius=...")
 def sphere(radius: float, *, rounding: float = 0.0) -> Body:
     """A ball about the origin: a point with a swept radius.
 
@@ -108,10 +107,11 @@ def sphere(radius: float, *, rounding: float = 0.0) -> Body:
     ValueError
         A number that is not finite, negative, beyond 1e50, or between 0 and 1e-50.
     """
-    return point(rounding=not_negative(radius, "radius") + not_negative(rounding, "rounding"))
+    return point(
+        rounding=magnitude_or_zero(radius, "radius") + magnitude_or_zero(rounding, "rounding")
+    )
 
 
-@renamed(r="radius=...")
 def capsule(radius: float, length: float, *, rounding: float = 0.0) -> Body:
     """A segment of the z axis with a swept radius, centred.
 
@@ -133,7 +133,7 @@ def capsule(radius: float, length: float, *, rounding: float = 0.0) -> Body:
     ValueError
         A number that is not finite, negative, beyond 1e50, or between 0 and 1e-50.
     """
-    swept = not_negative(radius, "radius") + not_negative(rounding, "rounding")
+    swept = magnitude_or_zero(radius, "radius") + magnitude_or_zero(rounding, "rounding")
     return segment(length, rounding=swept)
 
 

@@ -11,10 +11,12 @@ import scipy
 from standoff.bodies.body import Body
 from standoff.bodies.tolerances import NARROWEST, OFF_PLANE, PLANE_ROUNDINGS
 from standoff.bodies.topology import Edge, Face
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import magnitude_or_zero
 from standoff.errors import BodyError
 from standoff.geometry.curves import Line
 from standoff.geometry.quadrics import Plane
-from standoff.geometry.validation import Array, finite, not_negative
+from standoff.geometry.validation import Array
 
 
 def polygon(vertices: Any, *, rounding: float = 0.0) -> Body:
@@ -44,7 +46,7 @@ def polygon(vertices: Any, *, rounding: float = 0.0) -> Body:
         A wrong shape, a number that is not finite or beyond 1e50, a negative rounding.
     """
     points = finite(vertices, "vertices", (-1, 3))
-    radius = not_negative(rounding, "rounding")
+    radius = magnitude_or_zero(rounding, "rounding")
     given = points
     points, loop, normal = _outline(given)
     corners = points[loop]

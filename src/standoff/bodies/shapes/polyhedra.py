@@ -19,11 +19,12 @@ from standoff.bodies.tolerances import (
     THIN,
 )
 from standoff.bodies.topology import Edge, Face
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import LEAST, magnitude_or_zero
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.curves import Line
 from standoff.geometry.quadrics import Plane
-from standoff.geometry.validation import LEAST, Array, finite, not_negative
-from standoff.spellings import renamed
+from standoff.geometry.validation import Array
 
 # A face's vertices, counterclockwise seen from outside, and its outward normal.
 Loop = tuple[list[int], Array]
@@ -51,7 +52,6 @@ def box(x: float, y: float, z: float, /, rounding: float = ...) -> Body: ...
 def box(size: Any, rounding: float = ...) -> Body: ...
 
 
-@renamed(x="size=(x, y, z)", y="size=(x, y, z)", z="size=(x, y, z)")
 def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
     """A box about the origin, its edges along x, y, z, sharp or rounded.
 
@@ -83,7 +83,7 @@ def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
     named = {"size": size, "rounding": rounding}
     given = by_position("box", lengths, {"size": 3, "rounding": 0}, named)
     outer = positive_numbers(given["size"], "size", 3)
-    rounding = not_negative(given.get("rounding", 0.0), "rounding")
+    rounding = magnitude_or_zero(given.get("rounding", 0.0), "rounding")
     core = outer - 2.0 * rounding
     if core.min() <= 0.0:
         raise StandoffError(
@@ -130,7 +130,7 @@ def polytope(vertices: Any, *, rounding: float = 0.0) -> Body:
         A wrong shape, a number that is not finite or beyond 1e50, a negative rounding.
     """
     points = finite(vertices, "vertices", (-1, 3))
-    radius = not_negative(rounding, "rounding")
+    radius = magnitude_or_zero(rounding, "rounding")
     return _polyhedron(points, points, _middle(points), radius, "polytope")
 
 
@@ -160,7 +160,7 @@ def rounded_polytope(vertices: Any, rounding: float) -> Body:
         A wrong shape, a number that is not finite or beyond 1e50, a negative rounding.
     """
     points = finite(vertices, "vertices", (-1, 3))
-    rounding = not_negative(rounding, "rounding")
+    rounding = magnitude_or_zero(rounding, "rounding")
     middle = _middle(points)
     local = points - middle
     if rounding == 0.0:

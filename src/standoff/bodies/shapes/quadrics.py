@@ -9,11 +9,11 @@ import numpy as np
 from standoff.bodies.body import Body
 from standoff.bodies.shapes.arguments import by_position, positive_numbers
 from standoff.bodies.topology import Apex, Edge, Face
+from standoff.checks.numbers import magnitude, magnitude_or_zero, number
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.quadrics import Cone, Cylinder, Plane, Sphere
-from standoff.geometry.validation import Array, finite, matrix3, not_negative, positive, vector3
-from standoff.spellings import renamed
+from standoff.geometry.validation import Array, matrix3, vector3
 
 # Cosine up to which an axis is square enough to a normal for a plane's first direction.
 SQUARE_ENOUGH = 0.8
@@ -66,7 +66,6 @@ def ellipsoid(a: float, b: float, c: float, /, *, rounding: float = ...) -> Body
 def ellipsoid(semi_axes: Any, *, rounding: float = ...) -> Body: ...
 
 
-@renamed(a="semi_axes=(a, b, c)", b="semi_axes=(a, b, c)", c="semi_axes=(a, b, c)")
 def ellipsoid(*axes: Any, semi_axes: Any = None, rounding: float = 0.0) -> Body:
     """An ellipsoid about the origin: one smooth face with an atlas of six charts.
 
@@ -95,12 +94,11 @@ def ellipsoid(*axes: Any, semi_axes: Any = None, rounding: float = 0.0) -> Body:
     linear = np.diag(positive_numbers(given["semi_axes"], "semi_axes", 3))
     return Body.from_brep(
         faces=[Face(sphere_atlas(linear, np.zeros(3)))],
-        rounding=not_negative(rounding, "rounding"),
+        rounding=magnitude_or_zero(rounding, "rounding"),
         name="ellipsoid",
     )
 
 
-@renamed(r="radius=...", length="height=...")
 def cylinder(radius: float, height: float, *, rounding: float = 0.0) -> Body:
     """A cylinder about the axis z, centred.
 
@@ -125,8 +123,8 @@ def cylinder(radius: float, height: float, *, rounding: float = 0.0) -> Body:
         A number that is not finite, a length that is not positive, a rounding that is negative;
         a length beyond 1e50 or below 1e-50.
     """
-    r, half = positive(radius, "radius"), 0.5 * positive(height, "height")
-    rounding = not_negative(rounding, "rounding")
+    r, half = magnitude(radius, "radius"), 0.5 * magnitude(height, "height")
+    rounding = magnitude_or_zero(rounding, "rounding")
     x, y = np.array([r, 0.0, 0.0]), np.array([0.0, r, 0.0])
     low, high = np.array([0.0, 0.0, -half]), np.array([0.0, 0.0, half])
     edges = [Edge(ConicArc(low, x, y)), Edge(ConicArc(high, x, y))]
@@ -138,7 +136,6 @@ def cylinder(radius: float, height: float, *, rounding: float = 0.0) -> Body:
     return Body.from_brep(edges=edges, faces=faces, rounding=rounding, name="cylinder")
 
 
-@renamed(r="radius=...")
 def cone(radius: float, height: float, *, rounding: float = 0.0) -> Body:
     """A cone about the axis z: its base at -height/2, its apex at +height/2.
 
@@ -161,8 +158,8 @@ def cone(radius: float, height: float, *, rounding: float = 0.0) -> Body:
         A number that is not finite, a length that is not positive, a rounding that is negative;
         a length beyond 1e50 or below 1e-50.
     """
-    r, height = positive(radius, "radius"), positive(height, "height")
-    rounding = not_negative(rounding, "rounding")
+    r, height = magnitude(radius, "radius"), magnitude(height, "height")
+    rounding = magnitude_or_zero(rounding, "rounding")
     x, y = np.array([r, 0.0, 0.0]), np.array([0.0, r, 0.0])
     base, apex = np.array([0.0, 0.0, -0.5 * height]), np.array([0.0, 0.0, 0.5 * height])
     side = Cone(np.diag([r, r, -height]), apex)
@@ -200,9 +197,9 @@ def cap(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
         A number that is not finite, a radius that is not positive, an offset that leaves nothing
         or the whole ball, a rounding that is negative.
     """
-    r = positive(radius, "radius")
-    rounding = not_negative(rounding, "rounding")
-    h = float(finite(offset, "offset", ()))
+    r = magnitude(radius, "radius")
+    rounding = magnitude_or_zero(rounding, "rounding")
+    h = number(offset, "offset")
     if not -r < h < r:
         raise StandoffError(
             f"Cap with offset = {h} outside (-{r}, {r}): nothing or a ball is left.", "offset", h
@@ -247,10 +244,12 @@ def halfspace(normal: Any = (0.0, 0.0, 1.0), offset: float = 0.0, *, rounding: f
     ValueError
         A normal of no length; a number that is not finite; a rounding that is negative.
     """
-    axes, shift = _plane_of(vector3(normal, "normal"), float(finite(offset, "offset", ())))
+    axes, shift = _plane_of(vector3(normal, "normal"), number(offset, "offset"))
     plane = Plane.through(shift, axes[0], axes[1])
     return Body.from_brep(
-        faces=[Face((plane,))], rounding=not_negative(rounding, "rounding"), name="halfspace"
+        faces=[Face((plane,))],
+        rounding=magnitude_or_zero(rounding, "rounding"),
+        name="halfspace",
     )
 
 

@@ -9,10 +9,11 @@ from standoff.bodies.shapes.isolines import along_u
 from standoff.bodies.shapes.profile_hulls import Arc, Chain, hull_chain
 from standoff.bodies.tolerances import SAME_RADIUS
 from standoff.bodies.topology import Apex, Edge, Face
+from standoff.checks.numbers import magnitude_or_zero
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
 from standoff.geometry.quadrics import Cone, Cylinder, Plane
 from standoff.geometry.swept import Revolution
-from standoff.geometry.validation import Array, not_negative
+from standoff.geometry.validation import Array
 
 
 def hull_of_revolution(curve: Curve, *, rounding: float = 0.0) -> Body:
@@ -41,7 +42,7 @@ def hull_of_revolution(curve: Curve, *, rounding: float = 0.0) -> Body:
     ValueError
         It is no `Curve`, leaves the plane y = 0 or passes the axis; a negative rounding.
     """
-    rounding = not_negative(rounding, "rounding")
+    rounding = magnitude_or_zero(rounding, "rounding")
     whole = Revolution(curve)
     chain = hull_chain(curve)
     vertices: list[Array] = []

@@ -10,6 +10,8 @@ import numpy as np
 from standoff.bodies.body import Body
 from standoff.bodies.shapes.arguments import by_position, positive_numbers
 from standoff.bodies.topology import Edge, Face
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import magnitude_or_zero
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.superellipsoids import (
     SuperellipsoidPole,
@@ -17,9 +19,8 @@ from standoff.geometry.superellipsoids import (
     checked_exponent,
 )
 from standoff.geometry.surface_curves import SurfaceCurve
-from standoff.geometry.validation import Array, finite, not_negative
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.spellings import renamed
 
 Signs = tuple[int, int, int]
 
@@ -34,10 +35,6 @@ def superellipsoid(
 def superellipsoid(semi_axes: Any, exponents: Any, *, rounding: float = ...) -> Body: ...
 
 
-@renamed(
-    **dict.fromkeys(("a", "b", "c"), "semi_axes=(a, b, c)"),
-    **dict.fromkeys(("e1", "e2"), "exponents=(e1, e2)"),
-)
 def superellipsoid(
     *numbers: Any, semi_axes: Any = None, exponents: Any = None, rounding: float = 0.0
 ) -> Body:
@@ -77,7 +74,7 @@ def superellipsoid(
     axes = positive_numbers(given["semi_axes"], "semi_axes", 3)
     powers = finite(given["exponents"], "exponents", (2,))
     e1, e2 = (checked_exponent(e, f"exponents[{k}]") for k, e in enumerate(powers))
-    return _of_charts(axes, e1, e2, not_negative(rounding, "rounding"))
+    return _of_charts(axes, e1, e2, magnitude_or_zero(rounding, "rounding"))
 
 
 def _of_charts(axes: Array, e1: float, e2: float, rounding: float) -> Body:

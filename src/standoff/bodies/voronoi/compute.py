@@ -6,9 +6,9 @@ from standoff.bodies.body import Body
 from standoff.bodies.voronoi.planar import planar_regions
 from standoff.bodies.voronoi.regions import VoronoiRegions
 from standoff.bodies.voronoi.spatial import spatial_regions
+from standoff.checks.numbers import magnitude
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import positive
-from standoff.real_numbers import shown
 
 # Of a point and a half-space, where no other is given, length.
 REACH_WITHOUT_SIZE = 1.0
@@ -57,7 +57,7 @@ def voronoi_regions(
         raise StandoffTypeError(f"body = {shown(body)}: give a standoff.Body.", "body", body)
     if reach is None:
         reach = body.size if body.bounded and body.size > 0.0 else REACH_WITHOUT_SIZE
-    reach = positive(reach, "reach")
+    reach = magnitude(reach, "reach")
     if body.dimension == 2:
         return planar_regions(body, reach, tolerance)
     if tolerance is not None:

@@ -12,9 +12,10 @@ from standoff.bodies.features import Feature
 from standoff.bodies.voronoi.discs import edge_distances
 from standoff.bodies.voronoi.outline import Outline, outline_of
 from standoff.bodies.voronoi.search import Boundary
+from standoff.checks.arrays import finite
+from standoff.checks.real_numbers import shape_of
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array, finite
-from standoff.real_numbers import shape_of
+from standoff.geometry.validation import Array
 
 # Bodies whose sampled boundaries are kept.
 KEPT = 16

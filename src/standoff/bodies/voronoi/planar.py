@@ -18,8 +18,9 @@ from standoff.bodies.voronoi.regions import (
     VoronoiRegions,
 )
 from standoff.bodies.voronoi.tolerances import FINEST_POLYLINE, POLYLINE, SAME_PLACE
+from standoff.checks.numbers import magnitude
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array, positive
+from standoff.geometry.validation import Array
 
 
 def planar_regions(body: Body, reach: float, tolerance: float | None) -> VoronoiRegions:
@@ -27,7 +28,7 @@ def planar_regions(body: Body, reach: float, tolerance: float | None) -> Voronoi
     outline = outline_of(body)
     if tolerance is None:
         tolerance = POLYLINE * outline.size
-    elif positive(tolerance, "tolerance") < FINEST_POLYLINE * outline.size:
+    elif magnitude(tolerance, "tolerance") < FINEST_POLYLINE * outline.size:
         raise StandoffError(
             f"tolerance = {tolerance:g} is too fine for the size {outline.size:.3g}: give at least "
             f"{FINEST_POLYLINE * outline.size:.3g}.",

@@ -19,7 +19,8 @@ _Static_assert(sizeof(double) == 8 && sizeof(void *) == 8, "kernels have 64-bit 
 typedef int32_t kernel_frame(int64_t *result, void **error, int64_t table, int64_t block);
 typedef int32_t kernel_smooth(int64_t *result, void **error, int64_t record, double step);
 
-kernel_frame standoff_kernel_start, standoff_kernel_step_predicted, standoff_kernel_step_paper;
+kernel_frame standoff_kernel_start, standoff_kernel_step;
+kernel_smooth standoff_kernel_predicted, standoff_kernel_paper;
 #define SMOOTH_FRAME(name) kernel_smooth name;
 SMOOTH_FRAMES
 #undef SMOOTH_FRAME
@@ -39,7 +40,6 @@ typedef struct {
     uint64_t checksum; /* FNV-1a of all that follows it */
     int64_t law;       /* 0: predictor-corrector, 1: the paper's */
     int64_t smooth;    /* the frame that is tried first; 0: none */
-    int64_t planar;
     int64_t lengths[N_ARRAYS];
     double frame_time;
     double longest_step;
@@ -146,6 +146,7 @@ int standoff_load(const char *path, standoff_pair **pair)
     /* An option is a number; an address below 2^53 is one exactly, and the kernels read it so. */
     double *options = (double *)(intptr_t)made->table[2 * OPTIONS];
     options[O_SMOOTH] = (double)(intptr_t)smooth_frames[header.smooth];
+    options[O_FRAME] = (double)(intptr_t)(header.law == 1 ? standoff_kernel_paper : standoff_kernel_predicted);
     *pair = made;
     return STANDOFF_OK;
 }
@@ -189,14 +190,6 @@ int standoff_features(const standoff_pair *pair, int body, int kind)
 double standoff_frame_time(const standoff_pair *pair)
 {
     return pair == NULL ? NAN : pair->header.frame_time;
-}
-
-static int in_plane(const standoff_pose *pose)
-{
-    const double *r = pose->rotation;
-    const int flat = fabs(r[2]) <= PLANE_TILT && fabs(r[5]) <= PLANE_TILT &&
-                     fabs(r[6]) <= PLANE_TILT && fabs(r[7]) <= PLANE_TILT;
-    return flat && pose->position[2] == 0.0 && r[8] >= 0.0;
 }
 
 /* Write a frame's poses, twists and time where the kernels read them. */
@@ -250,7 +243,6 @@ static int code_of(int32_t failed, int64_t done)
         return STANDOFF_FAILED;
     switch (done) {
     case FINE:
-    case UNDECIDED:
         return STANDOFF_OK;
     case BAD_POSE_A:
         return STANDOFF_BAD_POSE_A;
@@ -258,6 +250,8 @@ static int code_of(int32_t failed, int64_t done)
         return STANDOFF_BAD_POSE_B;
     case BAD_TWIST:
         return STANDOFF_BAD_TWIST;
+    case OUT_OF_PLANE:
+        return STANDOFF_OUT_OF_PLANE;
     default:
         return STANDOFF_FAILED;
     }
@@ -274,8 +268,6 @@ int standoff_start(const standoff_pair *pair, const standoff_pose *pose_a,
 {
     if (pair == NULL || pose_a == NULL || pose_b == NULL || state == NULL || answer == NULL)
         return STANDOFF_NULL;
-    if (pair->header.planar && !(in_plane(pose_a) && in_plane(pose_b)))
-        return STANDOFF_OUT_OF_PLANE;
     standoff_state made;
     memset(&made, 0, sizeof made);
     put(made.numbers, pose_a, pose_b, twist_a, twist_b, 0.0);
@@ -302,14 +294,11 @@ int standoff_step(const standoff_pair *pair, standoff_state *state, const stando
         return STANDOFF_OTHER_STATE;
     if (!(step > 0.0 && step <= pair->header.longest_step && isfinite(step)))
         return STANDOFF_BAD_TIME_STEP;
-    if (pair->header.planar && !(in_plane(pose_a) && in_plane(pose_b)))
-        return STANDOFF_OUT_OF_PLANE;
     put(state->numbers, pose_a, pose_b, twist_a, twist_b, step);
     int64_t done = UNUSED_RESULT;
     void *error = NULL;
-    kernel_frame *const frame =
-        pair->header.law == 1 ? standoff_kernel_step_paper : standoff_kernel_step_predicted;
-    const int32_t failed = frame(&done, &error, address(pair->table), address(state->numbers));
+    const int32_t failed =
+        standoff_kernel_step(&done, &error, address(pair->table), address(state->numbers));
     const int code = code_of(failed, done);
     if (code == STANDOFF_OK)
         tell(pair, state->numbers, answer);

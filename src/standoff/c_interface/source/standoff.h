@@ -57,7 +57,7 @@ enum standoff_code {
 enum standoff_status {
     STANDOFF_CONVERGED = 0,     /* apart, and certified */
     STANDOFF_TRACKING = 1,      /* the law still converges; the lower bound holds */
-    STANDOFF_OVERLAPPING = 2,   /* not given here: see docs/c-interface.md */
+    STANDOFF_OVERLAPPING = 2,   /* they are proven to overlap, but no depth is proven */
     STANDOFF_NOT_CERTIFIED = 3, /* the distance is an upper bound; the lower bound holds */
     STANDOFF_LOCAL = 4,         /* overlap: moving B by depth * normal separates the bodies */
     STANDOFF_GLOBAL = 5,        /* overlap, and no direction needs less than 0.999 of it */

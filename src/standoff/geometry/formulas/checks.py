@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from standoff.checks.numbers import GREATEST
+from standoff.checks.real_numbers import real_array, shape_of, shown
 from standoff.errors import FormulaError
 from standoff.geometry.boxes import Boxes, grid
 from standoff.geometry.formulas.compiled import Formula, compiled
@@ -21,8 +23,7 @@ from standoff.geometry.formulas.enclosures import (
 from standoff.geometry.formulas.expressions import parameter_values, read_expression
 from standoff.geometry.intervals import Interval
 from standoff.geometry.tolerances import VANISHING_NORMAL
-from standoff.geometry.validation import GREATEST, Array
-from standoff.real_numbers import real_array, shape_of, shown
+from standoff.geometry.validation import Array
 
 SURFACE_VARIABLES = ("u", "v")
 CURVE_VARIABLES = ("t",)

@@ -8,15 +8,15 @@ Numbers become exact fractions (0.3 is 3/10), parameters too, so that SymPy can 
 from __future__ import annotations
 
 import ast
-import difflib
 import importlib
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
+from standoff.checks.names import did_you_mean
+from standoff.checks.real_numbers import real_array, shown
 from standoff.errors import FormulaError
-from standoff.real_numbers import real_array, shown
 
 FUNCTIONS = {
     "sin": "sin", "cos": "cos", "tan": "tan",
@@ -169,8 +169,7 @@ def _fraction(text: str) -> Any:
 
 def _unknown(symbol: str, name: str, given: Any, at: str, allowed: Iterable[str]) -> FormulaError:
     names = list(allowed)
-    near = difflib.get_close_matches(symbol, names, 1, 0.5)
-    hint = f" Did you mean {near[0]}?" if near else ""
+    hint = did_you_mean(symbol, names)
     return FormulaError(
         f"Unknown symbol {symbol!r} in {name} = {given}{at}.{hint} Known: {', '.join(names)}.",
         name,

@@ -35,6 +35,7 @@ class Entry(CPUDispatcher):  # type: ignore[misc]
     """A function that Python calls, compiled for the types of `signature` alone.
 
     A terse one refuses other types without a word on which (`WrongKind`): its caller converts them.
+    `ready` tells that its machine code is loaded.
     """
 
     def __init__(
@@ -48,12 +49,8 @@ class Entry(CPUDispatcher):  # type: ignore[misc]
         pipeline = {"pipeline_class": modules.EntryCompiler} if modules.AVAILABLE else {}
         super().__init__(function, targetoptions=options, **pipeline)
         self.signature, self.work, self.terse = signature, work, terse
+        self.ready = False
         self._cache = ModuleCache(function, work)
-
-    @property
-    def ready(self) -> bool:
-        """Is the machine code loaded?"""
-        return self.signature in self.overloads
 
     def prepare(self) -> None:
         """Load the machine code, or compile it; nothing is compiled after that.
@@ -67,6 +64,7 @@ class Entry(CPUDispatcher):  # type: ignore[misc]
                 with notices.waiting(self.work, self.py_func.__name__):
                     self.compile(self.signature)
                 self.disable_compile()
+                self.ready = True
 
     def _compile_for_args(self, *args: Any, **kws: Any) -> Any:
         """Called by Numba at the first call, where nothing was prepared."""

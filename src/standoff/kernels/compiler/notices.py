@@ -31,18 +31,17 @@ class Work(NamedTuple):
 
 WORK = {
     "bodies": Work("the geometry of bodies", 10, 10, 13),
-    "query": Work("queries of bodies that are apart", 20, 25, 1),
-    "contact": Work("queries in contact and penetration", 12, 35, 2),
-    "frames": Work("frames of the predictor-corrector", 7, 25, 3),
+    "query": Work("queries of bodies that are apart", 20, 25, 2),
+    "contact": Work("queries in contact and penetration", 12, 35, 3),
+    "frames": Work("single frames", 2, 3, 5),
+    "law": Work("frames of the predictor-corrector", 12, 35, 1),
     "smooth": Work("frames on faces of this pair's kinds", 3, 5, 0),
-    "runs": Work("runs of many frames", 1, 2, 2),
-    "paper": Work("frames of the paper's law", 8, 25, 3),
-    "paper runs": Work("runs of the paper's law", 1, 2, 2),
+    "runs": Work("runs of many frames", 1, 2, 1),
+    "paper": Work("frames of the paper's law", 8, 25, 2),
     "derivatives": Work("derivatives by the poses", 3, 25, 3),
     "simulation": Work("simulations of bodies", 12, 45, 2),
     "coupler": Work("the virtual coupler", 2, 3, 1),
     "servo": Work("the servo loop", 7, 45, 3),
-    "study": Work("the paper's studies", 2, 3, 3),
 }
 
 ALL_SECONDS = 85

@@ -10,16 +10,19 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from standoff.kernels.compiler.decorators import kernel
-from standoff.kernels.state.arrays import N_OUT, N_STATE
+from standoff.kernels.compiler.decorators import ahead, kernel
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE
+from standoff.kernels.state.arrays import N_OPTIONS, N_OUT, N_STATE
+from standoff.kernels.state.options import read_options
 
 # Kinds of bodies.
 FREE, FIXED, DRIVEN = range(3)
 
 # Integers of a system: header, a row a body, a row a pair, then the flat parts of the bodies. Of a
-# coupler: the number of the tool, -1 without one; where its numbers stand; ticks a reading.
-I_BODIES, I_PAIRS, I_METHOD, I_INSIDE, I_TOOL, I_COUPLER, I_READING = range(7)
-INT_HEADER = 7
+# coupler: the number of the tool, -1 without one; where its numbers stand; ticks a reading. And
+# where the pairs' kept polytopes stand in the state, 0 where none are kept.
+I_BODIES, I_PAIRS, I_METHOD, I_INSIDE, I_TOOL, I_COUPLER, I_READING, I_POLYTOPES = range(8)
+INT_HEADER = 8
 # A body: its kind, where its packed arrays begin among all bodies', its column in the table of
 # driven motions, and where its flat parts begin in these integers.
 B_KIND, B_INTS, B_REALS, B_DRIVEN, B_FLATS = range(5)
@@ -37,7 +40,8 @@ REAL_PAIR = 4
 
 # The state: time, energy lost in contacts, energy that driven bodies and a coupler gave, the
 # greatest depth so far, ticks with a pair that was not certified; a row a body; a row a pair; a
-# coupler's own (``coupler_arrays``).
+# coupler's own (``coupler_arrays``); and the polytopes that pairs in penetration have kept, which
+# are not recorded.
 S_TIME, S_LOST, S_GIVEN, S_DEEPEST, S_UNCERTIFIED = range(5)
 STATE_HEADER = 8
 X_ROTATION, X_CENTRE, X_VELOCITY, X_SPIN = 0, 9, 12, 15
@@ -69,7 +73,7 @@ class System(NamedTuple):
     numbers: Any  # pointer
     ints: Any  # array: of all bodies, one behind the other
     reals: Any  # array
-    options: Any  # of the tracker, as `Options`
+    options: Any  # pointer: N_OPTIONS numbers a pair
     coupler: Any  # pointer: the numbers of a coupler (``coupler_arrays``), where there is one
 
 
@@ -84,6 +88,8 @@ class Scratch(NamedTuple):
     motion: Any  # array: N_MOTION numbers
     touch: Any  # N_TOUCH numbers a pair
     spots: Any  # see ``flat_contact``
+    change: Any  # N_CHANGE numbers of the pair whose frame it is
+    polytope: Any  # of a pair that keeps none
 
 
 @kernel
@@ -154,3 +160,16 @@ def n_rates(system):
 def coupler_row(system):
     """Where the coupler's state stands in the state."""
     return pair_row(system, n_pairs(system))
+
+
+@kernel
+def options_of(system, pair):
+    """A pair's law, with all options."""
+    return read_options(ahead(system.options, N_OPTIONS * pair))
+
+
+@kernel
+def polytope_row(system, pair):
+    """Where a pair's kept polytope stands in the state; 0 where none are kept."""
+    first = system.layout[I_POLYTOPES]
+    return first + N_POLYTOPE * pair if first > 0 else 0

@@ -204,7 +204,7 @@ def measure(bins, tallies, which, value):
 
 @kernel
 def tell(system, numbers, tallies, state, told, ended, box):
-    """Publish the tick and the whole state; `told` is (tick, clock in ns, late, work)."""
+    """Publish the tick and the state; `told` is (tick, clock in ns, late, work)."""
     newest, rows = box
     number = load_relaxed(newest, 0) + 1
     fence_released()
@@ -219,7 +219,7 @@ def tell(system, numbers, tallies, state, told, ended, box):
     at = system.layout[I_COUPLER]
     store_relaxed(rows, o + TOLD_FORCE_LIMIT, numbers[at + Q_FORCE])
     store_relaxed(rows, o + TOLD_TORQUE_LIMIT, numbers[at + Q_TORQUE])
-    for k in range(state.shape[0]):
+    for k in range(rows.shape[1] - OUT_HEADER):  # all but kept polytopes
         store_relaxed(rows, o + OUT_HEADER + k, state[k])
     store_released(newest, 0, number)
 

@@ -19,6 +19,7 @@ from standoff.kernels.dynamics.arrays import (
     kind_of,
     n_bodies,
     n_pairs,
+    options_of,
     pair_rates,
     pair_row,
 )
@@ -78,7 +79,8 @@ def touch_ahead(system, pair, state, s, rates, work, scratch):
     place = place_ahead(packed, before.place, s, read_four(rates, o))
     near = near_contact(packed, before)
     n = stage_normal(packed, motion.pose, place, near, before.normal)
-    w = stage_rates(packed, motion, place, n, near, system.options, before.integrated, work)
+    options = options_of(system, pair)
+    w = stage_rates(packed, motion, place, n, near, options, before.integrated, work)
     for k in range(4):
         rates[o + k] = w[k]
     witness = Witness(place, motion.pose, n)
@@ -95,7 +97,8 @@ def renew_rates(system, pair, state, rates, work, scratch):
     motion = Motion(before.motion.pose, renewed.v, renewed.w)
     packed = packed_pair(system, pair)
     near, n, kept = near_contact(packed, before), before.normal, before.integrated
-    w = stage_rates(packed, motion, before.place, n, near, system.options, kept, work)
+    options = options_of(system, pair)
+    w = stage_rates(packed, motion, before.place, n, near, options, kept, work)
     for k in range(4):
         rates[pair_rates(system, pair) + k] = w[k]
 

@@ -3,16 +3,17 @@
 from standoff.kernels.compiler.decorators import (
     ahead,
     entry,
+    ints_at,
     kernel,
     pointer,
     reals_on_stack,
     stack_counts,
     stack_log,
 )
-from standoff.kernels.compiler.entry import INT, PAIR, READ, READ_BLOCKS, ROWS, WRITE_INTS
-from standoff.kernels.entries.blocks import copy_pose
+from standoff.kernels.compiler.entry import INT, READ_BLOCKS, ROWS, WRITE_INTS
+from standoff.kernels.entries.blocks import N_TABLE, copy_pose, tabled_options, tabled_pair
 from standoff.kernels.entries.frames import clear_counts, start_frame
-from standoff.kernels.entries.tracker import inputs_at, pair_pointers, refused
+from standoff.kernels.frame.inputs import inputs_at, refused
 from standoff.kernels.frame.restart import anywhere
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state.arrays import (
@@ -26,7 +27,6 @@ from standoff.kernels.state.arrays import (
     START_ANYWHERE,
     TWIST_A,
 )
-from standoff.kernels.state.options import read_options
 from standoff.kernels.values import Work
 
 
@@ -40,7 +40,7 @@ def start_at(pair, options, pose_a, pose_b, out):
     for k in range(TWIST_A, N_MOTION):
         motion[k] = 0.0
     inputs = inputs_at(motion, False)
-    why = refused(inputs)
+    why = refused(pair, inputs)
     if why != FINE:
         return why
     for k in range(N_STATE):
@@ -51,13 +51,14 @@ def start_at(pair, options, pose_a, pose_b, out):
     return start_frame(anywhere, pair, inputs, options, state, START_ANYWHERE, out, work)
 
 
-@entry(PAIR, READ_BLOCKS, READ_BLOCKS, INT, INT, READ, ROWS, WRITE_INTS, work="contact")
-def starts(pair, poses_a, poses_b, first, end, options, outs, done):
+@entry(INT, READ_BLOCKS, READ_BLOCKS, INT, INT, ROWS, WRITE_INTS, work="contact")
+def starts(table, poses_a, poses_b, first, end, outs, done):
     """`start` at rows `first` to `end` - 1 of poses (n, 4, 4), or (1, 4, 4) for all rows.
 
     Row k is answered into row k of outs (n, N_OUT); done[k] is FINE, or what of it is refused.
     """
-    pointers, numbers = pair_pointers(pair), read_options(pointer(options, 0))
+    tabled = ints_at(table, N_TABLE)
+    pair, options = tabled_pair(tabled), tabled_options(tabled)
     at_a, at_b = poses_a.reshape(poses_a.size), poses_b.reshape(poses_b.size)
     way_a, way_b = pointer(at_a, 0), pointer(at_b, 0)
     rows = outs.reshape(outs.size)
@@ -66,4 +67,4 @@ def starts(pair, poses_a, poses_b, first, end, options, outs, done):
     for k in range(first, end):
         pose_a = ahead(way_a, 0 if one_a else 16 * k)
         pose_b = ahead(way_b, 0 if one_b else 16 * k)
-        done[k] = start_at(pointers, numbers, pose_a, pose_b, ahead(row, N_OUT * k))
+        done[k] = start_at(pair, options, pose_a, pose_b, ahead(row, N_OUT * k))

@@ -1,4 +1,4 @@
-"""Frames on blocks of memory, as ``Tracker`` calls them: as values, in place, and many in a row.
+"""Frames on blocks of memory: what the entries of a tracker, of batches and of C have in common.
 
 A block holds a frame's answer, the state after it and what was given (``state.arrays``). Bodies and
 options are reached by a table of their addresses.
@@ -6,12 +6,8 @@ options are reached by a table of their addresses.
 
 from typing import Any, NamedTuple
 
-import numpy as np
-from numba import types
-
 from standoff.kernels.compiler.decorators import (
     ahead,
-    entry,
     ints_at,
     kernel,
     pointer,
@@ -20,39 +16,29 @@ from standoff.kernels.compiler.decorators import (
     stack_counts,
     stack_log,
 )
-from standoff.kernels.compiler.entry import BLOCKS, INT, READ, REAL, ROWS, WRITE
-from standoff.kernels.entries.frames import frame_paper, frame_predicted
-from standoff.kernels.entries.tracker import inputs_at, refused
+from standoff.kernels.entries.frames import clear_counts, frame, has_frame, start_frame
+from standoff.kernels.frame.inputs import inputs_at, refused
 from standoff.kernels.pair.events import EVENT_COLUMNS, EVENTS
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
 from standoff.kernels.state.arrays import (
     BAD_ARRAYS,
-    BLOCK_DONE,
     BLOCK_EVENTS,
     BLOCK_HAS_TWIST,
     BLOCK_MOTION,
     BLOCK_POLYTOPE,
     BLOCK_STATE,
     BLOCK_TIME_STEP,
-    DISTANCE,
     FINE,
     MORE_EVENTS,
     N_BLOCK,
-    N_KEEPING_BLOCK,
-    N_STATE,
-    NOT_CERTIFIED,
     NOT_GIVEN,
     POSE_A,
     POSE_B,
-    STATUS,
     TWIST_A,
     TWIST_B,
-    UNDECIDED,
 )
 from standoff.kernels.state.options import read_options
 from standoff.kernels.values import Pair, Work
-
-RECORDS = types.Tuple((ROWS, ROWS))
 
 # What a table of addresses holds: each followed by how many elements lie there.
 TABLE_INTS_A, TABLE_REALS_A, TABLE_INTS_B, TABLE_REALS_B, TABLE_OPTIONS = range(0, 10, 2)
@@ -67,6 +53,11 @@ def tabled_pair(table):
         ints_at(table[TABLE_INTS_B], table[TABLE_INTS_B + 1]),
         reals_at(table[TABLE_REALS_B], table[TABLE_REALS_B + 1]),
     )
+
+
+@kernel
+def tabled_options(table):
+    return read_options(reals_at(table[TABLE_OPTIONS], table[TABLE_OPTIONS + 1]))
 
 
 class Polytopes(NamedTuple):
@@ -84,25 +75,28 @@ def where_kept(block, length):
 
 
 @kernel
-def answered(frame, table, block, room, polytopes):
+def answered(table, block, room, polytopes):
     """One frame on a block with switches up to its `room`-th number: the state is changed in place,
     the answer and its switches written."""
+    tabled = ints_at(table, N_TABLE)
+    pair = tabled_pair(tabled)
     inputs = inputs_at(ahead(block, BLOCK_MOTION), block[BLOCK_HAS_TWIST] != 0.0)
-    why = refused(inputs)
+    why = refused(pair, inputs)
     if why != FINE:
         return why
+    options = tabled_options(tabled)
+    if not has_frame(options):
+        return BAD_ARRAYS
     counts, log = stack_counts(), stack_log()
-    tabled = ints_at(table, N_TABLE)
-    options = read_options(reals_at(tabled[TABLE_OPTIONS], tabled[TABLE_OPTIONS + 1]))
     state, out = ahead(block, BLOCK_STATE), block
     work = Work(counts, log, polytopes.last, polytopes.own)
-    frame(tabled_pair(tabled), inputs, block[BLOCK_TIME_STEP], options, state, out, work)
+    frame(pair, inputs, block[BLOCK_TIME_STEP], options, state, out, work)
     switches = counts[EVENTS]
     if BLOCK_EVENTS + EVENT_COLUMNS * switches > room:
         return MORE_EVENTS
     for k in range(EVENT_COLUMNS * switches):
         block[BLOCK_EVENTS + k] = log[k]
-    return UNDECIDED if out[STATUS] == NOT_CERTIFIED else FINE
+    return FINE
 
 
 class Given(NamedTuple):
@@ -164,6 +158,14 @@ def read_given(arrays):
 
 
 @kernel
+def read_poses(pose_a, pose_b):
+    """`read_given` where no twists are given."""
+    a, b = pointer(pose_a, 0), pointer(pose_b, 0)
+    square = pose_a.shape == (4, 4) and pose_b.shape == (4, 4)
+    return square, Given(a, b, a, b, False, False)
+
+
+@kernel
 def copied(given, h, block):
     """Copy a frame's poses, twists and time into its block. False where a pose is none."""
     motion = ahead(block, BLOCK_MOTION)
@@ -178,151 +180,30 @@ def copied(given, h, block):
 
 
 @kernel
-def value_at(frame, table, before, given, h, block, polytopes):
-    """One frame from the state in one block to another block, both of N_BLOCK numbers or more."""
-    if not copied(given, h, block):
-        return BAD_ARRAYS
-    for k in range(N_STATE):
-        block[BLOCK_STATE + k] = before[BLOCK_STATE + k]
-    return answered(frame, table, block, N_BLOCK, polytopes)
+def started(query_from, table, block, given):
+    """A start on a block, at the poses in it: anywhere by the query, or from the state in it.
+
+    Returns FINE, or what is refused, or NOT_KNOWN_APART; nothing is changed then.
+    """
+    tabled = ints_at(table, N_TABLE)
+    pair = tabled_pair(tabled)
+    inputs = inputs_at(ahead(block, BLOCK_MOTION), block[BLOCK_HAS_TWIST] != 0.0)
+    why = refused(pair, inputs)
+    if why != FINE:
+        return why
+    state = ahead(block, BLOCK_STATE)
+    none = reals_on_stack(N_POLYTOPE)  # a start has none, and keeps none
+    work = Work(stack_counts(), stack_log(), none, none)
+    clear_counts(work)
+    options = tabled_options(tabled)
+    return start_frame(query_from, pair, inputs, options, state, given, block, work)
 
 
 @kernel
-def value_by(frame, table, before, given, h, block):
-    """`value_predicted`, with the law's own frame."""
-    sound, at = read_given(given)
-    if not (sound and len(before) >= N_BLOCK and len(block) >= N_BLOCK):
-        return BAD_ARRAYS
-    old, new = pointer(before, 0), pointer(block, 0)
+def answered_in_place(table, block, length):
+    """`answered` on a block of `length` numbers, its polytope in place with it."""
+    kept = where_kept(block, length)
     scratch = reals_on_stack(N_POLYTOPE)
     scratch[N_VERTICES] = 0.0
-    kept = where_kept(old, len(before))
-    last = ahead(old, kept) if kept > 0 else scratch
-    new[BLOCK_POLYTOPE] = N_BLOCK if len(block) >= N_KEEPING_BLOCK else 0.0
-    own = ahead(new, N_BLOCK) if len(block) >= N_KEEPING_BLOCK else scratch
-    return value_at(frame, table, old, at, h, new, Polytopes(last, own))
-
-
-@entry(INT, READ, ROWS, ROWS, WRITE, WRITE, REAL, WRITE, work="frames", terse=True)
-def value_predicted(table, before, pose_a, pose_b, twist_a, twist_b, h, block):
-    """One frame of the predictor-corrector from the state in one block to another block.
-
-    Poses (4, 4) and twists, (6,) or [NOT_GIVEN], are read as they are given. A block of
-    N_KEEPING_BLOCK numbers may keep a polytope. Returns FINE or UNDECIDED; else what is refused, or
-    MORE_EVENTS, and the block is of no worth.
-    """
-    given = pose_a, pose_b, twist_a, twist_b
-    return value_by(frame_predicted, table, before, given, h, block)
-
-
-@entry(INT, READ, ROWS, ROWS, WRITE, WRITE, REAL, WRITE, work="paper", terse=True)
-def value_paper(table, before, pose_a, pose_b, twist_a, twist_b, h, block):
-    """`value_predicted`, of the paper's law."""
-    given = pose_a, pose_b, twist_a, twist_b
-    return value_by(frame_paper, table, before, given, h, block)
-
-
-@kernel
-def values_by(frame, table, given, steps, first, blocks, polytopes):
-    """`values_predicted`, with the law's own frame."""
-    poses_a, poses_b, twists_a, twists_b = given
-    n, of_a, of_b = len(steps), twists_a.shape[1], twists_b.shape[1]
-    at_a, at_b = pointer(poses_a, 0), pointer(poses_b, 0)
-    way_a, way_b = pointer(twists_a, 0), pointer(twists_b, 0)
-    block, h = pointer(blocks, 0), pointer(steps, 0)
-    square = poses_a.shape == (n, 4, 4) and poses_b.shape == (n, 4, 4)
-    rows = len(twists_a) == n and len(twists_b) == n and blocks.shape == (n + 1, N_BLOCK)
-    kept = pointer(polytopes, 0)
-    if not (square and rows and polytopes.shape == (2, N_POLYTOPE)):
-        return first, BAD_ARRAYS
-    for k in range(first, n):
-        twist_a, twist_b = ahead(way_a, of_a * k), ahead(way_b, of_b * k)
-        has_a, has_b = is_given(twist_a, of_a), is_given(twist_b, of_b)
-        if not fit(of_a, has_a, of_b, has_b):
-            return k, BAD_ARRAYS
-        one = Given(ahead(at_a, 16 * k), ahead(at_b, 16 * k), twist_a, twist_b, has_a, has_b)
-        old, new = ahead(block, N_BLOCK * k), ahead(block, N_BLOCK * (k + 1))
-        new[BLOCK_POLYTOPE] = 0.0
-        turns = Polytopes(
-            ahead(kept, N_POLYTOPE * (k % 2)), ahead(kept, N_POLYTOPE * ((k + 1) % 2))
-        )
-        done = value_at(frame, table, old, one, h[k], new, turns)
-        if done != FINE:
-            return k, done
-    return n, FINE
-
-
-@entry(INT, BLOCKS, BLOCKS, ROWS, ROWS, WRITE, INT, RECORDS, work="runs")
-def values_predicted(table, poses_a, poses_b, twists_a, twists_b, steps, first, records):
-    """`value_predicted` of many frames: frame k goes from block k to block k + 1.
-
-    poses (n, 4, 4), twists (n, 6) or (n, 1) of NOT_GIVEN, steps (n,). `records` are blocks
-    (n + 1, N_BLOCK) and two polytopes (2, N_POLYTOPE): frame k reads that of k % 2 and keeps the
-    other. Begins at frame `first`. Returns the first frame that is not FINE and why; n, FINE at the
-    end.
-    """
-    given = poses_a, poses_b, twists_a, twists_b
-    return values_by(frame_predicted, table, given, steps, first, records[0], records[1])
-
-
-@entry(INT, BLOCKS, BLOCKS, ROWS, ROWS, WRITE, INT, RECORDS, work="paper runs")
-def values_paper(table, poses_a, poses_b, twists_a, twists_b, steps, first, records):
-    """`values_predicted`, of the paper's law."""
-    given = poses_a, poses_b, twists_a, twists_b
-    return values_by(frame_paper, table, given, steps, first, records[0], records[1])
-
-
-@kernel
-def answered_in_place(frame, table, block):
-    """`step_predicted`, with the law's own frame."""
-    at = pointer(block, 0)
-    kept = where_kept(at, len(block))
-    scratch = reals_on_stack(N_POLYTOPE)
-    scratch[N_VERTICES] = 0.0
-    own = ahead(at, kept) if kept > 0 else scratch
-    room = kept if kept > 0 else len(block)
-    return answered(frame, table, at, room, Polytopes(own, own))
-
-
-@entry(INT, WRITE, work="frames")
-def step_predicted(table, block):
-    """One frame of the predictor-corrector in a long block, in place, its polytope with it.
-
-    Returns FINE or UNDECIDED; or, with nothing changed, what of the poses and twists is refused.
-    """
-    return answered_in_place(frame_predicted, table, block)
-
-
-@entry(INT, WRITE, work="paper")
-def step_paper(table, block):
-    """`step_predicted`, of the paper's law."""
-    return answered_in_place(frame_paper, table, block)
-
-
-@kernel
-def moved_in_place(frame, table, given, h, block):
-    """`moved_predicted`, with the law's own frame."""
-    sound, at = read_given(given)
-    if len(block) < N_BLOCK:
-        return np.nan
-    done = BAD_ARRAYS
-    if sound and copied(at, h, pointer(block, 0)):
-        done = answered_in_place(frame, table, block)
-    block[BLOCK_DONE] = done
-    return block[DISTANCE] if done == FINE else np.nan
-
-
-@entry(INT, ROWS, ROWS, WRITE, WRITE, REAL, WRITE, work="frames", terse=True)
-def moved_predicted(table, pose_a, pose_b, twist_a, twist_b, h, block):
-    """`step_predicted` with poses and twists that are copied into the block first.
-
-    Returns the distance where the frame is FINE; else nan, and the block's BLOCK_DONE says why.
-    Where poses or twists are refused the block's own may have been written over, nothing else.
-    """
-    return moved_in_place(frame_predicted, table, (pose_a, pose_b, twist_a, twist_b), h, block)
-
-
-@entry(INT, ROWS, ROWS, WRITE, WRITE, REAL, WRITE, work="paper", terse=True)
-def moved_paper(table, pose_a, pose_b, twist_a, twist_b, h, block):
-    """`moved_predicted`, of the paper's law."""
-    return moved_in_place(frame_paper, table, (pose_a, pose_b, twist_a, twist_b), h, block)
+    own = ahead(block, kept) if kept > 0 else scratch
+    return answered(table, block, kept if kept > 0 else length, Polytopes(own, own))

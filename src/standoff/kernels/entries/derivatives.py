@@ -30,7 +30,7 @@ from standoff.kernels.compiler.entry import (
 from standoff.kernels.depth.rivals import N_STARTS, NOT_ALONE, NOT_KNOWN, alone, equally_deep
 from standoff.kernels.entries.blocks import copy_pose
 from standoff.kernels.entries.frames import clear_counts
-from standoff.kernels.entries.tracker import pair_pointers
+from standoff.kernels.entries.pointers import pair_pointers
 from standoff.kernels.pair.derivatives import (
     EQUALLY_DEEP,
     NO_DISTANCE,

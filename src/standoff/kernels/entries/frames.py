@@ -1,29 +1,16 @@
-"""One frame of the hybrid tracker, in both laws; and the first one, a cold query."""
+"""One frame of the hybrid tracker, whatever its law; and the first one, a cold query."""
 
 from __future__ import annotations
 
 from standoff.kernels.algebra.rigid import relative_pose
 from standoff.kernels.body.features import dimension
-from standoff.kernels.compiler.calls import address_of, call_frame
-from standoff.kernels.compiler.decorators import kernel, shared, stack_counts
-from standoff.kernels.frame.answer import judge, write_answer
-from standoff.kernels.frame.apart import track_predicted
-from standoff.kernels.frame.inputs import moving, twisted
+from standoff.kernels.compiler.calls import CAN_CALL
+from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.frame.answer import judge
+from standoff.kernels.frame.inputs import twisted
 from standoff.kernels.frame.prediction import feeds, next_state
-from standoff.kernels.frame.smooth import (
-    CALL_HAS_TWIST,
-    CALL_INTS_A,
-    CALL_INTS_B,
-    CALL_OPTIONS,
-    CALL_OUT,
-    CALL_POSE_A,
-    CALL_POSE_B,
-    CALL_REALS_A,
-    CALL_REALS_B,
-    CALL_STATE,
-    CALL_TWIST_A,
-    CALL_TWIST_B,
-)
+from standoff.kernels.frame.record import call_at
+from standoff.kernels.frame.step import answer_frame, copy_counts
 from standoff.kernels.pair.certified import (
     CERTIFIED,
     NOT_APART,
@@ -31,7 +18,6 @@ from standoff.kernels.pair.certified import (
     settle_and_weigh,
     weigh,
 )
-from standoff.kernels.pair.contact_newton import contact_rates
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import (
     EVENTS,
@@ -42,17 +28,11 @@ from standoff.kernels.pair.events import (
     N_COUNTS,
     NO_LIMIT,
     RESTARTS,
-    exhausted,
-    tidy_events,
 )
 from standoff.kernels.pair.polytope_layout import N_VERTICES
-from standoff.kernels.paper.frame import track_carried, track_paper
-from standoff.kernels.paper.integrators import feedforward_now
-from standoff.kernels.paper.law import begun
 from standoff.kernels.state.arrays import (
     FINE,
     NOT_KNOWN_APART,
-    OUT_COUNTS,
     START_ANYWHERE,
     START_HERE,
 )
@@ -60,37 +40,17 @@ from standoff.kernels.state.state import (
     Integrated,
     fresh_state,
     read_place,
-    read_state,
     write_state,
 )
-from standoff.kernels.state.tracked import Shown, Tracked, without_rates
+from standoff.kernels.state.tracked import Shown, Tracked, begun, without_rates
 from standoff.kernels.tolerances import START_GAP
 from standoff.kernels.values import NO_RATES, ORIGIN, Found
 
+if not CAN_CALL:
+    from standoff.kernels.frame.apart import predicted_frame
+    from standoff.kernels.paper.frame import paper_frame
+
 NOT_INTEGRATED = Integrated(NO_RATES, NO_RATES, 0.0)
-
-
-@shared
-def answer_frame(pair, inputs, motion, shown, solve, status, out, work):
-    """Write the answer of a frame. Returns the rates of its parameters, which are found here where
-    no evaluation of the frame belongs to its witness points.
-    """
-    found, jets, rates = shown.found, shown.jets, shown.rates
-    n_rate = ORIGIN
-    if inputs.has_twist:
-        if shown.inside:
-            n_rate, rates = contact_rates(pair, motion, jets, found.normal, found.distance, work)
-        elif not shown.fresh and found.distance > 0.0:
-            rates = feedforward_now(pair, motion, found.place, solve, work)
-    known = Shown(found, jets, shown.inside, shown.fresh, rates)
-    write_answer(pair, inputs, motion, known, n_rate, status, out)
-    return rates
-
-
-@kernel
-def copy_counts(work, out):
-    for k in range(N_COUNTS):
-        out[OUT_COUNTS + k] = work.counts[k]
 
 
 @kernel
@@ -136,29 +96,6 @@ def start_frame(query_from, pair, inputs, options, state, given, out, work):
 
 
 @kernel
-def step_frame(track, pair, inputs, steps, options, state, out, work):
-    """A frame of the law that is given: the state is changed in place, the answer written. `steps`
-    are the time h, and what `track` goes by: h, or a change of the parameters over it. The counts
-    are 0 before it.
-    """
-    h, step = steps
-    before = read_state(state)
-    work.counts[LIMIT] = options.deadline
-    motion = moving(inputs, before, h)
-    shown, integrated = track(pair, motion, before, options, step, work)
-    found = shown.found
-    status = judge(pair, motion.pose.p, found, options.paper, options.tolerance, exhausted(work))
-    rates = answer_frame(pair, inputs, motion, shown, options.solve, status, out, work)
-    old, new = before.place, found.place
-    if work.counts[EVENTS] > 0 or old.feature_a != new.feature_a or old.feature_b != new.feature_b:
-        tidy_events(work, old.feature_a, old.feature_b, new.feature_a, new.feature_b)
-    known = Tracked(Shown(found, shown.jets, shown.inside, shown.fresh, rates), integrated)
-    feed = feeds(options.predictor, inputs.has_twist)
-    write_state(next_state(pair, before, motion, h, known, feed, status), state)
-    copy_counts(work, out)
-
-
-@kernel
 def clear_counts(work):
     for k in range(N_COUNTS):
         work.counts[k] = 0
@@ -173,22 +110,6 @@ def forget_polytope(work):
 
 
 @kernel
-def answered_smoothly(pair, inputs, h, options, state, out):
-    """Has the smooth frame, whose address is among the options, made the answer? If not nothing has
-    been written.
-    """
-    call = stack_counts()
-    call[CALL_INTS_A], call[CALL_REALS_A] = address_of(pair.ints_a), address_of(pair.reals_a)
-    call[CALL_INTS_B], call[CALL_REALS_B] = address_of(pair.ints_b), address_of(pair.reals_b)
-    call[CALL_POSE_A], call[CALL_POSE_B] = address_of(inputs.pose_a), address_of(inputs.pose_b)
-    call[CALL_TWIST_A], call[CALL_TWIST_B] = address_of(inputs.twist_a), address_of(inputs.twist_b)
-    call[CALL_HAS_TWIST] = 1 if inputs.has_twist else 0
-    call[CALL_OPTIONS] = address_of(options.numbers)
-    call[CALL_STATE], call[CALL_OUT] = address_of(state), address_of(out)
-    return call_frame(options.smooth, address_of(call), h) != 0
-
-
-@kernel
 def on_faces(pair, state):
     """Were both witness points on faces? Elsewhere the smooth frame need not be asked."""
     place = read_place(state)
@@ -196,30 +117,44 @@ def on_faces(pair, state):
     return a == 2 and b == 2
 
 
+if CAN_CALL:
+
+    @kernel
+    def law_frame(pair, inputs, h, options, state, out, work):
+        """A frame of the law: compiled apart, called by its address among the options."""
+        call_at(options.frame, pair, inputs, h, options, state, out, work)
+
+else:
+
+    @kernel
+    def law_frame(pair, inputs, h, options, state, out, work):
+        """A frame of the law that the options name."""
+        if options.paper:
+            paper_frame(pair, inputs, h, options, state, out, work)
+        else:
+            predicted_frame(pair, inputs, h, options, state, out, work)
+
+
+@kernel
+def has_frame(options):
+    """Is the law's frame known? Starts need none."""
+    return not CAN_CALL or options.frame != 0
+
+
 @shared
-def frame_predicted(pair, inputs, h, options, state, out, work):
-    """A frame of the predictor-corrector, for single steps and for runs."""
+def frame(pair, inputs, h, options, state, out, work):
+    """One frame of the law that the options name, on every route: the state is changed in place,
+    the answer written.
+
+    A module of its own: within the caller's, whose stack the counts stand on, LLVM has left them
+    uncleared for the law's frame, to which it sees no pointer go.
+    """
     clear_counts(work)
     if options.smooth != 0:
-        if on_faces(pair, state) and answered_smoothly(pair, inputs, h, options, state, out):
+        faces = on_faces(pair, state)
+        if faces and call_at(options.smooth, pair, inputs, h, options, state, out, work) != 0:
             forget_polytope(work)
             return
         work.counts[GENERAL_FRAMES] = 1
-    step_frame(track_predicted, pair, inputs, (h, h), options, state, out, work)
-    forget_polytope(work)
-
-
-@shared
-def frame_paper(pair, inputs, h, options, state, out, work):
-    """A frame of the paper's law, for single steps and for runs."""
-    clear_counts(work)
-    step_frame(track_paper, pair, inputs, (h, h), options, state, out, work)
-    forget_polytope(work)
-
-
-@shared
-def frame_carried(pair, inputs, h, change, options, state, out, work):
-    """A frame whose parameters were integrated together with the bodies' motion."""
-    clear_counts(work)
-    step_frame(track_carried, pair, inputs, (h, change), options, state, out, work)
+    law_frame(pair, inputs, h, options, state, out, work)
     forget_polytope(work)

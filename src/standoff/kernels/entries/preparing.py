@@ -10,71 +10,52 @@ from typing import Any
 from standoff.kernels.compiler import cache
 from standoff.kernels.compiler.entry import Entry
 from standoff.kernels.compiler.notices import parts
-from standoff.kernels.entries import blocks, queries, servo, simulation, tracker
+from standoff.kernels.entries import queries, servo, simulation, tracker
 
 MODULES = (
     "standoff.kernels.entries.queries",
     "standoff.kernels.entries.tracker",
-    "standoff.kernels.entries.blocks",
+    "standoff.kernels.entries.laws",
     "standoff.kernels.entries.batch",
     "standoff.kernels.entries.derivatives",
     "standoff.kernels.entries.smooth",
     "standoff.kernels.entries.simulation",
     "standoff.kernels.entries.servo",
-    "standoff.kernels.pair.normals_system",
 )
 """Where entries stand."""
-
-BODIES = ("on_face", "inner_box", "chart_normal", "surface_jet", "curve_jet")
-"""What places a start, and builds the half-space against which an overlap is proven."""
-
-PLANAR = ("pcurve_jet", "planar_edge_normal")
-"""What that of planar bodies needs beside it."""
 
 LOCATING = ("feature_jet", "edge_jet", "coedge_conormal", "end_direction")
 """What locates the instant of a switch in a recorded run."""
 
-SCIPY = ("scipy.optimize",)
-"""Imported by a proof of overlap."""
-
-ready_for: set[tuple[bool, bool, bool]] = set()
+ready_for: set[bool] = set()
 
 
-def prepare(paper: bool, planar: bool, runs: bool = False) -> None:
-    """Have ready what a tracker can reach, in contact and out of it.
+def prepare(runs: bool = False) -> None:
+    """Have ready what a tracker's frames are called by; the frame of its own law, which reaches
+    all that is to be met in contact and out of it, is there by then.
 
     Parameters
     ----------
-    paper : bool
-        Of the paper's law; else of the predictor-corrector.
-    planar : bool
-        Of planar bodies.
     runs : bool
-        And the loop over many frames.
+        And the loop over many frames, and what locates a switch in it.
     """
-    if (paper, planar, runs) in ready_for:
+    if runs in ready_for:
         return
-    names = BODIES + (PLANAR if planar else ()) + (LOCATING if runs else ())
-    needed = [getattr(queries, name) for name in names]
-    needed += [tracker.start]
-    needed += (
-        [blocks.value_paper, blocks.step_paper, blocks.moved_paper]
-        if paper
-        else [blocks.value_predicted, blocks.step_predicted, blocks.moved_predicted]
-    )
+    needed = [tracker.query, tracker.step, tracker.value, tracker.value_by_poses]
     if runs:
-        needed.append(tracker.run_paper if paper else tracker.run_predicted)
+        needed += [tracker.start, tracker.values, *(getattr(queries, name) for name in LOCATING)]
     _prepare_each(needed)
-    for name in SCIPY:
-        importlib.import_module(name)
-    ready_for.add((paper, planar, runs))
+    ready_for.add(runs)
+
+
+def prepare_buffer() -> None:
+    """Have ready what a frame in a buffer is made by."""
+    _prepare_each([tracker.moved, tracker.moved_by_poses])
 
 
 def prepare_simulation() -> None:
     """Have ready what a simulated system runs by."""
     _prepare_each([simulation.run_system])
-    for name in SCIPY:
-        importlib.import_module(name)
 
 
 def prepare_servo() -> None:

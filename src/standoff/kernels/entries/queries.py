@@ -10,7 +10,8 @@ from standoff.kernels.body import features, jets, trimming
 from standoff.kernels.body import inner_box as inner_boxes
 from standoff.kernels.compiler.decorators import entry, pointer
 from standoff.kernels.compiler.entry import INT, INTS, PAIR, READ, REAL, VECTOR, WRITE
-from standoff.kernels.entries.tracker import input_pointers, pair_pointers
+from standoff.kernels.entries.pointers import pair_pointers
+from standoff.kernels.frame.inputs import inputs_at
 from standoff.kernels.pair import switching
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.system import feedforward, hessian, projection_errors
@@ -88,7 +89,7 @@ JETS, ERRORS, FEEDFORWARD, HESSIAN, N_SYSTEM = 0, 36, 40, 44, 54
 def pair_system(pair, motion, state, out):
     """Both jets in A's frame (2 x 18 numbers), then Psi (4), b (4) and H (10), into `out`, at the
     state's place."""
-    inputs = input_pointers(motion, 0, True)
+    inputs = inputs_at(pointer(motion, 0), True)
     pose = relative_pose(inputs.pose_a, inputs.pose_b)
     v, w = relative_twist(inputs.pose_a, inputs.pose_b, inputs.twist_a, inputs.twist_b)
     jets = pair_jets(pair_pointers(pair), pose, read_place(pointer(state, 0)))

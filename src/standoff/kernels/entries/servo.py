@@ -8,7 +8,7 @@ its first tick alone.
 import numpy as np
 from numba import types
 
-from standoff.kernels.compiler.decorators import entry, kernel, pointer, reals_on_stack
+from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import INT, INTS, ROWS, WRITE, WRITE_INTS
 from standoff.kernels.compiler.shared_memory import load_relaxed
 from standoff.kernels.dynamics.arrays import I_READING, S_TIME, STEP, coupler_row, n_pairs
@@ -70,7 +70,6 @@ from standoff.kernels.entries.simulation import (
     track_pair,
 )
 from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNT_SLOTS
-from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
 from standoff.kernels.state.arrays import FINE
 from standoff.kernels.values import Work
 
@@ -210,9 +209,7 @@ def serve(packed, numbers, state, plan, commands, given, boxes, measured):
     scratch = pointed(arrays)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     events = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
-    none, own = reals_on_stack(N_POLYTOPE), reals_on_stack(N_POLYTOPE)
-    none[N_VERTICES] = 0.0
-    work = Work(pointer(counts, 0), pointer(events, 0), none, own)
+    work = Work(pointer(counts, 0), pointer(events, 0), scratch.polytope, scratch.polytope)
     moment, answered = np.zeros(2, dtype=np.int64), np.zeros(2, dtype=np.int64)
     reading = np.zeros(N_READING)
     reading[G_FAULT] = MISSING

@@ -5,12 +5,11 @@ one tick of a virtual coupler by itself.
 import numpy as np
 from numba import types
 
-from standoff.kernels.compiler.decorators import entry, kernel, pointer, reals_on_stack
+from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import INT, INTS, READ, REAL, ROWS, WRITE
 from standoff.kernels.dynamics.arrays import (
     FREE,
     I_COUPLER,
-    I_INSIDE,
     N_LOAD,
     N_TOUCH,
     S_DEEPEST,
@@ -24,7 +23,9 @@ from standoff.kernels.dynamics.arrays import (
     n_bodies,
     n_pairs,
     n_rates,
+    options_of,
     pair_row,
+    polytope_row,
 )
 from standoff.kernels.dynamics.coupled_tool import (
     book_pull,
@@ -39,13 +40,20 @@ from standoff.kernels.dynamics.operator import change_of, step_bodies
 from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
 from standoff.kernels.dynamics.rigid_body import kinetic, potential, power
 from standoff.kernels.dynamics.system import clear_loads, touch_tracked
-from standoff.kernels.entries.frames import frame_carried, frame_paper, frame_predicted
-from standoff.kernels.entries.tracker import input_pointers, refused
+from standoff.kernels.entries.frames import frame
+from standoff.kernels.frame.inputs import (
+    CHANGE,
+    FIRST_CHANGE,
+    N_CHANGE,
+    inputs_at,
+    refused,
+    with_change,
+)
 from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNT_SLOTS
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
-from standoff.kernels.paper.integrators import Change
 from standoff.kernels.state.arrays import (
     CONVERGED,
+    DISTANCE,
     FINE,
     GLOBAL,
     LOCAL,
@@ -54,8 +62,8 @@ from standoff.kernels.state.arrays import (
     STATUS,
     TRACKING,
 )
-from standoff.kernels.state.options import read_options
-from standoff.kernels.values import NO_RATES, Work
+from standoff.kernels.state.state import write_numbers
+from standoff.kernels.values import Work
 
 # Columns of an account, after which come N_TOUCH numbers a pair, and what is stored in a coupler.
 A_KINETIC, A_POTENTIAL, A_STORED = range(3)
@@ -75,6 +83,8 @@ def scratch_for(system):
         np.zeros(N_MOTION),
         np.zeros(N_TOUCH * n_pairs(system) + 1),
         np.zeros(N_SPOTS),
+        np.zeros(N_CHANGE),
+        np.zeros(N_POLYTOPE),
     )
 
 
@@ -89,6 +99,8 @@ def pointed(arrays):
         arrays[5],
         pointer(arrays[6], 0),
         pointer(arrays[7], 0),
+        pointer(arrays[8], 0),
+        pointer(arrays[9], 0),
     )
 
 
@@ -97,9 +109,19 @@ def keep_alive(arrays, counts, log):
     """Named after the last use of what points into them: Numba frees an array after its own last
     use, which a pointer is not."""
     total = len(counts) + len(log)
-    for k in range(8):
+    for k in range(10):
         total += len(arrays[k])
     return total
+
+
+@kernel
+def work_for(system, pair, state, counts, log, scratch):
+    """What a pair's frame writes on: its kept polytope stands in the state, where any are kept."""
+    at = polytope_row(system, pair)
+    own = pointer(state, at) if at > 0 else scratch.polytope
+    if at == 0:
+        own[N_VERTICES] = 0.0
+    return Work(counts, log, own, own)
 
 
 @kernel
@@ -107,25 +129,24 @@ def track_pair(system, pair, state, h, work, scratch):
     """The tracker's frame of a pair at the end of a tick; FINE, or what it refuses."""
     o = pair_row(system, pair)
     write_motion(system, pair, state, body_row(0), scratch.motion)
-    inputs = input_pointers(scratch.motion, 0, True)
-    why = refused(inputs)
+    packed, options = packed_pair(system, pair), options_of(system, pair)
+    inputs = inputs_at(pointer(scratch.motion, 0), True)
+    why = refused(packed, inputs)
     if why != FINE:
         return why
+    if options.carried:
+        change = scratch.change
+        write_numbers(change_of(system, pair, h, scratch.total), change, CHANGE)
+        write_numbers(change_of(system, pair, h, scratch.first), change, FIRST_CHANGE)
+        inputs = with_change(inputs, change)
     kept, out = pointer(state, o), pointer(state, o + N_STATE)
-    packed = packed_pair(system, pair)
-    if system.layout[I_INSIDE]:
-        dq = change_of(system, pair, h, scratch.total)
-        first = change_of(system, pair, h, scratch.first)
-        change = Change(dq, NO_RATES, NO_RATES, system.options.gain, first)
-        frame_carried(packed, inputs, h, change, system.options, kept, out, work)
-    elif system.options.paper:
-        frame_paper(packed, inputs, h, system.options, kept, out, work)
-    else:
-        frame_predicted(packed, inputs, h, system.options, kept, out, work)
+    own = work_for(system, pair, state, work.counts, work.events, scratch)
+    frame(packed, inputs, h, options, kept, out, own)
     status = out[STATUS]
+    # of an overlap alone the contact's depth is not known: its force is not either
     sound = status in (CONVERGED, TRACKING, LOCAL, GLOBAL)
     state[S_UNCERTIFIED] += 0.0 if sound else 1.0
-    state[S_DEEPEST] = max(state[S_DEEPEST], -out[0])
+    state[S_DEEPEST] = max(state[S_DEEPEST], -out[DISTANCE])
     return FINE
 
 
@@ -166,9 +187,10 @@ def tick_bodies(system, state, h, drives, tick, work, scratch):
 def system_of(packed):
     """A system by pointers, of its arrays (layout, numbers, ints, reals, options)."""
     layout, numbers, ints, reals, options = packed
-    read = read_options(pointer(options, 0))
     coupler = pointer(numbers, layout[I_COUPLER])
-    return System(pointer(layout, 0), pointer(numbers, 0), ints, reals, read, coupler)
+    return System(
+        pointer(layout, 0), pointer(numbers, 0), ints, reals, pointer(options, 0), coupler
+    )
 
 
 SYSTEM = types.Tuple((INTS, READ, INTS, READ, READ))
@@ -192,13 +214,11 @@ def run_system(packed, state, drives, every, records):
     scratch = pointed(arrays)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
-    # the system's state is the whole warm start: no polytope goes from tick to tick
-    none, own = reals_on_stack(N_POLYTOPE), reals_on_stack(N_POLYTOPE)
-    none[N_VERTICES] = 0.0
-    work = Work(pointer(counts, 0), pointer(log, 0), none, own)
+    work = Work(pointer(counts, 0), pointer(log, 0), scratch.polytope, scratch.polytope)
     h = system.numbers[STEP]
     begun = state[S_TIME]
-    states[0, :] = state
+    width = states.shape[1]  # all but the polytopes
+    states[0, :] = state[:width]
     account(system, state, accounts[0], scratch)
     table, readings = drives
     for tick in range(every * (states.shape[0] - 1)):
@@ -211,7 +231,7 @@ def run_system(packed, state, drives, every, records):
                 return tick, why
         if (tick + 1) % every == 0:
             row = (tick + 1) // every
-            states[row, :] = state
+            states[row, :] = state[:width]
             account(system, state, accounts[row], scratch)
     keep_alive(arrays, counts, log)
     return -1, FINE
@@ -239,10 +259,7 @@ def load_system(packed, state, loads, row):
     scratch = pointed(arrays)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
-    # the system's state is the whole warm start: no polytope goes from tick to tick
-    none, own = reals_on_stack(N_POLYTOPE), reals_on_stack(N_POLYTOPE)
-    none[N_VERTICES] = 0.0
-    work = Work(pointer(counts, 0), pointer(log, 0), none, own)
+    work = Work(pointer(counts, 0), pointer(log, 0), scratch.polytope, scratch.polytope)
     for pair in range(n_pairs(system)):
         why = track_pair(system, pair, state, system.numbers[STEP], work, scratch)
         if why != FINE:

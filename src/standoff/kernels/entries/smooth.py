@@ -1,4 +1,4 @@
-"""The smooth frames that are compiled for kinds of surfaces, for `answered_smoothly` to call.
+"""The smooth frames that are compiled for kinds of surfaces, which `frames.frame` tries first.
 
 Those of this file are compiled ahead; `made_for` writes others in the same words.
 """
@@ -7,32 +7,10 @@ from functools import lru_cache
 from typing import Any
 
 from standoff.kernels.body import layout as L
-from standoff.kernels.compiler.decorators import entry, ints_at, kernel, reals_at, small
+from standoff.kernels.compiler.decorators import entry, kernel, small
 from standoff.kernels.compiler.entry import INT, REAL
-from standoff.kernels.frame.inputs import Inputs
-from standoff.kernels.frame.smooth import (
-    CALL_HAS_TWIST,
-    CALL_INTS_A,
-    CALL_INTS_B,
-    CALL_OPTIONS,
-    CALL_OUT,
-    CALL_POSE_A,
-    CALL_POSE_B,
-    CALL_REALS_A,
-    CALL_REALS_B,
-    CALL_STATE,
-    CALL_TWIST_A,
-    CALL_TWIST_B,
-    N_CALL,
-    seen_as,
-    seen_as_nurbs,
-    smooth_frame,
-)
-from standoff.kernels.state.arrays import N_OPTIONS, N_OUT, N_STATE
-from standoff.kernels.state.options import read_options
-from standoff.kernels.values import Pair
-
-N_POSE, N_TWIST = 12, 6
+from standoff.kernels.frame.record import read_call
+from standoff.kernels.frame.smooth import seen_as, seen_as_nurbs, smooth_frame
 
 
 @small
@@ -67,24 +45,10 @@ def on_nurbs_5(ints, reals, chart, u, v):
 
 @kernel
 def called(look_a, look_b, record, h):
-    """`smooth_frame` of a record of addresses. Bodies' lengths are not known here, nor asked."""
-    call = ints_at(record, N_CALL)
-    pair = Pair(
-        ints_at(call[CALL_INTS_A], 0),
-        reals_at(call[CALL_REALS_A], 0),
-        ints_at(call[CALL_INTS_B], 0),
-        reals_at(call[CALL_REALS_B], 0),
-    )
-    inputs = Inputs(
-        reals_at(call[CALL_POSE_A], N_POSE),
-        reals_at(call[CALL_POSE_B], N_POSE),
-        reals_at(call[CALL_TWIST_A], N_TWIST),
-        reals_at(call[CALL_TWIST_B], N_TWIST),
-        call[CALL_HAS_TWIST] != 0,
-    )
-    options = read_options(reals_at(call[CALL_OPTIONS], N_OPTIONS))
-    state, out = reals_at(call[CALL_STATE], N_STATE), reals_at(call[CALL_OUT], N_OUT)
-    return smooth_frame(look_a, look_b, pair, inputs, h, options, state, out)
+    """`smooth_frame` of a record of addresses."""
+    call = read_call(record)
+    pair, inputs = call.pair, call.inputs
+    return smooth_frame(look_a, look_b, pair, inputs, h, call.options, call.state, call.out)
 
 
 @entry(INT, REAL, work="smooth")

@@ -1,163 +1,223 @@
-"""The hybrid tracker as Python calls it: starts, steps and runs of frames on flat arrays.
-
-The state goes in and comes out as one float64 array, so that it is a value. A step answers for the
-poses it is given; a frame's poses and twists are one row of numbers (``state.arrays``).
+"""The hybrid tracker as Python calls it: starts, frames from block to block or in place, and many
+in a row; one call of a frame behind all of them (`frames.frame`).
 """
 
 import numpy as np
+from numba import types
 
 from standoff.kernels.compiler.decorators import ahead, entry, kernel, pointer, reals_on_stack
-from standoff.kernels.compiler.entry import BOOL, INT, PAIR, READ, ROWS, WRITE
-from standoff.kernels.entries.frames import frame_paper, frame_predicted, start_frame
-from standoff.kernels.frame.inputs import Inputs
+from standoff.kernels.compiler.entry import BLOCKS, INT, READ, REAL, ROWS, WRITE
+from standoff.kernels.entries.blocks import (
+    Given,
+    Polytopes,
+    answered,
+    answered_in_place,
+    copied,
+    fit,
+    is_given,
+    read_given,
+    read_poses,
+    started,
+    where_kept,
+)
 from standoff.kernels.frame.restart import anywhere, anywhere_apart
-from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNT_SLOTS
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
 from standoff.kernels.state.arrays import (
+    BAD_ARRAYS,
+    BLOCK_DONE,
+    BLOCK_POLYTOPE,
+    BLOCK_STATE,
+    DISTANCE,
     FINE,
-    N_MOTION,
-    N_OUT,
+    N_BLOCK,
+    N_KEEPING_BLOCK,
     N_STATE,
     NOT_KNOWN_APART,
-    POSE_A,
-    POSE_B,
-    TWIST_A,
-    TWIST_B,
-    refusal,
+    START_ANYWHERE,
 )
-from standoff.kernels.state.options import names_paper_law, read_options
-from standoff.kernels.values import Pair, Work
+
+RECORDS = types.Tuple((ROWS, ROWS))
 
 
-@kernel
-def pair_pointers(pair):
-    return Pair(pointer(pair[0], 0), pointer(pair[1], 0), pointer(pair[2], 0), pointer(pair[3], 0))
-
-
-@kernel
-def input_pointers(motion, row, has_twist):
-    """Where a frame's poses and twists stand: row `row` of a flat array of motions."""
-    return inputs_at(pointer(motion, N_MOTION * row), has_twist)
-
-
-@kernel
-def inputs_at(motion, has_twist):
-    """Where a frame's poses and twists stand, from the first of them on."""
-    return Inputs(
-        ahead(motion, POSE_A),
-        ahead(motion, POSE_B),
-        ahead(motion, TWIST_A),
-        ahead(motion, TWIST_B),
-        has_twist,
-    )
-
-
-@kernel
-def refused(inputs):
-    """FINE, or which of a frame's poses and twists is not one."""
-    return refusal(inputs.pose_a, inputs.pose_b, inputs.twist_a, inputs.twist_b)
-
-
-@kernel
-def start_by(query_from, pair, inputs, options, state, given, out):
-    """`start`, with the cold query that it is to make."""
-    why = refused(inputs)
-    if why != FINE:
-        return why
-    counts = np.empty(N_COUNT_SLOTS, dtype=np.int64)
-    for k in range(N_COUNT_SLOTS):
-        counts[k] = 0
-    log = np.empty(MAX_EVENTS * EVENT_COLUMNS)
-    none = reals_on_stack(N_POLYTOPE)  # a start has none, and keeps none
-    answered = start_frame(
-        query_from,
-        pair_pointers(pair),
-        inputs,
-        read_options(pointer(options, 0)),
-        pointer(state, 0),
-        given,
-        pointer(out, 0),
-        Work(pointer(counts, 0), pointer(log, 0), none, none),
-    )
-    counts[0], log[0] = 0, 0.0  # alive until here, see `pointer`
-    return answered
-
-
-@entry(PAIR, WRITE, BOOL, READ, WRITE, INT, WRITE, work="query")
-def start_apart(pair, motion, has_twist, options, state, given, out):
+@entry(INT, WRITE, INT, work="query")
+def start_apart(table, block, given):
     """`start` of bodies that are apart; NOT_KNOWN_APART, with nothing changed, where they may not
     be. It needs none of what is compiled for contact.
     """
-    inputs = input_pointers(motion, 0, has_twist)
-    return start_by(anywhere_apart, pair, inputs, options, state, given, out)
+    return (
+        started(anywhere_apart, table, pointer(block, 0), given)
+        if len(block) >= N_BLOCK
+        else BAD_ARRAYS
+    )
 
 
-@entry(PAIR, WRITE, BOOL, READ, WRITE, INT, WRITE, work="contact")
-def start(pair, motion, has_twist, options, state, given, out):
-    """Begin at a pose: anywhere (a global query), by descent from the state's mode, or there.
+@entry(INT, WRITE, INT, work="contact")
+def start(table, block, given):
+    """Begin at the poses in a block: anywhere (a global query), by descent from the state's mode,
+    or there.
 
     Returns FINE, or what of the poses and twists is refused.
     """
-    inputs = input_pointers(motion, 0, has_twist)
-    return start_by(anywhere, pair, inputs, options, state, given, out)
+    return (
+        started(anywhere, table, pointer(block, 0), given) if len(block) >= N_BLOCK else BAD_ARRAYS
+    )
+
+
+def start_anywhere(table, block, given=START_ANYWHERE):
+    """`start`, by way of `start_apart` while nothing has needed what is compiled for contact."""
+    if getattr(start, "ready", True):
+        return start(table, block, given)
+    answer = start_apart(table, block, given)
+    return start(table, block, given) if answer == NOT_KNOWN_APART else answer
 
 
 @kernel
-def run_by(frame, pair, given, steps, options, state, outs, events):
-    """Many frames in one compiled loop, with the law that they are to follow. `given` is (motions,
-    has_twist).
-    """
-    motions, has_twist = given
-    numbers, answers, length = motions.ravel(), outs.ravel(), len(motions)
-    motion, out = pointer(numbers, 0), pointer(answers, 0)
-    counts = np.empty(N_COUNT_SLOTS, dtype=np.int64)
+def queried(query_from, table, arrays, block):
+    """A start anywhere at poses and twists that are copied into a block."""
+    sound, at = read_given(arrays)
+    own = pointer(block, 0)
+    if not (sound and len(block) >= N_BLOCK and copied(at, 0.0, own)):
+        return BAD_ARRAYS
+    for k in range(N_STATE):
+        own[BLOCK_STATE + k] = 0.0
+    own[BLOCK_POLYTOPE] = 0.0
+    return started(query_from, table, own, START_ANYWHERE)
+
+
+@entry(INT, ROWS, ROWS, WRITE, WRITE, WRITE, work="query", terse=True)
+def query_apart(table, pose_a, pose_b, twist_a, twist_b, block):
+    """`query` of bodies that are apart; NOT_KNOWN_APART where they may not be."""
+    return queried(anywhere_apart, table, (pose_a, pose_b, twist_a, twist_b), block)
+
+
+@entry(INT, ROWS, ROWS, WRITE, WRITE, WRITE, work="contact", terse=True)
+def query(table, pose_a, pose_b, twist_a, twist_b, block):
+    """`start` anywhere, at poses (4, 4) and twists, (6,) or [NOT_GIVEN], as they are given."""
+    return queried(anywhere, table, (pose_a, pose_b, twist_a, twist_b), block)
+
+
+def query_anywhere(table, pose_a, pose_b, twist_a, twist_b, block):
+    """`query`, by way of `query_apart` while nothing has needed what is compiled for contact."""
+    if getattr(query, "ready", True):
+        return query(table, pose_a, pose_b, twist_a, twist_b, block)
+    answer = query_apart(table, pose_a, pose_b, twist_a, twist_b, block)
+    if answer == NOT_KNOWN_APART:
+        return query(table, pose_a, pose_b, twist_a, twist_b, block)
+    return answer
+
+
+@kernel
+def value_at(table, before, given, h, block, polytopes):
+    """One frame from the state in one block to another block, both of N_BLOCK numbers or more."""
+    if not copied(given, h, block):
+        return BAD_ARRAYS
+    for k in range(N_STATE):
+        block[BLOCK_STATE + k] = before[BLOCK_STATE + k]
+    return answered(table, block, N_BLOCK, polytopes)
+
+
+@kernel
+def value_of(table, before, given, h, block):
+    """`value` of what was read of the arrays given."""
+    sound, at = given
+    if not (sound and len(before) >= N_BLOCK and len(block) >= N_BLOCK):
+        return BAD_ARRAYS
+    old, new = pointer(before, 0), pointer(block, 0)
     scratch = reals_on_stack(N_POLYTOPE)
     scratch[N_VERTICES] = 0.0
-    behind = ahead(pointer(state, 0), N_STATE)
-    kept = behind if len(state) >= N_STATE + N_POLYTOPE else scratch
-    work = Work(pointer(counts, 0), pointer(events, 0), kept, kept)
-    pointers = pair_pointers(pair)
-    options = read_options(pointer(options, 0))
-    h, kept = pointer(steps, 0), pointer(state, 0)
-    at, why = -1, FINE
-    for k in range(length):
-        inputs = inputs_at(ahead(motion, N_MOTION * k), has_twist)
-        why = refused(inputs)
-        if why != FINE:
-            at = k
-            break
-        frame(pointers, inputs, h[k], options, kept, ahead(out, N_OUT * k), work)
-    counts[0] = 0  # alive until here, see `pointer`
-    return at, why
+    kept = where_kept(old, len(before))
+    last = ahead(old, kept) if kept > 0 else scratch
+    new[BLOCK_POLYTOPE] = N_BLOCK if len(block) >= N_KEEPING_BLOCK else 0.0
+    own = ahead(new, N_BLOCK) if len(block) >= N_KEEPING_BLOCK else scratch
+    return value_at(table, old, at, h, new, Polytopes(last, own))
 
 
-@entry(PAIR, ROWS, BOOL, WRITE, READ, WRITE, ROWS, WRITE, work="runs")
-def run_predicted(pair, motions, has_twist, steps, options, state, outs, events):
-    """Many frames in one compiled loop; row k of `outs` answers for row k of `motions`.
+@entry(INT, READ, ROWS, ROWS, WRITE, WRITE, REAL, WRITE, work="frames", terse=True)
+def value(table, before, pose_a, pose_b, twist_a, twist_b, h, block):
+    """One frame from the state in one block to another block.
 
-    motions (n, N_MOTION), steps (n,), outs (n, N_OUT). Behind the state there may be N_POLYTOPE
-    numbers more, for a polytope that is kept from run to run. Returns (-1, FINE), or the frame that
-    was refused and why; the frames before it are answered.
+    Poses (4, 4) and twists, (6,) or [NOT_GIVEN], are read as they are given. A block of
+    N_KEEPING_BLOCK numbers may keep a polytope. Returns FINE; else what is refused, or
+    MORE_EVENTS, and the block holds no answer.
     """
-    return run_by(frame_predicted, pair, (motions, has_twist), steps, options, state, outs, events)
+    return value_of(table, before, read_given((pose_a, pose_b, twist_a, twist_b)), h, block)
 
 
-@entry(PAIR, ROWS, BOOL, WRITE, READ, WRITE, ROWS, WRITE, work="paper runs")
-def run_paper(pair, motions, has_twist, steps, options, state, outs, events):
-    """`run_predicted`, of the paper's law."""
-    return run_by(frame_paper, pair, (motions, has_twist), steps, options, state, outs, events)
+@entry(INT, READ, ROWS, ROWS, REAL, WRITE, work="frames", terse=True)
+def value_by_poses(table, before, pose_a, pose_b, h, block):
+    """`value` without twists: each array that Python hands over costs a tenth of a microsecond."""
+    return value_of(table, before, read_poses(pose_a, pose_b), h, block)
 
 
-def run(pair, motions, has_twist, steps, options, state, outs, events):
-    """Many frames of the law that the options name: `run_predicted` or `run_paper`."""
-    many = run_paper if names_paper_law(options) else run_predicted
-    return many(pair, motions, has_twist, steps, options, state, outs, events)
+@entry(INT, BLOCKS, BLOCKS, ROWS, ROWS, WRITE, INT, RECORDS, work="runs")
+def values(table, poses_a, poses_b, twists_a, twists_b, steps, first, records):
+    """`value` of many frames: frame k goes from block k to block k + 1.
+
+    poses (n, 4, 4), twists (n, 6) or (n, 1) of NOT_GIVEN, steps (n,). `records` are blocks
+    (n + 1, N_BLOCK) and two polytopes (2, N_POLYTOPE): frame k reads that of k % 2 and keeps the
+    other. Begins at frame `first`. Returns the first frame that is not FINE and why; n, FINE at the
+    end.
+    """
+    blocks, polytopes = records
+    n, of_a, of_b = len(steps), twists_a.shape[1], twists_b.shape[1]
+    at_a, at_b = pointer(poses_a, 0), pointer(poses_b, 0)
+    way_a, way_b = pointer(twists_a, 0), pointer(twists_b, 0)
+    block, h = pointer(blocks, 0), pointer(steps, 0)
+    square = poses_a.shape == (n, 4, 4) and poses_b.shape == (n, 4, 4)
+    rows = len(twists_a) == n and len(twists_b) == n and blocks.shape == (n + 1, N_BLOCK)
+    kept = pointer(polytopes, 0)
+    if not (square and rows and polytopes.shape == (2, N_POLYTOPE)):
+        return first, BAD_ARRAYS
+    for k in range(first, n):
+        twist_a, twist_b = ahead(way_a, of_a * k), ahead(way_b, of_b * k)
+        has_a, has_b = is_given(twist_a, of_a), is_given(twist_b, of_b)
+        if not fit(of_a, has_a, of_b, has_b):
+            return k, BAD_ARRAYS
+        one = Given(ahead(at_a, 16 * k), ahead(at_b, 16 * k), twist_a, twist_b, has_a, has_b)
+        old, new = ahead(block, N_BLOCK * k), ahead(block, N_BLOCK * (k + 1))
+        new[BLOCK_POLYTOPE] = 0.0
+        turns = Polytopes(
+            ahead(kept, N_POLYTOPE * (k % 2)), ahead(kept, N_POLYTOPE * ((k + 1) % 2))
+        )
+        done = value_at(table, old, one, h[k], new, turns)
+        if done != FINE:
+            return k, done
+    return n, FINE
 
 
-def start_anywhere(pair, motion, has_twist, options, state, given, out):
-    """`start`, by way of `start_apart` while nothing has needed what is compiled for contact."""
-    everything = (pair, motion, has_twist, options, state, given, out)
-    if getattr(start, "ready", True):
-        return start(*everything)
-    answered = start_apart(*everything)
-    return start(*everything) if answered == NOT_KNOWN_APART else answered
+@entry(INT, WRITE, work="frames")
+def step(table, block):
+    """One frame in a long block, in place, its polytope with it.
+
+    Returns FINE; or, with nothing changed, what of the poses and twists is refused.
+    """
+    return answered_in_place(table, pointer(block, 0), len(block))
+
+
+@kernel
+def moved_in_place(table, given, h, block):
+    """`moved` of what was read of the arrays given."""
+    sound, at = given
+    if len(block) < N_BLOCK:
+        return np.nan
+    done = BAD_ARRAYS
+    if sound and copied(at, h, pointer(block, 0)):
+        done = answered_in_place(table, pointer(block, 0), len(block))
+    block[BLOCK_DONE] = done
+    return block[DISTANCE] if done == FINE else np.nan
+
+
+@entry(INT, ROWS, ROWS, WRITE, WRITE, REAL, WRITE, work="frames", terse=True)
+def moved(table, pose_a, pose_b, twist_a, twist_b, h, block):
+    """`step` with poses and twists that are copied into the block first.
+
+    Returns the distance where the frame is FINE; else nan, and the block's BLOCK_DONE says why.
+    Where poses or twists are refused the block's own may have been written over, nothing else.
+    """
+    return moved_in_place(table, read_given((pose_a, pose_b, twist_a, twist_b)), h, block)
+
+
+@entry(INT, ROWS, ROWS, REAL, WRITE, work="frames", terse=True)
+def moved_by_poses(table, pose_a, pose_b, h, block):
+    """`moved` without twists."""
+    return moved_in_place(table, read_poses(pose_a, pose_b), h, block)

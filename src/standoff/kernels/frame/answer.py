@@ -11,6 +11,7 @@ from standoff.kernels.body.features import pair_slack, pair_span
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.certified import (
     CERTIFIED,
+    OVERLAP,
     PENETRATING,
     TOUCHING_OR_OVERLAPPING,
     UNCERTIFIED,
@@ -29,6 +30,7 @@ from standoff.kernels.state.arrays import (
     OUT_MODE,
     OUT_Q,
     OUT_RATE,
+    OVERLAPPING,
     POINT_A,
     POINT_B,
     RESIDUAL,
@@ -64,7 +66,7 @@ def judge(pair, p, found, lenient, tolerance, cut):
         return CONVERGED
     if lenient or tolerance == inf:
         return TRACKING
-    return NOT_CERTIFIED
+    return OVERLAPPING if outcome == OVERLAP else NOT_CERTIFIED
 
 
 @kernel
@@ -135,4 +137,8 @@ def write_answer(pair, inputs, motion, shown, n_rate, status, out):
     out[OUT_MODE + 2], out[OUT_MODE + 3] = place.feature_b, place.chart_b
     out[OUT_Q], out[OUT_Q + 1] = place.u, place.v
     out[OUT_Q + 2], out[OUT_Q + 3] = place.r, place.s
+    if status == OVERLAPPING:
+        # what points of theirs are apart by, and no bound, tells nothing of bodies that overlap
+        out[DISTANCE] = min(out[DISTANCE], 0.0)
+        out[UPPER_BOUND] = min(out[UPPER_BOUND], 0.0)
     out[STATUS] = status

@@ -4,6 +4,7 @@ from math import inf
 
 from standoff.kernels.algebra.vectors import dot, sub
 from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.depth.overlap import with_overlap
 from standoff.kernels.depth.penetration import contact_scale
 from standoff.kernels.frame.contact import NEAR, WARM, contact_query
 from standoff.kernels.frame.prediction import apply_step, predict
@@ -14,6 +15,7 @@ from standoff.kernels.frame.restart import (
     restart,
     start_due,
 )
+from standoff.kernels.frame.step import step_frame
 from standoff.kernels.pair.certified import (
     CERTIFIED,
     UNCERTIFIED,
@@ -101,7 +103,7 @@ def contact(pair, pose, before, depth, tolerance, work):
 def track_predicted(pair, motion, before, options, h, work):
     """This frame from the last one: outside contact one step of the law; in contact, where the
     witness points pass each other, the local minimum of the depth; where neither certifies, a
-    global start.
+    global start, and where that certifies nothing, a proof of overlap.
     """
     tolerance, pose = options.tolerance, motion.pose
     due, first = start_due(before, work)
@@ -117,4 +119,12 @@ def track_predicted(pair, motion, before, options, h, work):
             then, tracked = contact(pair, pose, before, options.depth, tolerance, work)
             if then == ANSWERED:
                 return tracked
-    return restart(pair, pose, first, tolerance, before.integrated, work)
+    shown, kept = restart(pair, pose, first, tolerance, before.integrated, work)
+    found = with_overlap(pair, pose, shown.found, work)
+    return Tracked(Shown(found, shown.jets, shown.inside, shown.fresh, shown.rates), kept)
+
+
+@kernel
+def predicted_frame(pair, inputs, h, options, state, out, work):
+    """A frame of the predictor-corrector."""
+    step_frame(track_predicted, pair, inputs, (h, h), options, state, out, work)

@@ -5,8 +5,15 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.rigid import mean_motion, relative_pose, relative_twist
-from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.body.layout import DIMENSION
+from standoff.kernels.compiler.decorators import ahead, kernel
+from standoff.kernels.state.arrays import POSE_A, POSE_B, TWIST_A, TWIST_B, refusal
 from standoff.kernels.values import Motion
+
+# What the parameters change by over a frame, where the bodies' own method has integrated them: all
+# of it, and what the first stage alone would give.
+CHANGE, FIRST_CHANGE = 0, 4
+N_CHANGE = 8
 
 
 class Inputs(NamedTuple):
@@ -16,6 +23,7 @@ class Inputs(NamedTuple):
     pose_b: Any
     twist_a: Any  # 6 numbers
     twist_b: Any
+    change: Any  # of a law that is integrated with the bodies: N_CHANGE numbers; else unused
     has_twist: bool
 
 
@@ -34,3 +42,31 @@ def moving(inputs, before, h):
     if inputs.has_twist:
         return twisted(inputs, pose)
     return mean_motion(before.motion.pose, pose, h)
+
+
+@kernel
+def inputs_at(motion, has_twist):
+    """Where a frame's poses and twists stand, from the first of them on."""
+    return Inputs(
+        ahead(motion, POSE_A),
+        ahead(motion, POSE_B),
+        ahead(motion, TWIST_A),
+        ahead(motion, TWIST_B),
+        motion,  # of no meaning: nothing was integrated
+        has_twist,
+    )
+
+
+@kernel
+def refused(pair, inputs):
+    """FINE, or what of a frame's poses and twists is refused."""
+    planar = pair.ints_a[DIMENSION] == 2 or pair.ints_b[DIMENSION] == 2
+    return refusal(planar, inputs.pose_a, inputs.pose_b, inputs.twist_a, inputs.twist_b)
+
+
+@kernel
+def with_change(inputs, change):
+    """The same, with what the bodies' own method has changed the parameters by."""
+    return Inputs(
+        inputs.pose_a, inputs.pose_b, inputs.twist_a, inputs.twist_b, change, inputs.has_twist
+    )

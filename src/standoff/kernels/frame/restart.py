@@ -3,6 +3,7 @@
 from standoff.kernels.algebra.vectors import dot, sub
 from standoff.kernels.body.features import pair_span
 from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.depth.overlap import with_overlap
 from standoff.kernels.depth.penetration import (
     NOTHING,
     begin_along,
@@ -77,8 +78,9 @@ def anywhere_from(pair, pose, first, tolerance, work):
 
 @kernel
 def anywhere(pair, pose, tolerance, work):
-    """`anywhere_from` the first start."""
-    return anywhere_from(pair, pose, FIRST, tolerance, work)
+    """`anywhere_from` the first start, with a proof of overlap where it finds no depth."""
+    found, inside = anywhere_from(pair, pose, FIRST, tolerance, work)
+    return with_overlap(pair, pose, found, work), inside
 
 
 @kernel

@@ -52,13 +52,6 @@ from standoff.kernels.tolerances import (
 )
 from standoff.kernels.values import NO_RATES, ORIGIN, STILL, Found, Vector, moved, of_origin
 
-# The record of addresses that a smooth frame is called with.
-CALL_INTS_A, CALL_REALS_A, CALL_INTS_B, CALL_REALS_B = range(4)
-CALL_POSE_A, CALL_POSE_B, CALL_TWIST_A, CALL_TWIST_B, CALL_HAS_TWIST = range(4, 9)
-CALL_OPTIONS, CALL_STATE, CALL_OUT = range(9, 12)
-N_CALL = 12
-
-
 NO_JET = (ORIGIN, ORIGIN, ORIGIN, ORIGIN, ORIGIN, ORIGIN)
 
 

@@ -18,6 +18,7 @@ UNCERTIFIED = 1
 TOUCHING_OR_OVERLAPPING = 2
 PENETRATING = 3  # solved in contact: a signed distance that is not certainly positive
 NOT_APART = 4  # not solved: only the query in contact can tell
+OVERLAP = 5  # uncertified, but the bodies are proven to overlap
 
 
 class Weighed(NamedTuple):

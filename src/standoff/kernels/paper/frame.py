@@ -6,21 +6,26 @@ from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.depth.penetration import contact_scale
 from standoff.kernels.depth.search import overlap_shown
 from standoff.kernels.frame.apart import contact
+from standoff.kernels.frame.inputs import CHANGE, FIRST_CHANGE
 from standoff.kernels.frame.restart import cut_off, restart, start_due
+from standoff.kernels.frame.step import step_frame
 from standoff.kernels.pair.certified import CERTIFIED, PENETRATING, UNCERTIFIED, weigh
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import exhausted
-from standoff.kernels.paper.law import begun, carry_and_switch, integrate_and_switch
+from standoff.kernels.paper.integrators import Change
+from standoff.kernels.paper.law import carry_and_switch, integrate_and_switch
 from standoff.kernels.state.arrays import SWITCH_NONE
+from standoff.kernels.state.state import read_four
 from standoff.kernels.state.tracked import (
     ANSWERED,
     TRY_CONTACT,
     TRY_RESTART,
     Tracked,
+    begun,
     without_rates,
 )
 from standoff.kernels.tolerances import SHIFTED_GAP
-from standoff.kernels.values import ORIGIN, Found
+from standoff.kernels.values import NO_RATES, ORIGIN, Found
 
 
 @kernel
@@ -124,3 +129,32 @@ def track_by(advance, pair, motion, before, options, step, work):
                 return anew(pair, pose, touching, kept.gain)
     tracked = restart(pair, pose, first, options.tolerance, kept, work)
     return anew(pair, pose, tracked, kept.gain)
+
+
+@kernel
+def carried_change(inputs, options):
+    """What the bodies' own method has integrated."""
+    change, first = read_four(inputs.change, CHANGE), read_four(inputs.change, FIRST_CHANGE)
+    return Change(change, NO_RATES, NO_RATES, options.gain, first)
+
+
+@kernel
+def integrated_frame(pair, inputs, h, options, state, out, work):
+    """A frame of the paper's law, which integrates its parameters by itself."""
+    step_frame(track_paper, pair, inputs, (h, h), options, state, out, work)
+
+
+@kernel
+def carried_frame(pair, inputs, h, options, state, out, work):
+    """A frame of the paper's law, whose parameters were integrated with the bodies' motion."""
+    steps = h, carried_change(inputs, options)
+    step_frame(track_carried, pair, inputs, steps, options, state, out, work)
+
+
+@kernel
+def paper_frame(pair, inputs, h, options, state, out, work):
+    """Either, as the options name it."""
+    if options.carried:
+        carried_frame(pair, inputs, h, options, state, out, work)
+    else:
+        integrated_frame(pair, inputs, h, options, state, out, work)

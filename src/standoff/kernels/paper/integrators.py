@@ -12,9 +12,10 @@ from standoff.kernels.algebra.rigid import within_frame
 from standoff.kernels.algebra.vectors import active, axpy, cross, dot, norm, scale, sub
 from standoff.kernels.body.features import pair_span
 from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.frame.feedforward import solve_plain
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import EVALUATIONS, REGULARISED, SATURATIONS
-from standoff.kernels.pair.newton import law, ldl, pair_metric, plain_law, plainly_definite
+from standoff.kernels.pair.newton import law, ldl, pair_metric, plainly_definite
 from standoff.kernels.pair.system import (
     covariant_hessian,
     feedforward,
@@ -72,14 +73,6 @@ def times_hessian(H, w):
 
 
 @kernel
-def solve_plain(jet_a, jet_b, g, H, fed, work):
-    """(p, w_ff) by H as it is."""
-    step, w_ff, solved = plain_law(jet_a, jet_b, g, H, fed)
-    work.counts[REGULARISED] += 1 - solved
-    return step, w_ff
-
-
-@kernel
 def part_unbent(jet, du, dv):
     """The part, at most 1, of a step of one body's parameters whose second-order term along the
     surface is at most MOST_BENT of its first-order one: that term belongs to the parametrisation.
@@ -125,23 +118,6 @@ def solved(jet_a, jet_b, g, fed, solve, span, work):
     step, w_ff, regularised, _, _ = law(metrics, jet_a, jet_b, g, H, fed, span)
     work.counts[REGULARISED] += regularised
     return step, w_ff, covariant
-
-
-@kernel
-def feedforward_now(pair, motion, place, solve, work):
-    """w_ff at witness points, where no evaluation of the frame belongs to them: by H, of which the
-    covariant part differs only away from them."""
-    jet_a, jet_b = pair_jets(pair, motion.pose, place)
-    H = hessian(jet_a, jet_b)
-    fed = gradient(feedforward(jet_a, jet_b, STILL, of_origin(motion)))
-    work.counts[EVALUATIONS] += 1
-    if solve == SOLVE_PLAIN:
-        return solve_plain(jet_a, jet_b, NO_RATES, H, fed, work)[1]
-    span = pair_span(pair, motion.pose.p, norm(sub(jet_a[0], jet_b[0])))
-    metrics = pair_metric(jet_a, jet_b)
-    _, w_ff, regularised, _, _ = law(metrics, jet_a, jet_b, NO_RATES, H, fed, span)
-    work.counts[REGULARISED] += regularised
-    return w_ff
 
 
 @kernel

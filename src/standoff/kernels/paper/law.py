@@ -38,6 +38,7 @@ from standoff.kernels.state.arrays import (
 )
 from standoff.kernels.state.options import feedback_number
 from standoff.kernels.state.state import Integrated, moved_to
+from standoff.kernels.state.tracked import begun, errors_at
 from standoff.kernels.tolerances import (
     EPS,
     FOOT_REACH,
@@ -178,19 +179,6 @@ def remember(pair, pose, options, before, place, change, moved, work):
     if moved:
         errors = errors_at(pair, pose, place)
     return Integrated(errors, integral, change.gain)
-
-
-@kernel
-def errors_at(pair, pose, place):
-    """The projection errors of Eqs. (1)-(4)."""
-    jet_a, jet_b = pair_jets(pair, pose, place)
-    return projection_errors(jet_a, jet_b)
-
-
-@kernel
-def begun(pair, pose, place, gain):
-    """What the law integrates, at its beginning."""
-    return Integrated(errors_at(pair, pose, place), NO_RATES, gain)
 
 
 @kernel

@@ -11,7 +11,7 @@ from standoff.kernels.algebra.vectors import cross, dot
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNTS
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
-from standoff.kernels.tolerances import FARTHEST, ROTATION
+from standoff.kernels.tolerances import FARTHEST, PLANE_TILT, ROTATION
 
 # State.
 # What is given of a frame: both poses, both twists.
@@ -41,7 +41,7 @@ CUT = 54  # how many frames in a row ran out of evaluations, this one included
 N_STATE = 55
 
 # Options.
-LAW_PC, LAW_PAPER = 0, 1
+LAW_PC, LAW_PAPER, LAW_CARRIED = range(3)  # the last: integrated with the bodies
 PREDICT_NONE, PREDICT_SECANT, PREDICT_FEEDFORWARD, PREDICT_FEEDFORWARD_2 = range(4)
 O_LAW, O_PREDICTOR, O_INTEGRATOR, O_GAIN, O_TOLERANCE = range(5)
 # The rest is for the paper's law: its feedback and the variants that the paper prints.
@@ -53,7 +53,8 @@ O_RESTARTS = 13  # 0: the law alone, whatever the certificate says
 O_FAR_SIDE = 14  # of the Voronoi tests: what a face does with a point behind it
 O_DATA = 15  # what the feedback needs
 O_SMOOTH = O_DATA + 16  # address of the frame that is tried first (entries.smooth); 0: none
-N_OPTIONS = O_SMOOTH + 1
+O_FRAME = O_SMOOTH + 1  # address of the law's own frame (entries.laws); 0: none
+N_OPTIONS = O_FRAME + 1
 FEEDBACK_LINEAR, FEEDBACK_MATRIX, FEEDBACK_PI, FEEDBACK_POWER, FEEDBACK_MOTION = range(5)
 EVALUATED, INTEGRATED = 0, 1
 SATURATE_HOLD, SATURATE_ZERO = 0, 1
@@ -102,8 +103,8 @@ NOT_KNOWN_APART = 4
 NOT_GIVEN = -1.5e308
 # Of a step whose arrays are not as they must be, or whose switches the block does not hold.
 BAD_ARRAYS, MORE_EVENTS = 5, 6
-# Of a step that is done: its answer is uncertified, and a proof of overlap may decide it.
-UNDECIDED = 7
+# A pose that takes a planar body out of z = 0.
+OUT_OF_PLANE = 7
 
 
 @kernel
@@ -122,12 +123,21 @@ def is_pose(T):
 
 
 @kernel
-def refusal(Ta, Tb, xi_a, xi_b):
-    """FINE, or which of the poses and twists is not one."""
+def in_plane(T):
+    """Does a pose keep a planar body in z = 0?"""
+    tilt = max(max(abs(T[2]), abs(T[5])), max(abs(T[6]), abs(T[7])))
+    return tilt <= PLANE_TILT and T[11] == 0.0 and T[8] >= 0.0
+
+
+@kernel
+def refusal(planar, Ta, Tb, xi_a, xi_b):
+    """FINE, or what of the poses and twists is refused."""
     if not is_pose(Ta):
         return BAD_POSE_A
     if not is_pose(Tb):
         return BAD_POSE_B
+    if planar and not (in_plane(Ta) and in_plane(Tb)):
+        return OUT_OF_PLANE
     total = 0.0
     for k in range(6):
         total += abs(xi_a[k]) + abs(xi_b[k])

@@ -6,12 +6,14 @@ from typing import Any, NamedTuple
 
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.state.arrays import (
-    LAW_PAPER,
+    LAW_CARRIED,
+    LAW_PC,
     O_DATA,
     O_DEADLINE,
     O_DEPTH,
     O_FAR_SIDE,
     O_FEEDBACK,
+    O_FRAME,
     O_GAIN,
     O_INTEGRATOR,
     O_LAW,
@@ -28,9 +30,10 @@ from standoff.kernels.state.arrays import (
 
 
 class Options(NamedTuple):
-    """One law's options; the names of choices stand in ``frame``."""
+    """One law's options; the names of choices stand in ``arrays``."""
 
     paper: bool  # the paper's law, else the predictor-corrector
+    carried: bool  # the paper's, whose parameters the bodies' own method integrates
     predictor: int
     integrator: int
     gain: float  # K, 1/s
@@ -46,13 +49,15 @@ class Options(NamedTuple):
     depth: int
     deadline: int  # most evaluations a frame
     smooth: int  # address of the frame that is tried first, 0 for none
+    frame: int  # address of the law's frame; 0 for none, which is enough for a start
     numbers: Any  # pointer to all of them, see `feedback_number`
 
 
 @kernel
 def read_options(numbers):
     return Options(
-        numbers[O_LAW] == LAW_PAPER,
+        numbers[O_LAW] != LAW_PC,
+        numbers[O_LAW] == LAW_CARRIED,
         int(numbers[O_PREDICTOR]),
         int(numbers[O_INTEGRATOR]),
         numbers[O_GAIN],
@@ -68,13 +73,9 @@ def read_options(numbers):
         int(numbers[O_DEPTH]),
         int(numbers[O_DEADLINE]),
         int(numbers[O_SMOOTH]),
+        int(numbers[O_FRAME]),
         numbers,
     )
-
-
-def names_paper_law(numbers):
-    """Do these options name the paper's law?"""
-    return numbers[O_LAW] == LAW_PAPER
 
 
 @kernel

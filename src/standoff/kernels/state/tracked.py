@@ -8,6 +8,7 @@ import numpy as np
 
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.descent import pair_jets
+from standoff.kernels.pair.system import projection_errors
 from standoff.kernels.state.state import Four, Integrated
 from standoff.kernels.values import NO_RATES, Found
 
@@ -37,3 +38,16 @@ def without_rates(pair, pose, found, inside, integrated):
     """What a frame makes of witness points found without the law."""
     jets = pair_jets(pair, pose, found.place)
     return Tracked(Shown(found, jets, inside, False, NO_RATES), integrated)
+
+
+@kernel
+def errors_at(pair, pose, place):
+    """The projection errors of Eqs. (1)-(4)."""
+    jet_a, jet_b = pair_jets(pair, pose, place)
+    return projection_errors(jet_a, jet_b)
+
+
+@kernel
+def begun(pair, pose, place, gain):
+    """What the paper's law integrates, at its beginning."""
+    return Integrated(errors_at(pair, pose, place), NO_RATES, gain)

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.bodies.support_sets import support_set
 from standoff.bodies.tolerances import HEIGHT_ROUNDINGS, LEVEL
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.flat_sets import FlatSet, shared
 from standoff.kernels.body import layout as L
 from standoff.kernels.tolerances import TOUCHING_CORES
 from standoff.motion import Pose, PoseLike
 from standoff.read_only import KeepsReadOnly
-from standoff.real_numbers import shown
 from standoff.tracking.contact.equal_depths import equal_normals
 from standoff.tracking.contact.normal_sets import normal_dimension
 from standoff.tracking.rows import Answer

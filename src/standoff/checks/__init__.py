@@ -1,0 +1,1 @@
+"""What a user gives, checked before anything is computed with it."""

@@ -1,0 +1,75 @@
+"""The law by which each pair of a system is tracked, resolved and packed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.checks.real_numbers import shown
+from standoff.errors import StandoffError
+from standoff.kernels.entries import laws as frames
+from standoff.simulation.system import System
+from standoff.tracking.law_options import Law
+from standoff.tracking.laws import PaperLaw, PredictorCorrector, checked_law
+from standoff.tracking.options import carried, pack_options
+from standoff.tracking.reached import reach
+from standoff.tracking.specialised import address_of
+
+Array = NDArray[np.float64]
+Laws = Law | Mapping[tuple[int, int], Law] | None
+"""Of a system's pairs: one for all, or one for each of some pairs of body numbers."""
+
+BESIDE = PredictorCorrector(depth="local")
+"""Of pairs that are given none: contact forces follow the depth that the bodies have come to."""
+
+
+def laws_beside(system: System, given: Laws) -> tuple[Law, ...]:
+    """The law of each pair whose tracker stands beside the operator.
+
+    Raises
+    ------
+    StandoffTypeError
+        Not a law.
+    StandoffError
+        A law for a pair that the system does not have.
+    """
+    if not isinstance(given, Mapping):
+        return (BESIDE if given is None else checked_law(given),) * len(system.pairs)
+    known = {tuple(pair): number for number, pair in enumerate(system.pairs)}
+    laws: list[Law] = [BESIDE] * len(system.pairs)
+    for pair, law in given.items():
+        number = known.get(tuple(pair), known.get(tuple(pair)[::-1]))
+        if number is None:
+            raise StandoffError(
+                f"law has an entry for {shown(pair)}, which is no pair of the system: its pairs "
+                f"are {', '.join(map(str, known))}.",
+                "law",
+                pair,
+            )
+        laws[number] = checked_law(law)
+    return tuple(laws)
+
+
+def law_inside(method: str, gain: float | None) -> PaperLaw:
+    """The paper's law as part of the operator: integrated by the operator's own method."""
+    integrator = "euler" if method == "semi-implicit" else method
+    return PaperLaw(integrator=integrator, gain=gain, depth="local")
+
+
+def packed_laws(system: System, laws: tuple[Law, ...], dt: float, inside: bool) -> Array:
+    """All pairs' options, one behind the other, with the addresses of their frames."""
+    rows = [np.zeros(0)]
+    for (a, b), law in zip(system.pairs, laws, strict=True):
+        if inside:
+            rows.append(carried(pack_options(law.resolved(dt)), address_of(frames.carried)))
+        else:
+            bodies = system.bodies[a].body, system.bodies[b].body
+            rows.append(reach(*bodies, law, dt, None).options)
+    return np.concatenate(rows)
+
+
+def keeps_polytopes(laws: tuple[Law, ...]) -> bool:
+    """Does a pair prove the least depth, so that its proof is kept from tick to tick?"""
+    return any(law.depth == "global" for law in laws)

@@ -1,0 +1,91 @@
+"""A pair of bodies and a law as the compiled frames reach them: by address."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.kernels.entries import laws
+from standoff.tracking.address_table import AddressTable, packed
+from standoff.tracking.inputs import check_pair
+from standoff.tracking.law_options import Law
+from standoff.tracking.laws import DEFAULT_LAW, PaperLaw
+from standoff.tracking.options import resolved_options, with_frames
+from standoff.tracking.specialised import address_of, smooth_frame_of
+
+Array = NDArray[np.float64]
+
+ANY_TIME = 1.0
+"""A frame time [s]: the default law does not depend on it."""
+
+PAIRS = 64
+"""Pairs that are kept at hand, with their bodies: those that were asked for last."""
+
+
+class Reached:
+    """A pair and its law; its frames are compiled. A copy, or a pickle's, finds its own addresses.
+
+    Attributes
+    ----------
+    a, b : Body
+    law : Law
+        With what it leaves open settled for the frame time.
+    options : array
+        As the kernels read it, with the addresses of its frames.
+    table : AddressTable
+        Where these and the bodies lie.
+    address : int
+        Of the table.
+    """
+
+    __slots__ = ("_given", "a", "address", "b", "law", "options", "table")
+
+    def __init__(self, a: Body, b: Body, law: Law, dt: float, specialise: bool | None) -> None:
+        self._given = a, b, law, dt, specialise
+        self.a, self.b = a, b
+        self.law, options = resolved_options(law, dt)
+        if isinstance(law, PaperLaw):
+            self.options = with_frames(options, own=address_of(laws.paper))
+        else:
+            smooth = address_of(smooth_frame_of(a, b, specialise))
+            self.options = with_frames(options, smooth, address_of(laws.predicted))
+        self.table = table_of(a, b, self.options)
+        self.address = self.table.address
+
+    def __reduce__(self) -> Any:
+        # in another process the bodies' formulas, and all arrays, have other addresses
+        return reach, self._given
+
+
+def reach(a: Body, b: Body, law: Law, dt: float, specialise: bool | None) -> Reached:
+    """A pair with its law for a frame time, s."""
+    if law is DEFAULT_LAW:
+        return _usual(a, b, dt, specialise)
+    return Reached(a, b, law, dt, specialise)
+
+
+@lru_cache(maxsize=PAIRS)
+def _usual(a: Body, b: Body, dt: float, specialise: bool | None) -> Reached:
+    return Reached(a, b, DEFAULT_LAW, dt, specialise)
+
+
+def table_of(a: Body, b: Body, options: Array) -> AddressTable:
+    """Where two bodies and options lie."""
+    return AddressTable((*packed(a, b), options))
+
+
+@lru_cache(maxsize=PAIRS)
+def cold_table(a: Body, b: Body) -> AddressTable:
+    """Where two bodies lie, with the default law's options: for starts, which call no frame.
+
+    Raises
+    ------
+    TypeError, ValueError
+        They are no pair.
+    """
+    check_pair(a, b)
+    return table_of(a, b, resolved_options(DEFAULT_LAW, ANY_TIME)[1])

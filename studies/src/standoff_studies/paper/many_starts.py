@@ -1,0 +1,156 @@
+"""Many wrong starts of one law along one motion, in compiled loops: which of them arrive."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies import Body
+from standoff.kernels.state import arrays as K
+from standoff.motion import Path, Pose
+from standoff.tracking import Proximity, Tracker, TrackerState, pair_system
+from standoff.tracking.calls import run
+from standoff.tracking.inputs import flat_pose, flat_twist
+from standoff.tracking.rows import poses_of, twists_of
+
+Array = NDArray[np.float64]
+
+AT_SIDE = 1e-9
+"""Parameters that are nearer to 0 or 1 are at a side: the zeroing holds them there exactly."""
+
+LEFT = 1e-3
+"""Projection errors above this have not decayed [length²]: those that do are far below it."""
+
+INDEFINITE = (
+    "on large parts of the right, facing faces M as printed is indefinite: away from the minimum "
+    "ΔR·f_uu has a part along the tangents, which belongs to the parametrisation and not to the "
+    "body. The zeroing then holds the witness point at a side or in a corner of the patch"
+)
+"""Why starts on the right faces do not arrive."""
+
+
+class Motion(NamedTuple):
+    """The poses and twists of both bodies at some times, as the kernels read them.
+
+    Attributes
+    ----------
+    times : ndarray, shape (n,)
+        s; the first is that of the start.
+    rows : ndarray, shape (n - 1, ...)
+        Of the times after the first.
+    """
+
+    times: Array
+    rows: Array
+
+
+class Arrivals(NamedTuple):
+    """How many of the tried starts have arrived.
+
+    Attributes
+    ----------
+    arrived, tried : int
+    by : str
+        The law that they were tried with.
+    """
+
+    arrived: int
+    tried: int
+    by: str
+
+
+class Ends(NamedTuple):
+    """Where the tried starts have ended.
+
+    Attributes
+    ----------
+    arrived, tried : int
+    by : str
+        The law that they were tried with.
+    placed, pinned : int
+        Of those that have not arrived: how many are on the features of the closest points, and how
+        many are held at a side of a patch with M indefinite and projection errors left.
+    """
+
+    arrived: int
+    tried: int
+    by: str
+    placed: int
+    pinned: int
+
+    @property
+    def lost(self) -> int:
+        """How many have not arrived."""
+        return self.tried - self.arrived
+
+
+def is_pinned(bodies: tuple[Body, Body], poses: tuple[Pose, Pose], answer: Proximity) -> bool:
+    """Is a start held at a side of a patch, with M indefinite and projection errors left?
+
+    For bodies of patches with parameters in [0, 1].
+    """
+    places = (
+        (answer.feature_a, answer.parameters_a),
+        (answer.feature_b, answer.parameters_b),
+    )
+    parameters = np.array([*answer.parameters_a, *answer.parameters_b])
+    at_side = bool((np.minimum(parameters, 1.0 - parameters) < AT_SIDE).any())
+    system = pair_system(*bodies, *poses, *places)
+    indefinite = bool(np.linalg.eigvalsh(system.H).min(initial=np.inf) < 0.0)
+    return at_side and indefinite and bool(np.linalg.norm(system.Psi) > LEFT)
+
+
+def motion_along(path_a: Path, path_b: Path, times: Array) -> Motion:
+    """Return two paths' poses and twists at some times [s]."""
+    rows = np.empty((len(times) - 1, K.N_MOTION))
+    poses, twists = poses_of(rows), twists_of(rows)
+    for k, time in enumerate(times[1:].tolist()):
+        for body, path in enumerate((path_a, path_b)):
+            pose = path.pose(time)
+            poses[body][k], twists[body][k] = flat_pose(pose), flat_twist(path.twist(time), pose)
+    return Motion(times, rows)
+
+
+def distances(tracker: Tracker, state: TrackerState, motion: Motion) -> Array:
+    """Return the distance in every frame after a start, shape (n - 1,) [length].
+
+    Nothing but the law moves the witness points: a frame that it refuses is nan, with all after.
+
+    Parameters
+    ----------
+    tracker : Tracker
+        With a law without restarts.
+    state : TrackerState
+        Of the motion's first time.
+    motion : Motion
+    """
+    steps = np.diff(motion.times)
+    return run(tracker.table, motion.rows, True, steps, state.data.copy()).rows[:, K.DISTANCE]
+
+
+def last_answers(
+    tracker: Tracker, states: Iterable[TrackerState], paths: tuple[Path, Path], times: Array
+) -> Iterator[Proximity]:
+    """Yield the last frame's answer of each start, along two paths.
+
+    Parameters
+    ----------
+    tracker : Tracker
+    states : iterable of TrackerState
+        Of the first time.
+    paths : (Path, Path)
+    times : ndarray, shape (n,)
+        s
+    """
+    rows = motion_along(*paths, times).rows
+    poses, twists = poses_of(rows), twists_of(rows)
+    for state in states:
+        buffer = tracker.buffer(state)
+        for k in range(len(rows)):
+            buffer.pose_a[:], buffer.pose_b[:] = poses[0][k], poses[1][k]
+            buffer.twist_a[:], buffer.twist_b[:] = twists[0][k], twists[1][k]
+            tracker.step_into(buffer)
+        yield buffer.proximity()

@@ -1,0 +1,31 @@
+"""Kinds of modes of two planar bodies: their names, and how they are told apart in pictures."""
+
+from __future__ import annotations
+
+from matplotlib.artist import Artist
+
+from standoff.tracking import Feature
+from standoff_studies.paper.drawing import short_name
+from standoff_studies.paper.panels import key_fill
+
+KINDS = ("vertex–vertex", "vertex–curve", "curve–curve")
+"""What a mode may be, by its number of parameters: 0, 1 or 2."""
+
+FILLS = ("#E9A63A", "#FFFFFF", "#D3E8F6")
+"""Behind a mode of each kind: orange, white, pale blue; in grey print middle, white, light."""
+
+
+def kind_of(feature_a: Feature, feature_b: Feature) -> int:
+    """Return the number of a mode's kind: how many parameters it has."""
+    return (feature_a.kind, feature_b.kind).count("edge")
+
+
+def mode_name(feature_a: Feature, feature_b: Feature) -> str:
+    """Return what a mode is called: A's feature, then B's."""
+    return f"{short_name(feature_a)}–{short_name(feature_b)}"
+
+
+def show_kinds() -> list[Artist]:
+    """Return what tells in a key what the fills mean."""
+    pairs = zip(KINDS, FILLS, strict=True)
+    return [key_fill(kind, fill, edgecolor="black", linewidth=0.8) for kind, fill in pairs]
