@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from inspect import isabstract, isclass
 from typing import Any
 
 import numpy as np
@@ -51,6 +52,12 @@ def excess(bounds: PatchBounds, surface: Any, rectangle: np.ndarray) -> tuple[fl
     inside = bounds.least[0] <= few + ROUNDED * size and many - ROUNDED * size <= bounds.greatest[0]
     curvature = float(max(few - bounds.least[0], bounds.greatest[0] - many) / size)
     return box, cone, curvature if inside else -1.0
+
+
+def test_every_class_of_surface_is_here() -> None:
+    classes = {each for name in g.__all__ if isclass(each := getattr(g, name))}
+    every = {each for each in classes if issubclass(each, g.Surface) and not isabstract(each)}
+    assert {type(kind.make(np.random.default_rng(0))) for kind in KINDS.values()} == every
 
 
 @pytest.mark.parametrize("width", [1.0, 0.2, 1e-2, 1e-5])

@@ -295,5 +295,3 @@ class Surface(KeepsReadOnly, ABC):
         """Body points, (..., 3), in the canonical frame."""
         return (np.asarray(points) - self.shift) @ np.linalg.inv(self.linear).T
 
-
-__all__ = ["Surface", "checked_domain", "finite"]
