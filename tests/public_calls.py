@@ -31,12 +31,14 @@ MODULES: dict[str, ModuleType] = {
     "standoff.c_interface": c_interface,
 }
 NOT_CALLED = {
-    **dict.fromkeys(("Surface", "Curve", "Body"), "abstract, or made by its static methods"),
+    **dict.fromkeys(("Surface", "Curve"), "abstract, or made by static methods"),
+    **dict.fromkeys(("Body", "Boundary"), "made by static methods"),
     **dict.fromkeys(("Apex", "Edge", "Face"), "plain records, checked by `Body.from_brep`"),
     "view": "opens a port; tests/view tries it",
     **dict.fromkeys(("build_library", "save_pair"), "write files; tests/c_interface tries them"),
     "FrameBuffer": "made from a tracker and a state, which need compiled kernels and check nothing",
     "Answers": "made by trackers",
+    "PatchBounds": "made by surfaces",
     "Distances": "made by distances",
     "ServoReport": "made by servos",
     "TrackerState": "made by trackers, which check the states that they are given",

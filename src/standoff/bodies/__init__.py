@@ -1,4 +1,4 @@
-"""Bodies: closed sets of convex patches, checked and packed once; ready-made shapes."""
+"""Boundaries of solids, and bodies, whose boundary is convex: checked and packed once."""
 
 from typing import TYPE_CHECKING
 
@@ -6,7 +6,8 @@ from standoff.on_demand import on_demand
 
 if TYPE_CHECKING:
     from standoff.bodies.body import Body
-    from standoff.bodies.report import BodyReport, DihedralAngle, PatchCheck
+    from standoff.bodies.boundary import Boundary, EdgeKind
+    from standoff.bodies.report import BodyReport, BoundaryReport, DihedralAngle, PatchCheck
     from standoff.bodies.topology import Apex, Edge, Face
     from standoff.errors import BodyError
 else:
@@ -14,10 +15,28 @@ else:
         __name__,
         {
             "standoff.bodies.body": ("Body",),
-            "standoff.bodies.report": ("BodyReport", "DihedralAngle", "PatchCheck"),
+            "standoff.bodies.boundary": ("Boundary", "EdgeKind"),
+            "standoff.bodies.report": (
+                "BodyReport",
+                "BoundaryReport",
+                "DihedralAngle",
+                "PatchCheck",
+            ),
             "standoff.bodies.topology": ("Apex", "Edge", "Face"),
             "standoff.errors": ("BodyError",),
         },
     )
 
-__all__ = ["Apex", "Body", "BodyError", "BodyReport", "DihedralAngle", "Edge", "Face", "PatchCheck"]
+__all__ = [
+    "Apex",
+    "Body",
+    "BodyError",
+    "BodyReport",
+    "Boundary",
+    "BoundaryReport",
+    "DihedralAngle",
+    "Edge",
+    "EdgeKind",
+    "Face",
+    "PatchCheck",
+]

@@ -133,7 +133,8 @@ def close(joined: Joined) -> tuple[Assembled, Ints, Array, BoundaryReport]:
     size = float(np.linalg.norm(high - low))
     parts = _with_kinds(parts, size)
     roundoff = coordinate_roundoff(np.array([low, high]))
-    slack = _slack(parts, joined.residual, max(ROUNDOFF * size, roundoff))
+    shift = max(ROUNDOFF * size, roundoff)
+    slack = sum((x for x in (joined.residual, parts.moved) if x > shift), 0.0)
     ints, reals = pack(parts, [], (low, high), 0.0, slack)
     inner = inner_boxes(parts, ints, reals)
     ints, reals = pack(parts, [], (low, high), 0.0, slack, inner)
@@ -266,10 +267,3 @@ def _open(turns: EdgeTurns) -> bool:
     """May an edge be of another kind between its samples?"""
     least, greatest = turns.least - turns.doubt, turns.greatest + turns.doubt
     return (turns.least >= -SMOOTH_ANGLE > least) or (turns.greatest <= SMOOTH_ANGLE < greatest)
-
-
-def _slack(parts: Assembled, residual: float, roundoff: float) -> float:
-    """How far the boundary may lie from the one given, length: gaps, and knots left out."""
-    moved = [chart.surface.moved for chart in parts.charts]
-    moved += [edge.curve.moved for edge in parts.edges]
-    return sum(x for x in (residual, max(moved)) if x > roundoff)

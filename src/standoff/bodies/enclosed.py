@@ -18,6 +18,7 @@ from standoff.geometry.validation import Array
 if TYPE_CHECKING:
     from standoff.bodies.boundary import Boundary
 
+EPS = float(np.finfo(float).eps)
 # Gauss points of a span of a curve in a plane face.
 SPAN_POINTS = 16
 NOTHING = np.zeros((0, 3))
@@ -57,11 +58,11 @@ def enclosed_by(boundary: Boundary, shell: Sequence[int], tolerance: float) -> E
 
     def scale(values: Array) -> Array:
         sizes = np.full(COLUMNS, np.inf)
-        sizes[VOLUME] = max(abs(float(values[VOLUME])), np.finfo(float).eps)
+        sizes[VOLUME] = max(abs(float(values[VOLUME])), EPS)
         return sizes
 
     found = integrate(cells, scale, tolerance, MOST_NODES)
-    rounding = VOLUME_ROUNDINGS * np.finfo(float).eps * float(found.magnitude[VOLUME])
+    rounding = VOLUME_ROUNDINGS * EPS * float(found.magnitude[VOLUME])
     return Enclosed(
         float(found.values[VOLUME]) * reach**3,
         (float(found.remainder[VOLUME]) + rounding) * reach**3,
@@ -89,7 +90,7 @@ def enclosed_by_planes(parts: Assembled, shell: Sequence[int]) -> Enclosed:
             volume, size = volume + part, size + abs(part)
             area += float(np.linalg.norm(own))
     reach = float(np.linalg.norm(points - centre, axis=1).max())
-    rounding = VOLUME_ROUNDINGS * np.finfo(float).eps * (size + area * reach)
+    rounding = VOLUME_ROUNDINGS * EPS * (size + area * reach)
     return Enclosed(volume, rounding, area)
 
 

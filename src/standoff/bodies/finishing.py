@@ -80,7 +80,7 @@ def finish(
         allowed = found.defect + 2.0 * joined.residual + max(SAMPLED_DEFECT * size, roundoff)
         seen = check_convex(samples, size, allowed)
         found = replace(found, defect=max(found.defect, seen, 0.0))
-    slack = _slack(found, joined.residual, _moved(parts), max(ROUNDOFF * size, roundoff))
+    slack = _slack(found, joined.residual, parts.moved, max(ROUNDOFF * size, roundoff))
     inner = inner_boxes(parts, ints, reals)
     ints, reals = pack(parts, samples, box, radius, slack, inner)
     report = _report(parts, joined, turns, found, size + 2.0 * radius, share, slack, roundoff)
@@ -93,12 +93,6 @@ def _smooth(parts: Assembled, turns: list[EdgeTurns]) -> list[bool]:
     for e in turns:
         smooth[e.edge] = smooth[e.edge] and max(-e.least, e.greatest) <= SMOOTH_ANGLE
     return smooth
-
-
-def _moved(parts: Assembled) -> float:
-    """How far the boundary may lie from the one given, for knots that were left out."""
-    surfaces = [chart.surface.moved for chart in parts.charts]
-    return max([0.0, *surfaces, *(edge.curve.moved for edge in parts.edges)])
 
 
 def _slack(found: Convexity, residual: float, moved: float, roundoff: float) -> float:

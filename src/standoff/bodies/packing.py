@@ -85,6 +85,12 @@ class Assembled:
         self.sectors = self.sectors or [[] for _ in range(vertices)]
         self.cones = self.cones or [[] for _ in range(vertices)]
 
+    @property
+    def moved(self) -> float:
+        """How far the boundary may lie from the one given, for knots that were left out, length."""
+        surfaces = [chart.surface.moved for chart in self.charts]
+        return max([0.0, *surfaces, *(edge.curve.moved for edge in self.edges)])
+
 
 def without_charts(body: Assembled, dropped: Sequence[int]) -> Assembled:
     """The body without some charts; the sectors' chart numbers follow."""

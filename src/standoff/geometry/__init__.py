@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from standoff.geometry.nurbs import BezierPatch, NurbsSurface
     from standoff.geometry.nurbs_curves import NurbsCurve
     from standoff.geometry.nurbs_pcurves import NurbsPcurve
+    from standoff.geometry.patch_bounds import PatchBounds
     from standoff.geometry.pcurves import Pcurve
     from standoff.geometry.quadrics import Cone, Cylinder, Plane, Sphere
     from standoff.geometry.superellipsoids import SuperellipsoidPole, SuperellipsoidSide
@@ -30,6 +31,7 @@ else:
             "standoff.geometry.nurbs": ("BezierPatch", "NurbsSurface"),
             "standoff.geometry.nurbs_curves": ("NurbsCurve",),
             "standoff.geometry.nurbs_pcurves": ("NurbsPcurve",),
+            "standoff.geometry.patch_bounds": ("PatchBounds",),
             "standoff.geometry.pcurves": ("Pcurve",),
             "standoff.geometry.superellipsoids": ("SuperellipsoidPole", "SuperellipsoidSide"),
             "standoff.geometry.surface_curves": ("SurfaceCurve",),
@@ -54,6 +56,7 @@ __all__ = [
     "NurbsCurve",
     "NurbsPcurve",
     "NurbsSurface",
+    "PatchBounds",
     "Pcurve",
     "Plane",
     "RationalBezier",

@@ -294,4 +294,3 @@ class Surface(KeepsReadOnly, ABC):
     def canonical(self, points: Array) -> Array:
         """Body points, (..., 3), in the canonical frame."""
         return (np.asarray(points) - self.shift) @ np.linalg.inv(self.linear).T
-
