@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Body(Boundary):
     """A convex body in its own frame: a boundary that is proven convex. Make one with
     ``so.shapes``, ``Body.from_patches`` or ``Body.from_brep``.
