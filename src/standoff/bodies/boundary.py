@@ -17,6 +17,7 @@ from standoff.bodies.packing import Assembled, Ints, pack
 from standoff.bodies.report import BodyReport, BoundaryReport
 from standoff.bodies.topology import Edge, Face
 from standoff.checks.arrays import finite
+from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
@@ -164,10 +165,15 @@ class Boundary(KeepsReadOnly):
         Raises
         ------
         StandoffError
-            A wrong shape, a number that is not finite; a point of which rays do not tell it.
+            A wrong shape, a number that is not finite; a point of which rays do not tell it; a body
+            that is planar, not bounded, without faces, or rounded.
         """
         from standoff.bodies.crossings import Crossings
 
+        if not (self.face_parts and self.bounded and self.radius == 0.0):
+            raise StandoffError(
+                f"{self!r} is not a solid with faces of its own: ask for the distance of a point."
+            )
         given = finite(points, "points", (-1, 3))
         rays = Crossings(self)
         return np.array([rays.inside(point) for point in given], dtype=bool)
