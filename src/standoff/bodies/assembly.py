@@ -13,6 +13,7 @@ import numpy as np
 from standoff.bodies.charts import edge_points, make_charts, surface_normal
 from standoff.bodies.enclosed import all_flat, enclosed_by, enclosed_by_planes, outward_right
 from standoff.bodies.orientation import chart_at, orient
+from standoff.bodies.packed_parts import packed_parts
 from standoff.bodies.packing import Assembled, Chart, Sector
 from standoff.bodies.tolerances import (
     JOIN_TOLERANCE,
@@ -246,12 +247,10 @@ def assemble(
 def _volume(parts: Assembled) -> Callable[[Sequence[int]], float]:
     """Of a shell, as the charts face when it is asked."""
 
-    from standoff.bodies.boundary import boundary_of
-
     def volume(shell: Sequence[int]) -> float:
         if all_flat(parts, shell):
             return enclosed_by_planes(parts, shell).settled
-        return enclosed_by(boundary_of(parts), shell, SIGN_OF_VOLUME).settled
+        return enclosed_by(packed_parts(parts), shell, SIGN_OF_VOLUME).settled
 
     return volume
 

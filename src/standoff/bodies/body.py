@@ -265,7 +265,7 @@ class Body(Boundary):
         from standoff.bodies.drawing.files import checked_file, write_picture
 
         target = None if path is None else checked_file(path)
-        figure = draw_body(self, self.name, str(unit))
+        figure = draw_body(self, self.report, self.name, str(unit))
         if target is not None:
             write_picture(figure, target)
         return figure
@@ -290,8 +290,8 @@ def _body(name: str, radius: float, packed: Packed) -> Body:
         parts.dimension,
         packed.ints,
         packed.reals,
-        report,
         report.size,
+        report,
     )
 
 

@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.addresses import formulas_of, readdressed
-from standoff.bodies.packing import Assembled, Ints, pack
+from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.report import BodyReport, BoundaryReport
 from standoff.bodies.topology import Edge, Face
 from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.read_only import KeepsReadOnly
-from standoff.wording import counted, printable
 
 if TYPE_CHECKING:
     from standoff.bodies.assembly import Joined
@@ -38,8 +32,8 @@ class EdgeKind(StrEnum):
     """Convex somewhere along it and reflex elsewhere."""
 
 
-@dataclass(frozen=True, eq=False)
-class Boundary(KeepsReadOnly):
+@dataclass(frozen=True, eq=False, repr=False)
+class Boundary(PackedParts):
     """The boundary of a solid, in its own frame: closed, facing outward, packed.
 
     Its faces may bend either way and have holes; edges may be convex or reflex; shells inside the
@@ -59,21 +53,12 @@ class Boundary(KeepsReadOnly):
         3; 2 for a planar body.
     ints, reals : array
         Packed, as ``standoff.kernels.body.layout`` says.
-    report : BoundaryReport
     size : float
         Diagonal of the box around it, length.
+    report : BoundaryReport
     """
 
-    name: str
-    vertex_points: Array
-    edge_parts: tuple[Edge, ...]
-    face_parts: tuple[Face, ...]
-    radius: float
-    dimension: int
-    ints: Ints
-    reals: Array
     report: BoundaryReport | BodyReport
-    size: float
 
     @staticmethod
     def from_brep(
@@ -189,62 +174,6 @@ class Boundary(KeepsReadOnly):
         flags = self.ints[at : at + L.EDGE_STRIDE * self.n_edges : L.EDGE_STRIDE]
         return tuple(_kind(int(flag)) for flag in flags)
 
-    @property
-    def digest(self) -> str:
-        """SHA-256 of the packed body, hexadecimal: the same on every machine."""
-        formulas = formulas_of(self.edge_parts, self.face_parts)
-        addresses = [f.address for f in formulas]
-        reals = readdressed(self.reals, addresses, [0.0] * len(addresses))
-        packed = hashlib.sha256()
-        for array, kind in ((self.ints, "<i8"), (reals, "<f8")):
-            packed.update(array.size.to_bytes(8, "little"))
-            packed.update(array.astype(kind).tobytes())
-        for formula in formulas:
-            packed.update(repr(formula.expressions).encode())
-        return packed.hexdigest()
-
-    def __getstate__(self) -> Any:
-        formulas = formulas_of(self.edge_parts, self.face_parts)
-        return super().__getstate__(), [f.address for f in formulas]
-
-    def __setstate__(self, stored: Any) -> None:
-        state, old = stored
-        super().__setstate__(state)
-        # formulas are compiled again in another process, at other addresses
-        new = [f.address for f in formulas_of(self.edge_parts, self.face_parts)]
-        object.__setattr__(self, "reals", readdressed(self.reals, old, new))
-
-    @property
-    def bounded(self) -> bool:
-        return isfinite(self.size)
-
-    @property
-    def n_faces(self) -> int:
-        return len(self.face_parts)
-
-    @property
-    def n_edges(self) -> int:
-        return len(self.edge_parts)
-
-    @property
-    def n_vertices(self) -> int:
-        return len(self.vertex_points)
-
-    def __repr__(self) -> str:
-        faces, edges = counted(self.n_faces, "face"), counted(self.n_edges, "edge")
-        parts = f"{faces}, {edges}, {counted(self.n_vertices, 'vertex', 'vertices')}"
-        skin = f", radius {self.radius:g}" if self.radius else ""
-        return f"<{type(self).__name__} {printable(self.name)}: {parts}{skin}, size {self.size:g}>"
-
-
-def boundary_of(parts: Assembled) -> Boundary:
-    """A boundary of parts whose senses, box and edges' kinds are not known yet."""
-    nothing = np.zeros(3)
-    ints, reals = pack(parts, [], (nothing, nothing), 0.0, 0.0)
-    report = BoundaryReport(faces=len(parts.faces), edges=len(parts.edges))
-    vertices, edges, faces = parts.vertices, tuple(parts.edges), tuple(parts.faces)
-    return Boundary("", vertices, edges, faces, 0.0, parts.dimension, ints, reals, report, 0.0)
-
 
 def _made(name: str, joined: Joined) -> Boundary:
     from standoff.bodies.closing import close
@@ -252,7 +181,7 @@ def _made(name: str, joined: Joined) -> Boundary:
     parts, ints, reals, report = close(joined)
     vertices, edges, faces = parts.vertices, tuple(parts.edges), tuple(parts.faces)
     size = report.size
-    return Boundary(name, vertices, edges, faces, 0.0, parts.dimension, ints, reals, report, size)
+    return Boundary(name, vertices, edges, faces, 0.0, parts.dimension, ints, reals, size, report)
 
 
 def _kind(flags: int) -> EdgeKind:

@@ -10,12 +10,12 @@ import numpy as np
 
 from standoff.bodies.angles import EdgeTurns, edge_turns, extremes
 from standoff.bodies.assembly import Joined, assemble
-from standoff.bodies.boundary import Boundary, boundary_of
 from standoff.bodies.charts import edge_points
 from standoff.bodies.crossings import Crossings
 from standoff.bodies.enclosed import Enclosed, enclosed_by
 from standoff.bodies.face_leaves import face_charts, grown_box
 from standoff.bodies.inner_boxes import inner_boxes
+from standoff.bodies.packed_parts import PackedParts, packed_parts
 from standoff.bodies.packing import Assembled, Ints, pack, without_charts
 from standoff.bodies.report import BoundaryReport
 from standoff.bodies.sampling import blind_charts, curve_box
@@ -118,18 +118,18 @@ def _checked_senses(
 def close(joined: Joined) -> tuple[Assembled, Ints, Array, BoundaryReport]:
     """Check the shells, tell the edges' kinds, and pack."""
     parts = joined.parts
-    rough = boundary_of(parts)
+    rough = packed_parts(parts)
     blind = blind_charts(parts, rough.ints, rough.reals)
     if blind:
         parts = without_charts(parts, blind)
-        rough = boundary_of(parts)
+        rough = packed_parts(parts)
     shells = [enclosed_by(rough, shell, VOLUME_END) for shell in joined.shells]
     for shell, found in zip(joined.shells, shells, strict=True):
         _check_volume(shell, found, joined.tolerance)
     cavities = _cavities(rough, joined, shells)
     for k in cavities:
         _turn_inward(parts, joined.shells[k])
-    low, high = _box(boundary_of(parts), parts)
+    low, high = _box(packed_parts(parts), parts)
     size = float(np.linalg.norm(high - low))
     parts = _with_kinds(parts, size)
     roundoff = coordinate_roundoff(np.array([low, high]))
@@ -173,7 +173,7 @@ def _check_volume(shell: Sequence[int], found: Enclosed, tolerance: float) -> No
         )
 
 
-def _cavities(boundary: Boundary, joined: Joined, shells: Sequence[Enclosed]) -> list[int]:
+def _cavities(boundary: PackedParts, joined: Joined, shells: Sequence[Enclosed]) -> list[int]:
     """Numbers of the shells that lie inside the outer one.
 
     Raises
@@ -214,7 +214,7 @@ def _cavities(boundary: Boundary, joined: Joined, shells: Sequence[Enclosed]) ->
     return inner
 
 
-def _spot(boundary: Boundary, shell: Sequence[int]) -> Array:
+def _spot(boundary: PackedParts, shell: Sequence[int]) -> Array:
     """A point of a shell."""
     face = boundary.face_parts[shell[0]]
     if face.loop:
@@ -237,7 +237,7 @@ def _turn_inward(parts: Assembled, shell: Sequence[int]) -> None:
         parts.cones[vertex] = [-normal for normal in parts.cones[vertex]]
 
 
-def _box(boundary: Boundary, parts: Assembled) -> tuple[Array, Array]:
+def _box(boundary: PackedParts, parts: Assembled) -> tuple[Array, Array]:
     """(low, high) round a boundary: of plane faces round their edges, of others round rectangles
     that hold them."""
     curved = [i for i, face in enumerate(parts.faces) if not all(c.flat for c in face.charts)]

@@ -7,20 +7,17 @@ as where the ray runs along an edge or touches a face, another direction is take
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.face_leaves import FaceChart, face_charts, leaves_of, quartered
-from standoff.bodies.tolerances import CROSSING_STEP, LEAF_MARGIN, ON_BOUNDARY
+from standoff.bodies.packed_parts import PackedParts
+from standoff.bodies.tolerances import CROSSING_STEP, LEAF_MARGIN, SAME_CROSSING
 from standoff.errors import BodyError
 from standoff.geometry.patch_bounds import PatchBounds
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.queries import on_face
-
-if TYPE_CHECKING:
-    from standoff.bodies.boundary import Boundary
 
 # Half the angle of a leaf's cone of normals, radians.
 LEAF_ANGLE = 0.4
@@ -51,14 +48,14 @@ DIRECTIONS = _SPREAD / np.linalg.norm(_SPREAD, axis=1)[:, None]
 class Crossings:
     """Rays through some faces of a boundary, which close a shell."""
 
-    def __init__(self, boundary: Boundary, faces: Sequence[int] | None = None) -> None:
+    def __init__(self, boundary: PackedParts, faces: Sequence[int] | None = None) -> None:
         self.boundary = boundary
         self.charts = {c.number: c for c in face_charts(boundary, faces)}
         self.leaves = leaves_of(boundary, faces, LEAF_ANGLE)
         low, high = self.leaves.bounds.low.min(axis=0), self.leaves.bounds.high.max(axis=0)
         self.size = float(np.linalg.norm(high - low))
         self._known: dict[int, tuple[Array, Array, Array]] = {}
-        self.near = ON_BOUNDARY * (self.size + float(np.abs([low, high]).max()))
+        self.near = SAME_CROSSING * (self.size + float(np.abs([low, high]).max()))
 
     def _extents(self, number: int) -> tuple[Array, Array, Array]:
         """A direction's frame (3, 3), and the leaves' extents along it (3, n), a little more."""

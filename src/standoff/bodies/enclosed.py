@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from standoff.bodies.moments.cells import integrate
+from standoff.bodies.moments.face_cells import face_cells
+from standoff.bodies.moments.flux import AREA, COLUMNS, VOLUME, Frame
+from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.packing import Assembled
 from standoff.bodies.tolerances import VOLUME_ROUNDINGS
 from standoff.bodies.topology import Edge
 from standoff.geometry.curves import Curve, Line
 from standoff.geometry.validation import Array
-
-if TYPE_CHECKING:
-    from standoff.bodies.boundary import Boundary
 
 EPS = float(np.finfo(float).eps)
 # Gauss points of a span of a curve in a plane face.
@@ -41,12 +41,8 @@ class Enclosed:
         return self.volume if abs(self.volume) > self.error else 0.0
 
 
-def enclosed_by(boundary: Boundary, shell: Sequence[int], tolerance: float) -> Enclosed:
+def enclosed_by(boundary: PackedParts, shell: Sequence[int], tolerance: float) -> Enclosed:
     """What the faces of a shell enclose; `tolerance` is relative, where refinement ends."""
-    from standoff.bodies.moments.boundary import face_cells
-    from standoff.bodies.moments.cells import integrate
-    from standoff.bodies.moments.flux import AREA, COLUMNS, VOLUME, Frame
-
     points = _points(boundary.vertex_points, [e.curve for e in boundary.edge_parts])
     charts = [chart for i in shell for chart in boundary.face_parts[i].charts]
     reaches = [chart.farthest() or float(np.linalg.norm(chart.shift)) for chart in charts]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import TILE, chart_row, surface_of
 from standoff.bodies.tolerances import BOX_REACH
 from standoff.geometry.bernstein import segment
@@ -19,9 +19,6 @@ from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import on_face
-
-if TYPE_CHECKING:
-    from standoff.bodies.boundary import Boundary
 
 # Parts of a trimming curve, each with a box of its own.
 PARTS = 16
@@ -70,7 +67,7 @@ class FaceChart:
     borders: tuple[Array, Array]
 
 
-def face_charts(boundary: Boundary, faces: Sequence[int] | None = None) -> list[FaceChart]:
+def face_charts(boundary: PackedParts, faces: Sequence[int] | None = None) -> list[FaceChart]:
     """The charts of some faces, of all by default."""
     found = []
     for number in range(int(boundary.ints[L.N_CHARTS])):
@@ -86,7 +83,7 @@ def face_charts(boundary: Boundary, faces: Sequence[int] | None = None) -> list[
     return found
 
 
-def _rectangle(boundary: Boundary, number: int, borders: tuple[Array, Array]) -> Array:
+def _rectangle(boundary: PackedParts, number: int, borders: tuple[Array, Array]) -> Array:
     """Round the trimming curves; of an atlas's chart the square in which it is not another's."""
     row = chart_row(boundary, number)
     if np.isfinite(boundary.reals[int(row[L.CHART_REALS]) + L.LIMIT]):
@@ -95,7 +92,7 @@ def _rectangle(boundary: Boundary, number: int, borders: tuple[Array, Array]) ->
     return np.array([low[:, 0].min(), high[:, 0].max(), low[:, 1].min(), high[:, 1].max()])
 
 
-def _may_be_on(boundary: Boundary, chart: FaceChart, rows: Array) -> NDArray[np.bool_]:
+def _may_be_on(boundary: PackedParts, chart: FaceChart, rows: Array) -> NDArray[np.bool_]:
     """(n,) which rectangles may hold a point of the face: a trimming curve may cross them, or else
     their middle is on it."""
     low, high = chart.borders
@@ -107,7 +104,7 @@ def _may_be_on(boundary: Boundary, chart: FaceChart, rows: Array) -> NDArray[np.
     return kept
 
 
-def _borders(boundary: Boundary, number: int) -> tuple[Array, Array]:
+def _borders(boundary: PackedParts, number: int) -> tuple[Array, Array]:
     """(low, high), each (m, 2), of boxes round parts of a chart's trimming curves."""
     row = chart_row(boundary, number)
     first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
@@ -115,7 +112,7 @@ def _borders(boundary: Boundary, number: int) -> tuple[Array, Array]:
     return np.reshape([b[0] for b in boxes], (-1, 2)), np.reshape([b[1] for b in boxes], (-1, 2))
 
 
-def _coedge_boxes(boundary: Boundary, number: int, parts: int) -> Iterator[tuple[Array, Array]]:
+def _coedge_boxes(boundary: PackedParts, number: int, parts: int) -> Iterator[tuple[Array, Array]]:
     """(low, high), each (2,), round parts of a packed trimming curve."""
     row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * number
     at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
@@ -132,7 +129,7 @@ def _coedge_boxes(boundary: Boundary, number: int, parts: int) -> Iterator[tuple
         yield pcurve_box(kind, matrix, float(a), float(b))
 
 
-def leaves_of(boundary: Boundary, faces: Sequence[int] | None, widest: float) -> Leaves:
+def leaves_of(boundary: PackedParts, faces: Sequence[int] | None, widest: float) -> Leaves:
     """Rectangles that hold some faces, whose normals fit cones of half the angle `widest`, radians,
     where they do so at all."""
     numbers, rectangles, bounds = [], [], []
@@ -156,7 +153,7 @@ def leaves_of(boundary: Boundary, faces: Sequence[int] | None, widest: float) ->
 
 
 def grown_box(
-    boundary: Boundary, charts: Sequence[FaceChart], low: Array, high: Array
+    boundary: PackedParts, charts: Sequence[FaceChart], low: Array, high: Array
 ) -> tuple[Array, Array]:
     """A box (low, high) of points of a boundary, grown to hold charts' parts of its faces.
 
@@ -184,7 +181,7 @@ def grown_box(
     return found_low, found_high
 
 
-def _middles(boundary: Boundary, chart: FaceChart, rows: Array) -> Array:
+def _middles(boundary: PackedParts, chart: FaceChart, rows: Array) -> Array:
     """(n, 3) points of the face amid rectangles."""
     packed = boundary.ints, boundary.reals, chart.number
     middles = 0.5 * (rows[:, [0, 2]] + rows[:, [1, 3]])

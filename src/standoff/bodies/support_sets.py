@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 import scipy
 
-from standoff.bodies.body import Body
+from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tolerances import HEIGHT_ROUNDINGS, LEVEL, NEAREST_SPOT, PEAK
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.nurbs import NurbsSurface
@@ -56,7 +56,7 @@ class Piece:
         return np.array([self.jet(float(t))[0] for t in parameters])
 
 
-def support_set(body: Body, direction: Array, witness: Array) -> Array:
+def support_set(body: PackedParts, direction: Array, witness: Array) -> Array:
     """Points, (n, 3), whose convex hull is where a core touches its plane along a direction.
 
     Parameters
@@ -101,7 +101,7 @@ def _spread(piece: Piece, count: int) -> Array:
     return np.linspace(piece.first, piece.last, count)
 
 
-def _pieces(body: Body, direction: Array, lowest: float) -> Iterator[Piece]:
+def _pieces(body: PackedParts, direction: Array, lowest: float) -> Iterator[Piece]:
     """Curved edges, and lines between the spans of faces, that may rise to a height."""
     for edge in body.edge_parts:
         if not isinstance(edge.curve, Line):  # whose ends are vertices
@@ -205,7 +205,7 @@ def _reaches(line: _Isoline, direction: Array, height: float) -> bool:
     return bool((points[:, :3] @ direction >= height * points[:, 3]).any())
 
 
-def _on_face(body: Body, chart: int, line: _Isoline) -> Iterator[Piece]:
+def _on_face(body: PackedParts, chart: int, line: _Isoline) -> Iterator[Piece]:
     """A line between spans, if the trimmed face has it from end to end."""
     inner = np.linspace(line.first, line.last, SAMPLES)[1:-1]
     if all(on_face(body.ints, body.reals, chart, *line.parameters(float(t))) for t in inner):

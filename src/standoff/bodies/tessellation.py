@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from standoff.bodies.drawn import Faced
+from standoff.bodies.packed_parts import PackedParts
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
@@ -71,7 +71,7 @@ class EdgeLine:
     smooth: bool
 
 
-def face_meshes(body: Faced, *, fine: bool = False) -> list[FaceMesh]:
+def face_meshes(body: PackedParts, *, fine: bool = False) -> list[FaceMesh]:
     """Return the triangles of every chart of every face, as far as the face reaches.
 
     `fine` ones serve pictures whose outlines should look smooth.
@@ -89,7 +89,7 @@ def face_meshes(body: Faced, *, fine: bool = False) -> list[FaceMesh]:
     return meshes
 
 
-def edge_lines(body: Faced) -> list[EdgeLine]:
+def edge_lines(body: PackedParts) -> list[EdgeLine]:
     """Return points along every edge."""
     coedges: list[dict[int, int]] = [{} for _ in range(body.n_edges)]
     for k, chart, edge in coedges_of(body):
@@ -98,13 +98,13 @@ def edge_lines(body: Faced) -> list[EdgeLine]:
     return [_edge_line(body, edge, list(found.values())) for edge, found in enumerate(coedges)]
 
 
-def chart_row(body: Faced, chart: int) -> NDArray[np.int64]:
+def chart_row(body: PackedParts, chart: int) -> NDArray[np.int64]:
     """The packed record of a chart, laid out in ``kernels.layout``."""
     start = int(body.ints[L.CHARTS]) + L.CHART_STRIDE * chart
     return body.ints[start : start + L.CHART_STRIDE]
 
 
-def coedges_of(body: Faced) -> list[tuple[int, int, int]]:
+def coedges_of(body: PackedParts) -> list[tuple[int, int, int]]:
     """(number, chart, edge) of every coedge; a collapsed side has -1 - vertex for its edge."""
     found = []
     for chart in range(int(body.ints[L.N_CHARTS])):
@@ -116,7 +116,7 @@ def coedges_of(body: Faced) -> list[tuple[int, int, int]]:
     return found
 
 
-def surface_of(body: Faced, charts: tuple[Surface, ...], chart: int) -> Surface:
+def surface_of(body: PackedParts, charts: tuple[Surface, ...], chart: int) -> Surface:
     """The surface of a packed chart: charts that see nothing of their face were left out."""
     offset = int(chart_row(body, chart)[L.CHART_REALS])
     packed = body.reals[offset : offset + L.INVERSE]
@@ -124,7 +124,7 @@ def surface_of(body: Faced, charts: tuple[Surface, ...], chart: int) -> Surface:
     return charts[int(np.argmin(misses))]
 
 
-def chart_outline(body: Faced, chart: int) -> Array:
+def chart_outline(body: PackedParts, chart: int) -> Array:
     """Points of a chart's trimming curves in (u, v), (n, 2), as far as the chart shows them."""
     row = chart_row(body, chart)
     first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
@@ -141,7 +141,7 @@ def chart_outline(body: Faced, chart: int) -> Array:
 
 
 def _chart_mesh(
-    body: Faced, face: int, chart: int, surface: Surface, count: int
+    body: PackedParts, face: int, chart: int, surface: Surface, count: int
 ) -> FaceMesh | None:
     outline = chart_outline(body, chart)
     low, high = chart_box(body, chart, outline)
@@ -168,12 +168,12 @@ def _chart_mesh(
     return FaceMesh(face, points, normals, triangles.astype(np.int64), inner)
 
 
-def _is_tile(body: Faced, chart: int) -> bool:
+def _is_tile(body: PackedParts, chart: int) -> bool:
     offset = int(chart_row(body, chart)[L.CHART_REALS])
     return bool(np.isfinite(body.reals[offset + L.LIMIT]))
 
 
-def chart_box(body: Faced, chart: int, outline: Array) -> tuple[Array, Array]:
+def chart_box(body: PackedParts, chart: int, outline: Array) -> tuple[Array, Array]:
     """The rectangle of (u, v) that holds a chart's part of its face."""
     if _is_tile(body, chart):
         return np.full(2, -TILE), np.full(2, TILE)
@@ -182,7 +182,7 @@ def chart_box(body: Faced, chart: int, outline: Array) -> tuple[Array, Array]:
     return outline.min(axis=0), outline.max(axis=0)
 
 
-def _edge_line(body: Faced, edge: int, coedges: list[int]) -> EdgeLine:
+def _edge_line(body: PackedParts, edge: int, coedges: list[int]) -> EdgeLine:
     curve = body.edge_parts[edge].curve
     times = np.linspace(curve.first, curve.last, ALONG_EDGE)
     points = np.array([curve.point(float(t)) for t in times])

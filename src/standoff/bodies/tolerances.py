@@ -45,7 +45,7 @@ VOLUME_END: Final = 1e-6
 BOX_REACH: Final = 1e-3
 """A boundary's box may reach past its points by this part of its size."""
 
-ON_BOUNDARY: Final = 1e-12
+SAME_CROSSING: Final = 1e-12
 """A point whose ray meets a face this near, as a part of the size and the greatest coordinate, is
 on it; crossings as near to each other are one: some thousand roundings."""
 

@@ -91,7 +91,9 @@ def _writer(subject: Subject, ending: str) -> Writer:
         raise MissingExtra(str(error.name)) from error
 
     def write(file: BinaryIO) -> None:
-        draw_body(subject.body, subject.name, subject.unit).savefig(file, format=ending)
+        draw_body(subject.body, subject.body.check(), subject.name, subject.unit).savefig(
+            file, format=ending
+        )
 
     return write
 

@@ -10,8 +10,6 @@ from standoff.errors import StandoffError
 from standoff.geometry.bernstein import segment
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
 from standoff.geometry.hulls import tight_box
-from standoff.geometry.interval_vectors import mapped
-from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.validation import Array
 
@@ -68,17 +66,6 @@ def rational_parts(curve: RationalBezier | NurbsCurve, first: float, last: float
             part: Array = segment(len(block) - 1, (low - a) / (b - a), (high - a) / (b - a)) @ block
             found.append(part)
     return found
-
-
-def heights_by_jets(curve: Curve, directions: Interval, t: Interval) -> Interval:
-    """As `Curve.heights_over`, by Taylor's formula of order two."""
-    middle = t.middle
-    with np.errstate(all="ignore"):
-        over = mapped(directions, curve.jets_over(t))
-        at = mapped(directions, curve.jets_over(interval(middle)))
-        away = t - interval(middle)
-        total = at[:, 0] + at[:, 1] * away + over[:, 2] * away**2 * 0.5
-    return total.within(over[:, 0])
 
 
 def curve_breaks(curve: Curve, first: float, last: float) -> tuple[float, ...]:

@@ -91,10 +91,17 @@ class Curve(KeepsReadOnly):
         raise StandoffError(f"{type(self).__name__} has no bounds: it cannot be a profile.")
 
     def heights_over(self, directions: Interval, t: Interval) -> Interval:
-        """(m, n) bounds of direction . x over such ranges; directions (m, 3, n)."""
-        from standoff.geometry.curve_bounds import heights_by_jets
+        """(m, n) bounds of direction . x over such ranges, by Taylor's formula of order two;
+        directions (m, 3, n)."""
+        from standoff.geometry.interval_vectors import mapped
 
-        return heights_by_jets(self, directions, t)
+        middle = interval(t.middle)
+        with np.errstate(all="ignore"):
+            over = mapped(directions, self.jets_over(t))
+            at = mapped(directions, self.jets_over(middle))
+            away = t - middle
+            total = at[:, 0] + at[:, 1] * away + over[:, 2] * away**2 * 0.5
+        return total.within(over[:, 0])
 
     def transformed(self, linear: Array, shift: Array) -> Curve:
         """The exact image under x -> linear x + shift; the parameter stays the same."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,11 +18,9 @@ from standoff.geometry.interval_vectors import (
 from standoff.geometry.intervals import Interval, atan, interval, sqrt
 from standoff.geometry.jet_bounds import widened
 from standoff.geometry.patch_bounds import PatchBounds, between, cone_round
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import LENGTH_ROUNDING
 from standoff.geometry.validation import Array
-
-if TYPE_CHECKING:
-    from standoff.geometry.quadrics import Sphere
 
 
 def corners(boxes: Boxes) -> list[tuple[Array, Array]]:
@@ -32,7 +29,7 @@ def corners(boxes: Boxes) -> list[tuple[Array, Array]]:
     return list(product(us, vs))
 
 
-def ellipsoid_extents(surface: Sphere, boxes: Boxes, directions: Array) -> Interval:
+def ellipsoid_extents(surface: Surface, boxes: Boxes, directions: Array) -> Interval:
     """(m, n) bounds of direction . x, exact but for rounding.
 
     On the unit sphere the sides of a box are arcs of great circles, along which a height is a wave;
@@ -69,7 +66,7 @@ def _meets(a: Interval, boxes: Boxes) -> Array:
     return np.asarray(seen)
 
 
-def ellipsoid_bounds(surface: Sphere, boxes: Boxes) -> PatchBounds:
+def ellipsoid_bounds(surface: Surface, boxes: Boxes) -> PatchBounds:
     """Boxes, cones of normals and curvatures.
 
     The unit sphere's normals over a box are the positive combinations of its corners'. The normal

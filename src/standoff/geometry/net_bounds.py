@@ -6,8 +6,8 @@ are taken about a point of the part, so that the weights' bounds multiply small 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +20,6 @@ from standoff.geometry.jet_bounds import JetBounds, widened
 from standoff.geometry.patch_bounds import PatchBounds, cone_round
 from standoff.geometry.tolerances import NET_ROUNDING, SPAN_ROUNDING
 from standoff.geometry.validation import Array
-
-if TYPE_CHECKING:
-    from standoff.geometry.nurbs import NurbsSurface
 
 EPS = float(np.finfo(np.float64).eps)
 # Cones wider than this (radians) are sought anew by the product of the nets.
@@ -171,15 +168,15 @@ def _crossed(a: Interval, b: Interval) -> Interval:
     return _times(a[after], b[before]) - _times(a[before], b[after])
 
 
-def net_bounds(surface: NurbsSurface, boxes: Boxes) -> PatchBounds:
+def net_bounds(nets_over: Callable[[Boxes], CutNets], boxes: Boxes) -> PatchBounds:
     """Boxes, cones of normals and curvatures of a NURBS, over boxes that no knot divides."""
-    nets = surface.nets_over(boxes)
-    jets = JetBounds(boxes, surface.jets_over)
+    nets = nets_over(boxes)
+    jets = JetBounds(boxes, lambda parts: nets_over(parts).jets())
     axis, angle = jets.normals()
     wide = np.flatnonzero(angle > WIDE_CONE)
     if len(wide):
         # the product of the nets turns out narrower than the mean value, but is dearer
-        other, closer = cone_round(surface.nets_over(boxes[wide]).normals())
+        other, closer = cone_round(nets_over(boxes[wide]).normals())
         axis[wide] = np.where((closer < angle[wide])[:, None], other, axis[wide])
         angle[wide] = np.minimum(closer, angle[wide])
     box = widened(nets.heights(np.eye(3)[..., None]))

@@ -236,7 +236,7 @@ class NurbsSurface(Surface):
     def bounds_over(self, boxes: Boxes) -> PatchBounds:
         from standoff.geometry.net_bounds import net_bounds
 
-        return net_bounds(self, boxes)
+        return net_bounds(self.nets_over, boxes)
 
     def refined(self, knots_u: Sequence[float] = (), knots_v: Sequence[float] = ()) -> NurbsSurface:
         """The same surface with further knots inserted inside its domain."""

@@ -12,13 +12,26 @@ from standoff.geometry.interval_vectors import stacked
 from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.rotational import Rotational
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, vector3
+from standoff.geometry.validation import Array, matrix3, vector3
 from standoff.kernels.body import layout as L
 
 if TYPE_CHECKING:
     from standoff.geometry.boxes import Boxes
     from standoff.geometry.patch_bounds import PatchBounds
     from standoff.geometry.series import Series
+
+# Rotations that take e_z to the six axes: the charts of an ellipsoid's atlas.
+_AXES = np.array(
+    [
+        [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+        [[1, 0, 0], [0, -1, 0], [0, 0, -1]],
+        [[0, 0, 1], [1, 0, 0], [0, 1, 0]],
+        [[0, 0, -1], [-1, 0, 0], [0, 1, 0]],
+        [[0, 1, 0], [0, 0, 1], [1, 0, 0]],
+        [[0, -1, 0], [0, 0, -1], [1, 0, 0]],
+    ],
+    dtype=np.float64,
+)
 
 
 class Plane(Surface):
@@ -245,3 +258,27 @@ class Cone(Rotational):
     def meridian_normals(self, v: Interval) -> list[Interval]:
         one = interval(np.ones_like(v.lo))
         return [stacked([one, -one])]
+
+
+def sphere_atlas(linear: Array, centre: Array) -> tuple[Sphere, ...]:
+    """Six overlapping gnomonic charts of the ellipsoid linear @ (unit sphere) + centre.
+
+    Parameters
+    ----------
+    linear : (3, 3) array_like
+        Its columns are semi-axes, or any three vectors that map the unit sphere to it; length.
+    centre : (3,) array_like
+        Length.
+
+    Returns
+    -------
+    tuple of six Sphere
+        The charts of one `Face`.
+
+    Raises
+    ------
+    ValueError
+        A wrong shape, a number that is not finite, or a singular map.
+    """
+    axes = matrix3(linear, "linear")
+    return tuple(Sphere(axes @ turn, centre) for turn in _AXES)

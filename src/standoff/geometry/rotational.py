@@ -71,11 +71,13 @@ class Rotational(Surface):
         """Boxes, cones of normals and curvatures."""
         from standoff.geometry.jet_bounds import widened
         from standoff.geometry.patch_bounds import PatchBounds
-        from standoff.geometry.rotational_bounds import turned_curvatures, turned_normals
+        from standoff.geometry.rotational_bounds import Bends, turned_curvatures, turned_normals
 
+        u, v = boxes.sides
         extents = self.extents_over(boxes, np.eye(3)[..., None])
         with np.errstate(all="ignore"):
-            axis, angle = turned_normals(self, boxes)
-            least, greatest = turned_curvatures(self, boxes)
+            bends = Bends(self.meridian(v)[:, 1], *self.speed_and_bend(v), self.over_radius(v))
+            axis, angle = turned_normals(self.linear, u, self.meridian_normals(v))
+            least, greatest = turned_curvatures(self.linear, u, bends)
         reach = np.linalg.norm(self.shift)
         return PatchBounds(*widened(extents, reach), axis, angle, least, greatest)

@@ -8,7 +8,7 @@ own: by convexity, and as the gauge's gradient is monotone in |u| and |v|.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,11 +20,9 @@ from standoff.geometry.jet_bounds import JetBounds, box_corners, series_jets, wi
 from standoff.geometry.patch_bounds import PatchBounds, cone_round
 from standoff.geometry.series import Series
 from standoff.geometry.series import power as series_power
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-
-if TYPE_CHECKING:
-    from standoff.geometry.superellipsoids import SuperellipsoidPole
 
 
 def _signs(side: Interval) -> Array:
@@ -42,11 +40,11 @@ def _not_negative(total: Interval) -> Interval:
     return Interval(np.maximum(total.lo, 0.0), total.hi)
 
 
-def _is_pole(surface: SuperellipsoidPole) -> bool:
+def _is_pole(surface: Surface) -> bool:
     return surface.kind == L.SUPERELLIPSOID_POLE
 
 
-def superellipsoid_jets(surface: SuperellipsoidPole, boxes: Boxes) -> Interval:
+def superellipsoid_jets(surface: Surface, boxes: Boxes) -> Interval:
     """(3, 6, n) bounds of the canonical jet; unknown beside a plane where a power is not whole."""
     m1, m2 = (float(m) for m in surface.data[:2])
     su, sv = (_signs(side) for side in boxes.sides)
@@ -66,7 +64,7 @@ def superellipsoid_jets(surface: SuperellipsoidPole, boxes: Boxes) -> Interval:
     return series_jets(boxes, form)
 
 
-def _points(surface: SuperellipsoidPole, u: Interval, v: Interval) -> Interval:
+def _points(surface: Surface, u: Interval, v: Interval) -> Interval:
     """(3, n) bounds of canonical points."""
     m1, m2 = surface.data[:2]
     a, b = power(_size(u), m2), _size(v)
@@ -78,7 +76,7 @@ def _points(surface: SuperellipsoidPole, u: Interval, v: Interval) -> Interval:
     return stacked([u * s, v * s, s])
 
 
-def _normals(surface: SuperellipsoidPole, boxes: Boxes) -> Interval:
+def _normals(surface: Surface, boxes: Boxes) -> Interval:
     """(3, n) bounds of the gauge's gradient, but for its length."""
     m1, m2 = surface.data[:2]
     su, sv = (_signs(side) for side in boxes.sides)
@@ -105,7 +103,7 @@ def _share(a: Interval, b: Interval) -> Interval:
     return Interval(np.clip(np.nan_to_num(low), 0, 1), np.clip(np.nan_to_num(high, nan=1.0), 0, 1))
 
 
-def _support(surface: SuperellipsoidPole, n: Interval) -> Interval:
+def _support(surface: Surface, n: Interval) -> Interval:
     """The greatest n . x of the whole canonical body: the gauge's dual."""
     q1, q2 = (m / (m - 1.0) for m in surface.data[:2])
     a, b, c = (power(_size(n[k]), q) for k, q in enumerate((q2, q2, q1)))
@@ -115,9 +113,7 @@ def _support(surface: SuperellipsoidPole, n: Interval) -> Interval:
     return power(_not_negative(pair + c), 1.0 / q1)
 
 
-def superellipsoid_extents(
-    surface: SuperellipsoidPole, boxes: Boxes, directions: Array
-) -> Interval:
+def superellipsoid_extents(surface: Surface, boxes: Boxes, directions: Array) -> Interval:
     """(m, n) bounds of direction . x.
 
     A point beyond the corners' hull is a point of it moved out, at most to a supporting plane.
@@ -142,7 +138,7 @@ def superellipsoid_extents(
     return Interval(low, high) + mapped(directions, interval(surface.shift[:, None]))
 
 
-def superellipsoid_bounds(surface: SuperellipsoidPole, boxes: Boxes) -> PatchBounds:
+def superellipsoid_bounds(surface: Surface, boxes: Boxes) -> PatchBounds:
     """Boxes, cones of normals and curvatures."""
     extents = superellipsoid_extents(surface, boxes, np.eye(3)[..., None])
     jets = JetBounds(boxes, surface.body_jets)

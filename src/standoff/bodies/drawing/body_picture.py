@@ -17,7 +17,8 @@ from standoff.bodies.drawing.body_view import (
     draw_view,
     shows,
 )
-from standoff.bodies.drawn import Drawn
+from standoff.bodies.packed_parts import PackedParts
+from standoff.bodies.report import BodyReport
 from standoff.bodies.tessellation import edge_lines, face_meshes
 from standoff.errors import not_installed
 
@@ -32,12 +33,14 @@ except ModuleNotFoundError as error:
     raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 
-def draw_body(body: Drawn, name: str, unit: str) -> Figure:
+def draw_body(body: PackedParts, report: BodyReport, name: str, unit: str) -> Figure:
     """Draw a body from two opposite sides, or in its plane.
 
     Parameters
     ----------
     body : Body
+    report : BodyReport
+        What its construction found.
     name : str
         What it is called.
     unit : str
@@ -55,7 +58,7 @@ def draw_body(body: Drawn, name: str, unit: str) -> Figure:
         box = (k / len(views), 0.07, 1.0 / len(views), 0.86)
         axes: Space = figure.add_axes(box, projection="3d", computed_zorder=False)
         draw_view(axes, parts, view, unit)
-    figure.suptitle(_title(body, name), y=0.97)
+    figure.suptitle(_title(body, report, name), y=0.97)
     figure.legend(
         handles=_legend(parts),
         loc="lower center",
@@ -66,8 +69,7 @@ def draw_body(body: Drawn, name: str, unit: str) -> Figure:
     return figure
 
 
-def _title(body: Drawn, name: str) -> str:
-    report = body.check()
+def _title(body: PackedParts, report: BodyReport, name: str) -> str:
     counts = [(report.faces, "face", "faces"), (report.edges, "edge", "edges")]
     counts += [(report.vertices, "vertex", "vertices")]
     told = [f"{n} {one if n == 1 else many}" for n, one, many in counts if n]

@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from standoff.bodies.drawn import Drawn
+from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import EdgeLine, FaceMesh
 from standoff.bodies.tolerances import FLAT_CLOUD
 from standoff.errors import not_installed
@@ -80,7 +80,7 @@ SKIN_POINTS = 400
 class Parts:
     """What is drawn of a body."""
 
-    body: Drawn
+    body: PackedParts
     meshes: list[FaceMesh]
     lines: list[EdgeLine]
 

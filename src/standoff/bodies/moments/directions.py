@@ -16,8 +16,8 @@ import numpy as np
 
 from standoff.bodies.moments.cells import Cell, Integrand
 from standoff.bodies.moments.flux import Frame, flux, offset_areas
-from standoff.bodies.shapes.quadrics import sphere_atlas
 from standoff.geometry.curves import Curve
+from standoff.geometry.quadrics import sphere_atlas
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.queries import surface_jet

@@ -14,10 +14,10 @@ from itertools import pairwise
 import numpy as np
 import scipy
 
-from standoff.bodies.boundary import Boundary
 from standoff.bodies.moments.cells import Cell, Integrand
 from standoff.bodies.moments.flux import Frame, flux, offset_areas
 from standoff.bodies.moments.tolerances import LEVEL_CURVE
+from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import chart_row, surface_of
 from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
@@ -37,7 +37,7 @@ SMOOTH_POWER = 6.0
 class Chart:
     """A chart of a body and where its integrals are taken."""
 
-    body: Boundary
+    body: PackedParts
     number: int
     frame: Frame
 
@@ -82,7 +82,7 @@ class TrimmingCurve:
     """A coedge: (u, v) by its edge's parameter, from first to last; the face is on its left where
     side is 1, on its right where it is -1."""
 
-    body: Boundary
+    body: PackedParts
     coedge: int
 
     @property

@@ -14,13 +14,13 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial.chebyshev import Chebyshev
 
-from standoff.bodies.boundary import Boundary
 from standoff.bodies.charts import surface_normal
 from standoff.bodies.moments.cells import Cell
 from standoff.bodies.moments.directions import Arc, OverSphere, part_cells, sphere_cells
 from standoff.bodies.moments.faces import Chart, TrimmingCurve
 from standoff.bodies.moments.flux import Frame, flux
 from standoff.bodies.moments.tolerances import NORMALS_RESOLVED
+from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.support_sets import curve_breaks
 from standoff.bodies.tessellation import chart_row
 from standoff.errors import StandoffError
@@ -50,7 +50,7 @@ class Fan:
         return np.asarray(np.cos(angles) * self.first[:, None] + np.sin(angles) * aside[:, None])
 
 
-def skin_cells(body: Boundary, frame: Frame) -> list[Cell]:
+def skin_cells(body: PackedParts, frame: Frame) -> list[Cell]:
     """The cells of canals and parts of spheres of a body with a swept radius."""
     if body.n_vertices == 1 and not body.n_edges and not body.n_faces:
         return sphere_cells(_ball(frame, body.vertex_points[0]))
@@ -60,11 +60,11 @@ def skin_cells(body: Boundary, frame: Frame) -> list[Cell]:
     ]
 
 
-def _edge_row(body: Boundary, edge: int) -> int:
+def _edge_row(body: PackedParts, edge: int) -> int:
     return int(body.ints[L.EDGES]) + L.EDGE_STRIDE * edge
 
 
-def _sides(body: Boundary, edge: int) -> tuple[int, int] | None:
+def _sides(body: PackedParts, edge: int) -> tuple[int, int] | None:
     """The coedges left and right of an edge, seen from outside; None without faces."""
     row = _edge_row(body, edge)
     pair = [int(k) for k in body.ints[row + L.EDGE_COEDGE_0 : row + L.EDGE_COEDGE_1 + 1]]
@@ -75,11 +75,11 @@ def _sides(body: Boundary, edge: int) -> tuple[int, int] | None:
     return (pair[0], pair[1]) if left else (pair[1], pair[0])
 
 
-def _outward(body: Boundary, chart: int) -> float:
+def _outward(body: PackedParts, chart: int) -> float:
     return float(body.reals[int(chart_row(body, chart)[L.CHART_REALS]) + L.OUTWARD])
 
 
-def _has_fan(body: Boundary, edge: int) -> bool:
+def _has_fan(body: PackedParts, edge: int) -> bool:
     """Is there an arc of normals along an edge: not where its faces share them, or it is the seam
     of one face."""
     row = _edge_row(body, edge)
@@ -89,7 +89,7 @@ def _has_fan(body: Boundary, edge: int) -> bool:
     return other >= 0 or not body.n_faces
 
 
-def fan(body: Boundary, edge: int, times: Array) -> tuple[Fan, Array, Array, Array]:
+def fan(body: PackedParts, edge: int, times: Array) -> tuple[Fan, Array, Array, Array]:
     """(normals, x, x_t, x_tt) of an edge at its parameters (n,)."""
     jets = np.array([body.edge_parts[edge].curve.jet(float(t)) for t in times])
     x, xt, xtt = np.moveaxis(jets, 1, 0)
@@ -111,7 +111,7 @@ def fan(body: Boundary, edge: int, times: Array) -> tuple[Fan, Array, Array, Arr
     return Fan(left, tangents, turns), x, xt, xtt
 
 
-def _normal(body: Boundary, coedge: int, tangent: Array, t: float) -> Array:
+def _normal(body: PackedParts, coedge: int, tangent: Array, t: float) -> Array:
     """Outward normal of a coedge's face at its edge's parameter, at a collapsed side its limit."""
     normal = np.array(coedge_conormal(body.ints, body.reals, coedge, tuple(tangent.tolist()), t)[1])
     if float(np.linalg.norm(normal)) > HALF:
@@ -123,7 +123,7 @@ def _normal(body: Boundary, coedge: int, tangent: Array, t: float) -> Array:
     return _outward(body, number) * surface_normal(surface, float(u), float(v))
 
 
-def _canal_cells(body: Boundary, edge: int, frame: Frame) -> list[Cell]:
+def _canal_cells(body: PackedParts, edge: int, frame: Frame) -> list[Cell]:
     """The canal along an edge: x + r n with area vectors r (|x_t| - r n · x_tt / |x_t|) n dt dα."""
     if not _has_fan(body, edge):
         return []
@@ -147,7 +147,7 @@ def _ball(frame: Frame, point: Array) -> OverSphere:
     return values
 
 
-def _vertex_cells(body: Boundary, vertex: int, frame: Frame) -> list[Cell]:
+def _vertex_cells(body: PackedParts, vertex: int, frame: Frame) -> list[Cell]:
     """The part of a sphere about a vertex.
 
     All its normals point away from a point inside the core, or square to that way: the start of
@@ -168,7 +168,7 @@ def _vertex_cells(body: Boundary, vertex: int, frame: Frame) -> list[Cell]:
     return part_cells(arcs, start, _ball(frame, point))
 
 
-def _turning(body: Boundary, edge: int, end: float) -> Callable[[Array], tuple[Array, Array]]:
+def _turning(body: PackedParts, edge: int, end: float) -> Callable[[Array], tuple[Array, Array]]:
     """The arc of normals at an edge's end, by shares of its turn."""
     normals = fan(body, edge, np.array([end]))[0]
 

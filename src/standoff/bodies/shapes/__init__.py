@@ -24,10 +24,10 @@ if TYPE_CHECKING:
         cylinder,
         ellipsoid,
         halfspace,
-        sphere_atlas,
     )
     from standoff.bodies.shapes.revolved import hull_of_revolution
     from standoff.bodies.shapes.superellipsoids import superellipsoid
+    from standoff.geometry.quadrics import sphere_atlas
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -45,10 +45,10 @@ else:
                 "cylinder",
                 "ellipsoid",
                 "halfspace",
-                "sphere_atlas",
             ),
             "standoff.bodies.shapes.revolved": ("hull_of_revolution",),
             "standoff.bodies.shapes.superellipsoids": ("superellipsoid",),
+            "standoff.geometry.quadrics": ("sphere_atlas",),
         },
     )
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.bodies.body import Body
-from standoff.bodies.shapes.quadrics import SINGLE_CHART_REACH, sphere_atlas
+from standoff.bodies.shapes.quadrics import SINGLE_CHART_REACH
 from standoff.bodies.tolerances import THIN_LENS
 from standoff.bodies.topology import Edge, Face
 from standoff.checks.numbers import magnitude, magnitude_or_zero
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
-from standoff.geometry.quadrics import Sphere
+from standoff.geometry.quadrics import Sphere, sphere_atlas
 from standoff.geometry.validation import Array
 
 

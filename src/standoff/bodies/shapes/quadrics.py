@@ -12,50 +12,13 @@ from standoff.bodies.topology import Apex, Edge, Face
 from standoff.checks.numbers import magnitude, magnitude_or_zero, number
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
-from standoff.geometry.quadrics import Cone, Cylinder, Plane, Sphere
-from standoff.geometry.validation import Array, matrix3, vector3
+from standoff.geometry.quadrics import Cone, Cylinder, Plane, Sphere, sphere_atlas
+from standoff.geometry.validation import Array, vector3
 
 # Cosine up to which an axis is square enough to a normal for a plane's first direction.
 SQUARE_ENOUGH = 0.8
 # A gnomonic chart alone serves a face up to this tangent of the angle from its centre.
 SINGLE_CHART_REACH = 3.0
-
-# Rotations that take e_z to the six axes: the charts of an ellipsoid's atlas.
-_AXES = np.array(
-    [
-        [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
-        [[1, 0, 0], [0, -1, 0], [0, 0, -1]],
-        [[0, 0, 1], [1, 0, 0], [0, 1, 0]],
-        [[0, 0, -1], [-1, 0, 0], [0, 1, 0]],
-        [[0, 1, 0], [0, 0, 1], [1, 0, 0]],
-        [[0, -1, 0], [0, 0, -1], [1, 0, 0]],
-    ],
-    dtype=np.float64,
-)
-
-
-def sphere_atlas(linear: Array, centre: Array) -> tuple[Sphere, ...]:
-    """Six overlapping gnomonic charts of the ellipsoid linear @ (unit sphere) + centre.
-
-    Parameters
-    ----------
-    linear : (3, 3) array_like
-        Its columns are semi-axes, or any three vectors that map the unit sphere to it; length.
-    centre : (3,) array_like
-        Length.
-
-    Returns
-    -------
-    tuple of six Sphere
-        The charts of one `Face`.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, or a singular map.
-    """
-    axes = matrix3(linear, "linear")
-    return tuple(Sphere(axes @ turn, centre) for turn in _AXES)
 
 
 @overload
