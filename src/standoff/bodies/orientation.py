@@ -111,9 +111,12 @@ class _Sheet:
 
     def settle(self, edges: Sequence[Edge], trusted: bool) -> None:
         """By its own loops, x_u × x_v outward; an atlas outward where it bulges, if not told."""
-        outward = self.sense or (1 if self.by_loops else bulging(self.charts[0].surface))
+        first = self.charts[0].surface
+        outward = self.sense or (1 if self.by_loops else bulging(first))
         for chart in self.charts:
-            chart.outward = float(outward)
+            # charts of one atlas may be mirror images of each other
+            alike = bulging(chart.surface) * bulging(first)
+            chart.outward = float(outward * alike)
         if self.by_loops and not trusted:
             if turn_loops(self.charts[0], self.face, edges, self.number):
                 self.as_given = -1
@@ -122,7 +125,7 @@ class _Sheet:
         for chart in self.charts:
             chart.holed = several
             for c in chart.coedges:
-                c.side = int(c.side * outward) if c.edge >= 0 else c.side
+                c.side = int(c.side * chart.outward) if c.edge >= 0 else c.side
 
     def along(self, entry: int) -> int:
         """+1 where it runs along the edge of an entry, seen from outside, -1 where against it."""
