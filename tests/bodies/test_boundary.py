@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from solids import SOLIDS, Solid, X, Y, Z, apple, prism, shells_of_balls
+from solids import SOLIDS, Solid, X, Y, Z, apple, drilled, prism, shells_of_balls
 
 import standoff as so
 from draws import draws
@@ -379,3 +379,15 @@ def test_a_stored_boundary_is_the_same() -> None:
     assert again.digest == boundary.digest
     assert repr(again) == repr(boundary)
     assert not again.reals.flags.writeable
+
+
+def test_no_inner_box_holds_a_small_hole() -> None:
+    """It would stand for a part of the face without a look at its loops."""
+    solid = drilled(0.05)
+    boundary = made(solid)
+    for number in range(2):
+        at = int(chart_row(boundary, number)[L.CHART_REALS]) + L.INNER
+        u0, u1, _, _ = boundary.reals[at : at + 4]
+        assert u0 > u1
+    points = np.array([[1.0, 1.0, 0.5], [1.0, 1.1, 0.5], [1.02, 0.98, 0.9], [1.0, 1.0, -0.1]])
+    np.testing.assert_array_equal(boundary.contains(points), solid.inside(points))
