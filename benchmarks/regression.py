@@ -92,13 +92,14 @@ def checked_out(commit: str, folder: Path) -> Iterator[Path]:
         subprocess.run(["git", "worktree", "remove", "--force", str(folder)], check=True)
 
 
-def worked(tree: Path, cache: Path) -> dict[str, tuple[float, str]]:
-    """Run the work on a tree: of each piece its time and its answer in full digits."""
+def worked(tree: Path, cache: Path, named: str = "") -> dict[str, tuple[float, str]]:
+    """Run the work on a tree: of each piece its time and its answer in full digits. With `named`
+    only the pieces whose names hold that text."""
     cache.mkdir(mode=0o700, exist_ok=True)
     settings = {k: v for k, v in os.environ.items() if not k.startswith(("NUMBA_", "STANDOFF_"))}
     settings |= {"PYTHONPATH": str(tree / "src"), "NUMBA_CACHE_DIR": str(cache)}
     done = subprocess.run(
-        [sys.executable, str(WORK)],
+        [sys.executable, str(WORK), named],
         env=settings,
         cwd=cache,
         check=True,
@@ -108,14 +109,18 @@ def worked(tree: Path, cache: Path) -> dict[str, tuple[float, str]]:
     return {name: (time, answer) for name, time, answer in json.loads(done.stdout)}
 
 
-def compared(trees: tuple[Path, Path], scratch: Path, rounds: int, compiling: bool) -> list[Row]:
+def compared(
+    trees: tuple[Path, Path], scratch: Path, rounds: int, compiling: bool = False, named: str = ""
+) -> list[Row]:
     """Work on both trees in turn and return a row for each piece."""
     times: dict[str, tuple[list[float], list[float]]] = {}
     answers: dict[str, set[str]] = {}
     for number in range(-1, rounds):  # the first fills the caches
         for side, tree in enumerate(trees):
             fresh = f"{number}" if compiling else ""
-            for name, (time, answer) in worked(tree, scratch / f"cache{side}{fresh}").items():
+            for name, (time, answer) in worked(
+                tree, scratch / f"cache{side}{fresh}", named
+            ).items():
                 if number < 0 or (name == COMPILING and not compiling):
                     continue
                 times.setdefault(name, ([], []))[side].append(time)
@@ -131,6 +136,7 @@ def main() -> None:
     reader.add_argument("before", help="a commit")
     reader.add_argument("after", help="another")
     reader.add_argument("--rounds", type=int, default=ROUNDS, help="times that both run in turn")
+    reader.add_argument("--named", default="", metavar="TEXT", help="work named so alone")
     reader.add_argument("--compile", action="store_true", help="with empty caches in every round")
     asked = reader.parse_args()
     with ExitStack() as stack:
@@ -139,7 +145,7 @@ def main() -> None:
             stack.enter_context(checked_out(commit, scratch / side))
             for side, commit in (("before", asked.before), ("after", asked.after))
         )
-        rows = compared((trees[0], trees[1]), scratch, asked.rounds, asked.compile)
+        rows = compared((trees[0], trees[1]), scratch, asked.rounds, asked.compile, asked.named)
     print(table(rows, asked.before, asked.after))
     slower = [row.name for row in rows if judged(row) == "slower"]
     print("\nSlower by more than the noise: " + (", ".join(slower) or "nothing") + ".")

@@ -57,7 +57,7 @@ def test_turned_ellipsoids(name):
 )
 def test_a_missing_peer_names_the_extra(monkeypatch, package, adaptor):
     monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(ImportError, match=rf"{package} .*standoff\[peers\]"):
+    with pytest.raises(ImportError, match=rf"{package} .*standoff-studies\[peers\]"):
         adaptor(np.ones(3), np.ones(3))
 
 

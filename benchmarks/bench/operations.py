@@ -98,7 +98,7 @@ def count() -> Cost:
     from standoff.kernels.algebra import roots
     from standoff.kernels.entries.smooth import on_sphere
     from standoff.kernels.frame import smooth
-    from standoff.kernels.frame.inputs import Inputs
+    from standoff.kernels.frame.inputs import N_CHANGE, Inputs
     from standoff.kernels.state import arrays as K
     from standoff.kernels.state.options import read_options
     from standoff.kernels.values import Pair
@@ -121,7 +121,8 @@ def count() -> Cost:
     buffer = tracker.buffer(state)
     flat = [np.r_[p.rotation.ravel(), p.translation] for p in (rest, frames[FRAMES])]
     twists = [np.r_[x.v, x.omega] for x in (still, turn)]
-    inputs = Inputs(*(_numbers(x) for x in (*flat, *twists)), True)
+    unused = np.zeros(N_CHANGE)
+    inputs = Inputs(*(_numbers(x) for x in (*flat, *twists, unused)), True)
     pair = Pair(*(_numbers(x) for x in (a.ints, a.reals, b.ints, b.reals)))
     options, kept = read_options(_numbers(tracker.options)), _numbers(buffer.state.copy())
     out = _numbers(np.zeros(K.N_OUT))

@@ -59,7 +59,7 @@ def test_conventions_of_every_shape(peer, cases_of, solids) -> None:
 )
 def test_a_missing_peer_names_the_extra(monkeypatch, peer, package, solids) -> None:
     monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(ImportError, match=rf"{package} .*standoff\[peers\]"):
+    with pytest.raises(ImportError, match=rf"{package} .*standoff-studies\[peers\]"):
         peer.query(solids["sphere"][0], solids["NURBS ellipsoid"][0])
 
 

@@ -121,7 +121,7 @@ def test_hull_of_a_line_is_a_frustum_or_a_cone():
         (lambda: so.shapes.gore(1.5, 2), "gore: radius = 1.5 is not below half"),
         (lambda: so.shapes.gore(-1, 2), "radius = -1.0: must be positive"),
         (lambda: so.shapes.egg(1, 2, 0.71), "egg with taper = 0.71: give -0.7 to 0.7"),
-        (lambda: so.shapes.egg(1, 2, np.nan), "taper has a NaN"),
+        (lambda: so.shapes.egg(1, 2, np.nan), "taper = nan: must be finite"),
         (lambda: so.shapes.rounded_polytope(CUBE, 1.0), "leaves no core: .* ball has radius 1"),
         (lambda: so.shapes.rounded_polytope(CUBE, 3), "rounding = 3.0 leaves no core"),
         (lambda: so.shapes.rounded_polytope(CUBE, -0.1), "rounding = -0.1: must be zero"),

@@ -123,7 +123,7 @@ def test_wrong_arguments_are_named(tmp_path: Path) -> None:
         so.plot(BOX, CAPSULE, 0.5)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"The answer is of <Body box: .* as they were asked"):
         so.plot(CAPSULE, BOX, answer)
-    with pytest.raises(ValueError, match=r"view has shape \(3,\); give shape \(2,\)"):
+    with pytest.raises(ValueError, match=r"view has shape \(3,\): give 2 numbers"):
         so.plot(BOX, CAPSULE, answer, view=(1, 2, 3))  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"the ending '.bmp' is not known here"):
         so.plot(BOX, CAPSULE, answer, tmp_path / "x.bmp")

@@ -155,7 +155,7 @@ simulate = { step = 1e-3, duration = 0.01 }
         ("free.ball", "free.bal", "did you mean"),
         ("stiffness = 1e4", "stiffness = 1e12", "largest stable one is"),
         ("stiffness = 1e4", "stiffness = 1e4, friction = 0.1", "slip_speed"),
-        ("position = [0, 0, 0.2]", "position = [0, 0, 0.09]", "allow_overlap = true"),
+        ("position = [0, 0, 0.2]", "position = [0, 0, 0.09]", "or set allow_overlap"),
         ("step = 1e-3", "step = 0.0", "simulate.step"),
         ("step = 1e-3", "step = 1e-3, method = 'rk5'", "rk4"),
         ("step = 1e-3", "step = 1e-3, tracker = 'inside', gain = 1e5", "gain"),

@@ -4,6 +4,7 @@ The top's parameters are (u, v) = (-y, x); the edge runs along y = 1 - 2 t at x 
 """
 
 import numpy as np
+from pointed import pointed
 
 import standoff as so
 from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, new_counts
@@ -48,7 +49,8 @@ def at_vertex(k: int) -> Side:
 
 def beside(x: tuple, body: so.Body = BOX) -> tuple[Pair, Pose]:
     """The body at rest and a point at x."""
-    pair = Pair(body.ints, body.reals, POINT.ints, POINT.reals)
+    both = body.ints, body.reals, POINT.ints, POINT.reals
+    pair = Pair(*map(pointed, both))
     return pair, Pose(IDENTITY, tuple(map(float, x)))
 
 
@@ -57,8 +59,9 @@ def place_of(side: Side) -> Place:
 
 
 def new_work() -> Work:
-    polytope = np.zeros(N_POLYTOPE)
-    return Work(new_counts(), np.zeros(MAX_EVENTS * EVENT_COLUMNS), polytope, polytope)
+    polytope = pointed(np.zeros(N_POLYTOPE))
+    events = pointed(np.zeros(MAX_EVENTS * EVENT_COLUMNS))
+    return Work(pointed(new_counts()), events, polytope, polytope)
 
 
 def unit(*x: float) -> tuple[float, float, float]:

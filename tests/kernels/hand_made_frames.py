@@ -6,10 +6,22 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from pointed import pointed
 
-from standoff.kernels.frame.inputs import Inputs
-from standoff.kernels.state.arrays import DEPTH_GLOBAL, N_OPTIONS, PREDICT_FEEDFORWARD
-from standoff.kernels.state.options import Options
+from standoff.kernels.frame.inputs import N_CHANGE, Inputs
+from standoff.kernels.state.arrays import (
+    DEPTH_GLOBAL,
+    LAW_PC,
+    N_OPTIONS,
+    O_DEADLINE,
+    O_DEPTH,
+    O_LAW,
+    O_PREDICTOR,
+    O_RESTARTS,
+    O_TOLERANCE,
+    PREDICT_FEEDFORWARD,
+)
+from standoff.kernels.state.options import Options, read_options
 from standoff.kernels.state.state import Integrated, State, fresh_state
 from standoff.kernels.values import NO_RATES, Motion, Place, Pose
 
@@ -26,21 +38,14 @@ def options(
     depth: int = DEPTH_GLOBAL,
     deadline: int = NO_DEADLINE,
 ) -> Options:
-    """Those of the predictor-corrector; the paper's law has the rest."""
-    unused = 0
-    return Options(
-        False,
-        predictor,
-        unused,
-        0.0,
-        tolerance,
-        *7 * (unused,),
-        True,
-        depth,
-        deadline,
-        0,
-        np.zeros(N_OPTIONS),
-    )
+    """Those of the predictor-corrector; all else is 0."""
+    numbers = np.zeros(N_OPTIONS)
+    numbers[O_LAW], numbers[O_PREDICTOR] = LAW_PC, predictor
+    numbers[O_TOLERANCE], numbers[O_DEPTH], numbers[O_DEADLINE] = tolerance, depth, deadline
+    numbers[O_RESTARTS] = 1.0
+    # a pointer cannot be handed back to Python
+    read = getattr(read_options, "py_func", read_options)
+    return read(pointed(numbers))
 
 
 def state_at(place: Place, **known: object) -> State:
@@ -63,4 +68,5 @@ def inputs(
     pose_a: Array, pose_b: Array, twist_a: Sequence[float], twist_b: Sequence[float], told: bool
 ) -> Inputs:
     """In world axes, with or without twists."""
-    return Inputs(pose_a, pose_b, np.array(twist_a, float), np.array(twist_b, float), told)
+    twists = np.array(twist_a, float), np.array(twist_b, float)
+    return Inputs(*map(pointed, (pose_a, pose_b, *twists, np.zeros(N_CHANGE))), told)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from pointed import pointed
 from scipy.optimize import minimize
 
 import standoff as so
@@ -100,8 +101,7 @@ class Placed:
 
     @property
     def pair(self) -> Pair:
-        a, b = self.a.body, self.b.body
-        return Pair(a.ints, a.reals, b.ints, b.reals)
+        return pair_of(self.a.body, self.b.body)
 
     @property
     def pose(self) -> Pose:
@@ -182,7 +182,7 @@ class Placed:
 
 def point_at(body: so.Body, side: Side) -> Array:
     """In the body's frame."""
-    return np.array(feature_jet(body.ints, body.reals, *side)[0])
+    return np.array(feature_jet(*packed(body), *side)[0])
 
 
 def side_at(body: so.Body, x: Sequence[float]) -> Side:
@@ -207,7 +207,11 @@ def side_at(body: so.Body, x: Sequence[float]) -> Side:
 
 
 def packed(body: so.Body) -> tuple[Array, Array]:
-    return body.ints, body.reals
+    return pointed(body.ints), pointed(body.reals)
+
+
+def pair_of(a: so.Body, b: so.Body) -> Pair:
+    return Pair(*packed(a), *packed(b))
 
 
 def on_atlas(body: so.Body, x: Vector) -> Side:
@@ -215,7 +219,7 @@ def on_atlas(body: so.Body, x: Vector) -> Side:
     best, side = np.inf, None
     for chart in range(body.ints[L.N_CHARTS]):
         o = body.ints[L.chart_record(body.ints, chart) + L.CHART_REALS]
-        u, v, depth = chart_parameters(body.reals, o, x)
+        u, v, depth = chart_parameters(packed(body)[1], o, x)
         if depth > 0.0 and max(abs(u), abs(v)) < best:
             best, side = max(abs(u), abs(v)), Side(np.int64(0), np.int64(chart), u, v)
     if side is None:

@@ -7,6 +7,7 @@ import pytest
 from hand_made import new_work
 from hand_made_frames import motion_of
 from hand_made_pairs import Placed, X, Z, ball, box, half_space, point, turn, unit
+from pointed import pointed
 
 import standoff as so
 from standoff.kernels.body import layout as L
@@ -58,7 +59,7 @@ def test_a_body_s_own_slack_is_no_fault_of_the_answer():
     body = so.shapes.box(2.0, 2.0, 2.0)
     reals = body.reals.copy()
     reals[L.SLACK] = 1e-3
-    pair = Pair(body.ints, reals, *CUBE.pair[2:])
+    pair = Pair(pointed(body.ints), pointed(reals), *CUBE.pair[2:])
     assert outcome_of(pair, CUBE.pose, 1e-4, 1e-4 - 1e-3, 0.0, TOLERANCE) == CERTIFIED
     assert outcome_of(pair, CUBE.pose, 1e-4, 1e-4 - 1.001e-3, 0.0, TOLERANCE) == UNCERTIFIED
     exact = CUBE.pair

@@ -15,7 +15,7 @@ from hand_made_pairs import (
     box,
     ellipsoid,
     half_space,
-    packed,
+    pair_of,
     point,
     side_at,
     turn,
@@ -40,7 +40,7 @@ from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, LIMIT
 from standoff.kernels.pair.system import contact_residual
 from standoff.kernels.tolerances import CONTACT_STEPS, NEAR_CONTACT
-from standoff.kernels.values import NO_CHART, Pair, Place, Pose, Side, moved, together
+from standoff.kernels.values import NO_CHART, Place, Pose, Side, moved, together
 
 P = (0.4, 0.3, 1.2)
 WAY = unit(*P)
@@ -81,7 +81,7 @@ def test_two_edges_give_their_common_perpendicular_from_a_to_b(height):
     """
     down = turn(X, math.pi)
     cubes = Placed(box(1.0, 1.0, 1.0), box(1.0, 1.0, 1.0), (1.0, 1.0, 2.0 + height), down)
-    pair = Pair(*packed(BOX), *packed(BOX))
+    pair = pair_of(BOX, BOX)
     place = together(edge_side(EDGE, 0.5), edge_side(ALONG_X, 0.5))
     jets = pair_jets(pair, cubes.pose, place)
     n, sharp = common_normal(pair, cubes.pose, place, jets)
@@ -95,7 +95,7 @@ def test_corners_have_the_direction_of_their_points_alone():
     assert not sharp
     assert n == pytest.approx(unit(0.3, 0.4, 1.2), abs=1e-15)
     parallel = together(edge_side(EDGE, 0.5), edge_side(EDGE, 0.5))
-    pair, pose = Pair(*packed(BOX), *packed(BOX)), Pose(case.R, (3.0, 0.0, 3.0))
+    pair, pose = pair_of(BOX, BOX), Pose(case.R, (3.0, 0.0, 3.0))
     n, sharp = common_normal(pair, pose, parallel, pair_jets(pair, pose, parallel))
     assert not sharp
 
@@ -108,7 +108,7 @@ def test_a_planar_edge_gives_its_own_normal():
         (disc, dot, together(rim, centre), (0.5, 1.5, 0.0), Y),
         (dot, disc, together(centre, rim), (0.5, -1.5, 0.0), (0.0, -1.0, 0.0)),
     ):
-        pair, pose = Pair(*packed(a), *packed(b)), Pose(BALLS.R, p)
+        pair, pose = pair_of(a, b), Pose(BALLS.R, p)
         n, sharp = common_normal(pair, pose, place, pair_jets(pair, pose, place))
         assert sharp
         assert n == pytest.approx(expected, abs=1e-15)

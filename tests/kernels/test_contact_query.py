@@ -1,4 +1,4 @@
-"""A query in contact: what it concludes of depths made by hand, and where it ends from any start."""
+"""A query in contact: what it concludes of depths made by hand, and where it ends from a start."""
 
 import math
 

@@ -288,6 +288,17 @@ def test_points_on_far_sides_are_left_by_one_restart():
     assert work.counts[RESTARTS] >= 1
 
 
+@pytest.mark.parametrize("case", [BALLS, BOXES])
+def test_at_rest_and_not_certified_it_starts_once_more(case):
+    """With a tolerance that nothing meets: the last of the descent is told, and not as found."""
+    work = new_work()
+    found = descend(*case.both, begun(case, X), -1.0, work)
+    assert not found.found
+    assert work.counts[RESTARTS] == 1
+    assert case.rises_around(found.normal)
+    assert found.distance == pytest.approx(-case.depth(found.normal), abs=1e-9)
+
+
 @pytest.mark.parametrize("limit", [0, 1, 2])
 def test_without_evaluations_left_it_has_found_nothing(limit):
     """What it ends with is a distance along its direction that is known, and goes on from there."""

@@ -5,7 +5,20 @@ import math
 import numpy as np
 import pytest
 from hand_made import new_work
-from hand_made_pairs import Placed, X, Y, Z, ball, box, half_space, segment, turn, unit, vector
+from hand_made_pairs import (
+    Placed,
+    X,
+    Y,
+    Z,
+    ball,
+    box,
+    half_space,
+    pair_of,
+    segment,
+    turn,
+    unit,
+    vector,
+)
 
 import standoff as so
 from standoff.kernels.depth.descent import descend
@@ -24,7 +37,7 @@ from standoff.kernels.depth.rivals import (
 )
 from standoff.kernels.pair.events import LIMIT
 from standoff.kernels.tolerances import AROUND, SAME_WIDTH
-from standoff.kernels.values import Depth, Pair, Pose
+from standoff.kernels.values import Depth, Pose
 
 TURN = turn((1, 2, 3), 0.9)
 SLAB = Placed(box(1.0, 0.8, 0.6), ball(0.3), (0.0, 0.0, 0.0))
@@ -54,7 +67,7 @@ def test_planar_starts_stay_in_their_plane():
     loop = so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (1, 0), (0, 1), 0, 2 * np.pi)])
     dot = so.shapes.point()
     for a, b in ((loop, dot), (dot, loop)):
-        pair = Pair(a.ints, a.reals, b.ints, b.reals)
+        pair = pair_of(a, b)
         ways = [start_direction(pair, Pose(TURN, X), X, k) for k in range(1, N_STARTS)]
         assert not np.array(ways)[:, 2].any()
         assert len({tuple(np.round(way, 9)) for way in ways}) > 8

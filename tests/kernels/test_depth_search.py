@@ -1,33 +1,34 @@
-"""The search of all depths: seeds, proofs and probes, on boxes, balls, segments and ellipsoids."""
+"""The search of all depths: probes, proofs and the polytope it keeps, on boxes, balls and eggs."""
 
 import math
 
 import numpy as np
 import pytest
-from hand_made import new_work
-from hand_made_pairs import (
-    Placed,
-    Solid,
-    X,
-    Y,
-    Z,
-    ball,
-    box,
-    ellipsoid,
-    point,
-    segment,
-    turn,
-    unit,
-    vector,
+from depth_cases import (
+    BALLS,
+    BOXES,
+    CASES,
+    DEEP,
+    EGGS,
+    INSIDE,
+    NOTHING,
+    TOLERANCE,
+    TURNED,
+    WAY,
+    begun,
+    drawn,
+    minimum_below,
+    planar,
+    seeded_hull,
+    vertices,
 )
-from hull_making import assert_closed, hull_of
+from hand_made import new_work
+from hand_made_pairs import Placed, X, Y, Z, ball, box, point, segment, unit, vector
+from pointed import pointed
 
-import standoff as so
 from draws import draws
-from standoff.geometry import Line
-from standoff.kernels.depth.descent import descend
-from standoff.kernels.depth.difference_hull import FACETS, POINT_REALS, facet_normal, nearest_facet
-from standoff.kernels.depth.penetration import begin_along, contact_scale
+from standoff.kernels.depth.difference_hull import nearest_facet
+from standoff.kernels.depth.penetration import begin_along
 from standoff.kernels.depth.search import (
     SEEDS,
     deepest_below,
@@ -35,191 +36,16 @@ from standoff.kernels.depth.search import (
     less_deep,
     narrow,
     narrow_kept,
-    overlap_shown,
     search,
     search_flat,
-    seed,
-    seed_direction,
-    seed_hull,
     settles,
 )
 from standoff.kernels.pair.events import EVALUATIONS, KEEPING, KEPT, LIMIT, SEARCHES
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
-from standoff.kernels.tolerances import DEPTH_PROOF, MAX_RIVALS, PRISM, TOUCHING
-from standoff.kernels.values import Depth, Pair, Pose, Work
+from standoff.kernels.tolerances import DEPTH_PROOF, MAX_RIVALS
+from standoff.kernels.values import Depth, Work
 
-TOLERANCE = 1e-10
 HOW = (TOLERANCE, DEPTH_PROOF, MAX_RIVALS)
-P = (0.4, 0.3, 1.2)
-BALLS = Placed(ball(1.0), ball(0.7), P)
-WAY = unit(*P)
-BOXES = Placed(box(1.0, 0.8, 0.6), box(0.3, 0.4, 0.5), (0.9, 0.5, -0.3))
-DEEP = 0.6 + 0.5 - 0.3
-"""Of BOXES: along -z. Along x it is 0.4, the least; along y 0.7."""
-TURNED = Placed(box(1.0, 0.8, 0.6), box(0.5, 0.4, 0.3), (0.7, 0.2, 0.1), turn((1, 2, 3), 0.9))
-EGGS = Placed(
-    ellipsoid(1.0, 0.8, 0.6), ellipsoid(0.3, 0.7, 0.5), (0.3, 0.2, 0.9), turn((1, 2, 3), 0.9)
-)
-INSIDE = EGGS.at(0.1, 0.0, 0.05)
-ROUND = Placed(box(1.0, 0.8, 0.6), ball(0.5), (0.9, 0.5, -0.3))
-CASES = [BALLS, BOXES, TURNED, EGGS, INSIDE, ROUND]
-NOTHING = Depth(False, -math.inf, Z, begin_along(*BALLS.both, Z))
-
-
-def begun(case, n, distance=math.nan):
-    return Depth(False, distance, n, begin_along(*case.both, n))
-
-
-def minimum_below(case, n):
-    found = descend(*case.both, begun(case, n), TOLERANCE, new_work())
-    assert found.found
-    return found
-
-
-def seeded_hull(case):
-    hull = hull_of(np.zeros((0, 3)))
-    solid, way = seed_hull(*case.both, hull, contact_scale(case.pair))
-    return hull, solid, way
-
-
-def vertices(hull):
-    return hull.points.reshape(-1, POINT_REALS)[: hull.sizes[0]]
-
-
-def test_seeds_are_the_axes_and_the_corners_of_a_cube():
-    ways = np.array([seed_direction(False, k) for k in range(SEEDS)])
-    np.testing.assert_allclose(np.linalg.norm(ways, axis=1), 1.0, atol=1e-15)
-    found = {tuple(np.sign(np.round(way, 12)).astype(int).tolist()) for way in ways}
-    axes = {tuple(x) for x in np.vstack([np.eye(3), -np.eye(3)]).astype(int).tolist()}
-    corners = {(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)}
-    assert found == axes | corners
-
-
-def test_planar_seeds_go_round_their_plane():
-    ways = np.array([seed_direction(True, k) for k in range(8)])
-    np.testing.assert_allclose(np.linalg.norm(ways, axis=1), 1.0, atol=1e-15)
-    angles = np.sort(np.arctan2(ways[:, 1], ways[:, 0]))
-    np.testing.assert_allclose(np.diff(angles), np.pi / 4.0, atol=1e-15)
-    assert not ways[:, 2].any()
-
-
-def test_a_seed_is_the_difference_of_the_corners_farthest_along():
-    hull = hull_of(np.zeros((0, 3)))
-    n = unit(1, -2, 3)
-    assert seed(*TURNED.both, hull.points, 0, n, 1.0) == 1
-    x, of_a, of_b = np.split(hull.points[:POINT_REALS], 3)
-    R = np.array(TURNED.R).reshape(3, 3)
-    np.testing.assert_allclose(x, of_a - (R @ of_b + TURNED.p), atol=1e-15)
-    np.testing.assert_array_equal(of_a, [1.0, -0.8, 0.6])
-    np.testing.assert_array_equal(np.abs(of_b), [0.5, 0.4, 0.3])
-    assert np.dot(n, x) == pytest.approx(TURNED.depth(n), abs=1e-14)
-
-
-CORNERS = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-SQUARE = so.shapes.planar_loop(
-    [Line(x, y) for x, y in zip(CORNERS, CORNERS[1:] + CORNERS[:1], strict=True)]
-)
-
-
-def planar(x, y):
-    """Two squares of half width 1, the second at (x, y)."""
-    pair = Pair(SQUARE.ints, SQUARE.reals, SQUARE.ints, SQUARE.reals)
-    return pair, Pose(BOXES.R, (x, y, 0.0))
-
-
-def test_a_planar_seed_is_an_edge_of_the_prism():
-    hull = hull_of(np.zeros((0, 3)))
-    assert seed(*planar(0.5, 0.0), hull.points, 0, unit(1, 1, 0), 3.0) == 2
-    high, low = hull.points[:POINT_REALS], hull.points[POINT_REALS : 2 * POINT_REALS]
-    np.testing.assert_allclose(high[:3], [1.5, 2.0, 3.0 * PRISM], atol=1e-15)
-    np.testing.assert_allclose(low[:3], [1.5, 2.0, -3.0 * PRISM], atol=1e-15)
-    # the heights are A's alone
-    assert (high[5], high[8]) == (3.0 * PRISM, 0.0)
-
-
-def test_the_hull_of_seeds_of_aligned_boxes_is_their_difference():
-    """Half widths 1.3, 1.2, 1.1 about -p: the nearest face is 0.4 from the origin."""
-    hull, solid, _ = seeded_hull(BOXES)
-    assert solid
-    assert_closed(hull)
-    corners = np.abs(vertices(hull)[:, :3] + BOXES.p)
-    np.testing.assert_allclose(corners.max(axis=0), [1.3, 1.2, 1.1], atol=1e-15)
-    at, least = nearest_facet(hull, False)
-    assert least == pytest.approx(0.4, abs=1e-13)
-    assert facet_normal(hull, at) == pytest.approx(X, abs=1e-14)
-
-
-def test_crossing_segments_have_a_flat_difference():
-    case = Placed(segment((-1, 0, 0), (1, 0, 0)), segment((0, -1, 0), (0, 1, 0)), (0.0, 0.0, 0.5))
-    hull, solid, way = seeded_hull(case)
-    assert not solid
-    assert np.abs(way) == pytest.approx(Z, abs=1e-15)
-    assert hull.sizes[FACETS] == 0
-
-
-def test_a_needle_s_seeds_are_completed_square_to_their_plane():
-    """No seed's direction has the top of a low pyramid farthest along: three corners are flat."""
-    n = np.array(unit(1.0, 0.35, 0.15))
-    e, f = (np.array(x) for x in (unit(-0.35, 1.0, 0.0), unit(*np.cross(n, (-0.35, 1.0, 0.0)))))
-    base = [2.0 * (np.cos(k) * e + np.sin(k) * f) for k in 2.0 * np.pi / 3.0 * np.arange(3)]
-    body = so.shapes.polytope([*base, 0.05 * n])
-    case = Placed(Solid(body, lambda n: n[..., 0]), point(), (0.0, 0.0, 0.0))
-    tops = [np.dot(seed_direction(False, k), 0.05 * n) for k in range(SEEDS)]
-    others = [max(np.dot(seed_direction(False, k), x) for x in base) for k in range(SEEDS)]
-    assert all(np.array(tops) < others)
-    hull, solid, _ = seeded_hull(case)
-    assert solid
-    assert hull.sizes[FACETS] == 4
-
-
-SOLIDS = [TURNED.a, TURNED.b, EGGS.a, EGGS.b]
-
-
-def drawn(rng, lift):
-    """A turned pair of boxes or ellipsoids, and a direction along which their cores are `lift`
-    apart."""
-    a, b = (SOLIDS[rng.integers(4)] for _ in range(2))
-    R = turn(rng.normal(size=3).tolist(), float(rng.uniform(0.0, 3.0)))
-    n = unit(*rng.normal(size=3))
-    here = Placed(a, b, (0.0, 0.0, 0.0), R)
-    sideways = np.cross(n, rng.normal(size=3)) * 0.1
-    p = sideways + (here.depth(n) + lift) * np.array(n)
-    return here.at(*p), n
-
-
-@pytest.mark.parametrize("lift", [1e-12, 1e-6, 1e-2, 1.0])
-def test_an_overlap_is_never_shown_of_bodies_apart(lift, rng):
-    for _ in range(draws(30)):
-        case, n = drawn(rng, lift)
-        assert case.depth(n) < 0.0
-        assert not overlap_shown(*case.both)[0]
-
-
-def test_an_overlap_that_is_shown_is_no_deeper_than_it_is(rng):
-    shown = 0
-    for _ in range(draws(60)):
-        case, _ = drawn(rng, -float(rng.uniform(0.05, 0.8)))
-        found, n, least = overlap_shown(*case.both)
-        if found:
-            shown += 1
-            assert 0.0 < least <= case.depth(n) + 1e-13
-            assert least <= case.least_depth() + 1e-12
-    assert shown > draws(60) // 2
-
-
-def test_an_overlap_of_aligned_boxes_is_shown_to_the_digit():
-    found, n, least = overlap_shown(*BOXES.both)
-    assert found
-    assert n == pytest.approx(X, abs=1e-14)
-    assert least == pytest.approx(0.4, abs=1e-13)
-    # touching, and overlapping by less than TOUCHING
-    for gap in (0.0, -0.1 * TOUCHING):
-        assert not overlap_shown(*BOXES.at(1.3 + gap, 0.5, -0.3).both)[0]
-    assert overlap_shown(*BOXES.at(1.3 - 1e-9, 0.5, -0.3).both)[0]
-    flat = Placed(segment((-1, 0, 0), (1, 0, 0)), segment((0, -1, 0), (0, 1, 0)), (0.0, 0.0, 0.0))
-    shown, n, least = overlap_shown(*flat.both)
-    assert (shown, least) == (False, 0.0)
-    assert np.abs(n) == pytest.approx(Z, abs=1e-15)
 
 
 def test_the_difference_of_witness_points():
@@ -380,7 +206,7 @@ def keeping_work(last):
     """Of a frame that may keep its polytope, and has one kept."""
     work = new_work()
     work.counts[KEEPING] = 1
-    return Work(work.counts, work.events, last, np.zeros(N_POLYTOPE))
+    return Work(work.counts, work.events, *map(pointed, (last, np.zeros(N_POLYTOPE))))
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -437,6 +263,19 @@ def test_a_kept_polytope_that_is_of_no_use_is_made_anew():
     found, least = search(*away.both, NOTHING, TOLERANCE, DEPTH_PROOF, MAX_RIVALS, second)
     assert_least(away, found, least)
     assert second.counts[SEARCHES] == 1
+
+
+def test_a_kept_polytope_that_does_not_prove_the_depth_is_made_anew():
+    """By a proof that no bound gives: twice the depth."""
+    first = keeping_work(np.zeros(N_POLYTOPE))
+    best = minimum_below(BOXES, X)
+    search(*BOXES.both, best, TOLERANCE, DEPTH_PROOF, MAX_RIVALS, first)
+    assert first.counts[KEPT] == 1
+    second = keeping_work(first.polytope)
+    found, least = search(*BOXES.both, best, TOLERANCE, -1.0, MAX_RIVALS, second)
+    assert second.counts[SEARCHES] == 1
+    assert found.distance == pytest.approx(-0.4, abs=1e-12)
+    assert least == pytest.approx(0.4, abs=1e-12)
 
 
 @pytest.mark.parametrize(

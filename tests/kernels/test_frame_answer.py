@@ -4,9 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from hand_made import new_work
 from hand_made_frames import flat, inputs, motion_of, state_at
-from hand_made_pairs import IDENTITY, Placed, X, Z, ball, box, point, turn, unit, vector
+from hand_made_pairs import IDENTITY, Placed, X, Z, ball, box, pair_of, point, turn, unit, vector
+from pointed import pointed
 
+import standoff as so
 from standoff.kernels.algebra.rigid import relative_pose, relative_twist
 from standoff.kernels.frame.answer import (
     normal_rate,
@@ -15,22 +18,32 @@ from standoff.kernels.frame.answer import (
     write_rates,
     write_vector,
 )
-from standoff.kernels.frame.inputs import moving, twisted
+from standoff.kernels.frame.feedforward import feedforward_now
+from standoff.kernels.frame.inputs import moving, refused, twisted
 from standoff.kernels.pair.certified import CERTIFIED
 from standoff.kernels.pair.descent import pair_jets
+from standoff.kernels.pair.events import EVALUATIONS, REGULARISED
 from standoff.kernels.state.arrays import (
+    BAD_POSE_A,
+    BAD_POSE_B,
+    BAD_TWIST,
     CONVERGED,
     DISTANCE,
+    FINE,
     LOWER_BOUND,
     N_OUT,
     NORMAL,
     OUT_COUNTS,
     OUT_MODE,
+    OUT_OF_PLANE,
     OUT_Q,
     OUT_RATE,
+    OVERLAPPING,
     POINT_A,
     POINT_B,
     RESIDUAL,
+    SOLVE_PLAIN,
+    SOLVE_RANKED,
     STATUS,
     UPPER_BOUND,
     VELOCITY_A,
@@ -116,7 +129,7 @@ def test_the_normal_turns_by_what_is_square_to_it():
 
 
 def test_b_s_motion_is_seen_from_a():
-    """A vector fixed to B turns by w_B - w_A, and B's origin moves by what A's own motion leaves."""
+    """B turns by w_B - w_A, and its origin moves by what A's own motion leaves."""
     pose = relative_pose(GIVEN.pose_a, GIVEN.pose_b)
     motion = twisted(GIVEN, pose)
     assert motion.pose == pose
@@ -146,6 +159,53 @@ def test_without_twists_it_is_the_motion_since_the_frame_before():
     np.testing.assert_allclose(motion.w, 2.0 * own_z, atol=1e-12)
     still = moving(SILENT, state_before(before), 0.1)
     np.testing.assert_allclose([still.v, still.w], 0.0, atol=1e-13)
+
+
+def test_a_pose_that_is_none_is_refused():
+    """Named in the order of poses and twists; a planar body must stay in z = 0."""
+    case = BALLS[0]
+    assert refused(case.pair, GIVEN) == FINE
+    mirrored = flat(IDENTITY, CENTRE_A)
+    mirrored[0] = -1.0
+    assert refused(case.pair, replaced(pose_a=mirrored)) == BAD_POSE_A
+    stretched = flat(IDENTITY, CENTRE_A)
+    stretched[4] = 1.001
+    assert refused(case.pair, replaced(pose_b=stretched)) == BAD_POSE_B
+    for number in (math.nan, math.inf):
+        assert refused(case.pair, replaced(twist_b=np.full(6, number))) == BAD_TWIST
+    disc = so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (1, 0), (0, 1), 0, 2 * np.pi)])
+    for pair in (pair_of(disc, so.shapes.point()), pair_of(so.shapes.point(), disc)):
+        level = replaced(pose_a=flat(turn(Z, 0.3), (1, 2, 0)), pose_b=flat(IDENTITY, (3, 2, 0)))
+        assert refused(pair, level) == FINE
+        for pose in (flat(IDENTITY, (3, 2, 1e-9)), flat(turn(X, 1e-9), (3, 2, 0))):
+            assert refused(pair, level._replace(pose_b=pointed(pose))) == OUT_OF_PLANE
+
+
+def replaced(**numbers):
+    return GIVEN._replace(**{name: pointed(value) for name, value in numbers.items()})
+
+
+def test_the_feedforward_at_an_answer_is_that_of_its_points():
+    """The balls' points as they follow the line of centres, by one evaluation."""
+    case, found, jets = BALLS
+    for solve in (SOLVE_RANKED, SOLVE_PLAIN):
+        work = new_work()
+        rates = feedforward_now(case.pair, relative(), found.place, solve, work)
+        assert rates == pytest.approx(rates_of(case, jets, seen_rate()), abs=1e-12)
+        assert (work.counts[EVALUATIONS], work.counts[REGULARISED]) == (1, 0)
+
+
+def test_two_planes_have_a_feedforward_by_the_rank_rule_alone():
+    """Box on box: H is singular. The plain solve makes no step, and both count it."""
+    case = Placed(box(1.0, 1.0, 1.0), box(0.5, 0.5, 0.5), (0.2, 0.1, 2.0))
+    place = case.place((0.2, 0.1, 1.0), (0.0, 0.0, -0.5))
+    motion = motion_of(case.pose, (0.3, 0.0, 0.0))
+    for solve, along in ((SOLVE_RANKED, 0.15), (SOLVE_PLAIN, 0.0)):
+        work = new_work()
+        rates = feedforward_now(case.pair, motion, place, solve, work)
+        # half of the slip each is the least; (u, v) of a top are (-y, x)
+        assert rates[1] == pytest.approx(along, abs=1e-12)
+        assert work.counts[REGULARISED] == 1
 
 
 def rates_of(case, jets, n_rate):
@@ -209,6 +269,22 @@ def test_an_answer_tells_where_its_points_are_and_how_they_move():
     assert out[OUT_RATE] == pytest.approx(N @ SLIP, abs=1e-14)
     assert (out[OUT_COUNTS:] == -7.0).all()
     assert math.isfinite(out[:OUT_COUNTS].sum())
+
+
+def test_of_bodies_that_overlap_no_distance_is_told():
+    """What their points are apart by tells nothing, and less than 0 what it parts them by."""
+    case, found, jets = BALLS
+    shown = Shown(found, jets, False, True, NO_RATES)
+    for status, distance in ((CONVERGED, 1.9), (OVERLAPPING, 0.0)):
+        out = np.full(N_OUT, np.nan)
+        write_answer(case.pair, SILENT, relative(), shown, ORIGIN, status, out)
+        assert out[DISTANCE] == pytest.approx(distance, abs=1e-15)
+        assert out[UPPER_BOUND] == pytest.approx(distance, abs=1e-11)
+        assert out[LOWER_BOUND] == pytest.approx(1.9, abs=1e-11)
+        assert out[STATUS] == status
+    deep = shown._replace(found=found._replace(distance=-0.3, upper=-0.2))
+    write_answer(case.pair, SILENT, relative(), deep, ORIGIN, OVERLAPPING, out)
+    assert (out[DISTANCE], out[UPPER_BOUND]) == (-0.3, -0.2)
 
 
 def test_without_twists_an_answer_has_no_rates():

@@ -114,7 +114,7 @@ def test_which_part_of_how_many(heard: Callable[[], list[str]]) -> None:
     compiled("contact")
     assert [line.partition("(")[2].partition(")")[0] for line in heard()] == [
         *("start, part 1 of 3", "start, part 2 of 3", "start, part 3 of 3"),
-        "start, part 1 of at most 2",
+        "start, part 1 of at most 3",
     ]
 
 

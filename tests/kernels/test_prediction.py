@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hand_made import BOX, EDGE, TOP, beside, new_work, on_edge, on_top, place_of
 from hand_made_frames import motion_of, state_at
-from hand_made_pairs import Placed, ball, box, on_atlas, unit
+from hand_made_pairs import Placed, ball, box, on_atlas, packed, unit
 
 import standoff as so
 from standoff.kernels.body.features import feature_jet
@@ -32,7 +32,7 @@ from standoff.kernels.state.arrays import (
     PREDICT_SECANT,
 )
 from standoff.kernels.state.state import Integrated
-from standoff.kernels.state.tracked import Shown, Tracked, without_rates
+from standoff.kernels.state.tracked import Shown, Tracked, begun, errors_at, without_rates
 from standoff.kernels.values import NO_RATES, Found, Side, moved
 
 RATES, LAST = (1.0, -2.0, 3.0, 0.5), (0.5, 1.0, -1.0, 0.0)
@@ -80,7 +80,7 @@ def test_a_step_over_a_boundary_holds_it():
     work = new_work()
     place = apply_step(PAIR, PLACE, (0.0, 1.4, 0.0, 0.0), work)
     assert (place.feature_a, place.chart_a) == (EDGE, -1)
-    jet = feature_jet(BOX.ints, BOX.reals, place.feature_a, place.chart_a, place.u, place.v)
+    jet = feature_jet(*packed(BOX), place.feature_a, place.chart_a, place.u, place.v)
     assert jet[0] == pytest.approx((1.0, -0.2, 1.0), abs=1e-15)
     assert work.counts[EVENTS] == 1
 
@@ -103,23 +103,23 @@ def test_a_step_to_a_chart_s_rim_changes_charts():
 
 
 def velocity(side, rates):
-    jet = feature_jet(BALL.ints, BALL.reals, side.feature, side.chart, side.p, side.q)
+    jet = feature_jet(*packed(BALL), side.feature, side.chart, side.p, side.q)
     return np.array(jet[0]), rates[0] * np.array(jet[1]) + rates[1] * np.array(jet[2])
 
 
 def test_in_another_chart_it_is_the_same_point_with_the_same_velocity():
     x = tuple(float(y) for y in np.array([1.0, 0.8, 0.6]) * unit(1.0, 0.9, 0.3))
     old, rates = on_atlas(BALL, x), (0.4, -0.7)
-    assert in_chart(BALL.ints, BALL.reals, old, rates, old.chart) == (True, old, rates)
+    assert in_chart(*packed(BALL), old, rates, old.chart) == (True, old, rates)
     other = on_atlas(BALL, (0.0, 0.8, 0.0)).chart
     assert other != old.chart
-    seen, side, w = in_chart(BALL.ints, BALL.reals, old, rates, other)
+    seen, side, w = in_chart(*packed(BALL), old, rates, other)
     assert seen
     assert side.chart == other
     for mine, theirs in zip(velocity(old, rates), velocity(side, w), strict=True):
         np.testing.assert_allclose(theirs, mine, atol=1e-14)
     opposite = on_atlas(BALL, (-1.0, 0.0, 0.0)).chart
-    assert in_chart(BALL.ints, BALL.reals, old, rates, opposite) == (False, old, rates)
+    assert in_chart(*packed(BALL), old, rates, opposite) == (False, old, rates)
 
 
 def test_a_history_is_carried_to_the_charts_of_this_frame_and_not_to_other_features():
@@ -245,3 +245,11 @@ def test_points_found_without_the_law_show_their_own_jets():
     assert shown.jets[0][0] == pytest.approx((0.3, -0.2, 1.0), abs=1e-15)
     assert shown.jets[1][0] == pytest.approx(ABOVE, abs=1e-15)
     assert not shown.fresh
+
+
+def test_the_law_begins_with_the_errors_of_its_place():
+    """Psi of a point 2 above (0.3, -0.2), from the middle of the top: the tangents are (-y, x)."""
+    place = place_of(on_top(0.0, 0.0))
+    errors = errors_at(PAIR, POSE, place)
+    assert errors == pytest.approx((-0.2, -0.3, 0.0, 0.0), abs=1e-15)
+    assert begun(PAIR, POSE, place, 7.0) == Integrated(errors, NO_RATES, 7.0)

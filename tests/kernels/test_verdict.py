@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from hand_made_frames import flat, inputs
 
 import standoff as so
-from standoff.kernels.frame.answer import judge
+from standoff.kernels.frame.answer import judge, write_answer
 from standoff.kernels.pair.certified import (
     CERTIFIED,
     OVERLAP,
@@ -12,7 +13,18 @@ from standoff.kernels.pair.certified import (
     TOUCHING_OR_OVERLAPPING,
     UNCERTIFIED,
 )
-from standoff.kernels.values import Found, Pair, Place
+from standoff.kernels.pair.descent import pair_jets
+from standoff.kernels.state.arrays import (
+    DISTANCE,
+    LOWER_BOUND,
+    N_OUT,
+    NOT_CERTIFIED,
+    OVERLAPPING,
+    STATUS,
+    UPPER_BOUND,
+)
+from standoff.kernels.state.tracked import Shown
+from standoff.kernels.values import NO_RATES, ORIGIN, Found, Pair, Place, Pose, resting
 from standoff.tracking import Status
 
 BOX, BALL = so.shapes.box(1.0, 1.0, 1.0), so.shapes.sphere(0.5)
@@ -84,6 +96,24 @@ def test_a_deadline_is_told_only_where_the_answer_is_not_certified():
     assert status(OVERLAP, 0.3, -1.0, 0.3, cut=True) is Status.OVERLAPPING
 
 
+@pytest.mark.parametrize(("distance", "upper"), [(0.3, 0.3), (-0.2, 0.1), (-0.2, -0.1)])
+@pytest.mark.parametrize("named", [OVERLAPPING, NOT_CERTIFIED])
+def test_of_an_overlap_no_bound_is_above_0(distance, upper, named):
+    """What the points found are apart by, which overlap all the same, is no distance."""
+    pair = Pair(BOX.ints, BOX.reals, BOX.ints, BOX.reals)
+    home = flat(np.eye(3).ravel(), ORIGIN)
+    given = inputs(home, home, np.zeros(6), np.zeros(6), False)
+    pose = Pose(tuple(home[:9]), ORIGIN)
+    found = Found(OVERLAP, PLACE, distance, -0.5, upper, (1.0, 0.0, 0.0))
+    shown = Shown(found, pair_jets(pair, pose, PLACE), False, False, NO_RATES)
+    out = np.full(N_OUT, np.nan)
+    write_answer(pair, given, resting(pose), shown, ORIGIN, named, out)
+    most = 0.0 if named == OVERLAPPING else np.inf
+    assert out[DISTANCE] == min(distance, most)
+    assert out[UPPER_BOUND] == min(upper, most)
+    assert (out[LOWER_BOUND], out[STATUS]) == (-0.5, named)
+
+
 MARGIN = 1e-9
 GAP = {"near": 1e-12, "wide": 1e-6}
 BY_BOUNDS = [
@@ -134,3 +164,11 @@ def test_a_bound_below_the_radii_shows_no_gap(lower):
     assert status(*wide, other=BALL, tolerance=1.0) is Status.LOCAL
     assert status(*wide, other=BALL) is Status.NOT_CERTIFIED
     assert status(CERTIFIED, 0.6, 0.5 + MARGIN, 0.6, other=BALL) is Status.CONVERGED
+
+
+def test_a_proof_of_overlap_decides_what_no_bound_does():
+    assert status(OVERLAP, 0.1, -1.0, 0.1) is Status.OVERLAPPING
+    # bounds that certify go first, and so does a law that still converges
+    assert status(OVERLAP, -0.3, -0.3 - 1e-12, -0.3) is Status.GLOBAL
+    assert status(OVERLAP, 0.1, -1.0, 0.1, lenient=True) is Status.TRACKING
+    assert status(OVERLAP, 0.1, -1.0, 0.1, cut=True) is Status.OVERLAPPING

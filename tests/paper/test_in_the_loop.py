@@ -98,7 +98,7 @@ def test_low_gains_suffice(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_device_and_the_law_are_those_that_are_told() -> None:
     one = operator()
     assert one.tracker == "inside"
-    assert one.law.gain == 100.0
+    assert one.laws[0].gain == 100.0
     assert device().sampling.period == PERIOD
     assert one.system.bodies[1].body.radius == BALL
 

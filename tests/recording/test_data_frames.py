@@ -60,6 +60,7 @@ def test_a_missing_library_is_named_with_its_extra(
     monkeypatch.setitem(sys.modules, library, None)
     module = {"pandas": "data_frame", "pyarrow": "file"}[library]
     monkeypatch.delitem(sys.modules, f"standoff.recording.{module}", raising=False)
+    monkeypatch.delitem(sys.modules, "standoff.parquet", raising=False)
     extra = {"pandas": "pandas", "pyarrow": "cli"}[library]
     with pytest.raises(ModuleNotFoundError, match=rf"pip install 'standoff\[{extra}\]'"):
         getattr(passing, call)()

@@ -310,6 +310,7 @@ def test_a_missing_library_is_named(
         with monkeypatch.context() as patch:
             patch.delattr(f"standoff.recording.{module}", raising=False)
             patch.delitem(sys.modules, f"standoff.recording.{module}", raising=False)
+            patch.delitem(sys.modules, "standoff.parquet", raising=False)
             patch.setitem(sys.modules, name, None)
             with pytest.raises(ModuleNotFoundError, match=rf"{name} .*standoff\[cli\]"):
                 use()

@@ -178,7 +178,7 @@ BAD_PATCHES = [
         ["(1, 1)", "positive"],
     ),
     (patched(weights=[[1.0] * 3, [1.0, -2.0, 1.0], *WEIGHTS[2:]]), "weights", ["-2.0", "positive"]),
-    (patched(weights=WEIGHTS[:3]), "weights", ["(3, 3)", "4"]),
+    (patched(weights=WEIGHTS[:3]), "weights", ["(3, 3)", "4 by 3"]),
     (patched(weights=[[1.0] * 2, *WEIGHTS[1:]]), "weights[1]", ["3 entries", "weights[0] has 2"]),
     (
         patched(control_points=with_point(2, 1, [0.0, NOT_A_NUMBER, 0.0])),

@@ -159,7 +159,7 @@ def test_limits_are_lowered_never_raised(pointed: tuple[Servo, PointerDevice]) -
     servo.lower_force_limit(5.0)
     time.sleep(5 * PERIOD)
     assert servo.latest().force_limit == 0.5
-    with pytest.raises(StandoffError, match="force is -1"):
+    with pytest.raises(StandoffError, match="force = -1"):
         servo.lower_force_limit(-1.0)
     servo.lower_torque_limit(0.0)
     assert until(lambda: servo.latest().torque_limit == 0.0)
@@ -376,10 +376,10 @@ def test_memory_is_flat(operator: sim.Operator) -> None:
     [
         ({"rate": 1000.0}, "rate is 1000, and the operator makes 500 ticks"),
         ({"device": "haply"}, "device is 'haply': give a Trace"),
-        ({"seconds": 0.0}, "seconds is 0.0"),
+        ({"seconds": 0.0}, "seconds = 0.0"),
         ({"seconds": 1e12}, "give 1e.09 at most"),
-        ({"max_age": -1.0}, "max_age is -1"),
-        ({"log_ticks": 10**9}, "log_ticks is 1000000000"),
+        ({"max_age": -1.0}, "max_age = -1"),
+        ({"log_ticks": 10**9}, "log_ticks = 1000000000"),
         ({"state": 3}, "state is 3"),
     ],
 )

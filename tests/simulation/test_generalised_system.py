@@ -97,9 +97,8 @@ def test_a_pendulum_meets_a_wall_at_its_lowest_point_and_keeps_its_energy() -> N
     assert np.abs(energy - energy[0]).max() < 1e-6 * (energy[0] + MASS * G * LENGTH)
 
 
-def test_switches_are_located() -> None:
-    """A point slides past a box's upper face: two switches, at its edges."""
-    box = so.shapes.box(1.0, 1.0, 1.0)
+def passing(box: so.Body, **given: Any) -> sim.Solution:
+    """A point slides at the speed 1 over a box's upper face, from x = -1.03 on."""
     system = sim.GeneralisedSystem(
         bodies=[box, so.shapes.point()],
         place=lambda theta: [so.Pose.identity(), so.Pose(np.eye(3), [theta[0], 0.1, 0.8])],
@@ -109,11 +108,26 @@ def test_switches_are_located() -> None:
         field=lambda theta, rate: np.zeros(1),
         contact=sim.HuntCrossley(stiffness=1.0),
     )
-    found = sim.solve(system, [-1.03], [1.0], 2.0)
+    return sim.solve(system, [-1.03], [1.0], 2.0, **given)
+
+
+def test_switches_are_located() -> None:
+    """Two switches, at the face's edges."""
+    found = passing(so.shapes.box(1.0, 1.0, 1.0))
     times = [event.time for event in found.events if event.kind == "switch"]
     assert times == pytest.approx([0.53, 1.53], abs=1e-9)
     assert found.events[0].source.startswith("edge")
     assert found.events[0].target.startswith("face")
+
+
+def test_several_switches_of_one_step_are_located() -> None:
+    """A face that is passed within one step: the features at its ends are two edges."""
+    found = passing(so.shapes.box(0.02, 1.0, 1.0), max_step=1.0)
+    assert max(np.diff(found.times)) > 0.5
+    times = [event.time for event in found.events]
+    assert times == pytest.approx([1.02, 1.04], abs=1e-9)
+    kinds = [(event.source.split()[0], event.target.split()[0]) for event in found.events]
+    assert kinds == [("edge", "face"), ("face", "edge")]
 
 
 def test_a_singular_mass_is_told_with_its_coordinates() -> None:

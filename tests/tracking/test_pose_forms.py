@@ -205,7 +205,7 @@ WRONG = {
     "3 by 4": (lambda p: p[:, :3].reshape(-1, 12), r"rows are 3 by 4 matrices \[R p\]"),
     "transposed": (lambda p: p.transpose(0, 2, 1), "transpose the matrix"),
     "half precision": (lambda p: p.astype(np.float16), "Pose.nearest"),
-    "nan": (lambda p: p * np.nan, "must be finite"),
+    "nan": (lambda p: p * np.nan, "NaN or infinite"),
 }
 
 

@@ -60,10 +60,11 @@ def test_they_cannot_be_written_and_follow_a_copy() -> None:
             setattr(buffer, name, 0.0)
     with pytest.raises(ValueError, match="read-only"):
         buffer.normal[0] = 1.0
-    for other in (pickle.loads(pickle.dumps(buffer)), copy.deepcopy(buffer)):
+    both = TRACKER, buffer
+    for tracker, other in (pickle.loads(pickle.dumps(both)), copy.deepcopy(both)):
         before = buffer.normal.copy()
         np.testing.assert_array_equal(other.normal, before)
-        other.tracker.step_into(other, REST, POSES[9])
+        tracker.step_into(other, REST, POSES[9])
         np.testing.assert_array_equal(buffer.normal, before)
         np.testing.assert_array_equal(other.normal, other.proximity().normal)
         assert not np.array_equal(other.normal, before)

@@ -37,8 +37,8 @@ SYMBOLS = {
 }
 
 
-OWN_FRAME = "standoff_kernel_paper"
-"""The frame of the paper's law."""
+LAWS = {"standoff_kernel_predicted": laws.predicted, "standoff_kernel_paper": laws.paper}
+"""The laws' frames."""
 
 
 def smooth_symbols() -> list[str]:
@@ -53,8 +53,7 @@ def compiled_libraries(progress: Progress) -> tuple[dict[str, str], list[Any]]:
     asked: list[tuple[str, Any, Any]] = [
         (symbol, kernel, TABLE_AND_BLOCK) for symbol, kernel in SYMBOLS.items()
     ]
-    frames = zip([*smooth_symbols(), OWN_FRAME], [*SMOOTH_FRAMES, laws.paper], strict=True)
-    for symbol, frame in frames:
+    for symbol, frame in [*zip(smooth_symbols(), SMOOTH_FRAMES, strict=True), *LAWS.items()]:
         # the frame itself, without what lets Python call it
         bare = modules.Part(
             frame.py_func, targetoptions=CONTRACTED, pipeline_class=modules.SharedCompiler

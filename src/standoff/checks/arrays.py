@@ -65,11 +65,7 @@ def numbers(value: Any, name: str, shape: tuple[int, ...] | None) -> FloatArray:
             value,
         ) from error
     if shape is not None and not _fits(copied.shape, shape):
-        raise StandoffError(
-            f"{name} has shape {copied.shape}, value {text(copied)}: give {_asked(shape)}.",
-            name,
-            value,
-        )
+        raise StandoffError(f"{name} has shape {copied.shape}: give {_asked(shape)}.", name, value)
     return copied
 
 

@@ -16,12 +16,17 @@ from standoff.cli.arguments import CheckCommand
 from standoff.cli.body_report import report_rows
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
-from standoff.cli.output import Writer, check_named, check_target, write_whole
+from standoff.cli.output import (
+    PLOT_ENDINGS,
+    Writer,
+    check_named,
+    check_target,
+    kind_of_picture,
+    write_whole,
+)
 from standoff.cli.subject import Subject, subjects
 from standoff.cli.terminal import tell
 from standoff.wording import printable
-
-PLOT_ENDINGS = (".png", ".svg", ".pdf")
 
 WIDTH = 100
 """Characters of a table where stdout is not a terminal, such as a file."""
@@ -75,7 +80,7 @@ def _files(found: list[Subject], targets: list[Path | None]) -> dict[Path, Write
             raise CommandError(
                 f"--plot {target}: two bodies would be drawn to this file; pick one with --body"
             )
-        files[target] = _writer(subject, target.suffix.lower().removeprefix("."))
+        files[target] = _writer(subject, kind_of_picture(target))
     return files
 
 

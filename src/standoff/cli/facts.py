@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from standoff.bodies import plain_data
 from standoff.impact import Impact
 from standoff.recording import RecordedEvent, Recording
 from standoff.scene import Scene, TrackSettings
+from standoff.scene.simulation import SimulationScene
 from standoff.tracking import Proximity
 
 INDENT = 2
@@ -38,7 +40,13 @@ def pairs_text(scene: Scene, results: Sequence[Mapping[str, Any]]) -> str:
     return json_text(_file_facts(scene) | {"pairs": results})
 
 
-def _file_facts(scene: Scene) -> dict[str, Any]:
+def simulation_facts(scene: SimulationScene) -> dict[str, Any]:
+    """Return which scene, to the letter, a simulation's result belongs to."""
+    digest = hashlib.sha256(scene.text.encode()).hexdigest()
+    return _file_facts(scene) | {"scene_sha256": digest}
+
+
+def _file_facts(scene: Scene | SimulationScene) -> dict[str, Any]:
     return {
         "standoff": __version__,
         "scene": scene.file.name,

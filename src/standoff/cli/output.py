@@ -4,12 +4,50 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
 
 from standoff import whole_files
-from standoff.cli.errors import CommandError, WriteError
+from standoff.cli.errors import CommandError, MissingExtra, WriteError
 from standoff.whole_files import Writer as Writer
 from standoff.whole_files import destination, kind_of
+
+TABLE_ENDINGS = (".parquet",)
+PLOT_ENDINGS = (".png", ".svg", ".pdf")
+
+
+def check_results(
+    output: Path | None, table: str, plot: Path | None = None, picture: str = ""
+) -> None:
+    """Refuse a table and a picture that could not be written after the run.
+
+    Parameters
+    ----------
+    output, plot : Path or None
+        What ``-o`` and ``--plot`` named.
+    table, picture : str
+        The modules that write them, imported now: a missing library is told before the run.
+
+    Raises
+    ------
+    CommandError
+        As of `check_target`, or a missing library.
+    """
+    if output is not None:
+        check_target(output, "-o", TABLE_ENDINGS)
+    if plot is not None:
+        check_target(plot, "--plot", PLOT_ENDINGS)
+    try:
+        for target, module in ((output, table), (plot, picture)):
+            if target is not None:
+                import_module(module)
+    except ModuleNotFoundError as error:
+        raise MissingExtra(str(error.name)) from error
+
+
+def kind_of_picture(target: Path) -> str:
+    """Return a picture's ending without its dot, as matplotlib takes it."""
+    return target.suffix.lower().removeprefix(".")
 
 
 def check_target(target: Path, option: str, endings: Sequence[str]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import signal
 from collections.abc import Iterator
@@ -10,11 +9,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from standoff import __version__
 from standoff.cli.arguments import ServoCommand
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
-from standoff.cli.facts import json_text
-from standoff.cli.output import check_target, write_whole
+from standoff.cli.facts import json_text, simulation_facts
+from standoff.cli.output import check_results, write_whole
 from standoff.cli.summary import line
 from standoff.cli.terminal import tell
 from standoff.devices import Inverse3, Trace
@@ -26,7 +24,6 @@ from standoff.servo import Servo, ServoReport
 from standoff.simulation.device import Fault
 from standoff.wording import printable
 
-TABLE_ENDINGS = (".parquet",)
 HAPLY = "haply"
 LOOKED = 0.05
 """Seconds between two looks at the loop."""
@@ -46,12 +43,7 @@ def run_servo(command: ServoCommand) -> int:
     WriteError
         If the log could not be written after all.
     """
-    if command.output is not None:
-        check_target(command.output, "-o", TABLE_ENDINGS)
-        try:
-            import standoff.servo.file  # noqa: F401
-        except ModuleNotFoundError as error:
-            raise MissingExtra(str(error.name)) from error
+    check_results(command.output, "standoff.servo.file")
     rate = command.rate
     if rate is not None and not (math.isfinite(rate) and rate > 0.0):
         raise CommandError(f"--rate {rate}: give ticks a second, 10 to 10000")
@@ -161,11 +153,7 @@ def _served(servo: Servo) -> ServoReport:
 def _facts(scene: SimulationScene, report: ServoReport) -> dict[str, Any]:
     """The summary as plain data."""
     found = report.statistics
-    return {
-        "standoff": __version__,
-        "scene": scene.file.name,
-        "scene_sha256": hashlib.sha256(scene.text.encode()).hexdigest(),
-        "title": scene.title,
+    return simulation_facts(scene) | {
         "rate": report.rate,
         "ended": report.ended.name,
         "message": report.message,

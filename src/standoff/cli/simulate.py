@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from standoff import __version__
 from standoff.cli.arguments import SimulateCommand
-from standoff.cli.errors import CommandError, ExitCode, MissingExtra
-from standoff.cli.facts import json_text
-from standoff.cli.output import Writer, check_target, write_whole
+from standoff.cli.errors import ExitCode
+from standoff.cli.facts import json_text, simulation_facts
+from standoff.cli.output import Writer, check_results, kind_of_picture, write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.summary import line
 from standoff.cli.terminal import tell
@@ -25,9 +23,6 @@ from standoff.simulation.rigid_body import FREE
 from standoff.simulation.system_run import SystemRun
 from standoff.simulation.system_state import SystemState
 from standoff.wording import counted
-
-TABLE_ENDINGS = (".parquet",)
-PLOT_ENDINGS = (".png", ".svg", ".pdf")
 
 
 def run_simulate(command: SimulateCommand) -> int:
@@ -42,13 +37,15 @@ def run_simulate(command: SimulateCommand) -> int:
     """
     given = {name: getattr(command, name) for name in ("step", "duration", "method", "tracker")}
     scene = load_simulation(command.scene, given)
-    _check_files(command)
+    check_results(
+        command.output, "standoff.simulation.file", command.plot, "standoff.simulation.plot"
+    )
     operator = scene.operator
     try:
         state = operator.start(scene.start, allow_overlap=scene.allow_overlap)
         run = _run(scene, state)
     except StandoffError as error:
-        raise SceneError(_cured(str(error)), key="simulate", file=scene.file) from error
+        raise SceneError(str(error), key="simulate", file=scene.file) from error
     facts = _facts(scene, run)
     files = _files(command, scene, run, facts)
     write_whole(files)
@@ -70,28 +67,6 @@ def _run(scene: SimulationScene, state: SystemState) -> SystemRun:
             )
 
 
-def _cured(text: str) -> str:
-    """A message of the library, in a scene's words."""
-    return text.replace("call start(allow_overlap=True)", "write allow_overlap = true")
-
-
-def _check_files(command: SimulateCommand) -> None:
-    if command.output is not None:
-        check_target(command.output, "-o", TABLE_ENDINGS)
-    if command.plot is not None:
-        check_target(command.plot, "--plot", PLOT_ENDINGS)
-    if command.output is not None and command.output == command.plot:
-        raise CommandError(f"-o and --plot {command.plot}: name two files")
-    try:
-        # Imported now, so that a missing library is told before the run.
-        if command.output is not None:
-            import standoff.simulation.file
-        if command.plot is not None:
-            import standoff.simulation.plot  # noqa: F401
-    except ModuleNotFoundError as error:
-        raise MissingExtra(str(error.name)) from error
-
-
 def _files(
     command: SimulateCommand, scene: SimulationScene, run: SystemRun, facts: dict[str, Any]
 ) -> dict[Path, Writer]:
@@ -103,7 +78,7 @@ def _files(
     if command.plot is not None:
         from standoff.simulation.plot import write_plot
 
-        ending = command.plot.suffix.lower().removeprefix(".")
+        ending = kind_of_picture(command.plot)
         files[command.plot] = lambda file: write_plot(
             run, scene.names, scene.title, scene.length_unit, (file, ending)
         )
@@ -113,12 +88,7 @@ def _files(
 def _facts(scene: SimulationScene, run: SystemRun) -> dict[str, Any]:
     """The summary as plain data."""
     operator, energy = scene.operator, run.energy
-    return {
-        "standoff": __version__,
-        "scene": scene.file.name,
-        "scene_sha256": hashlib.sha256(scene.text.encode()).hexdigest(),
-        "title": scene.title,
-        "length_unit": scene.length_unit,
+    return simulation_facts(scene) | {
         "method": operator.method,
         "tracker": operator.tracker,
         "step": operator.dt,

@@ -9,9 +9,9 @@ from typing import NamedTuple
 from standoff.bodies.body import Body
 from standoff.cli.errors import CommandError
 from standoff.scene import SceneError, load_scene
+from standoff.scene.file_content import DEFAULT_LENGTH_UNIT
 from standoff.scene.files import file_problem, toml_tables
 from standoff.scene.reader import Table, shown, unknown_name
-from standoff.scene.scene import DEFAULT_LENGTH_UNIT
 from standoff.scene.shapes import read_body
 
 EXAMPLE = "'shape = \"box\", size = [0.3, 0.2, 0.1]'"

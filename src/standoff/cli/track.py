@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from standoff.cli.arguments import TrackCommand
-from standoff.cli.errors import CommandError, ExitCode, MissingExtra
+from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import pairs_text, recording_facts
-from standoff.cli.output import Writer, check_target, write_whole
+from standoff.cli.output import Writer, check_results, check_target, kind_of_picture, write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.selection import chosen, target_of
 from standoff.cli.summary import recording_lines
@@ -25,9 +25,6 @@ from standoff.scene import (
 )
 from standoff.scene.files import toml_tables
 from standoff.view.formats import ENDINGS, writer_of
-
-TABLE_ENDINGS = (".parquet",)
-PLOT_ENDINGS = (".png", ".svg", ".pdf")
 
 
 def run_track(command: TrackCommand) -> int:
@@ -93,18 +90,7 @@ class _Run(NamedTuple):
         return cls(scene, settings_of(scene, command), output, plot, export)
 
     def check_files(self) -> None:
-        if self.output is not None:
-            check_target(self.output, "-o", TABLE_ENDINGS)
-        if self.plot is not None:
-            check_target(self.plot, "--plot", PLOT_ENDINGS)
-        try:
-            # Imported now, so that a missing library is told before the run.
-            if self.output is not None:
-                import standoff.recording.file
-            if self.plot is not None:
-                import standoff.recording.plot  # noqa: F401
-        except ModuleNotFoundError as error:
-            raise MissingExtra(str(error.name)) from error
+        check_results(self.output, "standoff.recording.file", self.plot, "standoff.recording.plot")
         if self.export is not None:
             check_target(self.export, "--export", ENDINGS)
             try:
@@ -121,7 +107,7 @@ class _Run(NamedTuple):
         if self.plot is not None:
             from standoff.recording.plot import write_plot
 
-            ending = self.plot.suffix.lower().removeprefix(".")
+            ending = kind_of_picture(self.plot)
             files[self.plot] = lambda file: write_plot(recording, file, ending)
         if self.export is not None:
             write = writer_of(self.export, drawn)

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 import numpy as np
 
 from standoff.checks.arrays import finite
-from standoff.checks.real_numbers import real_array, shape_of, shown
 from standoff.errors import StandoffError
+from standoff.geometry.domains import UNBOUNDED, Domain, checked_domain
 from standoff.geometry.tolerances import DEPENDENT_COLUMNS
 from standoff.geometry.validation import Array, affine_map, matrix3, vector3
 from standoff.kernels.body import layout as L
@@ -23,35 +23,6 @@ from standoff.read_only import KeepsReadOnly
 
 if TYPE_CHECKING:
     from standoff.geometry.formulas.compiled import Formula
-
-Domain = tuple[float, float, float, float]
-UNBOUNDED: Domain = (-np.inf, np.inf, -np.inf, np.inf)
-
-
-def checked_domain(domain: Any, name: str) -> Domain:
-    """(u0, u1, v0, v1) as floats; raises ValueError where it is empty or not a number."""
-    if shape_of(domain) != (4,):
-        raise StandoffError(
-            f"{name}.domain = {shown(domain)}: give (u0, u1, v0, v1).", "domain", domain
-        )
-    try:
-        u0, u1, v0, v1 = (float(x) for x in real_array(domain))
-    except (TypeError, ValueError) as error:
-        raise StandoffError(
-            f"{name}.domain = {shown(domain)} is not numeric: {error}.", "domain", domain
-        ) from error
-    if not (u0 < u1 and v0 < v1):
-        raise StandoffError(
-            f"{name}.domain = {(u0, u1, v0, v1)} is empty: give u0 < u1, v0 < v1.",
-            "domain",
-            domain,
-        )
-    return u0, u1, v0, v1
-
-
-def inside(values: Array, low: float, high: float) -> Array:
-    """Those between two ends, which do not count."""
-    return values[(low < values) & (values < high)]
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,8 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.geometry.curve_bounds import box_of, curve_breaks, curve_reach
 from standoff.geometry.curves import FULL_TURN, Curve
-from standoff.geometry.surfaces import Domain, Surface, inside
+from standoff.geometry.domains import Domain, inside
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import ALONG_PROFILE, PROFILE_ROUNDOFF
 from standoff.geometry.torus import checked_turn, full_turn
 from standoff.geometry.validation import Array, affine_map, vector3

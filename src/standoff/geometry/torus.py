@@ -9,7 +9,8 @@ import numpy as np
 from standoff.checks.numbers import magnitude, number
 from standoff.errors import StandoffError
 from standoff.geometry.curves import FULL_TURN
-from standoff.geometry.surfaces import Domain, Surface
+from standoff.geometry.domains import Domain
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import ANGLE_ROUNDOFF
 from standoff.geometry.validation import Array, affine_map
 from standoff.kernels.body import layout as L

@@ -140,7 +140,7 @@ NEAR_CONTACT = 1e-3
 CONTACT_STEPS = 12
 
 # Positions (length) must stay below this: squares of distances must not overflow.
-FARTHEST = 1e50
+FARTHEST = 1e100
 # Entries of R (dimensionless): a planar body's pose may be tilted by this, the roundoff of
 # composing rotations.
 PLANE_TILT = 1e-12

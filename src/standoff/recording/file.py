@@ -14,21 +14,17 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff import parquet
 from standoff.bodies.features import Feature
 from standoff.checks.real_numbers import SHOWN_CHARACTERS, shown
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError
 from standoff.nesting import JSON, text_problem, value_problem
+from standoff.parquet import pa, pq
 from standoff.recording.recorded import RecordedEvent, RecordedFrames, RunInfo
 from standoff.tracking.law_options import options_of
 from standoff.tracking.laws import LAWS, PaperLaw, every_option
 from standoff.tracking.rows import Counts
 from standoff.tracking.status import Status
-
-try:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("pyarrow"), name="pyarrow") from error
 
 Array = NDArray[np.float64]
 
@@ -44,9 +40,6 @@ have no `depth` and no `deadline`."""
 
 LAWS_OWN = 4
 """From this version on the options are the law's own."""
-
-METADATA = b"standoff"
-"""Key of the schema's metadata under which the JSON text stands."""
 
 NUMBERS = ("distance", "lower_bound", "upper_bound", "rate", "residual")
 VECTORS = ("point_a", "point_b", "normal", "velocity_a", "velocity_b")
@@ -97,8 +90,7 @@ def table_of(recording: RecordedFrames) -> Any:
     problem, keys = value_problem(facts)
     if problem:
         raise StandoffError(f"the recording's info ({'.'.join(keys[:NAMED])}) {problem}")
-    metadata = json.dumps(facts, ensure_ascii=False, allow_nan=False)
-    return pa.table(_columns(recording)).replace_schema_metadata({METADATA: metadata})
+    return parquet.table(_columns(recording), facts)
 
 
 def _metadata(info: RunInfo) -> dict[str, Any]:
@@ -190,7 +182,7 @@ def read_table(path: Path) -> dict[str, Any]:
 def _checked(path: Path, metadata: dict[bytes, bytes]) -> dict[str, Any]:
     """Return a recording's metadata, or say why the file is none."""
     try:
-        text = metadata[METADATA].decode()
+        text = metadata[parquet.METADATA].decode()
         if text_problem(text, JSON):
             raise StandoffError("no metadata of ours")
         content = json.loads(text)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature, feature_of
 from standoff.kernels.tolerances import SLOPE
+from standoff.recording.changes import Found, changes
 from standoff.recording.recording import RecordedEvent
 from standoff.recording.switching_function import NoMinimum, switching_function
 from standoff.recording.tolerances import (
@@ -116,22 +117,17 @@ class Step:
                 for end in self.first, self.last:
                     if self._descended(end.time, end).mode != end.mode:
                         return None
-            return self._between(self.first, self.last, ROOT_TRIES)
+            return changes(
+                self.first,
+                self.last,
+                self._known,
+                self.resolution,
+                lambda low, high: Switch(high.time, low.mode, high.mode),
+                None if self.paper else self._by_root,
+                ROOT_TRIES,
+            )
         except NotKnown:
             return None
-
-    def _between(self, low: Known, high: Known, tries: int) -> list[Switch]:
-        if low.mode == high.mode:
-            return []
-        if high.time - low.time <= self.resolution:
-            return [Switch(high.time, low.mode, high.mode)]
-        if tries and not self.paper:
-            root = self._root(low, high)
-            if root is not None and self._proven(root, low, high):
-                return [root]
-            tries -= root is not None
-        middle = self._known(0.5 * (low.time + high.time), low, high)
-        return [*self._between(low, middle, tries), *self._between(middle, high, tries)]
 
     def _known(self, time: float, low: Known, high: Known) -> Known:
         self.answers += 1
@@ -167,6 +163,12 @@ class Step:
         if not fine or found.status not in (Status.CONVERGED.value, Status.TRACKING.value):
             raise NotKnown(f"no answer at {time} s")
         return Known(time, found.data)
+
+    def _by_root(self, low: Known, high: Known) -> Found[Switch]:
+        root = self._root(low, high)
+        if root is None or self._proven(root, low, high):
+            return root, False
+        return None, True
 
     def _root(self, low: Known, high: Known) -> Switch | None:
         """Return the root of the switching function between two answers, if there is one."""

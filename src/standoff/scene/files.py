@@ -76,6 +76,22 @@ def existing_file(table: Table, key: str, example: str) -> Path:
     return path
 
 
+def text_of(path: Path) -> str:
+    """Return the text of a scene file, or raise SceneError."""
+    problem = file_problem(path, str(path), "the current folder")
+    if problem is not None:
+        raise SceneError(problem)
+    try:
+        # Some editors write a byte order mark before the text.
+        return path.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise SceneError(
+            f"is not text in UTF-8 (byte {error.start}); save it as UTF-8", file=path
+        ) from error
+    except OSError as error:
+        raise SceneError(f"cannot be read: {error.strerror}", file=path) from error
+
+
 def toml_tables(text: str) -> dict[str, Any]:
     """Return the tables of a TOML text.
 

@@ -3,44 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from standoff.bodies.body import Body
-from standoff.long_loops import told
 from standoff.motion import Pose
 from standoff.scene.errors import SceneError
-from standoff.scene.files import file_problem, toml_tables
+from standoff.scene.file_content import PAIR_KEYS, SIMULATION_KEYS, FileContent, read_content
 from standoff.scene.frames import check_instant, frame_times, start_time, time_window
 from standoff.scene.motions import Motion, at_rest, read_motion
 from standoff.scene.pairs import Pair, read_pairs
-from standoff.scene.placements import read_pose
-from standoff.scene.reader import Array, Table, Value, shown, unknown_name
+from standoff.scene.reader import Array, Table, unknown_name
 from standoff.scene.settings import TrackSettings
-from standoff.scene.shapes import read_body
-from standoff.wording import printable
-
-VERSION = 1
-"""The version of the scene format that this library reads."""
-
-DEFAULT_LENGTH_UNIT = "m"
-
-KEYS = (
-    "version",
-    "title",
-    "length_unit",
-    "bodies",
-    "placements",
-    "motions",
-    "pair",
-    "pairs",
-    "track",
-)
-"""Every key that the top of a scene file may have."""
-
-SIMULATED = ("free", "contact", "contacts", "coupler", "device", "simulate")
-"""Keys that only the file of a simulation has."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,29 +143,15 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
         type or shape, not finite, or refused by the shape, pose or motion that it describes. The
         message names the file, the key and the fix.
     """
-    path = Path(file)
-    text = text_of(path)
-    try:
-        content = toml_tables(text)
-    except SceneError as error:
-        raise error.found_in(path) from error
-    top = Table(content, file=path)
-    check_version(top)
-    _refuse_simulation(top)
-    top.expect(*KEYS)
-    bodies = named(top, "bodies", read_body)
-    if not bodies:
-        raise top.error("no bodies; add a table such as [bodies.tool]", "bodies")
-    placements = named(top, "placements", read_pose, bodies)
-    motions = named(top, "motions", lambda table: table, bodies)
-    pairs = read_pairs(top, list(bodies))
+    content = read_content(file, PAIR_KEYS, _refuse_simulation)
+    pairs = read_pairs(content.top, list(content.bodies))
     return Scene(
-        file=path,
-        text=text,
-        title=top.text("title", path.name),
-        length_unit=top.text("length_unit", DEFAULT_LENGTH_UNIT),
-        bodies=bodies,
-        motions={name: _motion(name, motions, placements) for name in bodies},
+        file=content.file,
+        text=content.text,
+        title=content.title,
+        length_unit=content.length_unit,
+        bodies=content.bodies,
+        motions={name: _motion(name, content) for name in content.bodies},
         pairs=pairs,
         selected=pairs[0],
     )
@@ -198,7 +159,7 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
 
 def _refuse_simulation(top: Table) -> None:
     """Name the command for a file of the other kind, if that is what it is."""
-    found = [key for key in SIMULATED if key in top]
+    found = [key for key in SIMULATION_KEYS if key in top]
     if found and "pair" not in top and "pairs" not in top:
         raise top.error(
             "this is the scene of a simulation: `standoff simulate` runs it, and draws it with "
@@ -207,56 +168,10 @@ def _refuse_simulation(top: Table) -> None:
         )
 
 
-def text_of(path: Path) -> str:
-    """Return the text of a scene file, or raise SceneError."""
-    problem = file_problem(path, str(path), "the current folder")
-    if problem is not None:
-        raise SceneError(problem)
-    try:
-        # Some editors write a byte order mark before the text.
-        return path.read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise SceneError(
-            f"is not text in UTF-8 (byte {error.start}); save it as UTF-8", file=path
-        ) from error
-    except OSError as error:
-        raise SceneError(f"cannot be read: {error.strerror}", file=path) from error
-
-
-def check_version(top: Table) -> None:
-    """Refuse a scene of another version of the format."""
-    version = top.required("version", f"version = {VERSION}")
-    if type(version) is not int or version != VERSION:
-        raise top.error(
-            f"is {shown(version)}, but this Standoff reads version {VERSION}: "
-            f"write version = {VERSION}, or install the Standoff that the scene was made for",
-            "version",
-        )
-
-
-def named(
-    top: Table,
-    key: str,
-    read: Callable[[Table], Value],
-    bodies: Mapping[str, Body] | None = None,
-) -> dict[str, Value]:
-    """Return what the tables ``[key.NAME]`` describe; with `bodies`, each NAME must be one."""
-    if key not in top:
-        return {}
-    table = top.table(key)
-    for name in table.names():
-        if bodies is not None and name not in bodies:
-            raise table.error(unknown_name(name, bodies, "body"), name)
-    names = told(
-        table.names(), f"reading {key} of {printable(top.file.name if top.file else 'a scene')}"
-    )
-    return {name: read(table.table(name)) for name in names}
-
-
-def _motion(name: str, motions: Mapping[str, Table], placements: Mapping[str, Pose]) -> Motion:
-    placement = placements.get(name)
-    if name in motions:
-        motion = read_motion(motions[name], placement)
+def _motion(name: str, content: FileContent) -> Motion:
+    placement = content.placements.get(name)
+    if name in content.motions:
+        motion = read_motion(content.motions[name], placement)
     else:
         motion = at_rest(placement or Pose.identity())
     if placement is not None and placement.repaired:

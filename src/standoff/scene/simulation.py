@@ -18,34 +18,14 @@ from standoff.motion import Pose, Twist
 from standoff.motion.twist import Frame
 from standoff.recording.tolerances import WHOLE_STEPS
 from standoff.scene.devices import Coupled, read_coupled
-from standoff.scene.errors import SceneError
-from standoff.scene.files import toml_tables
+from standoff.scene.file_content import SIMULATION_KEYS, FileContent, named, read_content
 from standoff.scene.motions import read_motion
-from standoff.scene.placements import read_pose
 from standoff.scene.reader import Table
-from standoff.scene.scene import DEFAULT_LENGTH_UNIT, check_version, named, text_of
-from standoff.scene.shapes import read_body
 from standoff.simulation.contact import HuntCrossley
 from standoff.simulation.operator import SIDES, Operator
 from standoff.simulation.rigid_body import FREE, RigidBody
 from standoff.simulation.simulated_device import SimulatedDevice
 from standoff.simulation.system import EARTH, System
-
-KEYS = (
-    "version",
-    "title",
-    "length_unit",
-    "bodies",
-    "placements",
-    "motions",
-    "free",
-    "contact",
-    "contacts",
-    "coupler",
-    "device",
-    "simulate",
-)
-"""Every key that the top of a simulation's file may have."""
 
 FREE_KEYS = ("density", "mass", "inertia", "centre", "linear", "angular", "frame")
 CONTACT_KEYS = ("stiffness", "damping", "friction", "slip_speed", "depth")
@@ -134,26 +114,9 @@ def load_simulation(
         If anything in it is unknown, missing, of the wrong type or shape, or refused by what it
         describes. The message names the file, the key and the fix.
     """
-    path = Path(file)
-    text = text_of(path)
-    try:
-        content = toml_tables(text)
-    except SceneError as error:
-        raise error.found_in(path) from error
-    top = Table(content, file=path)
-    check_version(top)
-    for key in ("pair", "pairs"):
-        if key in top and "simulate" not in top:
-            raise top.error(
-                "this is the scene of a pair: `standoff track` runs it and `standoff view` shows "
-                f"it; the scene of a simulation has no [{key}]",
-                key,
-            )
-    top.expect(*KEYS)
-    bodies = named(top, "bodies", read_body)
-    if not bodies:
-        raise top.error("no bodies; add a table such as [bodies.ball]", "bodies")
-    rigid = _rigid_bodies(top, bodies)
+    content = read_content(file, SIMULATION_KEYS, _refuse_pair)
+    top, bodies = content.top, content.bodies
+    rigid = _rigid_bodies(content)
     settings = _settings(top, given or {})
     period = None if rate is None else 1.0 / rate
     if period is not None:
@@ -168,10 +131,10 @@ def load_simulation(
     ticks = every * max(1, math.ceil(duration / step / every - WHOLE_STEPS))
     overlap = settings.true_or_false("allow_overlap") if "allow_overlap" in settings else False
     return SimulationScene(
-        file=path,
-        text=text,
-        title=top.text("title", path.name),
-        length_unit=top.text("length_unit", DEFAULT_LENGTH_UNIT),
+        file=content.file,
+        text=content.text,
+        title=content.title,
+        length_unit=content.length_unit,
         names=tuple(bodies),
         operator=operator,
         start=settings.number("start", 0.0),
@@ -180,6 +143,17 @@ def load_simulation(
         allow_overlap=overlap,
         device=None if coupled is None else coupled.device,
     )
+
+
+def _refuse_pair(top: Table) -> None:
+    """Name the commands for a file of the other kind, if that is what it is."""
+    for key in ("pair", "pairs"):
+        if key in top and "simulate" not in top:
+            raise top.error(
+                "this is the scene of a pair: `standoff track` runs it and `standoff view` shows "
+                f"it; the scene of a simulation has no [{key}]",
+                key,
+            )
 
 
 def _every(settings: Table, ticks_a_reading: int) -> int:
@@ -209,13 +183,12 @@ def _operator(system: System, step: float, settings: Table) -> Operator:
     return Operator(system, step, method, tracker, gain)
 
 
-def _rigid_bodies(top: Table, bodies: Mapping[str, Body]) -> list[RigidBody]:
-    placements = named(top, "placements", read_pose, bodies)
-    motions = named(top, "motions", lambda table: table, bodies)
-    free = named(top, "free", lambda table: table, bodies)
+def _rigid_bodies(content: FileContent) -> list[RigidBody]:
+    motions = content.motions
+    free = named(content.top, "free", lambda table: table, content.bodies)
     found = []
-    for name, body in bodies.items():
-        placement = placements.get(name)
+    for name, body in content.bodies.items():
+        placement = content.placements.get(name)
         if name in free and name in motions:
             raise free[name].error(
                 "a body that is free has no motion of its own; remove one of them"

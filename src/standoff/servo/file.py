@@ -2,31 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import Any, BinaryIO
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from standoff import parquet
 from standoff.kernels.dynamics import servo_arrays as V
 from standoff.servo.report import ServoReport
 from standoff.version import __version__
 
-try:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(
-        "pyarrow is not installed; install the extra 'cli': pip install 'standoff[cli]'",
-        name="pyarrow",
-    ) from error
-
 FORMAT = "standoff-servo"
 FORMAT_VERSION = 1
-METADATA = b"standoff"
-"""Key of the schema's metadata under which the JSON text stands."""
-
 AXES = "xyz"
 
 
@@ -62,5 +50,4 @@ def write_log(report: ServoReport, facts: Mapping[str, Any], file: BinaryIO) -> 
         "fault": log[:, V.J_WHY].astype(np.int64),
     }
     told = {"format": FORMAT, "format_version": FORMAT_VERSION, "standoff": __version__}
-    text = json.dumps(told | dict(facts), ensure_ascii=False, allow_nan=False)
-    pq.write_table(pa.table(columns).replace_schema_metadata({METADATA: text}), file)
+    parquet.write(columns, told | dict(facts), file)

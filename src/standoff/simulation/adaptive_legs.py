@@ -11,6 +11,7 @@ import scipy
 from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
+from standoff.recording.changes import changes
 from standoff.simulation.tolerances import EVENT_INSTANT
 
 Array = NDArray[np.float64]
@@ -131,28 +132,34 @@ class Legs(ABC):
 
     def _switches(self, part: Any) -> list[SystemEvent]:
         """Changes of features between the steps, each located by halving."""
+
+        def look(time: float, *_: _Known) -> _Known:
+            return _Known(time, self.features(time, part.sol(time)))
+
         found = []
-        before = self.features(float(part.t[0]), part.y[:, 0])
-        for start, end in zip(part.t[:-1], part.t[1:], strict=True):
-            after = self.features(float(end), part.sol(end))
-            for pair, (old, new) in enumerate(zip(before, after, strict=True)):
-                if old != new:
-                    at = self._located(part.sol, pair, old, (float(start), float(end)))
-                    found.append(SystemEvent(at, "switch", pair, " ".join(old), " ".join(new)))
+        before = _Known(float(part.t[0]), self.features(float(part.t[0]), part.y[:, 0]))
+        for end in part.t[1:].tolist():
+            after = look(end)
+            resolution = EVENT_INSTANT * max(1.0, end)
+            for events in changes(before, after, look, resolution, _switched):
+                found += events
             before = after
         return found
 
-    def _located(
-        self, states: Any, pair: int, old: tuple[str, str], between: tuple[float, float]
-    ) -> float:
-        low, high = between
-        while high - low > EVENT_INSTANT * max(1.0, high):
-            middle = 0.5 * (low + high)
-            if not low < middle < high:
-                break
-            same = self.features(middle, states(middle))[pair] == old
-            low, high = (middle, high) if same else (low, middle)
-        return high
+
+class _Known(NamedTuple):
+    """The active features of all pairs at a time."""
+
+    time: float
+    mode: Features
+
+
+def _switched(before: _Known, after: _Known) -> list[SystemEvent]:
+    return [
+        SystemEvent(after.time, "switch", pair, " ".join(old), " ".join(new))
+        for pair, (old, new) in enumerate(zip(before.mode, after.mode, strict=True))
+        if old != new
+    ]
 
 
 def _falling(function: Callable[[float, Array], float]) -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from typing import Any, BinaryIO
 
@@ -10,25 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from standoff import parquet
+from standoff.parquet import vectors
 from standoff.simulation.coupler_run import CouplerRun
 from standoff.simulation.system_run import SystemRun
 from standoff.version import __version__
-
-try:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(
-        "pyarrow is not installed; install the extra 'cli': pip install 'standoff[cli]'",
-        name="pyarrow",
-    ) from error
 
 Array = NDArray[np.float64]
 
 FORMAT = "standoff-simulation"
 FORMAT_VERSION = 1
-METADATA = b"standoff"
-"""Key of the schema's metadata under which the JSON text stands."""
 
 
 def write_run(
@@ -54,18 +44,16 @@ def write_run(
         columns |= _coupler_columns(run.coupler)
     columns |= {f"energy.{name}": value for name, value in run.energy._asdict().items()}
     metadata = {"format": FORMAT, "format_version": FORMAT_VERSION, "standoff": __version__}
-    told = json.dumps(metadata | dict(facts), ensure_ascii=False, allow_nan=False)
-    table = pa.table(columns)
-    pq.write_table(table.replace_schema_metadata({METADATA: told}), file)
+    parquet.write(columns, metadata | dict(facts), file)
 
 
 def _body_columns(run: SystemRun, number: int, name: str) -> dict[str, Any]:
     xyzw = Rotation.from_matrix(run.rotations(number)).as_quat(canonical=True)
     return {
-        f"{name}.position": _rows(run.positions(number)),
-        f"{name}.quaternion_wxyz": _rows(np.roll(xyzw, 1, axis=1)),
-        f"{name}.velocity": _rows(run.velocities(number)),
-        f"{name}.angular_velocity": _rows(run.angular_velocities(number)),
+        f"{name}.position": vectors(run.positions(number)),
+        f"{name}.quaternion_wxyz": vectors(np.roll(xyzw, 1, axis=1)),
+        f"{name}.velocity": vectors(run.velocities(number)),
+        f"{name}.angular_velocity": vectors(run.angular_velocities(number)),
     }
 
 
@@ -73,11 +61,11 @@ def _pair_columns(run: SystemRun, number: int, name: str) -> dict[str, Any]:
     point_a, point_b, normal = (part[:, number] for part in run.witness_points)
     return {
         f"{name}.distance": run.distances[:, number],
-        f"{name}.force": _rows(run.forces[:, number]),
+        f"{name}.force": vectors(run.forces[:, number]),
         f"{name}.spots": run.spots[:, number],
-        f"{name}.point_a": _rows(point_a),
-        f"{name}.point_b": _rows(point_b),
-        f"{name}.normal": _rows(normal),
+        f"{name}.point_a": vectors(point_a),
+        f"{name}.point_b": vectors(point_b),
+        f"{name}.normal": vectors(normal),
     }
 
 
@@ -88,12 +76,12 @@ def _coupler_columns(found: CouplerRun) -> dict[str, Any]:
         turned = Rotation.from_matrix(found.handle_rotations[known])
         quaternions[known] = np.roll(turned.as_quat(canonical=True), 1, axis=1)
     return {
-        "coupler.handle_position": _rows(found.handle_positions),
-        "coupler.handle_quaternion_wxyz": _rows(quaternions),
-        "coupler.force_on_tool": _rows(found.on_tool[:, :3]),
-        "coupler.torque_on_tool": _rows(found.on_tool[:, 3:]),
-        "coupler.force_on_device": _rows(found.on_device[:, :3]),
-        "coupler.torque_on_device": _rows(found.on_device[:, 3:]),
+        "coupler.handle_position": vectors(found.handle_positions),
+        "coupler.handle_quaternion_wxyz": vectors(quaternions),
+        "coupler.force_on_tool": vectors(found.on_tool[:, :3]),
+        "coupler.torque_on_tool": vectors(found.on_tool[:, 3:]),
+        "coupler.force_on_device": vectors(found.on_device[:, :3]),
+        "coupler.torque_on_device": vectors(found.on_device[:, 3:]),
         "coupler.engaged": found.engaged,
         "coupler.fault": found.fault,
         "coupler.device_work": found.energy.device,
@@ -102,9 +90,3 @@ def _coupler_columns(found: CouplerRun) -> dict[str, Any]:
         "coupler.stored": found.stored,
         "coupler.damped": found.damped,
     }
-
-
-def _rows(values: Array) -> Any:
-    """A column of vectors of one length."""
-    flat = pa.array(np.ascontiguousarray(values).ravel())
-    return pa.FixedSizeListArray.from_arrays(flat, values.shape[1])

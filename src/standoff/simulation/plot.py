@@ -8,6 +8,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.errors import not_installed
 from standoff.simulation.rigid_body import FIXED
 from standoff.simulation.system_run import SystemRun
 
@@ -16,10 +17,7 @@ try:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(
-        "matplotlib is not installed; install the extra 'cli': pip install 'standoff[cli]'",
-        name="matplotlib",
-    ) from error
+    raise ModuleNotFoundError(not_installed("matplotlib"), name="matplotlib") from error
 
 Array = NDArray[np.float64]
 

@@ -63,6 +63,8 @@ def _check_apart(system: System, pair: tuple[int, int], distance: float) -> None
     if distance < -TOUCHING_START * min(first.size, second.size):
         raise StandoffError(
             f"Bodies {a} ({first.name}) and {b} ({second.name}) overlap at the start, by "
-            f"{-distance:.6g}: move them apart, or call start(allow_overlap=True), and they "
-            "will push each other apart."
+            f"{-distance:.6g}: move them apart, or set allow_overlap, and they will push "
+            "each other apart.",
+            "allow_overlap",
+            False,
         )

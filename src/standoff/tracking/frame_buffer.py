@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,12 +17,10 @@ from standoff.tracking.block import Block
 from standoff.tracking.inputs import motion_of, plain
 from standoff.tracking.mended_calls import Given, step_in
 from standoff.tracking.proximity import Proximity
+from standoff.tracking.reached import Reached
 from standoff.tracking.rows import AnswerRows, motion_row, poses_of, twists_of
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import BY_NUMBER, Status
-
-if TYPE_CHECKING:
-    from standoff.tracking.tracker import Tracker
 
 Array = NDArray[np.float64]
 
@@ -36,8 +34,8 @@ class FrameBuffer:
 
     Parameters
     ----------
-    tracker : Tracker
-        Whose ``step_into`` will be called.
+    reached : Reached
+        Of the tracker whose ``step_into`` will be called.
     state : TrackerState
         Where it begins; copied.
 
@@ -47,9 +45,9 @@ class FrameBuffer:
         How many of the last frame's two poses were rounded, and brought to the nearest rotation.
     """
 
-    def __init__(self, tracker: Tracker, state: TrackerState) -> None:
+    def __init__(self, reached: Reached, state: TrackerState) -> None:
         prepare_buffer()
-        self.tracker = tracker
+        self.reached = reached
         self.has_twist = True
         self.repaired = 0
         block = Block.empty(state.warm_start, motion_row(*np.zeros((2, 12))))
@@ -61,7 +59,7 @@ class FrameBuffer:
     def _take(self, block: Array) -> None:
         self._block = block
         # what a frame of given poses is called with, in one look
-        self._call = self.tracker.table.address, block
+        self._call = self.reached.address, block
         named = Block(block)
         self._motion, self._state, self._out = named.motion, named.state, named.out
         self._pose_a, self._pose_b = poses_of(self._motion)
@@ -73,7 +71,7 @@ class FrameBuffer:
 
     def __getstate__(self) -> dict[str, Any]:
         # views of one block, which copies of each would not be
-        kept = ("tracker", "has_twist", "repaired", "_block")
+        kept = ("reached", "has_twist", "repaired", "_block")
         return {name: getattr(self, name) for name in kept}
 
     def __setstate__(self, stored: dict[str, Any]) -> None:
@@ -115,14 +113,14 @@ class FrameBuffer:
 
     def proximity(self) -> Proximity:
         """The last answer as a value."""
-        return Proximity(self.tracker.a, self.tracker.b, Block(self._block).kept(), self.repaired)
+        return Proximity(self.reached.a, self.reached.b, Block(self._block).kept(), self.repaired)
 
     def step(self, h: float) -> float:
         """The distance of a frame of the poses and twists that stand in the buffer, h seconds after
         the last."""
         data = self._block
         data[K.BLOCK_TIME_STEP], data[K.BLOCK_HAS_TWIST] = h, self.has_twist
-        self.repaired = step_in(self.tracker.table, Block(data))
+        self.repaired = step_in(self.reached.table, Block(data))
         return data.item(K.DISTANCE)
 
     def step_to(self, given: Given, h: float) -> float:
@@ -142,7 +140,7 @@ class FrameBuffer:
         if done == K.BAD_ARRAYS:
             return self.step_anew(given, h)
         if done != K.FINE:
-            self.repaired += step_in(self.tracker.table, Block(self._block))
+            self.repaired += step_in(self.reached.table, Block(self._block))
         return self._block.item(K.DISTANCE)
 
     def step_anew(self, given: Given, h: float) -> float:

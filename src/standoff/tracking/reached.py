@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,47 +19,58 @@ from standoff.tracking.specialised import address_of, smooth_frame_of
 
 Array = NDArray[np.float64]
 
+ANY_TIME = 1.0
+"""A frame time [s]: the default law does not depend on it."""
+
 PAIRS = 64
 """Pairs that are kept at hand, with their bodies: those that were asked for last."""
 
 
-class Reached(NamedTuple):
-    """A pair and its law.
+class Reached:
+    """A pair and its law; its frames are compiled. A copy, or a pickle's, finds its own addresses.
 
     Attributes
     ----------
+    a, b : Body
     law : Law
         With what it leaves open settled for the frame time.
     options : array
         As the kernels read it, with the addresses of its frames.
     table : AddressTable
         Where these and the bodies lie.
+    address : int
+        Of the table.
     """
 
-    law: Law
-    options: Array
-    table: AddressTable
+    __slots__ = ("_given", "a", "address", "b", "law", "options", "table")
+
+    def __init__(self, a: Body, b: Body, law: Law, dt: float, specialise: bool | None) -> None:
+        self._given = a, b, law, dt, specialise
+        self.a, self.b = a, b
+        self.law, options = resolved_options(law, dt)
+        if isinstance(law, PaperLaw):
+            self.options = with_frames(options, own=address_of(laws.paper))
+        else:
+            smooth = address_of(smooth_frame_of(a, b, specialise))
+            self.options = with_frames(options, smooth, address_of(laws.predicted))
+        self.table = table_of(a, b, self.options)
+        self.address = self.table.address
+
+    def __reduce__(self) -> Any:
+        # in another process the bodies' formulas, and all arrays, have other addresses
+        return reach, self._given
 
 
 def reach(a: Body, b: Body, law: Law, dt: float, specialise: bool | None) -> Reached:
-    """A pair with its law for a frame time, s; its frames are compiled by then."""
+    """A pair with its law for a frame time, s."""
     if law is DEFAULT_LAW:
         return _usual(a, b, dt, specialise)
-    return _reached(a, b, law, dt, specialise)
+    return Reached(a, b, law, dt, specialise)
 
 
 @lru_cache(maxsize=PAIRS)
 def _usual(a: Body, b: Body, dt: float, specialise: bool | None) -> Reached:
-    return _reached(a, b, DEFAULT_LAW, dt, specialise)
-
-
-def _reached(a: Body, b: Body, law: Law, dt: float, specialise: bool | None) -> Reached:
-    resolved, options = resolved_options(law, dt)
-    if isinstance(law, PaperLaw):
-        options = with_frames(options, own=address_of(laws.paper))
-    else:
-        options = with_frames(options, smooth=address_of(smooth_frame_of(a, b, specialise)))
-    return Reached(resolved, options, table_of(a, b, options))
+    return Reached(a, b, DEFAULT_LAW, dt, specialise)
 
 
 def table_of(a: Body, b: Body, options: Array) -> AddressTable:
@@ -77,4 +88,4 @@ def cold_table(a: Body, b: Body) -> AddressTable:
         They are no pair.
     """
     check_pair(a, b)
-    return table_of(a, b, resolved_options(DEFAULT_LAW, 1e-3)[1])
+    return table_of(a, b, resolved_options(DEFAULT_LAW, ANY_TIME)[1])

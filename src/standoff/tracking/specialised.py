@@ -67,7 +67,7 @@ def _kind(body: Body, record: int) -> Kind:
 def main_kind(body: Body) -> Kind | None:
     """The kind of most of a body's charts, a flat one only where there is no other; None where no
     frame can be made for it."""
-    kinds = kinds_of(body)
+    kinds = Counter(kinds_of(body))
     for each in [kind for kind in kinds if kind[1] == MIXED or kind[0] == L.FORMULA]:
         del kinds[each]
     if not kinds:

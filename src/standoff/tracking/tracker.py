@@ -15,8 +15,9 @@ from standoff.kernels.entries.preparing import prepare
 from standoff.kernels.entries.tracker import moved, moved_by_poses, value, value_by_poses
 from standoff.kernels.state import arrays as K
 from standoff.motion import PoseLike, PosesLike, TwistLike
-from standoff.read_only import KeepsReadOnly, locked
+from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
+from standoff.tracking.address_table import AddressTable
 from standoff.tracking.answers import Answers
 from standoff.tracking.frame_buffer import FrameBuffer
 from standoff.tracking.inputs import check_pair, plain, same_body
@@ -38,7 +39,7 @@ N_BLOCK, N_KEEPING_BLOCK = K.N_BLOCK, K.N_KEEPING_BLOCK
 
 INSIDE = K.BLOCK_STATE + K.INSIDE  # was a block's frame solved in contact?
 
-HIDDEN = ("check_frame_time", "check_state", "options", "step_anew", "table")
+HIDDEN = ("check_frame_time", "check_state", "options", "reached", "step_anew", "table")
 """What the run and the studies need and users do not."""
 
 
@@ -93,21 +94,28 @@ class Tracker(KeepsReadOnly):
         self._reach()
 
     def _reach(self) -> None:
-        """Have at hand, by address, what the frames read; load or compile what they can reach."""
-        self.resolved_law, self.options, self.table = reach(
-            self.a, self.b, self.law, self.dt, self.specialise
-        )
+        """Have at hand, by address, what the frames read; load or compile what they call."""
+        self.reached = reach(self.a, self.b, self.law, self.dt, self.specialise)
         prepare()
-
-    def __getstate__(self) -> Any:
-        # in another process the bodies' formulas, and all arrays, have other addresses
-        reached = ("resolved_law", "options", "table")
-        state = {name: x for name, x in self.__dict__.items() if name not in reached}
-        return state, list(locked(state))
 
     def __setstate__(self, stored: Any) -> None:
         super().__setstate__(stored)
-        self._reach()
+        prepare()
+
+    @property
+    def table(self) -> AddressTable:
+        """Where the bodies and the law's options lie."""
+        return self.reached.table
+
+    @property
+    def options(self) -> Array:
+        """The law as the kernels read it."""
+        return self.reached.options
+
+    @property
+    def resolved_law(self) -> Law:
+        """With what it leaves open settled for the frame time."""
+        return self.reached.law
 
     def start(
         self,
@@ -219,7 +227,7 @@ class Tracker(KeepsReadOnly):
         if before._a is not self.a or before._b is not self.b:
             self.check_state(state)
         h = self.dt if dt is None else self.check_frame_time(dt)
-        last, table, repaired = before._out, self.table.address, 0
+        last, table, repaired = before._out, self.reached.address, 0
         try:
             block = empty(N_BLOCK if last.item(INSIDE) == 0.0 else N_KEEPING_BLOCK)
             if twist_a is twist_b is None and type(pose_a) is type(pose_b) is ARRAY:
@@ -316,7 +324,7 @@ class Tracker(KeepsReadOnly):
         TypeError, ValueError
             As ``step``.
         """
-        if buffer.tracker is not self:
+        if buffer.reached is not self.reached:
             raise StandoffError(
                 "The buffer belongs to another tracker: make one with tracker.buffer.", "buffer"
             )
@@ -343,7 +351,7 @@ class Tracker(KeepsReadOnly):
     def buffer(self, state: TrackerState) -> FrameBuffer:
         """Arrays for ``step_into`` that begin at a state."""
         self.check_state(state)
-        return FrameBuffer(self, state)
+        return FrameBuffer(self.reached, state)
 
     def check_frame_time(self, dt: float) -> float:
         """A frame's own time, s: positive, and short enough for the paper's law to be stable."""

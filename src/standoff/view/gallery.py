@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from standoff.scene import SceneError
-from standoff.scene.files import toml_tables
-from standoff.scene.scene import text_of
+from standoff.scene.files import text_of, toml_tables
 
 PLACES = ("*.toml", "*/*.toml")
 """Where scenes are looked for: in a folder, and in those in it."""

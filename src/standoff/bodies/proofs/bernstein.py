@@ -35,8 +35,8 @@ from standoff.bodies.proofs.tolerances import (
 )
 from standoff.errors import StandoffError
 from standoff.geometry import bernstein
+from standoff.geometry.domains import Domain
 from standoff.geometry.nurbs import NurbsSurface
-from standoff.geometry.surfaces import Domain
 from standoff.geometry.validation import Array
 
 # Boxes looked at in one span before what is left counts as a dent of its bound.

@@ -20,7 +20,7 @@ typedef int32_t kernel_frame(int64_t *result, void **error, int64_t table, int64
 typedef int32_t kernel_smooth(int64_t *result, void **error, int64_t record, double step);
 
 kernel_frame standoff_kernel_start, standoff_kernel_step;
-kernel_smooth standoff_kernel_paper;
+kernel_smooth standoff_kernel_predicted, standoff_kernel_paper;
 #define SMOOTH_FRAME(name) kernel_smooth name;
 SMOOTH_FRAMES
 #undef SMOOTH_FRAME
@@ -146,7 +146,7 @@ int standoff_load(const char *path, standoff_pair **pair)
     /* An option is a number; an address below 2^53 is one exactly, and the kernels read it so. */
     double *options = (double *)(intptr_t)made->table[2 * OPTIONS];
     options[O_SMOOTH] = (double)(intptr_t)smooth_frames[header.smooth];
-    options[O_FRAME] = header.law == 1 ? (double)(intptr_t)standoff_kernel_paper : 0.0;
+    options[O_FRAME] = (double)(intptr_t)(header.law == 1 ? standoff_kernel_paper : standoff_kernel_predicted);
     *pair = made;
     return STANDOFF_OK;
 }

@@ -16,11 +16,12 @@ from standoff.kernels.compiler.decorators import (
     stack_counts,
     stack_log,
 )
-from standoff.kernels.entries.frames import clear_counts, frame, start_frame
+from standoff.kernels.entries.frames import clear_counts, frame, has_frame, start_frame
 from standoff.kernels.frame.inputs import inputs_at, refused
 from standoff.kernels.pair.events import EVENT_COLUMNS, EVENTS
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
 from standoff.kernels.state.arrays import (
+    BAD_ARRAYS,
     BLOCK_EVENTS,
     BLOCK_HAS_TWIST,
     BLOCK_MOTION,
@@ -83,10 +84,13 @@ def answered(table, block, room, polytopes):
     why = refused(pair, inputs)
     if why != FINE:
         return why
+    options = tabled_options(tabled)
+    if not has_frame(options):
+        return BAD_ARRAYS
     counts, log = stack_counts(), stack_log()
     state, out = ahead(block, BLOCK_STATE), block
     work = Work(counts, log, polytopes.last, polytopes.own)
-    frame(pair, inputs, block[BLOCK_TIME_STEP], tabled_options(tabled), state, out, work)
+    frame(pair, inputs, block[BLOCK_TIME_STEP], options, state, out, work)
     switches = counts[EVENTS]
     if BLOCK_EVENTS + EVENT_COLUMNS * switches > room:
         return MORE_EVENTS

@@ -7,11 +7,10 @@ from standoff.kernels.body.features import dimension
 from standoff.kernels.compiler.calls import CAN_CALL
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.frame.answer import judge
-from standoff.kernels.frame.apart import track_predicted
 from standoff.kernels.frame.inputs import twisted
 from standoff.kernels.frame.prediction import feeds, next_state
 from standoff.kernels.frame.record import call_at
-from standoff.kernels.frame.step import answer_frame, copy_counts, step_frame
+from standoff.kernels.frame.step import answer_frame, copy_counts
 from standoff.kernels.pair.certified import (
     CERTIFIED,
     NOT_APART,
@@ -46,6 +45,10 @@ from standoff.kernels.state.state import (
 from standoff.kernels.state.tracked import Shown, Tracked, begun, without_rates
 from standoff.kernels.tolerances import START_GAP
 from standoff.kernels.values import NO_RATES, ORIGIN, Found
+
+if not CAN_CALL:
+    from standoff.kernels.frame.apart import predicted_frame
+    from standoff.kernels.paper.frame import paper_frame
 
 NOT_INTEGRATED = Integrated(NO_RATES, NO_RATES, 0.0)
 
@@ -117,28 +120,41 @@ def on_faces(pair, state):
 if CAN_CALL:
 
     @kernel
-    def own_frame(pair, inputs, h, options, state, out, work):
-        """A frame of another law than the default one: compiled apart, called by its address."""
+    def law_frame(pair, inputs, h, options, state, out, work):
+        """A frame of the law: compiled apart, called by its address among the options."""
         call_at(options.frame, pair, inputs, h, options, state, out, work)
 
 else:
-    from standoff.kernels.paper.frame import paper_frame as own_frame
+
+    @kernel
+    def law_frame(pair, inputs, h, options, state, out, work):
+        """A frame of the law that the options name."""
+        if options.paper:
+            paper_frame(pair, inputs, h, options, state, out, work)
+        else:
+            predicted_frame(pair, inputs, h, options, state, out, work)
+
+
+@kernel
+def has_frame(options):
+    """Is the law's frame known? Starts need none."""
+    return not CAN_CALL or options.frame != 0
 
 
 @shared
 def frame(pair, inputs, h, options, state, out, work):
     """One frame of the law that the options name, on every route: the state is changed in place,
-    the answer written."""
+    the answer written.
+
+    A module of its own: within the caller's, whose stack the counts stand on, LLVM has left them
+    uncleared for the law's frame, to which it sees no pointer go.
+    """
     clear_counts(work)
-    if options.paper:
-        own_frame(pair, inputs, h, options, state, out, work)
-        forget_polytope(work)
-        return
     if options.smooth != 0:
         faces = on_faces(pair, state)
         if faces and call_at(options.smooth, pair, inputs, h, options, state, out, work) != 0:
             forget_polytope(work)
             return
         work.counts[GENERAL_FRAMES] = 1
-    step_frame(track_predicted, pair, inputs, (h, h), options, state, out, work)
+    law_frame(pair, inputs, h, options, state, out, work)
     forget_polytope(work)

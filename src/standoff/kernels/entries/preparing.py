@@ -31,8 +31,8 @@ ready_for: set[bool] = set()
 
 
 def prepare(runs: bool = False) -> None:
-    """Have ready what a tracker can reach, in contact and out of it; the frame of its own law is
-    there by then.
+    """Have ready what a tracker's frames are called by; the frame of its own law, which reaches
+    all that is to be met in contact and out of it, is there by then.
 
     Parameters
     ----------
@@ -41,10 +41,9 @@ def prepare(runs: bool = False) -> None:
     """
     if runs in ready_for:
         return
-    needed = [queries.on_face, tracker.query, tracker.start, tracker.step]
-    needed += [tracker.value, tracker.value_by_poses]
+    needed = [tracker.query, tracker.step, tracker.value, tracker.value_by_poses]
     if runs:
-        needed += [tracker.values, *(getattr(queries, name) for name in LOCATING)]
+        needed += [tracker.start, tracker.values, *(getattr(queries, name) for name in LOCATING)]
     _prepare_each(needed)
     ready_for.add(runs)
 

@@ -15,6 +15,7 @@ from standoff.kernels.frame.restart import (
     restart,
     start_due,
 )
+from standoff.kernels.frame.step import step_frame
 from standoff.kernels.pair.certified import (
     CERTIFIED,
     UNCERTIFIED,
@@ -121,3 +122,9 @@ def track_predicted(pair, motion, before, options, h, work):
     shown, kept = restart(pair, pose, first, tolerance, before.integrated, work)
     found = with_overlap(pair, pose, shown.found, work)
     return Tracked(Shown(found, shown.jets, shown.inside, shown.fresh, shown.rates), kept)
+
+
+@kernel
+def predicted_frame(pair, inputs, h, options, state, out, work):
+    """A frame of the predictor-corrector."""
+    step_frame(track_predicted, pair, inputs, (h, h), options, state, out, work)

@@ -49,7 +49,7 @@ class Options(NamedTuple):
     depth: int
     deadline: int  # most evaluations a frame
     smooth: int  # address of the frame that is tried first, 0 for none
-    frame: int  # address of the law's own frame, 0 for that of the predictor-corrector
+    frame: int  # address of the law's frame; 0 for none, which is enough for a start
     numbers: Any  # pointer to all of them, see `feedback_number`
 
 

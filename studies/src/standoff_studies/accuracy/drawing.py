@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import BinaryIO
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from standoff_studies.accuracy.measuring import OURS, Row
 from standoff_studies.accuracy.report import side
@@ -17,8 +18,6 @@ FLOOR, CEILING = -17.0, -5.0
 
 def draw(file: BinaryIO, rows: Sequence[Row]) -> None:
     """Draw the worst errors of distance, witness points and normal, for gaps and for depths."""
-    from matplotlib.figure import Figure
-
     ours = [row for row in rows if row.engine == OURS]
     names = list(dict.fromkeys(name for row in ours for name in (row.shape_1, row.shape_2)))
     sums = summarised(ours, lambda row: (row.shape_1, row.shape_2, side(row)))

@@ -8,17 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies import Body
 from standoff.motion import Pose
 from standoff_studies.paper import style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 
@@ -266,8 +265,6 @@ class View:
 
 def rgb_of(colour: str) -> tuple[float, float, float]:
     """Return a colour's red, green and blue, 0 to 1."""
-    from matplotlib.colors import to_rgb
-
     return to_rgb(colour)
 
 

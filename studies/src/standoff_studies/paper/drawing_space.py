@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import Axes3D
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 PANES = "#F7F7F7"
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import standoff as so
@@ -16,10 +18,6 @@ from standoff.tracking import PairSystem, Proximity
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import PALE, View
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 

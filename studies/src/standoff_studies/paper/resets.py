@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
@@ -21,9 +22,6 @@ from standoff.tracking import Feature, Tracker, pair_system
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Statement
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from standoff.tracking.inputs import flat_pose, flat_twist
@@ -15,9 +16,6 @@ from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement
 from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, STEP, pair
 from standoff_studies.paper.simulation_e.runs import run as simulation_e
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import standoff as so
@@ -15,10 +17,6 @@ from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.law_words import law_words
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from standoff.tracking import Tracker
 from standoff.tracking.laws import PaperLaw
@@ -11,10 +14,6 @@ from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.law_accuracy import LAWS, STEPS, even, frame_time, measure
 from standoff_studies.paper.law_words import law_words
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 CURVE_STEPS = (1e-3, 2e-3, 5e-3, 1e-2, 2e-2, 33e-3)
 """Frame times of the picture [s]."""

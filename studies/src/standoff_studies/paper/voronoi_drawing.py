@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from standoff.bodies.voronoi import VoronoiRegions
 from standoff.motion import Pose
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import placed
-from standoff_studies.paper.drawing_3d import posed
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from standoff_studies.paper.drawing_3d import View
+from standoff_studies.paper.drawing_3d import View, posed
 
 PIECES = 8
 """Pieces of a surface along its rays: painted in order with what stands before and behind."""

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from standoff.bodies import Body, shapes
@@ -21,10 +24,6 @@ from standoff_studies.paper.drawing import draw_planar_body, short_name
 from standoff_studies.paper.drawing_3d import View
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions, draw_space_regions
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 REACH = 0.8
 """Length of the drawn rays [length]."""
@@ -262,8 +261,6 @@ def _draw_planar(axes: Axes, regions: VoronoiRegions) -> None:
 
 
 def _draw_lens(axes: Axes, regions: VoronoiRegions) -> None:
-    from matplotlib.patches import Patch
-
     view = View(azimuth=24.0, elevation=22.0)
     view.body(regions.body)
     draw_space_regions(view, regions)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 from scipy.ndimage import label
@@ -20,10 +21,6 @@ from standoff.motion import Pose
 from standoff.tracking.places import PlaceLike
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 STEP = 1e-3
 """Frame time [s]."""

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
 import standoff as so
@@ -16,10 +18,6 @@ from standoff.tracking import feedback
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.law_words import law_words
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 STEP = 1e-3
 """Frame time [s]."""

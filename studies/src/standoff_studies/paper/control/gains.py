@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from standoff.control import growth_factor, stability_limit
 from standoff.geometry.validation import Array
@@ -14,10 +15,6 @@ from standoff_studies.paper.control.decay import arrival, decays, loops
 from standoff_studies.paper.control.lag import FRAMES, PAIRS, Lag, measured_lags
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.law_words import law_words
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 CASES = 480
 """Random pairs that the lag is measured on."""

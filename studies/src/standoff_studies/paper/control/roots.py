@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from standoff.control import growth_factor, sampled_roots, stability_limit
 from standoff.geometry.validation import Array
@@ -15,10 +17,6 @@ from standoff_studies.paper.control.decay import DAMPINGS, PROPORTIONAL, loops
 from standoff_studies.paper.control.gains import AGREE, worst_loop
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.law_words import law_words
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 DAMPING = DAMPINGS[1:]
 """Damping ratios of the PI loci: K_i = (K / (2 zeta))², roots -zeta w +- i w sqrt(1 - zeta²)."""

@@ -6,7 +6,11 @@ import tempfile
 from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from standoff_studies.paper import style
 from standoff_studies.paper.convergence.cells import (
@@ -24,10 +28,6 @@ from standoff_studies.paper.convergence.pairs import DRAWN_PAIRS, GRIDS, LENSES
 from standoff_studies.paper.convergence.starts import ARRIVED, CAUSES, LEAST_FRAMES, PATIENCE
 from standoff_studies.paper.figure import Artwork, Statement
 from standoff_studies.paper.many_starts import INDEFINITE
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 SOURCE = "Section on the hybrid system"
 
@@ -351,8 +351,6 @@ def _draw_law(axes: Axes, cells: list[Cell], law: str) -> None:
 
 
 def _legend(figure: Figure) -> None:
-    from matplotlib.lines import Line2D
-
     handles = [
         Line2D([], [], color=colour, marker=marker, markersize=4.0, label=LAWS[law].name)
         for law, (colour, marker, _) in LOOKS.items()

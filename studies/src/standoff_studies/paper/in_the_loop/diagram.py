@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from standoff_studies.paper import style
 from standoff_studies.paper.realisations.diagrams import STATE, arrow, box
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 TOP, MIDDLE, LOW = 4.55, 2.6, 0.75
 """Heights of the three rows, in the diagram's own unit."""

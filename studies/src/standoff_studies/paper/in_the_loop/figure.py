@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.features import Feature, feature_of
@@ -26,10 +29,6 @@ from standoff_studies.paper.in_the_loop.run import (
 from standoff_studies.paper.in_the_loop.statements import all_statements, by_gain
 from standoff_studies.paper.simulation_d.parameters import SHADES
 from standoff_studies.paper.simulation_d.runs import place_on, short
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -162,8 +161,6 @@ def _draw_scene(axes: Axes, runs: Runs) -> None:
             out = 0.86 if feature.kind == "vertex" else 0.93
             place = runs.answers.point_a[k[len(k) // 2]] / RADIUS
             view.text(axes, out * place, short(feature), fontweight="bold")
-    from matplotlib.lines import Line2D
-
     looks: tuple[tuple[str, str, Any], ...] = (
         ("tool", style.BLACK, "-"),
         ("device", style.RED, "--"),

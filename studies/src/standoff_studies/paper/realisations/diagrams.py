@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch
 
 from standoff_studies.paper import style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Spot = tuple[float, float]
 

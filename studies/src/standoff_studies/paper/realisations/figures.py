@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from standoff.geometry.validation import Array
 from standoff_studies.paper import style
@@ -13,10 +16,6 @@ from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.realisations import comparison as c
 from standoff_studies.paper.realisations.diagrams import draw_evaluated, draw_integrated
 from standoff_studies.paper.realisations.statements import of_evaluated, of_integrated
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 TOLD = "two bodies, face against face, the start as told"
 """What the record of the trackers does not hold."""
@@ -160,8 +159,6 @@ def _draw_evaluated() -> Figure:
 
 def _tell_dashes(figure: Figure) -> None:
     """Below the lower plots: solid is the one realisation, dashed the other."""
-    from matplotlib.lines import Line2D
-
     look: dict[str, Any] = {"color": style.BLACK}
     handles = [
         Line2D([], [], linestyle="-", label="Fig. 3: Ψ integrated (lower plots)", **look),

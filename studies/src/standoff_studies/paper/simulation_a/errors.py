@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from standoff.geometry.validation import Array
 from standoff_studies.paper import style
@@ -13,10 +14,6 @@ from standoff_studies.paper.figure import Artwork
 from standoff_studies.paper.simulation_a import gains
 from standoff_studies.paper.simulation_a.run import SETTLED, Run, run
 from standoff_studies.paper.simulation_a.statements import statements
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 SHOWN = {100.0: 100, 1000.0: 20}
 """The paper's gains [1/s], each with the steps that are drawn."""

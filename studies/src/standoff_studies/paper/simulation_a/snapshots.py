@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import Axes3D
 
 from standoff.geometry.validation import Array
 from standoff.tracking import distance
@@ -18,10 +19,6 @@ from standoff_studies.paper.simulation_a.gains import TURN
 from standoff_studies.paper.simulation_a.run import HOME, Run, run
 from standoff_studies.paper.simulation_a.setting import FACE, PATH, STEP, point, vault
 from standoff_studies.paper.simulation_a.statements import TOLD
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from mpl_toolkits.mplot3d import Axes3D
 
 GAIN = 100.0
 """K of the snapshots [1/s]: slow enough to see the witness point on its way."""

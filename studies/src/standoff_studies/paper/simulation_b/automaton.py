@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike
 
 from standoff.points import PointEvent
@@ -16,10 +19,6 @@ from standoff_studies.paper.drawing import planar_features, short_name
 from standoff_studies.paper.figure import Artwork
 from standoff_studies.paper.simulation_b.run import GAIN, Run, run
 from standoff_studies.paper.simulation_b.switching import statements
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Mode = tuple[bool, Feature]
 """Inside?, and the active feature."""
@@ -178,8 +177,6 @@ def _draw_mode(axes: Axes, mode: Mode, place: tuple[float, float], time: float |
 
 
 def _draw_switch(axes: Axes, switch: Switch, places: dict[Mode, tuple[float, float]]) -> None:
-    from matplotlib.patches import FancyArrowPatch
-
     _, dashes, colour = KINDS[switch.kind]
     taken = bool(switch.times)
     start, end = places[switch.source], places[switch.target]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from standoff.bodies.voronoi import MedialBranch
@@ -13,10 +13,6 @@ from standoff_studies.paper.drawing import draw_planar_body, name_features, shor
 from standoff_studies.paper.figure import Artwork, Statement
 from standoff_studies.paper.simulation_b.run import NO_LAW, Run, run
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 EXTENT = 1.85
 """Half width of the view [length]: the spiral ends at 1.73."""

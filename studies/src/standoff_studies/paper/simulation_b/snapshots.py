@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from standoff_studies.paper import style
@@ -26,10 +26,6 @@ from standoff_studies.paper.simulation_b.run import (
     run,
 )
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 from collections import Counter, defaultdict
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 from numpy.typing import ArrayLike
 
 from standoff.tracking import Feature
@@ -29,10 +32,6 @@ from standoff_studies.paper.simulation_c.run import (
     run,
 )
 from standoff_studies.paper.unaided import Part, unaided
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Mode = tuple[Feature, Feature]
 Place = tuple[float, float]
@@ -249,8 +248,6 @@ def _draw_lines(axes: Axes, columns: int, rows: int) -> None:
 
 
 def _draw_mode(axes: Axes, simulation: Run, mode: Mode, place: Place) -> None:
-    from matplotlib.patches import FancyBboxPatch
-
     x, y = place
     stays = [s for s in simulation.stays if (s.feature_a, s.feature_b) == mode]
     letters = ", ".join(s.letter for s in simulation.snapshots if s[3:] == mode)
@@ -313,8 +310,6 @@ def _aside(place: Place, along: int, by: float) -> Place:
 
 
 def _arrow(axes: Axes, start: Place, end: Place, head: str = "-|>") -> None:
-    from matplotlib.patches import FancyArrowPatch
-
     axes.add_patch(
         FancyArrowPatch(
             start,

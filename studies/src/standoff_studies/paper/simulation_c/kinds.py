@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from standoff.tracking import Feature
 from standoff_studies.paper.drawing import short_name
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 KINDS = ("vertex–vertex", "vertex–curve", "curve–curve")
 """What a mode may be, by its number of parameters: 0, 1 or 2."""
@@ -29,8 +27,6 @@ def mode_name(feature_a: Feature, feature_b: Feature) -> str:
 
 def show_kinds(figure: Figure) -> None:
     """Write below a figure what the fills mean."""
-    from matplotlib.patches import Patch
-
     keys = [
         Patch(facecolor=fill, edgecolor="black", linewidth=0.8, label=kind)
         for fill, kind in zip(FILLS, KINDS, strict=True)

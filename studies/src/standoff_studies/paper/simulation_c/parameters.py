@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
@@ -33,10 +37,6 @@ from standoff_studies.paper.simulation_c.run import (
     witness_error,
 )
 from standoff_studies.paper.start_decay import decay_statement
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -252,9 +252,6 @@ def _mark_snapshots(axes: Axes, simulation: Run, span: tuple[float, float]) -> N
 
 
 def _legend(figure: Figure) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     words = ("u$_1$, r$_a$: curve C0", "u$_2$, r$_b$: C1", "u$_3$, r$_c$: C2")
     dashes: Any = style.DASHES
     handles: list[Line2D | Patch] = [

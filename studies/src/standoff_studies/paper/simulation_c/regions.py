@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies import Body
@@ -23,10 +24,6 @@ from standoff_studies.paper.drawing import (
 from standoff_studies.paper.figure import Artwork, Statement
 from standoff_studies.paper.simulation_c.run import FRAME, Run, run
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from standoff.automaton.graph import Automaton, Transition
@@ -34,10 +37,6 @@ from standoff_studies.paper.simulation_d.runs import (
     tried,
 )
 from standoff_studies.paper.unaided import Part, unaided
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -305,8 +304,6 @@ def _ends(axes: Axes, automaton: Automaton, places: dict[Feature, Array]) -> Non
 
 
 def _legend(figure: Figure) -> None:
-    from matplotlib.lines import Line2D
-
     figure.legend(
         handles=[
             Line2D(

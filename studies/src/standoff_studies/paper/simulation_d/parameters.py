@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.recording import Recording
@@ -29,10 +31,6 @@ from standoff_studies.paper.simulation_d.runs import (
     short,
 )
 from standoff_studies.paper.start_decay import decay_statement
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -195,9 +193,6 @@ def _name(axes: Axes, runs: Runs) -> None:
 
 
 def _legend(figure: Figure) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     figure.legend(
         handles=[
             Line2D([], [], color=style.BLUE, label="u"),

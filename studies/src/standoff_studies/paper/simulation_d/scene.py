@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies import Body
@@ -28,10 +32,6 @@ from standoff_studies.paper.simulation_d.runs import (
     settling_steps,
     short,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -228,9 +228,6 @@ def _name_ends(axes: Axes, view: View) -> None:
 
 
 def _legend(figure: Figure) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     handles: list[Line2D | Patch] = [
         Line2D([], [], color=colour, marker=mark, label=f"closest: {kind}")
         for kind, (colour, mark) in LOOKS.items()

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from standoff_studies.paper import style
@@ -42,10 +44,6 @@ from standoff_studies.paper.simulation_e.runs import (
 )
 from standoff_studies.paper.start_decay import decay_statement
 from standoff_studies.paper.unaided import Part, unaided
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""Steps of the depth's descent and Newton's method in contact, on balls, boxes and hand-made jets."""
+"""Steps of the depth's descent and Newton's method there: balls, boxes and hand-made jets."""
 
 import math
 
@@ -15,6 +15,7 @@ from hand_made_pairs import (
     ellipsoid,
     half_space,
     packed,
+    pair_of,
     point,
     segment,
     turn,
@@ -47,7 +48,7 @@ from standoff.kernels.depth.penetration import (
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import LIMIT, RESTARTS
 from standoff.kernels.tolerances import FLAT_RADIUS, MAX_RESTARTS, NEWTON_TURN, SHIFTED_GAP
-from standoff.kernels.values import Depth, Pair
+from standoff.kernels.values import Depth
 
 TOLERANCE = 1e-10
 P = (0.4, 0.3, 1.2)
@@ -67,10 +68,6 @@ def poles(case: Placed, n=WAY):
 def along(case: Placed, n, distance=None) -> Depth:
     """A direction of two balls with its points, and their distance along it."""
     return Depth(False, -case.depth(n) if distance is None else distance, n, poles(case, n))
-
-
-def pair_of(a: so.Body, b: so.Body) -> Pair:
-    return Pair(*packed(a), *packed(b))
 
 
 def test_the_scale_is_of_both_sizes_and_radii():
@@ -374,10 +371,15 @@ def test_from_the_last_frame_the_minimum_is_found_where_it_is_near():
 
 
 def test_a_minimum_far_from_the_last_frame_s_is_left_to_the_descent():
-    far = unit(*(np.array(WAY) + 1.1 * NEWTON_TURN * np.array(unit(3, -4, 0))))
-    last = along(BALLS, far)
-    assert stationary_along(*BALLS.both, last, TOLERANCE, new_work())[0] == MINIMUM
-    found = from_last(*BALLS.both, last, TOLERANCE, new_work())
-    assert not found.found
-    assert math.isnan(found.distance)
-    assert (found.normal, found.place) == (far, last.place)
+    """Over a box's top Newton's method gets to its normal from anywhere."""
+    case = Placed(box(1.0, 1.0, 1.0), ball(0.5), (0.0, 0.0, 1.2))
+    place = case.place((0.3, 0.0, 1.0), (0.0, 0.0, -0.5))
+    for turned, near in ((0.5, True), (2.0, False)):
+        last = Depth(False, math.nan, unit(turned * NEWTON_TURN, 0.0, 1.0), place)
+        found = from_last(*case.both, last, TOLERANCE, new_work())
+        assert found.found == near
+        if near:
+            assert found.distance == pytest.approx(-0.3, abs=1e-12)
+        else:
+            assert math.isnan(found.distance)
+            assert (found.normal, found.place) == (last.normal, place)
