@@ -1,9 +1,8 @@
 """The instants of the switches within one step of a point tracker.
 
-Where the point is known at any time of the step, so is the answer: by the step cut short. What
-lies between two answers is halved until each part holds one switch. Its instant is the root of its
-switching function, proven by the answers a little before and after; where there is no such
-function, as in the paper's law, the halving goes on to the resolution.
+Where the point is known at any time of the step, so is the answer: by the step cut short. A
+switch's instant is the root of its switching function, proven by the answers a little before and
+after; where there is no such function, as in the paper's law, that of the halving alone.
 """
 
 from __future__ import annotations
@@ -21,6 +20,7 @@ from standoff.points.answer import PointEvent
 from standoff.points.minima import PointMinima
 from standoff.points.state import Leg, PointState
 from standoff.points.tolerances import RELEASE_SLOPES
+from standoff.recording.changes import Found, changes
 from standoff.recording.tolerances import (
     INSTANT_RESOLUTION,
     INSTANT_ROUNDINGS,
@@ -74,6 +74,13 @@ class TooMany(ArithmeticError):
     """More answers than one step is worth."""
 
 
+class At(NamedTuple):
+    """The state at a time [s]."""
+
+    time: float
+    state: PointState
+
+
 class Step:
     """One step, to be looked into.
 
@@ -98,100 +105,87 @@ class Step:
         self.length = way.end - way.begin
         spacing = float(np.spacing(max(abs(way.begin), abs(way.end))))
         self.resolution = max(INSTANT_RESOLUTION * self.length, INSTANT_ROUNDINGS * spacing)
-        self.known = before.branches.next_key
         self.answers = 0
 
     def switches(self, after: PointState) -> list[PointEvent] | None:
         """The switches up to the state at the step's end; None where they are too many."""
         try:
-            return self._between(self.way.begin, self.before, self.way.end, after, ROOT_TRIES)
+            found = changes(
+                At(self.way.begin, self.before),
+                At(self.way.end, after),
+                self._look,
+                self.resolution,
+                self._by_halving,
+                self._by_root,
+                ROOT_TRIES,
+                self._changed,
+            )
         except TooMany:
             return None
+        return [event for events in found for event in events]
 
-    def _between(
-        self, low: float, before: PointState, high: float, after: PointState, tries: int
-    ) -> list[PointEvent]:
-        if not self.minima.changed(before, after, self.known):
-            return []
-        middle = 0.5 * (low + high)
-        if high - low <= self.resolution or not low < middle < high:
-            return [self._sharpened(event) for event in self._switches(before, after, high)]
-        root = self._root(low, before, high, after) if tries else None
-        if root is not None:
-            if self._proven(*root, (low, before), (high, after)):
-                return self._switches(before, after, root[0])
-            tries -= 1
-        there = self._known(middle)
-        return [
-            *self._between(low, before, middle, there, tries),
-            *self._between(middle, there, high, after, tries),
-        ]
+    def _changed(self, low: At, high: At) -> bool:
+        return self.minima.changed(low.state, high.state, self.before.branches.next_key)
 
-    def _known(self, time: float) -> PointState:
+    def _look(self, time: float, *_: At) -> At:
         """The answer at a time within the step."""
         self.answers += 1
         if self.answers > MOST_ANSWERS:
             raise TooMany(f"more than {MOST_ANSWERS} answers in one step")
-        return self.stepped(*self.way.place(time), time - self.way.begin)
+        return At(time, self.stepped(*self.way.place(time), time - self.way.begin))
 
-    def _switches(self, before: PointState, after: PointState, time: float) -> list[PointEvent]:
-        found = self.minima.switches(before, after, *self.way.place(time), time)
+    def _switches(self, low: At, high: At, time: float) -> list[PointEvent]:
+        place = self.way.place(time)
+        found = self.minima.switches(low.state, high.state, *place, time)
         return [event._replace(located=True) for event in found]
 
-    def _root(
-        self, low: float, before: PointState, high: float, after: PointState
-    ) -> tuple[float, float] | None:
-        """Where the switching function between two states vanishes, and what lies about it [s] is
-        within its threshold; None where it does not vanish, or there is none."""
-        function = self.minima.function(before, after)
+    def _by_halving(self, low: At, high: At) -> list[PointEvent]:
+        return [self._sharpened(event) for event in self._switches(low, high, high.time)]
+
+    def _by_root(self, low: At, high: At) -> Found[list[PointEvent]]:
+        """The switch where the switching function vanishes, if the answers around are its own."""
+        root = self._root(low, high)
+        if root is None:
+            return None, False
+        time, aside = root
+        if low.time < time - aside and self._changed(low, self._look(time - aside)):
+            return None, True
+        if time + aside < high.time and self._changed(self._look(time + aside), high):
+            return None, True
+        return self._switches(low, high, time), False
+
+    def _root(self, low: At, high: At) -> tuple[float, float] | None:
+        """Where the switching function between two states vanishes, and within what of it [s] it
+        is below its threshold; None where it does not vanish, or there is none."""
+        function = self.minima.function(low.state, high.state)
         if function is None:
             return None
 
         def value(time: float) -> float:
             return function(self.way.place(time)[0])
 
-        first, last = value(low), value(high)
+        first, last = value(low.time), value(high.time)
         if not first * last <= 0.0 or first == last:
             return None
-        root = high
-        if last != 0.0:
-            finest = 2.0 * float(np.spacing(max(abs(low), abs(high))))
-            root = float(scipy.optimize.brentq(value, low, high, xtol=finest)) if first else low
+        root = low.time if first == 0.0 else high.time
+        if first != 0.0 != last:
+            finest = 2.0 * float(np.spacing(max(abs(low.time), abs(high.time))))
+            root = float(scipy.optimize.brentq(value, low.time, high.time, xtol=finest))
         # An event belongs to the frame after its instant, never to the one before.
-        root = max(root, math.nextafter(low, high))
+        root = max(root, math.nextafter(low.time, high.time))
         left = max(root - RATE_STENCIL * self.length, self.way.begin)
         right = min(root + RATE_STENCIL * self.length, self.way.end)
         slope = abs(value(right) - value(left)) / (right - left)
         aside = max(SWITCH_PROOF * self.length, self.resolution)
         if slope > 0.0:
-            aside = max(aside, self.minima.threshold(before, after) / slope)
+            aside = max(aside, self.minima.threshold(low.state, high.state) / slope)
         return root, aside
-
-    def _proven(
-        self,
-        root: float,
-        aside: float,
-        low: tuple[float, PointState],
-        high: tuple[float, PointState],
-    ) -> bool:
-        """Are the answers just before and after a root those of the ends around it?"""
-        (begin, before), (end, after) = low, high
-        for time, first, last in (root - aside, before, None), (root + aside, None, after):
-            if not begin < time < end:
-                continue
-            there = self._known(time)
-            if self.minima.changed(first or there, last or there, self.known):
-                return False
-        return True
 
     def _sharpened(self, event: PointEvent) -> PointEvent:
         """Move a switch at a Voronoi line from the threshold of release to the line itself."""
         line = self.minima.line(Leg(event.source, event.target))
-        if (
-            event.kind != "voronoi"
-            or line is None
-            or not 0.0 < abs(event.value) <= RELEASE_SLOPES * SLOPE
-        ):
+        near = 0.0 < abs(event.value) <= RELEASE_SLOPES * SLOPE
+        if event.kind != "voronoi" or line is None or not near:
             return event
         time = event.time - event.value / event.slope if event.slope else event.time
         if not abs(time - event.time) <= self.length:
