@@ -7,7 +7,7 @@ CLI := .venv/.installed-cli
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 DECLARED := pyproject.toml studies/pyproject.toml constraints.txt
 
-.PHONY: venv torch demo paper bench wheel check test lint types layers docs clean
+.PHONY: venv torch demo paper bench wheel numba-range check test lint types layers docs clean
 
 venv: $(ALL)
 
@@ -49,6 +49,10 @@ wheel: $(CLI)
 	$(BIN)/python -m standoff.kernels.entries.shipping build/compiled
 	STANDOFF_COMPILED="$(CURDIR)/build/compiled" $(PIP) wheel -q --no-deps -w dist .
 	$(PIP) wheel -q --no-deps -w dist ./studies
+
+# The ends of the range of Numba versions, in new environments: some half an hour each.
+numba-range: $(BIN)/python
+	$(BIN)/python -m benchmarks.numba_range
 
 # What an edit is tried with: a minute or two once the kernels are compiled (tests/tiers.py).
 check: lint types layers

@@ -18,6 +18,7 @@ from benchmarks.from_python import (
     Line,
     held,
     lines_of,
+    seen_from_a,
     table,
 )
 
@@ -34,8 +35,8 @@ PAIR = all_pairs()[0]
 def test_every_goal_has_its_row_and_its_errors():
     lines = list(lines_of(TINY, gaps=(0.1,)))
     titles = {line.title for line in lines}
-    assert [line.goal for line in lines] == [*GOALS, *GOALS, IN_OVERLAP]
-    assert len(titles) == 3
+    assert [line.goal for line in lines] == [*GOALS, *GOALS, *GOALS, IN_OVERLAP]
+    assert len(titles) == 4
     for line in lines:
         if line.missing:
             continue
@@ -52,6 +53,15 @@ def test_a_gap_is_held_in_every_frame():
             assert found == pytest.approx(gap, rel=1e-9)
 
 
+def test_one_body_at_rest_is_the_same_motion():
+    frames = motion(PAIR.far, 5)
+    seen = seen_from_a(frames)
+    for own, other in zip(frames.pairs, seen.pairs, strict=True):
+        found = [so.distance(PAIR.a.body, PAIR.b.body, *poses).distance for poses in (own, other)]
+        assert found[0] == pytest.approx(found[1], rel=1e-13)
+        assert other[0] is seen.pairs[0][0]
+
+
 def test_a_ratio_is_the_median_of_those_of_each_round():
     """A machine twice as slow in one round changes both times."""
     line = Line("bodies", Goal(STEP, GUESS, 1.0), (2e-6, 4e-6, 1e-6), (1e-6, 2e-6, 2e-6), 0.0, 1e-7)
@@ -66,7 +76,7 @@ def test_without_coal_its_rows_say_so(monkeypatch):
     monkeypatch.setitem(sys.modules, "coal", None)
     lines = list(lines_of(TINY, gaps=()))
     missing = [line for line in lines if line.missing]
-    assert [line.goal for line in missing] == list(GOALS[:3])
+    assert [line.goal for line in missing] == 2 * list(GOALS[:3])
     for line, row in zip(missing, table(missing)[2:], strict=True):
         assert "standoff-studies[peers]" in line.missing
         assert f"missing: {line.missing}" in row

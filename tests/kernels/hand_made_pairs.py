@@ -226,3 +226,34 @@ def on_atlas(body: so.Body, x: Vector) -> Side:
         raise LookupError(x)
     assert np.linalg.norm(point_at(body, side) - x) < 1e-12
     return side
+
+
+def edge_side(feature: int, t: float) -> Side:
+    """A parameter of an edge, by its feature's number."""
+    return Side(np.int64(feature), NO_CHART, t, 0.0)
+
+
+def wedge(apex: float) -> tuple[so.Body, int]:
+    """A body with an edge along y through its origin, its sides `apex` (degrees) apart, the upper
+    one 5 degrees below z = 0; and the edge's number. 0 degrees: the edge alone, from -1 to 1."""
+    if not apex:
+        return so.shapes.segment((0.0, -1.0, 0.0), (0.0, 1.0, 0.0)), 0
+    corners = [
+        (length * np.cos(way), y, length * np.sin(way))
+        for y in (-1.0, 1.0)
+        for length, way in ((0.0, 0.0), (1.0, np.radians(-5.0)), (1.0, np.radians(-5.0 - apex)))
+    ]
+    body = so.shapes.polytope(corners)
+    for k, edge in enumerate(body.edge_parts):
+        ends = body.vertex_points[[edge.first, edge.last]]
+        if not ends[:, [0, 2]].any():
+            return body, body.n_faces + k
+    raise LookupError(apex)
+
+
+def across(height: float, spin: float) -> Pose:
+    """The pose of a wedge that stands upside down above another, across its edge; a spin of pi lets
+    its edge run the other way."""
+    upside_down = np.array(turn(Y, np.pi)).reshape(3, 3)
+    R = np.array(turn(Z, 0.5 * np.pi + spin)).reshape(3, 3) @ upside_down
+    return Pose(tuple(R.ravel().tolist()), (0.0, 0.0, height))

@@ -6,7 +6,22 @@ import numpy as np
 import pytest
 from hand_made import new_work
 from hand_made_frames import motion_of
-from hand_made_pairs import Placed, X, Z, ball, box, half_space, point, turn, unit
+from hand_made_pairs import (
+    Placed,
+    X,
+    Z,
+    across,
+    ball,
+    box,
+    edge_side,
+    half_space,
+    pair_of,
+    point,
+    turn,
+    unit,
+    vector,
+    wedge,
+)
 from pointed import pointed
 
 import standoff as so
@@ -23,7 +38,7 @@ from standoff.kernels.pair.certified import (
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, LIMIT
 from standoff.kernels.tolerances import BLUR, TOUCHING
-from standoff.kernels.values import ORIGIN, Pair, resting
+from standoff.kernels.values import ORIGIN, Pair, Pose, resting, together
 
 TOLERANCE = 1e-10
 CUBE = Placed(box(1.0, 1.0, 1.0), ball(0.5), (0.2, 0.1, 2.0))
@@ -175,6 +190,27 @@ def test_near_contact_it_is_polished(gap):
     assert done.found.outcome == CERTIFIED
     assert done.found.distance == pytest.approx(gap, abs=1e-14)
     assert done.found.lower <= gap + 1e-14
+
+
+@pytest.mark.parametrize("spin", [0.0, math.pi])
+@pytest.mark.parametrize(
+    ("first", "second"), [(30.0, 30.0), (0.0, 30.0), (0.0, 0.0), (120.0, 60.0)]
+)
+@pytest.mark.parametrize("gap", [1e-5, 1e-8, 1e-10])
+def test_near_contact_two_edges_are_polished_too(gap, first, second, spin):
+    """All of it turned and off the origin, so that the direction of the gap has lost its digits."""
+    (a, edge_a), (b, edge_b) = wedge(first), wedge(second)
+    above = across(gap, spin)
+    turned = np.array(turn((3, -1, 2), 0.7)).reshape(3, 3)
+    R = turned @ np.array(above.R).reshape(3, 3)
+    p = turned @ np.add(above.p, (0.31, 0.23, 0.0))
+    pose = Pose(tuple(float(x) for x in R.ravel()), vector(p))
+    pair = pair_of(a.transformed(turned), b)
+    place = together(edge_side(edge_a, 0.45), edge_side(edge_b, 0.53))
+    found = settle_and_weigh(pair, resting(pose), place, 0.0, 0.0, TOLERANCE, new_work()).found
+    assert found.outcome == CERTIFIED
+    assert found.distance == pytest.approx(gap, abs=1e-14)
+    assert found.normal == pytest.approx(vector(turned @ np.array(Z)), abs=1e-9)
 
 
 def test_near_contact_a_feature_is_still_released():

@@ -23,7 +23,12 @@ from hand_made_pairs import (
 import standoff as so
 from draws import draws
 from standoff.kernels.body import layout as L
-from standoff.kernels.pair.certified import CERTIFIED, TOUCHING_OR_OVERLAPPING, UNCERTIFIED
+from standoff.kernels.pair.certified import (
+    CERTIFIED,
+    TOUCHING_OR_OVERLAPPING,
+    UNCERTIFIED,
+    settle_and_weigh,
+)
 from standoff.kernels.pair.cold_start import (
     FIRST,
     MAX_STARTS,
@@ -40,7 +45,7 @@ from standoff.kernels.pair.cold_start import (
     support_sample,
 )
 from standoff.kernels.pair.events import EVALUATIONS, LIMIT, RESTARTS
-from standoff.kernels.values import ORIGIN, Side, side_of
+from standoff.kernels.values import ORIGIN, Side, resting, side_of
 
 TOLERANCE = 1e-10
 TURN = turn((1, 2, 3), 0.9)
@@ -107,8 +112,9 @@ def facing(case):
 
 
 def test_the_nearest_pair_that_face_each_other():
-    for case in CASES:
+    for case in (*CASES, EGGS.at(0.7, 0.3, 0.4), EGGS.at(0.3, 0.8, 0.2), BOXES.at(0.9, 0.5, 0.4)):
         far, faces = facing(case)
+        assert faces.any()
         i, j = nearest_facing(*case.both)
         assert faces[i, j]
         assert far[i, j] == pytest.approx(far[faces].min(), rel=1e-12)
@@ -140,8 +146,10 @@ def test_the_nearest_sample_to_a_point_that_it_faces():
     assert nearest_to(*packed(EGGS.a.body), (2.0, 0.0, 0.0), X) == 0
 
 
-def test_alternating_samples_are_each_the_nearest_to_the_other():
-    for case in (EGGS, BOXES, EGGS.at(0.0, 0.0, -2.0), BOXES.at(-2.0, 0.1, 0.2)):
+def test_alternating_samples_are_each_the_nearest_to_the_other(rng):
+    ways = rng.normal(size=(draws(30), 3))
+    cases = [case.at(*(2.5 * np.array(unit(*n)))) for n in ways for case in (EGGS, BOXES)]
+    for case in cases:
         i, j = alternating(*case.both)
         far, faces = facing(case)
         assert faces[i, j]
@@ -230,6 +238,18 @@ def test_of_uncertified_starts_the_one_of_the_least_gap_is_told():
     assert work.counts[RESTARTS] == MAX_STARTS - 1
     assert found.distance - found.lower < 1e-12
     assert EGGS.rises_around(found.normal)
+
+
+def test_a_start_that_is_cut_off_does_not_take_the_place_of_a_better_one():
+    """The first descent ends with nothing between distance and bound; one evaluation is left."""
+    first = new_work()
+    start = at_samples(EGGS.pair, *alternating(*EGGS.both))
+    settle_and_weigh(EGGS.pair, resting(EGGS.pose), start, 0.0, 0.0, -1.0, first)
+    work = new_work()
+    work.counts[LIMIT] = first.counts[EVALUATIONS] + 1
+    found, _ = query(EGGS, tolerance=-1.0, work=work)
+    assert work.counts[RESTARTS] == 1
+    assert found.distance - found.lower < 1e-12
 
 
 @pytest.mark.parametrize("limit", [0, 1, 2])

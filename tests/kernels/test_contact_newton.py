@@ -4,15 +4,17 @@ import math
 
 import numpy as np
 import pytest
-from hand_made import ALONG_X, BOX, EDGE, new_work
+from hand_made import BOX, EDGE, new_work
 from hand_made_frames import motion_of
 from hand_made_pairs import (
     Placed,
     X,
     Y,
     Z,
+    across,
     ball,
     box,
+    edge_side,
     ellipsoid,
     half_space,
     pair_of,
@@ -21,6 +23,7 @@ from hand_made_pairs import (
     turn,
     unit,
     vector,
+    wedge,
 )
 
 import standoff as so
@@ -50,10 +53,6 @@ EGGS = Placed(
 )
 
 
-def edge_side(feature, t):
-    return Side(np.int64(feature), NO_CHART, t, 0.0)
-
-
 def normal_of(case, place):
     return common_normal(*case.both, place, pair_jets(*case.both, place))
 
@@ -73,20 +72,31 @@ def test_against_a_corner_it_is_that_of_the_other_s_face():
     assert n == pytest.approx(vector(-np.array(R).reshape(3, 3) @ m), abs=1e-14)
 
 
-@pytest.mark.parametrize("height", [0.5, 0.0, -0.3])
-def test_two_edges_give_their_common_perpendicular_from_a_to_b(height):
-    """A's edge runs along y at x = z = 1, B's bottom one crosses it along x, turned to point down.
-
-    B lies above whatever the gap is, in penetration too.
-    """
-    down = turn(X, math.pi)
-    cubes = Placed(box(1.0, 1.0, 1.0), box(1.0, 1.0, 1.0), (1.0, 1.0, 2.0 + height), down)
-    pair = pair_of(BOX, BOX)
-    place = together(edge_side(EDGE, 0.5), edge_side(ALONG_X, 0.5))
-    jets = pair_jets(pair, cubes.pose, place)
-    n, sharp = common_normal(pair, cubes.pose, place, jets)
+@pytest.mark.parametrize("spin", [0.0, math.pi])
+@pytest.mark.parametrize(
+    ("first", "second"), [(30.0, 30.0), (60.0, 0.0), (0.0, 30.0), (120.0, 120.0)]
+)
+@pytest.mark.parametrize("height", [0.5, 1e-9, -0.3])
+def test_two_edges_give_their_common_perpendicular_from_a_to_b(height, first, second, spin):
+    """Wedges, B upside down above A and across it, whichever way its edge runs: z in penetration
+    too, and of sharp edges, whose normals are not all on one side of a plane along them."""
+    (a, edge_a), (b, edge_b) = wedge(first), wedge(second)
+    pair, pose = pair_of(a, b), across(height, spin)
+    place = together(edge_side(edge_a, 0.5), edge_side(edge_b, 0.5))
+    n, sharp = common_normal(pair, pose, place, pair_jets(pair, pose, place))
     assert sharp
     assert n == pytest.approx(Z, abs=1e-15)
+
+
+@pytest.mark.parametrize("spin", [0.0, math.pi])
+def test_two_segments_give_the_side_on_which_b_is(spin):
+    """They have no faces that tell, and nothing inside."""
+    (line, edge), place = wedge(0.0), together(edge_side(0, 0.5), edge_side(0, 0.5))
+    assert edge == 0
+    for height in (0.5, 1e-9, -1e-9):
+        pair, pose = pair_of(line, line), across(height, spin)
+        n, _ = common_normal(pair, pose, place, pair_jets(pair, pose, place))
+        assert n == pytest.approx(np.sign(height) * np.array(Z), abs=1e-15)
 
 
 def test_corners_have_the_direction_of_their_points_alone():

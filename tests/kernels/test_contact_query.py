@@ -238,6 +238,18 @@ def test_cut_off_the_last_direction_stays_where_it_is_better():
     assert found.lower == pytest.approx(-0.4, abs=1e-12)
 
 
+def test_cut_off_a_direction_that_parts_less_is_not_taken():
+    """Of balls, along z, with one evaluation: Newton's method ends nowhere better."""
+    case = Placed(ball(1.0), ball(0.7), (0.4, 0.3, 1.2))
+    work = new_work()
+    work.counts[LIMIT] = 1
+    place = begin_along(*case.both, Z)
+    found = query(case, place, Z, NEAR, work=work)
+    assert found.normal == Z
+    assert found.lower >= bound_along(*case.both, place, Z)
+    assert found.lower <= -case.depth(Z)
+
+
 def test_points_that_coincide_are_queried_all_the_same():
     case = Placed(ball(1.0), ball(0.7), (1.7, 0.0, 0.0))
     place = case.place(X, (-0.7, 0.0, 0.0))

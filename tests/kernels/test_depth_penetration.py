@@ -353,7 +353,15 @@ def test_without_evaluations_left_it_is_cut_off():
 
 
 def test_over_a_half_space_the_plane_gives_the_direction():
-    """The start's normal leans; the plane's own comes back, and the distance along it."""
+    """To the bit, as any other bounds nothing; Newton's own is off it by roundoff."""
+    m = unit(1, 2, 3)
+    tilted = Placed(half_space(m, 0.3), ball(0.5), vector(0.6 * np.array(m)))
+    leaning = unit(*np.add(m, (0.1, 0.0, 0.0)))
+    start = Depth(False, -1.0, leaning, tilted.over_plane(-0.5 * np.array(m)))
+    kind, ended, _ = stationary_along(*tilted.both, start, TOLERANCE, new_work())
+    assert kind == MINIMUM
+    assert ended.normal == plane_normal(*tilted.both)[1]
+    assert ended.distance == pytest.approx(0.6 - 0.5 - 0.3, abs=1e-15)
     case = Placed(half_space(Z, 0.3), ball(0.5), (0.1, -0.2, 0.6))
     start = Depth(False, -1.0, unit(0.1, 0.0, 1.0), case.over_plane((0.0, 0.0, -0.5)))
     kind, ended, _ = stationary_along(*case.both, start, TOLERANCE, new_work())

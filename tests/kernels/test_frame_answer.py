@@ -11,6 +11,7 @@ from pointed import pointed
 
 import standoff as so
 from standoff.kernels.algebra.rigid import relative_pose, relative_twist
+from standoff.kernels.body import layout as L
 from standoff.kernels.frame.answer import (
     normal_rate,
     write_answer,
@@ -229,6 +230,10 @@ def relative() -> Motion:
     return twisted(GIVEN, relative_pose(GIVEN.pose_a, GIVEN.pose_b))
 
 
+OTHER_RATE = np.array([0.5, -0.25, 1.0])
+"""Added to the normal's, in A's frame."""
+
+
 def seen_rate():
     """N's rate seen from A."""
     return rotated_back(R_A, N_RATE - np.cross(W_A, N))
@@ -243,12 +248,14 @@ def test_witness_points_move_along_the_line_of_centres(made, inside):
     shown = Shown(found, jets, inside, True, rates)
     out = np.full(N_OUT, np.nan)
     write_points(case.pair, GIVEN, jets, found, out)
-    # outside contact what is given does not count
-    given = vector(seen_rate()) if inside else (7.0, 7.0, 7.0)
-    write_rates(case.pair, GIVEN, relative(), shown, given, out)
+    # outside contact what is given does not count, and in contact it is all that does
+    write_rates(case.pair, GIVEN, relative(), shown, vector(seen_rate() + OTHER_RATE), out)
     assert out[OUT_RATE] == pytest.approx(N @ SLIP, abs=1e-14)
-    np.testing.assert_allclose(out[VELOCITY_A : VELOCITY_A + 3], V_A + 0.7 * N_RATE, atol=1e-14)
-    np.testing.assert_allclose(out[VELOCITY_B : VELOCITY_B + 3], V_B - 0.4 * N_RATE, atol=1e-14)
+    swept = case.a.body.reals[L.RADIUS], case.b.body.reals[L.RADIUS]
+    more = rotated(R_A, OTHER_RATE) if inside else np.zeros(3)
+    v_a, v_b = V_A + 0.7 * N_RATE + swept[0] * more, V_B - 0.4 * N_RATE - swept[1] * more
+    np.testing.assert_allclose(out[VELOCITY_A : VELOCITY_A + 3], v_a, atol=1e-14)
+    np.testing.assert_allclose(out[VELOCITY_B : VELOCITY_B + 3], v_b, atol=1e-14)
 
 
 def whole(given):

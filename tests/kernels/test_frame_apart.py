@@ -125,11 +125,20 @@ def test_a_certified_step_is_the_answer():
 
 def test_very_near_contact_the_answer_is_polished():
     """1e-9 apart the direction between the points is lost; the polish gives it back."""
+    spent = {}
+    for gap in (1e-9, 1e-2):
+        case = over(1e-6, 1.7 + gap)
+        work = new_work()
+        before = before_of(over(0.0, 1.7 + gap))
+        then, tracked = apart(case.pair, turning(case, 1e-4), before, FREE, H, work)
+        assert then == ANSWERED
+        spent[gap] = int(work.counts[EVALUATIONS])
+        if gap > 1e-3:
+            break
+        found = tracked.shown.found
+    assert spent[1e-2] == 1
+    assert spent[1e-9] > 1
     case = over(1e-6, 1.7 + 1e-9)
-    before = before_of(over(0.0, 1.7 + 1e-9))
-    then, tracked = apart(case.pair, turning(case, 1e-4), before, FREE, H, new_work())
-    assert then == ANSWERED
-    found = tracked.shown.found
     assert found.distance == pytest.approx(1e-9, abs=2e-15)
     assert found.normal == pytest.approx(unit(*case.p), abs=1e-12)
 

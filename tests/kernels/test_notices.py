@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from standoff.kernels.compiler import notices
+from standoff.kernels.compiler import modules, notices
 from standoff.kernels.entries.preparing import every_entry
 
 SEGMENT = "import standoff as so; so.shapes.segment(1.0); so.shapes.segment(2.0)"
@@ -29,7 +29,23 @@ def said(folder: Path, program: str = SEGMENT, **settings: str) -> list[str]:
         text=True,
     )
     assert (ended.returncode, ended.stdout) == (0, ""), ended.stderr
-    return ended.stderr.splitlines()
+    stock = modules.why_stock() or None  # told beside the rest where another Numba is tried
+    return [line for line in ended.stderr.splitlines() if stock is None or stock not in line]
+
+
+def test_a_numba_that_compiles_each_kernel_by_itself_is_told_once(tmp_path: Path) -> None:
+    other = "import numba; numba.__version__ = '0.99.0'; "
+    lines = said(tmp_path, f"{other}{SEGMENT}; {OTHER}")
+    told = [line for line in lines if "0.99.0" in line]
+    assert told == [
+        "standoff: Numba 0.99.0 is not the version that one module an entry was written for "
+        f"({modules.WRITTEN_FOR}x): each kernel is compiled by itself, which takes ten times as "
+        "long; the answers are the same."
+    ]
+    assert lines[0] == told[0]
+    # who asks for it knows
+    asked = said(tmp_path / "asked", OTHER, STANDOFF_STOCK_COMPILER="1")
+    assert not [line for line in asked if "by itself" in line]
 
 
 def test_the_first_use_is_told_once_and_later_ones_are_silent(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from depth_cases import BALLS, BOXES, EGGS, TURNED, WAY, drawn, planar, seeded_h
 from hand_made import new_work
 from hand_made_pairs import Placed, X, Z, ball, box, half_space, point, segment, unit, vector
 from hull_making import seeded
+from pointed import pointed
 
 from draws import draws
 from standoff.kernels.body import layout as L
@@ -31,7 +32,7 @@ from standoff.kernels.depth.penetration import begin_along, box_depth, contact_s
 from standoff.kernels.pair.certified import CERTIFIED, OVERLAP, PENETRATING, UNCERTIFIED
 from standoff.kernels.pair.events import EVALUATIONS, EVENTS, LIMIT, SEARCHES
 from standoff.kernels.tolerances import OVERLAP_NOISE
-from standoff.kernels.values import Found
+from standoff.kernels.values import Found, Pair
 
 TETRAHEDRON = np.array([(-1, -1, -1), (3, -1, -1), (-1, 3, -1), (-1, -1, 3)], dtype=float)
 """Its corner is square, and the sum of the coordinates is 1 on the fourth facet."""
@@ -50,10 +51,12 @@ def proven(case, work=None):
 
 def test_the_margin_is_what_roundoff_and_slack_may_add():
     for case in (BOXES, BOXES.at(50.0, 0.0, 0.0)):
-        slack = case.a.body.reals[L.SLACK] + case.b.body.reals[L.SLACK]
         span = pair_span(case.pair, case.pose.p, 0.0)
-        assert proof_margin(*case.both) == pytest.approx(OVERLAP_NOISE * span + slack)
-        assert proof_margin(*case.both) > 0.0
+        assert proof_margin(*case.both) == pytest.approx(OVERLAP_NOISE * span)
+    loose = [np.array(body.reals) for body in (BOXES.a.body, BOXES.b.body)]
+    loose[0][L.SLACK], loose[1][L.SLACK] = 1e-3, 2e-3
+    pair = Pair(BOXES.pair.ints_a, pointed(loose[0]), BOXES.pair.ints_b, pointed(loose[1]))
+    assert proof_margin(pair, BOXES.pose) == pytest.approx(3e-3)
 
 
 def test_the_nearest_point_of_a_side():
@@ -242,11 +245,14 @@ def test_bodies_that_overlap_are_proven_to(rng):
 
 
 def test_switches_on_the_way_are_not_the_frame_s():
+    here = TURNED.at(0.0, 0.0, 0.0)
+    case = here.at(here.depth(X) - 1e-4, 0.0, 0.0)
+    alone = new_work()
+    assert cores_meet(*case.both, proof_margin(*case.both), alone)
+    assert alone.counts[EVENTS] > 0
     work = new_work()
-    work.counts[EVENTS] = 2
-    case = TURNED
     assert proven(case, work)
-    assert work.counts[EVENTS] == 2
+    assert work.counts[EVENTS] == 0
 
 
 def test_only_what_is_not_certified_is_asked():

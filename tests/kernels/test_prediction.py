@@ -85,6 +85,17 @@ def test_a_step_over_a_boundary_holds_it():
     assert work.counts[EVENTS] == 1
 
 
+def test_a_step_that_one_body_stops_is_cut_for_both():
+    """A's point goes half of its way, to the edge, and so does that of the ball above it."""
+    case = Placed(box(1.0, 1.0, 1.0), ball(0.5), (0.3, -0.2, 2.0))
+    place = case.place((0.3, -0.2, 1.0), (0.0, 0.0, -0.5))
+    across = case.points(moved(place, 1.0, (0.0, 0.1, 0.0, 0.0)))[0] - case.points(place)[0]
+    assert across == pytest.approx((0.1, 0.0, 0.0), abs=1e-15)
+    after = apply_step(case.pair, place, (0.0, 1.4, 0.2, -0.4), new_work())
+    assert case.points(after)[0] == pytest.approx((1.0, -0.2, 1.0), abs=1e-15)
+    assert (after.r, after.s) == pytest.approx((place.r + 0.1, place.s - 0.2), abs=1e-15)
+
+
 BALL = so.shapes.ellipsoid(1.0, 0.8, 0.6)
 SOLIDS = Placed(ball(1.0), ball(0.7), (0.0, 0.0, 2.0))
 

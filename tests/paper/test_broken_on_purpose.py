@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from standoff.tracking import Tracker
+from standoff_studies.paper import pair_simulation
 from standoff_studies.paper.broken_on_purpose import BREAKS, FIGURES, Break, Noticed, noticed
 from standoff_studies.paper.broken_on_purpose.matrix import markdown, sound
 from standoff_studies.paper.catalogue import chosen, make
@@ -37,13 +38,12 @@ def test_what_is_claimed_is_noticed(one: Break) -> None:
 
 def test_nothing_is_noticed_where_nothing_is_broken() -> None:
     """The matrix by itself breaks nothing, nor does it leave anything broken behind."""
-    runs = {d.run: d.run().paper[0].time, e.run: e.run().paper.time}
+    times = [one.SIMULATION.paper.time for one in (d, e)]
     for row in noticed(Break("none", "the law as it is"), ("18", "20"), trials=False):
         assert row == Noticed(row.key)
-    for run, time in runs.items():
-        made = run().paper
-        assert (made[0] if isinstance(made, tuple) else made).time is time
-    assert d.Tracker is Tracker
+    for one, time in zip((d, e), times, strict=True):
+        assert one.SIMULATION.paper.time is time
+    assert pair_simulation.Tracker is Tracker
 
 
 def test_the_table_tells_every_break() -> None:
@@ -65,7 +65,7 @@ def test_the_table_tells_every_break() -> None:
 def test_a_normal_of_the_wrong_sign_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """External lines that go inwards: the switches are no longer on them."""
     words = "where the opposing witness point crosses"
-    assert saying(regions_c._statements(c.run()), words).holds is True
+    assert saying(regions_c._statements(c.SIMULATION), words).holds is True
     turned = tuple(
         replace(
             one,
@@ -74,7 +74,7 @@ def test_a_normal_of_the_wrong_sign_is_told(monkeypatch: pytest.MonkeyPatch) -> 
         for one in regions_c.regions()
     )
     monkeypatch.setattr(regions_c, "regions", lambda: turned)
-    assert Verdict.of(saying(regions_c._statements(c.run()), words)) is Verdict.FAILS
+    assert Verdict.of(saying(regions_c._statements(c.SIMULATION), words)) is Verdict.FAILS
 
 
 @pytest.mark.parametrize("entry", chosen(["all"]), ids=lambda entry: entry.key)

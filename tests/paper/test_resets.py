@@ -39,15 +39,15 @@ def of_b() -> Case:
 
 
 def of_c() -> Case:
-    return c.run().paper, c.run().paths, c.GAIN
+    return c.SIMULATION.paper, c.SIMULATION.paths, c.SIMULATION.gain
 
 
 def of_d() -> Case:
-    return d.run().paper[0], (d.REST, d.HELIX), d.GAIN
+    return d.SIMULATION.paper, d.SIMULATION.paths, d.SIMULATION.gain
 
 
 def of_e() -> Case:
-    return e.run().paper, (e.PATH_A, e.PATH_B), e.GAIN
+    return e.SIMULATION.paper, e.SIMULATION.paths, e.SIMULATION.gain
 
 
 @pytest.mark.parametrize(("case", "least"), [(of_b, 9), (of_c, 36), (of_d, 11), (of_e, 4)])
@@ -107,12 +107,12 @@ def test_a_distance_that_grows_is_told() -> None:
 
 def test_an_exact_reset_is_told() -> None:
     """Entered at the foot point, an edge leaves other errors than the printed reset implies."""
-    runs = e.run()
-    law = replace(PaperLaw.as_printed(gain=e.GAIN), reset="foot")
-    tracker = Tracker(runs.a, runs.b, e.STEP, law=law)
-    times = even_times(0.0, 1.2, e.STEP)
-    other = track_along(tracker, e.PATH_A, e.PATH_B, times, state=e.begin(tracker, *e.START))
-    resets = resets_of(other, (e.PATH_A, e.PATH_B), e.GAIN)
+    runs = e.SIMULATION
+    law = replace(PaperLaw.as_printed(gain=runs.gain), reset="foot")
+    tracker = Tracker(runs.a, runs.b, runs.step, law=law)
+    times = even_times(0.0, 1.2, runs.step)
+    other = track_along(tracker, *runs.paths, times, state=runs.begin(tracker, runs.starts[0]))
+    resets = resets_of(other, runs.paths, runs.gain)
     assert max(reset.off for reset in resets) > 1e6 * ROUNDED
     assert reset_statement(resets, "").holds is False
 

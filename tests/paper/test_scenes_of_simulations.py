@@ -10,12 +10,12 @@ import pytest
 from standoff.scene import load_scene
 from standoff_studies.paper.bodies import leaf, planar_body
 from standoff_studies.paper.simulation_b.run import motion
-from standoff_studies.paper.simulation_c.run import motion as motion_c
-from standoff_studies.paper.simulation_d.runs import DURATION, HELIX
+from standoff_studies.paper.simulation_c.run import MOTION
+from standoff_studies.paper.simulation_d.runs import HELIX, SIMULATION
 from standoff_studies.paper.simulation_e.runs import PATH_B
 
 SCENES = Path(__file__).parents[2] / "examples" / "paper"
-MOTIONS = {"b": motion(planar_body()), "c": motion_c(), "d": HELIX, "e": PATH_B}
+MOTIONS = {"b": motion(planar_body()), "c": MOTION, "d": HELIX, "e": PATH_B}
 
 
 @pytest.mark.parametrize("name", MOTIONS)
@@ -34,4 +34,4 @@ def test_planar_bodies_are_those_of_the_studies() -> None:
 
 def test_all_are_there() -> None:
     assert sorted(file.stem[-1] for file in SCENES.glob("*.toml")) == list("bcde")
-    assert load_scene(SCENES / "simulation-d.toml").settings.duration == DURATION
+    assert load_scene(SCENES / "simulation-d.toml").settings.duration == SIMULATION.duration

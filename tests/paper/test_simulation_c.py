@@ -62,7 +62,7 @@ def placed(times):
 @cache
 def truth():
     """The brute force at every frame."""
-    return PAIR.nearest(*placed(chapter.run().exact.time))
+    return PAIR.nearest(*placed(chapter.SIMULATION.exact.time))
 
 
 def named(feature):
@@ -100,7 +100,7 @@ def true_instant(frame, before, after):
     """The root of the brute force's switching function near a frame's step, and its slope."""
     low, high = sorted((before, after), key=lambda pair: [kind for kind, _ in pair].count("curve"))
     assert sum(x != y for x, y in zip(low, high, strict=True)) == 1
-    time = chapter.run().exact.time
+    time = chapter.SIMULATION.exact.time
 
     def value(t):
         return switching_value(low, high, t)
@@ -125,7 +125,7 @@ def test_the_brute_force_itself():
         nearest = min(rows, key=lambda f: rows[f].distance[0])
         assert nearest == feature
         assert rows[nearest].distance[0] == pytest.approx(distance, abs=1e-10)
-    time = chapter.run().exact.time
+    time = chapter.SIMULATION.exact.time
     for frame in range(0, len(time), 1500):
         turn, shift = placed(time[frame])
         whole = np.eye(3)
@@ -140,7 +140,7 @@ def test_the_brute_force_itself():
 
 def test_mode_sequence():
     """Fig. 13: the visited modes are those of the brute force, frame by frame."""
-    simulation = chapter.run()
+    simulation = chapter.SIMULATION
     known = [PAIR.pairs[k] for k in truth().pair]
     assert modes_of(simulation.exact) == known
     stays = [(named(stay.feature_a), named(stay.feature_b)) for stay in simulation.exact.modes()]
@@ -150,26 +150,26 @@ def test_mode_sequence():
 def test_the_printed_system_takes_the_same_switches():
     """Fig. 13: once converged, the modes of the brute force, late by less than 1/K = 40 ms; a
     frame may differ where a switch falls into it."""
-    simulation, gain = chapter.run(), 25.0
+    simulation, gain = chapter.SIMULATION, 25.0
     law = simulation.paper.info.options
     assert (law["gain"], law["switching"], law["solve"]) == (gain, "voronoi", "plain")
     assert (law["saturation"], law["reset"], law["restarts"]) == ("zero", "nearest", False)
     modes, known = modes_of(simulation.paper), [PAIR.pairs[k] for k in truth().pair]
-    settled = round(chapter.CONVERGED / chapter.FRAME)
+    settled = round(chapter.SIMULATION.entered / chapter.SIMULATION.step)
     changes = [
         k for k in range(settled, len(known)) if known[k] != known[k - 1]
     ]  # frames at which the brute force switches
     differ = [k for k in range(settled, len(known)) if modes[k] != known[k]]
     assert len(changes) == 34
     assert all(min(abs(k - c) for c in changes) <= 1 for k in differ)
-    assert chapter.furthest_instants(simulation) < 1e-4
+    assert simulation.furthest() < 1e-4
     # the start is wrong, on another feature of B
     assert modes[0] == (("curve", 1), ("curve", 0)) != known[0]
 
 
 def test_nothing_is_injected():
     """No frame holds a restart, a search or a parameter that a solve has written."""
-    counts = chapter.run().paper.total_counts()
+    counts = chapter.SIMULATION.paper.total_counts()
     assert (counts.restarts, counts.searches, counts.solved_parameters) == (0, 0, 0)
     assert counts.foot_points > 12000
 
@@ -183,23 +183,24 @@ def test_starts_anywhere():
 
 def test_all_kinds_of_modes_occur_several_times():
     """Issue: vertex-vertex, vertex-curve, curve-curve; each more than once, B on every feature."""
-    simulation = chapter.run()
-    kinds = [kind_of(stay.feature_a, stay.feature_b) for stay in simulation.stays]
+    simulation = chapter.SIMULATION
+    kinds = [kind_of(stay.feature_a, stay.feature_b) for stay in simulation.paper.modes()]
     assert min(kinds.count(kind) for kind in range(3)) >= 3
-    assert {named(stay.feature_a) for stay in simulation.stays} == {f for f, _ in PAIR.pairs}
-    assert {named(stay.feature_b) for stay in simulation.stays} == {f for _, f in PAIR.pairs}
+    stays = simulation.paper.modes()
+    assert {named(stay.feature_a) for stay in stays} == {f for f, _ in PAIR.pairs}
+    assert {named(stay.feature_b) for stay in stays} == {f for _, f in PAIR.pairs}
     table = figure_13().tables["stays"]
     for a, b, kind in zip(table["feature_a"], table["feature_b"], table["kind"], strict=True):
         assert sorted(name[0] for name in (a, b)) == sorted(w[0].upper() for w in kind.split("–"))
-    assert chapter.run().b.n_edges == chapter.run().b.n_vertices == 3
+    assert chapter.SIMULATION.b.n_edges == chapter.SIMULATION.b.n_vertices == 3
 
 
 def test_snapshots_show_the_modes_of_their_frames():
     """Fig. 14: each snapshot's active features are the brute force's at its time."""
-    simulation = chapter.run()
-    times = [snapshot.time for snapshot in simulation.snapshots]
+    simulation = chapter.SIMULATION
+    times = [snapshot.time for snapshot in chapter.snapshots()]
     assert times == pytest.approx([k + 0.5 for k in range(12)], abs=1e-12)
-    for snapshot in simulation.snapshots:
+    for snapshot in chapter.snapshots():
         assert simulation.exact.time[snapshot.frame] == pytest.approx(snapshot.time, abs=1e-12)
         known = PAIR.pairs[truth().pair[snapshot.frame]]
         assert (named(snapshot.feature_a), named(snapshot.feature_b)) == known
@@ -207,7 +208,7 @@ def test_snapshots_show_the_modes_of_their_frames():
 
 def test_switching_instants():
     """Fig. 15: instants to 1e-9 s where the switching function crosses with slope above 1e-3."""
-    events = chapter.run().exact.events
+    events = chapter.SIMULATION.exact.events
     switches = true_switches()
     assert len(events) == len(switches) == 35
     for event, switch in zip(events, switches, strict=True):
@@ -220,7 +221,7 @@ def test_switching_instants():
 
 def test_tracking_error_at_all_times():
     """Fig. 15: distance and witness points are the brute force's at every frame."""
-    recording, known = chapter.run().exact, truth()
+    recording, known = chapter.SIMULATION.exact, truth()
     np.testing.assert_allclose(recording.distance, known.distance, rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(recording.point_a[:, :2], known.point_a, rtol=0.0, atol=5e-11)
     np.testing.assert_allclose(recording.point_b[:, :2], known.point_b, rtol=0.0, atol=5e-11)
@@ -231,26 +232,26 @@ def test_tracking_error_at_all_times():
 
 def test_tracking_error_of_the_printed_system():
     """From a wrong start the errors decay as exp(-K t); so do those that a switch leaves."""
-    simulation, known = chapter.run(), truth()
+    simulation, known = chapter.SIMULATION, truth()
     off_a = np.linalg.norm(simulation.paper.point_a[:, :2] - known.point_a, axis=1)
     off_b = np.linalg.norm(simulation.paper.point_b[:, :2] - known.point_b, axis=1)
     error = np.maximum(off_a, off_b)
-    np.testing.assert_allclose(error, chapter.witness_error(simulation), rtol=0.0, atol=1e-10)
+    np.testing.assert_allclose(error, simulation.witness_error, rtol=0.0, atol=1e-10)
     assert error[0] > 0.5
-    settled = round(chapter.CONVERGED / chapter.FRAME)
+    settled = round(chapter.SIMULATION.entered / chapter.SIMULATION.step)
     assert error[settled:].max() < 3e-3
     quiet = ~after_switches(simulation)
     quiet[:settled] = False
     assert error[quiet].max() < 2e-5
-    steps = [e.frame for e in chapter.entered(simulation.paper) if error[e.frame] > 1e-4]
+    steps = [e.frame for e in simulation.entered_events(simulation.paper) if error[e.frame] > 1e-4]
     assert len(steps) >= 5
-    rates = [np.log(error[k + 1] / error[k + 4]) / (3.0 * chapter.FRAME) for k in steps]
+    rates = [np.log(error[k + 1] / error[k + 4]) / (3.0 * chapter.SIMULATION.step) for k in steps]
     assert np.median(rates) == pytest.approx(25.0, rel=0.2)
 
 
 def test_the_distance_never_grows_at_a_switch():
     """The paper's claim: what the target's features reach is no farther than the source's."""
-    simulation = chapter.run()
+    simulation = chapter.SIMULATION
     assert greatest_growth(simulation.exact, simulation.paths) <= CONTINUOUS
     assert max(figure_13().tables["growth"]["distance_growth_length"]) <= CONTINUOUS
     for event in simulation.exact.events:
@@ -280,7 +281,7 @@ def test_the_distance_never_grows_at_a_switch():
 
 def test_parameters_are_constant_where_a_vertex_holds():
     """Fig. 15: the witness point stays in the vertex, and leaves it along the curve's parameter."""
-    simulation = chapter.run()
+    simulation = chapter.SIMULATION
     assert chapter.vertex_slip(simulation) <= 2e-15
     paper, table = simulation.paper, figure_15().tables["frames"]
     for names, features in (
@@ -343,7 +344,7 @@ def test_medial_axes_are_halfway_between_the_curves():
 
 def test_switches_are_on_the_external_lines():
     """Figs. 12 and 13: the opposing witness point is on the line between the two features."""
-    simulation = chapter.run()
+    simulation = chapter.SIMULATION
     for event in simulation.exact.events:
         assert off_line(simulation, event) <= 1e-12
 
@@ -360,15 +361,15 @@ def test_statements_hold():
 
 def test_the_automaton_s_picture_shows_every_switch():
     """Fig. 13: all modes named, all instants written, once each."""
-    simulation = chapter.run()
+    simulation = chapter.SIMULATION
     (axes,) = figure_13().draw().axes
     texts = [text.get_text() for text in axes.texts]
-    for pair in {(stay.feature_a, stay.feature_b) for stay in simulation.stays}:
+    for pair in {(stay.feature_a, stay.feature_b) for stay in simulation.paper.modes()}:
         assert sum(text.startswith(mode_name(*pair)) for text in texts) == 1
     written = sorted(line for text in texts for line in text.split("\n") if line.count(".") == 1)
-    times = [f"{event.time:.3f}" for event in chapter.entered(simulation.paper)]
+    times = [f"{event.time:.3f}" for event in simulation.entered_events(simulation.paper)]
     assert set(times) <= set(written)
-    assert sum(len(way.times) for way in ways(simulation)) == len(simulation.stays) - 1
+    assert sum(len(way.times) for way in ways(simulation)) == len(simulation.paper.modes()) - 1
     assert len(figure_13().tables["switches"]["time_s"]) == len(simulation.paper.events)
 
 
@@ -377,7 +378,7 @@ def test_pictures_are_drawn():
     panels = figure_14().draw().axes
     assert len(panels) == 12
     assert all(axes.get_aspect() == 1.0 for axes in panels)
-    simulation = chapter.run()
+    simulation = chapter.SIMULATION
     texts = [text.get_text() for axes in figure_15().draw().axes for text in axes.texts]
     named_ones = [text for text in texts if "–" in text]
     assert len(named_ones) == len(named_stays(simulation, (0.0, 12.0)))

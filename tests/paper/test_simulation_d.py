@@ -18,6 +18,7 @@ from standoff_studies.paper.held_features import (
     held_distance,
 )
 from standoff_studies.paper.simulation_d import modes, parameters, runs, scene
+from standoff_studies.paper.simulation_e.runs import SIMULATION as OTHER
 
 AT_POINT = (("vertex", 0), ())
 LENS = support.Lens(1.0, 0.45)
@@ -31,13 +32,13 @@ TO_INSTANT = 1e-9
 
 @pytest.fixture(scope="module")
 def run():
-    return runs.run()
+    return runs.SIMULATION
 
 
 @pytest.fixture(scope="module")
 def truth():
     """By brute force over all features, for every frame: the feature, distance, closest point."""
-    points = [runs.HELIX.pose(t).translation for t in runs.run().exact.time.tolist()]
+    points = [runs.HELIX.pose(t).translation for t in runs.SIMULATION.exact.time.tolist()]
     found = [closed_forms.point_lens(point, LENS) for point in points]
     return (
         [feature_of_foot(foot) for _, foot in found],
@@ -100,7 +101,7 @@ def exact_instants(helix, times, features):
 def test_edges_are_numbered_as_the_oracle_has_them(run):
     for faces, edge in EDGES.items():
         for face in range(3):
-            on = edge in [number for number, _ in run.lens.face_parts[face].loop]
+            on = edge in [number for number, _ in run.a.face_parts[face].loop]
             assert on == (face in faces)
 
 
@@ -115,8 +116,8 @@ def test_faces_edges_and_a_vertex_are_visited(run):
 def test_modes_against_brute_force(run, truth):
     """Fig. 17: the mode of every frame, of the printed system too from its first frames on."""
     assert run.exact.feature_a.tolist() == truth[0]
-    entered = round(runs.ENTERED / runs.STEP) + 1
-    for recording in run.paper:
+    entered = round(run.entered / run.step) + 1
+    for recording in run.printed:
         assert recording.feature_a[0] != truth[0][0]
         assert recording.feature_a[entered:].tolist() == truth[0][entered:]
 
@@ -142,7 +143,7 @@ def test_instants_of_slow_crossings(run):
         axis=(15.0, 0.0, 4.0),
         phase=np.radians(100.0),
     )
-    recording = so.track(so.Tracker(run.lens, run.point, 20.0), HOME, helix, runs.DURATION / SLOW)
+    recording = so.track(so.Tracker(run.a, run.b, 20.0), HOME, helix, run.duration / SLOW)
     features, times = recording.feature_a.tolist(), recording.time.tolist()
     expected = exact_instants(helix, times, features)
     assert len(recording.events) == len(expected) == 10
@@ -154,18 +155,18 @@ def test_instants_of_slow_crossings(run):
 def test_instants_do_not_depend_on_the_start(run, truth):
     """Section on the hybrid system: for a body and a point the switching times are the motion's."""
     expected = exact_instants(runs.HELIX, run.exact.time.tolist(), truth[0])
-    starts = [recording.point_a[0] for recording in run.paper]
+    starts = [recording.point_a[0] for recording in run.printed]
     assert min(np.linalg.norm(a - b) for a, b in pairwise(starts)) > 0.5
-    for recording in run.paper:
-        instants = [event.time for event in runs.entered(recording)]
+    for recording in run.printed:
+        instants = [event.time for event in run.entered_events(recording)]
         np.testing.assert_allclose(instants, expected, atol=TO_INSTANT, rtol=0)
-    assert runs.furthest_instants(run.paper, run.exact) <= TO_INSTANT
-    assert runs.furthest_instants([run.exact], run.paper[0]) == float("inf")
+    assert run.furthest() <= TO_INSTANT
+    assert np.isinf(run.late(OTHER.exact)).all()
 
 
 def test_the_distance_never_grows_at_a_switch(run, truth):
     """Section on the hybrid system; beside the instants the measure can tell."""
-    paths = runs.REST, runs.HELIX
+    paths = run.paths
     assert greatest_growth(run.exact, paths) <= CONTINUOUS
     for event in run.exact.events:
         early, late = (growth(run.exact, paths, event, offset) for offset in (-0.02, 0.02))
@@ -181,8 +182,8 @@ def test_the_distance_never_grows_at_a_switch(run, truth):
 
 def test_the_figures_are_the_printed_systems(run):
     """One configuration, at a low gain; nothing searched, restarted, or taken from a solve."""
-    for recording in run.paper:
-        assert recording.info.law == so.PaperLaw.as_printed(gain=runs.GAIN)
+    for recording in run.printed:
+        assert recording.info.law == so.PaperLaw.as_printed(gain=run.gain)
         counts = recording.total_counts()
         assert counts.restarts == counts.searches == counts.solved_parameters == 0
         assert counts.foot_points > 0
@@ -196,7 +197,7 @@ def test_the_figures_are_the_printed_systems(run):
 @pytest.mark.parametrize("law", ["exact", "paper"])
 def test_parameters_are_constant_on_edges(run, law):
     """Fig. 18: stretches at exactly 0 or 1 where the point lies on an edge."""
-    recording = run.exact if law == "exact" else getattr(run, law)[0]
+    recording = run.exact if law == "exact" else run.paper
     faces = [runs.face_parameters(recording, face) for face in range(3)]
     first = runs.settling_steps(recording)
     checked = 0
@@ -230,7 +231,7 @@ def test_parameters_are_constant_on_edges(run, law):
 
 def test_parameters_are_those_of_the_closest_point(run):
     """What Fig. 18 draws is where the closest point is, on every face that holds it."""
-    surfaces = [part.charts[0] for part in run.lens.face_parts]
+    surfaces = [part.charts[0] for part in run.a.face_parts]
     for face in range(3):
         uv = runs.face_parameters(run.exact, face)
         for k in np.flatnonzero(~np.isnan(uv[:, 1]))[::50]:
@@ -246,26 +247,26 @@ def test_tracking_error_at_all_times(run, truth):
     assert np.abs(run.exact.distance - distance).max() < 1e-12
     assert np.abs(run.exact.point_a - foot).max() < 1e-10
     events = [event.frame for event in run.exact.events]
-    for recording in run.paper:
+    for recording in run.printed:
         error = np.linalg.norm(recording.point_a - foot, axis=1)
         since = np.arange(len(recording))
         for frame in (0, *events):
             since[frame:] = np.arange(len(recording) - frame)
         # what a start and a switch leave decays as exp(-K t), to the law's own error
-        late = since * runs.STEP > 6.0 / runs.GAIN
+        late = since * run.step > 6.0 / run.gain
         assert error[late].max() < 3e-3
-        assert error[since * runs.STEP > 12.0 / runs.GAIN].max() < 2e-5
+        assert error[since * run.step > 12.0 / run.gain].max() < 2e-5
         assert (recording.distance >= distance - 1e-12).all()
 
 
 def test_wrong_starts_converge(run):
     """The errors fall at the rate K."""
-    for recording in run.paper:
+    for recording in run.printed:
         assert recording.residual[0] > 1.0
-        at = [round(t / runs.STEP) for t in parameters.DECAY]
+        at = [round(t / run.step) for t in parameters.DECAY]
         error = np.linalg.norm(recording.point_a - run.exact.point_a, axis=1)[at]
         rate = np.log(error[0] / error[1]) / (parameters.DECAY[1] - parameters.DECAY[0])
-        assert rate == pytest.approx(runs.GAIN, rel=0.08)
+        assert rate == pytest.approx(run.gain, rel=0.08)
 
 
 def test_the_automaton_lists_what_was_taken(run):
@@ -278,12 +279,12 @@ def test_the_automaton_lists_what_was_taken(run):
     for (_, before), (_, after) in pairwise(automaton.taken):
         assert before.target == after.source
     table = modes.figure_17().tables["transitions"]
-    assert sum(table["taken_times"]) == len(run.paper[0].events) == 12
+    assert sum(table["taken_times"]) == len(run.paper.events) == 12
 
 
 def test_the_voronoi_surfaces_part_the_regions(run):
     """Fig. 16: a point of a surface has its closest point where the surface stands on the lens."""
-    sheets = scene.region_sheets(run.lens)
+    sheets = scene.region_sheets(run.a)
     assert len(sheets) == 12  # two along each edge, one at each end
     for sheet in sheets:
         for row in sheet[::3]:
@@ -321,9 +322,9 @@ def test_figures(make):
 def test_a_start_anywhere_converges(run):
     """Section on the hybrid system: a start anywhere on convex bodies converges."""
     rng = np.random.default_rng(4)
-    law = so.Tracker(run.lens, run.point, runs.STEP, law=so.PaperLaw(switching="voronoi"))
-    rest = runs.Fixed(HOME)
-    times = np.arange(120) * runs.STEP
+    law = so.Tracker(run.a, run.b, run.step, law=so.PaperLaw(switching="voronoi"))
+    rest = run.paths[0]
+    times = np.arange(120) * run.step
     motion = HOME, runs.HELIX.pose(0.0)
     for _ in range(15):
         start = law.start_from(

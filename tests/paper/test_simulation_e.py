@@ -18,8 +18,9 @@ from oracles.surfaces import placed_quadrics
 from standoff.motion import ConstantTwist
 from standoff_studies.oracles import Affine, Lens, Placed
 from standoff_studies.paper.held_features import CONTINUOUS, greatest_growth, growth
+from standoff_studies.paper.pair_simulation import Simulation
 from standoff_studies.paper.simulation_e import parameters, runs, snapshots
-from standoff_studies.paper.simulation_e.runs import DURATION, PATH_A, PATH_B, SEMI_AXES, STEP
+from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, SEMI_AXES, SIMULATION
 
 LENS = Lens(1.0, 0.45)
 SHAPES = LENS, Affine(LENS, np.diag(SEMI_AXES), np.zeros(3))
@@ -44,8 +45,8 @@ def placed(time: float) -> tuple[Placed, Placed]:
 def truth() -> dict[int, Nearest]:
     """Nearest points by brute force, by frame."""
     found, warm = {}, None
-    for frame in range(0, round(DURATION / STEP) + 1, EVERY):
-        warm = nearest_points(*placed(frame * STEP), warm)
+    for frame in range(0, round(SIMULATION.duration / SIMULATION.step) + 1, EVERY):
+        warm = nearest_points(*placed(frame * SIMULATION.step), warm)
         found[frame] = warm
     return found
 
@@ -64,14 +65,14 @@ def modes_of(recording: so.Recording, frame: int) -> tuple[tuple[int, ...], tupl
 
 
 @pytest.fixture(scope="module")
-def done() -> runs.Runs:
-    return runs.run()
+def done() -> Simulation:
+    return runs.SIMULATION
 
 
 def test_the_start_is_on_a_wrong_pair_of_faces(done):
-    first, second = done.paper.modes()[0], runs.stays(done.paper)[0]
+    first, second = done.paper.modes()[0], done.stays[0]
     assert runs.sequence([first, second]) == (("F2", "F2"), ("F0", "F1"))
-    assert second.start <= runs.ENTERED
+    assert second.start <= done.entered
 
 
 def test_two_bodies_of_three_patches(done):
@@ -89,7 +90,10 @@ def test_the_modes_are_those_of_brute_force(done):
         known = nearest.active_a, nearest.active_b
         assert modes_of(done.exact, frame) == known
         # the printed system switches a little late or early: its witness points are off
-        near = min(abs(frame * STEP - event.time) for event in done.exact.events) < 1.0 / runs.GAIN
+        near = (
+            min(abs(frame * SIMULATION.step - event.time) for event in done.exact.events)
+            < 1.0 / done.gain
+        )
         # and the first frame leaves the wrong pair of faces
         assert near or frame == 0 or modes_of(done.paper, frame) == known
         if known not in sequence[-1:]:
@@ -98,14 +102,14 @@ def test_the_modes_are_those_of_brute_force(done):
     assert sequence == [
         (balls_of(done.a, stay.feature_a), balls_of(done.b, stay.feature_b)) for stay in stays
     ]
-    assert runs.sequence(stays) == runs.sequence(runs.stays(done.paper))
-    assert min(stay.end - stay.start for stay in stays) > EVERY * STEP
+    assert runs.sequence(stays) == runs.sequence(done.stays)
+    assert min(stay.end - stay.start for stay in stays) > EVERY * SIMULATION.step
 
 
 def test_an_edge_is_entered_and_left_to_the_next_face(done):
     """Fig. 20: an entry into an edge and the exit to the next face, on both bodies."""
     for body, part in (("A", done.a), ("B", done.b)):
-        first, edge, last = runs.features_of(done.paper, body)
+        first, edge, last = runs.features_of(done.stays, body)
         assert (first[0], edge[0], last[0]) == ("F", "E", "F")
         sides = balls_of(part, so.Feature("edge", int(edge[1:])))
         assert set(sides) == {int(first[1:]), int(last[1:])}
@@ -121,20 +125,20 @@ def test_the_tracking_error_at_all_times(done):
         np.testing.assert_allclose(exact.point_a[frame], nearest.point_a, atol=1e-9)
         np.testing.assert_allclose(exact.point_b[frame], nearest.point_b, atol=1e-9)
         assert exact.distance[frame] == pytest.approx(nearest.distance, abs=1e-12)
-    error = runs.witness_error(done)
+    error = done.witness_error
     assert error[0] > 0.5
     since = np.arange(len(error))
     for event in paper.events:
         since[event.frame :] = np.arange(len(error) - event.frame)
     # what the start and a switch leave decays as exp(-K t), to the law's own error
-    assert error[since * STEP > 6.0 / runs.GAIN].max() < 5e-3
-    assert error[since * STEP > 16.0 / runs.GAIN].max() < 1e-5
+    assert error[since * SIMULATION.step > 6.0 / done.gain].max() < 5e-3
+    assert error[since * SIMULATION.step > 16.0 / done.gain].max() < 1e-5
     assert np.median(error) < 5e-7
 
 
 def test_the_figures_are_the_printed_systems(done):
     """One configuration, at a low gain; nothing searched, restarted, or taken from a solve."""
-    assert done.paper.info.law == so.PaperLaw.as_printed(gain=runs.GAIN)
+    assert done.paper.info.law == so.PaperLaw.as_printed(gain=done.gain)
     counts = done.paper.total_counts()
     assert counts.restarts == counts.searches == counts.solved_parameters == 0
     assert counts.foot_points > len(done.paper)
@@ -154,7 +158,7 @@ def multiplier(time: float, active: tuple[tuple[int, ...], tuple[int, ...]], dro
     """
     a, b = placed(time)
     first, second = placed_quadrics(a, a.position), placed_quadrics(b, a.position)
-    near = truth()[round(time / STEP / EVERY) * EVERY]
+    near = truth()[round(time / SIMULATION.step / EVERY) * EVERY]
     x, y = near.point_a - a.position, near.point_b - a.position
     rows = list(active[0]), list(active[1])
     mu = [
@@ -210,7 +214,7 @@ def test_the_instants_are_where_a_multiplier_vanishes(done):
         assert abs(event.time - root) < (LOCATED if slope > 1e-3 else LOCATED / slope)
         assert slope > 0.1
     # the printed system, whose witness points are off, is late or early by less than 1/K
-    assert np.abs(parameters.switch_differences(done)).max() < 0.1 / runs.GAIN
+    assert np.abs(done.late()).max() < 0.1 / done.gain
 
 
 def test_the_distance_never_grows_at_a_switch(done):
@@ -259,7 +263,7 @@ def test_the_face_parameters_give_the_witness_points(done, body):
     for frame in range(0, len(points), 50):
         surface = part.face_parts[places.face[frame]].charts[0]
         local = surface.jet(places.u[frame], places.v[frame])[0]
-        at = path.pose(frame * STEP).apply(local)
+        at = path.pose(frame * SIMULATION.step).apply(local)
         np.testing.assert_allclose(at, points[frame], atol=1e-13)
 
 
@@ -291,9 +295,8 @@ def test_the_figures_say_what_was_measured(done):
         assert len(artwork.draw().axes) == panels
     frames = snapshots.snapshot_frames(done)
     assert [modes_of(done.paper, frame) for frame in frames] == [
-        (balls_of(done.a, stay.feature_a), balls_of(done.b, stay.feature_b))
-        for stay in runs.stays(done.paper)
+        (balls_of(done.a, stay.feature_a), balls_of(done.b, stay.feature_b)) for stay in done.stays
     ]
-    times = [f"t = {frame * STEP:.2f} s" for frame in frames]
+    times = [f"t = {frame * SIMULATION.step:.2f} s" for frame in frames]
     titles = [axes.get_title() for axes in snapshots.figure_19().draw().axes]
     assert all(title.startswith(time) for title, time in zip(titles, times, strict=False))

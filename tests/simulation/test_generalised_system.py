@@ -17,7 +17,7 @@ BALL = so.shapes.sphere(0.1)
 MASS = 1000.0 * 4.0 / 3.0 * np.pi * 0.1**3
 
 
-def falling(contact: sim.HuntCrossley, gravity: float = G, **over: Any) -> sim.GeneralisedSystem:
+def falling(contact: Any, gravity: float = G, **over: Any) -> sim.GeneralisedSystem:
     """A ball above a plane, its height the only coordinate."""
     given: dict[str, Any] = {
         "bodies": [FLOOR, BALL],
@@ -48,6 +48,93 @@ def test_it_agrees_with_the_compiled_operator() -> None:
     run = operator.run(operator.start(), 2500, every=2500)
     assert run.positions(1)[-1, 2] == pytest.approx(found.theta[-1, 0], abs=1e-9)
     assert run.velocities(1)[-1, 2] == pytest.approx(found.rate[-1, 0], abs=1e-7)
+
+
+def test_flat_contacts_press_with_several_spots_as_a_systems_do() -> None:
+    """A box falls on a corner's edge and rocks: a force in the middle alone would not right it."""
+    box, contact = so.shapes.box(0.2, 0.3, 0.1), sim.HuntCrossley(stiffness=1e6, damping=0.3)
+    mass = sim.mass_properties(box, 1000.0)
+    tilt, height, span = 0.02, 0.0535, 0.06
+
+    def place(theta: np.ndarray) -> list[so.Pose]:
+        return [so.Pose.identity(), so.Pose.exp([0.0, theta[2], 0.0], [theta[0], 0.0, theta[1]])]
+
+    moved = np.zeros((6, 3))
+    moved[0, 0] = moved[2, 1] = moved[4, 2] = 1.0
+    generalised = sim.GeneralisedSystem(
+        bodies=[FLOOR, box],
+        place=place,
+        jacobian=lambda theta: [np.zeros((6, 3)), moved],
+        mass=lambda theta: np.diag([mass.mass, mass.mass, mass.inertia[1, 1]]),
+        coriolis=lambda theta, rate: np.zeros(3),
+        field=lambda theta, rate: [0.0, mass.mass * G, 0.0],
+        contact=contact,
+    )
+    first = [0.0, height, tilt]
+    found = sim.solve(generalised, first, np.zeros(3), span, max_step=1e-3)
+    system = on_floor(box, contact, pose=place(np.array(first))[1])
+    free = sim.solve(system, duration=span, max_step=1e-3)
+    assert [e.kind for e in found.events].count("contact") >= 1
+    assert free.run.spots[:, 0].max() == 4
+    assert found.theta[-1, :2] == pytest.approx(free.run.positions(1)[-1, [0, 2]], abs=1e-9)
+    assert found.rate[-1, 2] == pytest.approx(free.run.angular_velocities(1)[-1, 1], abs=1e-5)
+    assert abs(found.rate[-1, 2]) > 0.1
+
+
+def test_planar_bodies_meet_in_their_plane() -> None:
+    corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+    sides = zip(corners, [*corners[1:], corners[0]], strict=True)
+    square = so.shapes.planar_loop([so.geometry.Line(p, q) for p, q in sides])
+    contact = sim.HuntCrossley(stiffness=1e7, damping=0.3)
+    system = falling(
+        contact,
+        0.0,
+        bodies=[square, so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (0.5, 0), (0, 0.5))])],
+        place=lambda theta: [so.Pose.identity(), so.Pose(np.eye(3), [theta[0], 0.1, 0.0])],
+        jacobian=lambda theta: [np.zeros((6, 1)), np.eye(6)[:, :1]],
+        mass=lambda theta: [[4.0]],
+    )
+    found = sim.solve(system, [1.51], [-1.0], 0.02, max_step=1e-3)
+    assert found.rate[-1, 0] == pytest.approx(contact.restitution(1.0), rel=1e-6)
+
+
+def test_each_pair_may_have_a_contact_of_its_own() -> None:
+    soft, hard = (sim.HuntCrossley(stiffness=k) for k in (1e5, 1e7))
+    two = falling(
+        [soft, hard],
+        bodies=[FLOOR, BALL, BALL],
+        place=lambda theta: [so.Pose.identity(), *(upright(z) for z in theta)],
+        jacobian=lambda theta: [
+            np.zeros((6, 2)),
+            np.outer(UP, [1.0, 0.0]),
+            np.outer(UP, [0.0, 1.0]),
+        ],
+        mass=lambda theta: MASS * np.eye(2),
+        coriolis=lambda theta, rate: np.zeros(2),
+        field=lambda theta, rate: np.full(2, MASS * G),
+        pairs=[(0, 1), (0, 2)],
+    )
+    found = sim.solve(two, [0.11, 0.11], [-1.0, -1.0], 0.03, max_step=1e-3)
+    for k, contact in enumerate((soft, hard)):
+        alone = sim.solve(falling(contact), [0.11], [-1.0], 0.03, max_step=1e-3)
+        assert found.theta[-1, k] == pytest.approx(alone.theta[-1, 0], abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"bodies": [FLOOR, "ball"]}, "bodies has 'ball', which is no Body"),
+        ({"contact": 1e6}, "contact"),
+        ({"pairs": [(0, 2)]}, "from 0 to 1"),
+        ({"pairs": [(0, 1), (1, 0)]}, "twice"),
+        ({"pairs": [(True, 0)]}, "from 0 to 1"),
+        ({"bodies": [FLOOR, FLOOR]}, "half-spaces"),
+        ({"mass": None}, "give a function"),
+    ],
+)
+def test_what_is_no_system_is_refused(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(so.StandoffError, match=message):
+        falling(**{"contact": sim.HuntCrossley(stiffness=1e6), **given})
 
 
 LENGTH = 0.5

@@ -9,7 +9,7 @@ import pytest
 
 import standoff as so
 from standoff_studies.paper.convergence import cells
-from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, STEP, pair
+from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, SIMULATION, pair
 
 STILL = so.Twist.zero()
 POSES = PATH_A.pose(0.0), PATH_B.pose(0.0)
@@ -31,7 +31,7 @@ STARTS = starts(160)
 
 def frames_of(gain: float) -> int:
     """Frames that a start is given: 15 / K, in which exp(-K t) falls to 3e-7, and 20 switches."""
-    return round(15.0 / gain / STEP) + 20
+    return round(15.0 / gain / SIMULATION.step) + 20
 
 
 KNOWN = (25, 32, 33, 52, 55, 60, 77, 141, 152, 155)
@@ -64,7 +64,7 @@ def run(tracker: so.Tracker, start: tuple[Any, Any], frames: int) -> list[so.Pro
 @pytest.mark.parametrize("gain", [100.0, 1000.0])
 @pytest.mark.parametrize("name", VARIANTS)
 def test_every_start_arrives(name: str, gain: float) -> None:
-    tracker = so.Tracker(*pair(), STEP, law=law(gain, **VARIANTS[name]))
+    tracker = so.Tracker(*pair(), SIMULATION.step, law=law(gain, **VARIANTS[name]))
     truth = so.distance(*pair(), *POSES).distance
     for k in (*KNOWN, *range(20)):
         end = run(tracker, STARTS[k], frames_of(gain))[-1]
@@ -74,7 +74,7 @@ def test_every_start_arrives(name: str, gain: float) -> None:
 
 def test_e_falls_at_every_step_and_switch() -> None:
     """At a gain far below the stable one, between switches and over them."""
-    tracker = so.Tracker(*pair(), STEP, law=law(25.0, **{**PRINTED, "reset": "foot"}))
+    tracker = so.Tracker(*pair(), SIMULATION.step, law=law(25.0, **{**PRINTED, "reset": "foot"}))
     switches = 0
     for k in range(12):
         answers = run(tracker, STARTS[k], 200)[1:]  # the first frame finds the faces
@@ -86,7 +86,7 @@ def test_e_falls_at_every_step_and_switch() -> None:
 
 def test_near_the_minimum_the_errors_fall_as_designed() -> None:
     gain = 100.0
-    tracker = so.Tracker(*pair(), STEP, law=law(gain, **PRINTED))
+    tracker = so.Tracker(*pair(), SIMULATION.step, law=law(gain, **PRINTED))
     state = tracker.start(*POSES)
     found = state.proximity
     nearby = [
@@ -97,19 +97,23 @@ def test_near_the_minimum_the_errors_fall_as_designed() -> None:
         )
     ]
     residuals = np.array([each.residual for each in run(tracker, tuple(nearby), 60)])
-    factor = 1.0 - gain * STEP + 0.5 * (gain * STEP) ** 2  # Heun's
+    factor = 1.0 - gain * SIMULATION.step + 0.5 * (gain * SIMULATION.step) ** 2  # Heun's
     assert residuals[1:] / residuals[:-1] == pytest.approx(factor, abs=2e-3)
 
 
 def test_a_lowered_gain_is_counted() -> None:
-    tracker = so.Tracker(*pair(), STEP, law=law(1000.0, **{**PRINTED, "saturation": "hold"}))
+    tracker = so.Tracker(
+        *pair(), SIMULATION.step, law=law(1000.0, **{**PRINTED, "saturation": "hold"})
+    )
     answers = run(tracker, STARTS[32], 35)
     assert sum(answer.counts.saturations for answer in answers) > 0
     assert answers[-1].counts.saturations == 0
 
 
 def test_what_is_held_for_a_frame_alone_is_no_switch() -> None:
-    tracker = so.Tracker(*pair(), STEP, law=law(25.0, **{**PRINTED, "saturation": "hold"}))
+    tracker = so.Tracker(
+        *pair(), SIMULATION.step, law=law(25.0, **{**PRINTED, "saturation": "hold"})
+    )
     for k in (155, *range(12)):
         before = None
         for answer in run(tracker, STARTS[k], 100)[1:]:

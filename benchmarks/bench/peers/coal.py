@@ -36,33 +36,42 @@ def contenders(pair: Pair, frames: Frames) -> list[Contender]:
 
 
 def by_function(
-    name: str, frames: Frames, shapes: tuple[Any, Any], tight: bool = False, memory: int = 0
+    name: str,
+    frames: Frames,
+    shapes: tuple[Any, Any],
+    tight: bool = False,
+    memory: int = 0,
+    at_rest: bool = False,
 ) -> Contender:
-    """``coal.distance`` on any two geometries."""
+    """``coal.distance`` on any two geometries. A's transform is made once where it is at rest."""
     coal = require("coal")
     request, result = coal_request(tight), coal.DistanceResult()
     place, distance = coal.Transform3s, coal.distance
     a, b = shapes
+    kept = place(frames.poses_a[0, :3, :3], frames.poses_a[0, :3, 3])
 
     def ask(pose_a: Array, pose_b: Array) -> Any:
         result.clear()
-        place_a = place(pose_a[:3, :3], pose_a[:3, 3])
+        place_a = kept if at_rest else place(pose_a[:3, :3], pose_a[:3, 3])
         distance(a, place_a, b, place(pose_b[:3, :3], pose_b[:3, 3]), request, result)
         return result
 
     return asked(name, frames.pairs, ask, read, memory, shapes)
 
 
-def by_functor(name: str, frames: Frames, shapes: tuple[Any, Any], tight: bool) -> Contender:
-    """The functor, each query begun in the last one's direction."""
+def by_functor(
+    name: str, frames: Frames, shapes: tuple[Any, Any], tight: bool, at_rest: bool = False
+) -> Contender:
+    """The functor, each query begun in the last one's direction. As `by_function` at rest."""
     coal = require("coal")
     request, result = coal_request(tight), coal.DistanceResult()
     request.gjk_initial_guess = coal.GJKInitialGuess.CachedGuess
     place, query = coal.Transform3s, coal.ComputeDistance(*shapes)
+    kept = place(frames.poses_a[0, :3, :3], frames.poses_a[0, :3, 3])
 
     def ask(pose_a: Array, pose_b: Array) -> Any:
         result.clear()
-        place_a = place(pose_a[:3, :3], pose_a[:3, 3])
+        place_a = kept if at_rest else place(pose_a[:3, :3], pose_a[:3, 3])
         query(place_a, place(pose_b[:3, :3], pose_b[:3, 3]), request, result)
         request.updateGuess(result)
         return result

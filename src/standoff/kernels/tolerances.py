@@ -139,7 +139,8 @@ NEAR_CONTACT = 1e-3
 # Newton steps of that polish: it starts near its root and converges quadratically.
 CONTACT_STEPS = 12
 
-# Positions (length) must stay below this: squares of distances must not overflow.
+# Positions (length) must stay below this: squares of distances must not overflow. What Python reads
+# number by number (checks.numbers.GREATEST) stays below it by far.
 FARTHEST = 1e100
 # Entries of R (dimensionless): a planar body's pose may be tilted by this, the roundoff of
 # composing rotations.

@@ -226,7 +226,7 @@ def _info(metadata: dict[str, Any]) -> RunInfo:
 
 
 def _of_its_law(options: dict[str, Any]) -> dict[str, Any]:
-    """The options of an older file without those that its law has not."""
+    """The options of an older file without those that its law does not have."""
     law = LAWS[options["law"]]
     found = {n: x for n, x in options.items() if n in options_of(law) or n not in every_option()}
     if law is PaperLaw:

@@ -94,7 +94,7 @@ def read_settings(
     ------
     SceneError
         At an unknown key or name, a value that its option does not take, an option that the law
-        has not, or options that do not go together. The error names the first table's key.
+        does not have, or options that do not go together. The error names the first table's key.
     """
     usual = usual or TrackSettings()
     for table, others in zip(tables, (beside, *[()] * len(tables)), strict=False):

@@ -13,14 +13,15 @@ from standoff.checks.names import choice
 from standoff.checks.numbers import positive, yes_or_no
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.motion import Twist
+from standoff.kernels.dynamics import arrays as K
+from standoff.motion import Pose, Twist
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation.adaptive_bodies import SystemSolution, solve_bodies
-from standoff.simulation.adaptive_legs import METHODS, Features, Legs
+from standoff.simulation.adaptive_legs import METHODS, Legs
 from standoff.simulation.adaptive_legs import SystemEvent as SystemEvent
 from standoff.simulation.generalised_system import GeneralisedSystem
+from standoff.simulation.loaded_bodies import Features, LoadedBodies
 from standoff.simulation.system import System
-from standoff.tracking import PredictorCorrector, Proximity, Tracker
 
 Array = NDArray[np.float64]
 
@@ -152,7 +153,7 @@ def solve(
         return solve_bodies(system, end, options, overlap)
     first = finite(theta, "theta", (-1,))
     second = finite(rate, "rate", (len(first),))
-    legs = _Generalised(system, len(first))
+    legs = _Generalised(system, first, second, longest)
     found = legs.solve(0.0, np.concatenate([first, second]), end, options)
     rows = np.array(found.states)
     distances = np.array([legs.distances(0.0, row) for row in rows])
@@ -163,40 +164,38 @@ def solve(
 
 
 class _Generalised(Legs):
-    """A system in the user's coordinates: the state is (θ, θ'). Trackers go on where they were."""
+    """A system in the user's coordinates: the state is (θ, θ')."""
 
-    def __init__(self, system: GeneralisedSystem, n: int) -> None:
-        self.system, self.n = system, n
-        law = PredictorCorrector(predictor="none", depth="local")
-        self.trackers = [
-            Tracker(system.bodies[a], system.bodies[b], law=law) for a, b in system.pairs
-        ]
-        self.warm: list[Any] = [None] * len(self.trackers)
+    def __init__(self, system: GeneralisedSystem, first: Array, rate: Array, dt: float) -> None:
+        self.system, self.n = system, len(first)
+        motion = list(zip(*self._motion(first, rate), strict=True))
+        placed = System.placed(system.bodies, system.contact, system.pairs, motion)
+        self.bodies = LoadedBodies(placed, dt, allow_overlap=True)
 
-    def answers(self, y: Array) -> list[Proximity]:
-        """The pairs' witness points at a state."""
-        theta, rate = y[: self.n], y[self.n :]
-        poses = self.system.poses(theta)
-        twists = [Twist.of(J @ rate) for J in self.system.jacobians(theta)]
-        found = []
-        for k, (tracker, (a, b)) in enumerate(zip(self.trackers, self.system.pairs, strict=True)):
-            given = poses[a], poses[b], twists[a], twists[b]
-            if self.warm[k] is None:
-                self.warm[k] = tracker.start(*given)
-                found.append(self.warm[k].proximity)
-            else:
-                self.warm[k], answer = tracker.step(self.warm[k], *given)
-                found.append(answer)
-        return found
+    def _motion(self, theta: Array, rate: Array) -> tuple[list[Pose], list[Twist]]:
+        """Poses and twists of the bodies."""
+        return self.system.poses(theta), [Twist.of(J @ rate) for J in self.system.jacobians(theta)]
+
+    def place(self, t: float, y: Array) -> None:
+        """Put the bodies where a state has them, and track their pairs."""
+        poses, twists = self._motion(y[: self.n], y[self.n :])
+        for k, (pose, twist) in enumerate(zip(poses, twists, strict=True)):
+            o = K.body_row(k)
+            numbers = pose.rotation.ravel(), pose.translation, twist.v, twist.omega
+            self.bodies.data[o : o + K.N_BODY] = np.concatenate(numbers)
+        self.bodies.load(t)
 
     def slope(self, t: float, y: Array) -> Array:
         self.evaluations += 1
+        self.place(t, y)
         theta, rate = y[: self.n], y[self.n :]
-        turning = self.system.acceleration(t, theta, rate, self.answers(y))
-        return np.concatenate([rate, turning])
+        wrenches = [self.bodies.on_body(k) for k in range(len(self.system.bodies))]
+        return np.concatenate([rate, self.system.acceleration(t, theta, rate, wrenches)])
 
     def distances(self, t: float, y: Array) -> list[float]:
-        return [answer.distance for answer in self.answers(y)]
+        self.place(t, y)
+        return self.bodies.distances()
 
     def features(self, t: float, y: Array) -> Features:
-        return [(str(answer.feature_a), str(answer.feature_b)) for answer in self.answers(y)]
+        self.place(t, y)
+        return self.bodies.features()

@@ -16,23 +16,16 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from standoff.bodies.features import feature_of
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
-from standoff.kernels.entries import simulation as entries
-from standoff.kernels.state import arrays as T
 from standoff.read_only import KeepsReadOnly
-from standoff.simulation.adaptive_legs import Features, Legs, SystemEvent
-from standoff.simulation.packed_system import driven_row, pack_system
-from standoff.simulation.pair_laws import laws_beside, packed_laws
+from standoff.simulation.adaptive_legs import Legs, SystemEvent
+from standoff.simulation.loaded_bodies import Features, LoadedBodies
+from standoff.simulation.packed_system import driven_row
 from standoff.simulation.rigid_body import DRIVEN, FREE
 from standoff.simulation.system import System
 from standoff.simulation.system_run import SystemRun
-from standoff.simulation.system_start import started
-from standoff.simulation.system_state import distances
 from standoff.simulation.tolerances import CHART_SERIES
-from standoff.tracking.laws import PredictorCorrector
-from standoff.tracking.rows import AnswerRows
 
 Array = NDArray[np.float64]
 
@@ -91,19 +84,16 @@ def solve_bodies(
 
 
 class _Bodies(Legs):
-    """A system of rigid bodies. `data` is a state as the operator's, whose trackers go along."""
+    """A system of rigid bodies."""
 
     def __init__(self, system: System, dt: float, allow_overlap: bool) -> None:
         self.system = system
-        laws = laws_beside(system, PredictorCorrector(predictor="none", depth="local"))
-        self.packed = pack_system(system, dt, 0, False, packed_laws(system, laws, dt, False))
-        self.data = started(system, laws, dt, 0.0, allow_overlap).data.copy()
-        self.loads = np.zeros(K.N_LOAD * len(system.bodies) + 2)
+        self.bodies = LoadedBodies(system, dt, allow_overlap)
+        self.data = self.bodies.data
         self.free = [k for k, body in enumerate(system.bodies) if body.kind == FREE]
         self.masses = [system.bodies[k].mass_properties for k in self.free]
         self.inverses = [np.linalg.inv(m.inertia) for m in self.masses if m is not None]
         self.turns = [np.eye(3)] * len(self.free)
-        self.account = np.zeros(entries.ACCOUNT_HEADER + K.N_TOUCH * len(system.pairs))
         self.accounts: list[Array] = []
         self.so_far = np.zeros(2)
         self.fresh = True
@@ -138,7 +128,6 @@ class _Bodies(Legs):
 
     def place(self, t: float, y: Array) -> Array:
         """Put the bodies where a state has them, track their pairs, and return the loads."""
-        self.data[K.S_TIME] = t
         for number, body in enumerate(self.system.bodies):
             if body.kind == DRIVEN:
                 o = K.body_row(number)
@@ -147,13 +136,7 @@ class _Bodies(Legs):
             o, part = K.body_row(number), y[WIDTH * k : WIDTH * (k + 1)]
             self.data[o : o + 9] = self._rotation(k, part[:3]).ravel()
             self.data[o + K.X_CENTRE : o + K.X_SPIN + 3] = part[CENTRE:]
-        why = entries.load_system(self.packed, self.data, self.loads, self.account)
-        if why != T.FINE:
-            raise StandoffError(
-                f"At {t:g} s a body's motion was no longer finite: take a smaller tolerance or a "
-                "shorter max_step."
-            )
-        return self.loads
+        return self.bodies.load(t)
 
     def slope(self, t: float, y: Array) -> Array:
         self.evaluations += 1
@@ -164,7 +147,7 @@ class _Bodies(Legs):
             assert mass is not None
             o = K.body_row(number)
             R = self.data[o : o + 9].reshape(3, 3)
-            own = loads[K.N_LOAD * number : K.N_LOAD * (number + 1)]
+            own = self.bodies.on_body(number)
             rate = rates[WIDTH * k : WIDTH * (k + 1)]
             rate[TURN:CENTRE] = chart_rate(part[:3], self.inverses[k] @ (R.T @ part[SPIN:]))
             rate[CENTRE:VELOCITY] = part[VELOCITY:SPIN]
@@ -175,19 +158,11 @@ class _Bodies(Legs):
 
     def distances(self, t: float, y: Array) -> list[float]:
         self.place(t, y)
-        found: list[float] = distances(self.system, self.data[None])[0].tolist()
-        return found
+        return self.bodies.distances()
 
     def features(self, t: float, y: Array) -> Features:
         self.place(t, y)
-        at = K.STATE_HEADER + K.N_BODY * len(self.system.bodies)
-        found = []
-        for number, pair in enumerate(self.system.pairs):
-            row = self.data[at + K.N_PAIR * number + T.N_STATE :]
-            mode = AnswerRows(row[: T.N_OUT]).mode
-            a, b = (self.system.bodies[k].body for k in pair)
-            found.append((str(feature_of(a, int(mode[0]))), str(feature_of(b, int(mode[2])))))
-        return found
+        return self.bodies.features()
 
     def ends(self) -> list[Callable[[float, Array], float]]:
         return [_left(k) for k in range(len(self.free))]
@@ -200,7 +175,7 @@ class _Bodies(Legs):
         self.so_far = self.data[counts].copy()
         row = self.data.copy()
         row[K.S_LOST], row[K.S_GIVEN] = y[-2:]
-        self.accounts.append(self.account.copy())
+        self.accounts.append(self.bodies.account.copy())
         return row
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.recording.changes import changes
+from standoff.simulation.loaded_bodies import Features
 from standoff.simulation.tolerances import EVENT_INSTANT
 
 Array = NDArray[np.float64]
@@ -20,8 +21,6 @@ METHODS: Final = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 
 MOST_EVENTS: Final = 10_000
 """Contacts and releases of one solution: bodies that settle touch ever more often."""
-
-Features = list[tuple[str, str]]
 
 
 class SystemEvent(NamedTuple):

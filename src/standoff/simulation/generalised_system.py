@@ -16,9 +16,8 @@ from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Pose, PoseLike
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation.contact import HuntCrossley
+from standoff.simulation.system import System
 from standoff.simulation.tolerances import SINGULAR_INERTIA, SYMMETRIC_INERTIA
-from standoff.tracking.inputs import check_pair
-from standoff.tracking.proximity import Proximity
 
 Array = NDArray[np.float64]
 
@@ -41,8 +40,8 @@ class GeneralisedSystem(KeepsReadOnly):
         (θ, θ') to C(θ, θ'), (n,).
     field : callable
         (θ, θ') to N(θ, θ'), (n,): gravity, springs, friction in joints.
-    contact : HuntCrossley
-        Of all pairs.
+    contact : HuntCrossley or sequence of it
+        Of all pairs, or one for each pair, in their order.
     pairs : sequence of (int, int)
         Numbers of the bodies that are tracked and may touch.
     drive : callable, optional
@@ -53,7 +52,7 @@ class GeneralisedSystem(KeepsReadOnly):
     StandoffTypeError
         Something that is not a body, a contact or a function.
     StandoffError
-        A pair that does not exist, or cannot be one.
+        A pair that does not exist, is given twice, or cannot be one.
     """
 
     bodies: Sequence[Body]
@@ -62,7 +61,7 @@ class GeneralisedSystem(KeepsReadOnly):
     mass: Callable[[Array], Any]
     coriolis: Callable[[Array, Array], Any]
     field: Callable[[Array, Array], Any]
-    contact: HuntCrossley
+    contact: HuntCrossley | Sequence[HuntCrossley]
     pairs: Sequence[tuple[int, int]] = ((0, 1),)
     drive: Callable[[float, Array, Array], Any] | None = None
 
@@ -71,30 +70,10 @@ class GeneralisedSystem(KeepsReadOnly):
             _check_function(getattr(self, name), name)
         if self.drive is not None:
             _check_function(self.drive, "drive")
-        if not isinstance(self.contact, HuntCrossley):
-            raise StandoffTypeError(
-                f"contact is {shown(self.contact)}: give a HuntCrossley.", "contact", self.contact
-            )
-        object.__setattr__(self, "bodies", _tuple(self.bodies, "bodies"))
-        object.__setattr__(self, "pairs", _tuple(self.pairs, "pairs"))
-        for body in self.bodies:
-            if not isinstance(body, Body):
-                raise StandoffTypeError(f"bodies has {shown(body)}: give bodies.", "bodies", body)
-        for pair in self.pairs:
-            self._check_pair(pair)
-
-    def _check_pair(self, pair: Any) -> None:
-        count = len(self.bodies)
-        numbers = tuple(pair) if isinstance(pair, tuple | list) else ()
-        whole = all(type(k) is int and 0 <= k < count for k in numbers)
-        if len(numbers) != 2 or not whole or numbers[0] == numbers[1]:
-            raise StandoffError(
-                f"pairs has {shown(pair)}: give two different numbers of bodies, from 0 to "
-                f"{count - 1}.",
-                "pairs",
-                pair,
-            )
-        check_pair(self.bodies[numbers[0]], self.bodies[numbers[1]])
+        object.__setattr__(
+            self, "pairs", System.placed(self.bodies, self.contact, self.pairs).pairs
+        )
+        object.__setattr__(self, "bodies", tuple(self.bodies))
 
     def poses(self, theta: Array) -> list[Pose]:
         """Return the bodies' poses at coordinates."""
@@ -118,17 +97,17 @@ class GeneralisedSystem(KeepsReadOnly):
         return found
 
     def acceleration(
-        self, t: float, theta: Array, rate: Array, answers: Sequence[Proximity]
+        self, t: float, theta: Array, rate: Array, wrenches: Sequence[Array] | None = None
     ) -> Array:
-        """Return θ'' = M⁻¹ (F − C − N + Σ Jᵀ w), the pairs' contacts among the forces.
+        """Return θ'' = M⁻¹ (F − C − N + Σ Jᵀ w), what acts on the bodies among the forces.
 
         Parameters
         ----------
         t : float
         theta, rate : (n,) arrays
             Coordinates and their rates.
-        answers : sequence of Proximity
-            Of the pairs, at these coordinates.
+        wrenches : sequence of (6,) arrays, optional
+            On each body, such as its contacts': force and torque about its origin, world axes.
 
         Raises
         ------
@@ -140,33 +119,11 @@ class GeneralisedSystem(KeepsReadOnly):
         forces = forces - finite(self.field(theta, rate), "field", (n,))
         if self.drive is not None:
             forces = forces + finite(self.drive(t, theta, rate), "drive", (n,))
-        touching = [k for k, answer in enumerate(answers) if answer.distance < 0.0]
-        if touching:
-            poses, jacobians = self.poses(theta), self.jacobians(theta)
-            for k in touching:
-                forces = forces + self._contact_forces(k, answers[k], poses, jacobians, rate)
+        if wrenches is not None and np.any(wrenches):
+            for J, wrench in zip(self.jacobians(theta), wrenches, strict=True):
+                forces = forces + J.T @ wrench
         matrix = checked_inertia_matrix(finite(self.mass(theta), "mass", (n, n)), theta)
         return np.asarray(np.linalg.solve(matrix, forces))
-
-    def _contact_forces(
-        self, pair: int, answer: Proximity, poses: list[Pose], jacobians: list[Array], rate: Array
-    ) -> Array:
-        """The generalised forces of one pair's contact, at the middle of its overlap."""
-        point, n = 0.5 * (answer.point_a + answer.point_b), answer.normal
-        a, b = self.pairs[pair]
-        rows = []
-        for number in (a, b):
-            J, arm = jacobians[number], point - poses[number].translation
-            rows.append(J[:3] - np.cross(arm, J[3:], axisb=0, axisc=0))
-        between = (rows[1] - rows[0]) @ rate
-        closing = -float(n @ between)
-        push = self.contact.force(-answer.distance, closing)
-        slip = between + closing * n
-        u = float(np.linalg.norm(slip))
-        grip = 0.0
-        if self.contact.friction > 0.0:
-            grip = self.contact.friction * push / float(np.hypot(u, self.contact.slip_speed))
-        return np.asarray((rows[1] - rows[0]).T @ (push * n - grip * slip))
 
 
 def checked_inertia_matrix(matrix: Array, theta: Array) -> Array:
@@ -190,9 +147,3 @@ def checked_inertia_matrix(matrix: Array, theta: Array) -> Array:
 def _check_function(given: Any, name: str) -> None:
     if not callable(given):
         raise StandoffTypeError(f"{name} is {shown(given)}: give a function.", name, given)
-
-
-def _tuple(given: Any, name: str) -> tuple[Any, ...]:
-    if not isinstance(given, tuple | list):
-        raise StandoffTypeError(f"{name} is {shown(given)}: give a list.", name, given)
-    return tuple(given)

@@ -9,16 +9,18 @@ from typing import Any
 
 import numpy as np
 
+from standoff.bodies.body import Body
 from standoff.checks.numbers import is_whole
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.validation import Array, vector3
 from standoff.kernels.body import layout as L
+from standoff.motion import Pose, Twist
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation.contact import HuntCrossley
 from standoff.simulation.coupler import VirtualCoupler
 from standoff.simulation.flat_parts import FlatParts, flat_parts
-from standoff.simulation.rigid_body import FREE, RigidBody
+from standoff.simulation.rigid_body import FIXED, FREE, RigidBody
 from standoff.tracking.inputs import check_pair
 
 EARTH = (0.0, 0.0, -9.81)
@@ -84,7 +86,6 @@ class System(KeepsReadOnly):
         tool: int | None = None,
     ) -> None:
         found = _listed(bodies, "bodies", RigidBody)
-        object.__setattr__(self, "bodies", found)
         if not any(b.kind == FREE for b in found):
             raise StandoffError(
                 "None of the bodies is free, so nothing moves by itself: make one with "
@@ -92,7 +93,62 @@ class System(KeepsReadOnly):
                 "bodies",
                 bodies,
             )
-        object.__setattr__(self, "pairs", _pairs(found, pairs))
+        moving = _pairs(found, pairs)
+        for a, b in moving:
+            if FREE not in (found[a].kind, found[b].kind):
+                raise StandoffError(
+                    f"Neither body of the pair {(a, b)} is free: nothing would feel their contact.",
+                    "pairs",
+                    pairs,
+                )
+        self._meet(found, contact, moving)
+        object.__setattr__(self, "gravity", vector3(gravity, "gravity"))
+        object.__setattr__(self, "tool", _tool(coupler, tool, found))
+        object.__setattr__(self, "coupler", coupler)
+
+    @classmethod
+    def placed(
+        cls,
+        bodies: Sequence[Body],
+        contact: HuntCrossley | Sequence[HuntCrossley],
+        pairs: Sequence[tuple[int, int]],
+        motion: Sequence[tuple[Pose, Twist]] | None = None,
+    ) -> System:
+        """Return bodies that other equations move: fixed here, they only press on each other.
+
+        Parameters
+        ----------
+        bodies : sequence of Body
+        contact, pairs
+            As of a `System`.
+        motion : sequence of (Pose, Twist), optional
+            Of each body, at the start; at rest in the world's frame if not given.
+        """
+        system = cls.__new__(cls)
+        listed = _listed(bodies, "bodies", Body)
+        at = motion if motion is not None else [(Pose.identity(), Twist.zero())] * len(listed)
+        found = tuple(RigidBody(b, FIXED, None, *m) for b, m in zip(listed, at, strict=True))
+        system._meet(found, contact, _pairs(found, pairs))
+        for name, value in (("gravity", np.zeros(3)), ("tool", None), ("coupler", None)):
+            object.__setattr__(system, name, value)
+        return system
+
+    def _meet(
+        self,
+        bodies: tuple[RigidBody, ...],
+        contact: HuntCrossley | Sequence[HuntCrossley],
+        pairs: tuple[tuple[int, int], ...],
+    ) -> None:
+        """Keep the bodies, which of them meet, and how."""
+        object.__setattr__(self, "bodies", bodies)
+        object.__setattr__(self, "pairs", pairs)
+        if not isinstance(contact, HuntCrossley | list | tuple):
+            raise StandoffTypeError(
+                f"contact is {shown(contact)}: give a HuntCrossley, or a list of one for each "
+                "pair.",
+                "contact",
+                contact,
+            )
         if isinstance(contact, HuntCrossley):
             contacts = (contact,) * len(self.pairs)
         else:
@@ -105,10 +161,7 @@ class System(KeepsReadOnly):
                 contact,
             )
         object.__setattr__(self, "contacts", contacts)
-        object.__setattr__(self, "gravity", vector3(gravity, "gravity"))
-        object.__setattr__(self, "flats", tuple(flat_parts(b.body) for b in found))
-        object.__setattr__(self, "tool", _tool(coupler, tool, found))
-        object.__setattr__(self, "coupler", coupler)
+        object.__setattr__(self, "flats", tuple(flat_parts(b.body) for b in bodies))
 
     def give(self, pair: int) -> float:
         """The inverse of the least mass [1/mass] that a push between a pair's bodies moves: at the
@@ -210,12 +263,6 @@ def _pairs(bodies: tuple[RigidBody, ...], given: Any) -> tuple[tuple[int, int], 
         pair = _pair(item, len(bodies), given)
         if pair in found or pair[::-1] in found:
             raise StandoffError(f"pairs names {pair} twice.", "pairs", given)
-        if FREE not in (bodies[pair[0]].kind, bodies[pair[1]].kind):
-            raise StandoffError(
-                f"Neither body of the pair {pair} is free: nothing would feel their contact.",
-                "pairs",
-                given,
-            )
         check_pair(bodies[pair[0]].body, bodies[pair[1]].body)
         found.append(pair)
     return tuple(found)

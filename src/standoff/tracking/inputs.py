@@ -102,11 +102,6 @@ def repair(flat: Array, name: str) -> None:
             Pose(rotation, flat[9:])  # says what is wrong with it
         except StandoffError as error:
             raise StandoffError(f"{name}: {error}", name, error.value) from error
-        raise StandoffError(
-            f"{name}: its position {text(flat[9:])} is not a length below {FARTHEST:g}.",
-            name,
-            flat[9:].copy(),
-        )
     # Also of one whose columns pass: the kernel asks of the rows.
     flat[:9] = without_rounding(rotation).ravel()
 

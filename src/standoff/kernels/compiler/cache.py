@@ -181,6 +181,7 @@ class ModuleCache(Cache):  # type: ignore[misc]
             compiled_elsewhere(self._function)
             found = self._kept(signature, target_context)
         if found is None:
+            _tell_stock()
             notices.compiling(self._keeps)
         return found
 
@@ -210,6 +211,16 @@ class ModuleCache(Cache):  # type: ignore[misc]
         kind = (modules.AVAILABLE, self._called, bounds_checked())
         how = (*kind, str(config.OPT), sys.version_info[:2])
         return signature, codegen.magic_tuple(), how
+
+
+@lru_cache(maxsize=1)
+def _tell_stock() -> None:
+    why = modules.why_stock()
+    if why:
+        say(
+            f"{why} ({modules.WRITTEN_FOR}x): each kernel is compiled by itself, which takes ten "
+            "times as long; the answers are the same."
+        )
 
 
 @lru_cache(maxsize=1)

@@ -53,6 +53,7 @@ def _part(function, **options):
         return function
     options = {**CONTRACTED, **options}
     if not modules.AVAILABLE:
+        del options["nopython"]  # njit sets it, and warns of what is told twice
         return njit(**options)(function)
     made = modules.Part(function, targetoptions=options, pipeline_class=modules.PartCompiler)
     made.cache_of_calls = ModuleCache(function, called=True)

@@ -44,6 +44,14 @@ AVAILABLE = (
     )
 )
 
+
+def why_stock() -> str:
+    """Why each kernel is compiled by itself though nobody has asked for it; "" if it is not."""
+    if AVAILABLE or os.environ.get(FORCE_STOCK, "0") not in ("", "0"):
+        return ""
+    return f"Numba {numba.__version__} is not the version that one module an entry was written for"
+
+
 # How Numba names the variables that hold a function's environment.
 ENVIRONMENT = "_ZN08NumbaEnv"
 OWN_SYMBOL = "_ZN8standoff"

@@ -95,7 +95,7 @@ def seed(pair, pose, points, n, way, size):
     return n + 1
 
 
-@kernel
+@shared
 def seed_hull(pair, pose, hull, size):
     """(solid, direction): facets over differences of samples; see `begin_hull`."""
     planar = is_planar(pair)

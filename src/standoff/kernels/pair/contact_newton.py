@@ -14,12 +14,37 @@ from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_normal, dimension, pair_span
 from standoff.kernels.body.trimming import NO_HIT
 from standoff.kernels.compiler.decorators import kernel, shared, stack_matrix, stack_reals
-from standoff.kernels.pair.certificate import cones_at, nearest_of_a, nearest_of_b
+from standoff.kernels.pair.certificate import (
+    CIRCLE,
+    cones_at,
+    into_b,
+    nearest_of_a,
+    nearest_of_b,
+)
 from standoff.kernels.pair.descent import pair_jets, recentre, walk_pair
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, exhausted
 from standoff.kernels.pair.system import contact_feedforward, contact_jacobian, contact_residual
 from standoff.kernels.tolerances import CONTACT_STEPS, NEAR_CONTACT, PIVOT
 from standoff.kernels.values import STILL, Place, Vector, moved, of_origin, side_of
+
+
+@kernel
+def facing(pair, pose, place, cones, n):
+    """How nearly is n a normal of A and -n one of B? 2 where both are."""
+    m = into_b(pose.R, n)
+    of_a = dot(n, nearest_of_a(pair, place, cones, n)[0])
+    return of_a + dot(m, nearest_of_b(pair, place, cones, m)[0])
+
+
+@kernel
+def outward(pair, pose, place, cones, n):
+    """Of the two directions of two edges' common perpendicular the one from A to B: by their faces'
+    normals, or by the gap where neither has any."""
+    back = scale(-1.0, n)
+    if cones.a.kind == CIRCLE and cones.b.kind == CIRCLE:
+        return n if dot(n, cones.gap) >= 0.0 else back
+    ahead, behind = facing(pair, pose, place, cones, n), facing(pair, pose, place, cones, back)
+    return n if ahead >= behind else back
 
 
 @kernel
@@ -39,9 +64,8 @@ def common_normal(pair, pose, place, jets):
     gap = sub(jet_b[0], jet_a[0])
     perpendicular = cross(unit(jet_a[1]), unit(jet_b[1]))
     if ia[L.DIMENSION] == 3 and dot(perpendicular, perpendicular) > PIVOT:
-        n = unit(perpendicular)
-        m, _ = nearest_of_a(pair, place, cones_at(pair, pose, place, jets), n)
-        return n if dot(n, m) >= 0.0 else scale(-1.0, n), True
+        cones = cones_at(pair, pose, place, jets)
+        return outward(pair, pose, place, cones, unit(perpendicular)), True
     if ia[L.DIMENSION] == 2 and dimension(ia, a.feature) == 1:
         return nearest_of_a(pair, place, cones_at(pair, pose, place, jets), unit(gap))[0], True
     if ib[L.DIMENSION] == 2 and dimension(ib, b.feature) == 1:

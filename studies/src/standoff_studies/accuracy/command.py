@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from functools import partial
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,12 +16,12 @@ from standoff import __version__
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
 from standoff.cli.output import check_target, make_folder, write_whole
+from standoff.cli.progress import progress_shown
 from standoff.cli.terminal import tell
 from standoff_studies.accuracy import report
 from standoff_studies.accuracy.measuring import OURS, Row, measure
 from standoff_studies.accuracy.peers.all_peers import all_peers
 from standoff_studies.accuracy.peers.answer import Peer, not_installed
-from standoff_studies.accuracy.progress import pairs_bar
 from standoff_studies.accuracy.solids import Kind, named
 
 if TYPE_CHECKING:
@@ -97,8 +98,13 @@ def _measure(
     kinds: tuple[Kind, ...], command: AccuracyOptions, peers: tuple[Peer, ...]
 ) -> list[Row]:
     try:
-        with pairs_bar(len(kinds) * (len(kinds) + 1) // 2) as tell:
-            return list(measure(kinds, command.cases, command.seed, peers, tell))
+        with progress_shown() as show:
+            total, number = len(kinds) * (len(kinds) + 1) // 2, count()
+
+            def tell_of(pair: str) -> None:
+                show(next(number), total, f"measuring {pair}")
+
+            return list(measure(kinds, command.cases, command.seed, peers, tell_of))
     except ImportError as error:
         raise CommandError(str(error)) from error
 

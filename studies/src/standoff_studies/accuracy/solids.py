@@ -10,11 +10,9 @@ from typing import Any
 import numpy as np
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
-from standoff.bodies import shapes
 from standoff.bodies.body import Body
-from standoff.geometry.curves import ConicArc
-from standoff.geometry.ellipsoid_patches import ellipsoid_patches
 from standoff_studies import oracles
+from standoff_studies.kinds import TWINS
 from standoff_studies.oracles import Array
 
 SHORTEST, LONGEST = 0.35, 1.05
@@ -42,17 +40,25 @@ Rng = np.random.Generator
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of shape: how to draw its lengths, build its body, and know its support."""
+    """A kind of `TWINS`: how to draw its lengths, in their order."""
 
     name: str
     draw: Callable[[Rng], Values]
-    build: Callable[..., Body]
-    support: Callable[..., oracles.Shape]
     flat: bool = False
     """A point or a segment: two of them enclose no volume and can't penetrate."""
     call: str = ""
     """How ``import standoff as so`` builds it from its lengths, as a format string; that of
     ``so.shapes`` if empty."""
+    judge: Callable[..., oracles.Shape] | None = None
+    """Its support function, if not that of the twin."""
+
+    @property
+    def build(self) -> Callable[..., Body]:
+        return TWINS[self.name].body
+
+    @property
+    def support(self) -> Callable[..., oracles.Shape]:
+        return self.judge or TWINS[self.name].support
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,61 +178,37 @@ def _rounded_support(vertices: Array, rounding: float) -> oracles.Shape:
     return oracles.Swept(oracles.Polytope((1 - rounding / inscribed) * vertices), rounding)
 
 
-def _torus_hull(ring: float, width: float, height: float) -> Body:
-    return shapes.hull_of_revolution(
-        ConicArc([ring, 0.0, 0.0], [width, 0.0, 0.0], [0.0, 0.0, height])
-    )
-
-
-def _nurbs_ellipsoid(a: float, b: float, c: float) -> Body:
-    return Body.from_patches(ellipsoid_patches(a, b, c))
-
-
 KINDS: tuple[Kind, ...] = (
-    Kind("point", lambda rng: {}, shapes.point, oracles.Point, flat=True),
-    Kind("segment", _lengths("length"), shapes.segment, oracles.Segment, flat=True),
-    Kind("sphere", _lengths("r"), shapes.sphere, oracles.Sphere),
-    Kind("capsule", _lengths("r", "length"), shapes.capsule, oracles.Capsule),
-    Kind("ellipsoid", _lengths("a", "b", "c"), shapes.ellipsoid, oracles.Ellipsoid),
+    Kind("point", lambda rng: {}, flat=True),
+    Kind("segment", _lengths("length"), flat=True),
+    Kind("sphere", _lengths("r")),
+    Kind("capsule", _lengths("r", "length")),
+    Kind("ellipsoid", _lengths("a", "b", "c")),
     Kind(
         "NURBS ellipsoid",
         _lengths("a", "b", "c"),
-        _nurbs_ellipsoid,
-        oracles.Ellipsoid,
         call="so.Body.from_patches(so.geometry.ellipsoid_patches({a!r}, {b!r}, {c!r}))",
     ),
-    Kind(
-        "superellipsoid",
-        _superellipsoid(0.4, 1.0),
-        shapes.superellipsoid,
-        oracles.Superellipsoid,
-    ),
-    Kind(
-        "creased superellipsoid",
-        _superellipsoid(1.1, 1.6),
-        shapes.superellipsoid,
-        oracles.Superellipsoid,
-    ),
-    Kind("egg", _egg, shapes.egg, oracles.Egg),
-    Kind("cylinder", _lengths("r", "length"), shapes.cylinder, oracles.Cylinder),
-    Kind("cone", _lengths("r", "height"), shapes.cone, oracles.Cone),
-    Kind("cap", _cap, shapes.cap, oracles.Cap),
-    Kind("lens", _lens, shapes.lens, oracles.Lens),
-    Kind("spindle", _bow("length"), shapes.spindle, oracles.Spindle),
-    Kind("gore", _gore, shapes.gore, oracles.Gore),
+    Kind("superellipsoid", _superellipsoid(0.4, 1.0)),
+    Kind("creased superellipsoid", _superellipsoid(1.1, 1.6)),
+    Kind("egg", _egg),
+    Kind("cylinder", _lengths("r", "length")),
+    Kind("cone", _lengths("r", "height")),
+    Kind("cap", _cap),
+    Kind("lens", _lens),
+    Kind("spindle", _bow("length")),
+    Kind("gore", _gore),
     Kind(
         "torus hull",
         _ring,
-        _torus_hull,
-        oracles.RingHull,
         call="so.shapes.hull_of_revolution(so.geometry.ConicArc("
         "[{ring!r}, 0.0, 0.0], [{width!r}, 0.0, 0.0], [0.0, 0.0, {height!r}]))",
     ),
-    Kind("box", _lengths("x", "y", "z"), shapes.box, oracles.SharpBox),
-    Kind("rounded box", _rounded_box, shapes.box, oracles.Box),
-    Kind("polytope", _polytope, shapes.polytope, oracles.Polytope),
-    Kind("rounded polytope", _tangential, shapes.rounded_polytope, _rounded_support),
-    Kind("halfspace", lambda rng: {}, shapes.halfspace, oracles.HalfSpace),
+    Kind("box", _lengths("x", "y", "z")),
+    Kind("rounded box", _rounded_box),
+    Kind("polytope", _polytope),
+    Kind("rounded polytope", _tangential, judge=_rounded_support),
+    Kind("halfspace", lambda rng: {}),
 )
 """All kinds: those of ``so.shapes``, of superellipsoids two, and an ellipsoid of NURBS patches.
 The planar loop is left out: it meets other planar bodies only."""

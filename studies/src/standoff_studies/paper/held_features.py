@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from standoff.bodies import Body
 from standoff.motion import Path, Pose, Twist
 from standoff.recording import RecordedEvent, Recording
 from standoff.tracking import Tracker
 from standoff.tracking.laws import PaperLaw
+from standoff_studies.paper.patch_places import places_at
 
 STEPS = 12
 """Newton steps on features held; they begin within a frame's way, and five reach roundoff."""
@@ -54,7 +53,7 @@ def growth(
     time = event.time + offset
     poses = paths[0].pose(time), paths[1].pose(time)
     before, after = (
-        held_distance(recording.pair, poses, *_places(recording, frame))
+        held_distance(recording.pair, poses, *places_at(recording, frame))
         for frame in (event.frame - 1, event.frame)
     )
     return after - before
@@ -63,10 +62,3 @@ def growth(
 def greatest_growth(recording: Recording, paths: tuple[Path, Path]) -> float:
     """Return the greatest growth over a recording's switches [length]."""
     return max(growth(recording, paths, event) for event in recording.events)
-
-
-def _places(recording: Recording, frame: int) -> tuple[Place, Place]:
-    """Features and parameters of both bodies in one frame."""
-    rows = recording.parameters_a[frame], recording.parameters_b[frame]
-    first, second = (row[~np.isnan(row)] for row in rows)
-    return (recording.feature_a[frame], first), (recording.feature_b[frame], second)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -128,3 +129,28 @@ def distances(tracker: Tracker, state: TrackerState, motion: Motion) -> Array:
     """
     steps = np.diff(motion.times)
     return run(tracker.table, motion.rows, True, steps, state.data.copy()).rows[:, K.DISTANCE]
+
+
+def last_answers(
+    tracker: Tracker, states: Iterable[TrackerState], paths: tuple[Path, Path], times: Array
+) -> Iterator[Proximity]:
+    """Yield the last frame's answer of each start, along two paths.
+
+    Parameters
+    ----------
+    tracker : Tracker
+    states : iterable of TrackerState
+        Of the first time.
+    paths : (Path, Path)
+    times : ndarray, shape (n,)
+        s
+    """
+    rows = motion_along(*paths, times).rows
+    poses, twists = poses_of(rows), twists_of(rows)
+    for state in states:
+        buffer = tracker.buffer(state)
+        for k in range(len(rows)):
+            buffer.pose_a[:], buffer.pose_b[:] = poses[0][k], poses[1][k]
+            buffer.twist_a[:], buffer.twist_b[:] = twists[0][k], twists[1][k]
+            tracker.step_into(buffer)
+        yield buffer.proximity()

@@ -310,17 +310,16 @@ def _tables(study: Study) -> dict[str, dict[str, ArrayLike]]:
 
 def _draw() -> Figure:
     study = run()
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 9.2)
-        panels = figure.subplots(3, 2)
-        _draw_conditions(panels[0, 0], study)
-        _draw_least(panels[0, 1], study)
-        _draw_shares(panels[1, 0], study, APART, f"starts apart, d = {APART:g}")
-        _draw_shares(panels[1, 1], study, INSIDE, f"starts in penetration, d = −{-INSIDE:g}")
-        _draw_steps(panels[2, 0], study)
-        _draw_tracks(panels[2, 1], study)
-        handles, names = panels[0, 1].get_legend_handles_labels()
-        figure.legend(handles, names, loc="outside upper center", ncols=3, frameon=False)
+    figure = style.new_figure(style.WIDTH, 9.2)
+    panels = figure.subplots(3, 2)
+    _draw_conditions(panels[0, 0], study)
+    _draw_least(panels[0, 1], study)
+    _draw_shares(panels[1, 0], study, APART, f"starts apart, d = {APART:g}")
+    _draw_shares(panels[1, 1], study, INSIDE, f"starts in penetration, d = −{-INSIDE:g}")
+    _draw_steps(panels[2, 0], study)
+    _draw_tracks(panels[2, 1], study)
+    handles, names = panels[0, 1].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside upper center", ncols=3, frameon=False)
     return figure
 
 

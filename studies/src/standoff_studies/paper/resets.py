@@ -22,10 +22,9 @@ from standoff.tracking import Feature, Tracker, pair_system
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Statement
+from standoff_studies.paper.patch_places import BothPlaces, FeaturePlace, places_at, short
 
 Array = NDArray[np.float64]
-
-Place = tuple[Feature, Array]
 
 SAMPLES = 64
 """Of a pcurve, between which the parameter nearest to a face's own is sought."""
@@ -88,11 +87,11 @@ def resets_of(recording: Recording, paths: tuple[Path, Path], gain: float) -> li
         switches = list(events)
         before = _stepped(tracker, recording, paths, frame)
         after = _reset(recording.pair, before, switches)
-        now = _places(recording, frame)
+        now = places_at(recording, frame)
         assert [place[0] for place in after] == [place[0] for place in now], "the same features"
         poses = _at(recording, paths, frame)[:2]
         errors = [pair_system(*recording.pair, *poses, *own).Psi for own in (before, after, now)]
-        names = ", ".join(f"{e.body} {_short(e.source)} → {_short(e.target)}" for e in switches)
+        names = ", ".join(f"{e.body} {short(e.source)} → {short(e.target)}" for e in switches)
         left, implied, seen = (float(np.linalg.norm(one)) for one in errors)
         off = float(np.linalg.norm(errors[1] - errors[2]))
         time = float(recording.time[frame])
@@ -126,7 +125,7 @@ def moves_of(recording: Recording, paths: tuple[Path, Path], gain: float) -> lis
         poses = _at(recording, paths, frame)[:2]
         before, now = (
             pair_system(*recording.pair, *poses, *places).dR
-            for places in (_stepped(tracker, recording, paths, frame), _places(recording, frame))
+            for places in (_stepped(tracker, recording, paths, frame), places_at(recording, frame))
         )
         growth = np.linalg.norm(now) - np.linalg.norm(before)
         found.append(Move(float(np.linalg.norm(now - before)), float(growth)))
@@ -175,11 +174,11 @@ def projection_errors(recording: Recording, paths: tuple[Path, Path]) -> Errors:
 def error_at(recording: Recording, paths: tuple[Path, Path], frame: int) -> float:
     """Return the size of the projection errors in one frame [length²]."""
     assert recording.pair is not None, "not opened from a file"
-    poses, places = _at(recording, paths, frame)[:2], _places(recording, frame)
+    poses, places = _at(recording, paths, frame)[:2], places_at(recording, frame)
     return float(np.linalg.norm(pair_system(*recording.pair, *poses, *places).Psi))
 
 
-def reset_place(body: Body, place: Place, target: Feature) -> Place:
+def reset_place(body: Body, place: FeaturePlace, target: Feature) -> FeaturePlace:
     """Return where the printed reset puts a witness point, from a feature's parameters alone.
 
     Onto an edge at its pcurve's parameter nearest in (u, v) to the face's own, onto a face at the
@@ -235,8 +234,10 @@ def _nearest(body: Body, face: Feature, edge: Feature, own: Array) -> float:
 
 
 def _reset(
-    bodies: tuple[Body, Body], places: tuple[Place, Place], events: Iterable[RecordedEvent]
-) -> tuple[Place, Place]:
+    bodies: tuple[Body, Body],
+    places: BothPlaces,
+    events: Iterable[RecordedEvent],
+) -> BothPlaces:
     held = list(places)
     for event in events:
         k = "AB".index(event.body)
@@ -255,10 +256,10 @@ def _without_switches(recording: Recording, gain: float) -> Tracker:
 
 def _stepped(
     tracker: Tracker, recording: Recording, paths: tuple[Path, Path], frame: int
-) -> tuple[Place, Place]:
+) -> BothPlaces:
     """The witness points at a frame's end on the features of the frame before."""
     before, now = (_at(recording, paths, k) for k in (frame - 1, frame))
-    places = _places(recording, frame - 1)
+    places = places_at(recording, frame - 1)
     state = tracker.start_from(*before[:2], *places, *before[2:], settle=False)
     _, answer = tracker.step(state, *now)
     return (
@@ -272,16 +273,6 @@ def _at(recording: Recording, paths: tuple[Path, Path], frame: int) -> tuple[Any
     time = float(recording.time[frame])
     a, b = paths
     return a.pose(time), b.pose(time), a.twist(time), b.twist(time)
-
-
-def _places(recording: Recording, frame: int) -> tuple[Place, Place]:
-    rows = recording.parameters_a[frame], recording.parameters_b[frame]
-    first, second = (row[~np.isnan(row)] for row in rows)
-    return (recording.feature_a[frame], first), (recording.feature_b[frame], second)
-
-
-def _short(feature: Feature) -> str:
-    return f"{feature.kind[0].upper()}{feature.index}"
 
 
 def reset_statement(resets: list[Reset], by: str) -> Statement:

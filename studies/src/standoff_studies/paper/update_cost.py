@@ -14,8 +14,7 @@ from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.pair_system import PairSystem, PairSystems
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, STEP, pair
-from standoff_studies.paper.simulation_e.runs import run as simulation_e
+from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, SIMULATION, pair
 
 Array = NDArray[np.float64]
 
@@ -102,9 +101,9 @@ class Spent(NamedTuple):
 @cache
 def frames() -> tuple[Frame, ...]:
     """The frames of the updates, and the one before."""
-    exact, found = simulation_e().exact, []
+    exact, found = SIMULATION.exact, []
     for k in range(FIRST, FIRST + UPDATES + 1):
-        t = k * STEP
+        t = k * SIMULATION.step
         poses = PATH_A.pose(t), PATH_B.pose(t)
         flat_a, flat_b = (flat_pose(pose) for pose in poses)
         xi_a = flat_twist(PATH_A.twist(t), poses[0])
@@ -116,7 +115,7 @@ def frames() -> tuple[Frame, ...]:
 
 def start() -> tuple[PairSystems, Array]:
     """The pair's system, and the exact parameters before the first update."""
-    exact = simulation_e().exact
+    exact = SIMULATION.exact
     places = [
         (feature[FIRST], parameters[FIRST, :2])
         for feature, parameters in (
@@ -141,7 +140,7 @@ class Problem:
     def off(self, q: Array) -> float:
         """How far the worse witness point is off the closest one [length]."""
         a, b = pair()
-        exact = simulation_e().exact
+        exact = SIMULATION.exact
         places = (
             (a, exact.feature_a[FIRST], q[:2], self.frame.flat_a),
             (b, exact.feature_b[FIRST], q[2:], self.frame.flat_b),
@@ -158,13 +157,13 @@ def law_step(systems: PairSystems, before: Frame, now: Frame, q: Array, integrat
 
     def rates(frame: Frame, at_q: Array) -> Array:
         at = systems.at(at_q, *frame[:4])
-        return np.asarray(np.linalg.solve(at.M, -at.Psi / STEP - at.b))
+        return np.asarray(np.linalg.solve(at.M, -at.Psi / SIMULATION.step - at.b))
 
     first = rates(before, q)
-    trial = np.asarray(q + STEP * first)
+    trial = np.asarray(q + SIMULATION.step * first)
     if integrator == "euler":
         return trial
-    return np.asarray(q + 0.5 * STEP * (first + rates(now, trial)))
+    return np.asarray(q + 0.5 * SIMULATION.step * (first + rates(now, trial)))
 
 
 def newton(problem: Problem, q: Array, target: float, memory: dict[str, Any]) -> Array:
@@ -376,22 +375,21 @@ def _where_less_is_asked() -> Statement:
 
 def draw() -> Figure:
     """Cost of an update against the accuracy."""
-    with style.settings():
-        figure = style.new_figure(height=4.4)
-        axes = figure.subplots()
-        for k, name in enumerate(PRICES, start=1):
-            costs = [spent(name, target).cost for target in TARGETS]
-            look: dict[str, Any] = {"color": style.COLOURS[k], "linestyle": style.DASHES[k]}
-            axes.plot(TARGETS, costs, marker=style.MARKERS[k], label=name, **look)
-        for integrator, marker in (("heun", "*"), ("euler", "P")):
-            law = law_spent(integrator)
-            look = {"color": style.BLUE, "markersize": 15 if marker == "*" else 10}
-            axes.plot(law.error, law.cost, marker, label=LAWS[integrator], **look)
-        axes.set(xscale="log", yscale="log")
-        axes.invert_xaxis()
-        axes.set_xlabel("greatest witness error asked for [length]")
-        axes.set_ylabel("second-order evaluations\nan update, mean")
-        axes.set_yticks([0.5, 1, 2, 5, 10, 20, 50], ["0.5", "1", "2", "5", "10", "20", "50"])
-        axes.minorticks_off()
-        figure.legend(loc="outside lower center", ncols=1, frameon=False)
+    figure = style.new_figure(height=4.4)
+    axes = figure.subplots()
+    for k, name in enumerate(PRICES, start=1):
+        costs = [spent(name, target).cost for target in TARGETS]
+        look: dict[str, Any] = {"color": style.COLOURS[k], "linestyle": style.DASHES[k]}
+        axes.plot(TARGETS, costs, marker=style.MARKERS[k], label=name, **look)
+    for integrator, marker in (("heun", "*"), ("euler", "P")):
+        law = law_spent(integrator)
+        look = {"color": style.BLUE, "markersize": 15 if marker == "*" else 10}
+        axes.plot(law.error, law.cost, marker, label=LAWS[integrator], **look)
+    axes.set(xscale="log", yscale="log")
+    axes.invert_xaxis()
+    axes.set_xlabel("greatest witness error asked for [length]")
+    axes.set_ylabel("second-order evaluations\nan update, mean")
+    axes.set_yticks([0.5, 1, 2, 5, 10, 20, 50], ["0.5", "1", "2", "5", "10", "20", "50"])
+    axes.minorticks_off()
+    figure.legend(loc="outside lower center", ncols=1, frameon=False)
     return figure

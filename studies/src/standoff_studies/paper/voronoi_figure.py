@@ -232,11 +232,10 @@ def _tangent(body: Body, edge: Feature, vertex: Feature) -> Array:
 
 def _draw() -> Figure:
     found = study()
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 11.6)
-        above, below = figure.subplots(2, 1)
-        _draw_planar(above, found.planar)
-        _draw_lens(below, found.lens)
+    figure = style.new_figure(style.WIDTH, 11.6)
+    above, below = figure.subplots(2, 1)
+    _draw_planar(above, found.planar)
+    _draw_lens(below, found.lens)
     return figure
 
 

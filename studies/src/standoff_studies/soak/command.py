@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import json
-import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-from rich.console import Console
-from rich.progress import Progress as Bar
 
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra, WriteError
 from standoff.cli.facts import json_text
 from standoff.cli.output import check_target, make_folder, write_whole
+from standoff.cli.progress import progress_shown
 from standoff.cli.terminal import tell
 from standoff_studies.soak.certificates import run_certificates
 from standoff_studies.soak.failures import Facts, read_failure, replay
@@ -61,8 +56,13 @@ def run_soak(command: SoakOptions) -> int:
     ledger = _ledger(command)
     started, before = time.perf_counter(), ledger.pairs_done()
     try:
-        with _bar(ledger, command.pairs) as show:
-            saver = _Saver(ledger, command.output, show)
+        with progress_shown() as show:
+
+            def tell_of(done: Done) -> None:
+                million = ledger.tally.sums["certified"] / 1e6
+                show(ledger.pairs_done(), command.pairs, f"{million:.1f} million certified")
+
+            saver = _Saver(ledger, command.output, tell_of)
             failed = soak(ledger, command.pairs, jobs, saver.hear)
     except KeyboardInterrupt:
         _save(ledger, command.output)
@@ -124,26 +124,6 @@ def _write_failure(failed: Done, folder: Path) -> Path:
     text = json.dumps(failed.facts, indent=1, allow_nan=False)
     write_whole({file: lambda stream: stream.write(text.encode())})
     return file
-
-
-@contextmanager
-def _bar(ledger: Ledger, pairs: int) -> Iterator[Tell]:
-    """Show the pairs done and the frames certified, where stderr is a terminal."""
-    if not sys.stderr.isatty():
-        yield lambda done: None
-        return
-    with Bar(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("starting", total=pairs, completed=ledger.pairs_done())
-
-        def show(done: Done) -> None:
-            certified = ledger.tally.sums["certified"]
-            bar.update(
-                task,
-                completed=ledger.pairs_done(),
-                description=f"{certified / 1e6:.1f} million certified",
-            )
-
-        yield show
 
 
 def _print(ledger: Ledger, seconds: float, pairs: int) -> None:

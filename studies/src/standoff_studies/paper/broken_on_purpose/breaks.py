@@ -29,9 +29,7 @@ STILL_STABLE = 0.9995
 TRACKERS = (
     "simulation_a.run",
     "simulation_b.printed",
-    "simulation_c.run",
-    "simulation_d.runs",
-    "simulation_e.runs",
+    "pair_simulation",
     "simulation_e.own_point",
 )
 """Modules that make the trackers of the figures, and run them."""
@@ -42,9 +40,8 @@ RUNS = {
     "simulation_a.snapshots": ("snapshot_run",),
     "simulation_a.gains": ("settling", "held", "greatest_feedforward"),
     "simulation_b.run": ("run",),
-    "simulation_c.run": ("run",),
-    "simulation_d.runs": ("run",),
-    "simulation_e.runs": ("run",),
+    "pair_simulation": ("printed_runs",),
+    "simulation_c.run": ("snapshots",),
 }
 """What is kept of the law's runs, and must be made again: that of the figures' runs,"""
 

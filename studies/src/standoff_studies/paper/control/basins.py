@@ -256,19 +256,18 @@ HATCHES = ("", "////", "..")
 
 
 def _draw() -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 10.0)
-        first, second, bars = figure.subplots(3, 1, height_ratios=(1.0, 1.0, 0.52))
-        for axes, law in ((first, "raw law"), (second, "Newton")):
-            _draw_map(axes, law)
-        first.set_title("raw law", loc="left")
-        second.set_title("Newton, K h = 1", loc="left")
-        keys = [
-            Patch(facecolor=shade, hatch=hatch, edgecolor=style.BLACK, linewidth=0.5, label=fate)
-            for fate, shade, hatch in zip(FATES, SHADES, HATCHES, strict=True)
-        ]
-        figure.legend(handles=keys, loc="outside upper center", ncols=3)
-        _draw_bars(bars)
+    figure = style.new_figure(style.WIDTH, 10.0)
+    first, second, bars = figure.subplots(3, 1, height_ratios=(1.0, 1.0, 0.52))
+    for axes, law in ((first, "raw law"), (second, "Newton")):
+        _draw_map(axes, law)
+    first.set_title("raw law", loc="left")
+    second.set_title("Newton, K h = 1", loc="left")
+    keys = [
+        Patch(facecolor=shade, hatch=hatch, edgecolor=style.BLACK, linewidth=0.5, label=fate)
+        for fate, shade, hatch in zip(FATES, SHADES, HATCHES, strict=True)
+    ]
+    figure.legend(handles=keys, loc="outside upper center", ncols=3)
+    _draw_bars(bars)
     return figure
 
 

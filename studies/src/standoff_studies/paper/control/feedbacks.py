@@ -210,11 +210,10 @@ def _tables() -> dict[str, dict[str, Array | list[str]]]:
 
 
 def _draw() -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 7.0)
-        above, below = figure.subplots(2, 1, height_ratios=(2.0, 1.0))
-        _draw_errors(above)
-        _draw_chatter(below)
+    figure = style.new_figure(style.WIDTH, 7.0)
+    above, below = figure.subplots(2, 1, height_ratios=(2.0, 1.0))
+    _draw_errors(above)
+    _draw_chatter(below)
     return figure
 
 

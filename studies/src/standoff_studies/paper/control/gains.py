@@ -144,11 +144,10 @@ def _tables() -> dict[str, dict[str, Array | list[str]]]:
 
 
 def _draw() -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 7.6)
-        above, below = figure.subplots(2, 1, height_ratios=(1.25, 1.0))
-        _draw_decay(above)
-        _draw_lag(below)
+    figure = style.new_figure(style.WIDTH, 7.6)
+    above, below = figure.subplots(2, 1, height_ratios=(1.25, 1.0))
+    _draw_decay(above)
+    _draw_lag(below)
     return figure
 
 

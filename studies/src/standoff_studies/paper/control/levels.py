@@ -267,12 +267,11 @@ def outline(values: Array, level: float) -> Array:
 
 
 def _draw() -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 8.4)
-        sets, times = figure.subplots(2, 1, height_ratios=(2.1, 1.0))
-        _draw_sets(sets)
-        figure.legend(handles=_keys(), loc="outside upper center", ncols=2)
-        _draw_times(times)
+    figure = style.new_figure(style.WIDTH, 8.4)
+    sets, times = figure.subplots(2, 1, height_ratios=(2.1, 1.0))
+    _draw_sets(sets)
+    figure.legend(handles=_keys(), loc="outside upper center", ncols=2)
+    _draw_times(times)
     return figure
 
 

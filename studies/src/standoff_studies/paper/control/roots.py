@@ -157,13 +157,12 @@ def _tables() -> dict[str, dict[str, Array | list[str]]]:
 
 
 def _draw() -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 7.4)
-        parts = figure.subplots(2, 2).ravel()
-        _draw_regions(parts[0])
-        for axes, name in zip(parts[1:], METHODS, strict=True):
-            _draw_loci(axes, name)
-        parts[3].legend(loc="lower left", handlelength=1.8, borderpad=0.25, labelspacing=0.25)
+    figure = style.new_figure(style.WIDTH, 7.4)
+    parts = figure.subplots(2, 2).ravel()
+    _draw_regions(parts[0])
+    for axes, name in zip(parts[1:], METHODS, strict=True):
+        _draw_loci(axes, name)
+    parts[3].legend(loc="lower left", handlelength=1.8, borderpad=0.25, labelspacing=0.25)
     return figure
 
 

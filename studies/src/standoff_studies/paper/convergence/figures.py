@@ -313,21 +313,20 @@ def _anywhere(cells: tuple[Cell, ...], by: str) -> Statement:
 
 
 def _draw(cells: tuple[Cell, ...]) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 5.4)
-        panels = figure.subplots(1, 2, sharey=True)
-        for axes, motion in zip(panels, MOTIONS, strict=True):
-            for law in DRAWN_LAWS:
-                _draw_law(axes, [cell for cell in cells if cell.motion == motion], law)
-            axes.set_title(MOTIONS[motion])
-            axes.set_xlabel("part that arrives [–]")
-            axes.set_xlim(-0.03, 1.03)
-            for k in range(1, len(GROUPS)):
-                axes.axhline(-k + 0.5, color=style.QUIET, linewidth=0.4)
-            axes.grid(visible=False, axis="y")
-        panels[0].set_yticks([-k for k in range(len(GROUPS))], list(GROUPS))
-        panels[0].set_ylim(-len(GROUPS) + 0.5, 0.5)
-        _legend(figure)
+    figure = style.new_figure(style.WIDTH, 5.4)
+    panels = figure.subplots(1, 2, sharey=True)
+    for axes, motion in zip(panels, MOTIONS, strict=True):
+        for law in DRAWN_LAWS:
+            _draw_law(axes, [cell for cell in cells if cell.motion == motion], law)
+        axes.set_title(MOTIONS[motion])
+        axes.set_xlabel("part that arrives [–]")
+        axes.set_xlim(-0.03, 1.03)
+        for k in range(1, len(GROUPS)):
+            axes.axhline(-k + 0.5, color=style.QUIET, linewidth=0.4)
+        axes.grid(visible=False, axis="y")
+    panels[0].set_yticks([-k for k in range(len(GROUPS))], list(GROUPS))
+    panels[0].set_ylim(-len(GROUPS) + 0.5, 0.5)
+    _legend(figure)
     return figure
 
 

@@ -201,7 +201,7 @@ def _vaults(*, alone: bool) -> Pair:
 def _planar(*, alone: bool) -> Pair:
     body = planar_body()
     if not alone:
-        path = simulation_c.motion()
+        path = simulation_c.MOTION
         return Pair(
             "C: two planar bodies",
             body,

@@ -27,8 +27,8 @@ from standoff_studies.paper.in_the_loop.run import (
     run,
 )
 from standoff_studies.paper.in_the_loop.statements import all_statements, by_gain
+from standoff_studies.paper.patch_places import place_on, short
 from standoff_studies.paper.simulation_d.parameters import SHADES
-from standoff_studies.paper.simulation_d.runs import place_on, short
 
 Array = NDArray[np.float64]
 
@@ -119,23 +119,22 @@ def _table(runs: Runs) -> dict[str, ArrayLike]:
 
 def _draw() -> Figure:
     runs = run()
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 11.6)
-        grid = figure.add_gridspec(4, 2, height_ratios=(1.2, 1.3, 0.85, 0.85))
-        draw_loop(figure.add_subplot(grid[0, :]))
-        _draw_scene(figure.add_subplot(grid[1, 0]), runs)
-        panels = [figure.add_subplot(grid[place]) for place in ((1, 1), (2, 0), (2, 1), (3, 0))]
-        energy = figure.add_subplot(grid[3, 1])
-        for draw, axes in zip(
-            (_draw_force, _draw_distance, _draw_paths, _draw_parameters), panels, strict=True
-        ):
-            _shade(axes, runs)
-            draw(axes, runs)
-            axes.set_xlim(0.0, DURATION)
-        _name(panels[0], runs)
-        _draw_energy(energy, runs)
-        for axes in (panels[3], energy):
-            axes.set_xlabel("time [s]")
+    figure = style.new_figure(style.WIDTH, 11.6)
+    grid = figure.add_gridspec(4, 2, height_ratios=(1.2, 1.3, 0.85, 0.85))
+    draw_loop(figure.add_subplot(grid[0, :]))
+    _draw_scene(figure.add_subplot(grid[1, 0]), runs)
+    panels = [figure.add_subplot(grid[place]) for place in ((1, 1), (2, 0), (2, 1), (3, 0))]
+    energy = figure.add_subplot(grid[3, 1])
+    for draw, axes in zip(
+        (_draw_force, _draw_distance, _draw_paths, _draw_parameters), panels, strict=True
+    ):
+        _shade(axes, runs)
+        draw(axes, runs)
+        axes.set_xlim(0.0, DURATION)
+    _name(panels[0], runs)
+    _draw_energy(energy, runs)
+    for axes in (panels[3], energy):
+        axes.set_xlabel("time [s]")
     return figure
 
 

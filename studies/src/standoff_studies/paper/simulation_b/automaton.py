@@ -133,27 +133,26 @@ def _places(simulation: Run) -> dict[Mode, tuple[float, float]]:
 
 
 def _draw(simulation: Run) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 7.4)
-        axes = figure.subplots()
-        places = _places(simulation)
-        for switch in sorted(switches(simulation), key=lambda s: len(s.times)):
-            _draw_switch(axes, switch, places)
-        times: dict[Mode, float] = defaultdict(float)
-        for visit in simulation.paper.modes():
-            times[visit.inside, visit.feature] += visit.end - visit.start
-        for mode, place in places.items():
-            _draw_mode(axes, mode, place, times.get(mode))
-        x, y = places[bool(simulation.paper.inside[0]), simulation.paper.feature[0]]
-        axes.text(x - 0.62, y, "start", ha="center", va="center", fontweight="bold", zorder=6)
-        for name, dashes, colour in KINDS.values():
-            axes.plot([], [], linestyle=dashes, color=colour, linewidth=2.0, label=name)
-        axes.plot([], [], color=style.QUIET, linewidth=0.8, label="not taken")
-        axes.set_xlim(-3.75, 3.75)
-        axes.set_ylim(-3.35, 3.35)
-        axes.set_aspect("equal")
-        axes.set_axis_off()
-        figure.legend(loc="outside lower center", ncols=2, frameon=False, handlelength=3.5)
+    figure = style.new_figure(style.WIDTH, 7.4)
+    axes = figure.subplots()
+    places = _places(simulation)
+    for switch in sorted(switches(simulation), key=lambda s: len(s.times)):
+        _draw_switch(axes, switch, places)
+    times: dict[Mode, float] = defaultdict(float)
+    for visit in simulation.paper.modes():
+        times[visit.inside, visit.feature] += visit.end - visit.start
+    for mode, place in places.items():
+        _draw_mode(axes, mode, place, times.get(mode))
+    x, y = places[bool(simulation.paper.inside[0]), simulation.paper.feature[0]]
+    axes.text(x - 0.62, y, "start", ha="center", va="center", fontweight="bold", zorder=6)
+    for name, dashes, colour in KINDS.values():
+        axes.plot([], [], linestyle=dashes, color=colour, linewidth=2.0, label=name)
+    axes.plot([], [], color=style.QUIET, linewidth=0.8, label="not taken")
+    axes.set_xlim(-3.75, 3.75)
+    axes.set_ylim(-3.35, 3.35)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    figure.legend(loc="outside lower center", ncols=2, frameon=False, handlelength=3.5)
     return figure
 
 

@@ -173,19 +173,18 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
 
 
 def _draw(simulation: Run) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 9.2)
-        panels = figure.subplots(5, 1, sharex=True, height_ratios=(0.42, 1.0, 1.0, 1.0, 1.3))
-        _draw_strip(panels[0], simulation)
-        for curve in range(3):
-            _draw_curve(panels[curve + 1], simulation, curve)
-        _draw_errors(panels[-1], simulation)
-        panels[-1].set_xlabel("time [s]")
-        panels[-1].set_xlim(0.0, DURATION)
-        for name, dashes, colour in KINDS.values():
-            panels[1].plot([], [], linestyle=dashes, color=colour, linewidth=1.3, label=name)
-        panels[1].plot([], [], color=style.BLACK, linewidth=0.7, label="library's own law")
-        figure.legend(loc="outside lower center", ncols=3, frameon=False, handlelength=3.0)
+    figure = style.new_figure(style.WIDTH, 9.2)
+    panels = figure.subplots(5, 1, sharex=True, height_ratios=(0.42, 1.0, 1.0, 1.0, 1.3))
+    _draw_strip(panels[0], simulation)
+    for curve in range(3):
+        _draw_curve(panels[curve + 1], simulation, curve)
+    _draw_errors(panels[-1], simulation)
+    panels[-1].set_xlabel("time [s]")
+    panels[-1].set_xlim(0.0, DURATION)
+    for name, dashes, colour in KINDS.values():
+        panels[1].plot([], [], linestyle=dashes, color=colour, linewidth=1.3, label=name)
+    panels[1].plot([], [], color=style.BLACK, linewidth=0.7, label="library's own law")
+    figure.legend(loc="outside lower center", ncols=3, frameon=False, handlelength=3.0)
     return figure
 
 

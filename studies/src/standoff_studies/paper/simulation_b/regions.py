@@ -109,29 +109,28 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
 
 
 def _draw(simulation: Run) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 7.3)
-        axes = figure.subplots()
-        _draw_path(axes, simulation)
-        draw_planar_regions(
-            axes, simulation.regions, reach=3.0, colour=style.RED, label="Voronoi:", linewidth=1.4
-        )
-        draw_planar_body(axes, simulation.body, colour=style.BLUE, linewidth=2.4)
-        name_features(
-            axes,
-            simulation.body,
-            inset=-0.12,
-            color=style.BLUE,
-            fontweight="bold",
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85},
-            zorder=6,
-        )
-        axes.set_xlim(-EXTENT, EXTENT)
-        axes.set_ylim(-EXTENT, EXTENT)
-        axes.grid(visible=False)
-        axes.set_xlabel("x [length]")
-        axes.set_ylabel("y [length]")
-        figure.legend(loc="outside lower center", ncols=3, frameon=False)
+    figure = style.new_figure(style.WIDTH, 7.3)
+    axes = figure.subplots()
+    _draw_path(axes, simulation)
+    draw_planar_regions(
+        axes, simulation.regions, reach=3.0, colour=style.RED, label="Voronoi:", linewidth=1.4
+    )
+    draw_planar_body(axes, simulation.body, colour=style.BLUE, linewidth=2.4)
+    name_features(
+        axes,
+        simulation.body,
+        inset=-0.12,
+        color=style.BLUE,
+        fontweight="bold",
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85},
+        zorder=6,
+    )
+    axes.set_xlim(-EXTENT, EXTENT)
+    axes.set_ylim(-EXTENT, EXTENT)
+    axes.grid(visible=False)
+    axes.set_xlabel("x [length]")
+    axes.set_ylabel("y [length]")
+    figure.legend(loc="outside lower center", ncols=3, frameon=False)
     return figure
 
 

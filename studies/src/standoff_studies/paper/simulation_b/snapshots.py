@@ -168,26 +168,25 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
 
 
 def _draw(simulation: Run) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 7.5)
-        axes = figure.subplots()
-        draw_planar_regions(axes, simulation.regions, reach=3.0, linewidth=0.8)
-        draw_planar_body(axes, simulation.body, colour=style.BLACK, linewidth=1.6)
-        paper = simulation.paper
-        for k, frame in enumerate(simulation.snapshots.tolist()):
-            _, colour, dashes, width = LOOKS[kind_of(simulation, k)]
-            exact = np.array([paper.point[frame], simulation.exact.witness[frame]])
-            axes.plot(exact[:, 0], exact[:, 1], color=style.QUIET, linewidth=0.6, zorder=1)
-            ends = np.array([paper.point[frame], paper.witness[frame]])
-            axes.plot(ends[:, 0], ends[:, 1], color=colour, linestyle=dashes, linewidth=width)
-            axes.plot(*ends[0, :2], "o", color=colour, markersize=2.8, zorder=5)
-        for name, colour, dashes, width in LOOKS.values():
-            axes.plot([], [], color=colour, linestyle=dashes, linewidth=width + 0.4, label=name)
-        axes.plot([], [], color=style.QUIET, linewidth=0.8, label="library's own law")
-        for span in SWEEP:
-            _draw_sweep(axes, simulation, *span)
-        _frame_view(axes)
-        figure.legend(loc="outside lower center", ncols=2, frameon=False, handlelength=3.5)
+    figure = style.new_figure(style.WIDTH, 7.5)
+    axes = figure.subplots()
+    draw_planar_regions(axes, simulation.regions, reach=3.0, linewidth=0.8)
+    draw_planar_body(axes, simulation.body, colour=style.BLACK, linewidth=1.6)
+    paper = simulation.paper
+    for k, frame in enumerate(simulation.snapshots.tolist()):
+        _, colour, dashes, width = LOOKS[kind_of(simulation, k)]
+        exact = np.array([paper.point[frame], simulation.exact.witness[frame]])
+        axes.plot(exact[:, 0], exact[:, 1], color=style.QUIET, linewidth=0.6, zorder=1)
+        ends = np.array([paper.point[frame], paper.witness[frame]])
+        axes.plot(ends[:, 0], ends[:, 1], color=colour, linestyle=dashes, linewidth=width)
+        axes.plot(*ends[0, :2], "o", color=colour, markersize=2.8, zorder=5)
+    for name, colour, dashes, width in LOOKS.values():
+        axes.plot([], [], color=colour, linestyle=dashes, linewidth=width + 0.4, label=name)
+    axes.plot([], [], color=style.QUIET, linewidth=0.8, label="library's own law")
+    for span in SWEEP:
+        _draw_sweep(axes, simulation, *span)
+    _frame_view(axes)
+    figure.legend(loc="outside lower center", ncols=2, frameon=False, handlelength=3.5)
     return figure
 
 

@@ -15,21 +15,18 @@ from standoff.tracking import Feature
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import planar_features, short_name
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth, growth
-from standoff_studies.paper.many_starts import Arrivals
+from standoff_studies.paper.held_features import growth
+from standoff_studies.paper.many_starts import Ends
+from standoff_studies.paper.pair_simulation import HYBRID, Simulation, anywhere, never_grows
+from standoff_studies.paper.panels import key_below
 from standoff_studies.paper.resets import growth_statement, moves_of
 from standoff_studies.paper.simulation_c.kinds import FILLS, KINDS, kind_of, show_kinds
 from standoff_studies.paper.simulation_c.kinds import mode_name as name_of
 from standoff_studies.paper.simulation_c.run import (
     ARRIVED,
-    CONVERGED,
-    FRAME,
-    GAIN,
-    Run,
+    SIMULATION,
     arrivals,
-    entered,
-    furthest_instants,
-    run,
+    snapshots,
 )
 from standoff_studies.paper.unaided import Part, unaided
 
@@ -53,15 +50,16 @@ class Way(NamedTuple):
 
 def figure_13() -> Artwork:
     """Make Fig. 13."""
-    simulation = run()
+    simulation = SIMULATION
     return Artwork(
         caption=(
             "Automaton of the pair: rows are A's features, columns are B's, both in the order of "
             "the loop, so that every switch goes to a neighbour, and over the edge of the grid to "
-            f"its other side. The printed system at K = {GAIN:g}/s ran through it from a wrong "
+            f"its other side. The printed system at K = {simulation.gain:g}/s ran through it from "
+            "a wrong "
             "start: framed modes were visited, with the time spent in them; blue "
             "arrows were taken, at the times beside them [s]; those before "
-            f"{CONVERGED:g} s are of the start. Grey lines were not taken. Letters are "
+            f"{simulation.entered:g} s are of the start. Grey lines were not taken. Letters are "
             "the snapshots of Fig. 14."
         ),
         text=(
@@ -78,17 +76,17 @@ def figure_13() -> Artwork:
     )
 
 
-def ways(simulation: Run) -> list[Way]:
+def ways(simulation: Simulation) -> list[Way]:
     """Return the switches that were taken, each with all its times."""
     times: dict[tuple[Mode, Mode], list[float]] = defaultdict(list)
-    for before, after in zip(simulation.stays, simulation.stays[1:], strict=False):
+    for before, after in zip(simulation.paper.modes(), simulation.paper.modes()[1:], strict=False):
         source = before.feature_a, before.feature_b
         times[source, (after.feature_a, after.feature_b)].append(after.start)
     return [Way(source, target, tuple(at)) for (source, target), at in times.items()]
 
 
-def _stays(simulation: Run) -> dict[str, ArrayLike]:
-    stays = simulation.stays
+def _stays(simulation: Simulation) -> dict[str, ArrayLike]:
+    stays = simulation.paper.modes()
     modes = [(stay.feature_a, stay.feature_b) for stay in stays]
     return {
         "feature_a": [short_name(a) for a, _ in modes],
@@ -99,14 +97,12 @@ def _stays(simulation: Run) -> dict[str, ArrayLike]:
     }
 
 
-def _switches(simulation: Run) -> dict[str, ArrayLike]:
+def _switches(simulation: Simulation) -> dict[str, ArrayLike]:
     """Of the printed system; nan for what the library's own law has not, the start's switches."""
     events = simulation.paper.events
-    same = len(entered(simulation.paper)) == len(entered(simulation.exact))
-    of_start = len(events) - len(entered(simulation.paper))
-    due = [math.nan] * of_start + [
-        event.time if same else math.nan for event in entered(simulation.exact)
-    ]
+    ours, own = map(simulation.entered_events, (simulation.paper, simulation.exact))
+    due = [math.nan] * (len(events) - len(ours))
+    due += [event.time if len(ours) == len(own) else math.nan for event in own]
     return {
         "time_s": [event.time for event in events],
         "time_by_own_law_s": (due + [math.nan] * len(events))[: len(events)],
@@ -118,7 +114,7 @@ def _switches(simulation: Run) -> dict[str, ArrayLike]:
     }
 
 
-def _growths(simulation: Run) -> dict[str, ArrayLike]:
+def _growths(simulation: Simulation) -> dict[str, ArrayLike]:
     """At the switches of the closest points."""
     events = simulation.exact.events
     return {
@@ -129,13 +125,12 @@ def _growths(simulation: Run) -> dict[str, ArrayLike]:
     }
 
 
-def _statements(simulation: Run) -> tuple[Statement, ...]:
-    stays = simulation.stays
+def _statements(simulation: Simulation) -> tuple[Statement, ...]:
+    stays = simulation.paper.modes()
     kinds = Counter(kind_of(stay.feature_a, stay.feature_b) for stay in stays)
     modes = {(stay.feature_a, stay.feature_b) for stay in stays}
     every = len(planar_features(simulation.a)) * len(planar_features(simulation.b))
-    grows = greatest_growth(simulation.exact, simulation.paths)
-    settled = len(entered(simulation.paper))
+    settled = len(simulation.entered_events(simulation.paper))
     return (
         Statement(
             "Fig. 13",
@@ -157,85 +152,83 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
         ),
         _sequence(simulation),
         *_as_printed(simulation, arrivals()),
-        Statement(
-            "Section on the hybrid system",
-            "the distance between features never grows at a switch",
-            f"at each of {len(simulation.exact.events)} instants the features after the switch are "
-            f"at most {grows:.0e} length farther apart than those before it",
-            grows <= CONTINUOUS,
-            SHARED,
-            simulation.own + ": the claim is of the closest points",
-            constructed=True,
+        never_grows(
+            simulation,
+            "the features after the switch are at most {} length farther apart than those before "
+            "it",
         ),
-        growth_statement(moves_of(simulation.paper, simulation.paths, GAIN), 1, simulation.by),
+        growth_statement(
+            moves_of(simulation.paper, simulation.paths, simulation.gain), 1, simulation.by
+        ),
     )
 
 
-def _sequence(simulation: Run) -> Statement:
+def _sequence(simulation: Simulation) -> Statement:
     """The order of the modes after the start, and what a low gain is late or leaves out.
 
     With b fed forward the law lags by no time constant, only by what a step leaves: less than a
     frame. Without b it lags by about 1/K.
     """
-    off = furthest_instants(simulation)
-    short = [v for v in simulation.exact.modes() if v.end - v.start < 3.0 / GAIN]
+    off = simulation.furthest()
+    short = [v for v in simulation.exact.modes() if v.end - v.start < 3.0 / simulation.gain]
     return Statement(
-        "Section on the hybrid system",
+        HYBRID,
         "the features follow those of the closest points",
-        f"after {CONVERGED:g} s {'the same' if off < math.inf else 'other'} "
-        f"{len(entered(simulation.paper))} switches as the library's own law, at most {off:.1e} s "
-        f"apart (a frame is {FRAME:g} s; without b it would be about 1/K = {1.0 / GAIN:g} s); "
+        f"after {simulation.entered:g} s {'the same' if off < math.inf else 'other'} "
+        f"{len(simulation.entered_events(simulation.paper))} switches as the library's own law, "
+        f"at most {off:.1e} s "
+        f"apart (a frame is {simulation.step:g} s; without b it would be about 1/K = "
+        f"{1.0 / simulation.gain:g} s); "
         f"none is skipped, not even the {len(short)} stays shorter than 3/K"
         if off < math.inf
-        else f"after {CONVERGED:g} s other switches than the library's own law",
-        off < FRAME,
+        else f"after {simulation.entered:g} s other switches than the library's own law",
+        off < simulation.step,
         by=simulation.by,
     )
 
 
-def _as_printed(simulation: Run, tried: Arrivals) -> tuple[Statement, Statement]:
+def _as_printed(simulation: Simulation, tried: Ends) -> tuple[Statement, Statement]:
     """What becomes of starts anywhere, and that nothing beside the law helps."""
     return (
-        Statement(
-            "Section on the hybrid system",
-            "from a start anywhere on tiled convex bodies the errors converge",
-            f"{tried.arrived} of {tried.tried} random starts on both bodies are at the distance to "
-            f"{ARRIVED:g} after {CONVERGED:g} s",
-            tried.arrived == tried.tried,
-            by=tried.by,
+        anywhere(
+            tried,
+            f"random starts on both bodies are at the distance to {ARRIVED:g} after "
+            f"{simulation.entered:g} s",
         ),
         unaided([Part.of(simulation.paper)], simulation.by),
     )
 
 
-def _draw(simulation: Run) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 8.6)
-        axes = figure.subplots()
-        features_a, features_b = planar_features(simulation.a), planar_features(simulation.b)
-        places = {
-            (a, b): (float(column), float(row))
-            for row, a in enumerate(features_a)
-            for column, b in enumerate(features_b)
-        }
-        _draw_lines(axes, len(features_b), len(features_a))
-        for way in ways(simulation):
-            _draw_way(axes, places[way.source], places[way.target], way.times)
-        for mode, place in places.items():
-            _draw_mode(axes, simulation, mode, place)
-        axes.tick_params(labeltop=True, labelbottom=False, length=0.0)
-        axes.grid(visible=False)
-        axes.set_xticks(range(len(features_b)), [f"B {short_name(f)}" for f in features_b])
-        axes.set_yticks(range(len(features_a)), [f"A {short_name(f)}" for f in features_a])
-        axes.set_xlim(-0.72, len(features_b) - 0.28)
-        axes.set_ylim(len(features_a) - 0.42, -0.58)
-        for spine in axes.spines.values():
-            spine.set_visible(False)
-        for word, stay in (("start", simulation.stays[0]), ("end", simulation.stays[-1])):
-            x, y = places[stay.feature_a, stay.feature_b]
-            corner = x - 0.04, y - HALF_HEIGHT - 0.03
-            axes.text(*corner, word, ha="right", va="bottom", fontweight="bold")
-        show_kinds(figure)
+def _draw(simulation: Simulation) -> Figure:
+    figure = style.new_figure(style.WIDTH, 8.6)
+    axes = figure.subplots()
+    features_a, features_b = planar_features(simulation.a), planar_features(simulation.b)
+    places = {
+        (a, b): (float(column), float(row))
+        for row, a in enumerate(features_a)
+        for column, b in enumerate(features_b)
+    }
+    _draw_lines(axes, len(features_b), len(features_a))
+    for way in ways(simulation):
+        _draw_way(axes, places[way.source], places[way.target], way.times)
+    for mode, place in places.items():
+        _draw_mode(axes, simulation, mode, place)
+    axes.tick_params(labeltop=True, labelbottom=False, length=0.0)
+    axes.grid(visible=False)
+    axes.set_xticks(range(len(features_b)), [f"B {short_name(f)}" for f in features_b])
+    axes.set_yticks(range(len(features_a)), [f"A {short_name(f)}" for f in features_a])
+    axes.set_xlim(-0.72, len(features_b) - 0.28)
+    axes.set_ylim(len(features_a) - 0.42, -0.58)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    for word, stay in (
+        ("start", simulation.paper.modes()[0]),
+        ("end", simulation.paper.modes()[-1]),
+    ):
+        x, y = places[stay.feature_a, stay.feature_b]
+        corner = x - 0.04, y - HALF_HEIGHT - 0.03
+        axes.text(*corner, word, ha="right", va="bottom", fontweight="bold")
+    key_below(figure, show_kinds(), len(KINDS))
     return figure
 
 
@@ -247,10 +240,10 @@ def _draw_lines(axes: Axes, columns: int, rows: int) -> None:
         axes.plot([column, column], [-0.5, rows - 0.5], color=style.QUIET, linewidth=0.7, zorder=1)
 
 
-def _draw_mode(axes: Axes, simulation: Run, mode: Mode, place: Place) -> None:
+def _draw_mode(axes: Axes, simulation: Simulation, mode: Mode, place: Place) -> None:
     x, y = place
-    stays = [s for s in simulation.stays if (s.feature_a, s.feature_b) == mode]
-    letters = ", ".join(s.letter for s in simulation.snapshots if s[3:] == mode)
+    stays = [s for s in simulation.paper.modes() if (s.feature_a, s.feature_b) == mode]
+    letters = ", ".join(s.letter for s in snapshots() if s[3:] == mode)
     kind = kind_of(*mode)
     box = FancyBboxPatch(
         (x - HALF_WIDTH, y - HALF_HEIGHT),

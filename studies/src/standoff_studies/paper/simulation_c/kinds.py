@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from matplotlib.figure import Figure
-from matplotlib.patches import Patch
+from matplotlib.artist import Artist
 
 from standoff.tracking import Feature
 from standoff_studies.paper.drawing import short_name
+from standoff_studies.paper.panels import key_fill
 
 KINDS = ("vertex–vertex", "vertex–curve", "curve–curve")
 """What a mode may be, by its number of parameters: 0, 1 or 2."""
@@ -25,10 +25,7 @@ def mode_name(feature_a: Feature, feature_b: Feature) -> str:
     return f"{short_name(feature_a)}–{short_name(feature_b)}"
 
 
-def show_kinds(figure: Figure) -> None:
-    """Write below a figure what the fills mean."""
-    keys = [
-        Patch(facecolor=fill, edgecolor="black", linewidth=0.8, label=kind)
-        for fill, kind in zip(FILLS, KINDS, strict=True)
-    ]
-    figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
+def show_kinds() -> list[Artist]:
+    """Return what tells in a key what the fills mean."""
+    pairs = zip(KINDS, FILLS, strict=True)
+    return [key_fill(kind, fill, edgecolor="black", linewidth=0.8) for kind, fill in pairs]

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
@@ -17,30 +14,21 @@ from standoff.recording import Recording
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.resets import (
-    draw_projection_errors,
-    projection_errors,
-    reset_statement,
-    reset_table,
-    resets_of,
-)
-from standoff_studies.paper.simulation_c.kinds import FILLS, KINDS, kind_of, mode_name
+from standoff_studies.paper.pair_simulation import Simulation
+from standoff_studies.paper.panels import draw_errors, key_below, key_line, unit_interval
+from standoff_studies.paper.resets import reset_statement, reset_table
+from standoff_studies.paper.simulation_c.kinds import FILLS, kind_of, mode_name, show_kinds
 from standoff_studies.paper.simulation_c.run import (
-    CONVERGED,
-    DURATION,
-    FRAME,
-    GAIN,
-    Run,
+    SIMULATION,
     curve_parameters,
-    run,
+    snapshots,
     vertex_slip,
-    witness_error,
 )
 from standoff_studies.paper.start_decay import decay_statement
 
 Array = NDArray[np.float64]
 
-SPANS = ((0.0, 0.5), (0.0, 0.5 * DURATION), (0.5 * DURATION, DURATION))
+SPANS = ((0.0, 0.5), (0.0, 6.0), (6.0, 12.0))
 """The rows: the start by itself, and the motion in two, so that short stays can be seen [s]."""
 DECAY = (0.05, 0.25)
 """Times between which the decay of the start is measured [s]: on one mode, before the law's own
@@ -49,7 +37,7 @@ LEAST_APART = 0.16
 """Between two written instants, on the time axis [s]: the height of a line of text."""
 LEAST_NAMED = 0.02
 """Shortest stay whose instant is written [s]: those of the start follow each other in one frame."""
-SETTLING = 5.0 / GAIN
+SETTLING = 5.0 / SIMULATION.gain
 """After a switch, before which the errors that it leaves are told apart from the others [s]."""
 FOOT = -0.3
 """Where the marks of the snapshots stand, under the parameters."""
@@ -63,11 +51,12 @@ NAMES = {"A": ("u₁", "u₂", "u₃"), "B": ("rₐ", "r_b", "r_c")}
 
 def figure_15() -> Artwork:
     """Make Fig. 15."""
-    simulation = run()
+    simulation = SIMULATION
     return Artwork(
         caption=(
             "The parameters of A's three curves (u_1, u_2, u_3 of C0, C1, C2) and of B's (r_a, "
-            f"r_b, r_c), each in [0, 1], against time [s], by the printed system at K = {GAIN:g}/s "
+            "r_b, r_c), each in [0, 1], against time [s], by the printed system at K = "
+            f"{simulation.gain:g}/s "
             "from a wrong start; thin and dark, the library's own law. A parameter is drawn while "
             "the witness point is on its curve or at one of its ends, where it is level at 0 or 1. "
             "The first row is the start at a larger scale, where the heavy lines come "
@@ -87,20 +76,20 @@ def figure_15() -> Artwork:
         draw=lambda: _draw(simulation),
         tables={
             "frames": _frames(simulation),
-            "resets": reset_table(resets_of(simulation.paper, simulation.paths, GAIN)),
+            "resets": reset_table(simulation.resets),
         },
         statements=_statements(simulation),
     )
 
 
-def parameters_of(simulation: Run, recording: Recording, letter: str) -> Array:
+def parameters_of(simulation: Simulation, recording: Recording, letter: str) -> Array:
     """Return the parameters of one body's curves by frame, (n, 3), nan where they are not drawn."""
     if letter == "A":
         return curve_parameters(simulation.a, recording.feature_a, recording.parameters_a)
     return curve_parameters(simulation.b, recording.feature_b, recording.parameters_b)
 
 
-def _frames(simulation: Run) -> dict[str, NDArray[np.generic]]:
+def _frames(simulation: Simulation) -> dict[str, NDArray[np.generic]]:
     exact, paper = simulation.exact, simulation.paper
     table: dict[str, NDArray[np.generic]] = {"time_s": paper.time}
     for letter, names in (("A", ("u_1", "u_2", "u_3")), ("B", ("r_a", "r_b", "r_c"))):
@@ -113,21 +102,21 @@ def _frames(simulation: Run) -> dict[str, NDArray[np.generic]]:
         "distance_length": paper.distance,
         "distance_by_own_law_length": exact.distance,
         "lower_bound_length": exact.lower_bound,
-        "witness_error_length": witness_error(simulation),
+        "witness_error_length": simulation.witness_error,
     }
 
 
-def after_switches(simulation: Run) -> NDArray[np.bool_]:
+def after_switches(simulation: Simulation) -> NDArray[np.bool_]:
     """Return which frames come within `SETTLING` after a switch of either law, shape (n,)."""
     recording = simulation.exact
     events = (*recording.events, *simulation.paper.events)
     since = recording.time[:, None] - np.array([event.time for event in events])
-    return np.asarray(((since >= -FRAME) & (since <= SETTLING)).any(axis=1))
+    return np.asarray(((since >= -simulation.step) & (since <= SETTLING)).any(axis=1))
 
 
-def _statements(simulation: Run) -> tuple[Statement, ...]:
+def _statements(simulation: Simulation) -> tuple[Statement, ...]:
     exact, slip = simulation.exact, vertex_slip(simulation)
-    error, late = witness_error(simulation), simulation.paper.time > CONVERGED
+    error, late = simulation.witness_error, simulation.paper.time > simulation.entered
     quiet = late & ~after_switches(simulation)
     slopes = np.abs([event.slope for event in exact.events])
     located = all(event.located for event in exact.events)
@@ -141,17 +130,18 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             simulation.by,
             constructed=True,
         ),
-        decay_statement(simulation.paper, simulation.paths, DECAY, GAIN, simulation.by),
-        reset_statement(resets_of(simulation.paper, simulation.paths, GAIN), simulation.by),
+        decay_statement(simulation.paper, simulation.paths, DECAY, simulation.gain, simulation.by),
+        reset_statement(simulation.resets, simulation.by),
         Statement(
             "Fig. 15",
             "-",
             f"the start is off the exact witness points by {error[0]:.2f} length; after "
-            f"{CONVERGED:g} s by at most {error[late].max():.1e}, and by {error[quiet].max():.1e} "
+            f"{simulation.entered:g} s by at most {error[late].max():.1e}, and by "
+            f"{error[quiet].max():.1e} "
             f"outside the {SETTLING:g} s after a switch",
             None,
             "The rest of a switch's frame still goes with the feedforward of the old feature, and "
-            f"what that leaves decays as exp(−K t), 1/K = {1.0 / GAIN:g} s.",
+            f"what that leaves decays as exp(−K t), 1/K = {1.0 / simulation.gain:g} s.",
             simulation.by,
         ),
         Statement(
@@ -174,42 +164,31 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
     )
 
 
-def _draw(simulation: Run) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 13.2)
-        heights = [1.0] * (2 * len(SPANS)) + [1.6]
-        panels = figure.subplots(len(heights), 1, height_ratios=heights)
-        for row, span in enumerate(SPANS):
-            upper, lower = panels[2 * row : 2 * row + 2]
-            _draw_panel(upper, simulation, "A", span)
-            _draw_panel(lower, simulation, "B", span)
-            if row:
-                _write_instants(upper, simulation, span)
-                _mark_snapshots(lower, simulation, span)
-            upper.tick_params(labelbottom=False)
-            lower.set_xlabel("time [s]")
-        _draw_errors(panels[-1], simulation)
-        _legend(figure)
+def _draw(simulation: Simulation) -> Figure:
+    figure = style.new_figure(style.WIDTH, 13.2)
+    heights = [1.0] * (2 * len(SPANS)) + [1.6]
+    panels = figure.subplots(len(heights), 1, height_ratios=heights)
+    for row, span in enumerate(SPANS):
+        upper, lower = panels[2 * row : 2 * row + 2]
+        _draw_panel(upper, simulation, "A", span)
+        _draw_panel(lower, simulation, "B", span)
+        if row:
+            _write_instants(upper, simulation, span)
+            _mark_snapshots(lower, simulation, span)
+        upper.tick_params(labelbottom=False)
+        lower.set_xlabel("time [s]")
+    draw_errors(panels[-1], simulation, least=LEAST_ERROR, linewidth=1.2, label="witness points")
+    panels[-1].set_ylabel("error [length],\n|Ψ| [length²]")
+    panels[-1].set_xlabel("time [s]")
+    panels[-1].set_xlim(0.0, simulation.duration)
+    panels[-1].set_ylim(0.5 * LEAST_ERROR, 300.0)
+    key_below(figure, _key(), 4)
     return figure
 
 
-def _draw_errors(axes: Axes, simulation: Run) -> None:
-    """How far the witness points are off, their projection errors, and what resets imply."""
-    paper, paths = simulation.paper, simulation.paths
-    error = np.maximum(witness_error(simulation), LEAST_ERROR)
-    axes.semilogy(paper.time, error, color=style.GREEN, linewidth=1.2, label="witness points")
-    resets = resets_of(paper, paths, GAIN)
-    draw_projection_errors(axes, projection_errors(paper, paths), resets)
-    axes.legend(frameon=False, ncols=3, loc="upper right")
-    axes.set_ylabel("error [length],\n|Ψ| [length²]")
-    axes.set_xlabel("time [s]")
-    axes.set_xlim(0.0, DURATION)
-    axes.set_ylim(0.5 * LEAST_ERROR, 300.0)
-
-
-def _draw_panel(axes: Axes, simulation: Run, letter: str, span: tuple[float, float]) -> None:
+def _draw_panel(axes: Axes, simulation: Simulation, letter: str, span: tuple[float, float]) -> None:
     recording = simulation.paper
-    for stay in simulation.stays:
+    for stay in simulation.paper.modes():
         fill = FILLS[kind_of(stay.feature_a, stay.feature_b)]
         axes.axvspan(stay.start, stay.end, facecolor=fill, linewidth=0.0, zorder=0)
     for event in recording.events:
@@ -227,17 +206,14 @@ def _draw_panel(axes: Axes, simulation: Run, letter: str, span: tuple[float, flo
     for values in parameters_of(simulation, simulation.exact, letter).T:
         axes.plot(recording.time, values, color=style.BLACK, linewidth=0.6, zorder=4)
     axes.set_xlim(span)
-    axes.set_ylim(-0.08, 1.08)
-    axes.set_yticks([0.0, 0.5, 1.0])
     axes.grid(visible=False)
-    axes.set_ylabel(
-        f"{letter}: {', '.join(NAMES[letter])} [–]".replace("r_b", "r$_b$").replace("r_c", "r$_c$")
-    )
+    names = ", ".join(NAMES[letter]).replace("r_b", "r$_b$").replace("r_c", "r$_c$")
+    unit_interval(axes, f"{letter}: {names} [–]")
 
 
-def _mark_snapshots(axes: Axes, simulation: Run, span: tuple[float, float]) -> None:
+def _mark_snapshots(axes: Axes, simulation: Simulation, span: tuple[float, float]) -> None:
     """At the foot of a panel: where the snapshots of Fig. 14 are."""
-    for snapshot in simulation.snapshots:
+    for snapshot in snapshots():
         if span[0] <= snapshot.time < span[1]:
             axes.set_ylim(bottom=FOOT)
             axes.plot(snapshot.time, FOOT, "^", color=style.BLACK, markersize=5.0, clip_on=False)
@@ -251,22 +227,16 @@ def _mark_snapshots(axes: Axes, simulation: Run, span: tuple[float, float]) -> N
             )
 
 
-def _legend(figure: Figure) -> None:
+def _key() -> list[Artist]:
     words = ("u$_1$, r$_a$: curve C0", "u$_2$, r$_b$: C1", "u$_3$, r$_c$: C2")
-    dashes: Any = style.DASHES
-    handles: list[Line2D | Patch] = [
-        Line2D([], [], color=style.COLOURS[k], linestyle=dashes[k], linewidth=2.4, label=word)
-        for k, word in enumerate(words)
+    return [
+        *(key_line(w, style.COLOURS[k], 2.4, style.DASHES[k]) for k, w in enumerate(words)),
+        key_line("library's law", style.BLACK, 0.6),
+        *show_kinds(),
     ]
-    handles.append(Line2D([], [], color=style.BLACK, linewidth=0.6, label="library's law"))
-    handles += [
-        Patch(facecolor=fill, edgecolor="black", linewidth=0.8, label=kind)
-        for fill, kind in zip(FILLS, KINDS, strict=True)
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
 
 
-def _write_instants(axes: Axes, simulation: Run, span: tuple[float, float]) -> None:
+def _write_instants(axes: Axes, simulation: Simulation, span: tuple[float, float]) -> None:
     """Above a panel: the instants, upright, at their lines or as near as they can be read."""
     starts = named_stays(simulation, span)
     places = spread(np.array([stay.start for stay in starts]), LEAST_APART)
@@ -286,11 +256,11 @@ def _write_instants(axes: Axes, simulation: Run, span: tuple[float, float]) -> N
         )
 
 
-def named_stays(simulation: Run, span: tuple[float, float]) -> list[Visit]:
+def named_stays(simulation: Simulation, span: tuple[float, float]) -> list[Visit]:
     """Return the stays that begin in a time and are long enough to be named."""
     return [
         stay
-        for stay in simulation.stays
+        for stay in simulation.paper.modes()
         if span[0] <= stay.start < span[1] and stay.end - stay.start > LEAST_NAMED
     ]
 

@@ -22,7 +22,10 @@ from standoff_studies.paper.drawing import (
     short_name,
 )
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.simulation_c.run import FRAME, Run, run
+from standoff_studies.paper.pair_simulation import HYBRID, Simulation
+from standoff_studies.paper.simulation_c.run import (
+    SIMULATION,
+)
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
 
 Array = NDArray[np.float64]
@@ -43,7 +46,7 @@ ON_LINE = 1e-9
 
 def figure_12() -> Artwork:
     """Make Fig. 12."""
-    simulation = run()
+    simulation = SIMULATION
     return Artwork(
         caption=(
             "The two bodies, each in its own axes, at one scale. Dashed: external lines, the "
@@ -65,11 +68,11 @@ def figure_12() -> Artwork:
 @cache
 def regions() -> tuple[VoronoiRegions, VoronoiRegions]:
     """Return the Voronoi regions of A and of B, computed once."""
-    simulation = run()
+    simulation = SIMULATION
     return voronoi_regions(simulation.a), voronoi_regions(simulation.b)
 
 
-def _lines(simulation: Run) -> dict[str, ArrayLike]:
+def _lines(simulation: Simulation) -> dict[str, ArrayLike]:
     found = [(name, line) for name, r in zip("AB", regions(), strict=True) for line in r.external]
     points = np.array([[line.origins[0], line.directions[0]] for _, line in found])
     return {
@@ -82,7 +85,7 @@ def _lines(simulation: Run) -> dict[str, ArrayLike]:
     }
 
 
-def _axes(simulation: Run) -> dict[str, ArrayLike]:
+def _axes(simulation: Simulation) -> dict[str, ArrayLike]:
     rows = [
         (name, number, "/".join(short_name(f) for f in branch.features), *point[:2], depth)
         for name, r in zip("AB", regions(), strict=True)
@@ -93,14 +96,14 @@ def _axes(simulation: Run) -> dict[str, ArrayLike]:
     return dict(zip(names, map(list, zip(*rows, strict=True)), strict=True))
 
 
-def off_line(simulation: Run, event: RecordedEvent) -> float:
+def off_line(simulation: Simulation, event: RecordedEvent) -> float:
     """Return how far the other body's witness point is from the external line at a switch [length].
 
     It is the line between the regions of the features that the switch is from and to.
     """
-    path = simulation.path
+    path = simulation.paths[1]
     poses = Pose.identity(), path.pose(event.time)
-    tracker = Tracker(simulation.a, simulation.b, FRAME)
+    tracker = Tracker(simulation.a, simulation.b, simulation.step)
     answer = tracker.start(*poses, Twist.zero(), path.twist(event.time)).proximity
     own = "AB".index(event.body)
     opposing = (answer.point_b, answer.point_a)[own]
@@ -112,7 +115,7 @@ def off_line(simulation: Run, event: RecordedEvent) -> float:
     return float(np.linalg.norm(across))
 
 
-def _statements(simulation: Run) -> tuple[Statement, ...]:
+def _statements(simulation: Simulation) -> tuple[Statement, ...]:
     first, second = regions()
     counts = len(first.external), len(second.external)
     branches = len(first.medial_axis), len(second.medial_axis)
@@ -130,7 +133,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             constructed=True,
         ),
         Statement(
-            "Section on the hybrid system",
+            HYBRID,
             "features switch where the opposing witness point crosses into another Voronoi region",
             f"at all {len(simulation.exact.events)} switching instants it is within {off:.1e} "
             "length of the external line between the two features",
@@ -140,15 +143,14 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
     )
 
 
-def _draw(simulation: Run) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 3.9)
-        ratios = [right - left for (left, right), _ in VIEWS]
-        panels = figure.subplots(1, 2, width_ratios=ratios)
-        bodies = simulation.a, simulation.b
-        for k, (axes, body) in enumerate(zip(panels, bodies, strict=True)):
-            _draw_body(axes, body, k)
-        panels[0].set_ylabel("y [length]")
+def _draw(simulation: Simulation) -> Figure:
+    figure = style.new_figure(style.WIDTH, 3.9)
+    ratios = [right - left for (left, right), _ in VIEWS]
+    panels = figure.subplots(1, 2, width_ratios=ratios)
+    bodies = simulation.a, simulation.b
+    for k, (axes, body) in enumerate(zip(panels, bodies, strict=True)):
+        _draw_body(axes, body, k)
+    panels[0].set_ylabel("y [length]")
     return figure
 
 

@@ -17,15 +17,12 @@ from standoff_studies.paper.drawing import (
     short_name,
 )
 from standoff_studies.paper.figure import Animation, Artwork, Statement
+from standoff_studies.paper.pair_simulation import Simulation
 from standoff_studies.paper.simulation_c.kinds import KINDS, kind_of, mode_name
 from standoff_studies.paper.simulation_c.run import (
-    DURATION,
-    FRAME,
-    GAIN,
     RADIUS,
-    Run,
-    run,
-    witness_error,
+    SIMULATION,
+    snapshots,
 )
 
 Array = NDArray[np.float64]
@@ -46,12 +43,13 @@ SECONDS = 0.08
 
 def figure_14() -> Artwork:
     """Make Fig. 14."""
-    simulation = run()
-    times = [snapshot.time for snapshot in simulation.snapshots]
+    simulation = SIMULATION
+    times = [snapshot.time for snapshot in snapshots()]
     return Artwork(
         caption=(
             "Twelve moments of the motion, the middles of twelve equal parts of it, all at one "
-            f"scale; the printed system at K = {GAIN:g}/s from a wrong start. A (solid, blue) "
+            f"scale; the printed system at K = {simulation.gain:g}/s from a wrong start. A "
+            "(solid, blue) "
             "rests; B (dashed, "
             "vermilion) spins while its centre spirals in. Thick curves and squares are the active "
             "features, named in the middle of their bodies; the black line joins the witness "
@@ -76,8 +74,8 @@ def figure_14() -> Artwork:
     )
 
 
-def _table(simulation: Run) -> dict[str, ArrayLike]:
-    recording, found = simulation.paper, simulation.snapshots
+def _table(simulation: Simulation) -> dict[str, ArrayLike]:
+    recording, found = simulation.paper, snapshots()
     frames = [snapshot.frame for snapshot in found]
     table: dict[str, ArrayLike] = {
         "snapshot": [snapshot.letter for snapshot in found],
@@ -92,21 +90,22 @@ def _table(simulation: Run) -> dict[str, ArrayLike]:
     return table
 
 
-def _statements(simulation: Run) -> tuple[Statement, ...]:
+def _statements(simulation: Simulation) -> tuple[Statement, ...]:
     exact = simulation.exact
-    kinds = [kind_of(*snapshot[3:]) for snapshot in simulation.snapshots]
-    frames = [snapshot.frame for snapshot in simulation.snapshots]
+    kinds = [kind_of(*snapshot[3:]) for snapshot in snapshots()]
+    frames = [snapshot.frame for snapshot in snapshots()]
     right = sum(
         (exact.feature_a[frame], exact.feature_b[frame]) == snapshot[3:]
-        for frame, snapshot in zip(frames, simulation.snapshots, strict=True)
+        for frame, snapshot in zip(frames, snapshots(), strict=True)
     )
-    centres = [np.linalg.norm(simulation.path.pose(t).translation) for t in (0.0, DURATION)]
+    ends = [simulation.paths[1].pose(t) for t in (0.0, simulation.duration)]
+    centres = [np.linalg.norm(pose.translation) for pose in ends]
     return (
         Statement(
             "Fig. 14",
             "twelve snapshots, each with its active features",
             f"in {right} of {len(kinds)} the active features are those of the closest points, and "
-            f"witness points at most {witness_error(simulation)[frames].max():.0e} length off; "
+            f"witness points at most {simulation.witness_error[frames].max():.0e} length off; "
             + ", ".join(f"{kinds.count(k)} {KINDS[k]}" for k in range(3)),
             right == len(kinds) == 12,
             by=simulation.by,
@@ -124,37 +123,36 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
     )
 
 
-def _draw(simulation: Run) -> Figure:
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 8.8)
-        rows = len(simulation.snapshots) // COLUMNS
-        panels = figure.subplots(rows, COLUMNS).ravel().tolist()
-        boxes = [_box(simulation, snapshot.time) for snapshot in simulation.snapshots]
-        half = 0.5 * np.max([np.ptp(box, axis=0) for box in boxes], axis=0) + MARGIN
-        for axes, snapshot, box in zip(panels, simulation.snapshots, boxes, strict=True):
-            _draw_pair(axes, simulation, snapshot.frame)
-            middle = box.mean(axis=0)
-            axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
-            axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
-            axes.set_axis_off()
-            name = mode_name(snapshot.feature_a, snapshot.feature_b)
-            distance = simulation.paper.distance[snapshot.frame]
-            axes.set_title(f"({snapshot.letter}) {snapshot.time:.2f} s  {name}\nd = {distance:.3f}")
-        corner = panels[0].get_xlim()[0], panels[0].get_ylim()[0]
-        _draw_ruler(panels[0], (corner[0] + MARGIN, corner[1] + 2.0 * MARGIN))
+def _draw(simulation: Simulation) -> Figure:
+    figure = style.new_figure(style.WIDTH, 8.8)
+    rows = len(snapshots()) // COLUMNS
+    panels = figure.subplots(rows, COLUMNS).ravel().tolist()
+    boxes = [_box(simulation, snapshot.time) for snapshot in snapshots()]
+    half = 0.5 * np.max([np.ptp(box, axis=0) for box in boxes], axis=0) + MARGIN
+    for axes, snapshot, box in zip(panels, snapshots(), boxes, strict=True):
+        _draw_pair(axes, simulation, snapshot.frame)
+        middle = box.mean(axis=0)
+        axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
+        axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
+        axes.set_axis_off()
+        name = mode_name(snapshot.feature_a, snapshot.feature_b)
+        distance = simulation.paper.distance[snapshot.frame]
+        axes.set_title(f"({snapshot.letter}) {snapshot.time:.2f} s  {name}\nd = {distance:.3f}")
+    corner = panels[0].get_xlim()[0], panels[0].get_ylim()[0]
+    _draw_ruler(panels[0], (corner[0] + MARGIN, corner[1] + 2.0 * MARGIN))
     return figure
 
 
-def _box(simulation: Run, time: float) -> Array:
+def _box(simulation: Simulation, time: float) -> Array:
     """The corners of the box around both bodies, (2, 2) [length]."""
-    both = outline(simulation.a), outline(simulation.b, simulation.path.pose(time))
+    both = outline(simulation.a), outline(simulation.b, simulation.paths[1].pose(time))
     points = np.vstack(both)
     return np.array([points.min(axis=0), points.max(axis=0)])
 
 
-def _draw_pair(axes: Axes, simulation: Run, frame: int) -> None:
+def _draw_pair(axes: Axes, simulation: Simulation, frame: int) -> None:
     recording, exact = simulation.paper, simulation.exact
-    pose = simulation.path.pose(float(recording.time[frame]))
+    pose = simulation.paths[1].pose(float(recording.time[frame]))
     sides = (
         (simulation.a, Pose.identity(), recording.feature_a[frame], style.BLUE, "-"),
         (simulation.b, pose, recording.feature_b[frame], style.RED, (0, (4, 1.5))),
@@ -176,13 +174,13 @@ def _draw_ruler(axes: Axes, start: tuple[float, float]) -> None:
     axes.text(x + 0.5 * RULER, y + 0.06, f"{RULER:g} length", ha="center", va="bottom")
 
 
-def _draw_moment(figure: Figure, simulation: Run, k: int) -> None:
+def _draw_moment(figure: Figure, simulation: Simulation, k: int) -> None:
     """Draw one picture of the animation: frame k of `PICTURES` over the whole motion."""
     recording = simulation.paper
     frame = round(k / (PICTURES - 1) * (len(recording) - 1))
     axes = figure.subplots()
-    times = np.linspace(0.0, frame * FRAME, 2 + frame // 50)
-    trail = np.array([simulation.path.pose(time).translation for time in times.tolist()])
+    times = np.linspace(0.0, frame * simulation.step, 2 + frame // 50)
+    trail = np.array([simulation.paths[1].pose(time).translation for time in times.tolist()])
     axes.plot(trail[:, 0], trail[:, 1], color=style.QUIET, linewidth=1.0)
     _draw_pair(axes, simulation, frame)
     axes.set_xlim(-EXTENT, EXTENT)

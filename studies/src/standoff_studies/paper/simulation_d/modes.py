@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from standoff.automaton.graph import Automaton, Transition
@@ -16,24 +15,17 @@ from standoff.bodies.tessellation import edge_lines
 from standoff.tracking import Feature, distance
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth
 from standoff_studies.paper.many_starts import INDEFINITE
+from standoff_studies.paper.pair_simulation import HYBRID, Simulation, anywhere, never_grows
+from standoff_studies.paper.panels import key_below, key_line
+from standoff_studies.paper.patch_places import short
 from standoff_studies.paper.resets import growth_statement
 from standoff_studies.paper.simulation_d.runs import (
     ARRIVED,
-    ENTERED,
-    GAIN,
-    HELIX,
     PATIENCE,
-    REST,
-    STEP,
-    WRONG_STARTS,
-    Runs,
+    SIMULATION,
     arrivals,
-    furthest_instants,
     moves_by_resets,
-    run,
-    short,
     tried,
 )
 from standoff_studies.paper.unaided import Part, unaided
@@ -58,11 +50,12 @@ PROBES = 267
 
 def figure_17() -> Artwork:
     """Draw the automaton with what the run visited."""
-    runs = run()
-    automaton = runs.paper[0].automaton()
+    runs = SIMULATION
+    automaton = runs.paper.automaton()
     return Artwork(
         caption=(
-            f"Simulation D, the printed system at K = {GAIN:g}/s from a wrong start on F0: the "
+            f"Simulation D, the printed system at K = {runs.gain:g}/s from a wrong start on F0: "
+            "the "
             "hybrid automaton of the lens and the point, laid out as the lens is "
             "seen from above: its upper vertex V1 in the middle, faces F and edges E around it, "
             "the lower vertex V0 as the outer circle. Grey arrows are the switches that the "
@@ -82,8 +75,8 @@ def figure_17() -> Artwork:
     )
 
 
-def _stays(runs: Runs) -> dict[str, list[Any]]:
-    visits = runs.paper[0].modes()
+def _stays(runs: Simulation) -> dict[str, list[Any]]:
+    visits = runs.paper.modes()
     return {
         "feature": [str(visit.feature_a) for visit in visits],
         "start_s": [visit.start for visit in visits],
@@ -115,17 +108,15 @@ def _instants(automaton: Automaton, transition: Transition) -> list[tuple[int, f
     ]
 
 
-def _statements(runs: Runs, automaton: Automaton) -> tuple[Statement, ...]:
-    exact, paper = runs.exact, runs.paper[0]
-    frames = np.linspace(round(ENTERED / STEP), len(paper) - 1, PROBES).astype(int).tolist()
-    found = [
-        distance(runs.lens, runs.point, np.eye(4), _at(paper.point_b[k])).feature_a for k in frames
-    ]
+def _statements(runs: Simulation, automaton: Automaton) -> tuple[Statement, ...]:
+    paper = runs.paper
+    frames = np.linspace(round(runs.entered / runs.step), len(paper) - 1, PROBES)
+    frames = frames.astype(int).tolist()
+    found = [distance(runs.a, runs.b, np.eye(4), _at(paper.point_b[k])).feature_a for k in frames]
     agree = sum(
         feature == mode for feature, mode in zip(found, paper.feature_a[frames], strict=True)
     )
-    off = furthest_instants(runs.paper, exact)
-    grows = greatest_growth(exact, (REST, HELIX))
+    off = runs.furthest()
     return (
         Statement(
             "Fig. 17",
@@ -138,54 +129,47 @@ def _statements(runs: Runs, automaton: Automaton) -> tuple[Statement, ...]:
             constructed=True,
         ),
         Statement(
-            "Section on the hybrid system",
+            HYBRID,
             "the active feature is that of the closest point",
-            f"from {1e3 * ENTERED:g} ms on the mode is that of a global search in {agree} of "
+            f"from {1e3 * runs.entered:g} ms on the mode is that of a global search in {agree} of "
             f"{len(frames)} frames",
             agree == len(frames),
             by=runs.by,
         ),
         Statement(
-            "Section on the hybrid system",
+            HYBRID,
             "for a body and a point the switching times do not depend on the continuous state",
-            f"from {len(WRONG_STARTS)} wrong starts the same switches after {1e3 * ENTERED:g} ms, "
+            f"from {len(runs.starts)} wrong starts the same switches after {1e3 * runs.entered:g} "
+            "ms, "
             f"at the instants of the library's own law to {off:.1e} s",
             off < INSTANT,
             "the projection errors of the starts take 0.4 s to fall below a ten-thousandth",
             runs.by,
         ),
         *_as_printed(runs),
-        Statement(
-            "Section on the hybrid system",
-            "the distance between features never grows at a switch",
-            f"at each of {len(exact.events)} instants the feature after the switch is at most "
-            f"{grows:.0e} of the radius farther from the point than the one before it",
-            grows <= CONTINUOUS,
-            SHARED,
-            runs.own + ": the claim is of the closest points",
-            constructed=True,
+        never_grows(
+            runs,
+            "the feature after the switch is at most {} of the radius farther from the point than "
+            "the one before it",
         ),
         growth_statement(moves_by_resets(), len(tried()), runs.by),
     )
 
 
-def _as_printed(runs: Runs) -> tuple[Statement, Statement]:
+def _as_printed(runs: Simulation) -> tuple[Statement, Statement]:
     """What becomes of starts anywhere, and that nothing beside the law helps."""
     tried, still = arrivals(), arrivals(moving=False)
     return (
-        Statement(
-            "Section on the hybrid system",
-            "from a start anywhere on tiled convex bodies the errors converge",
-            f"{tried.arrived} of {tried.tried} starts on the three faces are at the closest point "
+        anywhere(
+            tried,
+            "starts on the three faces are at the closest point "
             f"to {ARRIVED:g} after {PATIENCE:g} s; of the {tried.lost} others {tried.placed} are "
             f"on the right face, and {tried.pinned} are held at a side of a patch with M "
             f"indefinite. If the point stays where it begins {still.arrived} arrive, and of the "
             f"{still.lost} others it is {still.placed} and {still.pinned}",
-            tried.arrived == tried.tried,
             INDEFINITE,
-            tried.by,
         ),
-        unaided([Part.of(one) for one in runs.paper], runs.by),
+        unaided([Part.of(one) for one in runs.printed], runs.by),
     )
 
 
@@ -196,23 +180,26 @@ def _at(point: Array) -> Array:
 
 
 def _draw() -> Figure:
-    automaton = run().paper[0].automaton()
+    automaton = SIMULATION.paper.automaton()
     places = _places(automaton.a)
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 7.0)
-        axes = figure.add_subplot()
-        angles = np.linspace(0.0, 2.0 * np.pi, 181)
-        axes.plot(OUTER * np.cos(angles), OUTER * np.sin(angles), color=style.QUIET, linewidth=1.0)
-        for transition in automaton.of("A"):
-            _arrow(axes, automaton, places, transition)
-        for feature in automaton.features_a:
-            _node(axes, automaton, places, feature)
-        _ends(axes, automaton, places)
-        axes.set_aspect("equal")
-        axes.set_xlim(-1.85, 1.85)
-        axes.set_ylim(-1.78, 1.78)
-        axes.set_axis_off()
-        _legend(figure)
+    figure = style.new_figure(style.WIDTH, 7.0)
+    axes = figure.add_subplot()
+    angles = np.linspace(0.0, 2.0 * np.pi, 181)
+    axes.plot(OUTER * np.cos(angles), OUTER * np.sin(angles), color=style.QUIET, linewidth=1.0)
+    for transition in automaton.of("A"):
+        _arrow(axes, automaton, places, transition)
+    for feature in automaton.features_a:
+        _node(axes, automaton, places, feature)
+    _ends(axes, automaton, places)
+    axes.set_aspect("equal")
+    axes.set_xlim(-1.85, 1.85)
+    axes.set_ylim(-1.78, 1.78)
+    axes.set_axis_off()
+    keys = [
+        key_line("switch taken, number: instant [s]", style.BLUE, 2.2),
+        key_line("switch allowed", style.QUIET, 0.8),
+    ]
+    key_below(figure, keys, 2)
     return figure
 
 
@@ -301,17 +288,3 @@ def _ends(axes: Axes, automaton: Automaton, places: dict[Feature, Array]) -> Non
         side = turn * np.array([-out[1], out[0]])
         x, y = place + 0.26 * out + 0.2 * side
         axes.text(x, y, words, ha="center", va="center", fontweight="bold")
-
-
-def _legend(figure: Figure) -> None:
-    figure.legend(
-        handles=[
-            Line2D(
-                [], [], color=style.BLUE, linewidth=2.2, label="switch taken, number: instant [s]"
-            ),
-            Line2D([], [], color=style.QUIET, linewidth=0.8, label="switch allowed"),
-        ],
-        loc="outside lower center",
-        ncols=2,
-        frameon=False,
-    )

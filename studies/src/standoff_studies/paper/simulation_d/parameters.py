@@ -5,31 +5,23 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.recording import Recording
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
-from standoff_studies.paper.resets import (
-    draw_projection_errors,
-    projection_errors,
-    reset_statement,
-    reset_table,
-    resets_of,
+from standoff_studies.paper.pair_simulation import Simulation
+from standoff_studies.paper.panels import (
+    draw_errors,
+    key_below,
+    key_fill,
+    key_line,
+    name_above,
+    unit_interval,
 )
-from standoff_studies.paper.simulation_d.runs import (
-    GAIN,
-    HELIX,
-    REST,
-    Runs,
-    face_parameters,
-    place_on,
-    run,
-    settling_steps,
-    short,
-)
+from standoff_studies.paper.patch_places import place_on, short
+from standoff_studies.paper.resets import reset_statement, reset_table
+from standoff_studies.paper.simulation_d.runs import SIMULATION, face_parameters, settling_steps
 from standoff_studies.paper.start_decay import decay_statement
 
 Array = NDArray[np.float64]
@@ -46,18 +38,19 @@ LEAST_NAMED = 0.08
 
 def figure_18() -> Artwork:
     """Draw the faces' parameters."""
-    runs = run()
-    recording = runs.paper[0]
+    runs = SIMULATION
+    recording = runs.paper
     table: dict[str, ArrayLike] = {"time_s": recording.time}
-    for face in range(runs.lens.n_faces):
+    for face in range(runs.a.n_faces):
         u, v = face_parameters(recording, face).T
         table |= {f"u_face_{face}": u, f"v_face_{face}": v}
     table["feature"] = [str(feature) for feature in recording.feature_a]
-    table["error"] = errors(runs)
+    table["error"] = runs.witness_error
     return Artwork(
         caption=(
             "Simulation D: the parameters u and v of the lens's faces against time, by the "
-            f"printed system at K = {GAIN:g}/s from a wrong start; thin and dark, the library's "
+            f"printed system at K = {runs.gain:g}/s from a wrong start; thin and dark, the "
+            "library's "
             "own law. A face's parameters are drawn while the closest point is on it or on its "
             "boundary: an edge belongs to two faces, a vertex to all three. The modes are named "
             "on top; while the closest point is on an edge (tinted) u stays at exactly 0 or 1, "
@@ -74,15 +67,10 @@ def figure_18() -> Artwork:
         draw=_draw,
         tables={
             "parameters": table,
-            "resets": reset_table(resets_of(recording, (REST, HELIX), GAIN)),
+            "resets": reset_table(runs.resets),
         },
         statements=measured_by(runs.own, _statements(runs)),
     )
-
-
-def errors(runs: Runs) -> Array:
-    """Return how far the paper's law is off the closest point [length], from the first start."""
-    return np.asarray(np.linalg.norm(runs.paper[0].point_a - runs.exact.point_a, axis=1))
 
 
 def edge_offsets(recording: Recording) -> Array:
@@ -97,13 +85,13 @@ def edge_offsets(recording: Recording) -> Array:
     return np.array(offsets)
 
 
-def _statements(runs: Runs) -> tuple[Statement, ...]:
-    offsets = edge_offsets(runs.paper[0])
+def _statements(runs: Simulation) -> tuple[Statement, ...]:
+    offsets = edge_offsets(runs.paper)
     stays = [visit for visit in runs.exact.modes() if visit.feature_a.kind == "edge"]
-    error = errors(runs)[settling_steps(runs.paper[0]) :]
+    error = runs.witness_error[settling_steps(runs.paper) :]
     return (
-        decay_statement(runs.paper[0], (REST, HELIX), DECAY, GAIN, runs.by),
-        reset_statement(resets_of(runs.paper[0], (REST, HELIX), GAIN), runs.by),
+        decay_statement(runs.paper, runs.paths, DECAY, runs.gain, runs.by),
+        reset_statement(runs.resets, runs.by),
         Statement(
             "Fig. 18",
             "the parameters have constant stretches at 0 or 1 where the point lies on an edge",
@@ -122,86 +110,51 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             f"closest point, and all within {error.max():.1e} (Heun, 1 kHz; the point moves at "
             "3.2/s)",
             None,
-            f"a switch falls into a frame, and what it leaves decays within 3/K = {3.0 / GAIN:g} s",
+            "a switch falls into a frame, and what it leaves decays within 3/K = "
+            f"{3.0 / runs.gain:g} s",
             runs.by,
         ),
     )
 
 
 def _draw() -> Figure:
-    runs = run()
-    recording = runs.paper[0]
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 8.2)
-        panels = figure.subplots(4, 1, sharex=True, height_ratios=[1.0, 1.0, 1.0, 1.5])
-        for face, axes in enumerate(panels[:3]):
-            _shade(axes, runs)
-            u, v = face_parameters(recording, face).T
-            axes.plot(recording.time, u, color=style.BLUE, label="u")
-            axes.plot(recording.time, v, color=style.RED, linestyle="--", label="v")
-            for own in face_parameters(runs.exact, face).T:
-                axes.plot(runs.exact.time, own, color=style.BLACK, linewidth=0.6, zorder=3)
-            axes.set_ylim(-0.08, 1.08)
-            axes.set_yticks([0.0, 0.5, 1.0])
-            axes.set_ylabel(f"F{face}: u, v [–]")
-        _name(panels[0], runs)
-        _shade(panels[3], runs)
-        _draw_errors(panels[3], runs)
-        panels[3].set_xlabel("time [s]")
-        panels[3].set_xlim(0.0, recording.time[-1])
-        _legend(figure)
-        figure.align_ylabels()
+    runs = SIMULATION
+    recording = runs.paper
+    figure = style.new_figure(style.WIDTH, 8.2)
+    panels = figure.subplots(4, 1, sharex=True, height_ratios=[1.0, 1.0, 1.0, 1.5])
+    for face, axes in enumerate(panels[:3]):
+        _shade(axes, runs)
+        u, v = face_parameters(recording, face).T
+        axes.plot(recording.time, u, color=style.BLUE, label="u")
+        axes.plot(recording.time, v, color=style.RED, linestyle="--", label="v")
+        for own in face_parameters(runs.exact, face).T:
+            axes.plot(runs.exact.time, own, color=style.BLACK, linewidth=0.6, zorder=3)
+        unit_interval(axes, f"F{face}: u, v [–]")
+    named = [v for v in runs.exact.modes() if v.end - v.start >= LEAST_NAMED]
+    name_above(panels[0], [(visit, short(visit.feature_a)) for visit in named])
+    _shade(panels[3], runs)
+    draw_errors(panels[3], runs, linewidth=1.2, label="witness point")
+    panels[3].set_ylabel("error [radius],\n|Ψ| [radius²]")
+    panels[3].set_yticks([1e-12, 1e-8, 1e-4, 1.0])
+    panels[3].set_ylim(1e-13, 300.0)
+    panels[3].set_xlabel("time [s]")
+    panels[3].set_xlim(0.0, recording.time[-1])
+    keys = [
+        key_line("u", style.BLUE),
+        key_line("v", style.RED, dashes="--"),
+        key_line("library's law", style.BLACK, 0.6),
+        key_fill("on an edge", str(SHADES["edge"])),
+        key_fill("at the vertex", str(SHADES["vertex"])),
+    ]
+    key_below(figure, keys, 5)
+    figure.align_ylabels()
     return figure
 
 
-def _draw_errors(axes: Axes, runs: Runs) -> None:
-    """How far the law's point is off, its projection errors, and what each reset makes of them."""
-    recording, paths = runs.paper[0], (REST, HELIX)
-    axes.semilogy(
-        recording.time, errors(runs), color=style.GREEN, linewidth=1.2, label="witness point"
-    )
-    resets = resets_of(recording, paths, GAIN)
-    draw_projection_errors(axes, projection_errors(recording, paths), resets)
-    axes.legend(frameon=False, ncols=3, loc="upper right")
-    axes.set_ylabel("error [radius],\n|Ψ| [radius²]")
-    axes.set_yticks([1e-12, 1e-8, 1e-4, 1.0])
-    axes.set_ylim(1e-13, 300.0)
-
-
-def _shade(axes: Axes, runs: Runs) -> None:
+def _shade(axes: Axes, runs: Simulation) -> None:
     axes.grid(visible=False)
     for visit in runs.exact.modes():
         shade = SHADES[visit.feature_a.kind]
         if shade:
             axes.axvspan(visit.start, visit.end, color=shade, linewidth=0.0, zorder=0)
         axes.axvline(visit.start, color=style.QUIET, linewidth=0.5, zorder=1)
-
-
-def _name(axes: Axes, runs: Runs) -> None:
-    for visit in runs.exact.modes():
-        if visit.end - visit.start >= LEAST_NAMED:
-            axes.annotate(
-                short(visit.feature_a),
-                (0.5 * (visit.start + visit.end), 1.0),
-                xycoords=("data", "axes fraction"),
-                xytext=(0.0, 4.0),
-                textcoords="offset points",
-                ha="center",
-                va="bottom",
-                fontsize=style.FONT,
-            )
-
-
-def _legend(figure: Figure) -> None:
-    figure.legend(
-        handles=[
-            Line2D([], [], color=style.BLUE, label="u"),
-            Line2D([], [], color=style.RED, linestyle="--", label="v"),
-            Line2D([], [], color=style.BLACK, linewidth=0.6, label="library's law"),
-            Patch(facecolor=SHADES["edge"], label="on an edge"),
-            Patch(facecolor=SHADES["vertex"], label="at the vertex"),
-        ],
-        loc="outside lower center",
-        ncols=5,
-        frameon=False,
-    )

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies import Body
@@ -18,19 +15,15 @@ from standoff.tracking import Feature
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import View
 from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
+from standoff_studies.paper.pair_simulation import Simulation, certified
+from standoff_studies.paper.panels import key_below, key_fill, key_line
+from standoff_studies.paper.patch_places import short
 from standoff_studies.paper.simulation_d.runs import (
-    DURATION,
-    ENTERED,
-    GAIN,
     HELIX,
     SETTLED,
-    STEP,
-    WRONG_STARTS,
-    Runs,
-    run,
+    SIMULATION,
     sequence,
     settling_steps,
-    short,
 )
 
 Array = NDArray[np.float64]
@@ -65,8 +58,8 @@ LIT, UNLIT = "#7CC4F0", "#E2E2E2"
 
 def figure_16() -> Artwork:
     """Draw the lens, the helix and witness lines."""
-    runs = run()
-    recording = runs.paper[0]
+    runs = SIMULATION
+    recording = runs.paper
     names = [str(feature) for feature in recording.feature_a]
     table: dict[str, ArrayLike] = {
         "time_s": recording.time,
@@ -81,11 +74,13 @@ def figure_16() -> Artwork:
         caption=(
             "Simulation D: a lens of three four-sided patches (u and v lines grey) and a point on "
             "a helix (thick black). Witness lines are drawn "
-            f"every {DURATION / WITNESS_LINES:.2g} s; their mark and colour tell the kind of the "
+            f"every {runs.duration / WITNESS_LINES:.2g} s; their mark and colour tell the kind of "
+            "the "
             "closest feature. Grey sheets (so.voronoi_regions) bound the external regions of the "
             "edges and vertices: a witness line changes its kind where the helix crosses one. The "
             "dashed line leads to the wrong point where the printed system was started on purpose, "
-            f"at K = {GAIN:g}/s; thin purple lines are its first ones, {1e3 * EARLY:.0f} ms apart. "
+            f"at K = {runs.gain:g}/s; thin purple lines are its first ones, {1e3 * EARLY:.0f} ms "
+            "apart. "
             "The path of its point is green, that of the library's own law thin. Lengths are in "
             "the radius of the lens's faces."
         ),
@@ -110,12 +105,10 @@ def figure_16() -> Artwork:
     )
 
 
-def _statements(runs: Runs) -> tuple[Statement, ...]:
-    paper = runs.paper[0]
-    visits = [visit for visit in paper.modes() if visit.end > ENTERED]
+def _statements(runs: Simulation) -> tuple[Statement, ...]:
+    visits = runs.stays
     seen = {kind: sum(f"{kind} " in name for name in set(sequence(visits))) for kind in KINDS}
-    steps = [settling_steps(recording) for recording in runs.paper]
-    certified = int(runs.exact.certified.sum())
+    steps = [settling_steps(recording) for recording in runs.printed]
     return (
         Statement(
             "Fig. 16",
@@ -130,50 +123,44 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
         Statement(
             "Fig. 16",
             "-",
-            f"from wrong starts on faces {', '.join(str(face) for face, _ in WRONG_STARTS)} the "
+            "from wrong starts on faces "
+            f"{', '.join(str(place[0][1]) for place, _ in runs.starts)} the "
             f"projection errors fall below {SETTLED:g} in "
             f"{', '.join(str(count) for count in steps)} steps of 1 ms",
             None,
             by=runs.by,
         ),
-        Statement(
-            "Fig. 16",
-            "-",
-            f"the default law certifies {certified} of {len(runs.exact)} frames; distance less "
-            f"lower bound is at most {runs.exact.gap.max():.0e} of the radius",
-            None,
-        ),
+        certified(runs, "Fig. 16"),
     )
 
 
 def _draw() -> Figure:
-    runs = run()
-    recording = runs.paper[0]
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 6.6)
-        axes = figure.add_subplot()
-        view = View(AZIMUTH, ELEVATION)
-        view.body(runs.lens)
-        for sheet in region_sheets(runs.lens):
-            view.surface(sheet, REGION_COLOUR, opacity=0.2, shaded=False)
-            view.line(sheet[:, -1], REGION_COLOUR, 0.9)
-        first = settling_steps(recording)
-        view.line(recording.point_a[first:], style.GREEN, 2.0, rank=1.5)
-        view.line(recording.point_b, style.BLACK, 2.2)
-        wrong = [recording.point_a[0], recording.point_b[0]]
-        view.line(wrong, style.PURPLE, 1.3, dashes=(0.06, 0.04))
-        view.mark(wrong[0], style.PURPLE, "D", 0.045)
-        view.line(recording.point_a[: first + 1], style.PURPLE, 1.6, rank=1.5)
-        view.line(runs.exact.point_a, style.BLACK, 0.7, rank=1.6)
-        for k in range(0, first, round(EARLY / STEP)):
-            view.line([recording.point_a[k], recording.point_b[k]], style.PURPLE, 0.7)
-        for k in np.linspace(first, len(recording) - 1, WITNESS_LINES).astype(int).tolist():
-            _witness(view, recording.point_a[k], recording.point_b[k], recording.feature_a[k])
-        view.paint(axes)
-        _name_parts(axes, view, runs.lens)
-        _name_ends(axes, view)
-        view.triad(axes, (1.75, -1.3), 0.4, "radius")
-        _legend(figure)
+    runs = SIMULATION
+    recording = runs.paper
+    figure = style.new_figure(style.WIDTH, 6.6)
+    axes = figure.add_subplot()
+    view = View(AZIMUTH, ELEVATION)
+    view.body(runs.a)
+    for sheet in region_sheets(runs.a):
+        view.surface(sheet, REGION_COLOUR, opacity=0.2, shaded=False)
+        view.line(sheet[:, -1], REGION_COLOUR, 0.9)
+    first = settling_steps(recording)
+    view.line(recording.point_a[first:], style.GREEN, 2.0, rank=1.5)
+    view.line(recording.point_b, style.BLACK, 2.2)
+    wrong = [recording.point_a[0], recording.point_b[0]]
+    view.line(wrong, style.PURPLE, 1.3, dashes=(0.06, 0.04))
+    view.mark(wrong[0], style.PURPLE, "D", 0.045)
+    view.line(recording.point_a[: first + 1], style.PURPLE, 1.6, rank=1.5)
+    view.line(runs.exact.point_a, style.BLACK, 0.7, rank=1.6)
+    for k in range(0, first, round(EARLY / runs.step)):
+        view.line([recording.point_a[k], recording.point_b[k]], style.PURPLE, 0.7)
+    for k in np.linspace(first, len(recording) - 1, WITNESS_LINES).astype(int).tolist():
+        _witness(view, recording.point_a[k], recording.point_b[k], recording.feature_a[k])
+    view.paint(axes)
+    _name_parts(axes, view, runs.a)
+    _name_ends(axes, view)
+    view.triad(axes, (1.75, -1.3), 0.4, "radius")
+    key_below(figure, _key(), 3)
     return figure
 
 
@@ -219,55 +206,49 @@ def _name_parts(axes: Axes, view: View, lens: Body) -> None:
 
 
 def _name_ends(axes: Axes, view: View) -> None:
-    for time, words in ((0.0, "start"), (DURATION, "end")):
+    for time, words in ((0.0, "start"), (SIMULATION.duration, "end")):
         place = HELIX.pose(time).translation
-        middle = np.asarray(HELIX.pose(0.5 * DURATION).translation)
+        middle = np.asarray(HELIX.pose(0.5 * SIMULATION.duration).translation)
         away = view.flat(place) - view.flat(0.5 * middle)
         x, y = view.flat(place) + 0.22 * away / np.linalg.norm(away)
         axes.text(float(x), float(y), words, ha="center", va="center")
 
 
-def _legend(figure: Figure) -> None:
-    handles: list[Line2D | Patch] = [
-        Line2D([], [], color=colour, marker=mark, label=f"closest: {kind}")
-        for kind, (colour, mark) in LOOKS.items()
+def _key() -> list[Artist]:
+    return [
+        *(key_line(f"closest: {kind}", look, marker=mark) for kind, (look, mark) in LOOKS.items()),
+        key_line("helix", style.BLACK, 2.2),
+        key_line("path of the law's point", style.GREEN, 2.0),
+        key_line("library's law", style.BLACK, 0.7),
+        key_line("wrong start", style.PURPLE, dashes="--", marker="D"),
+        key_fill("Voronoi surfaces", REGION_COLOUR, alpha=0.35),
     ]
-    handles.append(Line2D([], [], color=style.BLACK, linewidth=2.2, label="helix"))
-    handles.append(
-        Line2D([], [], color=style.GREEN, linewidth=2.0, label="path of the law's point")
-    )
-    handles.append(Line2D([], [], color=style.BLACK, linewidth=0.7, label="library's law"))
-    wrong: dict[str, Any] = {"color": style.PURPLE, "linestyle": "--", "marker": "D"}
-    handles.append(Line2D([], [], **wrong, label="wrong start"))
-    handles.append(Patch(facecolor=REGION_COLOUR, alpha=0.35, label="Voronoi surfaces"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False)
 
 
 def _draw_frame(figure: Figure, number: int) -> None:
-    runs = run()
-    recording = runs.paper[0]
+    runs = SIMULATION
+    recording = runs.paper
     rest = len(recording) - 1 - APART * SLOW
     k = APART * min(number, SLOW) + round(max(0, number - SLOW) / (FRAMES - 1 - SLOW) * rest)
     feature = recording.feature_a[k]
     colour, shape = LOOKS[feature.kind]
-    with style.settings():
-        axes = figure.add_subplot()
-        view = View(AZIMUTH, ELEVATION)
-        lit = [
-            LIT if feature.kind == "face" and feature.index == face else UNLIT
-            for face in range(runs.lens.n_faces)
-        ]
-        view.body(runs.lens, colours=lit, grid=12, lines=1)
-        if feature.kind == "edge":
-            view.line(edge_lines(runs.lens)[feature.index].points, colour, 4.0)
-        if feature.kind == "vertex":
-            view.mark(runs.lens.vertex_points[feature.index], colour, shape, 0.09)
-        view.line(recording.point_b[k::20], style.QUIET, 0.8, dashes=(0.05, 0.05))
-        if k:
-            view.line(recording.point_b[: k + 1 : 10 if k > 20 else 1], style.BLACK, 1.8)
-        _witness(view, recording.point_a[k], recording.point_b[k], feature)
-        view.paint(axes)
-        across = view.flat(recording.point_b)
-        axes.set_xlim(*(across[:, 0].min() - 0.1, across[:, 0].max() + 0.1))
-        axes.set_ylim(*(across[:, 1].min() - 0.1, across[:, 1].max() + 0.1))
-        axes.set_title(f"t = {recording.time[k]:.3f} s: {feature} ({short(feature)})")
+    axes = figure.add_subplot()
+    view = View(AZIMUTH, ELEVATION)
+    lit = [
+        LIT if feature.kind == "face" and feature.index == face else UNLIT
+        for face in range(runs.a.n_faces)
+    ]
+    view.body(runs.a, colours=lit, grid=12, lines=1)
+    if feature.kind == "edge":
+        view.line(edge_lines(runs.a)[feature.index].points, colour, 4.0)
+    if feature.kind == "vertex":
+        view.mark(runs.a.vertex_points[feature.index], colour, shape, 0.09)
+    view.line(recording.point_b[k::20], style.QUIET, 0.8, dashes=(0.05, 0.05))
+    if k:
+        view.line(recording.point_b[: k + 1 : 10 if k > 20 else 1], style.BLACK, 1.8)
+    _witness(view, recording.point_a[k], recording.point_b[k], feature)
+    view.paint(axes)
+    across = view.flat(recording.point_b)
+    axes.set_xlim(*(across[:, 0].min() - 0.1, across[:, 0].max() + 0.1))
+    axes.set_ylim(*(across[:, 1].min() - 0.1, across[:, 1].max() + 0.1))
+    axes.set_title(f"t = {recording.time[k]:.3f} s: {feature} ({short(feature)})")

@@ -11,7 +11,8 @@ from standoff.motion import Twist
 from standoff.tracking import Feature, Tracker
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.law_words import law_words
-from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, STEP, Runs, run
+from standoff_studies.paper.pair_simulation import Simulation
+from standoff_studies.paper.simulation_e.runs import SIMULATION
 
 AROUND = 10
 """Frames before and after a switch at which the test is tried."""
@@ -43,7 +44,7 @@ def decisions(switching: str) -> Decisions:
 
     The opposing witness point is the closest one.
     """
-    runs, right, tried = run(), 0, 0
+    runs, right, tried = SIMULATION, 0, 0
     tracker = Tracker(runs.a, runs.b, INSTANT, law=LAWS[switching])
     rng = np.random.default_rng(3)
     for event in runs.exact.events:
@@ -59,11 +60,11 @@ def decisions(switching: str) -> Decisions:
 
 
 def _switches(
-    runs: Runs, tracker: Tracker, frame: int, own: int, place: tuple[Feature, np.ndarray]
+    runs: Simulation, tracker: Tracker, frame: int, own: int, place: tuple[Feature, np.ndarray]
 ) -> bool:
     """Does one body leave a feature, at a point of it, in a frame of the exact run?"""
-    exact, time = runs.exact, frame * STEP
-    poses = PATH_A.pose(time), PATH_B.pose(time)
+    exact, time = runs.exact, frame * runs.step
+    poses = runs.paths[0].pose(time), runs.paths[1].pose(time)
     features = exact.feature_a[frame], exact.feature_b[frame]
     rows = exact.parameters_a[frame], exact.parameters_b[frame]
     places: list[tuple[Feature, np.ndarray]] = [

@@ -12,35 +12,22 @@ from numpy.typing import NDArray
 
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
-from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth, growth
+from standoff_studies.paper.held_features import growth
 from standoff_studies.paper.many_starts import INDEFINITE
-from standoff_studies.paper.resets import (
-    draw_projection_errors,
-    growth_statement,
-    projection_errors,
-    reset_statement,
-    reset_table,
-    resets_of,
-)
-from standoff_studies.paper.simulation_d.runs import short
+from standoff_studies.paper.pair_simulation import HYBRID, Simulation, anywhere, never_grows
+from standoff_studies.paper.panels import draw_errors, name_above, unit_interval
+from standoff_studies.paper.patch_places import short
+from standoff_studies.paper.resets import growth_statement, reset_statement, reset_table
 from standoff_studies.paper.simulation_e.own_point import AROUND, POINTS, decisions
 from standoff_studies.paper.simulation_e.runs import (
     ARRIVED,
-    GAIN,
-    PATH_A,
-    PATH_B,
     PATIENCE,
-    STEP,
+    SIMULATION,
     TRIED,
-    Runs,
     arrivals,
-    entered,
     face_parameters,
     features_of,
     moves_by_resets,
-    run,
-    stays,
-    witness_error,
 )
 from standoff_studies.paper.start_decay import decay_statement
 from standoff_studies.paper.unaided import Part, unaided
@@ -62,11 +49,12 @@ SHADES = ("#FFFFFF", "#ECECEC")
 
 def figure_20() -> Artwork:
     """Draw the parameters of both witness points."""
-    runs = run()
+    runs = SIMULATION
     return Artwork(
         caption=(
             "Simulation E: the parameters u, v of A's patch and r, s of B's (solid, dashed) that "
-            f"the witness points are on, by the printed system at 1 kHz, K = {GAIN:g}/s, from a "
+            f"the witness points are on, by the printed system at 1 kHz, K = {runs.gain:g}/s, "
+            "from a "
             "wrong start on another pair of faces, which the switching leaves in the first frame; "
             "thin and dark, the library's own law. The modes are shaded in turn and "
             "named on top, A's feature first; thin lines mark the switching instants. On an edge "
@@ -85,7 +73,7 @@ def figure_20() -> Artwork:
         tables={
             "parameters": _parameter_table(runs),
             "switches": _switch_table(runs),
-            "resets": reset_table(resets_of(runs.paper, (PATH_A, PATH_B), GAIN)),
+            "resets": reset_table(runs.resets),
         },
         statements=measured_by(runs.own, _statements(runs)),
     )
@@ -98,11 +86,10 @@ def passes_an_edge(features: tuple[str, ...]) -> bool:
     return at >= 0 and features[at] != features[at + 2]
 
 
-def _statements(runs: Runs) -> tuple[Statement, ...]:
-    paths = {body: features_of(runs.paper, body) for body in "AB"}
+def _statements(runs: Simulation) -> tuple[Statement, ...]:
+    paths = {body: features_of(runs.stays, body) for body in "AB"}
     offsets = edge_offsets(runs)
-    grows = greatest_growth(runs.exact, (PATH_A, PATH_B))
-    late = switch_differences(runs)
+    late = runs.late()
     slopes = [abs(event.slope) for event in runs.exact.events]
     stay = edge_stay(runs)
     return (
@@ -134,17 +121,12 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             constructed=True,
         ),
         *_as_printed(runs),
-        decay_statement(runs.paper, (PATH_A, PATH_B), DECAY, GAIN, runs.by),
-        reset_statement(resets_of(runs.paper, (PATH_A, PATH_B), GAIN), runs.by),
-        Statement(
-            "Section on the hybrid system",
-            "the distance between features never grows at a switch",
-            f"at each of {len(runs.exact.events)} instants the features after the switch are at "
-            f"most {grows:.0e} of the radius farther apart than those before it",
-            grows <= CONTINUOUS,
-            SHARED,
-            runs.own + ": the claim is of the closest points",
-            constructed=True,
+        decay_statement(runs.paper, runs.paths, DECAY, runs.gain, runs.by),
+        reset_statement(runs.resets, runs.by),
+        never_grows(
+            runs,
+            "the features after the switch are at most {} of the radius farther apart than those "
+            "before it",
         ),
         growth_statement(moves_by_resets(), TRIED, runs.by),
         Statement(
@@ -158,39 +140,36 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
     )
 
 
-def _as_printed(runs: Runs) -> tuple[Statement, ...]:
+def _as_printed(runs: Simulation) -> tuple[Statement, ...]:
     """The order of the modes, what becomes of starts anywhere, and that nothing helps the law.
 
     With b fed forward the law lags by no time constant, only by what a step leaves: less than a
     frame. Without b it lags by about 1/K.
     """
-    late = np.abs(switch_differences(runs)).max()
+    late = np.abs(runs.late()).max()
     same = np.isfinite(late)
     tried = arrivals()
     printed, own = decisions("voronoi"), decisions("multipliers")
     return (
         Statement(
-            "Section on the hybrid system",
+            HYBRID,
             "the features follow those of the closest points",
-            f"{'the same' if same else 'other'} {len(entered(runs.paper))} switches as the "
-            f"library's own law, at most {late:.1e} s apart (a frame is {STEP:g} s; "
-            f"without b it would be about 1/K = {1.0 / GAIN:g} s)",
-            bool(late < STEP),
+            f"{'the same' if same else 'other'} {len(runs.entered_events(runs.paper))} switches "
+            "as the "
+            f"library's own law, at most {late:.1e} s apart (a frame is {runs.step:g} s; "
+            f"without b it would be about 1/K = {1.0 / runs.gain:g} s)",
+            bool(late < runs.step),
             by=runs.by,
         ),
-        Statement(
-            "Section on the hybrid system",
-            "from a start anywhere on tiled convex bodies the errors converge",
-            f"{tried.arrived} of {tried.tried} random starts on both bodies are at the distance to "
-            f"{ARRIVED:g} after {PATIENCE:g} s; of the {tried.lost} others "
-            f"{tried.placed} are on the features of the closest points, and {tried.pinned} are "
-            "held at a side of a patch with M indefinite",
-            tried.arrived == tried.tried,
+        anywhere(
+            tried,
+            f"random starts on both bodies are at the distance to {ARRIVED:g} after {PATIENCE:g} "
+            f"s; of the {tried.lost} others {tried.placed} are on the features of the closest "
+            f"points, and {tried.pinned} are held at a side of a patch with M indefinite",
             INDEFINITE,
-            tried.by,
         ),
         Statement(
-            "Section on the hybrid system",
+            HYBRID,
             "the switching tests of one body do not depend on its own witness point",
             f"at each switch, {AROUND} frames before and after it, from {POINTS} own points "
             f"anywhere on the feature: {printed.right} of {printed.tried} decisions are those of "
@@ -202,16 +181,16 @@ def _as_printed(runs: Runs) -> tuple[Statement, ...]:
     )
 
 
-def edge_stay(runs: Runs) -> tuple[float, float]:
+def edge_stay(runs: Simulation) -> tuple[float, float]:
     """Return when A's witness point enters its edge, and when it leaves it [s].
 
     Both nan where it comes to none.
     """
-    on = [visit for visit in stays(runs.paper) if visit.feature_a.kind == "edge"]
+    on = [visit for visit in runs.stays if visit.feature_a.kind == "edge"]
     return (on[0].start, on[-1].end) if on else (math.nan, math.nan)
 
 
-def edge_offsets(runs: Runs) -> Array:
+def edge_offsets(runs: Simulation) -> Array:
     """Return |u - 1| in the frames in which a witness point is on an edge, for both bodies."""
     found = []
     for body in "AB":
@@ -220,18 +199,7 @@ def edge_offsets(runs: Runs) -> Array:
     return np.concatenate(found)
 
 
-def switch_differences(runs: Runs) -> Array:
-    """Return how much later the paper's law switches than the default law [s], by switch.
-
-    Infinite where the features differ.
-    """
-    own, due = entered(runs.paper), runs.exact.events
-    if [event[2:5] for event in own] != [event[2:5] for event in due]:
-        return np.full(len(due), np.inf)
-    return np.array([one.time - other.time for one, other in zip(own, due, strict=True)])
-
-
-def _parameter_table(runs: Runs) -> dict[str, Array | list[str]]:
+def _parameter_table(runs: Simulation) -> dict[str, Array | list[str]]:
     table: dict[str, Array | list[str]] = {"time_s": runs.paper.time}
     for body in "AB":
         places = face_parameters(runs.paper, body)
@@ -244,63 +212,51 @@ def _parameter_table(runs: Runs) -> dict[str, Array | list[str]]:
     return table
 
 
-def _switch_table(runs: Runs) -> dict[str, Array | list[str]]:
+def _switch_table(runs: Simulation) -> dict[str, Array | list[str]]:
     events = runs.exact.events
     return {
         "body": [event.body for event in events],
         "source": [short(event.source) for event in events],
         "target": [short(event.target) for event in events],
         "time_s": np.array([event.time for event in events]),
-        "time_paper_law_s": np.array([event.time for event in events]) + switch_differences(runs),
+        "time_paper_law_s": np.array([event.time for event in events]) + runs.late(),
         "slope_per_s": np.array([event.slope for event in events]),
-        "distance_growth": np.array(
-            [growth(runs.exact, (PATH_A, PATH_B), event) for event in events]
-        ),
+        "distance_growth": np.array([growth(runs.exact, runs.paths, event) for event in events]),
     }
 
 
 def _draw() -> Figure:
-    runs = run()
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 9.0)
-        panels = figure.subplots(4, 1, sharex=True, height_ratios=[1.0, 1.0, 0.8, 1.3])
-        for axes, body in zip(panels, "AB", strict=False):
-            _shade(axes, runs)
-            _draw_parameters(axes, runs, body)
-        _shade(panels[2], runs)
-        panels[2].plot(runs.paper.time, runs.paper.distance, color=style.GREEN)
-        panels[2].plot(
-            runs.exact.time,
-            runs.exact.distance,
-            color=style.BLACK,
-            linewidth=0.6,
-            label="library's law",
-        )
-        panels[2].legend(frameon=False)
-        panels[2].set_ylabel("distance [radius]")
-        _draw_errors(panels[3], runs)
-        panels[2].set_xlim(0.0, runs.paper.time[-1])
-        _name_modes(panels[0], runs)
-        handles, names = panels[0].get_legend_handles_labels()
-        figure.legend(handles, names, loc="outside lower center", ncols=3, frameon=False)
-        figure.align_ylabels()
+    runs = SIMULATION
+    figure = style.new_figure(style.WIDTH, 9.0)
+    panels = figure.subplots(4, 1, sharex=True, height_ratios=[1.0, 1.0, 0.8, 1.3])
+    for axes, body in zip(panels, "AB", strict=False):
+        _shade(axes, runs)
+        _draw_parameters(axes, runs, body)
+    _shade(panels[2], runs)
+    panels[2].plot(runs.paper.time, runs.paper.distance, color=style.GREEN)
+    panels[2].plot(
+        runs.exact.time,
+        runs.exact.distance,
+        color=style.BLACK,
+        linewidth=0.6,
+        label="library's law",
+    )
+    panels[2].legend(frameon=False)
+    panels[2].set_ylabel("distance [radius]")
+    _shade(panels[3], runs)
+    draw_errors(panels[3], runs, least=LEAST_DRAWN, label="witness points")
+    panels[3].set_ylim(0.5 * LEAST_DRAWN, 300.0)
+    panels[3].set(xlabel="time [s]", ylabel="error [radius], |Ψ| [radius²]")
+    panels[2].set_xlim(0.0, runs.paper.time[-1])
+    names = [f"{short(s.feature_a)}–{short(s.feature_b)}" for s in runs.exact.modes()]
+    name_above(panels[0], zip(runs.exact.modes(), names, strict=True))
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
+    figure.align_ylabels()
     return figure
 
 
-def _draw_errors(axes: Axes, runs: Runs) -> None:
-    """How far the worse witness point is off: what a switch leaves decays again."""
-    _shade(axes, runs)
-    error = np.maximum(witness_error(runs), LEAST_DRAWN)
-    axes.semilogy(runs.paper.time, error, color=style.GREEN, label="witness points")
-    paths = PATH_A, PATH_B
-    resets = resets_of(runs.paper, paths, GAIN)
-    draw_projection_errors(axes, projection_errors(runs.paper, paths), resets)
-    axes.legend(frameon=False, ncols=3, loc="upper right")
-    axes.set_ylim(0.5 * LEAST_DRAWN, 300.0)
-    axes.set(xlabel="time [s]", ylabel="error [radius], |Ψ| [radius²]")
-
-
-def _draw_parameters(axes: Axes, runs: Runs, body: str) -> None:
+def _draw_parameters(axes: Axes, runs: Simulation, body: str) -> None:
     places, exact = face_parameters(runs.paper, body), face_parameters(runs.exact, body)
     time, names = runs.paper.time, {"A": "u, v", "B": "r, s"}[body]
     for piece in places.pieces:
@@ -316,26 +272,12 @@ def _draw_parameters(axes: Axes, runs: Runs, body: str) -> None:
     axes.axvspan(
         time[on[0]], time[on[-1]], ymin=0.0, ymax=0.07, color=style.ORANGE, label="on an edge"
     )
-    axes.set_ylim(-0.08, 1.08)
-    axes.set_yticks([0.0, 0.5, 1.0])
-    axes.set_ylabel(f"{body}: {names} [–]")
+    unit_interval(axes, f"{body}: {names} [–]")
 
 
-def _shade(axes: Axes, runs: Runs) -> None:
+def _shade(axes: Axes, runs: Simulation) -> None:
     axes.grid(visible=False)
     for k, stay in enumerate(runs.exact.modes()):
         axes.axvspan(stay.start, stay.end, color=SHADES[k % 2], linewidth=0.0, zorder=0)
         if k:
             axes.axvline(stay.start, color=style.QUIET, linewidth=0.8, zorder=1)
-
-
-def _name_modes(axes: Axes, runs: Runs) -> None:
-    for stay in runs.exact.modes():
-        axes.annotate(
-            f"{short(stay.feature_a)}–{short(stay.feature_b)}",
-            (0.5 * (stay.start + stay.end), 1.0),
-            (0.0, 4.0),
-            xycoords=("data", "axes fraction"),
-            textcoords="offset points",
-            ha="center",
-        )

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from standoff.bodies import Body
@@ -17,20 +17,16 @@ from standoff.tracking import Feature
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import View, posed
 from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
-from standoff_studies.paper.simulation_d.runs import short
+from standoff_studies.paper.pair_simulation import Simulation, certified
+from standoff_studies.paper.panels import key_below, key_line
+from standoff_studies.paper.patch_places import short
 from standoff_studies.paper.simulation_e.runs import (
     CONVERGED,
-    DURATION,
-    GAIN,
     PATH_A,
     PATH_B,
     SEMI_AXES,
-    STEP,
-    Runs,
-    run,
+    SIMULATION,
     sequence,
-    stays,
-    witness_error,
 )
 
 Array = NDArray[np.float64]
@@ -62,7 +58,7 @@ FAN = 0.2
 
 def figure_19() -> Artwork:
     """Draw the five snapshots."""
-    runs = run()
+    runs = SIMULATION
     recording = runs.paper
     axes = ", ".join(f"{axis:g}" for axis in SEMI_AXES)
     return Artwork(
@@ -72,7 +68,8 @@ def figure_19() -> Artwork:
             "turns. One snapshot in each of the five modes: patches are named, their u and v lines "
             "grey; the witness line is black, its ends are marked by the kind of the active "
             "feature (hollow where a body hides them), and an active edge is thick and vermilion. "
-            f"The printed system at K = {GAIN:g}/s, from a wrong start: its first witness line is "
+            f"The printed system at K = {runs.gain:g}/s, from a wrong start: its first witness "
+            "line is "
             "dashed in the first picture. Last: the path "
             f"of B's centre (dashed) and a witness line every {FAN:g} s. Lengths are in the radius "
             "of A's faces."
@@ -109,16 +106,15 @@ def figure_19() -> Artwork:
     )
 
 
-def snapshot_frames(runs: Runs) -> list[int]:
+def snapshot_frames(runs: Simulation) -> list[int]:
     """Return the frame in the middle of each mode of the paper's law."""
-    return [round(0.5 * (stay.start + stay.end) / STEP) for stay in stays(runs.paper)]
+    return [round(0.5 * (stay.start + stay.end) / runs.step) for stay in runs.stays]
 
 
-def _statements(runs: Runs) -> tuple[Statement, ...]:
-    modes = sequence(stays(runs.paper))
-    error = witness_error(runs)
-    late = error[round(CONVERGED / STEP) :]
-    certified = int(runs.exact.certified.sum())
+def _statements(runs: Simulation) -> tuple[Statement, ...]:
+    modes = sequence(runs.stays)
+    error = runs.witness_error
+    late = error[round(CONVERGED / runs.step) :]
     return (
         Statement(
             "Fig. 19",
@@ -139,37 +135,30 @@ def _statements(runs: Runs) -> tuple[Statement, ...]:
             "the greatest errors are those of the frames after a switch",
             runs.by,
         ),
-        Statement(
-            "Fig. 19",
-            "-",
-            f"the default law certifies {certified} of {len(runs.exact)} frames; distance less "
-            f"lower bound is at most {runs.exact.gap.max():.0e} of the radius",
-            None,
-        ),
+        certified(runs, "Fig. 19"),
     )
 
 
 def _draw() -> Figure:
-    runs = run()
-    with style.settings():
-        figure = style.new_figure(style.WIDTH, 8.4)
-        panels = figure.subplots(3, 2, height_ratios=HEIGHTS).ravel().tolist()
-        for axes, frame in zip(panels, snapshot_frames(runs), strict=False):
-            _draw_snapshot(axes, runs, frame, start=axes is panels[0])
-        _draw_motion(panels[-1], runs)
-        # One scale in all panels, and each row as high as its two need.
-        across = np.array([axes.get_xlim() for axes in panels])
-        for first in range(0, len(panels), 2):
-            up = np.array([axes.get_ylim() for axes in panels[first : first + 2]])
-            for axes in panels[first : first + 2]:
-                axes.set_xlim(across[:, 0].min(), across[:, 1].max())
-                axes.set_ylim(up[:, 0].min(), up[:, 1].max())
-        _legend(figure)
+    runs = SIMULATION
+    figure = style.new_figure(style.WIDTH, 8.4)
+    panels = figure.subplots(3, 2, height_ratios=HEIGHTS).ravel().tolist()
+    for axes, frame in zip(panels, snapshot_frames(runs), strict=False):
+        _draw_snapshot(axes, runs, frame, start=axes is panels[0])
+    _draw_motion(panels[-1], runs)
+    # One scale in all panels, and each row as high as its two need.
+    across = np.array([axes.get_xlim() for axes in panels])
+    for first in range(0, len(panels), 2):
+        up = np.array([axes.get_ylim() for axes in panels[first : first + 2]])
+        for axes in panels[first : first + 2]:
+            axes.set_xlim(across[:, 0].min(), across[:, 1].max())
+            axes.set_ylim(up[:, 0].min(), up[:, 1].max())
+    key_below(figure, _key(), 5)
     return figure
 
 
 def _draw_snapshot(
-    axes: Axes, runs: Runs, frame: int, *, grid: int = 20, lines: int = 3, start: bool = False
+    axes: Axes, runs: Simulation, frame: int, *, grid: int = 20, lines: int = 3, start: bool = False
 ) -> None:
     recording = runs.paper
     time = float(recording.time[frame])
@@ -222,13 +211,13 @@ def _name_faces(axes: Axes, view: View, name: str, body: Body, pose: Pose) -> No
                 break
 
 
-def _draw_motion(axes: Axes, runs: Runs) -> None:
+def _draw_motion(axes: Axes, runs: Simulation) -> None:
     recording = runs.paper
     view = View(AZIMUTH, ELEVATION)
     view.body(runs.a, colours=COLOURS["A"])
-    centres = [PATH_B.pose(t).translation for t in np.linspace(0.0, DURATION, 101).tolist()]
+    centres = [PATH_B.pose(t).translation for t in np.linspace(0.0, runs.duration, 101).tolist()]
     view.line(centres, style.GREEN, 1.4, dashes=(0.07, 0.05))
-    for k in range(0, len(recording), round(FAN / STEP)):
+    for k in range(0, len(recording), round(FAN / runs.step)):
         a, b = recording.point_a[k], recording.point_b[k]
         view.line([a, b], style.BLACK, 1.0)
         for point, feature in ((a, recording.feature_a[k]), (b, recording.feature_b[k])):
@@ -241,30 +230,28 @@ def _draw_motion(axes: Axes, runs: Runs) -> None:
     axes.set_title("the motion")
 
 
-def _legend(figure: Figure) -> None:
-    handles = [
-        Line2D(
-            [],
-            [],
-            color=style.BLACK,
-            marker=mark,
-            markerfacecolor=colour,
-            label=f"on {'an' if kind == 'edge' else 'a'} {kind}",
-        )
-        for kind, (colour, mark) in LOOKS.items()
-        if kind != "vertex"
+def _key() -> list[Artist]:
+    looks = {kind: look for kind, look in LOOKS.items() if kind != "vertex"}
+    return [
+        *(
+            key_line(
+                f"on {'an' if kind == 'edge' else 'a'} {kind}",
+                style.BLACK,
+                marker=mark,
+                markerfacecolor=colour,
+            )
+            for kind, (colour, mark) in looks.items()
+        ),
+        key_line("active edge", style.RED, 3.4),
+        key_line("path of B's centre", style.GREEN, dashes="--"),
+        key_line("wrong start", style.PURPLE, dashes="--"),
     ]
-    handles.append(Line2D([], [], color=style.RED, linewidth=3.4, label="active edge"))
-    handles.append(Line2D([], [], color=style.GREEN, linestyle="--", label="path of B's centre"))
-    handles.append(Line2D([], [], color=style.PURPLE, linestyle="--", label="wrong start"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False)
 
 
 def _draw_frame(figure: Figure, number: int) -> None:
-    runs = run()
+    runs = SIMULATION
     frame = round(number / (FRAMES - 1) * (len(runs.paper) - 1))
-    with style.settings():
-        axes = figure.add_subplot()
-        _draw_snapshot(axes, runs, frame, grid=10, lines=1)
-        axes.set_xlim(*ACROSS)
-        axes.set_ylim(*UP)
+    axes = figure.add_subplot()
+    _draw_snapshot(axes, runs, frame, grid=10, lines=1)
+    axes.set_xlim(*ACROSS)
+    axes.set_ylim(*UP)

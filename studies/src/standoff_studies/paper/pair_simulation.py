@@ -1,0 +1,274 @@
+"""A simulation of two bodies as a value, and its runs: by the printed system and by the library."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.automaton import Visit
+from standoff.bodies import Body
+from standoff.motion import Fixed, Path, Pose
+from standoff.recording import RecordedEvent, Recording, track
+from standoff.recording.times import even_times
+from standoff.recording.track import track_along
+from standoff.tracking import Proximity, Tracker, TrackerState, distance
+from standoff.tracking.laws import PaperLaw
+from standoff_studies.paper.figure import Statement
+from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth
+from standoff_studies.paper.law_words import law_words
+from standoff_studies.paper.many_starts import Ends, is_pinned, last_answers
+from standoff_studies.paper.resets import (
+    Errors,
+    Move,
+    Reset,
+    moves_of,
+    projection_errors,
+    resets_of,
+)
+
+Array = NDArray[np.float64]
+
+Place = tuple[tuple[str, int], tuple[float, ...]]
+"""A feature, kind and number, and parameters on it."""
+
+Start = tuple[Place, Place]
+"""Of A and of B."""
+
+AT_POINT: Place = ("vertex", 0), ()
+"""Of a body that is a point."""
+
+REST = Fixed(Pose.identity())
+"""The path of a body that stays where it is."""
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """What a simulation's figures are made from.
+
+    Attributes
+    ----------
+    bodies : callable
+        Makes A and B.
+    paths : (Path, Path)
+        Of A and B.
+    duration, step : float
+        Of the motion, and from frame to frame [s].
+    gain : float
+        K of the printed system [1/s].
+    starts : tuple of Start
+        Where the printed system is started, whatever that is worth. The figures show the first.
+    entered : float
+        From then on the switches of a wrong start to the true features are over [s].
+    """
+
+    bodies: Callable[[], tuple[Body, Body]]
+    paths: tuple[Path, Path]
+    duration: float
+    step: float
+    gain: float
+    starts: tuple[Start, ...]
+    entered: float
+
+    @cached_property
+    def pair(self) -> tuple[Body, Body]:
+        """A and B."""
+        return self.bodies()
+
+    @property
+    def a(self) -> Body:
+        return self.pair[0]
+
+    @property
+    def b(self) -> Body:
+        return self.pair[1]
+
+    @property
+    def exact(self) -> Recording:
+        """By the library's own law: every frame certified, every switch located within its step."""
+        return exact_run(self)
+
+    @property
+    def printed(self) -> tuple[Recording, ...]:
+        """By the system as printed, from each of the starts."""
+        return printed_runs(self)
+
+    @property
+    def paper(self) -> Recording:
+        """The run that the figures show."""
+        return self.printed[0]
+
+    @property
+    def by(self) -> str:
+        """What statements on `printed` were measured with."""
+        return law_words(*self.printed, told="wrong start")
+
+    @property
+    def own(self) -> str:
+        """What statements on `exact` were measured with."""
+        return law_words(self.exact)
+
+    @property
+    def resets(self) -> list[Reset]:
+        """The switches of `paper`, frame by frame."""
+        return resets_of(self.paper, self.paths, self.gain)
+
+    @property
+    def errors(self) -> Errors:
+        """The projection errors of `paper`."""
+        return projection_errors(self.paper, self.paths)
+
+    @property
+    def witness_error(self) -> Array:
+        """How far the worse witness point of `paper` is off the exact one [length], (n,)."""
+        off_a = np.linalg.norm(self.paper.point_a - self.exact.point_a, axis=1)
+        off_b = np.linalg.norm(self.paper.point_b - self.exact.point_b, axis=1)
+        return np.asarray(np.maximum(off_a, off_b))
+
+    @property
+    def stays(self) -> list[Visit]:
+        """The modes of `paper` once its start has come to the true features."""
+        return [visit for visit in self.paper.modes() if visit.end > self.entered]
+
+    def tracker(self) -> Tracker:
+        """Return the tracker of the system as printed."""
+        return Tracker(*self.pair, self.step, law=PaperLaw.as_printed(gain=self.gain))
+
+    def begin(
+        self, law: Tracker, start: Start, paths: tuple[Path, Path] | None = None
+    ) -> TrackerState:
+        """Return a law's state at a start, whatever it is worth, at the motion's beginning."""
+        both = self.paths if paths is None else paths
+        poses, twists = [path.pose(0.0) for path in both], [path.twist(0.0) for path in both]
+        return law.start_from(poses[0], poses[1], *start, *twists, settle=False)
+
+    def entered_events(self, recording: Recording) -> list[RecordedEvent]:
+        """Return the switches after a wrong start has come to the true features."""
+        return [event for event in recording.events if event.time > self.entered]
+
+    def late(self, recording: Recording | None = None) -> Array:
+        """Return how much later the printed system switches than the library's own law [s].
+
+        Infinite where the features differ.
+        """
+        own = self.entered_events(self.paper if recording is None else recording)
+        due = self.entered_events(self.exact)
+        if [event[2:5] for event in own] != [event[2:5] for event in due]:
+            return np.full(len(due), np.inf)
+        return np.array([one.time - other.time for one, other in zip(own, due, strict=True)])
+
+    def furthest(self) -> float:
+        """Return how far any switch of the runs is from that of the library's own law [s]."""
+        return float(max(np.abs(self.late(one)).max(initial=0.0) for one in self.printed))
+
+
+@cache
+def exact_run(simulation: Simulation) -> Recording:
+    """Track the pair with the library's own law."""
+    law = Tracker(*simulation.pair, simulation.step)
+    return track(law, *simulation.paths, simulation.duration)
+
+
+@cache
+def printed_runs(simulation: Simulation) -> tuple[Recording, ...]:
+    """Track the pair with the printed system, from each start."""
+    law, times = simulation.tracker(), even_times(0.0, simulation.duration, simulation.step)
+    states = [simulation.begin(law, start) for start in simulation.starts]
+    return tuple(track_along(law, *simulation.paths, times, state=state) for state in states)
+
+
+def ends_of(
+    simulation: Simulation,
+    tried: Sequence[Start],
+    patience: float,
+    arrived: Callable[[Proximity], bool],
+    told: str,
+    paths: tuple[Path, Path] | None = None,
+) -> Ends:
+    """Try starts with the printed system: where they are after so long.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    tried : sequence of Start
+    patience : float
+        s
+    arrived : callable
+        Has an answer of the last frame arrived?
+    told : str
+        Of the starts, in the words of the law.
+    paths : (Path, Path), optional
+        Other motions than the simulation's.
+    """
+    law, both = simulation.tracker(), simulation.paths if paths is None else paths
+    states = (simulation.begin(law, start, both) for start in tried)
+    times = even_times(0.0, patience, simulation.step)
+    poses = both[0].pose(patience), both[1].pose(patience)
+    due = distance(*simulation.pair, *poses)
+    lost = [one for one in last_answers(law, states, both, times) if not arrived(one)]
+    placed = sum((one.feature_a, one.feature_b) == (due.feature_a, due.feature_b) for one in lost)
+    pinned = sum(is_pinned(simulation.pair, poses, one) for one in lost)
+    return Ends(len(tried) - len(lost), len(tried), law_words(law, told=told), placed, pinned)
+
+
+def moves_from(simulation: Simulation, tried: Sequence[Start], until: float) -> list[Move]:
+    """Return what the printed resets do to the witness points, from each start up to a time [s]."""
+    law, times = simulation.tracker(), even_times(0.0, until, simulation.step)
+    found: list[Move] = []
+    for start in tried:
+        state = simulation.begin(law, start)
+        made = track_along(law, *simulation.paths, times, state=state)
+        found += moves_of(made, simulation.paths, simulation.gain)
+    return found
+
+
+HYBRID = "Section on the hybrid system"
+
+
+def never_grows(simulation: Simulation, told: str) -> Statement:
+    """Say whether the distance grows at a switch of the closest points.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    told : str
+        What is farther away after the switch, with a place for the number.
+    """
+    grows = greatest_growth(simulation.exact, simulation.paths)
+    return Statement(
+        HYBRID,
+        "the distance between features never grows at a switch",
+        f"at each of {len(simulation.exact.events)} instants {told.format(f'{grows:.0e}')}",
+        grows <= CONTINUOUS,
+        SHARED,
+        simulation.own + ": the claim is of the closest points",
+        constructed=True,
+    )
+
+
+def anywhere(ends: Ends, told: str, why: str = "") -> Statement:
+    """Say whether starts anywhere arrive; `told` is what was tried, and of what became of it."""
+    return Statement(
+        HYBRID,
+        "from a start anywhere on tiled convex bodies the errors converge",
+        f"{ends.arrived} of {ends.tried} {told}",
+        ends.arrived == ends.tried,
+        why,
+        ends.by,
+    )
+
+
+def certified(simulation: Simulation, figure: str) -> Statement:
+    """Say how many frames the library's own law certifies, and how closely."""
+    exact = simulation.exact
+    return Statement(
+        figure,
+        "-",
+        f"the default law certifies {int(exact.certified.sum())} of {len(exact)} frames; distance "
+        f"less lower bound is at most {exact.gap.max():.0e} of the radius",
+        None,
+        by=simulation.own,
+    )

@@ -1,0 +1,75 @@
+"""What the figures of parameters against time share: errors, names of stays, keys."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from standoff.automaton import Visit
+from standoff_studies.paper import style
+from standoff_studies.paper.pair_simulation import Simulation
+from standoff_studies.paper.resets import draw_projection_errors
+
+
+def draw_errors(axes: Axes, simulation: Simulation, *, least: float = 0.0, **look: Any) -> None:
+    """Draw how far the witness points are off, their projection errors, and what resets imply.
+
+    Parameters
+    ----------
+    axes : Axes
+    simulation : Simulation
+    least : float
+        Errors below this are drawn at it [length].
+    **look
+        What ``Axes.semilogy`` takes.
+    """
+    error = np.maximum(simulation.witness_error, least)
+    axes.semilogy(simulation.paper.time, error, color=style.GREEN, **look)
+    draw_projection_errors(axes, simulation.errors, simulation.resets)
+    axes.legend(frameon=False, ncols=3, loc="upper right")
+
+
+def name_above(axes: Axes, names: Iterable[tuple[Visit, str]]) -> None:
+    """Write names over the middles of stays, just above the axes."""
+    for stay, words in names:
+        axes.annotate(
+            words,
+            (0.5 * (stay.start + stay.end), 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(0.0, 4.0),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+            fontsize=style.FONT,
+        )
+
+
+def unit_interval(axes: Axes, label: str) -> None:
+    """Set axes for parameters in [0, 1]."""
+    axes.set_ylim(-0.08, 1.08)
+    axes.set_yticks([0.0, 0.5, 1.0])
+    axes.set_ylabel(label)
+
+
+def key_line(
+    label: str, colour: str, width: float | None = None, dashes: Any = "-", **look: Any
+) -> Artist:
+    """Return a line for a key; without a width that of the settings."""
+    return Line2D([], [], color=colour, linewidth=width, linestyle=dashes, label=label, **look)
+
+
+def key_fill(label: str, colour: str, **look: Any) -> Artist:
+    """Return a patch for a key."""
+    return Patch(facecolor=colour, label=label, **look)
+
+
+def key_below(figure: Figure, handles: Iterable[Artist], columns: int) -> None:
+    """Write the key below a figure."""
+    figure.legend(handles=list(handles), loc="outside lower center", ncols=columns, frameon=False)
