@@ -286,3 +286,12 @@ def _height(a: Array, b: Array, sense: float, x: Array) -> float:
     along = (b[0] - a[0], b[1] - a[1])
     length = math.hypot(*along)
     return float(sense * _cross(np.array(along), x - a) / length)
+
+
+def without_radius(body: Body) -> Body:
+    """Return a planar body without its swept radius."""
+    if body.radius == 0.0:
+        return body
+    return Body.from_brep(
+        body.vertex_points, body.edge_parts, dimension=2, name=f"core of {body.name}"
+    )

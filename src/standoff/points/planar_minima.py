@@ -24,7 +24,7 @@ from standoff.errors import StandoffError
 from standoff.points.answer import Minimum
 from standoff.points.minima import HOME, PointMinima, pose_of, twists
 from standoff.points.on_curve import OnCurve, apart, descend, slope_into, standing, within
-from standoff.points.planar_boundary import INTERVALS, PlanarBoundary
+from standoff.points.planar_boundary import INTERVALS, PlanarBoundary, without_radius
 from standoff.points.state import Found, Leg, PointState
 from standoff.points.tolerances import ENTRY_INSTANT, SAME_PARAMETER, SETTLED_RESIDUAL, TIE
 from standoff.tracking.branches import Birth, Branch, Branches, Carried, End
@@ -73,7 +73,7 @@ class PlanarMinima(PointMinima[OnCurve]):
                 law,
             )
         self.size, self.radius = body.size, body.radius
-        core = body if body.radius == 0.0 else _core(body)
+        core = without_radius(body)
         self.boundary = PlanarBoundary(core)
         self.outer = Tracker(core, shapes.point(), dt, law)
         self.law, self.inner = law, None
@@ -396,10 +396,3 @@ class PlanarMinima(PointMinima[OnCurve]):
 
     def line(self, leg: Leg) -> Callable[[Array, Array | None], tuple[float, float]] | None:
         return slope_into(self.boundary, leg)
-
-
-def _core(body: Body) -> Body:
-    """A body without its swept radius."""
-    return Body.from_brep(
-        body.vertex_points, body.edge_parts, dimension=2, name=f"core of {body.name}"
-    )
