@@ -107,7 +107,7 @@ def test_of_equal_depths_the_one_that_answers_stays():
     tracker = so.PointTracker(square)
     state = tracker.start((0.1, 0.0, 0.0))
     key = state.proximity.active
-    for x, y in ((0.2, 0.2), (0.3, 0.3 + 1e-16), (0.4, 0.4), (0.3, 0.3)):
+    for x, y in ((0.2, 0.2), (0.3, 0.3 + 8e-16), (0.4, 0.4), (0.3, 0.3)):
         state, answer = tracker.step(state, (x, y, 0.0))
         assert (answer.active, answer.events) == (key, ())
     state, answer = tracker.step(state, (0.3, 0.3 + 1e-9, 0.0))
