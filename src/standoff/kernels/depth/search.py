@@ -196,6 +196,10 @@ def settles(pair, best, least, proof):
 def narrow(pair, pose, hull, best, how, work):
     """(depth, least) of `search`, by probes beyond the nearest facets of a polytope about the
     origin. `how` is (tolerance, proof, rivals).
+
+    It is no `standoff.best_first`: no facet is split. Each probe makes the one polytope grow, which
+    takes away facets and makes others, and the least of those that are left is found in passing;
+    nor may a frame call Python.
     """
     tolerance, proof, rivals = how
     size = contact_scale(pair)
