@@ -75,7 +75,7 @@ class _Trusted:
 def _refuse(folder: str, why: str) -> None:
     say(
         f"not using the cache folder {folder}: {why}, and the machine code in it would be run. "
-        "Take that right away (chmod go-w), or name another folder in NUMBA_CACHE_DIR."
+        "Remove that permission (chmod go-w), or name another folder in NUMBA_CACHE_DIR."
     )
 
 
@@ -196,7 +196,7 @@ class ModuleCache(Cache):  # type: ignore[misc]
                 with self._guard_against_spurious_io_errors():
                     return self._load_overload(signature, target_context)
         except DAMAGED as error:
-            say(f"{self._cache_path}: what was kept there is damaged ({error}); compiling anew.")
+            say(f"{self._cache_path}: what was kept is damaged ({error}); compiling it again.")
             self.flush()
         return None
 
@@ -225,4 +225,4 @@ def _tell_stock() -> None:
 
 @lru_cache(maxsize=1)
 def _unsaved(folder: str, why: str) -> None:
-    say(f"the compiled kernels could not be kept ({why}): each process will compile them anew.")
+    say(f"the compiled kernels could not be kept ({why}): each process will compile them again.")

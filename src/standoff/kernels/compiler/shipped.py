@@ -94,7 +94,8 @@ def misfit(manifest: dict[str, Any]) -> str | None:
     unsafe = others_can_write(FOLDER.resolve())
     if unsafe is not None:
         return (
-            f"{unsafe}, and the machine code in it would be run; take that right away (chmod go-w)"
+            f"{unsafe}, and the machine code in it would be run; remove that permission (chmod "
+            "go-w)"
         )
     return None
 

@@ -204,7 +204,7 @@ def run_system(packed, state, drives, every, records):
 
     `packed` is (layout, numbers, ints, reals, options). `records` are the states and the accounts:
     row 0 is of the start, each next one of a tick `every` later. `drives` are a table of the driven
-    bodies' motions, a row each half tick, and readings of a coupler's device, N_READING numbers
+    bodies' motions, one row per half tick, and readings of a coupler's device, N_READING numbers
     each (``coupler_arrays``), the first of which is for the first tick. Returns (-1, FINE), or the
     tick after which a pose or twist was refused, and why: the rows before it are written.
     """
