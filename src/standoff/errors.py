@@ -1,4 +1,5 @@
 """The errors that this library raises, as one tree: each has attributes that name what is at fault.
+
 A `StandoffError` is a ValueError. Where another kind is customary (TypeError, RuntimeError), it is
 that kind too.
 """

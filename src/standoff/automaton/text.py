@@ -112,7 +112,9 @@ def columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
 
 def automaton_mermaid(automaton: Automaton, names: Names = ("A", "B")) -> str:
     """Return a Mermaid flowchart: both bodies' automata, and as much of their product as can be
-    read. That is the visited modes with their times, or the whole product if it is small.
+    read.
+
+    That is the visited modes with their times, or the whole product if it is small.
     """
     lines = ["flowchart LR"]
     visited = {("A", mode[0]) for mode in automaton.visited}

@@ -14,8 +14,10 @@ from standoff.simulation.device import Device, Fault
 
 
 class Polled(BoundToRun):
-    """A `Device` whose readings and wrenches go to and from a loop, once per period. Python reads
-    it, and is late now and then; what matters is that a late reading is recognised as late.
+    """A `Device` whose readings and wrenches go to and from a loop, once per period.
+
+    Python reads it, and is late now and then; what matters is that a late reading is recognised as
+    late.
 
     Parameters
     ----------

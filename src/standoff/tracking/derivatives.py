@@ -225,8 +225,10 @@ def _partial(numbers: Array) -> tuple[Smoothness, str]:
 
 
 def _clear_turns(answer: Answer, points: Array, numbers: Array) -> None:
-    """Nan for the turns that do not move all optimal pairs of witness points equally along n. The
-    kernel does this by the null directions of its system, this function by the pairs themselves.
+    """Nan for the turns that do not move all optimal pairs of witness points equally along n.
+
+    The kernel does this by the null directions of its system, this function by the pairs
+    themselves.
     """
     n = answer.normal
     ways = np.eye(3) - np.outer(n, n)  # of one point, which has no digits

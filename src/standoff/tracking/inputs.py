@@ -34,7 +34,9 @@ def plain(
     pose_a: Any, pose_b: Any, twist_a: Any, twist_b: Any
 ) -> tuple[tuple[Array, Array, Array, Array], int]:
     """Poses (4, 4) and twists for the compiled step to read and check, and the number of poses
-    repaired. Arrays are passed on as they are.
+    repaired.
+
+    Arrays are passed on as they are.
     """
     repaired = 0
     if type(pose_a) is not np.ndarray:

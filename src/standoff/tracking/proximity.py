@@ -166,8 +166,9 @@ class Proximity(Answer, PlainData):
         return defined(self.derivatives())
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the answer as plain data: numbers, strings, lists and dictionaries of these. The
-        keys are the attributes' names; ``poses`` are two 4×4 matrices, or None. Features are
+        """Return the answer as plain data: numbers, strings, lists and dictionaries of these.
+
+        The keys are the attributes' names; ``poses`` are two 4×4 matrices, or None. Features are
         strings such as ``"face 2"``, the status is its name. The numbers are the same to the last
         bit, except that no zero has a sign; NaN stays NaN.
         """

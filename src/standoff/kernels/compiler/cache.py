@@ -2,9 +2,9 @@
 
 Numba unpickles what it finds in a cache, and the machine code in it is run: a folder that other
 users can write to is refused. A module is kept under a digest of all the kernels' sources, so an
-edit of any of them compiles anew. Asked are the folder of modules that a wheel carries
-(`shipped`), then, for reading and writing, NUMBA_CACHE_DIR or the package's own
-``__pycache__``, or else the user's cache folder.
+edit of any of them makes them compile again. Modules are looked for in the folder that a wheel
+carries (`shipped`), then, for reading and writing, in NUMBA_CACHE_DIR or the package's own
+``__pycache__``, or else in the user's cache folder.
 """
 
 from __future__ import annotations
@@ -42,12 +42,13 @@ DAMAGED = (
 """What reading a truncated or overwritten file of pickles raises."""
 
 compiled_elsewhere: Callable[[Any], None] | None = None
-"""Set in a process beside others: has a function's entry, which is not on disk, compiled by the one
-that they all ask, so that it is compiled once and told once."""
+"""Set in a process among others: has the entry of a function that is not on disk compiled by the
+process that they all ask, so that it is compiled once and reported once."""
 
 
 class _Trusted:
-    """Part of a locator: the digest in place of the file's own, and no folder of strangers."""
+    """Part of a locator: the digest in place of the file's own, and no folder that others can write
+    to."""
 
     _cache_path: str
 

@@ -61,7 +61,7 @@ def tabled_options(table):
 
 
 class Polytopes(NamedTuple):
-    """Where the polytope of the frame before stands, and where this one's may be kept."""
+    """Where the polytope of the frame before is, and where this one's may be kept."""
 
     last: Any  # pointers
     own: Any
