@@ -13,6 +13,7 @@ from standoff.kernels.frame.contact import (
     COLD,
     NEAR,
     WARM,
+    Asked,
     bound_along,
     conclude,
     contact_query,
@@ -136,9 +137,9 @@ def test_cut_off_it_bounds_by_the_boxes_and_certifies_no_overlap_that_was_not_sh
     assert conclude(*BOXES.both, true, 0.39, TOLERANCE, work).outcome == PENETRATING
 
 
-def query(case, place, normal, begin, everywhere=True, work=None):
+def query(case, place, normal, begin, everywhere=True, work=None, stays=False):
     work = work or new_work()
-    return contact_query(*case.both, place, normal, begin, everywhere, TOLERANCE, work)
+    return contact_query(*case.both, place, normal, begin, Asked(everywhere, stays), TOLERANCE, work)
 
 
 @pytest.mark.parametrize("case", [BOXES, EGGS, ROUND, TURNED])
