@@ -225,7 +225,7 @@ def test_a_frame_without_certified_points_is_lost():
     assert {s for s, is_lost in lost.items() if is_lost} == {
         OVERLAPPING,
         NOT_CERTIFIED,
-    NOT_RESTARTED,
+        NOT_RESTARTED,
         NOT_RESTARTED,
     }
 

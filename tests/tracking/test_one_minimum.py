@@ -66,7 +66,7 @@ def test_with_restarts_the_least_is_gone_to():
 
 
 def test_without_a_doubt_the_answers_are_those_of_the_default():
-    """Apart to the last bit; in contact a search may still sharpen the least depth by a rounding."""
+    """Apart to the last bit; in contact a search may sharpen the least depth by a rounding."""
     way = [at(2.0 - 1.1 * s, 0.3 * s, 0.1) for s in np.linspace(0.0, 1.0, 200)]
     for bodies in (ROUND, BOXES):
         wanted = followed(so.PredictorCorrector(), bodies, way)

@@ -80,7 +80,8 @@ class PlanarMinima(PointMinima[OnCurve]):
         if isinstance(law, PaperLaw):
             held = replace(law, tolerance=math.inf, switching="none", saturation=None)
             self.inner = Tracker(core, shapes.point(), dt, held)
-        self.doubt = Status.TRACKING if paper else Status.NOT_CERTIFIED
+        unsure = Status.NOT_CERTIFIED if law.restarts else Status.NOT_RESTARTED
+        self.doubt = Status.TRACKING if paper else unsure
 
     def read(self, value: Any, name: str) -> Array:
         """A point or velocity, (3,), in z = 0."""
