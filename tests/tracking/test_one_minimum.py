@@ -107,3 +107,14 @@ def test_a_state_that_is_doubted_is_started_anew_by_another_tracker():
     assert answer.status is so.Status.GLOBAL
     assert answer.counts.restarts == 1
     assert answer.normal == pytest.approx((0.0, 1.0, 0.0), abs=1e-12)
+
+
+def test_a_point_tracker_says_it_too():
+    """Outside; no gap is within such a tolerance."""
+    disc = so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (2, 0), (0, 1))])
+    for restarts, due in ((True, so.Status.NOT_CERTIFIED), (False, so.Status.NOT_RESTARTED)):
+        law = so.PredictorCorrector(tolerance=1e-30, restarts=restarts)
+        tracker = so.PointTracker(disc, law=law)
+        state = tracker.start((2.0, 1.5))
+        assert state.proximity.status is so.Status.NOT_CERTIFIED
+        assert tracker.step(state, (2.1, 1.5))[1].status is due

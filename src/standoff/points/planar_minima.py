@@ -80,8 +80,7 @@ class PlanarMinima(PointMinima[OnCurve]):
         if isinstance(law, PaperLaw):
             held = replace(law, tolerance=math.inf, switching="none", saturation=None)
             self.inner = Tracker(core, shapes.point(), dt, held)
-        unsure = Status.NOT_CERTIFIED if law.restarts else Status.NOT_RESTARTED
-        self.doubt = Status.TRACKING if paper else unsure
+        self.doubt = Status.TRACKING if paper else Status.NOT_CERTIFIED
 
     def read(self, value: Any, name: str) -> Array:
         """A point or velocity, (3,), in z = 0."""
@@ -313,6 +312,7 @@ class PlanarMinima(PointMinima[OnCurve]):
             shown = best._replace(edge=answer.feature_a.index, t=answer.parameters_a[0])
         normal = away / d if at_vertex else self.height(shown, x)[1]
         lower = max(answer.lower_bound, 0.0)
+        doubt = self.doubt if answer.status is not Status.NOT_RESTARTED else answer.status
         return Found(
             inside=False,
             distance=answer.distance - self.radius,
@@ -322,7 +322,7 @@ class PlanarMinima(PointMinima[OnCurve]):
             feature=answer.feature_a,
             parameters=answer.parameters_a,
             residual=answer.residual,
-            status=Status.CONVERGED if answer.distance - lower <= gap else self.doubt,
+            status=Status.CONVERGED if answer.distance - lower <= gap else doubt,
             branches=branches,
             pair=outside,
             told=tuple(Leg(e.source, e.target) for e in answer.events if e.body == "A"),
