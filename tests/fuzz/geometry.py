@@ -14,6 +14,7 @@ import standoff as so
 from fuzz.laws import Broken, refusals
 from fuzz.mutation import mutated
 from fuzz.programs import BadProgram, make
+from standoff.checks.numbers import GREATEST
 from standoff.geometry import Curve, Surface
 from standoff.motion import Path, Pose
 
@@ -140,6 +141,8 @@ def _ask(body: so.Body, spots: Array, way: Array, far: float) -> None:
     x = middle + far * size * way / np.linalg.norm(way)
     if planar:
         x[2] = 0.0
+    if np.abs(x).max() > GREATEST:
+        return
     answer = so.distance(body, so.shapes.point(), np.eye(4), Pose(np.eye(3), x))
     if answer.status is so.Status.OVERLAPPING:
         return

@@ -31,7 +31,7 @@ bodies.ball = { shape = "sphere", radius = 0.2 }
 bodies.block = { shape = "box", size = [1.0, 0.8, 0.6] }
 motions.ball = { kind = "helix", radius = 0.1, pitch = 1e-5, rate = 6.0, centre = [0, 0, 1.33] }
 pair = { a = "ball", b = "block" }
-track = { step = 0.01, duration = 6.0 }
+track = { step = 0.01, duration = 60.0 }
 """
 PLOT = """() => Object.values(window.__viserTestpoints.uplots).map(
     ({chart}) => [chart.axes[1]._values, chart.scales.x.min, chart.scales.x.max])[0]"""
@@ -113,17 +113,20 @@ def test_ticks_differ_where_the_distance_hardly_changes(
     with page_of(SLOW) as page:
         desk = opened(page, tab(760, 420))
         desk.page.get_by_role("button", name="Play").click()
-        until(lambda: page.stage.player.time > 1.0)
+        until(lambda: page.stage.player.time > 1.0, seconds=60.0)
 
         def ticks() -> list[str]:
             found: list[str] = desk.page.evaluate(PLOT)[0]
             return found
 
-        until(lambda: float(ticks()[-1]) - float(ticks()[0]) < 1e-4)
+        until(lambda: float(ticks()[-1]) - float(ticks()[0]) < 1e-4, seconds=60.0)
         assert len(set(ticks())) == len(ticks()) > 2
         desk.page.get_by_role("button", name="Pause").click()
-        until(lambda: not page.stage.player.playing)
-        until(lambda: desk.page.evaluate(LAST) == pytest.approx(desk.number("distance"), rel=1e-8))
+        until(lambda: not page.stage.player.playing, seconds=60.0)
+        until(
+            lambda: desk.page.evaluate(LAST) == pytest.approx(desk.number("distance"), rel=1e-8),
+            seconds=60.0,
+        )
         labels, first, last = desk.page.evaluate(PLOT)
         assert first < last
         assert float(labels[0]) <= desk.number("distance") <= float(labels[-1])

@@ -53,7 +53,7 @@ O_RESTARTS = 13  # 0: no global start in a frame, whatever the certificate says
 O_FAR_SIDE = 14  # of the Voronoi tests: what a face does with a point behind it
 O_DATA = 15  # what the feedback needs
 O_SMOOTH = O_DATA + 16  # address of the frame that is tried first (entries.smooth); 0: none
-O_FRAME = O_SMOOTH + 1  # address of the law's own frame (entries.laws); 0: none
+O_FRAME = O_SMOOTH + 1  # address of the law's own frame (entries.laws, paper_laws); 0: none
 N_OPTIONS = O_FRAME + 1
 FEEDBACK_LINEAR, FEEDBACK_MATRIX, FEEDBACK_PI, FEEDBACK_POWER, FEEDBACK_MOTION = range(5)
 EVALUATED, INTEGRATED = 0, 1
@@ -132,7 +132,7 @@ def in_plane(T):
 
 @kernel
 def refusal(planar, Ta, Tb, xi_a, xi_b):
-    """FINE, or what of the poses and twists is refused."""
+    """FINE, or which of the poses and twists is refused."""
     if not is_pose(Ta):
         return BAD_POSE_A
     if not is_pose(Tb):
