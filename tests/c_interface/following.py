@@ -39,6 +39,7 @@ CASES = {
     "in and out of contact": Case(BOX, ELLIPSOID, reach=1.5, swing=0.8),
     "the paper's law": Case(LENS, ELLIPSOID, so.PaperLaw(gain=200.0)),
     "against a half-space": Case(so.shapes.halfspace(), BOX, reach=1.2),
+    "one minimum": Case(BOX, BOX, so.PredictorCorrector(restarts=False), reach=1.0, swing=0.8),
     "no depth is certified": Case(
         so.shapes.sphere(0.5),
         so.shapes.sphere(0.5),

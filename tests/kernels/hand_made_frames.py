@@ -37,12 +37,13 @@ def options(
     tolerance: float = TOLERANCE,
     depth: int = DEPTH_GLOBAL,
     deadline: int = NO_DEADLINE,
+    restarts: bool = True,
 ) -> Options:
     """Those of the predictor-corrector; all else is 0."""
     numbers = np.zeros(N_OPTIONS)
     numbers[O_LAW], numbers[O_PREDICTOR] = LAW_PC, predictor
     numbers[O_TOLERANCE], numbers[O_DEPTH], numbers[O_DEADLINE] = tolerance, depth, deadline
-    numbers[O_RESTARTS] = 1.0
+    numbers[O_RESTARTS] = restarts
     # a pointer cannot be handed back to Python
     read = getattr(read_options, "py_func", read_options)
     return read(pointed(numbers))

@@ -13,6 +13,7 @@ from standoff.kernels.frame.contact import (
     COLD,
     NEAR,
     WARM,
+    Asked,
     bound_along,
     conclude,
     contact_query,
@@ -136,9 +137,9 @@ def test_cut_off_it_bounds_by_the_boxes_and_certifies_no_overlap_that_was_not_sh
     assert conclude(*BOXES.both, true, 0.39, TOLERANCE, work).outcome == PENETRATING
 
 
-def query(case, place, normal, begin, everywhere=True, work=None):
-    work = work or new_work()
-    return contact_query(*case.both, place, normal, begin, everywhere, TOLERANCE, work)
+def query(case, place, normal, begin, everywhere=True, work=None, stays=False):
+    asked, work = Asked(everywhere, stays), work or new_work()
+    return contact_query(*case.both, place, normal, begin, asked, TOLERANCE, work)
 
 
 @pytest.mark.parametrize("case", [BOXES, EGGS, ROUND, TURNED])
@@ -166,6 +167,16 @@ def test_followed_alone_a_minimum_stays_and_tells_how_little_it_may_be():
         assert -0.4 - 1e-12 <= found.upper <= 0.0
     # a search of them all leaves it
     assert query(BOXES, at.place, at.normal, NEAR).normal == pytest.approx(X, abs=1e-12)
+
+
+def test_a_minimum_that_stays_is_told_of_a_lesser_one():
+    at, work = minimum(BOXES, DOWN), new_work()
+    for begin in (WARM, NEAR):
+        found = query(BOXES, at.place, at.normal, begin, stays=True, work=work)
+        assert found.outcome == PENETRATING
+        assert found.normal == pytest.approx(DOWN, abs=1e-12)
+        assert (found.distance, found.upper) == pytest.approx((-0.8, -0.4), rel=DEPTH_PROOF)
+    assert work.counts[SEARCHES] == 2
 
 
 def test_a_near_start_takes_fewer_evaluations_than_a_cold_one():

@@ -11,7 +11,7 @@ from hand_made_pairs import Placed, X, Y, Z, ball, box, ellipsoid, unit, vector
 from standoff.kernels.depth.descent import descend
 from standoff.kernels.depth.penetration import begin_along
 from standoff.kernels.frame.apart import apart, contact, follow, track_predicted
-from standoff.kernels.pair.certified import CERTIFIED, PENETRATING, UNCERTIFIED
+from standoff.kernels.pair.certified import CERTIFIED, PENETRATING, STAYED, UNCERTIFIED
 from standoff.kernels.pair.events import (
     CORRECTIONS,
     EVALUATIONS,
@@ -22,7 +22,6 @@ from standoff.kernels.pair.events import (
     SEARCHES,
 )
 from standoff.kernels.state.arrays import (
-    DEPTH_GLOBAL,
     DEPTH_LOCAL,
     PREDICT_FEEDFORWARD,
     PREDICT_NONE,
@@ -34,7 +33,8 @@ from standoff.kernels.values import Depth
 H = 0.01
 RADIUS, OTHER = 1.0, 0.7
 BALLS = Placed(ball(RADIUS), ball(OTHER), (0.0, 0.0, 2.0))
-FREE = options()
+FREE, LOCAL = options(), options(depth=DEPTH_LOCAL)
+ALONE = options(restarts=False)
 
 
 def over(angle, distance=2.0):
@@ -193,7 +193,7 @@ def inside_of(case, n, **known):
 def test_in_contact_the_least_depth_is_followed_and_proven():
     case = BOXES.at(0.901, 0.501, -0.3)
     work = new_work()
-    then, tracked = contact(*case.both, inside_of(BOXES, X), DEPTH_GLOBAL, TOLERANCE, work)
+    then, tracked = contact(*case.both, inside_of(BOXES, X), FREE, work)
     assert then == ANSWERED
     found = tracked.shown.found
     assert tracked.shown.inside
@@ -206,13 +206,13 @@ def test_in_contact_the_least_depth_is_followed_and_proven():
 def test_the_local_depth_stays_and_keeps_no_polytope():
     down = (0.0, 0.0, -1.0)
     before = inside_of(BOXES, down)
-    for depth, n, keeping in ((DEPTH_LOCAL, down, 0), (DEPTH_GLOBAL, X, 1)):
+    for law, n, keeping in ((LOCAL, down, 0), (FREE, X, 1)):
         work = new_work()
-        _, tracked = contact(*BOXES.both, before, depth, TOLERANCE, work)
+        _, tracked = contact(*BOXES.both, before, law, work)
         assert tracked.shown.found.normal == pytest.approx(n, abs=1e-12)
         assert work.counts[KEEPING] == keeping
     work = new_work()
-    contact(*BOXES.both, before._replace(inside=False), DEPTH_GLOBAL, TOLERANCE, work)
+    contact(*BOXES.both, before._replace(inside=False), FREE, work)
     assert work.counts[KEEPING] == 0
 
 
@@ -222,11 +222,11 @@ def test_frames_that_are_cut_off_take_turns_between_both_methods(cut):
     case = Placed(ellipsoid(1.0, 0.8, 0.6), ball(0.5), (0.3, 0.2, 0.9))
     before = inside_of(case.at(0.35, 0.15, 0.9), Z, cut=cut)
     work = new_work()
-    _, tracked = contact(*case.both, before, DEPTH_LOCAL, TOLERANCE, work)
+    _, tracked = contact(*case.both, before, LOCAL, work)
     assert case.rises_around(tracked.shown.found.normal)
     spent = int(work.counts[EVALUATIONS])
     newton = new_work()
-    contact(*case.both, before._replace(cut=0), DEPTH_LOCAL, TOLERANCE, newton)
+    contact(*case.both, before._replace(cut=0), LOCAL, newton)
     same = spent == newton.counts[EVALUATIONS]
     assert same == (cut != CUT_TURN)
 
@@ -235,7 +235,7 @@ def test_a_pair_that_has_come_apart_leaves_contact():
     gap = 1e-3
     case = BOXES.at(1.3 + gap, 0.5, -0.3)
     before = inside_of(BOXES.at(1.29, 0.5, -0.3), X)
-    then, tracked = contact(*case.both, before, DEPTH_GLOBAL, TOLERANCE, new_work())
+    then, tracked = contact(*case.both, before, FREE, new_work())
     assert then == ANSWERED
     assert not tracked.shown.inside
     assert tracked.shown.found.outcome == CERTIFIED
@@ -319,5 +319,72 @@ def test_a_least_depth_from_the_wrong_side_is_found_by_the_global_depth():
     assert before.distance == pytest.approx(-0.7, abs=1e-12)
     shown, _ = track(BOXES, before)
     assert shown.found.normal == pytest.approx(X, abs=1e-12)
-    shown, _ = track(BOXES, before, options(depth=DEPTH_LOCAL))
+    shown, _ = track(BOXES, before, LOCAL)
     assert vector(shown.found.normal) == pytest.approx(Y, abs=1e-12)
+
+
+def test_alone_a_lesser_depth_is_told_and_not_gone_to():
+    """0.7 deep along y where it is followed, 0.4 along x."""
+    before, work = inside_of(BOXES, Y), new_work()
+    shown, _ = track(BOXES, before, ALONE, work)
+    found = shown.found
+    assert found.outcome == STAYED
+    assert found.normal == pytest.approx(Y, abs=1e-12)
+    assert (found.distance, found.upper) == pytest.approx((-0.7, -0.4), abs=1e-12)
+    assert found.lower <= -0.7
+    assert (shown.inside, work.counts[RESTARTS], work.counts[KEPT]) == (True, 0, 1)
+    # the least is proven; of another no proof is asked
+    assert track(BOXES, inside_of(BOXES, X), ALONE)[0].found.outcome == PENETRATING
+    unasked = options(depth=DEPTH_LOCAL, restarts=False)
+    shown, _ = track(BOXES, before, unasked)
+    assert shown.found.outcome == PENETRATING
+    assert shown.found.distance == pytest.approx(-0.7, abs=1e-12)
+
+
+def test_alone_a_depth_without_overlap_is_no_penetration():
+    """B has gone through A: still a local minimum along y, and 0.1 apart along -y."""
+    case = BOXES.at(0.5, -1.3, -0.3)
+    for law in (ALONE, options(depth=DEPTH_LOCAL, restarts=False)):
+        found = track(case, inside_of(BOXES, Y), law)[0].found
+        assert found.outcome == STAYED
+        assert found.normal == pytest.approx(Y, abs=1e-12)
+        assert found.lower <= -2.5 + 1e-12
+        assert found.upper >= 0.1
+    # where its own local minimum leads out of contact, it is followed there
+    case = BOXES.at(1.4, 0.5, -0.3)
+    found = track(case, inside_of(BOXES, Y), ALONE)[0].found
+    assert found.outcome == CERTIFIED
+    assert found.distance == pytest.approx(0.1, abs=1e-12)
+
+
+def test_alone_the_law_and_its_way_into_contact_are_as_ever():
+    close, deep = over(0.0, 1.71), over(0.0, 1.69)
+    ways = [
+        (over(0.002), before_of(over(0.0))),
+        (deep, before_of(close)),
+        (close, inside_of(deep, Z)),
+        (BOXES.at(0.901, 0.501, -0.3), inside_of(BOXES, X)),
+    ]
+    for case, before in ways:
+        (shown, work), (other, due) = track(case, before, ALONE), track(case, before)
+        assert shown.found == other.found
+        assert work.counts[EVALUATIONS] == due.counts[EVALUATIONS]
+
+
+def test_alone_no_frame_starts_anew():
+    """Lost, on far sides, after a jump: the last place alone leads on, or it is told."""
+    case = over(0.002)
+    far = case.place((0.0, 0.0, -RADIUS), (0.0, 0.0, OTHER))
+    starts = [
+        before_of(over(0.0), lost=True),
+        before_of(over(0.0))._replace(place=far),
+        before_of(over(3.0)),
+        before_of(over(0.0), cut=5),
+    ]
+    for before in starts:
+        work = new_work()
+        found = track(case, before, ALONE, work)[0].found
+        assert work.counts[RESTARTS] == 0
+        assert found.lower <= 0.3 + 1e-12
+        assert found.outcome in (CERTIFIED, STAYED)
+        assert found.upper >= 0.3 - 1e-12

@@ -25,6 +25,7 @@ from standoff.kernels.state.arrays import (
     DEADLINE,
     GLOBAL,
     NOT_CERTIFIED,
+    NOT_RESTARTED,
     OVERLAPPING,
     PREDICT_FEEDFORWARD,
     PREDICT_FEEDFORWARD_2,
@@ -214,13 +215,19 @@ def test_without_a_feedforward_the_secant_is_kept():
 def test_points_cut_off_on_their_way_have_no_rate():
     state = kept(state_at(PLACE, cut=3), feed=False, status=DEADLINE)
     assert (state.history, state.cut) == (0, 4)
+    assert kept(state_at(PLACE), feed=False, status=NOT_RESTARTED).history == 0
     for status in (CONVERGED, GLOBAL, NOT_CERTIFIED):
         assert kept(state_at(PLACE, cut=3), status=status).cut == 0
 
 
 def test_a_frame_without_certified_points_is_lost():
-    lost = {s: kept(state_at(PLACE), status=s).lost for s in range(7)}
-    assert {s for s, is_lost in lost.items() if is_lost} == {OVERLAPPING, NOT_CERTIFIED}
+    lost = {s: kept(state_at(PLACE), status=s).lost for s in range(8)}
+    assert {s for s, is_lost in lost.items() if is_lost} == {
+        OVERLAPPING,
+        NOT_CERTIFIED,
+        NOT_RESTARTED,
+        NOT_RESTARTED,
+    }
 
 
 def test_what_is_carried_may_be_given():

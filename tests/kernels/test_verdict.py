@@ -10,6 +10,7 @@ from standoff.kernels.pair.certified import (
     CERTIFIED,
     OVERLAP,
     PENETRATING,
+    STAYED,
     TOUCHING_OR_OVERLAPPING,
     UNCERTIFIED,
 )
@@ -57,6 +58,8 @@ def status(
         # a gap of 1e-6 is none of 1e-10 spans
         ((UNCERTIFIED, 2.0, 2.0 - 1e-6, 2.0), Status.NOT_CERTIFIED),
         ((UNCERTIFIED, 2.0, -1.0, 2.0), Status.NOT_CERTIFIED),
+        ((STAYED, 2.0, -1.0, 2.0), Status.NOT_RESTARTED),
+        ((STAYED, -0.7, -0.7, -0.4), Status.NOT_RESTARTED),
         # the least depth is 0.3 when no point shows less; else only the local one
         ((PENETRATING, -0.3, -0.3, -0.3), Status.GLOBAL),
         ((PENETRATING, -0.3, -0.3, -0.1), Status.LOCAL),

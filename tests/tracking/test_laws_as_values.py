@@ -31,7 +31,7 @@ from standoff.tracking.options import pack_options
 
 ROOT = Path(__file__).parents[2]
 DT = 1e-2
-COMMON: dict[str, Any] = {"tolerance": 1e-8, "depth": "local", "deadline": 40}
+COMMON: dict[str, Any] = {"tolerance": 1e-8, "depth": "local", "deadline": 40, "restarts": False}
 VARIANT: dict[str, Any] = {
     "integrator": "rk4",
     "feedforward": False,
@@ -41,7 +41,6 @@ VARIANT: dict[str, Any] = {
     "solve": "plain",
     "reset": "nearest",
     "far_side": "kept",
-    "restarts": False,
     **COMMON,
 }
 ODD = [
@@ -111,7 +110,7 @@ def test_choices_stand_in_the_order_of_the_kernels_numbers() -> None:
 
 def test_the_kernels_get_each_option() -> None:
     one, two, three = (pack_options(law.resolved(DT)) for law in ODD)
-    common = {K.O_TOLERANCE: 1e-8, K.O_DEPTH: K.DEPTH_LOCAL, K.O_DEADLINE: 40}
+    common = {K.O_TOLERANCE: 1e-8, K.O_DEPTH: K.DEPTH_LOCAL, K.O_DEADLINE: 40, K.O_RESTARTS: 0.0}
     paper = common | {
         K.O_LAW: K.LAW_PAPER,
         K.O_PREDICTOR: K.PREDICT_NONE,
@@ -121,7 +120,6 @@ def test_the_kernels_get_each_option() -> None:
         K.O_SWITCHING: K.SWITCH_VORONOI,
         K.O_SOLVE: K.SOLVE_PLAIN,
         K.O_RESET: K.RESET_NEAREST,
-        K.O_RESTARTS: 0.0,
     }
     for packed, wanted in (
         (one, common | {K.O_LAW: K.LAW_PC, K.O_PREDICTOR: K.PREDICT_SECANT}),

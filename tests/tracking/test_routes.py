@@ -49,7 +49,7 @@ class Case(NamedTuple):
 
 ELLIPSOID, LENS = so.shapes.ellipsoid(1.0, 0.7, 0.5), so.shapes.lens(1.0, 0.4)
 BOX, ROUNDED = so.shapes.box(1.0, 0.8, 0.6), so.shapes.box(0.8, 0.6, 0.5, rounding=0.1)
-DEFAULT = so.PredictorCorrector()
+DEFAULT, ALONE = so.PredictorCorrector(), so.PredictorCorrector(restarts=False)
 VORONOI = so.PaperLaw(switching="voronoi")
 COVARIANT = so.PaperLaw(solve="covariant", integrator="heun")
 CORNERS = [(-0.5, -0.4), (0.6, -0.3), (0.1, 0.6)]
@@ -74,6 +74,8 @@ CASES = {
         LENS, BOX, so.PredictorCorrector(tolerance=1e-4), True, 1.8, 1.0
     ),
     "local depth": lambda: Case(BOX, BOX, so.PredictorCorrector(depth="local"), True, 1.2, 0.9),
+    "one minimum": lambda: Case(BOX, BOX, ALONE, True, 1.2, 0.9),
+    "one minimum, apart": lambda: Case(BOX, ELLIPSOID, ALONE, True, 2.6, 0.9),
     "half-space": lambda: Case(so.shapes.halfspace(), LENS, DEFAULT, True, 1.5, 1.4),
     "planar": lambda: Case(PLANAR, PLANAR, DEFAULT, True, 2.2, 1.6),
     "rounded": lambda: Case(ROUNDED, ELLIPSOID, DEFAULT, True, 2.2, 1.4),
@@ -326,4 +328,4 @@ def test_the_cases_have_all_statuses() -> None:
         case = made()
         seen |= set(by_step(case, frames_of(case), tracker_of(case))[:, K.STATUS].astype(int))
     names = {status.name for status in so.Status if status.value in seen}
-    assert {"CONVERGED", "TRACKING", "LOCAL", "GLOBAL", "DEADLINE"} <= names
+    assert {"CONVERGED", "TRACKING", "LOCAL", "GLOBAL", "DEADLINE", "NOT_RESTARTED"} <= names

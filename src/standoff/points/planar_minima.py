@@ -312,6 +312,7 @@ class PlanarMinima(PointMinima[OnCurve]):
             shown = best._replace(edge=answer.feature_a.index, t=answer.parameters_a[0])
         normal = away / d if at_vertex else self.height(shown, x)[1]
         lower = max(answer.lower_bound, 0.0)
+        doubt = self.doubt if answer.status is not Status.NOT_RESTARTED else answer.status
         return Found(
             inside=False,
             distance=answer.distance - self.radius,
@@ -321,7 +322,7 @@ class PlanarMinima(PointMinima[OnCurve]):
             feature=answer.feature_a,
             parameters=answer.parameters_a,
             residual=answer.residual,
-            status=Status.CONVERGED if answer.distance - lower <= gap else self.doubt,
+            status=Status.CONVERGED if answer.distance - lower <= gap else doubt,
             branches=branches,
             pair=outside,
             told=tuple(Leg(e.source, e.target) for e in answer.events if e.body == "A"),

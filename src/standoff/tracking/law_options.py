@@ -253,6 +253,15 @@ class Law:
         "answer so far; without limit if not given.",
         metavar="N",
     )
+    restarts: bool = option(
+        True,
+        YesNo(),
+        "Search globally where a frame is not certified, and go to a lesser depth where there is "
+        "one; or only follow the local minimum from frame to frame, with the status NOT_RESTARTED "
+        "where it is lost or may not be the least. With the paper's law false is as printed: "
+        "nothing but the law moves the witness points.",
+        metavar="true|false",
+    )
 
     def __post_init__(self) -> None:
         for each in options_of(self).values():

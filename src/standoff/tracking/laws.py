@@ -125,13 +125,6 @@ class PaperLaw(Law):
         "A face whose tangent plane the opposing witness point is behind is left by the Voronoi "
         "tests, as Lin and Canny and V-Clip do, or kept: the face's region is then on both sides.",
     )
-    restarts: bool = option(
-        True,
-        YesNo(),
-        "Follow the depth in contact, and search globally where a frame is not certified; or, as "
-        "printed, let nothing but the law move the witness points.",
-        metavar="true|false",
-    )
 
     def __post_init__(self) -> None:
         super().__post_init__()

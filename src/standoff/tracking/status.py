@@ -15,7 +15,8 @@ class Status(Ordered):
     LOCAL = 4
     GLOBAL = 5
     DEADLINE = 6
-    REFUSED = 7
+    NOT_RESTARTED = 7
+    REFUSED = 8
 
     @property
     def certified(self) -> bool:
@@ -65,6 +66,11 @@ _ADVICE = {
     Status.DEADLINE: (
         "The evaluations allowed for this step ran out: the lower bound holds and the next step "
         "goes on from here; allow more evaluations, or shorten the step."
+    ),
+    Status.NOT_RESTARTED: (
+        "The local minimum that is followed was lost, or another may be less, and the law has "
+        "restarts=False: the bounds hold and the next step goes on from here; start anew, or leave "
+        "restarts at True."
     ),
     Status.REFUSED: (
         "There is no answer, since a pose of this row is none: `errors` of so.distances' result "

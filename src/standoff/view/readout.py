@@ -60,6 +60,8 @@ def verdict(answer: Shown, unit: str, size: float) -> str:
     if status.certified:
         return f"apart, distance {length(distance, unit, SHORT)}, proven"
     why = _UNPROVEN[status]
+    if distance < 0.0 and np.isfinite(bound):
+        return f"depth at most {length(-bound, unit, SHORT)}: {why}"
     if not np.isfinite(bound):
         return f"distance at most {length(distance, unit, SHORT)}: {why}"
     low = length(bound, "", SHORT)
@@ -70,6 +72,7 @@ _UNPROVEN = {
     Status.TRACKING: "the law is still on its way",
     Status.NOT_CERTIFIED: "not proven closer",
     Status.DEADLINE: "stopped by the deadline",
+    Status.NOT_RESTARTED: "no search was allowed",
 }
 
 

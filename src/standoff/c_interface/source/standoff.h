@@ -61,7 +61,8 @@ enum standoff_status {
     STANDOFF_NOT_CERTIFIED = 3, /* the distance is an upper bound; the lower bound holds */
     STANDOFF_LOCAL = 4,         /* overlap: moving B by depth * normal separates the bodies */
     STANDOFF_GLOBAL = 5,        /* overlap, and no direction needs less than 0.999 of it */
-    STANDOFF_DEADLINE = 6       /* the evaluations allowed for a step ran out */
+    STANDOFF_DEADLINE = 6,      /* the evaluations allowed for a step ran out */
+    STANDOFF_NOT_RESTARTED = 7  /* restarts=False, and a search was due; the bounds hold */
 };
 
 enum standoff_kind { STANDOFF_FACE = 0, STANDOFF_EDGE = 1, STANDOFF_VERTEX = 2 };

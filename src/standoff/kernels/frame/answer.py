@@ -13,6 +13,7 @@ from standoff.kernels.pair.certified import (
     CERTIFIED,
     OVERLAP,
     PENETRATING,
+    STAYED,
     TOUCHING_OR_OVERLAPPING,
     UNCERTIFIED,
 )
@@ -27,6 +28,7 @@ from standoff.kernels.state.arrays import (
     LOWER_BOUND,
     NORMAL,
     NOT_CERTIFIED,
+    NOT_RESTARTED,
     OUT_MODE,
     OUT_Q,
     OUT_RATE,
@@ -45,9 +47,20 @@ from standoff.kernels.values import ORIGIN
 
 
 @kernel
+def is_least_depth(pair, p, found):
+    """Do the bounds prove that no depth is less?"""
+    radii = pair.reals_a[L.RADIUS] + pair.reals_b[L.RADIUS]
+    d, span = found.distance, pair_span(pair, p, abs(found.distance))
+    proof = DEPTH_PROOF * (radii - d) + TOUCHING * span + pair_slack(pair)
+    return found.upper - d <= proof
+
+
+@kernel
 def judge(pair, p, found, lenient, tolerance, cut):
     """Status of an answer by its bounds. `lenient`: one that still converges is TRACKING. `cut`:
     the evaluations ran out."""
+    if found.outcome == STAYED:
+        return NOT_RESTARTED
     outcome, d, lower = found.outcome, found.distance, found.lower
     radii = pair.reals_a[L.RADIUS] + pair.reals_b[L.RADIUS]
     goal = START_GAP if tolerance == inf else tolerance
@@ -60,8 +73,7 @@ def judge(pair, p, found, lenient, tolerance, cut):
     # within the tolerance of touching the bound's sign says nothing
     if d <= radii or outcome == PENETRATING or (near and lower <= radii):
         if certified or outcome == PENETRATING:
-            proof = DEPTH_PROOF * (radii - d) + TOUCHING * span + pair_slack(pair)
-            return GLOBAL if found.upper - d <= proof else LOCAL
+            return GLOBAL if is_least_depth(pair, p, found) else LOCAL
     elif lower > radii and certified:
         return CONVERGED
     if lenient or tolerance == inf:

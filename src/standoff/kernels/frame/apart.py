@@ -3,10 +3,12 @@
 from math import inf
 
 from standoff.kernels.algebra.vectors import dot, sub
+from standoff.kernels.body import layout as L
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.depth.overlap import with_overlap
 from standoff.kernels.depth.penetration import contact_scale
-from standoff.kernels.frame.contact import NEAR, WARM, contact_query
+from standoff.kernels.frame.answer import is_least_depth
+from standoff.kernels.frame.contact import NEAR, WARM, Asked, contact_query
 from standoff.kernels.frame.prediction import apply_step, predict
 from standoff.kernels.frame.restart import (
     cut_off,
@@ -18,6 +20,8 @@ from standoff.kernels.frame.restart import (
 from standoff.kernels.frame.step import step_frame
 from standoff.kernels.pair.certified import (
     CERTIFIED,
+    PENETRATING,
+    STAYED,
     UNCERTIFIED,
     Followed,
     settle_and_weigh,
@@ -82,17 +86,17 @@ def apart(pair, motion, before, options, h, work):
 
 
 @kernel
-def contact(pair, pose, before, depth, tolerance, work):
+def contact(pair, pose, before, options, work):
     """(what next, tracked): the local minimum of the depth, from the last frame's."""
     # where frames are cut off Newton's method and the descent take turns
     newton = before.inside and (before.cut // CUT_TURN) % 2 == 0
     begin = NEAR if newton else WARM
-    everywhere = depth == DEPTH_GLOBAL
+    asked = Asked(options.depth == DEPTH_GLOBAL, not options.restarts)
     # a frame that is the first in contact has no block to keep a polytope in; one that asks for no
     # proof would let it go slack
-    work.counts[KEEPING] = 1 if before.inside and everywhere else 0
+    work.counts[KEEPING] = 1 if before.inside and asked.everywhere else 0
     found = contact_query(
-        pair, pose, before.place, before.normal, begin, everywhere, tolerance, work
+        pair, pose, before.place, before.normal, begin, asked, options.tolerance, work
     )
     answered = found.outcome != UNCERTIFIED or exhausted(work)
     tracked = without_rates(pair, pose, found, found.outcome != CERTIFIED, before.integrated)
@@ -100,12 +104,51 @@ def contact(pair, pose, before, depth, tolerance, work):
 
 
 @kernel
+def stayed(tracked):
+    """The same, where a global start was due."""
+    shown, kept = tracked
+    (_, place, d, lower, upper, n), jets, inside, fresh, rates = shown
+    found = Found(STAYED, place, d, lower, upper, n)
+    return Tracked(Shown(found, jets, inside, fresh, rates), kept)
+
+
+@kernel
+def may_be_less(pair, pose, found, options):
+    """May another depth be less, where that is asked; or is no overlap shown at all?"""
+    radii = pair.reals_a[L.RADIUS] + pair.reals_b[L.RADIUS]
+    asked = options.depth == DEPTH_GLOBAL or found.upper > radii
+    return asked and found.outcome == PENETRATING and not is_least_depth(pair, pose.p, found)
+
+
+@kernel
+def track_alone(pair, motion, before, options, h, work):
+    """A frame that follows its local minimum and starts nowhere else: outside contact one step of
+    the law, else, or where that certifies nothing, the local minimum of the depth.
+    """
+    pose = motion.pose
+    if before.inside:
+        then, tracked = contact(pair, pose, before, options, work)
+    else:
+        then, tracked = apart(pair, motion, before, options, h, work)
+        if then == ANSWERED:
+            return tracked
+        then, touching = contact(pair, pose, before, options, work)
+        if then == ANSWERED:
+            tracked = touching
+    due = then != ANSWERED or may_be_less(pair, pose, tracked.shown.found, options)
+    return stayed(tracked) if due else tracked
+
+
+@kernel
 def track_predicted(pair, motion, before, options, h, work):
     """This frame from the last one: outside contact one step of the law; in contact, where the
     witness points pass each other, the local minimum of the depth; where neither certifies, a
-    global start, and where that certifies nothing, a proof of overlap.
+    global start, and where that certifies nothing, a proof of overlap. Without restarts
+    `track_alone`.
     """
-    tolerance, pose = options.tolerance, motion.pose
+    pose = motion.pose
+    if not options.restarts:
+        return track_alone(pair, motion, before, options, h, work)
     due, first = start_due(before, work)
     if not before.lost:
         then = TRY_RESTART
@@ -116,10 +159,10 @@ def track_predicted(pair, motion, before, options, h, work):
             if then == ANSWERED:
                 return tracked
         if then == TRY_CONTACT:
-            then, tracked = contact(pair, pose, before, options.depth, tolerance, work)
+            then, tracked = contact(pair, pose, before, options, work)
             if then == ANSWERED:
                 return tracked
-    shown, kept = restart(pair, pose, first, tolerance, before.integrated, work)
+    shown, kept = restart(pair, pose, first, options.tolerance, before.integrated, work)
     found = with_overlap(pair, pose, shown.found, work)
     return Tracked(Shown(found, shown.jets, shown.inside, shown.fresh, shown.rates), kept)
 

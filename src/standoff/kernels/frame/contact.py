@@ -1,6 +1,7 @@
 """A query in contact or penetration: follow the local minimum of s(n), and prove it the least."""
 
 from math import inf, nan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,12 +29,22 @@ from standoff.kernels.values import Depth, Found
 COLD, WARM, NEAR = np.int64(0), np.int64(1), np.int64(2)
 
 
+class Asked(NamedTuple):
+    """What a query in contact asks of all depths."""
+
+    everywhere: bool  # prove that none is less; else only whether the bodies overlap
+    stays: bool  # answer with the local minimum that is followed, also where another is less
+
+
+LEAST = Asked(True, False)
+
+
 @shared
-def contact_query(pair, pose, place, normal, begin, everywhere, tolerance, work):
+def contact_query(pair, pose, place, normal, begin, asked, tolerance, work):
     """The signed distance of the cores and its bounds.
 
-    `begin` is COLD, WARM or NEAR, of the place and the normal. `everywhere`: prove the depth the
-    least, and search where it is not.
+    `begin` is COLD, WARM or NEAR, of the place and the normal. What `asked` of the other depths
+    shows a lesser one leads there, unless it stays.
     """
     last = some_direction(normal)
     plane, square = plane_normal(pair, pose)
@@ -45,11 +56,13 @@ def contact_query(pair, pose, place, normal, begin, everywhere, tolerance, work)
     if (begin != COLD or plane) and not at.found:
         at = descend(pair, pose, at, tolerance, work)
     least = -inf
-    if not plane and (not at.found or at.distance <= 0.0):
+    sought = at.distance <= 0.0 if at.found else not asked.stays
+    if sought and not plane:
         # followed alone, the minimum is still asked whether the bodies overlap at all
-        proof, rivals = (DEPTH_PROOF, MAX_RIVALS) if everywhere else (1.0, 0)
+        proof, rivals = (DEPTH_PROOF, MAX_RIVALS) if asked.everywhere else (1.0, 0)
         logged = work.counts[EVENTS]
-        at, least = search(pair, pose, at, tolerance, proof, rivals, work)
+        best, least = search(pair, pose, at, tolerance, proof, rivals, work)
+        at = at if asked.stays else best
         work.counts[EVENTS] = logged
     n = at.normal
     if plane:

@@ -11,6 +11,7 @@ from standoff.kernels.pair.newton import metric_inverse
 from standoff.kernels.state.arrays import (
     DEADLINE,
     NOT_CERTIFIED,
+    NOT_RESTARTED,
     OVERLAPPING,
     PREDICT_FEEDFORWARD,
     PREDICT_FEEDFORWARD_2,
@@ -111,8 +112,8 @@ def kept_state(carried, before, motion, h, tracked, feed, status):
     if feed:
         two = same and before.history >= 1 and before.fed
         rates, last_rates, history = shown.rates, old_rates, 2 if two else 1
-    elif same and h > 0.0 and status != DEADLINE:
-        # points cut off on their way have no rate
+    elif same and h > 0.0 and status != DEADLINE and status != NOT_RESTARTED:
+        # points cut off or left on their way have no rate
         rates, history = secant(old, found.place, h), 1
     return State(
         found.place,
@@ -123,7 +124,7 @@ def kept_state(carried, before, motion, h, tracked, feed, status):
         motion,
         feed,
         before.time + h,
-        status in (OVERLAPPING, NOT_CERTIFIED),
+        status in (OVERLAPPING, NOT_CERTIFIED, NOT_RESTARTED),
         tracked.integrated,
         found.normal,
         found.distance,

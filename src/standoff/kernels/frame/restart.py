@@ -12,7 +12,7 @@ from standoff.kernels.depth.penetration import (
     plane_normal,
 )
 from standoff.kernels.depth.search import overlap_shown
-from standoff.kernels.frame.contact import COLD, bound_along, contact_query, some_direction
+from standoff.kernels.frame.contact import COLD, LEAST, bound_along, contact_query, some_direction
 from standoff.kernels.pair.certificate import certify_along
 from standoff.kernels.pair.certified import CERTIFIED, NOT_APART, PENETRATING
 from standoff.kernels.pair.cold_start import FIRST, global_query
@@ -72,7 +72,7 @@ def anywhere_from(pair, pose, first, tolerance, work):
         return polished(pair, pose, found, tolerance, work), False
     if exhausted(work):
         return found, False
-    found = contact_query(pair, pose, found.place, found.normal, COLD, True, tolerance, work)
+    found = contact_query(pair, pose, found.place, found.normal, COLD, LEAST, tolerance, work)
     return found, found.outcome == PENETRATING
 
 

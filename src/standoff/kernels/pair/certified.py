@@ -19,6 +19,7 @@ TOUCHING_OR_OVERLAPPING = 2
 PENETRATING = 3  # solved in contact: a signed distance that is not certainly positive
 NOT_APART = 4  # not solved: only the query in contact can tell
 OVERLAP = 5  # uncertified, but the bodies are proven to overlap
+STAYED = 6  # a global start was due, and is not to be made
 
 
 class Weighed(NamedTuple):

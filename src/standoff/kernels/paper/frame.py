@@ -113,7 +113,7 @@ def track_by(advance, pair, motion, before, options, step, work):
             if then == ANSWERED:
                 return outside_contact
         if then == TRY_CONTACT:
-            then, touching = contact(pair, pose, before, options.depth, options.tolerance, work)
+            then, touching = contact(pair, pose, before, options, work)
             if doubted and touching.shown.found.outcome != PENETRATING:
                 found = outside_contact.shown.found
                 lagging = Found(

@@ -49,7 +49,7 @@ O_FEEDBACK, O_REALISATION, O_SATURATION, O_SWITCHING, O_SOLVE = range(5, 10)
 O_DEPTH = 10  # which depth is followed in penetration
 O_DEADLINE = 11  # most second-order evaluations a frame
 O_RESET = 12  # of the Voronoi tests: where an edge is entered
-O_RESTARTS = 13  # 0: the law alone, whatever the certificate says
+O_RESTARTS = 13  # 0: no global start in a frame, whatever the certificate says
 O_FAR_SIDE = 14  # of the Voronoi tests: what a face does with a point behind it
 O_DATA = 15  # what the feedback needs
 O_SMOOTH = O_DATA + 16  # address of the frame that is tried first (entries.smooth); 0: none
@@ -91,6 +91,7 @@ N_LONG_BLOCK = FIRST_POLYTOPE + N_POLYTOPE
 
 # Status numbers, those of standoff.tracking.Status.
 CONVERGED, TRACKING, OVERLAPPING, NOT_CERTIFIED, LOCAL, GLOBAL, DEADLINE = range(7)
+NOT_RESTARTED = 7
 
 # How a start begins.
 START_ANYWHERE, START_DESCEND, START_HERE = range(3)
