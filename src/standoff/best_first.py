@@ -1,7 +1,7 @@
 """Search for a least value, best first: the part that may hold the least is split first.
 
 Each part of what is searched has a bound: nothing in it is less. Splitting sharpens the bounds,
-until none is below a goal, or what may be spent is spent.
+until none is below a goal, or the budget is spent.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ class Ending(Enum):
     """Why a search ended."""
 
     GOAL = "No part's bound is below the goal."
-    CLOSED = "What is below the goal is in parts that cannot be split any more."
-    SPENT = "As many parts were split as may be."
+    CLOSED = "What is below the goal is in parts that can no longer be split."
+    SPENT = "As many parts were split as allowed."
 
     @property
     def sentence(self) -> str:
@@ -40,7 +40,7 @@ class Part(NamedTuple, Generic[T]):
     seen : float
         A value that was met in it; inf or nan where none was.
     closed : bool
-        Is it not to be split any more?
+        May it no longer be split?
     """
 
     bound: float
@@ -62,7 +62,7 @@ class Searched(NamedTuple, Generic[T]):
     place : object or None
         The part in which it was met first.
     open, closed : list of Part
-        What is left, and what was not to be split any more.
+        What is left, and what could no longer be split.
     splits : int
         How many parts were split.
     """

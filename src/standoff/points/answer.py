@@ -37,7 +37,7 @@ class PointEvent(NamedTuple):
     slope : float
         Rate of the switching function [its unit/s]; nan where no velocity was given.
     located : bool
-        Was the instant found within the step, or is it only dated to the frame?
+        Was the instant found within the step, or is it only the time of the frame?
     """
 
     time: float
@@ -66,7 +66,7 @@ class Minimum(NamedTuple):
         Length of the witness vector's projection on the boundary's tangents; zero at the minimum,
         and at the end of a curve that holds it [length].
     key : int
-        Tells it from the other minima of the run.
+        Distinguishes it from the other minima of the run.
     """
 
     feature: Feature

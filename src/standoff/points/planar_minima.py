@@ -61,7 +61,7 @@ class PlanarMinima(PointMinima[OnCurve]):
     Raises
     ------
     ValueError
-        A law without switching, and as `Tracker`.
+        A law without switching; otherwise as `Tracker`.
     """
 
     def __init__(self, body: Body, dt: float, law: Law) -> None:

@@ -67,7 +67,7 @@ class PointRecording(KeepsReadOnly):
         Of the active feature, nan where there is none: t of a curve, u, v and chart of a face.
     curve_parameter, curve_distance, curve_residual : ndarray, shape (n, curves)
         Of each curve's nearest minimum, as they are tracked in parallel; distances without sign.
-        Of a spatial body there are none.
+        For a spatial body there are none.
     answers : tuple of PointProximity
     events : tuple of PointEvent
         In order of time.
@@ -131,14 +131,14 @@ def record_point(
         Of a planar or a spatial body.
     path : path or function
         A path of ``standoff.motion``, anything with ``pose(t)`` and ``twist(t)``, or a function of
-        the time that returns a pose; its origin is the point.
+        time that returns a pose; its origin is the point.
     times : array_like, shape (n,)
         Of the frames [s], strictly increasing.
     start : PointState, optional
         Where to begin, such as a wrong start of ``tracker.start_from``; its answer is the first
         frame's. By default ``tracker.start``.
     locate : bool
-        Find the instants of the switches within their steps; else they are dated to the frames.
+        Find the instants of the switches within their steps; else they get the times of the frames.
 
     Returns
     -------
@@ -147,7 +147,7 @@ def record_point(
     Raises
     ------
     TypeError
-        No `PointTracker`, or no path.
+        Not a `PointTracker`, or not a path.
     ValueError
         Times that do not increase, or what the tracker refuses.
     """

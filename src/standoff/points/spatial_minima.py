@@ -59,13 +59,13 @@ class SpatialMinima(PointMinima[TrackerState]):
     Raises
     ------
     ValueError
-        Another law, and as `Tracker`.
+        Another law; otherwise as `Tracker`.
     """
 
     def __init__(self, body: Body, dt: float, law: Law) -> None:
         if not isinstance(law, PredictorCorrector):
             raise StandoffError(
-                "The paper's law keeps points of a planar body's curves; of a spatial body give "
+                "The paper's law keeps points on a planar body's curves; for a spatial body give "
                 "so.PredictorCorrector.",
                 "law",
                 law,
@@ -88,7 +88,9 @@ class SpatialMinima(PointMinima[TrackerState]):
         """Outside the pair's frame; inside all minima followed, and the least proven."""
         pose, proven = pose_of(x), self.law.depth == "global"
         if state.pair is None:
-            raise StandoffError("The state has no pair: it is of a planar body.", "state", state)
+            raise StandoffError(
+                "The state has no pair: it belongs to a planar body.", "state", state
+            )
         if proven and state.inside:
             proof = self.outer.start(HOME, pose, *twists(v))
         else:

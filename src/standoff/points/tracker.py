@@ -43,28 +43,28 @@ class PointTracker(KeepsReadOnly):
     law : PredictorCorrector or PaperLaw
         As in `Tracker`, which answers outside. Inside ``depth="global"`` proves in every frame that
         no minimum is less, to within ``tolerance`` of a planar body's; ``"local"`` follows those
-        that were found. Of a planar body the paper's law keeps the parameter on each curve by its
-        feedback, where the other one descends to roundoff; a spatial body takes no paper's law.
+        that were found. On a planar body the paper's law keeps the parameter on each curve by its
+        feedback, where the other law descends to roundoff; it cannot be used for a spatial body.
 
     Raises
     ------
     TypeError
-        No body, no law.
+        Not a body; not a law.
     ValueError
         The paper's law without switching, or with a spatial body; and as `Tracker`.
 
     Notes
     -----
-    Inside, the depth is the least of several local minima, each followed by itself.
+    Inside, the depth is the least of several local minima, each followed separately.
 
-    Of a planar body there is one at least on each curve, also while the point is outside, and the
-    point's place alone tells on which side it is. The depth is proven by chords of the boundary,
-    taken closer until the bound is within the tolerance. What that meets nearer than the answer,
-    and what samples of the curves show in every frame, is followed from then on.
+    A planar body has at least one on each curve, also while the point is outside, and only the
+    point's place decides on which side it is. The depth is proven by chords of the boundary, taken
+    closer until the bound is within the tolerance. Any nearer minimum that this meets, and any that
+    samples of the curves show in a frame, is followed from then on.
 
-    Of a spatial body a cold global start proves the depth, and what it finds is followed, too. At
+    For a spatial body a cold global start proves the depth, and what it finds is followed too. At
     the start, and where the point enters, rays to the boundary find further minima, so ``minima``
-    lists those found, not certainly all.
+    lists those found, not necessarily all.
     """
 
     def __init__(self, body: Body, dt: float = 1e-3, law: Law = DEFAULT_LAW) -> None:
@@ -101,7 +101,7 @@ class PointTracker(KeepsReadOnly):
     ) -> PointState:
         """Begin at given parameters of a planar body, one for each curve.
 
-        The paper's law begins there as it stands; the other descends from there.
+        The paper's law begins exactly there; the other descends from there.
 
         Parameters
         ----------
@@ -151,7 +151,8 @@ class PointTracker(KeepsReadOnly):
         locate : bool
             Find the instants of the switches within the step, on the point's way between the
             frames: straight, or the cubic through both velocities where both frames have one. It
-            takes some further answers in a frame with a switch. Else they are dated to the frame.
+            takes some further answers in a frame with a switch. Else they get the time of the
+            frame.
 
         Returns
         -------
@@ -160,14 +161,14 @@ class PointTracker(KeepsReadOnly):
         Raises
         ------
         TypeError
-            ``state`` is none.
+            ``state`` is not a state.
         ValueError
             As `start`; a time that is not positive, or too long for the paper's law; the state of a
             planar body with a spatial one.
         """
         if not isinstance(state, PointState):
             raise StandoffTypeError(
-                f"{state!r} is no PointState: get one from tracker.start.", "state", state
+                f"{state!r} is not a PointState: get one from tracker.start.", "state", state
             )
         x, v = self._read(point, velocity)
         h = self.dt if dt is None else positive(dt, "dt")

@@ -1,6 +1,6 @@
-"""Several local minima of one query, each followed by a branch of its own; the least one answers.
+"""Several local minima of one query, each followed by its own branch; the least one answers.
 
-What a branch's state is only its follower knows: a curve's parameter, a tracker's state, a pair of
+Only its follower knows what a branch's state is: a curve's parameter, a tracker's state, a pair of
 patches. Here is what all have in common: which branches have come to one minimum, which begin and
 end and why, and which is the least. The outcome does not depend on the order of the branches.
 """
@@ -40,10 +40,10 @@ class Birth(Enum):
 class End(Enum):
     """Why a branch ended."""
 
-    MERGED = "It came to the minimum of another branch, which has moved less or is older."
+    MERGED = "It came to the minimum of another branch, which had moved less or was older."
     JUMPED = "It came to another minimum than the one that it followed."
-    LEFT = "What it followed is a local minimum no more."
-    LOST = "Its value is not a number any more."
+    LEFT = "What it followed is no longer a local minimum."
+    LOST = "Its value is no longer a number."
 
     @property
     def sentence(self) -> str:
@@ -59,7 +59,7 @@ class Branch(NamedTuple, Generic[S]):
     key : int
         Tells it from all other branches of the run.
     value : float
-        By which branches are compared: the distance, the depth, in the unit of the query.
+        What branches are compared by: the distance or the depth, in the unit of the query.
     state : object
         Where it stands.
     """

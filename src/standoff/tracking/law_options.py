@@ -1,8 +1,8 @@
 """How an option of a law is declared: its values, their check, and their number for the kernels.
 
-What an option is stands in one place, as a field of its law in ``standoff.tracking.laws``. The
-check, the kernels' array, a recording's record, a scene's keys, the command line's flags and the
-docstring are made from that. Nothing heavy is imported here: the command line's help needs it.
+An option is defined in one place, as a field of its law in ``standoff.tracking.laws``. The check,
+the kernels' array, a recording's record, a scene's keys, the command line's flags and the docstring
+are made from that. Nothing heavy is imported here: the command line's help needs it.
 """
 
 from __future__ import annotations
@@ -146,7 +146,7 @@ class Option:
     unit: str
 
     def checked(self, value: Any) -> Any:
-        """Return the value as it is kept, or raise what says why it is none."""
+        """Return the value as it is kept, or raise an error that says why it is not one."""
         if value is None and self.default is None:
             return None
         return self.kind.checked(value, self.name)
@@ -195,7 +195,7 @@ def documented(law: Class) -> Class:
 
 
 def told_by_name(law: Class) -> Class:
-    """Make a law tell of options that it does not have, which its dataclass would only refuse."""
+    """Make a law name options that it does not have, which its dataclass would only refuse."""
     made = law.__dict__["__init__"]
 
     @functools.wraps(made)
@@ -243,14 +243,14 @@ class Law:
     depth: str = option(
         "global",
         Choice(("global", "local")),
-        "In penetration prove in every frame that no direction has a lesser depth, or follow one "
-        "local minimum, which costs less.",
+        "In penetration, prove in every frame that no direction has a smaller depth, or follow "
+        "one local minimum, which costs less.",
     )
     deadline: int | None = option(
         None,
         Whole(),
-        "Most second-order evaluations that a step may take before it ends with the best certified "
-        "answer so far; without limit if not given.",
+        "Greatest number of second-order evaluations that a step may take before it ends with "
+        "the best certified answer so far; no limit if not given.",
         metavar="N",
     )
     restarts: bool = option(
@@ -281,7 +281,7 @@ class Law:
         return [name for name in super().__dir__() if name not in ("check_step", "only_one")]
 
     def resolved(self, dt: float) -> Law:
-        """Return the law with the defaults that hang on the frame time [s], or on each other,
+        """Return the law with the defaults that depend on the frame time [s], or on each other,
         filled in.
 
         Raises
@@ -292,7 +292,7 @@ class Law:
         return self
 
     def check_step(self, dt: float) -> None:
-        """Raise ValueError where a frame is too long, in s, for the resolved law to be stable."""
+        """Raise ValueError if a frame is too long, in s, for the resolved law to be stable."""
 
     def facts(self) -> dict[str, Any]:
         """Return the law's name and all its options as plain data, with a scene's keys."""

@@ -46,18 +46,18 @@ _ADVICE = {
         "paper's gain towards so.max_gain, shorten the step, or give a finite tolerance."
     ),
     Status.OVERLAPPING: (
-        "The bodies are proven to overlap, but no depth within the tolerance: the distance is no "
-        "more than 0 and the lower bound holds; loosen the tolerance, or report the pair with its "
-        "poses."
+        "The bodies are proven to overlap, but no depth is proven within the tolerance: the "
+        "distance is at most 0 and the lower bound holds; loosen the tolerance, or report the "
+        "pair with its poses."
     ),
     Status.NOT_CERTIFIED: (
         "No start reached a gap within the tolerance: the distance is an upper bound and the "
         "lower bound holds; loosen the tolerance, or report the pair with its poses."
     ),
     Status.LOCAL: (
-        "The bodies overlap, and moving B by depth * normal separates them; a shorter move may do "
-        "in another direction, down to the upper bound: depth='global' searches for it, as far "
-        "as a deadline lets it."
+        "The bodies overlap, and moving B by depth * normal separates them; a shorter move in "
+        "another direction may be enough, down to the upper bound: depth='global' searches for "
+        "it, as far as a deadline allows."
     ),
     Status.GLOBAL: (
         "The bodies overlap, moving B by depth * normal separates them, and it is proven that no "
@@ -65,7 +65,7 @@ _ADVICE = {
     ),
     Status.DEADLINE: (
         "The evaluations allowed for this step ran out: the lower bound holds and the next step "
-        "goes on from here; allow more evaluations, or shorten the step."
+        "continues from here; allow more evaluations, or shorten the step."
     ),
     Status.NOT_RESTARTED: (
         "The local minimum that is followed was lost, or another may be less, and the law has "
@@ -73,8 +73,8 @@ _ADVICE = {
         "restarts at True."
     ),
     Status.REFUSED: (
-        "There is no answer, since a pose of this row is none: `errors` of so.distances' result "
-        "says what is wrong with it."
+        "There is no answer, because a pose of this row is invalid: `errors` of so.distances' "
+        "result says what is wrong with it."
     ),
 }
 BY_NUMBER = tuple(sorted(Status))
