@@ -7,14 +7,12 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking import Feature
 from standoff_studies.paper import style
-
-Array = NDArray[np.float64]
 
 CURVE_SAMPLES = 65
 """Points of a drawn curve: its chords are off by less than a line's width."""

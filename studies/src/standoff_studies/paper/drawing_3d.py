@@ -13,13 +13,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff_studies.paper import style
-
-Array = NDArray[np.float64]
 
 PALE = ("#9FD3F2", "#F7D08A", "#7FD1B9", "#F4B8A0", "#E3B7D0", "#C9C9C9")
 """Faces side by side are told apart by any eye, and black lines stand out from all of them."""

@@ -6,17 +6,15 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.kernels.state import arrays as K
 from standoff.motion import Path, Pose
 from standoff.tracking import Proximity, Tracker, TrackerState, pair_system
 from standoff.tracking.calls import run
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.rows import poses_of, twists_of
-
-Array = NDArray[np.float64]
 
 AT_SIDE = 1e-9
 """Parameters that are nearer to 0 or 1 are at a side: the zeroing holds them there exactly."""

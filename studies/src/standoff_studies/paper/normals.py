@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.normals_contact import Track, tracked
@@ -25,8 +26,6 @@ from standoff_studies.paper.normals_study import (
     scattered,
     turned,
 )
-
-Array = NDArray[np.float64]
 
 PAPER, NORMALS, CONTACT = FORMS
 NAMES = {PAPER: "Eqs. (1)–(4)", NORMALS: "normals, ref. [28]", CONTACT: "contact-regular"}

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.automaton import Visit
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Fixed, Path, Pose
 from standoff.recording import RecordedEvent, Recording, track
 from standoff.recording.times import even_times
@@ -29,8 +29,6 @@ from standoff_studies.paper.resets import (
     projection_errors,
     resets_of,
 )
-
-Array = NDArray[np.float64]
 
 Place = tuple[tuple[str, int], tuple[float, ...]]
 """A feature, kind and number, and parameters on it."""

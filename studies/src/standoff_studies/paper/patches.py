@@ -8,18 +8,16 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 import standoff as so
 from standoff.bodies import Body
 from standoff.geometry import BezierPatch
+from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking import PairSystem, Proximity
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import PALE, View
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
-
-Array = NDArray[np.float64]
 
 HALF = (1.0, 0.8)
 """Half the block's extent in x and y [length]."""

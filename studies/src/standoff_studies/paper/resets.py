@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Path
 from standoff.recording import RecordedEvent, Recording
 from standoff.tracking import Feature, Tracker, pair_system
@@ -23,8 +23,6 @@ from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Statement
 from standoff_studies.paper.patch_places import BothPlaces, FeaturePlace, places_at, short
-
-Array = NDArray[np.float64]
 
 SAMPLES = 64
 """Of a pcurve, between which the parameter nearest to a face's own is sought."""

@@ -8,15 +8,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.pair_system import PairSystem, PairSystems
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement
 from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, SIMULATION, pair
-
-Array = NDArray[np.float64]
 
 FIRST, UPDATES = 50, 400
 """First frame, and number of updates: simulation E's first stay, face against face, 0 to 1.06 s."""

@@ -9,16 +9,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 import standoff as so
+from standoff.geometry.validation import Array
 from standoff.motion import Pose, Twist
 from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.law_words import law_words
-
-Array = NDArray[np.float64]
 
 STEP = 1e-3
 """Frame time [s]: the paper's 1 kHz."""

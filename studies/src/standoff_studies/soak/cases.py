@@ -7,8 +7,8 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PredictorCorrector, law_of_facts
 from standoff_studies.soak.directions import shift_into
@@ -16,7 +16,6 @@ from standoff_studies.soak.motions import Frames, Motion, Path, draw_path, rando
 from standoff_studies.soak.placing import heights
 from standoff_studies.soak.shapes import Made, Shape, draw_shape, made
 
-Array = NDArray[np.float64]
 Rng = np.random.Generator
 
 DRAWER = 8

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import ROTATION
@@ -24,7 +24,6 @@ from standoff_studies.soak.reading import entry, mapping, number, numbers, read_
 from standoff_studies.soak.running import Failure, run_case, start
 from standoff_studies.soak.shapes import Made, made
 
-Array = NDArray[np.float64]
 Facts = dict[str, Any]
 
 KIND = "standoff soak failure"

@@ -16,13 +16,13 @@ from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.errors import BodyError
 from standoff.geometry import Line
+from standoff.geometry.validation import Array
 from standoff_studies import oracles
 from standoff_studies.soak.lattice import PER_LENGTH, signed_distance, whole
 from standoff_studies.soak.motions import random_direction, random_rotation
 from standoff_studies.soak.placing import heights
 from standoff_studies.soak.shapes import Made, Shape, draw_shape, made
 
-Array = NDArray[np.float64]
 Rng = np.random.Generator
 
 DRAWER = 8

@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from standoff.geometry.validation import Array
+
 Rng = np.random.Generator
 
 GOLDEN = 0.6180339887498949

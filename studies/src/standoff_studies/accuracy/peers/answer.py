@@ -11,11 +11,10 @@ from importlib.metadata import version
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff_studies.accuracy.solids import Solid
 
-Array = NDArray[np.float64]
 Pose = tuple[Array, Array]
 
 

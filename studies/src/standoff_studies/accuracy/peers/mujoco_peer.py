@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from standoff.geometry.validation import Array
 from standoff_studies.accuracy.peers.answer import (
-    Array,
     Peer,
     PeerAnswer,
     Pose,

@@ -6,14 +6,12 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 import standoff as so
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Pose, Twist
-
-Array = NDArray[np.float64]
 
 DT = 1e-3
 """Frame time [s]."""

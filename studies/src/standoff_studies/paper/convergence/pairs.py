@@ -8,9 +8,9 @@ from functools import cache, partial
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies import Body, shapes
+from standoff.geometry.validation import Array
 from standoff.motion import ConstantTwist, Fixed, Path, Pose, Spiral, Twist
 from standoff.tracking import distance
 from standoff_studies.paper.bodies import leaf, lens_of_patches, planar_body
@@ -20,8 +20,6 @@ from standoff_studies.paper.simulation_b import run as simulation_b
 from standoff_studies.paper.simulation_c import run as simulation_c
 from standoff_studies.paper.simulation_d.runs import HELIX, TRIED
 from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, SEMI_AXES
-
-Array = NDArray[np.float64]
 
 Place = tuple[tuple[str, int], tuple[float, ...]]
 """A feature and parameters on it, as ``Tracker.start_from`` takes them."""

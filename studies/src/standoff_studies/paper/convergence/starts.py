@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature, feature_of
+from standoff.geometry.validation import Array
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion import Fixed, Path, Pose, Twist
@@ -19,8 +20,6 @@ from standoff.tracking.calls import run
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.convergence.pairs import Pair
 from standoff_studies.paper.many_starts import LEFT, Motion, motion_along
-
-Array = NDArray[np.float64]
 
 STEP = 1e-3
 """Sample time [s]: the paper's 1 kHz."""

@@ -9,9 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from standoff.bodies.features import Feature, feature_of
+from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import View
 from standoff_studies.paper.figure import Artwork
@@ -29,8 +30,6 @@ from standoff_studies.paper.in_the_loop.run import (
 from standoff_studies.paper.in_the_loop.statements import all_statements, by_gain
 from standoff_studies.paper.patch_places import place_on, short
 from standoff_studies.paper.simulation_d.parameters import SHADES
-
-Array = NDArray[np.float64]
 
 AZIMUTH, ELEVATION = 62.0, 30.0
 """Where the viewer stands [degrees]: above the edge that is crossed."""

@@ -6,10 +6,10 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff import simulation as sim
 from standoff.bodies.features import feature_of
+from standoff.geometry.validation import Array
 from standoff_studies.paper.figure import Statement, measured_by
 from standoff_studies.paper.in_the_loop.run import (
     BALL,
@@ -22,8 +22,6 @@ from standoff_studies.paper.in_the_loop.run import (
     operator,
 )
 from standoff_studies.paper.law_words import law_words
-
-Array = NDArray[np.float64]
 
 CLOSE = 1e-6
 """Greatest error of the law's distance that counts as tracked [m]: a thousandth of the depth."""

@@ -6,13 +6,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from standoff.bodies import Body
 from standoff.bodies.voronoi import MedialBranch, VoronoiRegions
-
-Array = NDArray[np.float64]
+from standoff.geometry.validation import Array
 
 PIECES = 2000
 """Chords of a branch's spline: they leave it by less than the spline leaves the axis, 1e-7."""

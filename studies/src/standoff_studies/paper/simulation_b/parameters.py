@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
 from standoff_studies.paper.figure import Artwork, Statement
@@ -30,8 +31,6 @@ from standoff_studies.paper.simulation_b.run import (
     psi,
     run,
 )
-
-Array = NDArray[np.float64]
 
 VERTEX_FILL = "#E9A63A"
 """Behind the time at a vertex."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies import Body, shapes
 from standoff.bodies.voronoi import VoronoiRegions
+from standoff.geometry.validation import Array
 from standoff.motion import Fixed, Pose, Spiral, Twist
 from standoff.points import PointEvent, PointVisit
 from standoff.points.planar_boundary import PlanarBoundary
@@ -23,8 +24,6 @@ from standoff.tracking import Feature, Tracker, TrackerState
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.simulation_b.medial import MedialRegions, first_change
-
-Array = NDArray[np.float64]
 
 REST = Fixed(Pose.identity())
 """The body stays where it is."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies import Body
 from standoff.bodies.voronoi import VoronoiRegions, voronoi_regions
+from standoff.geometry.validation import Array
 from standoff.motion import Spiral
 from standoff.points import PointEvent, PointRecording, PointTracker, record_point
 from standoff.tracking import Feature
@@ -18,8 +19,6 @@ from standoff_studies.paper.bodies import planar_body
 from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.many_starts import Arrivals, distances, motion_along
 from standoff_studies.paper.simulation_b.printed import REST, Printed, PrintedRun
-
-Array = NDArray[np.float64]
 
 DURATION = 4.0
 """Of the motion [s]."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import (
     draw_feature,
@@ -26,8 +27,6 @@ from standoff_studies.paper.simulation_b.run import (
     run,
 )
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
-
-Array = NDArray[np.float64]
 
 EXTENT = 1.85
 """Half width of the view [length]."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
 from standoff.automaton import Visit
+from standoff.geometry.validation import Array
 from standoff.recording import Recording
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
@@ -25,8 +26,6 @@ from standoff_studies.paper.simulation_c.run import (
     vertex_slip,
 )
 from standoff_studies.paper.start_decay import decay_statement
-
-Array = NDArray[np.float64]
 
 SPANS = ((0.0, 0.5), (0.0, 6.0), (6.0, 12.0))
 """The rows: the start by itself, and the motion in two, so that short stays can be seen [s]."""

@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Carried, ConstantTwist, Path, Pose, Spiral, Twist
 from standoff.tracking import Feature
 from standoff_studies.paper.bodies import leaf, planar_body
 from standoff_studies.paper.many_starts import Ends
 from standoff_studies.paper.pair_simulation import REST, Simulation, Start, ends_of
-
-Array = NDArray[np.float64]
 
 RADIUS, GROWTH = 3.0, -0.13
 """Of B's centre from A's origin at t = 0 [length], and by the angle turned [length/rad]."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import (
@@ -24,8 +25,6 @@ from standoff_studies.paper.simulation_c.run import (
     SIMULATION,
     snapshots,
 )
-
-Array = NDArray[np.float64]
 
 COLUMNS = 3
 MARGIN = 0.12

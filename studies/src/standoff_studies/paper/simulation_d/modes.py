@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from standoff.automaton.graph import Automaton, Transition
 from standoff.bodies import Body
 from standoff.bodies.tessellation import edge_lines
+from standoff.geometry.validation import Array
 from standoff.tracking import Feature, distance
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement
@@ -29,8 +29,6 @@ from standoff_studies.paper.simulation_d.runs import (
     tried,
 )
 from standoff_studies.paper.unaided import Part, unaided
-
-Array = NDArray[np.float64]
 
 RING, OUTER = 1.0, 1.62
 """Radii at which faces and edges stand around the upper vertex, and of the lower one's circle."""

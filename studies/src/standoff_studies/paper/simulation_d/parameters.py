@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from standoff.geometry.validation import Array
 from standoff.recording import Recording
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
@@ -23,8 +24,6 @@ from standoff_studies.paper.patch_places import place_on, short
 from standoff_studies.paper.resets import reset_statement, reset_table
 from standoff_studies.paper.simulation_d.runs import SIMULATION, face_parameters, settling_steps
 from standoff_studies.paper.start_decay import decay_statement
-
-Array = NDArray[np.float64]
 
 SHADES = {"face": None, "edge": "#FBE3C0", "vertex": "#BDBDBD"}
 """Behind the stays on each kind of feature."""

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.automaton import Visit
 from standoff.bodies import shapes
+from standoff.geometry.validation import Array
 from standoff.motion import Fixed, Helix
 from standoff.recording import Recording
 from standoff.tracking import distance
@@ -25,8 +25,6 @@ from standoff_studies.paper.pair_simulation import (
 )
 from standoff_studies.paper.patch_places import place_on
 from standoff_studies.paper.resets import Move
-
-Array = NDArray[np.float64]
 
 RADIUS, OFFSET = 1.0, 0.45
 """Of the lens's balls, and of their centres from its middle [length]."""

@@ -6,11 +6,12 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from standoff.bodies import Body
 from standoff.bodies.tessellation import edge_lines
 from standoff.bodies.voronoi import voronoi_regions
+from standoff.geometry.validation import Array
 from standoff.tracking import Feature
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import View
@@ -25,8 +26,6 @@ from standoff_studies.paper.simulation_d.runs import (
     sequence,
     settling_steps,
 )
-
-Array = NDArray[np.float64]
 
 AZIMUTH, ELEVATION = 40.0, 26.0
 """Where the viewer stands [degrees]: beside the helix's axis, and above the upper vertex."""

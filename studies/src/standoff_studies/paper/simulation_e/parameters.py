@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.held_features import growth
@@ -31,8 +31,6 @@ from standoff_studies.paper.simulation_e.runs import (
 )
 from standoff_studies.paper.start_decay import decay_statement
 from standoff_studies.paper.unaided import Part, unaided
-
-Array = NDArray[np.float64]
 
 BESIDE = 0.2
 """By which our instants may be off the paper's [s]."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from standoff.automaton import Visit
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Carried, ConstantTwist, Helix, Pose, Twist
 from standoff.recording import Recording
 from standoff_studies.paper.bodies import lens_of_patches
@@ -19,8 +20,6 @@ from standoff_studies.paper.many_starts import Ends
 from standoff_studies.paper.pair_simulation import REST, Simulation, Start, ends_of, moves_from
 from standoff_studies.paper.patch_places import place_on, short
 from standoff_studies.paper.resets import Move
-
-Array = NDArray[np.float64]
 
 SEMI_AXES = (0.8, 0.6, 0.7)
 """Body B is the lens stretched by these along x, y and z."""

@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from standoff.bodies import Body
 from standoff.bodies.tessellation import edge_lines
@@ -28,8 +27,6 @@ from standoff_studies.paper.simulation_e.runs import (
     SIMULATION,
     sequence,
 )
-
-Array = NDArray[np.float64]
 
 AZIMUTH, ELEVATION = 8.0, 56.0
 """Where the viewer stands [degrees]: so that both ends of the witness lines are seen."""
