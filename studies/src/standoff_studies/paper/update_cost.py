@@ -377,11 +377,11 @@ def draw() -> Figure:
     axes = figure.subplots()
     for k, name in enumerate(PRICES, start=1):
         costs = [spent(name, target).cost for target in TARGETS]
-        look: dict[str, Any] = {"color": style.COLOURS[k], "linestyle": style.DASHES[k]}
-        axes.plot(TARGETS, costs, marker=style.MARKERS[k], label=name, **look)
+        axes.plot(TARGETS, costs, marker=style.MARKERS[k], label=name, **style.line(k))
     for integrator, marker in (("heun", "*"), ("euler", "P")):
         law = law_spent(integrator)
-        look = {"color": style.BLUE, "markersize": 15 if marker == "*" else 10}
+        size = 15 if marker == "*" else 10
+        look: dict[str, Any] = {"color": style.BLUE, "markersize": size}
         axes.plot(law.error, law.cost, marker, label=LAWS[integrator], **look)
     axes.set(xscale="log", yscale="log")
     axes.invert_xaxis()

@@ -341,7 +341,7 @@ def draw() -> Figure:
 
 def _line(axes: Axes, name: str, k: int, values: Callable[[Run], Array]) -> None:
     one = run(name)
-    axes.plot(one.time, values(one), color=style.COLOURS[k], linestyle=style.DASHES[k], label=name)
+    axes.plot(one.time, values(one), **style.line(k), label=name)
 
 
 def _shade_edges(axes: Axes) -> None:

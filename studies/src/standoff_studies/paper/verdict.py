@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -286,13 +286,7 @@ def _logarithmic(axes: Axes, label: str) -> None:
     axes.set_ylabel("greatest witness error [length]")
 
 
-def _look(name: str) -> dict[str, object]:
+def _look(name: str) -> dict[str, Any]:
     k = FIRST_STYLE[name.replace("PC2", "PC").split()[0].strip(",")]
     hollow = name.endswith("no feedforward") or name == "PC2"
-    return {
-        "color": style.COLOURS[k],
-        "linestyle": style.DASHES[k],
-        "marker": style.MARKERS[k],
-        "markerfacecolor": "white" if hollow else style.COLOURS[k],
-        "markersize": 6,
-    }
+    return style.marked(k, 6, markerfacecolor="white" if hollow else style.COLOURS[k])

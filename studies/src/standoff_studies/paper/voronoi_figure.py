@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from standoff.bodies import Body, shapes
@@ -23,6 +22,7 @@ from standoff_studies.paper.bodies import lens_of_patches, planar_body
 from standoff_studies.paper.drawing import draw_planar_body, short_name
 from standoff_studies.paper.drawing_3d import View
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.keys import key_fill
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions, draw_space_regions
 
 REACH = 0.8
@@ -265,11 +265,8 @@ def _draw_lens(axes: Axes, regions: VoronoiRegions) -> None:
     draw_space_regions(view, regions)
     view.paint(axes)
     marks = [
-        Patch(facecolor=colour, edgecolor=colour, alpha=0.5, label=words)
-        for colour, words in (
-            (style.ORANGE, "between a face and an edge"),
-            (style.BLUE, "between an edge and a vertex"),
-        )
+        key_fill("between a face and an edge", style.ORANGE, edgecolor=style.ORANGE, alpha=0.5),
+        key_fill("between an edge and a vertex", style.BLUE, edgecolor=style.BLUE, alpha=0.5),
     ]
     axes.legend(handles=marks, loc="upper center", bbox_to_anchor=(0.5, -0.01), frameon=False)
     corner = view.flat(np.zeros(3)) + np.array([-1.75, -1.55])

@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from numpy.typing import NDArray
 from scipy.ndimage import label
 
@@ -21,6 +20,7 @@ from standoff.motion import Pose
 from standoff.tracking.places import PlaceLike
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.keys import key_fill
 
 STEP = 1e-3
 """Frame time [s]."""
@@ -263,7 +263,7 @@ def _draw() -> Figure:
     first.set_title("raw law", loc="left")
     second.set_title("Newton, K h = 1", loc="left")
     keys = [
-        Patch(facecolor=shade, hatch=hatch, edgecolor=style.BLACK, linewidth=0.5, label=fate)
+        key_fill(fate, shade, hatch=hatch, edgecolor=style.BLACK, linewidth=0.5)
         for fate, shade, hatch in zip(FATES, SHADES, HATCHES, strict=True)
     ]
     figure.legend(handles=keys, loc="outside upper center", ncols=3)

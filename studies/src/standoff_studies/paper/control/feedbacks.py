@@ -221,16 +221,8 @@ def _draw_errors(axes: Axes) -> None:
     time = 1e3 * STEP * np.arange(FRAMES + 1)
     axes.axvspan(WRONG_FROM, FRAMES, color=style.QUIET, alpha=0.15, linewidth=0)
     for k, name in enumerate(LAWS):
-        axes.plot(
-            time,
-            run(name).error,
-            color=style.COLOURS[k],
-            linestyle=style.DASHES[k],
-            marker=style.MARKERS[k],
-            markersize=4.5,
-            markevery=(3 * k, 20),
-            label=name,
-        )
+        look = style.marked(k, 4.5, markevery=(3 * k, 20))
+        axes.plot(time, run(name).error, **look, label=name)
     axes.set(
         yscale="log",
         xlabel="time [ms]",
@@ -244,14 +236,7 @@ def _draw_errors(axes: Axes) -> None:
 def _draw_chatter(axes: Axes) -> None:
     frames = np.arange(8, 41)
     for k, name in ((3, "finite-time"), (4, "finite-time, capped late")):
-        axes.plot(
-            1e3 * STEP * frames,
-            1e3 * run(name).psi_u[frames],
-            color=style.COLOURS[k],
-            linestyle=style.DASHES[k],
-            marker=style.MARKERS[k],
-            markersize=4.5,
-            label=name,
-        )
+        errors = 1e3 * run(name).psi_u[frames]
+        axes.plot(1e3 * STEP * frames, errors, **style.marked(k, 4.5), label=name)
     axes.set(xlabel="time [ms]", ylabel="$\\Psi_u$ [1e-3 length²]", ylim=(-1.6, 2.4))
     axes.legend(loc="upper right", ncols=2)

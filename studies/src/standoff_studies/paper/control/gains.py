@@ -158,13 +158,8 @@ def _draw_decay(axes: Axes) -> None:
         colour = style.COLOURS[k]
         if name in same:
             z = np.linspace(0.0, 1.04 * stability_limit(name), 200)
-            axes.plot(
-                z,
-                growth_factor(name, -z),
-                color=colour,
-                linestyle=style.DASHES[k],
-                label=f"R(−K h), {'Heun and midpoint' if name == 'heun' else same[name]}",
-            )
+            words = f"R(−K h), {'Heun and midpoint' if name == 'heun' else same[name]}"
+            axes.plot(z, growth_factor(name, -z), **style.line(k), label=words)
         axes.plot(
             d.z,
             d.measured,

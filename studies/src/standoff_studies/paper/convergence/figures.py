@@ -10,7 +10,6 @@ from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from standoff_studies.paper import style
 from standoff_studies.paper.convergence.cells import (
@@ -27,6 +26,7 @@ from standoff_studies.paper.convergence.cells import (
 from standoff_studies.paper.convergence.pairs import DRAWN_PAIRS, GRIDS, LENSES
 from standoff_studies.paper.convergence.starts import ARRIVED, CAUSES, LEAST_FRAMES, PATIENCE
 from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.many_starts import INDEFINITE
 
 SOURCE = "Section on the hybrid system"
@@ -339,19 +339,13 @@ def _draw_law(axes: Axes, cells: list[Cell], law: str) -> None:
             same = [cell for cell in own if cell.gain == gain]
             if same:
                 parts.append(_sum(same, "arrived") / _sum(same, "tried"))
-        axes.plot(
-            parts,
-            [shift - k] * len(parts),
-            color=colour,
-            marker=marker,
-            markersize=4.0,
-            linewidth=1.2,
-        )
+        look: dict[str, Any] = {"color": colour, "marker": marker, "markersize": 4.0}
+        axes.plot(parts, [shift - k] * len(parts), linewidth=1.2, **look)
 
 
 def _legend(figure: Figure) -> None:
     handles = [
-        Line2D([], [], color=colour, marker=marker, markersize=4.0, label=LAWS[law].name)
+        key_line(LAWS[law].name, colour, marker=marker, markersize=4.0)
         for law, (colour, marker, _) in LOOKS.items()
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False)
+    key_below(figure, handles, 3)

@@ -103,10 +103,7 @@ def _draw_errors(axes: Axes, gain: float) -> None:
         axes.plot(
             step,
             made.normalised[: end + 1, k],
-            color=style.COLOURS[k],
-            linestyle=style.DASHES[k],
-            marker=style.MARKERS[k],
-            markersize=8 - 4 * k,
+            **style.marked(k, 8 - 4 * k),
             markerfacecolor="none" if k == 0 else None,
             markevery=max(1, end // 20),
             label=name,

@@ -16,9 +16,9 @@ from standoff_studies.paper import style
 from standoff_studies.paper.drawing import planar_features, short_name
 from standoff_studies.paper.figure import Artwork, Statement
 from standoff_studies.paper.held_features import growth
+from standoff_studies.paper.keys import key_below
 from standoff_studies.paper.many_starts import Ends
 from standoff_studies.paper.pair_simulation import HYBRID, Simulation, anywhere, never_grows
-from standoff_studies.paper.panels import key_below
 from standoff_studies.paper.resets import growth_statement, moves_of
 from standoff_studies.paper.simulation_c.kinds import FILLS, KINDS, kind_of, show_kinds
 from standoff_studies.paper.simulation_c.kinds import mode_name as name_of

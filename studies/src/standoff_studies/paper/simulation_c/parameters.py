@@ -15,8 +15,9 @@ from standoff.recording import Recording
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
 from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.pair_simulation import Simulation
-from standoff_studies.paper.panels import draw_errors, key_below, key_line, unit_interval
+from standoff_studies.paper.panels import draw_errors, unit_interval
 from standoff_studies.paper.resets import reset_statement, reset_table
 from standoff_studies.paper.simulation_c.kinds import FILLS, kind_of, mode_name, show_kinds
 from standoff_studies.paper.simulation_c.run import (
@@ -200,8 +201,7 @@ def _draw_panel(axes: Axes, simulation: Simulation, letter: str, span: tuple[flo
             zorder=1,
         )
     for k, values in enumerate(parameters_of(simulation, recording, letter).T):
-        colour, dashes = style.COLOURS[k], style.DASHES[k]
-        axes.plot(recording.time, values, color=colour, linestyle=dashes, linewidth=2.4, zorder=3)
+        axes.plot(recording.time, values, **style.line(k), linewidth=2.4, zorder=3)
     for values in parameters_of(simulation, simulation.exact, letter).T:
         axes.plot(recording.time, values, color=style.BLACK, linewidth=0.6, zorder=4)
     axes.set_xlim(span)

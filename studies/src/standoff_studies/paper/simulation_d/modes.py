@@ -15,9 +15,9 @@ from standoff.geometry.validation import Array
 from standoff.tracking import Feature, distance
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.many_starts import INDEFINITE
 from standoff_studies.paper.pair_simulation import HYBRID, Simulation, anywhere, never_grows
-from standoff_studies.paper.panels import key_below, key_line
 from standoff_studies.paper.patch_places import short
 from standoff_studies.paper.resets import growth_statement
 from standoff_studies.paper.simulation_d.runs import (

@@ -11,15 +11,9 @@ from standoff.geometry.validation import Array
 from standoff.recording import Recording
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.keys import key_below, key_fill, key_line
 from standoff_studies.paper.pair_simulation import Simulation
-from standoff_studies.paper.panels import (
-    draw_errors,
-    key_below,
-    key_fill,
-    key_line,
-    name_above,
-    unit_interval,
-)
+from standoff_studies.paper.panels import draw_errors, name_above, unit_interval
 from standoff_studies.paper.patch_places import place_on, short
 from standoff_studies.paper.resets import reset_statement, reset_table
 from standoff_studies.paper.simulation_d.runs import SIMULATION, face_parameters, settling_steps

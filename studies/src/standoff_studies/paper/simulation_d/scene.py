@@ -16,8 +16,8 @@ from standoff.tracking import Feature
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import View
 from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
+from standoff_studies.paper.keys import key_below, key_fill, key_line
 from standoff_studies.paper.pair_simulation import Simulation, certified
-from standoff_studies.paper.panels import key_below, key_fill, key_line
 from standoff_studies.paper.patch_places import short
 from standoff_studies.paper.simulation_d.runs import (
     HELIX,
