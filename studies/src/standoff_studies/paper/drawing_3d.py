@@ -126,6 +126,12 @@ class View:
         for k in np.linspace(0, points.shape[1] - 1, lines + 2).round().astype(int)[1:-1]:
             self.line(points[:, k], style.QUIET, 0.5)
 
+    def patch(self, points: Array, colour: str, *, opacity: float = 1.0, lines: int = 0) -> None:
+        """Add a grid of points as `surface` does, with a black rim."""
+        self.surface(points, colour, opacity=opacity, lines=lines)
+        for rim in (points[0], points[-1], points[:, 0], points[:, -1]):
+            self.line(rim, style.BLACK, 1.4)
+
     def body(
         self,
         body: Body,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from standoff.kernels.state import arrays as K
 from standoff.motion import Path, Pose
 from standoff.tracking import Proximity, Tracker, TrackerState, pair_system
 from standoff.tracking.calls import run
+from standoff.tracking.frame_buffer import FrameBuffer
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.rows import poses_of, twists_of
 
@@ -101,6 +102,15 @@ def is_pinned(bodies: tuple[Body, Body], poses: tuple[Pose, Pose], answer: Proxi
     return at_side and indefinite and bool(np.linalg.norm(system.Psi) > LEFT)
 
 
+def begun(
+    tracker: Tracker, paths: tuple[Path, Path], place_a: Any, place_b: Any, time: float = 0.0
+) -> TrackerState:
+    """Return a law's state at a place of each body, whatever these are worth, at a time [s]."""
+    a, b = paths
+    poses, twists = (a.pose(time), b.pose(time)), (a.twist(time), b.twist(time))
+    return tracker.start_from(*poses, place_a, place_b, *twists, settle=False)
+
+
 def motion_along(path_a: Path, path_b: Path, times: Array) -> Motion:
     """Return two paths' poses and twists at some times [s]."""
     rows = np.empty((len(times) - 1, K.N_MOTION))
@@ -129,6 +139,16 @@ def distances(tracker: Tracker, state: TrackerState, motion: Motion) -> Array:
     return run(tracker.table, motion.rows, True, steps, state.data.copy()).rows[:, K.DISTANCE]
 
 
+def stepped(tracker: Tracker, state: TrackerState, rows: Array) -> Iterator[FrameBuffer]:
+    """Yield a tracker's buffer after each row of a motion: one buffer, written anew."""
+    poses, twists, buffer = poses_of(rows), twists_of(rows), tracker.buffer(state)
+    for k in range(len(rows)):
+        buffer.pose_a[:], buffer.pose_b[:] = poses[0][k], poses[1][k]
+        buffer.twist_a[:], buffer.twist_b[:] = twists[0][k], twists[1][k]
+        tracker.step_into(buffer)
+        yield buffer
+
+
 def last_answers(
     tracker: Tracker, states: Iterable[TrackerState], paths: tuple[Path, Path], times: Array
 ) -> Iterator[Proximity]:
@@ -144,11 +164,6 @@ def last_answers(
         s
     """
     rows = motion_along(*paths, times).rows
-    poses, twists = poses_of(rows), twists_of(rows)
     for state in states:
-        buffer = tracker.buffer(state)
-        for k in range(len(rows)):
-            buffer.pose_a[:], buffer.pose_b[:] = poses[0][k], poses[1][k]
-            buffer.twist_a[:], buffer.twist_b[:] = twists[0][k], twists[1][k]
-            tracker.step_into(buffer)
+        *_, buffer = stepped(tracker, state, rows)
         yield buffer.proximity()

@@ -20,7 +20,7 @@ from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.figure import Statement
 from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth
 from standoff_studies.paper.law_words import law_words
-from standoff_studies.paper.many_starts import Ends, is_pinned, last_answers
+from standoff_studies.paper.many_starts import Ends, begun, is_pinned, last_answers
 from standoff_studies.paper.resets import (
     Errors,
     Move,
@@ -139,9 +139,7 @@ class Simulation:
         self, law: Tracker, start: Start, paths: tuple[Path, Path] | None = None
     ) -> TrackerState:
         """Return a law's state at a start, whatever it is worth, at the motion's beginning."""
-        both = self.paths if paths is None else paths
-        poses, twists = [path.pose(0.0) for path in both], [path.twist(0.0) for path in both]
-        return law.start_from(poses[0], poses[1], *start, *twists, settle=False)
+        return begun(law, self.paths if paths is None else paths, *start)
 
     def entered_events(self, recording: Recording) -> list[RecordedEvent]:
         """Return the switches after a wrong start has come to the true features."""

@@ -271,9 +271,7 @@ def _add_patch(view: View, pose: Pose, colour: str, opacity: float = 1.0) -> Non
     """The curved face with its isoparametric curves and its rim."""
     face = curved_face()
     grid = np.array([[pose.apply(face.jet(u, v)[0]) for v in SAMPLES] for u in SAMPLES])
-    view.surface(grid, colour, opacity=opacity, lines=len(CURVES) - 2)
-    for rim in (grid[0], grid[-1], grid[:, 0], grid[:, -1]):
-        view.line(rim, style.BLACK, 1.4)
+    view.patch(grid, colour, opacity=opacity, lines=len(CURVES) - 2)
 
 
 def _add_witnesses(view: View, answer: Proximity) -> None:

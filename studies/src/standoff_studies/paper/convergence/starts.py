@@ -12,14 +12,15 @@ from standoff.bodies.features import Feature, feature_of
 from standoff.geometry.validation import Array
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
-from standoff.motion import Fixed, Path, Pose, Twist
+from standoff.motion import Fixed, Path, Pose
 from standoff.recording import track
 from standoff.recording.times import even_times
 from standoff.tracking import Tracker, pair_system
 from standoff.tracking.calls import run
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.convergence.pairs import Pair
-from standoff_studies.paper.many_starts import LEFT, Motion, motion_along
+from standoff_studies.paper.many_starts import LEFT, Motion, begun, motion_along
+from standoff_studies.paper.pair_simulation import REST
 
 STEP = 1e-3
 """Sample time [s]: the paper's 1 kHz."""
@@ -143,9 +144,6 @@ class Trial:
         return isinstance(self.path, Fixed)
 
 
-HOME = Fixed(Pose.identity())
-
-
 def frames_of(gain: float) -> int:
     """Return how many frames a start is given."""
     return round(PATIENCE / gain / STEP) + LEAST_FRAMES
@@ -155,15 +153,15 @@ def trial(pair: Pair, motion: str, law: PaperLaw) -> Trial:
     """Prepare a trial."""
     assert law.gain is not None
     n, path = frames_of(law.gain), pair.path_of(motion)
-    exact = track(Tracker(pair.a, pair.b, STEP), HOME, path, n * STEP)
+    exact = track(Tracker(pair.a, pair.b, STEP), REST, path, n * STEP)
     last = Fixed(path.pose(n * STEP))
     return Trial(
         pair,
         path,
         law,
         Tracker(pair.a, pair.b, STEP, law=law),
-        motion_along(HOME, path, even_times(0.0, n * STEP, STEP)),
-        motion_along(HOME, last, even_times(0.0, MORE * n * STEP, STEP)),
+        motion_along(REST, path, even_times(0.0, n * STEP, STEP)),
+        motion_along(REST, last, even_times(0.0, MORE * n * STEP, STEP)),
         exact.distance[1:],
         np.column_stack([exact.feature_a[1:], exact.feature_b[1:]]),
     )
@@ -171,11 +169,7 @@ def trial(pair: Pair, motion: str, law: PaperLaw) -> Trial:
 
 def outcome(tried: Trial, place_a: Any, place_b: Any) -> Outcome:
     """Start the law at a place of each body, and follow it."""
-    pose, twist = tried.path.pose(0.0), tried.path.twist(0.0)
-    begun = tried.tracker.start_from(
-        Pose.identity(), pose, place_a, place_b, Twist.zero(), twist, settle=False
-    )
-    state = begun.data.copy()
+    state = begun(tried.tracker, (REST, tried.path), place_a, place_b).data.copy()
     answers, time = _followed(tried, state)
     first, last = answers[0], answers[-1]
     right = _features(tried, first) == tuple(tried.features[0])

@@ -57,7 +57,7 @@ def _tables() -> dict[str, dict[str, Array]]:
         made = shown(gain)
         tables[f"errors-{gain:.0f}"] = {
             "step": np.arange(len(made.q), dtype=float),
-            "time_s": made.time,
+            "time_s": made.recording.time,
             "normalised_psi_u": made.normalised[:, 0],
             "normalised_psi_v": made.normalised[:, 1],
             "predicted": np.asarray(gains.growth(gain) ** np.arange(len(made.q))),

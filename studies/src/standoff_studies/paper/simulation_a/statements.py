@@ -11,7 +11,7 @@ from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.simulation_a import gains
 from standoff_studies.paper.simulation_a.run import SETTLED, Run
 from standoff_studies.paper.simulation_a.setting import STEP
-from standoff_studies.paper.unaided import unaided
+from standoff_studies.paper.unaided import Part, unaided
 
 STATED = (75, 10)
 """The paper's steps to the steady state at K = 100 and 1000 1/s."""
@@ -41,8 +41,9 @@ def statements(slow: Run, fast: Run) -> tuple[Statement, ...]:
         _slowness(),
         _without_feedforward(),
     )
-    by = law_words(slow.tracker, fast.tracker, told=TOLD)
-    return (*measured_by(by, made), unaided([slow.part, fast.part], by))
+    both = slow.recording, fast.recording
+    by = law_words(*both, told=TOLD)
+    return (*measured_by(by, made), unaided([Part.of(one) for one in both], by))
 
 
 def _steps(made: Run, stated: int) -> Statement:

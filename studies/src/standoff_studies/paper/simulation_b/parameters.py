@@ -13,6 +13,7 @@ from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
 from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.resets import (
     Errors,
     Reset,
@@ -22,7 +23,6 @@ from standoff_studies.paper.resets import (
     resets_of,
 )
 from standoff_studies.paper.simulation_b.automaton import FILLS, KINDS
-from standoff_studies.paper.simulation_b.printed import REST
 from standoff_studies.paper.simulation_b.run import (
     CONVERGED,
     DURATION,

@@ -18,7 +18,8 @@ from standoff.tracking import Feature
 from standoff_studies.paper.bodies import planar_body
 from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.many_starts import Arrivals, distances, motion_along
-from standoff_studies.paper.simulation_b.printed import REST, Printed, PrintedRun
+from standoff_studies.paper.pair_simulation import REST
+from standoff_studies.paper.simulation_b.printed import Printed, PrintedRun
 
 DURATION = 4.0
 """Of the motion [s]."""
