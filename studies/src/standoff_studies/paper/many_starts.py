@@ -12,7 +12,6 @@ from standoff.geometry.validation import Array
 from standoff.kernels.state import arrays as K
 from standoff.motion import Path, Pose
 from standoff.tracking import Proximity, Tracker, TrackerState, pair_system
-from standoff.tracking.calls import run
 from standoff.tracking.frame_buffer import FrameBuffer
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.rows import poses_of, twists_of
@@ -31,36 +30,6 @@ INDEFINITE = (
 """Why starts on the right faces do not arrive."""
 
 
-class Motion(NamedTuple):
-    """The poses and twists of both bodies at some times, as the kernels read them.
-
-    Attributes
-    ----------
-    times : ndarray, shape (n,)
-        s; the first is that of the start.
-    rows : ndarray, shape (n - 1, ...)
-        Of the times after the first.
-    """
-
-    times: Array
-    rows: Array
-
-
-class Arrivals(NamedTuple):
-    """How many of the tried starts have arrived.
-
-    Attributes
-    ----------
-    arrived, tried : int
-    by : str
-        The law that they were tried with.
-    """
-
-    arrived: int
-    tried: int
-    by: str
-
-
 class Ends(NamedTuple):
     """Where the tried starts have ended.
 
@@ -71,14 +40,15 @@ class Ends(NamedTuple):
         The law that they were tried with.
     placed, pinned : int
         Of those that have not arrived: how many are on the features of the closest points, and how
-        many are held at a side of a patch with M indefinite and projection errors left.
+        many are held at a side of a patch with M indefinite and projection errors left. 0 where
+        nobody has looked.
     """
 
     arrived: int
     tried: int
     by: str
-    placed: int
-    pinned: int
+    placed: int = 0
+    pinned: int = 0
 
     @property
     def lost(self) -> int:
@@ -111,32 +81,18 @@ def begun(
     return tracker.start_from(*poses, place_a, place_b, *twists, settle=False)
 
 
-def motion_along(path_a: Path, path_b: Path, times: Array) -> Motion:
-    """Return two paths' poses and twists at some times [s]."""
+def motion_along(path_a: Path, path_b: Path, times: Array) -> Array:
+    """Return two paths' poses and twists at some times but the first, that of the start [s].
+
+    A row a time, as the kernels read them.
+    """
     rows = np.empty((len(times) - 1, K.N_MOTION))
     poses, twists = poses_of(rows), twists_of(rows)
     for k, time in enumerate(times[1:].tolist()):
         for body, path in enumerate((path_a, path_b)):
             pose = path.pose(time)
             poses[body][k], twists[body][k] = flat_pose(pose), flat_twist(path.twist(time), pose)
-    return Motion(times, rows)
-
-
-def distances(tracker: Tracker, state: TrackerState, motion: Motion) -> Array:
-    """Return the distance in every frame after a start, shape (n - 1,) [length].
-
-    Nothing but the law moves the witness points: a frame that it refuses is nan, with all after.
-
-    Parameters
-    ----------
-    tracker : Tracker
-        With a law without restarts.
-    state : TrackerState
-        Of the motion's first time.
-    motion : Motion
-    """
-    steps = np.diff(motion.times)
-    return run(tracker.table, motion.rows, True, steps, state.data.copy()).rows[:, K.DISTANCE]
+    return rows
 
 
 def stepped(tracker: Tracker, state: TrackerState, rows: Array) -> Iterator[FrameBuffer]:
@@ -163,7 +119,7 @@ def last_answers(
     times : ndarray, shape (n,)
         s
     """
-    rows = motion_along(*paths, times).rows
+    rows = motion_along(*paths, times)
     for state in states:
         *_, buffer = stepped(tracker, state, rows)
         yield buffer.proximity()

@@ -19,7 +19,7 @@ from standoff.tracking import Tracker, pair_system
 from standoff.tracking.calls import run
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.convergence.pairs import Pair
-from standoff_studies.paper.many_starts import LEFT, Motion, begun, motion_along
+from standoff_studies.paper.many_starts import LEFT, begun, motion_along
 from standoff_studies.paper.pair_simulation import REST
 
 STEP = 1e-3
@@ -121,8 +121,8 @@ class Trial:
     law : PaperLaw
         Without restarts, with a gain.
     tracker : Tracker
-    motion, rest : Motion
-        Of the trial, and of the bodies at rest where it ends.
+    motion, rest : ndarray
+        Poses and twists, a row a frame: of the trial, and of the bodies at rest where it ends.
     due : ndarray, shape (frames,)
         The true distance after each frame [length].
     features : ndarray of Feature, shape (frames, 2)
@@ -133,8 +133,8 @@ class Trial:
     path: Path
     law: PaperLaw
     tracker: Tracker
-    motion: Motion
-    rest: Motion
+    motion: Array
+    rest: Array
     due: Array
     features: NDArray[np.object_]
 
@@ -174,7 +174,7 @@ def outcome(tried: Trial, place_a: Any, place_b: Any) -> Outcome:
     first, last = answers[0], answers[-1]
     right = _features(tried, first) == tuple(tried.features[0])
     settled = _features(tried, last) == tuple(tried.features[len(answers) - 1])
-    definite = right and _system(tried, first, tried.motion.rows[0])[1] > 0.0
+    definite = right and _system(tried, first, tried.motion[0])[1] > 0.0
     end = None if np.isfinite(time) else _end(tried, state, answers, settled)
     return Outcome(time, right, settled, definite, end)
 
@@ -187,7 +187,7 @@ def _run(tried: Trial, rows: Array, state: Array) -> Array:
 def _followed(tried: Trial, state: Array) -> tuple[Array, float]:
     """The answers, and the time of arrival: until it has stayed, or stands still, or time is up."""
     assert tried.law.gain is not None
-    rows, n = tried.motion.rows, len(tried.due)
+    rows, n = tried.motion, len(tried.due)
     stay = round(STAYED / tried.law.gain / STEP) + LEAST_FRAMES
     length, answers = max(LEAST_FRAMES, n // 12), np.empty((0, K.N_OUT))
     while len(answers) < n:
@@ -243,7 +243,7 @@ def _system(tried: Trial, answer: Array, row: Array) -> tuple[float, float]:
 def _end(tried: Trial, state: Array, answers: Array, settled: bool) -> End:
     """Trace a start that has not arrived."""
     last = answers[-1]
-    row = tried.motion.rows[len(answers) - 1]
+    row = tried.motion[len(answers) - 1]
     if not np.isfinite(last[K.DISTANCE]):
         return End("other", False, "", "", (), np.nan, np.nan, np.nan, 0)
     psi, least = _system(tried, last, row)
@@ -265,7 +265,7 @@ def _end(tried: Trial, state: Array, answers: Array, settled: bool) -> End:
 
 def _is_late(tried: Trial, state: Array) -> bool:
     """Does it arrive after all, with the bodies at rest where the motion ends?"""
-    rows, due = tried.rest.rows, tried.due[-1]
+    rows, due = tried.rest, tried.due[-1]
     answers, n = np.empty((0, K.N_OUT)), len(tried.due)
     for k in range(MORE):
         answers = _run(tried, rows[k * n : (k + 1) * n], state)

@@ -13,7 +13,7 @@ from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion import Fixed
 from standoff.tracking import Tracker
-from standoff_studies.paper.many_starts import Motion, begun, motion_along, stepped
+from standoff_studies.paper.many_starts import begun, motion_along, stepped
 from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.simulation_a.run import (
     FLAT_HOME,
@@ -75,13 +75,13 @@ def try_all(starts: Array, gains: Array, frames: int) -> Trials:
     return trials
 
 
-def follow(tracker: Tracker, start: Array, moving: Motion) -> Trial:
+def follow(tracker: Tracker, start: Array, moving: Array) -> Trial:
     """Run the law from one start (2,)."""
     state = begun(tracker, (REST, PATH), (FACE, start), (VERTEX, ()))
     before = np.abs(system_at(start, 0.0).Psi)
     goal = SETTLED * np.linalg.norm(before)
     q, monotone = [start], True
-    for buffer in stepped(tracker, state, moving.rows):
+    for buffer in stepped(tracker, state, moving):
         if buffer.out[K.OUT_COUNTS + N.SATURATIONS]:
             break
         q.append(buffer.out[K.OUT_Q : K.OUT_Q + 2].copy())

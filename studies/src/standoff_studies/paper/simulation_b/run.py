@@ -17,7 +17,7 @@ from standoff.points import PointEvent, PointRecording, PointTracker, record_poi
 from standoff.tracking import Feature
 from standoff_studies.paper.bodies import planar_body
 from standoff_studies.paper.law_words import law_words
-from standoff_studies.paper.many_starts import Arrivals, distances, motion_along
+from standoff_studies.paper.many_starts import Ends, last_answers
 from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.simulation_b.printed import Printed, PrintedRun
 
@@ -132,18 +132,21 @@ def run() -> Run:
 
 
 @cache
-def arrivals() -> Arrivals:
+def arrivals() -> Ends:
     """Try starts all over each curve: each of the parallel trackers is alone on its curve."""
     simulation = run()
     printed, k, found = simulation.printed, round(CONVERGED / FRAME), 0
-    motion = motion_along(REST, simulation.path, printed.times[: k + 1])
+    paths, times = (REST, simulation.path), printed.times[: k + 1]
     for curve in range(simulation.body.n_edges):
         due = simulation.exact.curve_distance[k, curve]
-        for u in np.linspace(0.0, 1.0, TRIED).tolist():
-            state = printed.begun(printed.parallel, Feature("edge", curve), u, 0)
-            found += bool(abs(distances(printed.parallel, state, motion)[-1] - due) < ARRIVED)
+        states = (
+            printed.begun(printed.parallel, Feature("edge", curve), u, 0)
+            for u in np.linspace(0.0, 1.0, TRIED).tolist()
+        )
+        last = last_answers(printed.parallel, states, paths, times)
+        found += sum(bool(abs(answer.distance - due) < ARRIVED) for answer in last)
     by = law_words(printed.parallel, told="starts along each curve")
-    return Arrivals(found, TRIED * simulation.body.n_edges, by)
+    return Ends(found, TRIED * simulation.body.n_edges, by)
 
 
 def late(recording: PointRecording | PrintedRun) -> list[PointEvent]:

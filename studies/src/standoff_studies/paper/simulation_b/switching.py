@@ -13,7 +13,7 @@ from standoff.tracking import Feature
 from standoff_studies.paper.drawing import short_name
 from standoff_studies.paper.figure import Statement
 from standoff_studies.paper.held_features import CONTINUOUS, SHARED, held_distance
-from standoff_studies.paper.pair_simulation import REST
+from standoff_studies.paper.pair_simulation import HYBRID, REST, anywhere
 from standoff_studies.paper.resets import growth_statement, moves_of
 from standoff_studies.paper.simulation_b.run import (
     ARRIVED,
@@ -153,7 +153,7 @@ def _growth(simulation: Run) -> Statement:
     found = growths(simulation)
     grows = max(max(found["medial"]), max(found["voronoi"]))
     return Statement(
-        "Section on the hybrid system",
+        HYBRID,
         "the distance between features never grows at a switch",
         f"at the instants of {len(found['medial'])} jumps and {len(found['voronoi'])} Voronoi "
         f"switches the feature after it is at most {grows:.0e} length farther away than the one "
@@ -185,7 +185,7 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
     )
     return (
         Statement(
-            "Section on the hybrid system",
+            HYBRID,
             claim,
             f"outside, from {len(runs)} wrong starts: the same {int(outside.sum())} Voronoi "
             f"switches, instants within {outer:.0e} s",
@@ -193,7 +193,7 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
             by=simulation.paper.by,
         ),
         Statement(
-            "Section on the hybrid system",
+            HYBRID,
             claim,
             f"inside, from {len(runs)} wrong starts: the same {int((~outside).sum())} switches, "
             f"instants within {inner:.0e} s, also while the errors still converge",
@@ -210,13 +210,10 @@ def _as_printed(simulation: Run) -> tuple[Statement, Statement]:
     """What becomes of starts anywhere, and that nothing beside the law helps."""
     tried, runs = arrivals(), (simulation.paper, *simulation.others)
     return (
-        Statement(
-            "Section on the hybrid system",
-            "from a start anywhere on tiled convex bodies the errors converge",
-            f"{tried.arrived} of {tried.tried} starts all over the three curves are at the "
-            f"distance to their curve to {ARRIVED:g} after {CONVERGED:g} s",
-            tried.arrived == tried.tried,
-            by=tried.by,
+        anywhere(
+            tried,
+            "starts all over the three curves are at the distance to their curve to "
+            f"{ARRIVED:g} after {CONVERGED:g} s",
         ),
         unaided(
             [Part.of(part) for one in runs for part in (*one.parts, one.outside)],
