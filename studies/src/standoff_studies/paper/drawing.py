@@ -7,12 +7,16 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
 from standoff.bodies import Body
 from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking import Feature
 from standoff_studies.paper import style
+
+Spot = tuple[float, float]
+"""A place in a picture."""
 
 CURVE_SAMPLES = 65
 """Points of a drawn curve: its chords are off by less than a line's width."""
@@ -129,6 +133,26 @@ def draw_witness_line(axes: Axes, point_a: Array, point_b: Array, **line: Any) -
     look: dict[str, Any] = {"color": style.BLACK, "linewidth": 1.2, "markersize": 3.5, "zorder": 5}
     look |= line
     axes.plot(ends[:, 0], ends[:, 1], "o-", **look)
+
+
+def draw_arrow(axes: Axes, start: Spot, end: Spot, **look: Any) -> None:
+    """Draw an arrow from spot to spot; `look` is what matplotlib's ``FancyArrowPatch`` takes."""
+    usual: dict[str, Any] = {"arrowstyle": "-|>", "shrinkA": 0.0, "shrinkB": 0.0}
+    usual |= {"mutation_scale": 11.0, "zorder": 2}
+    axes.add_patch(FancyArrowPatch(start, end, **(usual | look)))
+
+
+def draw_box(
+    axes: Axes, middle: Spot, half: tuple[float, float], rounding: float, **look: Any
+) -> None:
+    """Draw a box with round corners; `look` is what matplotlib's ``FancyBboxPatch`` takes."""
+    (x, y), (width, height) = middle, half
+    shape = f"round,pad=0,rounding_size={rounding:g}"
+    axes.add_patch(
+        FancyBboxPatch(
+            (x - width, y - height), 2.0 * width, 2.0 * height, boxstyle=shape, zorder=3, **look
+        )
+    )
 
 
 def _place(body: Body, feature: Feature) -> tuple[Array, Array]:

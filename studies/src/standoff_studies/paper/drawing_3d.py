@@ -35,6 +35,9 @@ GRID = 20
 PIECE = 0.04
 """Longest piece of a line [length], unless told: shorter than the patches' pieces."""
 
+LOOKS = {"face": (style.BLUE, "o"), "edge": (style.RED, "s"), "vertex": (style.BLACK, "^")}
+"""Colour and mark of a witness point by the kind of its feature."""
+
 SHAPES = {"o": (24, 0.0), "s": (4, 45.0), "^": (3, 90.0), "D": (4, 0.0)}
 """Corners of a mark and the angle of the first [degrees]."""
 

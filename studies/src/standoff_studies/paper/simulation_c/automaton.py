@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import math
 from collections import Counter, defaultdict
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 from numpy.typing import ArrayLike
 
 from standoff.tracking import Feature
 from standoff_studies.paper import style
-from standoff_studies.paper.drawing import planar_features, short_name
+from standoff_studies.paper.drawing import (
+    Spot,
+    draw_arrow,
+    draw_box,
+    planar_features,
+    short_name,
+)
 from standoff_studies.paper.figure import Artwork, Statement
 from standoff_studies.paper.held_features import growth
 from standoff_studies.paper.keys import key_below
@@ -31,7 +36,8 @@ from standoff_studies.paper.simulation_c.run import (
 from standoff_studies.paper.unaided import Part, unaided
 
 Mode = tuple[Feature, Feature]
-Place = tuple[float, float]
+TAKEN: dict[str, Any] = {"color": style.BLUE, "linewidth": 2.2}
+"""Of the arrow of a switch that was taken."""
 
 HALF_WIDTH, HALF_HEIGHT = 0.29, 0.25
 """Of a mode's box, in steps of the grid."""
@@ -240,23 +246,21 @@ def _draw_lines(axes: Axes, columns: int, rows: int) -> None:
         axes.plot([column, column], [-0.5, rows - 0.5], color=style.QUIET, linewidth=0.7, zorder=1)
 
 
-def _draw_mode(axes: Axes, simulation: Simulation, mode: Mode, place: Place) -> None:
+def _draw_mode(axes: Axes, simulation: Simulation, mode: Mode, place: Spot) -> None:
     x, y = place
     stays = [s for s in simulation.paper.modes() if (s.feature_a, s.feature_b) == mode]
     letters = ", ".join(s.letter for s in snapshots() if s[3:] == mode)
     kind = kind_of(*mode)
-    box = FancyBboxPatch(
-        (x - HALF_WIDTH, y - HALF_HEIGHT),
-        2.0 * HALF_WIDTH,
-        2.0 * HALF_HEIGHT,
-        boxstyle="round,pad=0,rounding_size=0.06",
+    draw_box(
+        axes,
+        place,
+        (HALF_WIDTH, HALF_HEIGHT),
+        0.06,
         facecolor=FILLS[kind] if stays else "white",
         edgecolor=style.BLACK if stays else style.QUIET,
         linestyle="-" if stays else ":",
         linewidth=1.2 if stays else 0.8,
-        zorder=3,
     )
-    axes.add_patch(box)
     text = name_of(*mode)
     if stays:
         text += f"\n{sum(s.end - s.start for s in stays):.2f} s"
@@ -274,7 +278,7 @@ def _draw_mode(axes: Axes, simulation: Simulation, mode: Mode, place: Place) -> 
     )
 
 
-def _draw_way(axes: Axes, source: Place, target: Place, times: tuple[float, ...]) -> None:
+def _draw_way(axes: Axes, source: Spot, target: Spot, times: tuple[float, ...]) -> None:
     """An arrow between two neighbours; over the side of the grid, the two ends of one."""
     label = "\n".join(f"{time:.3f}" for time in times)
     along = 0 if source[1] == target[1] else 1
@@ -284,12 +288,13 @@ def _draw_way(axes: Axes, source: Place, target: Place, times: tuple[float, ...]
     forward = step if near else -step / abs(step)
     start, end = _aside(source, along, forward * half), _aside(target, along, -forward * half)
     if near:
-        _arrow(axes, start, end)
+        draw_arrow(axes, start, end, **TAKEN)
         middle = _aside(start, along, 0.5 * (end[along] - start[along]))
     else:
-        _arrow(axes, start, _aside(start, along, forward * STUBS[along]), head="-")
-        _arrow(axes, _aside(end, along, -forward * STUBS[along]), end)
-        middle = _aside(start, along, 0.5 * forward * STUBS[along])
+        stub = forward * STUBS[along]
+        draw_arrow(axes, start, _aside(start, along, stub), **TAKEN, arrowstyle="-")
+        draw_arrow(axes, _aside(end, along, -stub), end, **TAKEN)
+        middle = _aside(start, along, 0.5 * stub)
     x, y = middle
     small = style.FONT - 3.0
     if along == 0:
@@ -298,21 +303,5 @@ def _draw_way(axes: Axes, source: Place, target: Place, times: tuple[float, ...]
         axes.text(x + 0.04, y, label, ha="left", va="center", color=style.BLUE, fontsize=small)
 
 
-def _aside(place: Place, along: int, by: float) -> Place:
+def _aside(place: Spot, along: int, by: float) -> Spot:
     return (place[0] + by, place[1]) if along == 0 else (place[0], place[1] + by)
-
-
-def _arrow(axes: Axes, start: Place, end: Place, head: str = "-|>") -> None:
-    axes.add_patch(
-        FancyArrowPatch(
-            start,
-            end,
-            arrowstyle=head,
-            shrinkA=0.0,
-            shrinkB=0.0,
-            mutation_scale=11.0,
-            color=style.BLUE,
-            linewidth=2.2,
-            zorder=2,
-        )
-    )

@@ -14,7 +14,7 @@ from standoff.bodies.voronoi import voronoi_regions
 from standoff.geometry.validation import Array
 from standoff.tracking import Feature
 from standoff_studies.paper import style
-from standoff_studies.paper.drawing_3d import View
+from standoff_studies.paper.drawing_3d import LOOKS, View
 from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
 from standoff_studies.paper.keys import key_below, key_fill, key_line
 from standoff_studies.paper.pair_simulation import Simulation, certified
@@ -26,6 +26,7 @@ from standoff_studies.paper.simulation_d.runs import (
     sequence,
     settling_steps,
 )
+from standoff_studies.paper.voronoi_drawing import draw_space_regions
 
 AZIMUTH, ELEVATION = 40.0, 26.0
 """Where the viewer stands [degrees]: beside the helix's axis, and above the upper vertex."""
@@ -43,12 +44,6 @@ SLOW, APART, FRAMES = 14, 15, 80
 """Pictures of the animation: of its slow beginning, so many samples apart, and in all."""
 
 KINDS = ("face", "edge", "vertex")
-LOOKS = {
-    "face": (style.BLUE, "o"),
-    "edge": (style.RED, "s"),
-    "vertex": (style.BLACK, "^"),
-}
-"""Colour and mark of a witness line by the kind of its feature on the lens."""
 
 REGION_COLOUR = style.QUIET
 LIT, UNLIT = "#7CC4F0", "#E2E2E2"
@@ -140,9 +135,8 @@ def _draw() -> Figure:
     axes = figure.add_subplot()
     view = View(AZIMUTH, ELEVATION)
     view.body(runs.a)
-    for sheet in region_sheets(runs.a):
-        view.surface(sheet, REGION_COLOUR, opacity=0.2, shaded=False)
-        view.line(sheet[:, -1], REGION_COLOUR, 0.9)
+    between = voronoi_regions(runs.a, REACH)
+    draw_space_regions(view, between, colours=(REGION_COLOUR, REGION_COLOUR), opacity=0.2)
     first = settling_steps(recording)
     view.line(recording.point_a[first:], style.GREEN, 2.0, rank=1.5)
     view.line(recording.point_b, style.BLACK, 2.2)
@@ -161,24 +155,6 @@ def _draw() -> Figure:
     view.triad(axes, (1.75, -1.3), 0.4, "radius")
     key_below(figure, _key(), 3)
     return figure
-
-
-def region_sheets(lens: Body) -> list[Array]:
-    """Return grids of points (n, m, 3) on the surfaces between the external Voronoi regions.
-
-    Between an edge and each of its faces stand the normals of that face along the edge, between a
-    vertex and each of its edges the plane sector between the normals of both faces there. A face
-    and a vertex have a ray in common, no surface.
-    """
-    out = np.linspace(0.0, REACH, 7)[:, None]
-    sheets = []
-    for boundary in voronoi_regions(lens, REACH).external:
-        if "edge" in {feature.kind for feature in boundary.features}:
-            count = len(boundary.origins)
-            some = np.linspace(0, count - 1, min(count, 25)).astype(int)
-            starts, rays = boundary.origins[some, None], boundary.directions[some, None]
-            sheets.append(starts + out * rays)
-    return sheets
 
 
 def _witness(view: View, foot: Array, point: Array, feature: Feature) -> None:

@@ -14,7 +14,7 @@ from standoff.bodies.tessellation import edge_lines
 from standoff.motion import Pose
 from standoff.tracking import Feature
 from standoff_studies.paper import style
-from standoff_studies.paper.drawing_3d import View, posed
+from standoff_studies.paper.drawing_3d import LOOKS, View, posed
 from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
 from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.pair_simulation import Simulation, certified
@@ -33,9 +33,6 @@ AZIMUTH, ELEVATION = 8.0, 56.0
 
 COLOURS = {"A": ("#CBE6F6", "#5F9FC8", "#9FD3F2"), "B": ("#F7D08A", "#DDA03F", "#FBE9C6")}
 """Of each body's three patches: one hue a body, three brightnesses."""
-
-LOOKS = {"face": (style.BLUE, "o"), "edge": (style.RED, "s"), "vertex": (style.BLACK, "^")}
-"""Colour and mark of a witness point by the kind of its feature."""
 
 HEIGHTS = (1.25, 1.0, 1.0)
 """Of the rows of panels."""
