@@ -169,6 +169,11 @@ class Motion:
         return Frames(pose_a, pose_b, twist_a, twist_b, steps)
 
 
+def stream(seed: int, which: int, number: int) -> Rng:
+    """Return one of a seed's streams of random numbers, which no other draw changes."""
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(which, number)))
+
+
 def random_direction(rng: Rng) -> Array:
     """Return a unit vector, (3,)."""
     n = rng.normal(size=3)

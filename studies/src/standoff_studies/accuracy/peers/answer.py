@@ -28,6 +28,19 @@ class PeerAnswer:
     normal: Array
 
 
+NOTHING = PeerAnswer(np.nan, *[np.full(3, np.nan)] * 3)
+"""That of a peer that has none."""
+
+SAME_LENGTHS = {
+    "sphere": "Sphere",
+    "capsule": "Capsule",
+    "ellipsoid": "Ellipsoid",
+    "cylinder": "Cylinder",
+    "cone": "Cone",
+    "box": "Box",
+}
+"""Kinds whose lengths Coal and FCL take in the same order, with the names that both have."""
+
 Query = Callable[[Pose, Pose], PeerAnswer]
 
 
