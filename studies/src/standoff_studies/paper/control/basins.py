@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from scipy.ndimage import label
 
 import standoff as so
-from standoff.bodies import Body
 from standoff.control.basin import Basin, basin
 from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking.places import PlaceLike
 from standoff_studies.paper import style
+from standoff_studies.paper.control.decay import bodies as ellipsoids
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.keys import key_fill
 
@@ -52,12 +52,6 @@ LAW = (
     "safeguarded one so.PredictorCorrector(), on untiled ellipsoids at rest; random starts"
 )
 """What the statements say they were measured with."""
-
-
-@cache
-def ellipsoids() -> tuple[Body, Body]:
-    """A, which the point goes with too, and B."""
-    return so.shapes.ellipsoid(1.0, 0.7, 0.5), so.shapes.ellipsoid(0.4, 0.9, 0.6)
 
 
 def place_of(direction: Array) -> PlaceLike:

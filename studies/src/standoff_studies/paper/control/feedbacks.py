@@ -8,12 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.spatial.transform import Rotation
 
 import standoff as so
 from standoff.bodies import Body
 from standoff.geometry.validation import Array
-from standoff.motion import Pose, Twist
+from standoff.motion import ConstantTwist, Pose, Twist
 from standoff.tracking import feedback
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
@@ -87,14 +86,7 @@ def bodies() -> tuple[Body, Body]:
 
 def pose(frame: int) -> Pose:
     """B's pose at a frame."""
-    turn, shift = POSE_B
-    v, omega = DRIFT
-    start = Pose.exp(turn, shift)
-    time = frame * STEP
-    return Pose(
-        Rotation.from_rotvec(time * omega).as_matrix() @ start.rotation,
-        start.translation + time * v,
-    )
+    return ConstantTwist(Pose.exp(*POSE_B), Twist(*DRIFT)).pose(frame * STEP)
 
 
 @cache
