@@ -102,10 +102,9 @@ def verdict() -> Artwork:
             "two steps by the blend of the last two. Below: what twists that are wrong by a part "
             "of their length do, at 10 ms frames; -1 means no twist at all. In short: the paper's "
             "law holds what it claims (a fixed step, errors that decay at a rate and a limit known "
-            "in advance, "
-            "feedforward that pays), but its order of integration buys nothing at K h = 1, it "
-            "needs safeguards from a start far away, and once the next pose is known its own two "
-            "parts, applied one after the other, are better by orders for half the cost."
+            "in advance, feedforward that pays), but its order of integration buys nothing at K h "
+            "= 1, it needs safeguards from a start far away, and once the next pose is known its "
+            "own two parts, applied one after the other, are better by orders for half the cost."
         ),
         text=(
             "Two diagrams of witness errors on logarithmic scales. The predictor-correctors lie "

@@ -83,14 +83,13 @@ def anew() -> Artwork:
 def _artwork(cells: tuple[Cell, ...]) -> Artwork:
     return Artwork(
         caption=(
-            "Part of random starts that has come to the true distance, within "
-            f"{ARRIVED:g} length, {PATIENCE:g}/K and {LEAST_FRAMES} frames after the start, "
-            "without restarts. A mark is a gain K: "
-            f"{', '.join(f'{gain:g}' for gain in GAINS)} 1/s; a line joins the gains. D and E are "
-            "the lens with a point and with a stretched lens, the same bodies and the same starts "
-            "in three parametrisations; the drawn pairs are stretched lenses of patches. A mark "
-            "stands for 1000 starts of a pair with the covariant M, in some cells for 200 or 300, "
-            "and for 300 as printed, 100 on a drawn pair."
+            f"Part of random starts that has come to the true distance, within {ARRIVED:g} length, "
+            f"{PATIENCE:g}/K and {LEAST_FRAMES} frames after the start, without restarts. A mark "
+            f"is a gain K: {', '.join(f'{gain:g}' for gain in GAINS)} 1/s; a line joins the gains. "
+            "D and E are the lens with a point and with a stretched lens, the same bodies and the "
+            "same starts in three parametrisations; the drawn pairs are stretched lenses of "
+            "patches. A mark stands for 1000 starts of a pair with the covariant M, in some cells "
+            "for 200 or 300, and for 300 as printed, 100 on a drawn pair."
         ),
         text=(
             "Two diagrams, bodies at rest and moving, with a row for each pair. As printed the "

@@ -54,13 +54,12 @@ def figure_10() -> Artwork:
     return Artwork(
         caption=(
             "A hundred snapshots, one every 40 ms: the point (dots) and its witness line, by the "
-            f"printed system at K = {GAIN:g}/s; thin and grey, the library's own law. The "
-            f"first ones (thick, black, off by more than {OFF:g}) still come from the "
-            "deliberately wrong start; then the "
-            "lines are square to the curve. Arrows show which way the point goes. "
-            "Inside (vermilion, dashed) they jump over the medial axis; "
-            "outside they end on a curve (blue), or are anchored at a vertex (green, "
-            "dash-dotted). The animation also shows, inside, the two curves that are not nearest."
+            f"printed system at K = {GAIN:g}/s; thin and grey, the library's own law. The first "
+            f"ones (thick, black, off by more than {OFF:g}) still come from the deliberately wrong "
+            "start; then the lines are square to the curve. Arrows show which way the point goes. "
+            "Inside (vermilion, dashed) they jump over the medial axis; outside they end on a "
+            "curve (blue), or are anchored at a vertex (green, dash-dotted). The animation also "
+            "shows, inside, the two curves that are not nearest."
         ),
         text=(
             "A planar body with witness lines like spokes from a spiral; they jump between curves "

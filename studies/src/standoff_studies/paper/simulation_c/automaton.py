@@ -62,11 +62,9 @@ def figure_13() -> Artwork:
             "Automaton of the pair: rows are A's features, columns are B's, both in the order of "
             "the loop, so that every switch goes to a neighbour, and over the edge of the grid to "
             f"its other side. The printed system at K = {simulation.gain:g}/s ran through it from "
-            "a wrong "
-            "start: framed modes were visited, with the time spent in them; blue "
-            "arrows were taken, at the times beside them [s]; those before "
-            f"{simulation.entered:g} s are of the start. Grey lines were not taken. Letters are "
-            "the snapshots of Fig. 14."
+            "a wrong start: framed modes were visited, with the time spent in them; blue arrows "
+            f"were taken, at the times beside them [s]; those before {simulation.entered:g} s are "
+            "of the start. Grey lines were not taken. Letters are the snapshots of Fig. 14."
         ),
         text=(
             "A grid of six rows and six columns of modes; arrows lead through the visited ones, "
@@ -181,11 +179,10 @@ def _sequence(simulation: Simulation) -> Statement:
         HYBRID,
         "the features follow those of the closest points",
         f"after {simulation.entered:g} s {'the same' if off < math.inf else 'other'} "
-        f"{len(simulation.entered_events(simulation.paper))} switches as the library's own law, "
-        f"at most {off:.1e} s "
-        f"apart (a frame is {simulation.step:g} s; without b it would be about 1/K = "
-        f"{1.0 / simulation.gain:g} s); "
-        f"none is skipped, not even the {len(short)} stays shorter than 3/K"
+        f"{len(simulation.entered_events(simulation.paper))} switches as the library's own law, at "
+        f"most {off:.1e} s apart (a frame is {simulation.step:g} s; without b it would be about "
+        f"1/K = {1.0 / simulation.gain:g} s); none is skipped, not even the {len(short)} stays "
+        "shorter than 3/K"
         if off < math.inf
         else f"after {simulation.entered:g} s other switches than the library's own law",
         off < simulation.step,

@@ -137,8 +137,7 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
             "-",
             f"the start is off the exact witness points by {error[0]:.2f} length; after "
             f"{simulation.entered:g} s by at most {error[late].max():.1e}, and by "
-            f"{error[quiet].max():.1e} "
-            f"outside the {SETTLING:g} s after a switch",
+            f"{error[quiet].max():.1e} outside the {SETTLING:g} s after a switch",
             None,
             "The rest of a switch's frame still goes with the feedforward of the old feature, and "
             f"what that leaves decays as exp(−K t), 1/K = {1.0 / simulation.gain:g} s.",

@@ -47,13 +47,11 @@ def figure_14() -> Artwork:
     return Artwork(
         caption=(
             "Twelve moments of the motion, the middles of twelve equal parts of it, all at one "
-            f"scale; the printed system at K = {simulation.gain:g}/s from a wrong start. A "
-            "(solid, blue) "
-            "rests; B (dashed, "
-            "vermilion) spins while its centre spirals in. Thick curves and squares are the active "
-            "features, named in the middle of their bodies; the black line joins the witness "
-            "points, the thin grey one under it those of the library's own law. "
-            "Titles: time [s], mode (A's feature, then B's), distance d [length]. The "
+            f"scale; the printed system at K = {simulation.gain:g}/s from a wrong start. A (solid, "
+            "blue) rests; B (dashed, vermilion) spins while its centre spirals in. Thick curves "
+            "and squares are the active features, named in the middle of their bodies; the black "
+            "line joins the witness points, the thin grey one under it those of the library's own "
+            "law. Titles: time [s], mode (A's feature, then B's), distance d [length]. The "
             "animation shows the whole motion; grey is the way of B's centre."
         ),
         text=(

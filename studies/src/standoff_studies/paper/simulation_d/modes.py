@@ -53,19 +53,17 @@ def figure_17() -> Artwork:
     return Artwork(
         caption=(
             f"Simulation D, the printed system at K = {runs.gain:g}/s from a wrong start on F0: "
-            "the "
-            "hybrid automaton of the lens and the point, laid out as the lens is "
-            "seen from above: its upper vertex V1 in the middle, faces F and edges E around it, "
-            "the lower vertex V0 as the outer circle. Grey arrows are the switches that the "
-            "automaton allows; blue ones were taken, at the instants [s] beside them, in the order "
-            "of their numbers; the first two are those of the wrong start, whose face is not the "
-            "closest one. Below each visited feature stands the time spent on it."
+            "the hybrid automaton of the lens and the point, laid out as the lens is seen from "
+            "above: its upper vertex V1 in the middle, faces F and edges E around it, the lower "
+            "vertex V0 as the outer circle. Grey arrows are the switches that the automaton "
+            "allows; blue ones were taken, at the instants [s] beside them, in the order of their "
+            "numbers; the first two are those of the wrong start, whose face is not the closest "
+            "one. Below each visited feature stands the time spent on it."
         ),
         text=(
             "A ring of three faces and three edges around a vertex. The run goes at once to face "
-            "1, from there "
-            "around the ring by way of edge 2, face 2, edge 1, face 0 and edge 0 back to face 1, "
-            "then over edge 0 to the vertex and over edge 1 to face 0."
+            "1, from there around the ring by way of edge 2, face 2, edge 1, face 0 and edge 0 "
+            "back to face 1, then over edge 0 to the vertex and over edge 1 to face 0."
         ),
         draw=_draw,
         tables={"stays": _stays(runs), "transitions": _transitions(automaton)},
@@ -138,8 +136,7 @@ def _statements(runs: Simulation, automaton: Automaton) -> tuple[Statement, ...]
             HYBRID,
             "for a body and a point the switching times do not depend on the continuous state",
             f"from {len(runs.starts)} wrong starts the same switches after {1e3 * runs.entered:g} "
-            "ms, "
-            f"at the instants of the library's own law to {off:.1e} s",
+            f"ms, at the instants of the library's own law to {off:.1e} s",
             off < INSTANT,
             "the projection errors of the starts take 0.4 s to fall below a ten-thousandth",
             runs.by,

@@ -41,15 +41,14 @@ def figure_18() -> Artwork:
     table["error"] = runs.witness_error
     return Artwork(
         caption=(
-            "Simulation D: the parameters u and v of the lens's faces against time, by the "
-            f"printed system at K = {runs.gain:g}/s from a wrong start; thin and dark, the "
-            "library's "
-            "own law. A face's parameters are drawn while the closest point is on it or on its "
-            "boundary: an edge belongs to two faces, a vertex to all three. The modes are named "
-            "on top; while the closest point is on an edge (tinted) u stays at exactly 0 or 1, "
-            "and at the vertex (grey) v stays at 1 and u has no meaning. Below: how far the law's "
-            "point is from the closest one, and the projection errors |Ψ|; rings are what each "
-            "reset makes of them."
+            "Simulation D: the parameters u and v of the lens's faces against time, by the printed "
+            f"system at K = {runs.gain:g}/s from a wrong start; thin and dark, the library's own "
+            "law. A face's parameters are drawn while the closest point is on it or on its "
+            "boundary: an edge belongs to two faces, a vertex to all three. The modes are named on "
+            "top; while the closest point is on an edge (tinted) u stays at exactly 0 or 1, and at "
+            "the vertex (grey) v stays at 1 and u has no meaning. Below: how far the law's point "
+            "is from the closest one, and the projection errors |Ψ|; rings are what each reset "
+            "makes of them."
         ),
         text=(
             "Three panels, one a face, with two curves each. The curves of u end in level "

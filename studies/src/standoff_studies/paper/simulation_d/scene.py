@@ -67,16 +67,14 @@ def figure_16() -> Artwork:
     return Artwork(
         caption=(
             "Simulation D: a lens of three four-sided patches (u and v lines grey) and a point on "
-            "a helix (thick black). Witness lines are drawn "
-            f"every {runs.duration / WITNESS_LINES:.2g} s; their mark and colour tell the kind of "
-            "the "
+            "a helix (thick black). Witness lines are drawn every "
+            f"{runs.duration / WITNESS_LINES:.2g} s; their mark and colour tell the kind of the "
             "closest feature. Grey sheets (so.voronoi_regions) bound the external regions of the "
             "edges and vertices: a witness line changes its kind where the helix crosses one. The "
             "dashed line leads to the wrong point where the printed system was started on purpose, "
             f"at K = {runs.gain:g}/s; thin purple lines are its first ones, {1e3 * EARLY:.0f} ms "
-            "apart. "
-            "The path of its point is green, that of the library's own law thin. Lengths are in "
-            "the radius of the lens's faces."
+            "apart. The path of its point is green, that of the library's own law thin. Lengths "
+            "are in the radius of the lens's faces."
         ),
         text=(
             "A convex body like a three-sided lemon with sharp edges stands upright inside a "
@@ -117,9 +115,8 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
         Statement(
             "Fig. 16",
             "-",
-            "from wrong starts on faces "
-            f"{', '.join(str(place[0][1]) for place, _ in runs.starts)} the "
-            f"projection errors fall below {SETTLED:g} in "
+            f"from wrong starts on faces {', '.join(str(place[0][1]) for place, _ in runs.starts)} "
+            f"the projection errors fall below {SETTLED:g} in "
             f"{', '.join(str(count) for count in steps)} steps of 1 ms",
             None,
             by=runs.by,

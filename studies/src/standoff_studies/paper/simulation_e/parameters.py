@@ -51,15 +51,14 @@ def figure_20() -> Artwork:
     return Artwork(
         caption=(
             "Simulation E: the parameters u, v of A's patch and r, s of B's (solid, dashed) that "
-            f"the witness points are on, by the printed system at 1 kHz, K = {runs.gain:g}/s, "
-            "from a "
-            "wrong start on another pair of faces, which the switching leaves in the first frame; "
-            "thin and dark, the library's own law. The modes are shaded in turn and "
-            "named on top, A's feature first; thin lines mark the switching instants. On an edge "
-            "(bar) the point keeps the parameters of the patch that it came from, and u or r stays "
-            "at 1; when it leaves to the next patch they jump to that one's. Below: the distance, "
-            "how far the worse witness point is off, in the radius of A's faces, and the "
-            "projection errors |Ψ|; rings are what each reset makes of them."
+            f"the witness points are on, by the printed system at 1 kHz, K = {runs.gain:g}/s, from "
+            "a wrong start on another pair of faces, which the switching leaves in the first "
+            "frame; thin and dark, the library's own law. The modes are shaded in turn and named "
+            "on top, A's feature first; thin lines mark the switching instants. On an edge (bar) "
+            "the point keeps the parameters of the patch that it came from, and u or r stays at 1; "
+            "when it leaves to the next patch they jump to that one's. Below: the distance, how "
+            "far the worse witness point is off, in the radius of A's faces, and the projection "
+            "errors |Ψ|; rings are what each reset makes of them."
         ),
         text=(
             "Two panels of parameters between 0 and 1, one a body. In each, u rises to 1, stays "
@@ -152,9 +151,8 @@ def _as_printed(runs: Simulation) -> tuple[Statement, ...]:
         Statement(
             HYBRID,
             "the features follow those of the closest points",
-            f"{'the same' if same else 'other'} {len(runs.entered_events(runs.paper))} switches "
-            "as the "
-            f"library's own law, at most {late:.1e} s apart (a frame is {runs.step:g} s; "
+            f"{'the same' if same else 'other'} {len(runs.entered_events(runs.paper))} switches as "
+            f"the library's own law, at most {late:.1e} s apart (a frame is {runs.step:g} s; "
             f"without b it would be about 1/K = {1.0 / runs.gain:g} s)",
             bool(late < runs.step),
             by=runs.by,

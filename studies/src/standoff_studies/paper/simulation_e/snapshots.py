@@ -58,15 +58,13 @@ def figure_19() -> Artwork:
     return Artwork(
         caption=(
             "Simulation E: body A (blue) is a lens of three four-sided patches, body B (orange) "
-            f"the same stretched by {axes} along its axes. B's centre winds about A while B "
-            "turns. One snapshot in each of the five modes: patches are named, their u and v lines "
-            "grey; the witness line is black, its ends are marked by the kind of the active "
-            "feature (hollow where a body hides them), and an active edge is thick and vermilion. "
-            f"The printed system at K = {runs.gain:g}/s, from a wrong start: its first witness "
-            "line is "
-            "dashed in the first picture. Last: the path "
-            f"of B's centre (dashed) and a witness line every {FAN:g} s. Lengths are in the radius "
-            "of A's faces."
+            f"the same stretched by {axes} along its axes. B's centre winds about A while B turns. "
+            "One snapshot in each of the five modes: patches are named, their u and v lines grey; "
+            "the witness line is black, its ends are marked by the kind of the active feature "
+            "(hollow where a body hides them), and an active edge is thick and vermilion. The "
+            f"printed system at K = {runs.gain:g}/s, from a wrong start: its first witness line is "
+            "dashed in the first picture. Last: the path of B's centre (dashed) and a witness line "
+            f"every {FAN:g} s. Lengths are in the radius of A's faces."
         ),
         text=(
             "Six pictures of two bodies like three-sided lemons. The line between their closest "
