@@ -42,10 +42,12 @@ def planar_features(body: Body) -> tuple[Feature, ...]:
     return tuple(Feature(kind, index) for index in range(body.n_edges) for kind in kinds)
 
 
-def curve_points(body: Body, edge: int, pose: Pose | None = None) -> Array:
-    """Return points along a curve of a planar body, world x and y [length], shape (n, 2)."""
+def curve_points(
+    body: Body, edge: int, pose: Pose | None = None, count: int = CURVE_SAMPLES
+) -> Array:
+    """Return points along a curve of a planar body, world x and y [length], shape (count, 2)."""
     curve = body.edge_parts[edge].curve
-    points = [curve.point(t) for t in np.linspace(curve.first, curve.last, CURVE_SAMPLES)]
+    points = [curve.point(t) for t in np.linspace(curve.first, curve.last, count)]
     return placed(np.array(points), pose)
 
 

@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+HYBRID = "Section on the hybrid system"
+"""Of the paper; many statements stand there."""
+
+
 class Statement(NamedTuple):
     """One checkable statement of the paper beside what was measured.
 

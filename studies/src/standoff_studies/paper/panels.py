@@ -32,6 +32,14 @@ def draw_errors(axes: Axes, simulation: Simulation, *, least: float = 0.0, **loo
     axes.legend(frameon=False, ncols=3, loc="upper right")
 
 
+def tint(axes: Axes, stays: Iterable[tuple[Visit, str | None]]) -> None:
+    """Tint the times of stays, each in its colour if it has one, in place of a grid."""
+    axes.grid(visible=False)
+    for stay, colour in stays:
+        if colour:
+            axes.axvspan(stay.start, stay.end, facecolor=colour, linewidth=0.0, zorder=0)
+
+
 def name_above(axes: Axes, names: Iterable[tuple[Visit, str]]) -> None:
     """Write names over the middles of stays, just above the axes."""
     for stay, words in names:

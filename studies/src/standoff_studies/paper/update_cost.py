@@ -10,11 +10,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from standoff.geometry.validation import Array
-from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.pair_system import PairSystem, PairSystems
+from standoff.tracking.rows import poses_of, twists_of
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, SIMULATION, pair
+from standoff_studies.paper.many_starts import motion_along
+from standoff_studies.paper.simulation_e.runs import SIMULATION, pair
 
 FIRST, UPDATES = 50, 400
 """First frame, and number of updates: simulation E's first stay, face against face, 0 to 1.06 s."""
@@ -99,16 +100,10 @@ class Spent(NamedTuple):
 @cache
 def frames() -> tuple[Frame, ...]:
     """The frames of the updates, and the one before."""
-    exact, found = SIMULATION.exact, []
-    for k in range(FIRST, FIRST + UPDATES + 1):
-        t = k * SIMULATION.step
-        poses = PATH_A.pose(t), PATH_B.pose(t)
-        flat_a, flat_b = (flat_pose(pose) for pose in poses)
-        xi_a = flat_twist(PATH_A.twist(t), poses[0])
-        xi_b = flat_twist(PATH_B.twist(t), poses[1])
-        points = np.array([exact.point_a[k], exact.point_b[k]])
-        found.append(Frame(flat_a, flat_b, xi_a, xi_b, points))
-    return tuple(found)
+    exact, numbers = SIMULATION.exact, np.arange(FIRST - 1, FIRST + UPDATES + 1)
+    rows = motion_along(*SIMULATION.paths, np.asarray(numbers * SIMULATION.step))
+    points = np.stack([exact.point_a, exact.point_b], axis=1)[numbers[1:]]
+    return tuple(map(Frame, *poses_of(rows), *twists_of(rows), points))
 
 
 def start() -> tuple[PairSystems, Array]:

@@ -19,7 +19,7 @@ from standoff.motion import Pose
 from standoff.tracking import distance
 from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches, planar_body
-from standoff_studies.paper.drawing import draw_planar_body, short_name
+from standoff_studies.paper.drawing import curve_points, draw_planar_body, short_name
 from standoff_studies.paper.drawing_3d import View
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.keys import key_fill
@@ -83,10 +83,8 @@ def study() -> Study:
 
 
 def _worst_depth(regions: VoronoiRegions) -> float:
-    curves = [edge.curve for edge in regions.body.edge_parts]
-    samples = [
-        np.array([c.point(t)[:2] for t in np.linspace(c.first, c.last, DENSE)]) for c in curves
-    ]
+    body = regions.body
+    samples = [curve_points(body, k, count=DENSE) for k in range(body.n_edges)]
     worst = 0.0
     for branch in regions.medial_axis:
         for point, depth in zip(branch.points[:, :2], branch.depth.tolist(), strict=True):

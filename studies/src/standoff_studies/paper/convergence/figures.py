@@ -25,11 +25,9 @@ from standoff_studies.paper.convergence.cells import (
 )
 from standoff_studies.paper.convergence.pairs import DRAWN_PAIRS, GRIDS, LENSES
 from standoff_studies.paper.convergence.starts import ARRIVED, CAUSES, LEAST_FRAMES, PATIENCE
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import HYBRID, Artwork, Statement
 from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.many_starts import INDEFINITE
-
-SOURCE = "Section on the hybrid system"
 
 GROUPS = {
     "D, patches": ("D patches",),
@@ -231,7 +229,7 @@ def _statements(cells: tuple[Cell, ...]) -> tuple[Statement, ...]:
         _definite(cells),
         _anywhere(cells, f"{_words('printed')}; {gains}"),
         Statement(
-            SOURCE,
+            HYBRID,
             "-",
             f"on D's grid {_sum(grid, 'right')} of {_sum(grid, 'tried')} starts are on the closest "
             f"features after one frame, M is definite at {_sum(grid, 'definite')} of them, and "
@@ -240,7 +238,7 @@ def _statements(cells: tuple[Cell, ...]) -> tuple[Statement, ...]:
             by=f"{_words('printed')}; K = {GAINS[0]:g} 1/s",
         ),
         Statement(
-            SOURCE,
+            HYBRID,
             "-",
             f"covariant M, boundaries held: {_pooled(held)} arrive, in the worst cell "
             f"{min(cell.part for cell in held):.1%}",
@@ -248,7 +246,7 @@ def _statements(cells: tuple[Cell, ...]) -> tuple[Statement, ...]:
             by=f"{_words('covariant-hold')}; {gains}",
         ),
         Statement(
-            SOURCE,
+            HYBRID,
             "-",
             "covariant M, zeroed as printed: lenses of D and E "
             f"{_pooled(_of(cells, 'covariant', LENSES))}; drawn pairs "
@@ -264,7 +262,7 @@ def _switching(cells: tuple[Cell, ...]) -> Statement:
     left, kept = _of(cells, "printed-left"), _of(cells, "printed", SPATIAL)
     lenses = _of(left, "printed-left", LENSES)
     return Statement(
-        SOURCE,
+        HYBRID,
         "the discrete switching finds the closest features",
         f"far side left: {_part(lenses, 'settled')} of the starts on the lenses of D and E end on "
         f"them, of all spatial pairs {_part(left, 'settled')}; far side kept: "
@@ -282,7 +280,7 @@ def _definite(cells: tuple[Cell, ...]) -> Statement:
     parts = [_sum(own, "definite_arrived") / _sum(own, "definite") for own in by_gain]
     words = ", ".join(f"{part:.1%}" for part in parts)
     return Statement(
-        SOURCE,
+        HYBRID,
         "any start where M is positive definite converges",
         f"of the starts on the closest features after one frame with M definite there: {words} at "
         f"K = {', '.join(f'{gain:g}' for gain in GAINS)} 1/s",
@@ -299,7 +297,7 @@ def _anywhere(cells: tuple[Cell, ...], by: str) -> Statement:
         return _range(_of(printed, "printed", pairs))
 
     return Statement(
-        SOURCE,
+        HYBRID,
         "from a start anywhere on tiled convex bodies the errors converge",
         f"in the plane {of('B', 'C')} arrive; in space it depends on the parametrisation: lenses "
         f"of patches {of('D patches', 'E patches')}, gnomonic {of('D gnomonic', 'E gnomonic')}, "

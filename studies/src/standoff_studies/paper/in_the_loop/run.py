@@ -69,7 +69,7 @@ class Runs:
 
     Attributes
     ----------
-    lens, ball : Body
+    lens : Body
     operator : Operator
         That of `inside`.
     inside : SystemRun
@@ -83,7 +83,6 @@ class Runs:
     """
 
     lens: Body
-    ball: Body
     operator: sim.Operator
     inside: sim.SystemRun
     beside: sim.SystemRun
@@ -203,7 +202,6 @@ def run() -> Runs:
     made = dragged(inside)
     return Runs(
         lens(),
-        made.system.bodies[1].body,
         inside,
         made,
         dragged(beside),

@@ -16,6 +16,7 @@ from standoff.motion import Spiral
 from standoff.points import PointEvent, PointRecording, PointTracker, record_point
 from standoff.tracking import Feature
 from standoff_studies.paper.bodies import planar_body
+from standoff_studies.paper.drawing import curve_points
 from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.many_starts import Ends, last_answers
 from standoff_studies.paper.pair_simulation import REST
@@ -173,17 +174,13 @@ def brute_modes(body: Body, points: Array) -> list[str]:
 
     "C0" and the like for a curve, "V0" for a vertex.
     """
-    curves = [part.curve for part in body.edge_parts]
-    parameters = [np.linspace(c.first, c.last, DENSE) for c in curves]
-    samples = np.array(
-        [[c.point(t)[:2] for t in own] for c, own in zip(curves, parameters, strict=True)]
-    )
+    samples = np.array([curve_points(body, k, count=DENSE) for k in range(body.n_edges)])
     found = []
     for point in points:
         far = np.linalg.norm(samples - point, axis=2)
         curve, k = (int(i) for i in np.unravel_index(far.argmin(), far.shape))
         at_end = k in (0, DENSE - 1)
-        found.append(f"V{(curve + (k > 0)) % len(curves)}" if at_end else f"C{curve}")
+        found.append(f"V{(curve + (k > 0)) % len(samples)}" if at_end else f"C{curve}")
     return found
 
 

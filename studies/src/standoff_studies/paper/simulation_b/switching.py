@@ -11,9 +11,9 @@ from standoff.motion import Pose
 from standoff.points import PointVisit
 from standoff.tracking import Feature
 from standoff_studies.paper.drawing import short_name
-from standoff_studies.paper.figure import Statement
+from standoff_studies.paper.figure import HYBRID, Statement
 from standoff_studies.paper.held_features import CONTINUOUS, SHARED, held_distance
-from standoff_studies.paper.pair_simulation import HYBRID, REST, anywhere
+from standoff_studies.paper.pair_simulation import REST, anywhere
 from standoff_studies.paper.resets import growth_statement, moves_of
 from standoff_studies.paper.simulation_b.run import (
     ARRIVED,

@@ -23,7 +23,7 @@ from standoff_studies.paper.figure import Artwork, Statement
 from standoff_studies.paper.held_features import growth
 from standoff_studies.paper.keys import key_below
 from standoff_studies.paper.many_starts import Ends
-from standoff_studies.paper.pair_simulation import HYBRID, Simulation, anywhere, never_grows
+from standoff_studies.paper.pair_simulation import Simulation, anywhere, follows, never_grows
 from standoff_studies.paper.resets import growth_statement, moves_of
 from standoff_studies.paper.simulation_c.kinds import FILLS, KINDS, kind_of, show_kinds
 from standoff_studies.paper.simulation_c.kinds import mode_name as name_of
@@ -168,26 +168,11 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
 
 
 def _sequence(simulation: Simulation) -> Statement:
-    """The order of the modes after the start, and what a low gain is late or leaves out.
-
-    With b fed forward the law lags by no time constant, only by what a step leaves: less than a
-    frame. Without b it lags by about 1/K.
-    """
-    off = simulation.furthest()
+    """The order of the modes after the start, and what a low gain might leave out."""
     short = [v for v in simulation.exact.modes() if v.end - v.start < 3.0 / simulation.gain]
-    return Statement(
-        HYBRID,
-        "the features follow those of the closest points",
-        f"after {simulation.entered:g} s {'the same' if off < math.inf else 'other'} "
-        f"{len(simulation.entered_events(simulation.paper))} switches as the library's own law, at "
-        f"most {off:.1e} s apart (a frame is {simulation.step:g} s; without b it would be about "
-        f"1/K = {1.0 / simulation.gain:g} s); none is skipped, not even the {len(short)} stays "
-        "shorter than 3/K"
-        if off < math.inf
-        else f"after {simulation.entered:g} s other switches than the library's own law",
-        off < simulation.step,
-        by=simulation.by,
-    )
+    more = f"; none is skipped, not even the {len(short)} stays shorter than 3/K"
+    same = simulation.furthest() < math.inf
+    return follows(simulation, f"after {simulation.entered:g} s ", more if same else "")
 
 
 def _as_printed(simulation: Simulation, tried: Ends) -> tuple[Statement, Statement]:

@@ -17,7 +17,7 @@ from standoff_studies.paper.drawing import short_name
 from standoff_studies.paper.figure import Artwork, Statement
 from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.pair_simulation import Simulation
-from standoff_studies.paper.panels import draw_errors, unit_interval
+from standoff_studies.paper.panels import draw_errors, tint, unit_interval
 from standoff_studies.paper.resets import reset_statement, reset_table
 from standoff_studies.paper.simulation_c.kinds import FILLS, kind_of, mode_name, show_kinds
 from standoff_studies.paper.simulation_c.run import (
@@ -187,9 +187,8 @@ def _draw(simulation: Simulation) -> Figure:
 
 def _draw_panel(axes: Axes, simulation: Simulation, letter: str, span: tuple[float, float]) -> None:
     recording = simulation.paper
-    for stay in simulation.paper.modes():
-        fill = FILLS[kind_of(stay.feature_a, stay.feature_b)]
-        axes.axvspan(stay.start, stay.end, facecolor=fill, linewidth=0.0, zorder=0)
+    stays = simulation.paper.modes()
+    tint(axes, [(stay, FILLS[kind_of(stay.feature_a, stay.feature_b)]) for stay in stays])
     for event in recording.events:
         own = event.body == letter
         axes.axvline(
@@ -204,7 +203,6 @@ def _draw_panel(axes: Axes, simulation: Simulation, letter: str, span: tuple[flo
     for values in parameters_of(simulation, simulation.exact, letter).T:
         axes.plot(recording.time, values, color=style.BLACK, linewidth=0.6, zorder=4)
     axes.set_xlim(span)
-    axes.grid(visible=False)
     names = ", ".join(NAMES[letter]).replace("r_b", "r$_b$").replace("r_c", "r$_c$")
     unit_interval(axes, f"{letter}: {names} [–]")
 

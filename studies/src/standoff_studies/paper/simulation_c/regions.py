@@ -21,8 +21,8 @@ from standoff_studies.paper.drawing import (
     planar_features,
     short_name,
 )
-from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.pair_simulation import HYBRID, Simulation
+from standoff_studies.paper.figure import HYBRID, Artwork, Statement
+from standoff_studies.paper.pair_simulation import Simulation
 from standoff_studies.paper.simulation_c.run import (
     SIMULATION,
 )

@@ -14,10 +14,11 @@ from standoff.bodies.tessellation import edge_lines
 from standoff.geometry.validation import Array
 from standoff.tracking import Feature, distance
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.drawing import draw_arrow
+from standoff_studies.paper.figure import HYBRID, Artwork, Statement
 from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.many_starts import INDEFINITE
-from standoff_studies.paper.pair_simulation import HYBRID, Simulation, anywhere, never_grows
+from standoff_studies.paper.pair_simulation import Simulation, anywhere, never_grows
 from standoff_studies.paper.patch_places import short
 from standoff_studies.paper.resets import growth_statement
 from standoff_studies.paper.simulation_d.runs import (
@@ -232,18 +233,12 @@ def _arrow(
         end = end - NODE * along
     taken = _instants(automaton, transition)
     look: dict[str, Any] = (
-        {"color": style.BLUE, "lw": 2.2, "mutation_scale": 15}
+        {"color": style.BLUE, "linewidth": 2.2, "mutation_scale": 15, "zorder": 3}
         if taken
-        else {"color": style.QUIET, "lw": 0.8, "mutation_scale": 9}
+        else {"color": style.QUIET, "linewidth": 0.8, "mutation_scale": 9, "zorder": 1}
     )
     shift = 0.035 * aside
-    axes.annotate(
-        "",
-        tuple(end + shift),
-        tuple(start + shift),
-        arrowprops={"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, **look},
-        zorder=3 if taken else 1,
-    )
+    draw_arrow(axes, tuple(start + shift), tuple(end + shift), **look)
     if taken:
         words = "\n".join(f"{number}: {time:.3f}" for number, time in taken)
         level = abs(aside[0]) < 0.3

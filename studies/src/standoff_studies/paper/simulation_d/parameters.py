@@ -13,7 +13,7 @@ from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.keys import key_below, key_fill, key_line
 from standoff_studies.paper.pair_simulation import Simulation
-from standoff_studies.paper.panels import draw_errors, name_above, unit_interval
+from standoff_studies.paper.panels import draw_errors, name_above, tint, unit_interval
 from standoff_studies.paper.patch_places import place_on, short
 from standoff_studies.paper.resets import reset_statement, reset_table
 from standoff_studies.paper.simulation_d.runs import SIMULATION, face_parameters, settling_steps
@@ -144,9 +144,6 @@ def _draw() -> Figure:
 
 
 def _shade(axes: Axes, runs: Simulation) -> None:
-    axes.grid(visible=False)
+    tint(axes, [(visit, SHADES[visit.feature_a.kind]) for visit in runs.exact.modes()])
     for visit in runs.exact.modes():
-        shade = SHADES[visit.feature_a.kind]
-        if shade:
-            axes.axvspan(visit.start, visit.end, color=shade, linewidth=0.0, zorder=0)
         axes.axvline(visit.start, color=style.QUIET, linewidth=0.5, zorder=1)

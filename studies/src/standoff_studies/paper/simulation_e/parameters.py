@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,11 @@ from matplotlib.figure import Figure
 
 from standoff.geometry.validation import Array
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import HYBRID, Artwork, Statement, measured_by
 from standoff_studies.paper.held_features import growth
 from standoff_studies.paper.many_starts import INDEFINITE
-from standoff_studies.paper.pair_simulation import HYBRID, Simulation, anywhere, never_grows
-from standoff_studies.paper.panels import draw_errors, name_above, unit_interval
+from standoff_studies.paper.pair_simulation import Simulation, anywhere, follows, never_grows
+from standoff_studies.paper.panels import draw_errors, name_above, tint, unit_interval
 from standoff_studies.paper.patch_places import short
 from standoff_studies.paper.resets import growth_statement, reset_statement, reset_table
 from standoff_studies.paper.simulation_e.own_point import AROUND, POINTS, decisions
@@ -138,25 +139,11 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
 
 
 def _as_printed(runs: Simulation) -> tuple[Statement, ...]:
-    """The order of the modes, what becomes of starts anywhere, and that nothing helps the law.
-
-    With b fed forward the law lags by no time constant, only by what a step leaves: less than a
-    frame. Without b it lags by about 1/K.
-    """
-    late = np.abs(runs.late()).max()
-    same = np.isfinite(late)
+    """The order of the modes, what becomes of starts anywhere, and that nothing helps the law."""
     tried = arrivals()
     printed, own = decisions("voronoi"), decisions("multipliers")
     return (
-        Statement(
-            HYBRID,
-            "the features follow those of the closest points",
-            f"{'the same' if same else 'other'} {len(runs.entered_events(runs.paper))} switches as "
-            f"the library's own law, at most {late:.1e} s apart (a frame is {runs.step:g} s; "
-            f"without b it would be about 1/K = {1.0 / runs.gain:g} s)",
-            bool(late < runs.step),
-            by=runs.by,
-        ),
+        follows(runs),
         anywhere(
             tried,
             f"random starts on both bodies are at the distance to {ARRIVED:g} after {PATIENCE:g} "
@@ -272,8 +259,7 @@ def _draw_parameters(axes: Axes, runs: Simulation, body: str) -> None:
 
 
 def _shade(axes: Axes, runs: Simulation) -> None:
-    axes.grid(visible=False)
-    for k, stay in enumerate(runs.exact.modes()):
-        axes.axvspan(stay.start, stay.end, color=SHADES[k % 2], linewidth=0.0, zorder=0)
-        if k:
-            axes.axvline(stay.start, color=style.QUIET, linewidth=0.8, zorder=1)
+    stays = runs.exact.modes()
+    tint(axes, zip(stays, cycle(SHADES), strict=False))
+    for stay in stays[1:]:
+        axes.axvline(stay.start, color=style.QUIET, linewidth=0.8, zorder=1)
