@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from standoff.geometry.validation import Array
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.normals_contact import Track, tracked
 from standoff_studies.paper.normals_study import (
     FORMS,
@@ -170,7 +170,7 @@ def statements(study: Study) -> tuple[Statement, ...]:
 
 
 def _measured(text: str, why: str = "") -> Statement:
-    return Statement("Ref. [28]", "-", text, None, why)
+    return own_statement("Ref. [28]", text, why)
 
 
 def _near_contact(study: Study) -> Statement:

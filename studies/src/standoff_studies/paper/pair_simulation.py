@@ -17,7 +17,7 @@ from standoff.recording.times import even_times
 from standoff.recording.track import track_along
 from standoff.tracking import Proximity, Tracker, TrackerState, distance
 from standoff.tracking.laws import PaperLaw
-from standoff_studies.paper.figure import HYBRID, Statement
+from standoff_studies.paper.figure import HYBRID, Statement, own_statement
 from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth
 from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.many_starts import Ends, begun, is_pinned, last_answers
@@ -293,11 +293,9 @@ def anywhere(ends: Ends, told: str, why: str = "") -> Statement:
 def certified(simulation: Simulation, figure: str) -> Statement:
     """Say how many frames the library's own law certifies, and how closely."""
     exact = simulation.exact
-    return Statement(
+    return own_statement(
         figure,
-        "-",
         f"the default law certifies {int(exact.certified.sum())} of {len(exact)} frames; distance "
         f"less lower bound is at most {exact.gap.max():.0e} of the radius",
-        None,
         by=simulation.own,
     )

@@ -17,7 +17,7 @@ from standoff.motion import Pose
 from standoff.tracking import PairSystem, Proximity
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import PALE, View
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 
 HALF = (1.0, 0.8)
 """Half the block's extent in x and y [length]."""
@@ -172,8 +172,8 @@ def _quotients(u: float, v: float) -> Statement:
     across = (face.jet(u + h, v)[0] - face.jet(u - h, v)[0]) / (2 * h)
     along = (face.jet(u, v + h)[0] - face.jet(u, v - h)[0]) / (2 * h)
     off = max(float(np.linalg.norm(f_u - across)), float(np.linalg.norm(f_v - along)))
-    return Statement(
-        "Fig. 1", "-", f"f_u and f_v are difference quotients of f to {off:.0e} [length]", None
+    return own_statement(
+        "Fig. 1", f"f_u and f_v are difference quotients of f to {off:.0e} [length]"
     )
 
 
@@ -189,11 +189,9 @@ def _perpendicular(source: str, stated: str, system: PairSystem) -> Statement:
 
 def _certified(answer: Proximity) -> Statement:
     gap = answer.distance - answer.lower_bound
-    return Statement(
+    return own_statement(
         "Fig. 2",
-        "-",
         f"distance {answer.distance:.12f}, proven to be no less than that minus {gap:.1e} [length]",
-        None,
     )
 
 

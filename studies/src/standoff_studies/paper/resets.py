@@ -21,7 +21,7 @@ from standoff.recording import RecordedEvent, Recording
 from standoff.tracking import Feature, Tracker, pair_system
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import HYBRID, Statement
+from standoff_studies.paper.figure import HYBRID, Statement, own_statement
 from standoff_studies.paper.patch_places import BothPlaces, FeaturePlace, places_at, short
 
 SAMPLES = 64
@@ -142,11 +142,9 @@ def growth_statement(moves: Sequence[Move], starts: int, by: str) -> Statement:
         if moved
         else f"move a witness point {of}, so the distance does not change"
     )
-    return Statement(
+    return own_statement(
         HYBRID,
-        "-",
         f"the printed resets, from {starts} wrong start{'s' * (starts > 1)}, {told}",
-        None,
         "where they move none, the zeroing has already brought it to the boundary",
         by,
     )

@@ -13,7 +13,7 @@ from standoff.geometry.validation import Array
 from standoff.tracking.pair_system import PairSystem, PairSystems
 from standoff.tracking.rows import poses_of, twists_of
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, own_statement
 from standoff_studies.paper.many_starts import motion_along
 from standoff_studies.paper.simulation_e.runs import SIMULATION, pair
 
@@ -355,12 +355,10 @@ def _where_less_is_asked() -> Statement:
     times = ", ".join(
         f"{spent('Newton', target).cost / heun.cost:.1f} at {target:.0e}" for target in targets
     )
-    return Statement(
+    return own_statement(
         "Section I",
-        "-",
         "Newton's cost in parts of that of the law's update by the paper's integrator, where less "
         f"accuracy is asked: {times} length",
-        None,
         "one Newton step and the evaluation that finds it enough cost as much as Heun's two stages",
         BY,
     )

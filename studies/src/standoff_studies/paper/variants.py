@@ -15,7 +15,7 @@ from standoff.geometry.validation import Array
 from standoff.motion import Pose, Twist
 from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.law_words import law_words
 
 STEP = 1e-3
@@ -293,13 +293,11 @@ def statements() -> tuple[Statement, ...]:
             by_voronoi.same and max(by_voronoi.entries) == 0.0,
             "multipliers are tested at the witness point, which must first have come near",
         ),
-        Statement(
+        own_statement(
             "Switching",
-            "-",
             f"with both, once converged, frames on another feature than the true one: default "
             f"{wrong_frames(default)}, printed {wrong_frames(printed)} of "
             f"{len(default.time) - first}",
-            None,
         ),
         Statement(
             "Lower gain",

@@ -21,7 +21,7 @@ from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches, planar_body
 from standoff_studies.paper.drawing import curve_points, draw_planar_body, short_name
 from standoff_studies.paper.drawing_3d import View
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.keys import key_fill
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions, draw_space_regions
 
@@ -196,12 +196,10 @@ def _statements(found: Study) -> tuple[Statement, ...]:
             f"curves and to the nearest one within {found.worst_depth:.0e} length (dense samples)",
             len(found.planar.medial_axis) == 3 and found.worst_depth < SAME,
         ),
-        Statement(
+        own_statement(
             "Fig. 16",
-            "-",
             f"lens: {sheets} surfaces between face and edge, {sectors} sectors between edge and "
             "vertex",
-            None,
         ),
         Statement(
             "so.distance",

@@ -15,7 +15,7 @@ from standoff.geometry.validation import Array
 from standoff.motion import ConstantTwist, Pose, Twist
 from standoff.tracking import feedback
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.law_words import law_words
 
 STEP = 1e-3
@@ -168,18 +168,14 @@ def _statements() -> tuple[Statement, ...]:
             f"error below {FALLEN:g} of the start's after: {reached}",
             works,
         ),
-        Statement(
+        own_statement(
             "Feedback",
-            "-",
             f"steady error with wrong twists [length]: {steady}",
-            None,
             "PI takes up the constant part; the others keep b/K, or the power law's root of it",
         ),
-        Statement(
+        own_statement(
             "Feedback",
-            "-",
             f"chatter, frames at which Ψ_u changes its sign: {chatter}",
-            None,
             "a gain near 2/h turns the error round at each frame; 1/h takes it away in one",
         ),
     )

@@ -13,7 +13,7 @@ from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.control.decay import arrival, decays, loops
 from standoff_studies.paper.control.lag import FRAMES, PAIRS, Lag, measured_lags
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.law_words import law_words
 
 CASES = 480
@@ -90,11 +90,9 @@ def _statements() -> tuple[Statement, ...]:
             "their stable range",
             worst_decay() < AGREE,
         ),
-        Statement(
+        own_statement(
             "Gains",
-            "-",
             f"K h below {limits}: where |R(−Kh)| reaches 1",
-            None,
             "so.max_gain; the paper's 1500 at 1 kHz is a practical value below 2000",
         ),
         Statement(

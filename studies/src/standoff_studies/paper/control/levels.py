@@ -17,7 +17,7 @@ from standoff.control.lyapunov import LyapunovLevels, lyapunov_level
 from standoff.geometry.validation import Array
 from standoff.motion import Pose, Twist
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.keys import key_line
 from standoff_studies.paper.law_words import law_words
 
@@ -212,12 +212,10 @@ def _statements(bodies: str) -> tuple[Statement, ...]:
             f"E − E* < {levels.energy_level:.4g} length² the raw law found the minimum in {found}",
             found == starts,
         ),
-        Statement(
+        own_statement(
             "Convergence",
-            "-",
             f"{subject}: in {seen.frames} frames V or E rose in {seen.rises}, H was not positive "
             f"definite in {seen.indefinite}; dV/dt = −2KV to {seen.rate:.0e} (RK4, K h = 0.05)",
-            None,
         ),
     )
 

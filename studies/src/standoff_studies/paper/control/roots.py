@@ -15,7 +15,7 @@ from standoff.tracking import feedback
 from standoff_studies.paper import style
 from standoff_studies.paper.control.decay import DAMPINGS, PROPORTIONAL, loops
 from standoff_studies.paper.control.gains import AGREE, worst_loop
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.law_words import law_words
 
 DAMPING = DAMPINGS[1:]
@@ -118,17 +118,12 @@ def _statements() -> tuple[Statement, ...]:
             f"the root leaves the unit circle at K h = {linear}",
             exact,
         ),
-        Statement(
+        own_statement(
             "Gains",
-            "-",
             f"with PI of damping {DAMPING[-1]:g} at K h = {weak}: integral action costs gain",
-            None,
         ),
-        Statement(
-            "Gains",
-            "-",
-            f"measured roots of the PI loop lie on the loci to {worst_loop():.0e}",
-            None,
+        own_statement(
+            "Gains", f"measured roots of the PI loop lie on the loci to {worst_loop():.0e}"
         ),
     )
 

@@ -25,7 +25,7 @@ from standoff_studies.paper.convergence.cells import (
 )
 from standoff_studies.paper.convergence.pairs import DRAWN_PAIRS, GRIDS, LENSES
 from standoff_studies.paper.convergence.starts import ARRIVED, CAUSES, LEAST_FRAMES, PATIENCE
-from standoff_studies.paper.figure import HYBRID, Artwork, Statement
+from standoff_studies.paper.figure import HYBRID, Artwork, Statement, own_statement
 from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.many_starts import INDEFINITE
 
@@ -228,31 +228,25 @@ def _statements(cells: tuple[Cell, ...]) -> tuple[Statement, ...]:
         _switching(cells),
         _definite(cells),
         _anywhere(cells, f"{_words('printed')}; {gains}"),
-        Statement(
+        own_statement(
             HYBRID,
-            "-",
             f"on D's grid {_sum(grid, 'right')} of {_sum(grid, 'tried')} starts are on the closest "
             f"features after one frame, M is definite at {_sum(grid, 'definite')} of them, and "
             f"{_sum(grid, 'definite_arrived')} of these and {_sum(grid, 'arrived')} in all arrive",
-            None,
             by=f"{_words('printed')}; K = {GAINS[0]:g} 1/s",
         ),
-        Statement(
+        own_statement(
             HYBRID,
-            "-",
             f"covariant M, boundaries held: {_pooled(held)} arrive, in the worst cell "
             f"{min(cell.part for cell in held):.1%}",
-            None,
             by=f"{_words('covariant-hold')}; {gains}",
         ),
-        Statement(
+        own_statement(
             HYBRID,
-            "-",
             "covariant M, zeroed as printed: lenses of D and E "
             f"{_pooled(_of(cells, 'covariant', LENSES))}; drawn pairs "
             f"{_pooled(_of(cells, 'covariant', DRAWN_PAIRS))}, in the worst cell "
             f"{min(cell.part for cell in _of(cells, 'covariant')):.1%}",
-            None,
             by=f"{_words('covariant')}; {gains}",
         ),
     )

@@ -10,7 +10,7 @@ import numpy as np
 from standoff import simulation as sim
 from standoff.bodies.features import feature_of
 from standoff.geometry.validation import Array
-from standoff_studies.paper.figure import Statement, measured_by
+from standoff_studies.paper.figure import Statement, measured_by, own_statement
 from standoff_studies.paper.in_the_loop.run import (
     BALL,
     CONTACT,
@@ -136,23 +136,19 @@ def _smooth(runs: Runs) -> Statement:
 
 def _energy(runs: Runs) -> Statement:
     part, least = grown(runs.inside), float(runs.coupler.energy.least.min())
-    return Statement(
+    return own_statement(
         "Fig. 5",
-        "-",
         f"what is held and was lost in contact passes what came in by {part:.0e} of the hand's "
         f"work at most; the observer of the coupler's ports never falls below {least:.0e} J",
-        None,
     )
 
 
 def _beside(runs: Runs) -> Statement:
     apart = np.linalg.norm(runs.inside.positions(1) - runs.beside.positions(1), axis=1)
-    return Statement(
+    return own_statement(
         "Fig. 5",
-        "-",
         "with a certified tracker beside the operator, whose forces are held over a tick, the tool "
         f"goes elsewhere by {1e6 * apart.max():.1f} µm at most",
-        None,
     )
 
 

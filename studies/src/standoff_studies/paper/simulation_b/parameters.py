@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, own_statement
 from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.resets import (
     Errors,
@@ -156,13 +156,11 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             constructed=True,
         ),
         reset_statement(resets(simulation), paper.by),
-        Statement(
+        own_statement(
             "Fig. 11",
-            "-",
             f"active parameter of the paper's law against the certified one after {CONVERGED} s: "
             f"median {np.median(lag):.0e}, at most {lag.max():.2g}; the same feature in "
             f"{np.mean(same[settled]):.2%} of the frames",
-            None,
             "The greatest lag is where a curve takes over soon after its parameter left its bound.",
             paper.by,
         ),

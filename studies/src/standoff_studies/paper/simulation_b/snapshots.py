@@ -15,7 +15,7 @@ from standoff_studies.paper.drawing import (
     draw_witness_line,
     short_name,
 )
-from standoff_studies.paper.figure import Animation, Artwork, Statement
+from standoff_studies.paper.figure import Animation, Artwork, Statement, own_statement
 from standoff_studies.paper.simulation_b.run import (
     CONVERGED,
     FRAME,
@@ -134,13 +134,11 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             max(abs(rate - GAIN) for rate in rates) < 0.02 * GAIN,
             by=simulation.paper.by,
         ),
-        Statement(
+        own_statement(
             "Fig. 10",
-            "-",
             f"distance off by {error[round(CONVERGED / FRAME)]:.0e} length at {CONVERGED} s; later "
             f"by {np.median(error[exact.time > CONVERGED]):.0e} in the middle, "
             f"{error[exact.time > CONVERGED].max():.1e} at most",
-            None,
             "The greatest errors come after a parameter has left its bound, from which the law "
             "sets off early, by its rate over K.",
             simulation.paper.by,

@@ -19,7 +19,7 @@ from standoff_studies.paper.drawing import (
     planar_features,
     short_name,
 )
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, own_statement
 from standoff_studies.paper.held_features import growth
 from standoff_studies.paper.keys import key_below
 from standoff_studies.paper.many_starts import Ends
@@ -145,13 +145,11 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
             simulation.by,
             constructed=True,
         ),
-        Statement(
+        own_statement(
             "Fig. 13",
-            "-",
             f"{len(modes)} of {every} modes visited in {len(stays)} stays, "
             f"{len(simulation.paper.events)} switches, {len(simulation.paper.events) - settled} "
             "of them those of the wrong start",
-            None,
             by=simulation.by,
         ),
         _sequence(simulation),

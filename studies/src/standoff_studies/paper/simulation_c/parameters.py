@@ -14,7 +14,7 @@ from standoff.geometry.validation import Array
 from standoff.recording import Recording
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, own_statement
 from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.pair_simulation import Simulation
 from standoff_studies.paper.panels import draw_errors, tint, unit_interval
@@ -132,32 +132,26 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
         ),
         decay_statement(simulation.paper, simulation.paths, DECAY, simulation.gain, simulation.by),
         reset_statement(simulation.resets, simulation.by),
-        Statement(
+        own_statement(
             "Fig. 15",
-            "-",
             f"the start is off the exact witness points by {error[0]:.2f} length; after "
             f"{simulation.entered:g} s by at most {error[late].max():.1e}, and by "
             f"{error[quiet].max():.1e} outside the {SETTLING:g} s after a switch",
-            None,
             "The rest of a switch's frame still goes with the feedforward of the old feature, and "
             f"what that leaves decays as exp(−K t), 1/K = {1.0 / simulation.gain:g} s.",
             simulation.by,
         ),
-        Statement(
+        own_statement(
             "Fig. 15",
-            "-",
             f"{len(exact.events)} switching instants, {'all' if located else 'not all'} "
             f"located; slope of the switching function {slopes.min():.2g} to {slopes.max():.2g} "
             "per s",
-            None,
             by=simulation.own,
         ),
-        Statement(
+        own_statement(
             "Fig. 15",
-            "-",
             f"certified in {np.mean(exact.certified):.0%} of the frames, distance "
             f"at most {exact.gap.max():.1e} length above its proven lower bound",
-            None,
             by=simulation.own,
         ),
     )

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from standoff.geometry.validation import Array
 from standoff.recording import Recording
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.keys import key_below, key_fill, key_line
 from standoff_studies.paper.pair_simulation import Simulation
 from standoff_studies.paper.panels import draw_errors, name_above, tint, unit_interval
@@ -95,13 +95,11 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             runs.by,
             constructed=True,
         ),
-        Statement(
+        own_statement(
             "Fig. 18",
-            "-",
             f"once settled 99 % of the frames are within {np.quantile(error, 0.99):.1e} of the "
             f"closest point, and all within {error.max():.1e} (Heun, 1 kHz; the point moves at "
             "3.2/s)",
-            None,
             "a switch falls into a frame, and what it leaves decays within 3/K = "
             f"{3.0 / runs.gain:g} s",
             runs.by,

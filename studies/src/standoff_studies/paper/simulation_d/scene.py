@@ -15,7 +15,7 @@ from standoff.geometry.validation import Array
 from standoff.tracking import Feature
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import LOOKS, View
-from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.keys import key_below, key_fill, key_line
 from standoff_studies.paper.pair_simulation import Simulation, certified
 from standoff_studies.paper.patch_places import short
@@ -112,13 +112,11 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             runs.by,
             constructed=True,
         ),
-        Statement(
+        own_statement(
             "Fig. 16",
-            "-",
             f"from wrong starts on faces {', '.join(str(place[0][1]) for place, _ in runs.starts)} "
             f"the projection errors fall below {SETTLED:g} in "
             f"{', '.join(str(count) for count in steps)} steps of 1 ms",
-            None,
             by=runs.by,
         ),
         certified(runs, "Fig. 16"),

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from standoff.geometry.validation import Array
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import HYBRID, Artwork, Statement, measured_by
+from standoff_studies.paper.figure import HYBRID, Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.held_features import growth
 from standoff_studies.paper.many_starts import INDEFINITE
 from standoff_studies.paper.pair_simulation import Simulation, anywhere, follows, never_grows
@@ -127,13 +127,11 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             "before it",
         ),
         growth_statement(moves_by_resets(), TRIED, runs.by),
-        Statement(
+        own_statement(
             "Fig. 20",
-            "-",
             f"the default law locates all {len(runs.exact.events)} switches, whose functions "
             f"cross 0 at {min(slopes):.1f} to {max(slopes):.1f} per second; the printed system "
             f"switches at most {1e6 * np.abs(late).max():.2f} µs off",
-            None,
         ),
     )
 

@@ -15,7 +15,7 @@ from standoff.motion import Pose
 from standoff.tracking import Feature
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import LOOKS, View, posed
-from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.pair_simulation import Simulation, certified
 from standoff_studies.paper.patch_places import short
@@ -118,12 +118,10 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             runs.by,
             constructed=True,
         ),
-        Statement(
+        own_statement(
             "Fig. 19",
-            "-",
             f"the start is off the exact witness points by {error[0]:.2f} of the radius; after "
             f"{CONVERGED:g} s by at most {late.max():.1e}, in the median {np.median(late):.1e}",
-            None,
             "the greatest errors are those of the frames after a switch",
             runs.by,
         ),
