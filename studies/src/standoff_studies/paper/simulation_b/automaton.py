@@ -15,7 +15,7 @@ from standoff.points import PointEvent
 from standoff.tracking import Feature
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import draw_arrow, planar_features, short_name
-from standoff_studies.paper.figure import Artwork
+from standoff_studies.paper.figure import Artwork, measured_by
 from standoff_studies.paper.simulation_b.run import GAIN, Run, run
 from standoff_studies.paper.simulation_b.switching import statements
 
@@ -64,7 +64,7 @@ def figure_9() -> Artwork:
         ),
         draw=lambda: _draw(simulation),
         tables={"stays": _stays(simulation), "switches": _switches(simulation)},
-        statements=statements(simulation),
+        statements=measured_by(simulation.paper.by, statements(simulation)),
     )
 
 

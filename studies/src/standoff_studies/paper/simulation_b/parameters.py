@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
-from standoff_studies.paper.figure import Artwork, Statement, own_statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.resets import (
     Errors,
@@ -64,7 +64,7 @@ def figure_11() -> Artwork:
             "frames": _frames(simulation),
             "resets": reset_table(resets(simulation)),
         },
-        statements=_statements(simulation),
+        statements=measured_by(simulation.paper.by, _statements(simulation)),
     )
 
 
@@ -144,7 +144,6 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"the nearest of the three, in the others at most {1e3 * since:.0f} ms have gone since "
             f"the jump to it (1/K is {1e3 / GAIN:g} ms)",
             since < 1.0 / GAIN,
-            by=paper.by,
         ),
         Statement(
             "Fig. 11",
@@ -152,7 +151,6 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"{frames} frames at vertices, the witness point leaves them by {slip:.0e} length",
             slip == 0.0,
             "a vertex has no parameter that could move",
-            paper.by,
             constructed=True,
         ),
         reset_statement(resets(simulation), paper.by),
@@ -162,7 +160,6 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"median {np.median(lag):.0e}, at most {lag.max():.2g}; the same feature in "
             f"{np.mean(same[settled]):.2%} of the frames",
             "The greatest lag is where a curve takes over soon after its parameter left its bound.",
-            paper.by,
         ),
     )
 

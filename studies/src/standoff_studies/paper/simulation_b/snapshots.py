@@ -15,7 +15,7 @@ from standoff_studies.paper.drawing import (
     draw_witness_line,
     short_name,
 )
-from standoff_studies.paper.figure import Animation, Artwork, Statement, own_statement
+from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.simulation_b.run import (
     CONVERGED,
     FRAME,
@@ -67,7 +67,7 @@ def figure_10() -> Artwork:
         ),
         draw=lambda: _draw(simulation),
         tables={"snapshots": _table(simulation)},
-        statements=_statements(simulation),
+        statements=measured_by(simulation.paper.by, _statements(simulation)),
         animation=Animation(
             SNAPSHOTS,
             lambda figure, k: _draw_moment(figure, simulation, k),
@@ -132,7 +132,6 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"curves' errors fall at {min(rates):.2f} to {max(rates):.2f} per s with "
             f"K = {GAIN:g} per s",
             max(abs(rate - GAIN) for rate in rates) < 0.02 * GAIN,
-            by=simulation.paper.by,
         ),
         own_statement(
             "Fig. 10",
@@ -141,7 +140,6 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"{error[exact.time > CONVERGED].max():.1e} at most",
             "The greatest errors come after a parameter has left its bound, from which the law "
             "sets off early, by its rate over K.",
-            simulation.paper.by,
         ),
         Statement(
             "Fig. 10",

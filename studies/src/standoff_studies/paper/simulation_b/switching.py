@@ -58,7 +58,6 @@ def statements(simulation: Run) -> tuple[Statement, ...]:
             f"boundary, {onto} switches from a curve to a vertex and {back} back",
             counts["medial"] >= 6 and onto >= 3 and back >= 3,
             "the motion is ours, chosen so that they occur",
-            simulation.paper.by,
             constructed=True,
         ),
         _curve_to_curve(simulation),
@@ -69,7 +68,6 @@ def statements(simulation: Run) -> tuple[Statement, ...]:
             f"boundary: the same in {agree} of {int(settled.sum())} snapshots after "
             f"{CONVERGED:g} s",
             agree == int(settled.sum()),
-            by=simulation.paper.by,
         ),
         _instants(simulation),
         *_starts(simulation),
@@ -83,7 +81,7 @@ def _curve_to_curve(simulation: Run) -> Statement:
     said = "Fig. 9", "curve to curve outside"
     stays = [v for v in simulation.paper.modes() if not v.inside and v.feature.kind == "vertex"]
     if not stays:
-        return Statement(*said, "no vertex is passed outside", False, by=simulation.paper.by)
+        return Statement(*said, "no vertex is passed outside", False)
     first: PointVisit = stays[0]
     frames = [math.ceil(t / FRAME) for t in (first.start, first.end)]
     (source,) = (e.source for e in simulation.paper.events if e.time == first.start)
@@ -95,7 +93,6 @@ def _curve_to_curve(simulation: Run) -> Statement:
         frames[0] == frames[1] and source.kind == target.kind == "edge",
         "At a sharp vertex two curves' regions do not touch: the point passes the vertex at "
         f"{PAST} length, by a motion chosen for it, and its region within a step.",
-        simulation.paper.by,
         constructed=True,
     )
 
@@ -113,7 +110,6 @@ def _instants(simulation: Run) -> Statement:
         f"{off['voronoi']:.0e} s of it, at the boundary {off['crossing']:.0e} s, at the medial "
         f"axis computed before the run {off['medial']:.0e} s",
         all(near) and max(off.values()) < WITHIN,
-        by=simulation.paper.by,
     )
 
 
@@ -190,7 +186,6 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
             f"outside, from {len(runs)} wrong starts: the same {int(outside.sum())} Voronoi "
             f"switches, instants within {outer:.0e} s",
             bool(same and outside.any() and outer < INSTANT),
-            by=simulation.paper.by,
         ),
         Statement(
             HYBRID,
@@ -200,7 +195,6 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
             same and inner < INSTANT,
             "which side of the medial axis the point is on is read from its place; the trackers "
             "are not asked",
-            simulation.paper.by,
             constructed=True,
         ),
     )

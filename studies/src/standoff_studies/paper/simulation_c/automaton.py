@@ -19,7 +19,7 @@ from standoff_studies.paper.drawing import (
     planar_features,
     short_name,
 )
-from standoff_studies.paper.figure import Artwork, Statement, own_statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.held_features import growth
 from standoff_studies.paper.keys import key_below
 from standoff_studies.paper.many_starts import Ends
@@ -76,7 +76,7 @@ def figure_13() -> Artwork:
             "switches": _switches(simulation),
             "growth": _growths(simulation),
         },
-        statements=_statements(simulation),
+        statements=measured_by(simulation.by, _statements(simulation)),
     )
 
 
@@ -142,7 +142,6 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
             "stays: " + ", ".join(f"{kinds[k]} {KINDS[k]}" for k in range(3)),
             min(kinds[k] for k in range(3)) >= 2,
             "the motion is ours, chosen so that all three occur",
-            simulation.by,
             constructed=True,
         ),
         own_statement(
@@ -150,7 +149,6 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
             f"{len(modes)} of {every} modes visited in {len(stays)} stays, "
             f"{len(simulation.paper.events)} switches, {len(simulation.paper.events) - settled} "
             "of them those of the wrong start",
-            by=simulation.by,
         ),
         _sequence(simulation),
         *_as_printed(simulation, arrivals()),

@@ -14,7 +14,7 @@ from standoff.geometry.validation import Array
 from standoff.recording import Recording
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
-from standoff_studies.paper.figure import Artwork, Statement, own_statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.pair_simulation import Simulation
 from standoff_studies.paper.panels import draw_errors, tint, unit_interval
@@ -78,7 +78,7 @@ def figure_15() -> Artwork:
             "frames": _frames(simulation),
             "resets": reset_table(simulation.resets),
         },
-        statements=_statements(simulation),
+        statements=measured_by(simulation.by, _statements(simulation)),
     )
 
 
@@ -127,7 +127,6 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
             f"the witness point leaves its vertex by at most {slip:.1e} length",
             slip <= SLIP,
             "a vertex has no parameter that could move",
-            simulation.by,
             constructed=True,
         ),
         decay_statement(simulation.paper, simulation.paths, DECAY, simulation.gain, simulation.by),
@@ -139,7 +138,6 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
             f"{error[quiet].max():.1e} outside the {SETTLING:g} s after a switch",
             "The rest of a switch's frame still goes with the feedforward of the old feature, and "
             f"what that leaves decays as exp(−K t), 1/K = {1.0 / simulation.gain:g} s.",
-            simulation.by,
         ),
         own_statement(
             "Fig. 15",

@@ -17,7 +17,7 @@ from standoff_studies.paper.drawing import (
     outline,
     short_name,
 )
-from standoff_studies.paper.figure import Animation, Artwork, Statement
+from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
 from standoff_studies.paper.pair_simulation import Simulation
 from standoff_studies.paper.simulation_c.kinds import KINDS, kind_of, mode_name
 from standoff_studies.paper.simulation_c.run import (
@@ -60,7 +60,7 @@ def figure_14() -> Artwork:
         ),
         draw=lambda: _draw(simulation),
         tables={"snapshots": _table(simulation)},
-        statements=_statements(simulation),
+        statements=measured_by(simulation.by, _statements(simulation)),
         animation=Animation(
             PICTURES,
             lambda figure, k: _draw_moment(figure, simulation, k),
@@ -105,7 +105,6 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
             f"witness points at most {simulation.witness_error[frames].max():.0e} length off; "
             + ", ".join(f"{kinds.count(k)} {KINDS[k]}" for k in range(3)),
             right == len(kinds) == 12,
-            by=simulation.by,
         ),
         Statement(
             "Fig. 14",

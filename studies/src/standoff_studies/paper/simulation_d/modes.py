@@ -15,7 +15,7 @@ from standoff.geometry.validation import Array
 from standoff.tracking import Feature, distance
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import draw_arrow
-from standoff_studies.paper.figure import HYBRID, Artwork, Statement
+from standoff_studies.paper.figure import HYBRID, Artwork, Statement, measured_by
 from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.many_starts import INDEFINITE
 from standoff_studies.paper.pair_simulation import Simulation, anywhere, never_grows
@@ -68,7 +68,7 @@ def figure_17() -> Artwork:
         ),
         draw=_draw,
         tables={"stays": _stays(runs), "transitions": _transitions(automaton)},
-        statements=_statements(runs, automaton),
+        statements=measured_by(runs.by, _statements(runs, automaton)),
     )
 
 
@@ -122,7 +122,6 @@ def _statements(runs: Simulation, automaton: Automaton) -> tuple[Statement, ...]
             f"{len(automaton.taken)} switches, each one that the automaton lists",
             len(automaton.taken) == len(paper.events) and not automaton.restarts,
             "the picture is drawn from the list of switches",
-            runs.by,
             constructed=True,
         ),
         Statement(
@@ -131,7 +130,6 @@ def _statements(runs: Simulation, automaton: Automaton) -> tuple[Statement, ...]
             f"from {1e3 * runs.entered:g} ms on the mode is that of a global search in {agree} of "
             f"{len(frames)} frames",
             agree == len(frames),
-            by=runs.by,
         ),
         Statement(
             HYBRID,
@@ -140,7 +138,6 @@ def _statements(runs: Simulation, automaton: Automaton) -> tuple[Statement, ...]
             f"ms, at the instants of the library's own law to {off:.1e} s",
             off < INSTANT,
             "the projection errors of the starts take 0.4 s to fall below a ten-thousandth",
-            runs.by,
         ),
         *_as_printed(runs),
         never_grows(

@@ -61,7 +61,7 @@ def figure_18() -> Artwork:
             "parameters": table,
             "resets": reset_table(runs.resets),
         },
-        statements=measured_by(runs.own, _statements(runs)),
+        statements=measured_by(runs.by, _statements(runs)),
     )
 
 
@@ -92,7 +92,6 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             f"{offsets.max(initial=0.0):.0e} in {len(offsets)} frames",
             bool(len(offsets) and offsets.max() == 0.0),
             "on an edge u is read from the edge's own line in (u, v)",
-            runs.by,
             constructed=True,
         ),
         own_statement(
@@ -102,7 +101,6 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             "3.2/s)",
             "a switch falls into a frame, and what it leaves decays within 3/K = "
             f"{3.0 / runs.gain:g} s",
-            runs.by,
         ),
     )
 
