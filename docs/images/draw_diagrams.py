@@ -27,6 +27,7 @@ class Drawing:
             f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {height}' "
             f"width='{width}' height='{height}' role='img'><title>{escape(title)}</title>"
         )
+        self.down = 0  # of what is drawn next, pixels
         self.parts = [f"<rect width='{width}' height='{height}' fill='white'/>"]
 
     def text(self, x: float, y: float, words: str, size: int = 14, **style: str) -> None:
@@ -34,19 +35,21 @@ class Drawing:
         anchor = style.get("anchor", "start")
         extra = " font-style='italic'" if style.get("italic") else ""
         extra += " font-weight='bold'" if style.get("bold") else ""
+        y += self.down
         self.parts.append(
             f"<text x='{x:g}' y='{y:g}' font-size='{size}' {font} fill='{style.get('fill', INK)}' "
             f"text-anchor='{anchor}'{extra}>{escape(words)}</text>"
         )
 
     def box(self, x: float, y: float, w: float, h: float, fill: str, edge: str = SOFT) -> None:
+        y += self.down
         self.parts.append(
             f"<rect x='{x:g}' y='{y:g}' width='{w:g}' height='{h:g}' rx='6' fill='{fill}' "
             f"stroke='{edge}' stroke-width='1'/>"
         )
 
     def line(self, points: list[tuple[float, float]], colour: str = INK, **style: str) -> None:
-        path = " ".join(f"{x:.2f},{y:.2f}" for x, y in points)
+        path = " ".join(f"{x:.2f},{y + self.down:.2f}" for x, y in points)
         dash = f" stroke-dasharray='{style['dash']}'" if "dash" in style else ""
         self.parts.append(
             f"<polyline points='{path}' fill='none' stroke='{colour}' "
@@ -61,7 +64,7 @@ class Drawing:
             (x1 - 9.0 * math.cos(angle + turn), y1 - 9.0 * math.sin(angle + turn))
             for turn in (0.4, 0.0, -0.4)
         ]
-        corners = " ".join(f"{x:.2f},{y:.2f}" for x, y in [(x1, y1), *wings])
+        corners = " ".join(f"{x:.2f},{y + self.down:.2f}" for x, y in [(x1, y1), *wings])
         self.parts.append(f"<polygon points='{corners}' fill='{colour}'/>")
 
     def shape(self, points: list[tuple[float, float]], fill: str) -> None:
@@ -96,16 +99,31 @@ def border(d: Drawing, y: float, above: str, below: str) -> None:
 
 
 def before_the_ways(d: Drawing) -> None:
-    call = "tracker.step(state, pose_a, pose_b, twist_a, twist_b)"
-    d.text(480, 26, call, 14, mono="yes", bold="yes", anchor="middle")
-    stage(
-        d, 270, 48, 420, "poses and twists become 36 numbers in a row", "tracking/inputs.py", PYTHON
+    routes = (
+        ("step, step_into", "tracking/"),
+        ("run, so.track", "tracking/"),
+        ("so.distances", "tracking/"),
+        ("Operator", "simulation/"),
+        ("Servo, live page", "servo/"),
+        ("a C program", "c_interface/"),
     )
-    border(d, 116, "Python", "compiled by Numba: kernels/")
-    stage(d, 270, 136, 420, "invalid poses are rejected", "state/arrays.py")
-    stage(d, 270, 204, 420, "B is seen from A: one pose, one twist", "algebra/rigid.py")
-    for top, bottom in ((34, 48), (96, 136), (184, 204)):
-        d.arrow([(480, top), (480, bottom)])
+    for k, (name, where) in enumerate(routes):
+        x = 20 + 155.4 * k
+        stage(d, x, 20, 143, name, where, PYTHON)
+        d.line([(x + 71, 68), (x + 71, 84)])
+    d.line([(91, 84), (868, 84)])
+    d.arrow([(480, 84), (480, 124)])
+    border(d, 104, "Python, or C", "compiled by Numba: kernels/")
+    stage(d, 270, 124, 420, "the frame: one for every route", "entries/frames.py")
+    stage(d, 20, 192, 448, "on faces, first: the smooth frame, without switches", "frame/smooth.py")
+    stage(d, 492, 192, 448, "the law's own frame, by its address", "entries/laws.py")
+    d.arrow([(400, 172), (400, 192)])
+    d.arrow([(560, 172), (560, 192)])
+    d.arrow([(468, 216), (492, 216)], RED)
+    d.line([(20, 216), (8, 216), (8, 892)])
+    d.arrow([(8, 892), (20, 892)])
+    d.arrow([(716, 240), (716, 256), (480, 256), (480, 272)])
+    stage(d, 270, 272, 420, "B is seen from A: one pose, one twist", "algebra/rigid.py")
 
 
 def apart(d: Drawing) -> None:
@@ -182,8 +200,9 @@ def after_the_ways(d: Drawing) -> None:
 
 
 def architecture() -> str:
-    d = Drawing(960, 990, "What a pose goes through, from the call to the witness points")
+    d = Drawing(960, 1058, "What a pose goes through, from the call to the witness points")
     before_the_ways(d)
+    d.down = 68
     apart(d)
     in_contact(d)
     anew(d)

@@ -24,7 +24,7 @@ from standoff.errors import StandoffError
 from standoff.kernels.compiler import modules
 from standoff.kernels.compiler.decorators import BOUNDS_CHECK, CONTRACTED
 from standoff.kernels.entries import c_interface as kernels
-from standoff.kernels.entries import laws
+from standoff.kernels.entries import laws, paper_laws
 from standoff.progress import Progress
 from standoff.whole_files import write_whole
 
@@ -37,7 +37,7 @@ SYMBOLS = {
 }
 
 
-LAWS = {"standoff_kernel_predicted": laws.predicted, "standoff_kernel_paper": laws.paper}
+LAWS = {"standoff_kernel_predicted": laws.predicted, "standoff_kernel_paper": paper_laws.paper}
 """The laws' frames."""
 
 

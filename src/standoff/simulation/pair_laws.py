@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
-from standoff.kernels.entries import laws as frames
+from standoff.kernels.entries import paper_laws
 from standoff.simulation.system import System
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw, PredictorCorrector, checked_law
@@ -63,7 +63,7 @@ def packed_laws(system: System, laws: tuple[Law, ...], dt: float, inside: bool) 
     rows = [np.zeros(0)]
     for (a, b), law in zip(system.pairs, laws, strict=True):
         if inside:
-            rows.append(carried(pack_options(law.resolved(dt)), address_of(frames.carried)))
+            rows.append(carried(pack_options(law.resolved(dt)), address_of(paper_laws.carried)))
         else:
             bodies = system.bodies[a].body, system.bodies[b].body
             rows.append(reach(*bodies, law, dt, None).options)

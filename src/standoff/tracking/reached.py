@@ -49,7 +49,9 @@ class Reached:
         self.a, self.b = a, b
         self.law, options = resolved_options(law, dt)
         if isinstance(law, PaperLaw):
-            self.options = with_frames(options, own=address_of(laws.paper))
+            from standoff.kernels.entries import paper_laws
+
+            self.options = with_frames(options, own=address_of(paper_laws.paper))
         else:
             smooth = address_of(smooth_frame_of(a, b, specialise))
             self.options = with_frames(options, smooth, address_of(laws.predicted))

@@ -1,11 +1,10 @@
-"""The laws' frames, each compiled when a tracker first asks for it and called by its address
+"""The frame of the default law, compiled when a tracker first asks for it and called by its address
 (`frames.frame`)."""
 
 from standoff.kernels.compiler.decorators import entry, kernel
 from standoff.kernels.compiler.entry import INT, REAL
 from standoff.kernels.frame.apart import predicted_frame
 from standoff.kernels.frame.record import read_call
-from standoff.kernels.paper.frame import carried_frame, integrated_frame
 
 
 @kernel
@@ -19,15 +18,3 @@ def by_record(frame, record, h):
 def predicted(record, h):
     """The predictor-corrector."""
     return by_record(predicted_frame, record, h)
-
-
-@entry(INT, REAL, work="paper")
-def paper(record, h):
-    """The paper's law, integrated by itself."""
-    return by_record(integrated_frame, record, h)
-
-
-@entry(INT, REAL, work="paper")
-def carried(record, h):
-    """The paper's law, integrated with the bodies' motion by their own method."""
-    return by_record(carried_frame, record, h)

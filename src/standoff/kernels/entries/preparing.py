@@ -10,12 +10,13 @@ from typing import Any
 from standoff.kernels.compiler import cache
 from standoff.kernels.compiler.entry import Entry
 from standoff.kernels.compiler.notices import parts
-from standoff.kernels.entries import queries, servo, simulation, tracker
+from standoff.kernels.entries import queries, tracker
 
 MODULES = (
     "standoff.kernels.entries.queries",
     "standoff.kernels.entries.tracker",
     "standoff.kernels.entries.laws",
+    "standoff.kernels.entries.paper_laws",
     "standoff.kernels.entries.batch",
     "standoff.kernels.entries.derivatives",
     "standoff.kernels.entries.smooth",
@@ -55,13 +56,16 @@ def prepare_buffer() -> None:
 
 def prepare_simulation() -> None:
     """Have ready what a simulated system runs by."""
+    from standoff.kernels.entries import simulation
+
     _prepare_each([simulation.run_system])
 
 
 def prepare_servo() -> None:
     """Have ready what a servo loop runs by, and what the slower side calls meanwhile."""
+    from standoff.kernels.entries import servo, simulation
+
     _prepare_each([simulation.run_system, servo.serve, servo.put_row, servo.take_row])
-    prepare_simulation()
 
 
 def _prepare_each(needed: Sequence[Any]) -> None:
