@@ -137,6 +137,12 @@ def draw_witness_line(axes: Axes, point_a: Array, point_b: Array, **line: Any) -
     axes.plot(ends[:, 0], ends[:, 1], "o-", **look)
 
 
+def show_plane(axes: Axes, half: float) -> None:
+    """Show the square of this half width about the origin [length], without a grid."""
+    axes.grid(visible=False)
+    axes.set(xlim=(-half, half), ylim=(-half, half), xlabel="x [length]", ylabel="y [length]")
+
+
 def draw_arrow(axes: Axes, start: Spot, end: Spot, **look: Any) -> None:
     """Draw an arrow from spot to spot; `look` is what matplotlib's ``FancyArrowPatch`` takes."""
     usual: dict[str, Any] = {"arrowstyle": "-|>", "shrinkA": 0.0, "shrinkB": 0.0}

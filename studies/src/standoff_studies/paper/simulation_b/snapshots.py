@@ -14,8 +14,10 @@ from standoff_studies.paper.drawing import (
     draw_planar_body,
     draw_witness_line,
     short_name,
+    show_plane,
 )
 from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by, own_statement
+from standoff_studies.paper.simulation_b.regions import EXTENT
 from standoff_studies.paper.simulation_b.run import (
     CONVERGED,
     FRAME,
@@ -28,8 +30,6 @@ from standoff_studies.paper.simulation_b.run import (
 )
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
 
-EXTENT = 1.85
-"""Half width of the view [length]."""
 OFF = 0.01
 """Snapshots whose witness point is off by more [length], before `CONVERGED`, still come from the
 wrong start: on paper it is half a millimetre."""
@@ -179,7 +179,7 @@ def _draw(simulation: Run) -> Figure:
     axes.plot([], [], color=style.QUIET, linewidth=0.8, label="library's own law")
     for span in SWEEP:
         _draw_sweep(axes, simulation, *span)
-    _frame_view(axes)
+    show_plane(axes, EXTENT)
     figure.legend(loc="outside lower center", ncols=2, frameon=False, handlelength=3.5)
     return figure
 
@@ -192,14 +192,6 @@ def _draw_sweep(axes: Axes, simulation: Run, first: float, last: float) -> None:
     axes.plot(way[:, 0], way[:, 1], color=style.BLACK, linewidth=1.3, zorder=6)
     head = {"arrowstyle": "-|>", "color": style.BLACK, "mutation_scale": 13.0, "shrinkA": 0.0}
     axes.annotate("", tuple(way[-1]), tuple(way[-12]), arrowprops=head, zorder=6)
-
-
-def _frame_view(axes: Axes) -> None:
-    axes.grid(visible=False)
-    axes.set_xlim(-EXTENT, EXTENT)
-    axes.set_ylim(-EXTENT, EXTENT)
-    axes.set_xlabel("x [length]")
-    axes.set_ylabel("y [length]")
 
 
 def _draw_moment(figure: Figure, simulation: Run, k: int) -> None:
@@ -216,7 +208,7 @@ def _draw_moment(figure: Figure, simulation: Run, k: int) -> None:
             ends = np.array([paper.point[frame], part.curve.point(float(u))])
             axes.plot(ends[:, 0], ends[:, 1], "--", color=style.RED, linewidth=1.1)
     draw_witness_line(axes, paper.point[frame], paper.witness[frame], linewidth=2.2)
-    _frame_view(axes)
+    show_plane(axes, EXTENT)
     side = "inside" if paper.inside[frame] else "outside"
     axes.set_title(
         f"{paper.time[frame]:4.2f} s   {short_name(paper.feature[frame])} {side}   "
