@@ -476,7 +476,6 @@ def pair_calls() -> list[Call]:
         "PredictorCorrector": (so, {"tolerance": 1e-9, "deadline": 40}),
         "Tracker": (so, {**pair, "dt": 1e-3, "law": law}),
         "PointTracker": (so, {"body": DISC, "dt": 1e-3, "law": so.PaperLaw()}),
-        "SpatialPointTracker": (so.points, {"body": BOX, "dt": 1e-3, "tolerance": 1e-9}),
         "distance": (so, posed),
         "distances": (so, {**pair, "poses_a": np.eye(4), "poses_b": np.eye(4)[None], "workers": 1}),
         "open_recording": (so, {"path": "no_such_file.parquet"}),

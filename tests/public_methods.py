@@ -14,7 +14,7 @@ AWAY = so.Pose(np.eye(3), [3.0, 0.0, 0.0])
 TWIST = so.Twist([0.1, 0.0, 0.0], [0.0, 0.0, 1.0])
 SPHERE, BOX = so.shapes.sphere(0.5), so.shapes.box(1.0, 1.0, 1.0)
 TRACKER = so.Tracker(SPHERE, BOX)
-POINTS, SPATIAL = so.PointTracker(DISC), so.points.SpatialPointTracker(BOX)
+POINTS, SPATIAL = so.PointTracker(DISC), so.PointTracker(BOX)
 
 
 def method_calls() -> list[Call]:

@@ -138,8 +138,8 @@ def test_the_longest_name_of_a_file_is_written(tmp_path: Path) -> None:
     ("name", "words"),
     [
         ("no/file", r"the folder .*no does not exist; create it"),
-        ("taken/file", r"taken is a file, no folder; name a folder"),
-        ("a\0b", "is not a name of a file"),
+        ("taken/file", r"taken is a file, not a folder; name a folder"),
+        ("a\0b", "is not a file name"),
     ],
 )
 def test_names_that_no_file_can_have(tmp_path: Path, name: str, words: str) -> None:
@@ -150,9 +150,9 @@ def test_names_that_no_file_can_have(tmp_path: Path, name: str, words: str) -> N
 
 
 def test_an_empty_text_names_no_file() -> None:
-    with pytest.raises(ValueError, match="an empty text names no file"):
+    with pytest.raises(ValueError, match="an empty string is not a file name"):
         file_name("")
-    with pytest.raises(TypeError, match="path is 3: give the name of a file"):
+    with pytest.raises(TypeError, match="path is 3: give a file name"):
         file_name(3)
     with pytest.raises(UnfitTarget, match="is a folder; name a file in it"):
         write_whole({Path(""): inner})

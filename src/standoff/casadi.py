@@ -18,7 +18,7 @@ except ModuleNotFoundError as error:
 __all__ = ["distance"]
 
 _KEPT: list[Any] = []
-"""CasADi does not own its callbacks: one that Python has dropped fails when it is called."""
+"""CasADi does not own its callbacks: one that Python has freed fails when it is called."""
 
 POSE = casadi.Sparsity.dense(4, 4)
 
@@ -26,8 +26,8 @@ POSE = casadi.Sparsity.dense(4, 4)
 def distance(a: Body, b: Body, *, undefined: str = "nan", name: str = "distance") -> Any:
     """A CasADi function: the signed minimum distance of two bodies at two poses.
 
-    Make it once for a pair of bodies: it is kept until the program ends. Call it with expressions
-    in MX; it is no SX. For n poses use its ``map(n)``.
+    Make it once for a pair of bodies: it is kept until the program ends. Call it with MX
+    expressions, not SX. For n poses use its ``map(n)``.
 
     Parameters
     ----------
@@ -50,7 +50,8 @@ def distance(a: Body, b: Body, *, undefined: str = "nan", name: str = "distance"
         No bodies.
     ValueError
         An unknown choice, or a name that CasADi does not take. When called, within CasADi's own
-        RuntimeError: a matrix that is no pose; undefined derivatives, if asked; a third derivative.
+        RuntimeError: a matrix that is not a pose; undefined derivatives, if asked; a third
+        derivative.
     """
     if not casadi.Function.check_name(name):
         raise StandoffError(

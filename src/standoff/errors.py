@@ -1,7 +1,7 @@
-"""The errors that this library raises, as one tree: each names what is at fault in fields.
+"""The errors that this library raises, as one tree: each has attributes that name what is at fault.
 
 A `StandoffError` is a ValueError. Where another kind is customary (TypeError, RuntimeError), it is
-that one too.
+that kind too.
 """
 
 from __future__ import annotations
@@ -12,16 +12,16 @@ from standoff.wording import printable
 
 
 class StandoffError(ValueError):
-    """What was given cannot serve; the message names it, the offending value and the fix.
+    """A bad argument; the message names it, the offending value and the fix.
 
     Parameters
     ----------
     message : str
     argument : str
-        The argument at fault, by the name that it has in the function or class that was called;
-        empty where it is not one alone.
+        The argument at fault, by its name in the function or class that was called; empty if it is
+        not a single one.
     value : object
-        What was given for it; None where there is no one value.
+        What was given for it; None if there is no single value.
     """
 
     def __init__(self, message: str, argument: str = "", value: Any = None) -> None:
@@ -32,7 +32,7 @@ class StandoffError(ValueError):
 
 
 class StandoffTypeError(StandoffError, TypeError):
-    """An argument of a kind that cannot serve, such as a text for a body."""
+    """An argument of the wrong kind, such as a string for a body."""
 
 
 class BodyError(StandoffError):
@@ -44,7 +44,7 @@ class BodyError(StandoffError):
         As of a `StandoffError`.
     part : (str, int), optional
         The part at fault: "face", "edge", "vertex", "patch" or "curve", and its number as given;
-        None where it is not one alone.
+        None if it is not a single one.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class BodyError(StandoffError):
 
 
 class FormulaError(StandoffError):
-    """A formula that cannot serve: the message names the place and the fix."""
+    """A formula that cannot be used: the message names the place and the fix."""
 
 
 class VoronoiError(StandoffError, RuntimeError):
@@ -77,7 +77,7 @@ class PassivityError(StandoffError):
     required : float
         The device's damping that would be needed.
     largest : float
-        The largest stiffness that is passive beside the damping given; 0 where none is.
+        The largest stiffness that is passive with the damping given; 0 if none is.
     """
 
     def __init__(
@@ -103,17 +103,17 @@ class MaskedNumbers(StandoffTypeError):
 
 
 class DerivativeWarning(RuntimeWarning):
-    """Derivatives of a distance that are not defined, all or in part, were handed to a framework,
-    as nan."""
+    """Derivatives of a distance that are undefined, all or in part, were passed to a framework as
+    nan."""
 
 
 class RefusedRowsWarning(RuntimeWarning):
-    """Most poses of many are none, so that most answers are nan; the message says what is wrong
-    with the first, and whether their numbers stand in another order."""
+    """Most poses of a batch are invalid, so most answers are nan; the message says what is wrong
+    with the first, and whether the numbers are in another order."""
 
 
 def not_installed(library: str, extra: str = "cli") -> str:
-    """What is said where a library is missing that comes with an extra of this package."""
+    """What is said if a library is missing that comes with an extra of this package."""
     return (
         f"{library} is not installed; install the extra '{extra}': pip install 'standoff[{extra}]'"
     )

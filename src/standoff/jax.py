@@ -33,7 +33,7 @@ def distance(a: Body, b: Body, pose_a: Any, pose_b: Any, *, undefined: str = "na
     ----------
     a, b : Body
     pose_a, pose_b : array, shape (4, 4) or (n, 4, 4)
-        World poses, float64; one pose goes with n of the other body.
+        World poses, float64; one pose is used for all n of the other body.
     undefined : "nan" or "raise"
         Where a derivative, or a part of it, is not defined: nan with a `DerivativeWarning`, or an
         error.
@@ -46,8 +46,9 @@ def distance(a: Body, b: Body, pose_a: Any, pose_b: Any, *, undefined: str = "na
     Raises
     ------
     StandoffError
-        If 64-bit numbers are not enabled; no body, no float64 or no poses by their shape. At run
-        time, within JAX's own error: a matrix that is no pose; undefined derivatives, if asked.
+        If 64-bit numbers are not enabled, or an argument is not a body, not float64 or not shaped
+        like poses. At run time, within JAX's own error: a matrix that is not a pose; undefined
+        derivatives, if asked.
     """
     pair = ambient.Pair.of(a, b, undefined)
     if not jax.config.jax_enable_x64:
@@ -64,7 +65,8 @@ def _matrix(pose: Any, name: str) -> Any:
     array = jnp.asarray(pose)
     if array.dtype != jnp.float64:
         raise StandoffError(
-            f"{name} is of {array.dtype}: give float64, in which rotations are exact enough.", name
+            f"{name} has dtype {array.dtype}: give float64, in which rotations are exact enough.",
+            name,
         )
     return array
 

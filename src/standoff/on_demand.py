@@ -38,8 +38,8 @@ def on_demand(
     ----------
     package : the package's ``__name__``.
     names : by module, what the package hands out of it. The package's own modules, which are
-        handed out as well, need no entry.
-    modules : those of its own modules that are public: what `dir` tells besides `names`.
+        handed out too, need no entry.
+    modules : those of its own modules that are public: what `dir` lists besides `names`.
     """
     homes = {name: module for module, group in names.items() for name in group}
     this = sys.modules[package]

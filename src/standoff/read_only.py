@@ -11,9 +11,9 @@ import numpy as np
 class KeepsReadOnly:
     """A base of objects whose read-only arrays stay so in their pickles and deep copies.
 
-    NumPy forgets it of an array that is stored; and to Numba a writable array is of another type,
-    for which it would compile the kernels once more. Arrays are found in the object's attributes,
-    also within lists, tuples and dictionaries; objects within it look after their own.
+    NumPy forgets it when an array is stored; and to Numba a writable array has another type, for
+    which it would compile the kernels once more. Arrays are found in the object's attributes, also
+    within lists, tuples and dictionaries; objects within it take care of their own.
     """
 
     __slots__ = ()

@@ -27,7 +27,7 @@ def distance(a: Body, b: Body, pose_a: Any, pose_b: Any, *, undefined: str = "na
     ----------
     a, b : Body
     pose_a, pose_b : Tensor, shape (4, 4) or (n, 4, 4)
-        World poses, float64 on the CPU; one pose goes with n of the other body.
+        World poses, float64 on the CPU; one pose is used for all n of the other body.
     undefined : "nan" or "raise"
         Where a derivative, or a part of it, is not defined: nan with a `DerivativeWarning`, or an
         error.
@@ -42,7 +42,7 @@ def distance(a: Body, b: Body, pose_a: Any, pose_b: Any, *, undefined: str = "na
     TypeError
         No bodies, or no tensors.
     StandoffError
-        Tensors of another type, device or shape; a matrix that is no pose. In ``backward``:
+        Tensors of another type, device or shape; a matrix that is not a pose. In ``backward``:
         undefined derivatives, if asked; a third derivative.
     """
     pair = ambient.Pair.of(a, b, undefined)
@@ -55,11 +55,12 @@ def distance(a: Body, b: Body, pose_a: Any, pose_b: Any, *, undefined: str = "na
 def _check(pose: Any, name: str) -> None:
     if not isinstance(pose, torch.Tensor):
         raise StandoffTypeError(
-            f"{name} = {shown(pose)} is no tensor: give torch.as_tensor(pose).", name, pose
+            f"{name} = {shown(pose)} is not a tensor: give torch.as_tensor(pose).", name, pose
         )
     if pose.dtype != torch.float64:
         raise StandoffError(
-            f"{name} is of {pose.dtype}: give torch.float64, in which rotations are exact enough.",
+            f"{name} has dtype {pose.dtype}: give torch.float64, in which rotations are exact "
+            "enough.",
             name,
         )
     if pose.device.type != "cpu":

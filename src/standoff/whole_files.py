@@ -26,7 +26,7 @@ KINDS: Mapping[Callable[[int], bool], str] = {
 
 
 class UnfitTarget(OSError):
-    """No regular file, and none can be made; the message names the target, why, and the cure."""
+    """Not a regular file, and none can be made; the message names the target, why, and the fix."""
 
 
 class MissingFolder(UnfitTarget, FileNotFoundError):
@@ -39,34 +39,36 @@ def file_name(given: object) -> Path:
     Raises
     ------
     TypeError
-        If it is neither a text nor a path.
+        If it is neither a string nor a path.
     ValueError
         If it is empty.
     """
     if not isinstance(given, str | Path):
         raise StandoffTypeError(
-            f"path is {shown(given)}: give the name of a file, a text or a Path.", "path", given
+            f"path is {shown(given)}: give a file name, as a string or a Path.", "path", given
         )
     if given == "":
         raise StandoffError(
-            "path is '': an empty text names no file; give a name, or leave it out.", "path", given
+            "path is '': an empty string is not a file name; give a name, or leave it out.",
+            "path",
+            given,
         )
     return Path(given)
 
 
 def kind_of(mode: int) -> str:
-    """Return what `st_mode` says that there is."""
+    """Return what `st_mode` says it is."""
     return next((name for test, name in KINDS.items() if test(mode)), "of an unknown kind")
 
 
 def destination(target: Path) -> Path:
-    """Return the regular file that is written, or will be, under a name: the end of its links.
+    """Return the regular file that is, or will be, written under a name: the end of its links.
 
     Raises
     ------
     UnfitTarget
-        If there is something else, such as a folder, a FIFO or a device; if its folder does not
-        exist; if no file can have the name.
+        If it is something else, such as a folder, a FIFO or a device; if its folder does not exist;
+        if no file can have the name.
     OSError
         If the system cannot tell, as where links go in a circle.
     """
@@ -75,7 +77,7 @@ def destination(target: Path) -> Path:
     except (FileNotFoundError, NotADirectoryError):
         return _new(target)
     except ValueError as error:  # a null character, or half of a surrogate pair
-        raise UnfitTarget(f"{shown(str(target))} is not a name of a file: {error}") from error
+        raise UnfitTarget(f"{shown(str(target))} is not a file name: {error}") from error
     if not stat.S_ISREG(mode):
         cure = "a file in it" if stat.S_ISDIR(mode) else "a regular file or a new one"
         raise UnfitTarget(f"{target}: is {kind_of(mode)}; name {cure}")
@@ -91,16 +93,16 @@ def _new(target: Path) -> Path:
         )
     if not folder.is_dir():
         kind = kind_of(folder.stat().st_mode)
-        raise UnfitTarget(f"{target}: {folder} is {kind}, no folder; name a folder")
+        raise UnfitTarget(f"{target}: {folder} is {kind}, not a folder; name a folder")
     return end
 
 
 def write_whole(files: Mapping[Path, Writer]) -> None:
     """Write all of `files`, or, if one fails, none.
 
-    Each is written beside its destination under a name of its own and then moved onto it, which a
-    reader sees at once. A link stays: what it leads to is replaced. A file that is replaced leaves
-    its permissions to the new one.
+    Each is written beside its destination under a temporary name and then moved onto it, so a
+    reader sees the old file or the new one. A link is kept: the file that it leads to is replaced.
+    The new file gets the permissions of the old one.
 
     Raises
     ------

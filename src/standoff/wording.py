@@ -1,5 +1,5 @@
-"""Words that stand in lines of results: numbers with their nouns, names cut to fit, and text of
-others that a terminal would obey."""
+"""Words in lines of results: numbers with their nouns, names cut to fit, and others' text that a
+terminal would obey."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _PERHAPS_HIDDEN = re.compile(r"[^\x20-\x7e]")
 
 
 def printable(text: str, keep: str = "") -> str:
-    """Return text whose characters are all seen, and none obeyed: the others as escapes.
+    """Return text with only visible characters that no terminal obeys; the others become escapes.
 
     A terminal obeys control characters, C0, DEL and C1 alike: they move the cursor, set the
     window's title and clear the screen. Format characters turn what is read around them, and lone
@@ -23,7 +23,7 @@ def printable(text: str, keep: str = "") -> str:
     Parameters
     ----------
     text : str
-        Of a scene, a file or a device, or with a piece of it.
+        From a scene, a file or a device, or with a piece of it.
     keep : str
         Control characters of our own, such as the ends of lines.
     """
@@ -33,7 +33,7 @@ def printable(text: str, keep: str = "") -> str:
 
 
 def printable_json(text: str) -> str:
-    """Return JSON that says the same, in characters that are all seen."""
+    """Return JSON that says the same, with only visible characters."""
 
     def seen(found: re.Match[str]) -> str:
         letter = found[0]

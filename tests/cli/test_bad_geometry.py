@@ -115,7 +115,7 @@ def test_a_file_of_patches_that_is_cut_off(standoff: Standoff, tmp_path: Path) -
         for arguments in (["track", scene, "-o", tmp_path / "o.parquet"], ["check", file]):
             ended = standoff(*arguments)
             assert (ended.code, ended.out) == (2, "")
-            assert ended.err.startswith(f"standoff: {file}: is no JSON: ")
+            assert ended.err.startswith(f"standoff: {file}: is not JSON: ")
             assert "it seems to be cut off" in ended.err
             assert ended.err.count("\n") == 1
     assert len(list(tmp_path.iterdir())) == 2

@@ -174,7 +174,7 @@ def test_impact_needs_no_frames(standoff: Standoff, tmp_path: Path) -> None:
     assert f"time          {0.32 + 0.05:.12g} s" in ended.out
     ended = standoff("impact", scene, "--duration", 3.0)
     assert ended.code == 2
-    assert "--duration: 3 s from 0 s on end at 3 s, after the last pose sample" in ended.err
+    assert "--duration: 3 s from 0 s end at 3 s, after the last pose sample" in ended.err
     ended = standoff("impact", scene, "--start", repr(stamps["b"][-1]))
     assert ended.code == 2
     assert "--start: no time is left after" in ended.err
@@ -215,7 +215,7 @@ def test_options_take_the_place_of_the_scene_s(standoff: Standoff, passing: Path
         (["--law", "paper", "--gain", "1e6"], "is not stable"),
         (["-o", "no/such/folder.parquet"], "the folder no/such does not exist; create it"),
         (["-o", "passing.toml"], "the ending '.toml' is not known here"),
-        (["-o", "passing.toml/x.parquet"], "passing.toml is a file, no folder"),
+        (["-o", "passing.toml/x.parquet"], "passing.toml is a file, not a folder"),
         (["-o", "folder.parquet"], "is a folder; name a file in it"),
         (["--plot", "x.bmp"], "ends in .png or .svg or .pdf"),
         (["--plot", "no/x.png"], "the folder no does not exist"),

@@ -120,7 +120,7 @@ def test_the_list_makes_nothing(standoff: Standoff, tmp_path: Path) -> None:
     [
         (["77"], "unknown figure '77'; known here: 7, 12"),
         (["7", "--jobs", "0"], "--jobs 0: give 1 or more"),
-        (["7", "-o", "taken"], "-o taken: is a file, no folder; name a folder"),
+        (["7", "-o", "taken"], "-o taken: is a file, not a folder; name a folder"),
         (["7", "-o", "taken/x"], "-o taken/x: the folder cannot be made (Not a directory)"),
     ],
 )

@@ -101,9 +101,9 @@ def test_a_recording_is_not_written_over_it(passing: Path, tmp_path: Path, kind:
         with pytest.raises(OSError, match=f"{name}: is a {kind}"):
             write(target)
         assert file_kinds.looks(target) == before
-        with pytest.raises(ValueError, match="an empty text names no file"):
+        with pytest.raises(ValueError, match="an empty string is not a file name"):
             write("")
-        with pytest.raises(TypeError, match="give the name of a file"):
+        with pytest.raises(TypeError, match="give a file name"):
             write(7)
     assert {p.name for p in tmp_path.iterdir()} == {"passing.toml", "run.parquet", "run.png"}
 

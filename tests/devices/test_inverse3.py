@@ -240,7 +240,7 @@ def test_a_short_soak() -> None:
 def test_what_is_not_there_is_told() -> None:
     with pytest.raises(DeviceError, match=r"no Inverse Service answers at ws://127\.0\.0\.1:1"):
         Servo(device_soak.held_ball(2e-3), device=Inverse3("ws://127.0.0.1:1")).start()
-    with pytest.raises(StandoffTypeError, match="url is 3: give a text"):
+    with pytest.raises(StandoffTypeError, match="url is 3: give a string"):
         Inverse3(3)  # type: ignore[arg-type]
     service = FakeService(devices=["A", "B"])
     try:

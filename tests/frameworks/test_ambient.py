@@ -96,7 +96,7 @@ def test_undefined_derivatives_are_nan_with_a_warning() -> None:
     assert np.isnan(found.gradient[:, :3, 3]).all()
     tilted = STACKED @ pose(np.array([0.3, 0.2, 0.1, 0, 0, 1.0]))
     with pytest.warns(
-        DerivativeWarning, match=r"of row 1 has not all .*\(1 of 2 rows.\) The others"
+        DerivativeWarning, match=r"of row 1 does not have all .*\(1 of 2 rows.\) The others"
     ):
         found = ambient.second(pair, np.eye(4), np.array([tilted, STACKED]))
     assert np.isfinite(found.hessian[0]).all()
@@ -107,18 +107,20 @@ def test_or_an_error() -> None:
     pair = ambient.Pair.of(BOX, BOX, "raise")
     for poses in (STACKED, np.array([STACKED, STACKED])):
         close(ambient.value(pair, np.eye(4), poses), np.full(poses.shape[:-2], 0.5), 1e-12)
-        with pytest.raises(StandoffError, match="has not all derivatives: the witness points"):
+        with pytest.raises(
+            StandoffError, match="does not have all derivatives: the witness points"
+        ):
             ambient.first(pair, np.eye(4), poses)
 
 
 def test_what_cannot_serve_is_refused() -> None:
     with pytest.raises(StandoffError, match="undefined = 'zero': give 'nan' or 'raise'"):
         ambient.Pair.of(BOX, BOX, "zero")
-    with pytest.raises(TypeError, match="b = 3 is no body"):
+    with pytest.raises(TypeError, match="b = 3 is not a body"):
         ambient.Pair.of(BOX, 3, "nan")  # type: ignore[arg-type]
     with pytest.raises(StandoffError, match=r"pose_b has the shape \(3, 3\)"):
         ambient.value(PAIR, np.eye(4), np.eye(3))
-    with pytest.raises(StandoffError, match="as many of both"):
+    with pytest.raises(StandoffError, match="the same number of both"):
         ambient.value(PAIR, np.zeros((2, 4, 4)), np.zeros((3, 4, 4)))
     with pytest.raises(StandoffError, match="Row 1 of poses_b"):
         ambient.value(PAIR, np.eye(4), np.array([STACKED, 2 * STACKED]))

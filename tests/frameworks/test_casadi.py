@@ -82,7 +82,7 @@ def test_undefined_derivatives_warn_or_raise() -> None:
                 found = slope(STACKED).full()
             np.testing.assert_array_equal(np.isnan(found), LOST)
         else:
-            with pytest.raises(RuntimeError, match="has not all derivatives"):
+            with pytest.raises(RuntimeError, match="does not have all derivatives"):
                 slope(STACKED)
     shift = ca.MX.sym("p", 3)
     moved = ca.vertcat(ca.horzcat(ca.MX.eye(3), shift), ca.DM([[0, 0, 0, 1]]))
@@ -111,7 +111,7 @@ def test_an_expression_outlives_the_name_of_its_function() -> None:
 def test_what_cannot_serve_is_refused() -> None:
     with pytest.raises(StandoffError, match="name = 'a b': give a letter"):
         standoff.casadi.distance(LENS, ELLIPSOID, name="a b")
-    with pytest.raises(TypeError, match="a = 1 is no body"):
+    with pytest.raises(TypeError, match="a = 1 is not a body"):
         standoff.casadi.distance(1, ELLIPSOID)  # type: ignore[arg-type]
     with pytest.raises(RuntimeError, match="the last row of a homogeneous matrix"):
         DISTANCE(np.eye(4), 2.0 * np.eye(4))

@@ -118,7 +118,7 @@ def test_rounded_poses_are_repaired_and_carry_the_mark() -> None:
 def test_far_from_zero_the_clock_is_too_coarse_for_a_difference() -> None:
     assert error(PoseFunction(SCREW.pose), SCREW, 1e6) < 1e-6
     with pytest.raises(
-        ValueError, match=r"times .* s beside t = 10000000000000\.0 are no other times"
+        ValueError, match=r"times .* s apart around t = 10000000000000\.0 are not distinct"
     ):
         PoseFunction(lambda t: Pose.identity()).twist(1e13)
     still = PoseFunction(lambda t: Pose.identity(), lambda t: Twist.zero())
@@ -149,8 +149,8 @@ def test_paths_of_other_paths_take_functions() -> None:
         ({"step": 0.0}, ValueError, r"step = 0\.0: must be positive"),
         ({"step": math.nan}, ValueError, "step = nan"),
         ({"start": math.nan}, ValueError, "start = nan"),
-        ({"start": 1.0, "end": 1.0}, ValueError, "the end comes after the start"),
-        ({"start": 2.0, "end": -math.inf}, ValueError, "the end comes after the start"),
+        ({"start": 1.0, "end": 1.0}, ValueError, "the end must come after the start"),
+        ({"start": 2.0, "end": -math.inf}, ValueError, "the end must come after the start"),
     ],
 )
 def test_bad_input_is_refused(given: Any, error_kind: Any, message: str) -> None:

@@ -75,15 +75,15 @@ BAD_LINES = [
     ("a.tum", "2 0 0 0 0 0 0 1\n1.5 0 0 0 0 0 0 1\n", 2, r"time 1\.5 does not .* 2\.0.*sort"),
     ("a.tum", "0 0 nan 0 0 0 0 1\n", 1, r"y is 'nan'; leave out"),
     ("a.tum", "inf 0 0 0 0 0 0 1\n", 1, r"t is 'inf'"),
-    ("a.tum", "0 0 0 high 0 0 0 1\n", 1, r"z is 'high', no number"),
-    ("a.tum", "0 0 0 5_0 0 0 0 1\n", 1, r"z is '5_0', no number; write it such as"),
-    ("a.csv", "t,x,y,z,qx,qy,qz,qw\n0,0,0,5_0,0,0,0,1\n", 2, r"z is '5_0', no number"),
-    ("a.tum", "0 0 0 \u0661\u0662 0 0 0 1\n", 1, r"z is '\u0661\u0662', no number"),
-    ("a.tum", f"0 0 0 {'9_' * 5000}9 0 0 0 1\n", 1, r"z is '9_9_.{190,200}…, no number"),
-    ("a.tum", "0 0 0 0x1 0 0 0 1\n", 1, r"z is '0x1', no number"),
+    ("a.tum", "0 0 0 high 0 0 0 1\n", 1, r"z is 'high', not a number"),
+    ("a.tum", "0 0 0 5_0 0 0 0 1\n", 1, r"z is '5_0', not a number; write it like"),
+    ("a.csv", "t,x,y,z,qx,qy,qz,qw\n0,0,0,5_0,0,0,0,1\n", 2, r"z is '5_0', not a number"),
+    ("a.tum", "0 0 0 \u0661\u0662 0 0 0 1\n", 1, r"z is '\u0661\u0662', not a number"),
+    ("a.tum", f"0 0 0 {'9_' * 5000}9 0 0 0 1\n", 1, r"z is '9_9_.{190,200}…, not a number"),
+    ("a.tum", "0 0 0 0x1 0 0 0 1\n", 1, r"z is '0x1', not a number"),
     ("a.tum", "0 0 0 0 0 0 0 1\n1 0 0 0 0.1 0 0 1\n", 2, r"norm 1\.00498756.*qx qy qz qw"),
-    ("a.tum", "0 0 0 0 0 0 0 1\n", 0, r"1 samples make no motion"),
-    ("a.tum", "# nothing\n", 0, r"0 samples make no motion"),
+    ("a.tum", "0 0 0 0 0 0 0 1\n", 0, r"1 samples do not make a motion"),
+    ("a.tum", "# nothing\n", 0, r"0 samples do not make a motion"),
     ("a.csv", "", 1, r"the header is ''.*t,x,y,z,qx,qy,qz,qw"),
     ("a.csv", "t,x,y,z,qx,qy,qz\n", 1, r"the header is 't,x,y,z,qx,qy,qz'"),
     ("a.csv", "t,x,y,z,qx,qy,qz,w\n", 1, r"the header is"),
@@ -91,7 +91,7 @@ BAD_LINES = [
     ("a.csv", "0,0,0,0,0,0,0,1\n", 1, r"the header is '0,0,0"),
     ("a.csv", CSV + "2,0,0,0,0,0,1\n", 4, r"7 columns, where the header names 8"),
     ("a.csv", CSV + "\n0.5,0,0,0,0,0,0,1\n", 5, r"time 0\.5 does not come after 1\.5"),
-    ("a.csv", CSV + "2,0,0,0,0,0,,1\n", 4, r"qz is '', no number"),
+    ("a.csv", CSV + "2,0,0,0,0,0,,1\n", 4, r"qz is '', not a number"),
     ("a.csv", SCALAR_FIRST + "1,0,0,nan,2,0,0,0\n", 4, r"qz is 'nan'"),
 ]
 
@@ -120,7 +120,7 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "folder.csv").mkdir()
     with pytest.raises(IsADirectoryError, match=r"folder\.csv is a folder"):
         read_pose_samples(tmp_path / "folder.csv")
-    with pytest.raises(ValueError, match=r"the ending '\.bag' names no format"):
+    with pytest.raises(ValueError, match=r"the ending '\.bag' is not a format"):
         read_pose_samples(write(tmp_path, "a.bag", TUM))
     (tmp_path / "binary.tum").write_bytes(b"\xff\xfe\x00\x81")
     with pytest.raises(ValueError, match=r"binary\.tum: not a text file"):
@@ -139,5 +139,5 @@ def test_names_that_no_file_has(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match="no such file"):
         read_pose_samples("a\0.tum")
     for value in (0.1, None, b"a.tum", [1.0]):
-        with pytest.raises(TypeError, match=r"file is .*: give the name of a file"):
+        with pytest.raises(TypeError, match=r"file is .*: give a file name"):
             read_pose_samples(value)  # type: ignore[arg-type]

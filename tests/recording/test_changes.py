@@ -69,3 +69,15 @@ def test_another_way_is_tried_first(proven: bool, tries: int, asked: int) -> Non
     ((low, high),) = line.found(1e-6, otherwise, tries)
     assert len(times) == asked
     assert (high.time - low.time <= 1e-6) == (asked != 1)
+
+
+def test_what_counts_as_a_change_may_be_told() -> None:
+    """Modes of one parity are alike: of five changes one is seen, of two none."""
+    instants = [0.1, 0.3, 0.5, 0.7, 0.9]
+
+    def odd(low: Known, high: Known) -> bool:
+        return (low.mode - high.mode) % 2 == 1
+
+    found = Line(instants).found(1e-3, None, 0, odd)
+    assert [(low.mode, high.mode) for low, high in found] == [(0, 1)]
+    assert Line([0.3, 0.4]).found(1e-3, None, 0, odd) == []

@@ -147,16 +147,16 @@ def test_what_is_no_recording(recordings: list[so.Recording], tmp_path: Path) ->
     with pytest.raises(FileNotFoundError, match="is a folder"):
         so.open_recording(tmp_path)
     file.write_text("time,distance\n0,1\n")
-    with pytest.raises(ValueError, match="no Parquet file, or is cut off"):
+    with pytest.raises(ValueError, match="not a Parquet file, or is truncated"):
         so.open_recording(str(file))
     pq.write_table(pa.table({"time": [0.0]}), file)
-    with pytest.raises(ValueError, match="no recording of Standoff"):
+    with pytest.raises(ValueError, match="not a Standoff recording"):
         so.open_recording(file)
     recordings[0].save(file)
     whole = file.read_bytes()
     for part in (4, len(whole) // 2, len(whole) - 1):
         file.write_bytes(whole[:part])
-        with pytest.raises(ValueError, match="no Parquet file, or is cut off"):
+        with pytest.raises(ValueError, match="not a Parquet file, or is truncated"):
             so.open_recording(file)
 
 
@@ -192,7 +192,7 @@ def test_what_was_added_may_not_be_nested_too_deeply(
     table = pq.read_table(file)
     deep_text = '{"format": "standoff-recording", "source": ' + "[" * 100_000
     pq.write_table(table.replace_schema_metadata({"standoff": deep_text}), file)
-    with pytest.raises(ValueError, match="no recording of Standoff"):
+    with pytest.raises(ValueError, match="not a Standoff recording"):
         so.open_recording(file)
 
 
@@ -270,7 +270,7 @@ def test_a_file_of_version_3_has_its_law(
         rewritten(file, {"format_version": 3, "options": changed})
         info = so.open_recording(file).info
         assert info.options["feedback"] == "PI(gain=40.0, integral=300.0)"
-        with pytest.raises(ValueError, match=r"PI\(gain=40.*is none of standoff's"):
+        with pytest.raises(ValueError, match=r"PI\(gain=40.*is not one of standoff's"):
             _ = info.law
 
 
@@ -293,7 +293,7 @@ def test_a_recording_that_was_changed(recordings: list[so.Recording], tmp_path: 
         so.open_recording(file)
     recordings[0].save(file)
     rewritten(file, {"format": "other"})
-    with pytest.raises(ValueError, match="no recording of Standoff"):
+    with pytest.raises(ValueError, match="not a Standoff recording"):
         so.open_recording(file)
 
 

@@ -121,8 +121,8 @@ def test_frame_times() -> None:
     [
         ({"duration": -1.0}, ValueError, "duration = -1.0"),
         ({"duration": float("inf")}, ValueError, "duration = inf"),
-        ({"tracker": BOX}, TypeError, "is not a Tracker: make one by so.Tracker(a, b, dt)"),
-        ({"tracker": None}, TypeError, "None is not a Tracker: make one by so.Tracker(a, b, dt)"),
+        ({"tracker": BOX}, TypeError, "is not a Tracker: make one with so.Tracker(a, b, dt)"),
+        ({"tracker": None}, TypeError, "None is not a Tracker: make one with so.Tracker(a, b, dt)"),
         ({"dt": 3.0}, ValueError, "there are 1 frames"),
         ({"dt": 1e-9}, ValueError, "2e+09 frames"),
         ({"start": float("nan")}, ValueError, "start = nan"),

@@ -185,7 +185,7 @@ REFUSED = [
     (tracked('realisation = "integratd"'), "track.realisation", ["mean 'integrated'?"]),
     (tracked('saturation = "cero"'), "track.saturation", ["did you mean 'zero'?"]),
     (tracked('switching = "voronoy"'), "track.switching", ["did you mean 'voronoi'?"]),
-    (tracked("solve = 1"), "track.solve", ["text in quotes", "got 1"]),
+    (tracked("solve = 1"), "track.solve", ["string in quotes", "got 1"]),
     (tracked('switchin = "none"'), "track.switchin", ["did you mean 'switching'?"]),
     (tracked('feedback = "pi"'), "track.feedback", ["[track.feedback]", "got 'pi'"]),
     (fed("gain = 1"), "track.feedback", ["'kind' is missing", 'kind = "linear"']),

@@ -211,7 +211,7 @@ def test_rounded_rotations_are_reported(load_text: LoadText, samples: Path) -> N
         f'{HEAD}[motions.a]\nkind = "samples"\nfile = "rounded.tum"\n'
         "[placements.b]\nquaternion_wxyz = [0.7071, 0.7071, 0, 0]\n"
     )
-    rounded = "rotations of {} were rounded; brought to the nearest ones"
+    rounded = "rotations of {} were rounded; replaced by the nearest ones"
     assert scene.notes == [f"1 {rounded.format(name)}" for name in "ab"]
     assert not load_text(HEAD).notes
     matrix = "[[0.866025, -0.5, 0.0], [0.5, 0.866025, 0.0], [0.0, 0.0, 1.0]]"

@@ -74,7 +74,7 @@ def test_the_single_pair_is_still_one(load_text: LoadText) -> None:
         ("pairs = []\n", "pairs", ["empty list", "[[pairs]]"]),
         ("pairs = 3\n", "pairs", ["a list", "got 3"]),
         ("", "", ["'pair' is missing", "[pair]"]),
-        (f'{FIRST}[pair]\na = "finger"\nb = "cup"\n', "pair", ["beside [[pairs]]"]),
+        (f'{FIRST}[pair]\na = "finger"\nb = "cup"\n', "pair", ["together with [[pairs]]"]),
         (FIRST + FIRST, "pairs[1].name", ["two pairs are called 'grasp'", "pairs[0]"]),
         (FIRST + FIRST.replace("grasp", "Grasp"), "pairs[1].name", ["'Grasp'", "pairs[0]"]),
         (SECOND + SECOND, "pairs[1].name", ["'finger-table'"]),

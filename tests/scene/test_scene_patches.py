@@ -245,10 +245,10 @@ GOOD = json.dumps({"format": "standoff-patches", "version": 1, "patches": [NURBS
 
 # content of the file, key, pieces of the sentence
 BAD_FILES = [
-    (GOOD[: len(GOOD) // 2], "", ["is no JSON", "line", "column", "cut off"]),
-    (GOOD[:-2], "", ["is no JSON", "cut off"]),
-    ("", "", ["is no JSON", "line 1", "cut off"]),
-    (GOOD.replace('"version": 1', '"version": 1 2'), "", ["is no JSON", "line 3"]),
+    (GOOD[: len(GOOD) // 2], "", ["is not JSON", "line", "column", "cut off"]),
+    (GOOD[:-2], "", ["is not JSON", "cut off"]),
+    ("", "", ["is not JSON", "line 1", "cut off"]),
+    (GOOD.replace('"version": 1', '"version": 1 2'), "", ["is not JSON", "line 3"]),
     ("[1]", "", ["must be an object", "[1]"]),
     ("\xff", "", ["UTF-8"]),
     (GOOD.replace("standoff-patches", "standoff-patch"), "format", ["'standoff-patches'"]),
@@ -256,7 +256,7 @@ BAD_FILES = [
     (GOOD.replace('"version": 1', '"version": true'), "version", ["is True"]),
     (GOOD.replace('"version": 1,', ""), "", ["'version' is missing", 'add "version"']),
     (GOOD.replace('"patches"', '"patchs"'), "patchs", ["did you mean 'patches'?"]),
-    (GOOD.replace('"version": 1', '"version": 1, "version": 1'), "", ["'version' stands twice"]),
+    (GOOD.replace('"version": 1', '"version": 1, "version": 1'), "", ["'version' appears twice"]),
     ('{"format": "standoff-patches", "version": 1}', "", ["'patches' is missing"]),
     ('{"format": "standoff-patches", "version": 1, "patches": []}', "patches", ["empty"]),
     ('{"format": "standoff-patches", "version": 1, "patches": {}}', "patches", ["a list"]),

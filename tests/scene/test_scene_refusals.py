@@ -53,8 +53,8 @@ TOP = [
     (f"version = 1\n{BODIES}", "", ["'pair' is missing"]),
     (f"version = 1\n{BODIES}[free.a]", "free", ["a simulation", "`standoff simulate`", "[free]"]),
     (f"version = 1\n{BODIES}{PAIR}[free.a]", "free", ["unknown key 'free'"]),
-    (f'version = 1\ntitle = ""\n{BODIES}{PAIR}', "title", ["text in quotes"]),
-    (f"version = 1\nlength_unit = 1\n{BODIES}{PAIR}", "length_unit", ["text in quotes", "got 1"]),
+    (f'version = 1\ntitle = ""\n{BODIES}{PAIR}', "title", ["string in quotes"]),
+    (f"version = 1\nlength_unit = 1\n{BODIES}{PAIR}", "length_unit", ["string in quotes", "got 1"]),
     (f'version = 1\n{BODIES}[pair]\na = "a"', "pair", ["'b' is missing"]),
     (f'version = 1\n{BODIES}[pair]\na = "a"\nb = "a"', "pair", ["'a' is both"]),
     (
@@ -339,7 +339,7 @@ def test_refusal(
 
 
 def test_a_broken_file_is_told_with_its_line(load_text: LoadText) -> None:
-    with pytest.raises(SceneError, match=r"is no TOML.*line 2"):
+    with pytest.raises(SceneError, match=r"is not TOML.*line 2"):
         load_text("version = 1\nbodies = = 3\n")
 
 

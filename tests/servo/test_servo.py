@@ -374,10 +374,10 @@ def test_memory_is_flat(operator: sim.Operator) -> None:
 @pytest.mark.parametrize(
     ("named", "message"),
     [
-        ({"rate": 1000.0}, "rate is 1000, and the operator makes 500 ticks"),
+        ({"rate": 1000.0}, "rate is 1000, but the operator makes 500 ticks"),
         ({"device": "haply"}, "device is 'haply': give a Trace"),
         ({"seconds": 0.0}, "seconds = 0.0"),
-        ({"seconds": 1e12}, "give 1e.09 at most"),
+        ({"seconds": 1e12}, "give at most 1e.09"),
         ({"max_age": -1.0}, "max_age = -1"),
         ({"log_ticks": 10**9}, "log_ticks = 1000000000"),
         ({"state": 3}, "state is 3"),

@@ -123,7 +123,7 @@ def test_each_pair_may_have_a_contact_of_its_own() -> None:
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"bodies": [FLOOR, "ball"]}, "bodies has 'ball', which is no Body"),
+        ({"bodies": [FLOOR, "ball"]}, "bodies has 'ball', which is not a Body"),
         ({"contact": 1e6}, "contact"),
         ({"pairs": [(0, 2)]}, "from 0 to 1"),
         ({"pairs": [(0, 1), (1, 0)]}, "twice"),

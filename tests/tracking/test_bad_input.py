@@ -289,8 +289,8 @@ def test_what_is_no_feature(feature):
 
 def test_what_is_no_state_or_answer_is_named():
     box = so.shapes.box(1, 1, 1)
-    tracker = so.points.SpatialPointTracker(box)
-    with pytest.raises(TypeError, match="SpatialPointState"):
+    tracker = so.PointTracker(box)
+    with pytest.raises(TypeError, match="PointState"):
         tracker.step(None, (0, 0, 0))
     state = so.Tracker(box, box).start(so.Pose.identity(), so.Pose.exp([0, 0, 0], [3, 0, 0]))
     with pytest.raises(TypeError, match="not an answer"):

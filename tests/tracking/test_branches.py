@@ -271,10 +271,12 @@ def test_a_double_well_is_followed_as_its_minima_come_and_go():
     """
 
     def follow_in(f):
+        _, b, c, _, e = f.coef.tolist()
+
         def follow(branch):
             x = branch.state
             for _ in range(2000):  # steepest descent, which stays in its own basin
-                x -= 0.02 * f.deriv()(x)
+                x -= 0.02 * (b + 2.0 * c * x + 4.0 * e * x**3)
             for _ in range(5):
                 x -= f.deriv()(x) / f.deriv(2)(x)
             return Carried(float(f(x)), float(x), abs(x - branch.state))

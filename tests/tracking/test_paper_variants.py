@@ -284,7 +284,7 @@ def test_the_raw_law_goes_to_the_far_side() -> None:
         ({"solve": "raw"}, "solve = 'raw': give"),
         ({"saturation": "zero"}, "never looks: take switching='voronoi'"),
         ({"saturation": "hold", "switching": "none"}, "never leaves: take saturation='zero'"),
-        ({"reset": "nearest"}, "reset='nearest' is of the Voronoi tests"),
+        ({"reset": "nearest"}, "reset='nearest' belongs to the Voronoi tests"),
     ],
 )
 def test_what_does_not_go_together_is_refused(options: dict[str, str], message: str) -> None:

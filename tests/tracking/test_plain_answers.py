@@ -38,7 +38,7 @@ def answers() -> dict[str, Any]:
         "impact": so.time_of_impact(a, b, moving, HOME, duration=4.0),
         "no impact": so.time_of_impact(a, b, moving, HOME, duration=0.5),
         "inside": so.PointTracker(loop).start([0.1, 0.2, 0.0]).proximity,
-        "in space": so.points.SpatialPointTracker(b).start([0.1, 0.2, 0.0]).proximity,
+        "in space": so.PointTracker(b).start([0.1, 0.2, 0.0]).proximity,
         "recording": so.track(so.Tracker(a, b), moving, HOME, 0.1),
     }
 

@@ -45,7 +45,7 @@ def cold(body, x):
 
 def run(body, place, velocity=None, frames=FRAMES):
     """Answers of one second, and the places; the first answer is the start's."""
-    tracker = so.points.SpatialPointTracker(body, 1.0 / frames)
+    tracker = so.PointTracker(body, 1.0 / frames)
     times = np.linspace(0, 1, frames + 1)
     places = np.array([place(t) for t in times])
     speeds = [None if velocity is None else velocity(t) for t in times]
@@ -127,7 +127,7 @@ def test_box(draw, frames, rng):
 def test_box_by_turns():
     """All six faces win in turn, with keys that stay."""
     corners = np.array([[0.9, 0, 0], [0, 1.4, 0], [0, 0, 1.9], [-0.9, 0, 0], [0, -1.4, 0]])
-    tracker = so.points.SpatialPointTracker(BOX)
+    tracker = so.PointTracker(BOX)
     state = tracker.start(corners[0])
     keys = {m.feature: m.key for m in state.proximity.minima}
     assert len(keys) == 6
@@ -178,7 +178,7 @@ def test_ellipsoid_changes_sides_in_its_symmetry_plane():
     ],
 )
 def test_minima_by_brute_force(body, shape, x):
-    answer = so.points.SpatialPointTracker(body).start(x).proximity
+    answer = so.PointTracker(body).start(x).proximity
     truth = depth_minima(Placed(shape, np.eye(3), np.zeros(3)), Placed(Point(), np.eye(3), x))
     np.testing.assert_allclose(
         [m.distance for m in answer.minima], [m.depth for m in truth.minima], atol=1e-9
@@ -264,7 +264,7 @@ def test_swept_radius():
     (crossing,) = events(answers, "crossing")
     at = places[0] + crossing.time * (places[-1] - places[0])
     assert rounded_box(at) == pytest.approx(0, abs=1e-12)
-    sphere = so.points.SpatialPointTracker(so.shapes.sphere(2.0)).start((0.3, 0, 0.4)).proximity
+    sphere = so.PointTracker(so.shapes.sphere(2.0)).start((0.3, 0, 0.4)).proximity
     assert sphere.distance == pytest.approx(-1.5, abs=1e-14)
     assert len(sphere.minima) == 1
 
@@ -289,11 +289,11 @@ def test_rate_and_cold_answer_on_random_ways(body, rng):
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: so.points.SpatialPointTracker("box"), "is not a Body"),
-        (lambda: so.points.SpatialPointTracker(BOX).start((0, 0)), "shape"),
-        (lambda: so.points.SpatialPointTracker(BOX).start((0, 0, np.nan)), "point"),
-        (lambda: so.PointTracker(BOX), "SpatialPointTracker"),
-        (lambda: so.points.record_point(so.points.SpatialPointTracker(BOX), None, [0.0]), "planar"),
+        (lambda: so.PointTracker("box"), "is not a Body"),
+        (lambda: so.PointTracker(BOX).start((0, 0)), "shape"),
+        (lambda: so.PointTracker(BOX).start((0, 0, np.nan)), "point"),
+        (lambda: so.points.record_point(so.PointTracker(BOX), None, [0.0]), "not a path"),
+        (lambda: so.points.record_point(BOX, HOME, [0.0]), "PointTracker"),
     ],
 )
 def test_bad_input(call, words):

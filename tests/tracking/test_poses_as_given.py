@@ -188,7 +188,7 @@ def test_a_function_with_bounds_has_a_time_of_impact() -> None:
     )
     assert found.status is so.impact.ImpactStatus.IMPACT
     assert found.time == pytest.approx(exact.time, abs=1e-8)
-    with pytest.raises(TypeError, match=r"nothing is known of how fast PoseFunction.*Bounded"):
+    with pytest.raises(TypeError, match=r"it is not known how fast PoseFunction.*Bounded"):
         so.time_of_impact(LENS, TOOL, HOME, falling, 3.0)
 
 

@@ -381,5 +381,5 @@ def test_bad_input_is_refused(options: dict[str, Any], message: str) -> None:
 def test_a_path_that_ends_before_is_refused() -> None:
     body = so.shapes.sphere(1.0)
     path = PoseSamples([0.0, 1.0], [at(3.0, 0.0, 0.0), at(4.0, 0.0, 0.0)])
-    with pytest.raises(ValueError, match=r"= 1\.5, and a path ends at 1\.0"):
+    with pytest.raises(ValueError, match=r"= 1\.5, but a path ends at 1\.0"):
         so.time_of_impact(body, body, REST, path, 1.5)

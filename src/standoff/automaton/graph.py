@@ -44,8 +44,8 @@ class Transition(NamedTuple):
     body : "A" or "B"
     source, target : Feature
     kind : "boundary", "smooth" or "release"
-        A step reaches the end of a feature; it reaches a smooth edge and goes on upon the next
-        face; or, at rest, the distance falls into a greater feature, which is the Voronoi test.
+        A step reaches the end of a feature; it reaches a smooth edge and continues on the next
+        face; or, at rest, the distance falls into a larger feature, which is the Voronoi test.
     switching : str
         When it is taken. n is the unit vector from A to B, and −ε the least slope that counts.
     reset : str
@@ -68,17 +68,17 @@ class Automaton:
     ----------
     a, b : Body
     features_a, features_b : tuple of Feature
-        Smooth edges are among them: they are passed, and held only where a step would cross them
-        to and fro.
+        Smooth edges are among them: they are passed, and held only if a step would cross them back
+        and forth.
     transitions : tuple of Transition
         Those of A, then those of B.
     visits : tuple of Visit
-        In order of time; empty where no motion is marked. Between two of them that do not join,
+        In order of time; empty if no motion is marked. Between two that are not adjacent in time,
         the bodies overlapped.
     taken : tuple of (float, Transition)
         The switches of the motion with their times [s].
     restarts : tuple of float
-        Times [s] at which a global start changed the mode in a way that is no transition.
+        Times [s] at which a global start changed the mode in a way that is not a transition.
     """
 
     a: Body

@@ -22,9 +22,9 @@ MOST_LABELLED = 40
 """Most arrows of one body that carry a label in Mermaid; more cannot be read."""
 
 LEGEND = (
-    "n: unit vector from A to B. A step that reaches the end of a feature goes on upon what is "
-    "there; at rest, the steepest slope of the distance below −ε releases into a greater feature. "
-    "The resets keep the witness point."
+    "n: unit vector from A to B. A step that reaches the end of a feature continues on what it "
+    "meets there; at rest, the steepest slope of the distance below −ε releases into a larger "
+    "feature. The resets keep the witness point."
 )
 
 Names = tuple[str, str]
@@ -111,9 +111,10 @@ def columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
 
 
 def automaton_mermaid(automaton: Automaton, names: Names = ("A", "B")) -> str:
-    """Return a Mermaid flowchart: both bodies' automata, and of their product what can be read.
+    """Return a Mermaid flowchart: both bodies' automata, and as much of their product as can be
+    read.
 
-    That is the visited modes with their times, or the whole product where it is small.
+    That is the visited modes with their times, or the whole product if it is small.
     """
     lines = ["flowchart LR"]
     visited = {("A", mode[0]) for mode in automaton.visited}
@@ -218,7 +219,8 @@ def _visited_product(automaton: Automaton) -> list[str]:
 
 
 def moves(visits: Sequence[Visit]) -> list[tuple[Mode, Mode, list[float]]]:
-    """Return which mode followed which, and when [s]; what an overlap parted did not follow."""
+    """Return which mode followed which, and when [s]; modes separated by an overlap did not
+    follow."""
     found: dict[tuple[Mode, Mode], list[float]] = {}
     for before, after in pairwise(visits):
         if before.end == after.start:

@@ -41,11 +41,11 @@ def build_library(
     Parameters
     ----------
     folder : str or Path
-        There already; gets ``libstandoff.so`` (``.dylib`` on macOS) and ``standoff.h``, both or
-        neither.
+        An existing folder; gets ``libstandoff.so`` (``.dylib`` on macOS) and ``standoff.h``, both
+        or neither.
     processor : str, optional
-        What the code is for, in LLVM's words, such as ``"x86-64-v3"``. If not given it is this
-        machine's own, and answers are those of Python here to the last bit.
+        The processor that the code is for, by LLVM's name, such as ``"x86-64-v3"``. If not given,
+        it is this machine's own, and answers equal those of Python here to the last bit.
     compiler : str, optional
         The C compiler's command; if not given, what ``CC`` in the environment says, or ``cc``.
     progress : callable, optional

@@ -1,8 +1,8 @@
 """The kernels as object files for a linker: ``python -m standoff.c_interface.objects FOLDER``.
 
-They are compiled as for Python, by the same passes, and so answer alike to the last bit; only the
-addresses in them are relative, as a shared library asks. No kernel calls Python: what they need of
-elsewhere is in the C mathematics library.
+They are compiled as for Python, by the same passes, and so give the same answers to the last bit;
+only the addresses in them are relative, as a shared library requires. No kernel calls Python:
+whatever else they need is in the C mathematics library.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def hidden(code: llvm.ModuleRef, renamed: dict[str, str]) -> llvm.ModuleRef:
 
 
 def write(folder: Path, progress: Progress = lambda done, total: None) -> None:
-    """Compile all that the library calls and write it to a folder, an object file a module."""
+    """Compile all that the library calls and write it to a folder, one object file per module."""
     renamed, libraries = compiled_libraries(progress)
     machine = relocatable_machine(libraries[0]._codegen)
     files = {}
@@ -131,7 +131,7 @@ def build(folder: Path, processor: str | None = None, progress: Progress | None 
         if processor is not None:
             environment |= {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": ""}
         command = [sys.executable, "-m", "standoff.c_interface.objects", str(folder)]
-        # What goes wrong goes to a file: two pipes that are read one after the other may fill up.
+        # Errors go to a file: two pipes that are read one after the other may fill up.
         with (
             tempfile.TemporaryFile("w+") as errors,
             subprocess.Popen(

@@ -45,8 +45,8 @@ def save_pair(path: str | Path, tracker: Tracker) -> None:
     StandoffTypeError
         Not a tracker.
     StandoffError
-        A body with a surface or curve made of formulas, whose machine code lives in this process;
-        a tracker with ``specialise=True`` for kinds of faces that the library has no frame for.
+        A body with a surface or curve made of formulas, whose machine code lives in this process; a
+        tracker with ``specialise=True`` for kinds of faces for which the library has no frame.
     OSError
         If the file cannot be written.
     """
@@ -64,7 +64,7 @@ def _refuse_formulas(name: str, body: Body) -> None:
         raise StandoffError(
             f"Body {name} is made of formulas ({', '.join(map(str, formulas[0].expressions))}): "
             "their machine code lives in this process and cannot go to a file. Make the body of "
-            "NURBS, revolved or extruded surfaces whose curves are no formulas.",
+            "NURBS, revolved or extruded surfaces whose curves are not formulas.",
             "tracker",
             body,
         )

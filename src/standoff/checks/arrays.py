@@ -1,4 +1,4 @@
-"""Arrays of numbers that a user gives: of which kind and shape, finite, how great."""
+"""Arrays of numbers that a user gives: their kind, shape and size, and whether they are finite."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def finite(value: Any, name: str, shape: tuple[int, ...]) -> FloatArray:
     Raises
     ------
     StandoffError
-        Not numeric (text and truth values are not), masked, of another shape, with a NaN, an
+        Not numeric (strings and truth values are not), masked, of another shape, with a NaN, an
         infinite number, or one beyond `GREATEST`.
     """
     copied = numbers(value, name, shape)
@@ -70,7 +70,7 @@ def numbers(value: Any, name: str, shape: tuple[int, ...] | None) -> FloatArray:
 
 
 def unmasked(value: object, name: str) -> None:
-    """Refuse masked numbers, before a conversion of NumPy's takes what lies beneath for data."""
+    """Refuse masked numbers, before one of NumPy's conversions reads what lies beneath as data."""
     try:
         check_unmasked(value)
     except MaskedNumbers as error:

@@ -1,4 +1,4 @@
-"""One number that a user gives: of which kind, how great, of which sign."""
+"""One number that a user gives: its kind, size and sign."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def number(value: Any, name: str) -> float:
     Raises
     ------
     StandoffError
-        Text, truth values, complex numbers, arrays and masked numbers are none; NaN, infinity.
+        Strings, truth values, complex numbers, arrays, masked numbers, NaN and infinity.
     """
     read = _real(value, name)
     if not math.isfinite(read):
@@ -53,7 +53,7 @@ def not_negative(value: Any, name: str) -> float:
 
 
 def magnitude(value: Any, name: str) -> float:
-    """Read a number above zero of which powers are taken, such as a length, not below `LEAST`."""
+    """Read a number above zero whose powers are taken, such as a length, not below `LEAST`."""
     read = positive(value, name)
     if read < LEAST:
         raise StandoffError(
@@ -73,7 +73,7 @@ def magnitude_or_zero(value: Any, name: str) -> float:
 
 
 def whole_number(value: Any, name: str, least: int = 1, most: int | None = None) -> int:
-    """Read a whole number from `least` to `most`; text, True and 2.0 are none."""
+    """Read a whole number from `least` to `most`; strings, True and 2.0 are not."""
     if not is_whole(value) or value < least or (most is not None and value > most):
         asked = f"of at least {least}" if most is None else f"from {least} to {most}"
         raise StandoffError(
@@ -83,7 +83,7 @@ def whole_number(value: Any, name: str, least: int = 1, most: int | None = None)
 
 
 def is_whole(value: Any) -> bool:
-    """Is it a whole number? To NumPy a duration is one too, to Python a truth value."""
+    """Is it a whole number? NumPy counts a duration as one, Python a truth value."""
     return isinstance(value, int | np.integer) and not isinstance(value, bool | np.timedelta64)
 
 

@@ -20,7 +20,8 @@ NOT_REAL = (
     *(bool, np.bool_, str, bytes, type(None)),
     *(complex, np.complexfloating, np.datetime64, np.timedelta64),
 )
-"""What NumPy would make a float64 of, or refuses in words of its own, and is no real number."""
+"""What NumPy would convert to float64, or refuses in its own words, although it is not a real
+number."""
 
 
 def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
@@ -39,7 +40,7 @@ def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
 
 def check_unmasked(value: Any) -> None:
     """Refuse masked numbers, in an array or in lists of arrays: NumPy's own conversions drop the
-    mask and take what lies beneath for data.
+    mask and read what lies beneath as data.
 
     Raises
     ------
@@ -76,8 +77,8 @@ def real_array(value: Any, *, copy: bool = True) -> NDArray[np.float64]:
     """Return a float64 array of real numbers: a new one, or with ``copy=False`` the one given where
     it is one already.
 
-    NumPy itself would read text, truth values and durations as numbers, None as NaN, and drop an
-    imaginary part with no more than a warning.
+    NumPy itself would read strings, truth values and durations as numbers, None as NaN, and drop an
+    imaginary part with only a warning.
 
     Raises
     ------
@@ -106,7 +107,8 @@ def real_array(value: Any, *, copy: bool = True) -> NDArray[np.float64]:
 
 
 def as_given(value: Any) -> NDArray[Any]:
-    """An array of what is given, every element of lists as it is, before NumPy makes them alike.
+    """An array of what is given, with the elements of lists as they are, before NumPy gives them
+    one type.
 
     Raises
     ------

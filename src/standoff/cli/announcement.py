@@ -49,7 +49,7 @@ def _doing(command: Command) -> str:
         case WarmupCommand():
             return f"loading all kernels; what must be compiled takes about {ALL_SECONDS} s in all"
         case LibraryCommand():
-            return ""  # told by what builds it, from Python as well
+            return ""  # reported by what builds it, from Python too
         case _:
             return command.announcement()
 

@@ -71,14 +71,14 @@ class ReportFlags:
     """How the result is printed."""
 
     json: Annotated[bool, arg(help_behavior_hint="")] = False
-    """As JSON, with all there is to know."""
+    """As JSON, with everything there is to know."""
     verbose: Annotated[bool, arg(help_behavior_hint="")] = False
     """With every count of the work, also those that are zero."""
 
 
 @dataclass(frozen=True)
 class FileFlags:
-    """What is written besides; of several pairs each to its own file, OUT-NAME."""
+    """Other files to write; with several pairs, each gets its own file, OUT-NAME."""
 
     output: Annotated[
         Path | None, arg(aliases=["-o"], metavar="OUT.parquet", help_behavior_hint="")
@@ -87,7 +87,8 @@ class FileFlags:
     plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
     """Plot distance, certificate gap and active features (.png, .svg or .pdf)."""
     export: Annotated[Path | None, arg(metavar="OUT.html", help_behavior_hint="")] = None
-    """Show the motion: a page without a server (.html), a film (.mp4, .gif), or rerun's (.rrd)."""
+    """Show the motion: a page without a server (.html), a video (.mp4, .gif), or a rerun file
+    (.rrd)."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ class SpanFlags:
     start: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
     """When to begin, s."""
     duration: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
-    """How long to go on, s."""
+    """How long to track, s."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,8 @@ class FrameFlags(SpanFlags):
 
 
 def _group(name: str, told: str = "") -> Any:
-    """A group of options, which help tells under its name; no option's own name has it."""
+    """A group of options, which help shows under its name; the options' own names do not contain
+    it."""
     return arg(name=name, help=told or None)
 
 
@@ -177,12 +179,11 @@ class ImpactCommand:
 
 @dataclass(frozen=True)
 class CheckCommand:
-    """Tell what the checks of a body found and proved, and draw it.
+    """Report what a body's checks found and proved, and draw the body.
 
     Example: standoff check 'shape = "box", size = [1, 2, 3]' --plot box.png
 
-    Exit codes: 0 done, 1 the picture could not be written, 2 bad input: also a body that is
-    refused.
+    Exit codes: 0 done, 1 the picture could not be written, 2 bad input, or a body that is rejected.
     """
 
     what: Annotated[Positional[str], arg(metavar="SCENE.toml|BODY.json|SHAPE")]
@@ -191,8 +192,8 @@ class CheckCommand:
     body: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """Only this one of a scene's bodies."""
     plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
-    """Draw the body with its features and normals to this file (.png, .svg or .pdf); of several
-    bodies each to its own, OUT-NAME.png."""
+    """Draw the body with its features and normals to this file (.png, .svg or .pdf); with several
+    bodies, each gets its own, OUT-NAME.png."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print the report as JSON."""
 
@@ -216,7 +217,7 @@ class AutomatonCommand:
     output: Annotated[
         Path | None, arg(aliases=["-o"], metavar="OUT.svg", help_behavior_hint="")
     ] = None
-    """Write to this file (.txt, .mmd or .svg) in place of stdout; of several pairs each to its
+    """Write to this file (.txt, .mmd or .svg) instead of stdout; with several pairs, each gets its
     own, OUT-NAME.svg."""
     visited: Annotated[bool, arg(help_behavior_hint="")] = False
     """Track the scene first, and mark the visited modes and switches with their times."""
@@ -244,7 +245,7 @@ class SimulateCommand:
     step: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
     """Time of a tick, s; overrides the scene's."""
     duration: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
-    """Time that is simulated, s; overrides the scene's."""
+    """Time to simulate, s; overrides the scene's."""
     method: Annotated[str | None, arg(metavar="METHOD", help_behavior_hint="")] = None
     """Semi-implicit, euler, heun, midpoint or rk4; overrides the scene's."""
     tracker: Annotated[str | None, arg(metavar="inside|beside", help_behavior_hint="")] = None
@@ -276,9 +277,9 @@ class ViewCommand:
 
 @dataclass(frozen=True)
 class ServoCommand:
-    """Run a scene with a coupler in real time, and tell how the loop kept its time.
+    """Run a scene with a coupler in real time, and report how well the loop kept time.
 
-    Ends after its seconds, by Ctrl-C, by SIGTERM, or where the coupler lets go; always without a
+    It ends after its seconds, on Ctrl-C or SIGTERM, or when the coupler lets go; always without a
     force.
 
     Example: standoff servo examples/simulation/hand-on-lens.toml --seconds 10
@@ -306,25 +307,26 @@ class ServoCommand:
 
 @dataclass(frozen=True)
 class WarmupCommand:
-    """Compile all kernels ahead, so that no later use waits for it.
+    """Compile all kernels ahead of time, so that no later use waits for it.
 
-    Once for an installation: what is compiled already is only loaded. Bodies made of formulas bring
-    code of their own, which each process compiles when it makes them; that is not done here.
+    Once per installation: what is already compiled is only loaded. Bodies made of formulas have
+    their own code, which each process compiles when it creates them; that is not done here.
 
     Exit codes: 0 done, 1 the machine code could not be kept, 3 finished, but a kernel could not be
     compiled.
     """
 
     json: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Print what was compiled as JSON; what is done meanwhile is told on stderr."""
+    """Print what was compiled as JSON; progress goes to stderr."""
 
 
 @dataclass(frozen=True)
 class LibraryCommand:
     """Build the shared library and the header for programs in C and C++.
 
-    Takes about a minute and a C compiler, `cc` or what CC in the environment names. Pairs of bodies
-    go to files for it by standoff.c_interface.save_pair; docs/c-interface.md has a whole program.
+    It takes about a minute and needs a C compiler: `cc`, or the one that CC names in the
+    environment. standoff.c_interface.save_pair writes the files of pairs that it loads;
+    docs/c-interface.md has a complete program.
 
     Exit codes: 0 done, 1 not written, 2 the input is not usable or the compiler failed.
 
@@ -332,7 +334,7 @@ class LibraryCommand:
     """
 
     folder: Annotated[Positional[Path], arg(metavar="FOLDER")]
-    """Folder for libstandoff.so and standoff.h; made where it is missing."""
+    """Folder for libstandoff.so and standoff.h; created if it is missing."""
     processor: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """What the code is for, in LLVM's words, such as x86-64-v3; this machine if not given."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False

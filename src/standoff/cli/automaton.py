@@ -82,7 +82,7 @@ def _format(command: AutomatonCommand) -> str:
 
 
 def _check_plotting() -> None:
-    """Tell a missing library before the run."""
+    """Report a missing library before the run."""
     try:
         import standoff.automaton.picture  # noqa: F401
     except ModuleNotFoundError as error:

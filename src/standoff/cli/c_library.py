@@ -14,7 +14,7 @@ from standoff.errors import StandoffError
 
 
 def run_c_library(command: LibraryCommand) -> int:
-    """Build the library into a folder and tell where it is.
+    """Build the library into a folder and say where it is.
 
     Raises
     ------

@@ -33,7 +33,7 @@ WIDTH = 100
 
 
 def run_check(command: CheckCommand) -> int:
-    """Tell what is known about each body.
+    """Report what is known about each body.
 
     Raises
     ------

@@ -12,7 +12,8 @@ from standoff.scene import load_scene, query
 
 
 def run_distance(command: DistanceCommand) -> int:
-    """Print the pairs' certified distances at one instant; the exit code tells if they are.
+    """Print the pairs' certified distances at one instant; the exit code says whether they are
+    certified.
 
     Raises
     ------

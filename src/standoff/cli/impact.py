@@ -15,7 +15,7 @@ from standoff.scene import Scene, SceneError, first_impact, load_scene
 
 
 def run_impact(command: ImpactCommand) -> int:
-    """Print the pairs' times of impact; the exit code tells if all are decided.
+    """Print the pairs' times of impact; the exit code says whether all are decided.
 
     Raises
     ------

@@ -26,7 +26,7 @@ def check_results(
     output, plot : Path or None
         What ``-o`` and ``--plot`` named.
     table, picture : str
-        The modules that write them, imported now: a missing library is told before the run.
+        The modules that write them, imported now: a missing library is reported before the run.
 
     Raises
     ------
@@ -65,8 +65,8 @@ def check_target(target: Path, option: str, endings: Sequence[str]) -> None:
     Raises
     ------
     CommandError
-        If there is no name or the ending is another, the folder is missing or cannot be written,
-        or the target is itself no regular file.
+        If there is no name or the ending is not one of these, the folder is missing or cannot be
+        written, or the target is not a regular file.
     """
     check_named(target, option)
     if target.suffix.lower() not in endings:
@@ -91,7 +91,7 @@ def check_target(target: Path, option: str, endings: Sequence[str]) -> None:
 
 
 def check_named(target: Path, option: str) -> None:
-    """Refuse a path without a file's name: an empty text, which means the current folder, or /.
+    """Refuse a path without a file name: an empty string, which means the current folder, or /.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def check_named(target: Path, option: str) -> None:
     """
     if not target.name:
         raise CommandError(
-            f"{option}: '{target}' is a folder, and what an empty text stands for; name a file"
+            f"{option}: '{target}' is a folder, which an empty name stands for too; name a file"
             if target == Path()
             else f"{option} {target}: is a folder; name a file in it"
         )
@@ -111,13 +111,13 @@ def make_folder(folder: Path, option: str) -> None:
     Raises
     ------
     CommandError
-        If it cannot be made, as where there is something else.
+        If it cannot be made, for instance because something else has its name.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except FileExistsError as error:
         kind = kind_of(folder.lstat().st_mode)
-        raise CommandError(f"{option} {folder}: is {kind}, no folder; name a folder") from error
+        raise CommandError(f"{option} {folder}: is {kind}, not a folder; name a folder") from error
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise CommandError(

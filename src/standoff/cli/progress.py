@@ -14,14 +14,14 @@ from standoff.kernels.compiler.notices import alive
 from standoff.progress import Progress
 
 Show = Callable[[int, int, str], None]
-"""Is told how many are done, of how many, and what is being done."""
+"""Called with how many are done, of how many, and what is being done."""
 
 
 @contextmanager
 def progress_shown(doing: str = "starting") -> Iterator[Show]:
     """Show on stderr what is being done: a bar, or where it is no terminal a line every 10 s."""
     if sys.stderr.isatty():
-        # A stdout that is not a terminal stays what it is: the bar would take its lines.
+        # A stdout that is not a terminal is left alone: the bar would capture its lines.
         console, both = Console(stderr=True), sys.stdout.isatty()
         with Bar(console=console, transient=True, redirect_stdout=both) as bar:
             task = bar.add_task(doing, total=None)
@@ -41,6 +41,6 @@ def progress_shown(doing: str = "starting") -> Iterator[Show]:
 
 @contextmanager
 def progress_bar(doing: str = "tracking") -> Iterator[Progress]:
-    """`progress_shown` for one thing that is done all the time."""
+    """`progress_shown` for a single task."""
     with progress_shown(doing) as show:
         yield lambda done, total: show(done, total, doing)

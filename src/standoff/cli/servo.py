@@ -89,7 +89,7 @@ def _device(name: str, scene: SimulationScene) -> Any:
         hand = None if own is None else own.hand
         if hand is None:
             raise SceneError(
-                "the scene's device follows no path; add [device.path], or give --device",
+                "the scene's device does not follow a path; add [device.path], or give --device",
                 key="device",
                 file=scene.file,
             )

@@ -18,7 +18,7 @@ EXAMPLE = "'shape = \"box\", size = [0.3, 0.2, 0.1]'"
 
 
 class Subject(NamedTuple):
-    """A body to be told about, what it is called, and the label of its lengths."""
+    """A body to report on, what it is called, and the label of its lengths."""
 
     name: str
     body: Body

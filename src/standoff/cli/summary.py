@@ -25,14 +25,15 @@ FIRST_EVENTS = 8
 in the Parquet file and in ``--json``."""
 
 ALWAYS_TOLD = ("predictor", "integrator", "gain")
-"""Options of a law that the summary tells also where they are the default."""
+"""Options of a law that the summary shows even if they are the default."""
 
 NOUNS = {
     "switches": ("switch", "switches"),
     "searches": ("search", "searches"),
     "regularised": ("regularised solve",),
 }
-"""What is counted, one and many, where the count's name with or without its s does not say it."""
+"""What is counted, singular and plural, where the count's name with or without its s does not say
+it."""
 
 COLD_TOLERANCE = float(PredictorCorrector().tolerance)
 """That of a cold query, in sizes of the pair: the law's default."""
@@ -49,7 +50,7 @@ def line(name: str, text: str) -> str:
 def answer_lines(
     scene: Scene, time: float, answer: Proximity, *, verbose: bool = False
 ) -> list[str]:
-    """Return the lines that tell one answer."""
+    """Return the lines for one answer."""
     unit, size = scene.length_unit, shown_size(answer)
     numbers = [answer.distance, answer.lower_bound, answer.upper_bound]
     distance, lower, upper = without_roundoff(numbers, size).tolist()
@@ -72,7 +73,7 @@ def answer_lines(
 
 
 def impact_lines(scene: Scene, found: Impact, *, verbose: bool = False) -> list[str]:
-    """Return the lines that tell a time of impact and the answer at that time."""
+    """Return the lines for a time of impact and the answer at that time."""
     lines = answer_lines(scene, found.time, found.proximity, verbose=verbose)
     instants = counted(found.evaluations, "instant")
     queries = counted(found.queries, "query", "queries")
@@ -120,7 +121,7 @@ def _scene_lines(scene: Scene) -> list[str]:
 
 
 def _law_text(recording: Recording) -> str:
-    """The law with its way of going on, its gain, and what else is not the default."""
+    """The law with its predictor or integrator, its gain, and what else is not the default."""
     options = recording.info.options
     law = LAWS[options["law"]]
     usual = law().resolved(float(options["dt"])).facts()

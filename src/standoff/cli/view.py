@@ -18,7 +18,7 @@ def run_view(command: ViewCommand) -> int:
     Raises
     ------
     CommandError
-        If viser is not installed, or the port cannot be had.
+        If viser is not installed, or the port is not available.
     SceneError
         If the scene is not usable.
     """

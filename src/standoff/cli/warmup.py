@@ -35,7 +35,7 @@ class Ready(NamedTuple):
 
 
 def run_warmup(command: WarmupCommand) -> int:
-    """Load or compile every entry, and tell of each when it is done."""
+    """Load or compile every entry, and report each when it is done."""
     entries = list(every_entry())
     done: list[Ready] = []
     started = time.perf_counter()
@@ -63,7 +63,7 @@ def _ready(entry: Entry) -> Ready:
     error = ""
     try:
         entry.prepare()
-    except Exception as raised:  # whatever Numba or LLVM raise: the others are tried all the same
+    except Exception as raised:  # whatever Numba or LLVM raises: the others are tried all the same
         error = f"{type(raised).__name__}: {raised}"
     seconds = time.perf_counter() - started
     compiled = entry.ready and was_compiled(entry)

@@ -37,7 +37,7 @@ class Basin(NamedTuple):
     steps : int
         Frames that each start was given.
     repaired : int
-        How many of the two poses were given with a rounded rotation, and were brought to the
+        How many of the two poses were given with a rounded rotation, and were replaced by the
         nearest one.
     """
 
@@ -86,7 +86,9 @@ def basin(
     """
     if not isinstance(tracker, Tracker):
         raise StandoffTypeError(
-            f"{shown(tracker)} is not a Tracker: make one by so.Tracker(a, b).", "tracker", tracker
+            f"{shown(tracker)} is not a Tracker: make one with so.Tracker(a, b).",
+            "tracker",
+            tracker,
         )
     steps = whole_number(steps, "steps")
     _check_starts(starts, steps)

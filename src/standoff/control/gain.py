@@ -39,21 +39,21 @@ def min_gain(
     ----------
     a, b : Body
     error : float
-        Greatest distance allowed between a witness point and its true place, length. Of a body
-        with a swept radius it is that of its core's point (a sphere's has none).
+        Greatest distance allowed between a witness point and its true place, length. For a body
+        with a swept radius it is that of the core's point (that of a sphere has none).
     speed : float
         Greatest speed of B's origin as seen from A's frame, length/s. Where A itself turns with
         omega_A this is |v_B - v_A - omega_A x (p_B - p_A)|.
     spin : float
         Greatest angular speed of B relative to A, |omega_B - omega_A|, rad/s.
     distance : float or (least, most)
-        The least distance of the bodies, or both ends of its range, length. From a single
-        number the range goes on without end.
+        The least distance of the bodies, or both ends of its range, length. A single number means a
+        range without an upper end.
 
     Returns
     -------
     float
-        K, 1/s. inf where no gain can promise the error: both bodies flat or straight somewhere
+        K, 1/s. inf where no gain can guarantee the error: both bodies flat or straight somewhere
         (two boxes), contact, or a spin at any distance about a body with a flat place. 0 for two
         points, which have no parameters.
 

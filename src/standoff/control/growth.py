@@ -151,7 +151,7 @@ def steady_error(integrator: str, gain: float, dt: float, acceleration: float) -
 def euler_min_gain(error: float, acceleration: float, dt: float) -> float:
     """The least gain of Euler with the feedforward that keeps the steady error: h a / (2 error).
 
-    The other integrators' steady error h² a / 4 and less cannot be bought down with gain: take a
+    The other integrators' steady error of h² a / 4 or less cannot be reduced with gain: take a
     shorter step.
 
     Parameters

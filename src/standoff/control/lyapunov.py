@@ -68,7 +68,7 @@ class LyapunovLevels(NamedTuple):
     singular : (m,) bool array
         H is singular at the curve's end; else a feature ends there.
     repaired : int
-        How many of the two poses were given with a rounded rotation, and were brought to the
+        How many of the two poses were given with a rounded rotation, and were replaced by the
         nearest one.
     """
 

@@ -28,7 +28,7 @@ REAL_EXTREME: Final = 1e-6
 
 FOUND_MINIMUM: Final = 1e-6
 """A run has found the minimum where its distance and witness points are within this part of the
-pair's size of the true ones: far above roundoff, far below the way to any other stationary
+pair's size of the true ones: far above roundoff, far below the distance to any other stationary
 point."""
 
 SETTLED_RUN: Final = 1e-6

@@ -38,15 +38,15 @@ ZERO = (0.0, 0.0, 0.0)
 
 
 class Inverse3(BoundToRun):
-    """An Inverse3 of Haply's, by the WebSocket of the Inverse Service (version 3.5).
+    """Haply's Inverse3, through the WebSocket of the Inverse Service (version 3.5).
 
-    A thread of its own sends a force and takes the answer, over and over; the loop is never waited
-    for. An answer counts as old as the force that it answers, so that a slow service is seen as
-    what it is. The cursor has no turn: the handle keeps that of `placement`.
+    Its own thread sends a force and takes the answer, over and over, and never waits for the loop.
+    An answer counts as old as the force that it answers, so that a slow service is noticed. The
+    cursor has no orientation: the handle keeps that of `placement`.
 
-    Every frame is distrusted: one that is broken, late, doubled, from another device, not finite or
-    beyond where a hand can be takes the force to zero before the next message is sent, and it stays
-    zero until the loop is engaged again. A service that is gone is not called again.
+    No frame is trusted: one that is broken, late, doubled, from another device, not finite or
+    beyond a hand's reach sets the force to zero before the next message is sent, and it stays zero
+    until the loop is engaged again. A service that is gone is not contacted again.
 
     Parameters
     ----------
@@ -63,14 +63,14 @@ class Inverse3(BoundToRun):
     Attributes
     ----------
     problem : str
-        Why it gives no readings any more, and what to do.
+        Why it no longer gives readings, and what to do.
     frames, refused : int
-        Messages that came, and those of them that were found at fault.
+        Messages received, and how many of them were faulty.
 
     Raises
     ------
     StandoffTypeError
-        An address or name that is no text.
+        An address or name that is not a string.
     StandoffError
         A period that is not above zero; no pose.
     """
@@ -86,7 +86,7 @@ class Inverse3(BoundToRun):
         texts: dict[str, Any] = {"url": url, "device_id": device_id}
         for name, given in texts.items():
             if not isinstance(given, str) and (name == "url" or given is not None):
-                raise StandoffTypeError(f"{name} is {shown(given)}: give a text.", name, given)
+                raise StandoffTypeError(f"{name} is {shown(given)}: give a string.", name, given)
         self._url, self._wanted = url, device_id
         self._period = positive(period, "period")
         self._placement = Pose.identity() if placement is None else Pose.of(placement)
@@ -142,7 +142,7 @@ class Inverse3(BoundToRun):
                 close_timeout=CLOSED_WITHIN,
                 max_size=LONGEST_FRAME,
             )
-        except Exception as error:  # the library's own kinds, the system's, and what is no address
+        except Exception as error:  # the library's own kinds, the system's, and invalid addresses
             raise DeviceError(
                 f"no Inverse Service answers at {self._url} ({error}): start it, or give its "
                 "address (url=...)."
@@ -153,7 +153,7 @@ class Inverse3(BoundToRun):
             names = device_ids(socket.recv(CONNECTED_WITHIN))
         except Exception as error:
             raise DeviceError(
-                f"the service at {self._url} sent no inventory ({error!r}): start it anew."
+                f"the service at {self._url} sent no inventory ({error!r}): restart it."
             ) from error
         wanted = self._wanted
         if wanted is None and names:
@@ -178,7 +178,7 @@ class Inverse3(BoundToRun):
             told.send(ZERO)
         except (ConnectionClosed, OSError) as error:
             self.problem = (
-                f"the Inverse Service closed the connection ({error}): start it, and the loop anew."
+                f"the Inverse Service closed the connection ({error}): restart it, then the loop."
             )
         except Exception as error:
             self.problem = f"the connection to the Inverse Service failed: {error!r}"
@@ -227,7 +227,7 @@ class _Conversation:
         left = sent + device._period - time.monotonic()
         if self._came(max(left, 0.0)) is not None:
             self._refuse(Fault.OUT_OF_ORDER)  # the service answers once: this one is doubled
-            # Of a flood no more than comes in a period: the device waits for its force of zero.
+            # Of a flood, no more than arrives in a period: the device waits for its force of zero.
             end = time.monotonic() + device._period
             while time.monotonic() < end and self._came(0.0) is not None:
                 self._refuse(Fault.OUT_OF_ORDER)

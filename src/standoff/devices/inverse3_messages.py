@@ -21,7 +21,7 @@ PROFILE = "standoff"
 """By what name the service lists a session of this library."""
 
 MUST_BE = {"power_supply": True, "ready": True, "started": True}
-"""What the status of a device says where it can be used, if it says it at all."""
+"""What the status of a usable device says, if it says anything."""
 
 
 class Cursor(NamedTuple):
@@ -98,7 +98,7 @@ def cursor_of(frame: object, device_id: str) -> Cursor | Fault:
 
 
 def leaped(cursor: Cursor, before: Cursor, elapsed: float) -> bool:
-    """Tell whether a cursor is farther from where it was than a hand can have moved it."""
+    """Is a cursor farther from where it was than a hand can have moved it?"""
     return math.dist(cursor.position, before.position) > JUMP_ALLOWED + FASTEST_CURSOR * elapsed
 
 
@@ -107,7 +107,7 @@ def _devices(frame: object) -> list[dict[str, Any]] | Fault:
         return Fault.MALFORMED
     try:
         told = json.loads(frame, parse_constant=_refuse)
-    except (ValueError, RecursionError):  # also what is no UTF-8
+    except (ValueError, RecursionError):  # also what is not UTF-8
         return Fault.MALFORMED
     listed = told.get("inverse3") if isinstance(told, dict) else None
     if not isinstance(listed, list) or not all(isinstance(one, dict) for one in listed):

@@ -1,4 +1,4 @@
-"""A pointer as a device: whoever has it, such as a page in a browser, puts where it is."""
+"""A pointer as a device: whoever moves it, such as a page in a browser, says where it is."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ from standoff.simulation.device import DeviceReading, Fault
 
 
 class PointerDevice(BoundToRun):
-    """A handle that is put where somebody's pointer is; it feels no force.
+    """A handle that follows somebody's pointer; it feels no force.
 
-    Any thread may call it. What it is given is a value: nothing of it is kept but the last pose.
-    Positions are put as they come, at 60 Hz or so; the loop that takes them needs a `max_age` above
-    the longest pause between two, or a pointer that is put again while it rests.
+    Any thread may call it. It keeps only the last pose. Positions come at 60 Hz or so; the loop
+    that takes them needs a `max_age` above the longest pause between two of them, or calls of `put`
+    while the pointer rests.
 
     Parameters
     ----------
     pose : Pose or what `Pose.of` reads, optional
-        Where it is before the first `put`: its turn is kept where only positions are put.
+        Where it is before the first `put`: its rotation is kept if only positions are put.
 
     Attributes
     ----------
     problem : str
-        Why it gives no readings any more.
+        Why it no longer gives readings.
 
     Raises
     ------
     StandoffError
-        What is no pose.
+        Not a pose.
     """
 
     def __init__(self, pose: PoseLike | None = None) -> None:
@@ -63,17 +63,17 @@ class PointerDevice(BoundToRun):
             self._port, self.problem = port, ""
 
     def detach(self) -> None:
-        """Give no readings any more."""
+        """Give no more readings."""
         with self._lock:
             self._port = None
 
     def put(self, at: PoseLike | ArrayLike, stamp: float | None = None) -> None:
-        """Tell where the pointer is.
+        """Say where the pointer is.
 
         Parameters
         ----------
         at : array_like, shape (3,), Pose or what `Pose.of` reads
-            A position in the world [length], with the turn that it has, or a pose.
+            A position in the world [length], which keeps the rotation, or a pose.
         stamp : float, optional
             When it was there, on the clock of `time.monotonic()` [s]; now if not given. One that
             is not newer than the last counts as a repetition of it, and is dropped.
@@ -81,7 +81,7 @@ class PointerDevice(BoundToRun):
         Raises
         ------
         StandoffError
-            What is no position and no pose, or is not finite. The handle stays where it was, and
+            Neither a position nor a pose, or not finite. The handle stays where it was, and
             its reading grows old.
         """
         pose = self._read(at)
@@ -95,7 +95,7 @@ class PointerDevice(BoundToRun):
                 self._port.put(DeviceReading(when, self._sequence, pose))
 
     def lost(self) -> None:
-        """Tell that whoever has the pointer is gone: no force until the loop is engaged again."""
+        """Say that whoever moves the pointer is gone: no force until the loop is engaged again."""
         with self._lock:
             self.problem = "whoever had the pointer is gone; connect again, then engage again"
             if self._port is not None:

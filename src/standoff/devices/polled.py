@@ -14,9 +14,10 @@ from standoff.simulation.device import Device, Fault
 
 
 class Polled(BoundToRun):
-    """A `Device` whose readings and wrenches go to and from a loop, once a period.
+    """A `Device` whose readings and wrenches go to and from a loop, once per period.
 
-    Python asks it, and is late now and then; what matters is that a late reading is seen as one.
+    Python reads it, and is late now and then; what matters is that a late reading is recognised as
+    late.
 
     Parameters
     ----------
@@ -25,19 +26,19 @@ class Polled(BoundToRun):
     period : float
         From reading to reading [s].
     stamped : bool
-        Its readings bear the clock of `time.monotonic()`; else they are stamped when they come.
+        Its readings carry the time of `time.monotonic()`; else they are stamped when they arrive.
 
     Attributes
     ----------
     problem : str
-        Why it gives no readings any more.
+        Why it no longer gives readings.
 
     Raises
     ------
     StandoffTypeError
-        What is no device.
+        Not a device.
     StandoffError
-        A period that is not above zero; what is neither true nor false.
+        A period that is not above zero; a flag that is neither true nor false.
     """
 
     def __init__(self, device: Device, *, period: float, stamped: bool = True) -> None:

@@ -25,22 +25,22 @@ class Port(Protocol):
         ...
 
     def fail(self, fault: Fault) -> None:
-        """Tell that the device cannot be trusted: no force until the loop is engaged again."""
+        """Say that the device cannot be trusted: no force until the loop is engaged again."""
         ...
 
     def wrench(self) -> Wrench:
-        """Return what to hold on the handle now; zero where the loop has said nothing of late."""
+        """Return what to hold on the handle now; zero if the loop has said nothing lately."""
         ...
 
 
 @runtime_checkable
 class LiveDevice(Protocol):
-    """A device that gives its readings by itself, from a thread of its own or of its caller.
+    """A device that gives its readings by itself, from its own thread or its caller's.
 
     Attributes
     ----------
     problem : str
-        Why it gives no readings any more, and what to do; empty while nothing is wrong.
+        Why it no longer gives readings, and what to do; empty while nothing is wrong.
     """
 
     @property
@@ -51,5 +51,5 @@ class LiveDevice(Protocol):
         ...
 
     def detach(self) -> None:
-        """Hold no force any more, and give no readings; does nothing where it gives none."""
+        """Hold no more force, and give no more readings; does nothing where it gives none."""
         ...

@@ -3,12 +3,12 @@
 from typing import Final
 
 FARTHEST_CURSOR: Final = 1.0
-"""Length [m], from a device's origin: an Inverse3 reaches a fifth of a metre, and what says more is
-broken."""
+"""Length [m], from a device's origin: an Inverse3 reaches a fifth of a metre, so a greater value is
+wrong."""
 
 FASTEST_CURSOR: Final = 20.0
-"""Length a second [m/s]: a thrown ball leaves a hand faster, a handle that is held does not move at
-half of it; a cursor that jumps farther in the time between two frames is broken."""
+"""Length a second [m/s]: a thrown ball leaves a hand faster, but a held handle does not reach half
+of it; a cursor that jumps farther in the time between two frames is broken."""
 
 JUMP_ALLOWED: Final = 5e-3
 """Length [m] by which a cursor may move between two frames however soon they follow each other:
@@ -18,21 +18,21 @@ LONGEST_FRAME: Final = 65_536
 """So many bytes of one message: an inventory of several devices has five thousand."""
 
 CONNECTED_WITHIN: Final = 3.0
-"""Seconds, a time to wait, times over what a service on the same machine takes to answer."""
+"""Seconds, a time to wait: many times what a service on the same machine takes to answer."""
 
 CLOSED_WITHIN: Final = 0.2
-"""Seconds, a time to wait, many times over what a service on the same machine takes to say goodbye:
-one that floods the connection never does, and the force was set to zero before."""
+"""Seconds, a time to wait: many times what a service on the same machine takes to say goodbye. One
+that floods the connection never does, and the force was set to zero before."""
 
 SHORTEST_PERIOD: Final = 1e-4
 """Seconds, parts of one: the shortest period of a device, that of the fastest servo."""
 
 PERIOD_ROUNDING: Final = 1e-9
-"""Relative: by this part a trace may fall short of whole periods and still has its last reading:
+"""Relative: a trace may fall short of whole periods by this part and still have its last reading:
 the roundoff of its stamps."""
 
 ASKED_AGAIN: Final = 0.25
-"""Seconds without an answer, many times over what one takes, after which it counts as lost and the
+"""Seconds without an answer, many times what one takes, after which it counts as lost and the
 device is asked again, with no force."""
 
 BETWEEN_LOOKS: Final = 5e-5

@@ -38,17 +38,17 @@ class Trace(KeepsReadOnly):
     path : Path or function of the time
         Of the handle, in the world.
     start, end : float
-        From when to when it is played, on the path's own clock [s].
+        The times between which it is played, on the path's own clock [s].
     there_and_back : bool
-        Play it to its end, then backwards to its start, and again; else, once it is over, no
-        reading comes, and the force is zero.
+        Play it to its end, then backwards to its start, and so on; else, when it is over, there are
+        no more readings, and the force is zero.
 
     Raises
     ------
     StandoffTypeError
-        What is no path.
+        Not a path.
     StandoffError
-        An end that is not after the start; what is neither true nor false.
+        An end that is not after the start; a flag that is neither true nor false.
     """
 
     path: Path
@@ -99,7 +99,7 @@ class Trace(KeepsReadOnly):
         return self.end - self.start
 
     def rows(self, period: float) -> Array:
-        """Return its readings as the kernels read them, one a period.
+        """Return its readings as the kernels read them, one per period.
 
         Parameters
         ----------
@@ -121,7 +121,7 @@ class Trace(KeepsReadOnly):
         turns = 2 * (count - 1) if self.there_and_back else count
         if not count >= 2 or turns > MOST_MADE:
             raise StandoffError(
-                f"period is {seconds:g}: at it a trace of {self.duration:g} s has {turns} "
+                f"period is {seconds:g}: with it a trace of {self.duration:g} s has {turns} "
                 f"readings; 2 to {MOST_MADE} can be played.",
                 "period",
                 period,

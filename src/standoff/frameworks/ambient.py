@@ -63,7 +63,7 @@ class Pair(NamedTuple):
         for name, body in (("a", a), ("b", b)):
             if not isinstance(body, Body):
                 raise StandoffTypeError(
-                    f"{name} = {shown(body)} is no body: give one of so.shapes.", name, body
+                    f"{name} = {shown(body)} is not a body: give one of so.shapes.", name, body
                 )
         choice(undefined, "undefined", UNDEFINED)
         return cls(a, b, undefined)
@@ -100,7 +100,7 @@ def value(pair: Pair, poses_a: Array, poses_b: Array) -> Array:
     Raises
     ------
     StandoffError
-        If a matrix is no pose; the first such row is named.
+        If a matrix is not a pose; the first such row is named.
     """
     rows, lead = _rows(pair, poses_a, poses_b, 0)
     return rows.distance.reshape(lead)
@@ -142,8 +142,8 @@ def lead_of(shape_a: tuple[int, ...], shape_b: tuple[int, ...]) -> tuple[int, ..
         return np.broadcast_shapes(shape_a[:-2], shape_b[:-2])
     except ValueError as error:
         raise StandoffError(
-            f"pose_a has the shape {shape_a} and pose_b {shape_b}: give as many of both, or one "
-            "for all.",
+            f"pose_a has the shape {shape_a} and pose_b {shape_b}: give the same number "
+            "of both, or one for all.",
             "pose_a",
             shape_a,
         ) from error
@@ -230,7 +230,8 @@ def _across(turns: Array, by_turn: Array) -> Array:
 def _tell(pair: Pair, flag: Smoothness, which: str, reason: str, more: str) -> None:
     """Warn of an answer that lacks derivatives, or raise."""
     some = flag is Smoothness.PARTIAL
-    told = f"The distance{which} has {'not all' if some else 'no'} derivatives: {reason}{more}"
+    lacks = "does not have all" if some else "has no"
+    told = f"The distance{which} {lacks} derivatives: {reason}{more}"
     if pair.undefined == "raise":
         raise StandoffError(told)
     warnings.warn(

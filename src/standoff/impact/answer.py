@@ -36,20 +36,20 @@ _ADVICE = {
         "The bodies reach the clearance after `time` and not after `latest`; both are proven."
     ),
     ImpactStatus.GRAZING: (
-        "At `time` the bodies are within the tolerance of the clearance, and no instant soon after "
-        "was found at which they have proven to reach it: count it as contact, tighten the "
-        "tolerance, or search on from a `start` after `latest`."
+        "At `time` the bodies are within the tolerance of the clearance, and no instant soon "
+        "after was found at which they are proven to reach it: count it as contact, tighten the "
+        "tolerance, or continue from a `start` after `latest`."
     ),
     ImpactStatus.NO_IMPACT: (
         "The bodies stay farther apart than the clearance for the whole duration; proven."
     ),
     ImpactStatus.AT_START: (
-        "The bodies are at the clearance or below it at the start: part them, or start later."
+        "The bodies are at or within the clearance at the start: move them apart, or start later."
     ),
     ImpactStatus.UNDECIDED: (
-        "The bodies are proven apart up to `time`; no contact is proven next. Either the budget of "
-        "evaluations ran out: raise max_evaluations, shorten the duration, loosen the tolerance. "
-        "Or the answers beyond `time` are not certified, or the motion is too fast for "
+        "The bodies are proven apart up to `time`; no contact is proven after it. Either the "
+        "budget of evaluations ran out: raise max_evaluations, shorten the duration or loosen the "
+        "tolerance. Or the answers beyond `time` are not certified, or the motion is too fast for "
         "floating-point times: take a `start` nearer to zero, or a slower motion."
     ),
 }
@@ -82,7 +82,7 @@ class Impact(KeepsReadOnly, PlainData):
     evaluations : int
         Instants at which the poses were evaluated.
     queries : int
-        Instants at which the tracker was asked; at others bounding balls sufficed.
+        Instants at which the tracker was asked; at the others, bounding balls sufficed.
     """
 
     time: float

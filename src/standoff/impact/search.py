@@ -48,7 +48,7 @@ def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
     start: float = 0.0,
     max_evaluations: int = 10_000,
 ) -> Impact:
-    """The first time at which two moving bodies come to a clearance: never later than the truth.
+    """The first time at which two moving bodies come to a clearance: never later than the true one.
 
     Each interval of time is proven free by the certified bounds at its ends and the greatest
     accelerations within it (docs/impact-proof.md).
@@ -59,7 +59,7 @@ def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
         Two spatial bodies, or two planar ones.
     path_a, path_b : path or pose
         A path of ``standoff.motion``; with a pose the body is at rest. A path of your own, or a
-        function of the time that returns a pose, goes into ``standoff.motion.Bounded``, which says
+        function of time that returns a pose, is wrapped in ``standoff.motion.Bounded``, which says
         how fast it can be.
     duration : float
         Time to search [s]; ``start + duration`` must differ from ``start`` in floating point.
@@ -71,7 +71,7 @@ def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
     start : float
         Time on the paths' clock at which the search begins [s].
     max_evaluations : int
-        Most instants to look at.
+        Greatest number of instants to look at.
 
     Returns
     -------
@@ -82,9 +82,9 @@ def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
     TypeError
         Not a body, neither path nor pose, or a path of which no bounds are known.
     ValueError
-        A negative clearance, a tolerance or duration that is not positive, a budget that is no
-        whole number of at least 2, times beyond 1e50 s, a duration lost beside the start, a
-        pair that cannot be tracked, or what a path refuses.
+        A negative clearance, a tolerance or duration that is not positive, a budget that is not a
+        whole number of at least 2, times beyond 1e50 s, a duration that is negligible compared with
+        the start, a pair that cannot be tracked, or a time that a path refuses.
     """
     clearance = _checked_clearance(clearance)
     duration = positive(duration, "duration")
@@ -108,8 +108,9 @@ def _checked_clearance(clearance: float) -> float:
     clearance = number(clearance, "clearance")
     if clearance < 0.0:
         raise StandoffError(
-            f"clearance = {clearance}: give zero or more. The time at which bodies that overlap "
-            "reach a depth is not searched, as a lesser depth may exist than the one found.",
+            f"clearance = {clearance}: give zero or more. The time at which overlapping bodies "
+            "reach a depth is not searched for, because a smaller depth than the one found may "
+            "exist.",
             "clearance",
             clearance,
         )
@@ -127,9 +128,9 @@ def _end(paths: tuple[Any, Any], start: float, duration: float) -> float:
     end = start + duration
     if not end > start:
         raise StandoffError(
-            f"start + duration = {start!r} + {duration!r} is the start again, as times there are "
-            f"{math.ulp(start):.2g} s apart: give a longer duration, or a start nearer to zero "
-            "(PoseSamples.starting_at moves samples of a far epoch)."
+            f"start + duration = {start!r} + {duration!r} is no later than the start, because "
+            f"times there are {math.ulp(start):.2g} s apart: give a longer duration, or a start "
+            "nearer to zero (PoseSamples.starting_at moves samples of a distant epoch)."
         )
     for path in paths:
         last = float(getattr(path, "end", math.inf))
@@ -138,7 +139,7 @@ def _end(paths: tuple[Any, Any], start: float, duration: float) -> float:
         if last < end:
             advice = "shorter duration" if start < last else "start before that"
             raise StandoffError(
-                f"start + duration = {end!r}, and a path ends at {last!r}: give a {advice}."
+                f"start + duration = {end!r}, but a path ends at {last!r}: give a {advice}."
             )
     return end
 

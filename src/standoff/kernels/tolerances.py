@@ -18,8 +18,8 @@ LEAN = 1e-6
 # Eigenvalues below -NEGATIVE take their magnitude (dimensionless, relative to the largest).
 NEGATIVE = 1e-10
 
-# A component of dR along a unit tangent below GRADIENT_NOISE eps scale (length) is the roundoff
-# of dR, no slope.
+# A component of dR along a unit tangent below GRADIENT_NOISE eps scale (length) is the roundoff of
+# dR, not a slope.
 GRADIENT_NOISE = 16.0
 
 # A descent is at rest where |g| (length) is below AT_REST eps scale: a few roundings of dR. Less
@@ -82,7 +82,7 @@ AIM_STEP = 0.1113
 # An atlas's chart is left when |u| or |v| passes RECHART (dimensionless, gnomonic).
 RECHART = 1.2
 
-# A point of a body this far (in sizes) in front of a plane at one of its vertices is no roundoff.
+# A point of a body this far (in sizes) in front of a plane at one of its vertices is not roundoff.
 FRONT = 1e-9
 
 # Points of each coedge, and of a grid over the loop's bounds, among which the middle of a face is
@@ -190,7 +190,7 @@ MAX_VORONOI_PASSES = 8
 # In contact the pair is shifted out along its normal until it stands this far apart (in contact
 # scales: both sizes and radii): H is regular there, and a greater gap would slow the descent.
 SHIFTED_GAP = 0.05
-# The least such gap: still far above START_GAP, with which far-side minima are told.
+# The least such gap: still far above START_GAP, by which far-side minima are recognised.
 LEAST_GAP = 1e-5
 # Steps of the descent of s(n): each lowers the depth; Newton's method ends it, mostly at once.
 MAX_SHIFTS = 40
@@ -215,7 +215,7 @@ FOCAL_MARGIN = 1e-9
 # Restarts of one query from which on its depths are sought without more of them: where witness
 # points stay uncertified beside a thin body's collapsed side, none of them would help.
 MAX_RESTARTS = 60
-# How far (chord) the normal is turned off a stationary direction that is no minimum.
+# How far (chord) the normal is turned off a stationary direction that is not a minimum.
 NUDGE = 1e-3
 # Steps in which s must have fallen below such a direction's, else that is the minimum.
 SADDLE_SHIFTS = 6
@@ -284,7 +284,7 @@ JACOBI_SWEEPS = 30
 # parameters by arc length. Below it fewer than seven digits of a derivative would be left.
 SINGULAR_SYSTEM = 1e-9
 # Residual of that system (dimensionless): Newton's method from here ends at the same optimum, and
-# answers of a law that still converges are told apart.
+# answers of a law that is still converging are recognised.
 SETTLED = 1e-4
 # Newton's corrections (steps) of a converged answer: two reach roundoff.
 NEWTON_ROUNDS = 3
@@ -309,8 +309,8 @@ AROUND = 1e-3
 # Of the size: widths of overlap (support sums) closer than this are the same. At AROUND one that
 # grows with a radius of curvature of 2e-4 of the size differs by more.
 SAME_WIDTH = 1e-10
-# Chord of the unit sphere: a normal that roundoff may turn by more than this has no use. That is
-# so beside a collapsed side, within about 1e-12 of the patch.
+# Chord of the unit sphere: a normal that roundoff may turn by more than this is useless. That is so
+# beside a collapsed side, within about 1e-12 of the patch.
 MOST_TURNED = 1e-3
 # Part of the way from an edge's end to its middle: there a patch whose side has collapsed at the
 # end has a plane, turned from that at the end by no more than the edge itself turns on the way.

@@ -27,7 +27,7 @@ class MotionBounds:
     Attributes
     ----------
     speed : float
-        Of one point fixed in the body, relative to the world [length/s].
+        Speed of one point fixed in the body, relative to the world [length/s].
     acceleration : float
         Of the same point [length/s²].
     angular_speed : float
@@ -39,8 +39,8 @@ class MotionBounds:
         perpendicular all the time, if there is one: that of a screw.
     lengths : float
         Sum of the greatest lengths that are turned or added to make the pose [length]: arms,
-        offsets, and ways as rate times time, also where they cancel. Each leaves its roundings in
-        the pose, which `time_of_impact` allows for. The distance of the body itself need not be
+        offsets, and ways as rate times time, even if they cancel. Each leaves its roundings in the
+        pose, which `time_of_impact` allows for. The distance of the body itself need not be
         counted; zero says that the pose is one that was given.
     """
 
@@ -81,8 +81,8 @@ class Bounded(KeepsReadOnly):
     Parameters
     ----------
     path
-        Anything with ``pose(t)`` and ``twist(t)``, t in s, or a function of the time that returns
-        a pose, which is read as `PoseFunction` reads it.
+        Anything with ``pose(t)`` and ``twist(t)``, t in s, or a function of time that returns a
+        pose, which is read as by `PoseFunction`.
     speed : float
         No less than the speed of the body's origin at any time [length/s].
     acceleration : float
@@ -94,16 +94,16 @@ class Bounded(KeepsReadOnly):
     breaks : array_like, shape (n,)
         Times at which the velocities jump, if there are any [s].
     lengths : float, optional
-        No less than the sum of the lengths that your ``pose`` turns or adds up [length], as
-        `MotionBounds` tells. Without it they are taken to be no greater than the distance of the
-        body's origin from the world's: give it where far arms or offsets cancel.
+        No less than the sum of the lengths that your ``pose`` turns or adds up [length], see
+        `MotionBounds`. Without it, the sum is taken to be no greater than the distance of the
+        body's origin from the world's: give it if long arms or offsets cancel.
 
     Raises
     ------
     TypeError
         If the path has no ``pose`` and ``twist``, and is not a function.
     ValueError
-        If a bound is negative or not finite, or the breaks are no sequence of finite numbers.
+        If a bound is negative or not finite, or the breaks are not a sequence of finite numbers.
     """
 
     def __init__(
@@ -155,7 +155,7 @@ class Bounded(KeepsReadOnly):
 
 
 def _times(value: ArrayLike, name: str) -> FloatArray:
-    """Read a sequence of times, as many as there are."""
+    """Read a sequence of times of any length."""
     shape = shape_of(value)
     if shape is None or len(shape) != 1:
         raise StandoffError(
@@ -228,7 +228,7 @@ def known(path: object) -> BoundedPath:
     """
     if not callable(getattr(path, "bounds", None)) or not callable(getattr(path, "breaks", None)):
         raise StandoffTypeError(
-            f"nothing is known of how fast {shown(path)} moves between two times: wrap it in "
+            f"it is not known how fast {shown(path)} moves between two times: wrap it in "
             "standoff.motion.Bounded(path, speed=..., acceleration=..., angular_speed=..., "
             "angular_acceleration=...)",
             "path",

@@ -27,7 +27,7 @@ class Moving(Protocol):
 
 
 MotionLike: TypeAlias = Moving | Callable[[float], PoseLike] | PoseLike
-"""What is read as a path: one, a function of the time that returns a pose, or a pose at rest."""
+"""What is read as a path: a path, a function of time that returns a pose, or a pose at rest."""
 
 
 def moving(given: Any, name: str, start: float = 0.0, end: float = math.inf) -> Moving:

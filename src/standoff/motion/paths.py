@@ -51,7 +51,7 @@ class Path(Protocol):
     def twist(self, t: float) -> Twist:
         """Return how the body moves at time `t` [s], in world axes.
 
-        It is the derivative of `pose`; where that jumps, the one from the right.
+        It is the derivative of `pose`; where that jumps, the one after the jump.
         """
         ...
 
@@ -100,7 +100,7 @@ class ConstantTwist(KeepsReadOnly):
     """A body whose twist is constant in the axes that the twist names.
 
     With a body-frame twist the motion is a screw, ``pose @ exp(twist · t)``. With a world-frame
-    twist the origin goes straight while the body turns about it.
+    twist the origin moves straight on while the body turns about it.
 
     Parameters
     ----------
@@ -269,7 +269,7 @@ class Offset(KeepsReadOnly):
 
 
 class Carried(KeepsReadOnly):
-    """A body that follows a path of its own in the axes of a body that follows another.
+    """A body that follows its own path in the axes of a body that follows another path.
 
     Parameters
     ----------

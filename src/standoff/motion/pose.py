@@ -44,9 +44,9 @@ class Pose(KeepsReadOnly):
     translation : ndarray, shape (3,)
         Read-only, float64.
     repaired : bool
-        True where the rotation given was not one to 1e-9 and the nearest was taken: a rounded
-        matrix, a quaternion brought to unit norm, or a matrix given to `nearest`. Poses computed
-        from this one do not carry the mark.
+        True if the rotation given was not one to 1e-9 and the nearest was taken: a rounded matrix,
+        a normalised quaternion, or a matrix given to `nearest`. Poses computed from this one do not
+        carry the mark.
 
     Raises
     ------
@@ -96,13 +96,13 @@ class Pose(KeepsReadOnly):
         value : Pose, array_like of shape (4, 4), pair (R, p), or SciPy's ``RigidTransform``
             A homogeneous matrix, or a rotation with a translation. In a pair, R is a matrix or
             SciPy's ``Rotation``. Any object whose ``as_matrix()`` returns such a matrix will do,
-            as those of jaxlie and mink. Rounded rotations are repaired as by ``Pose(R, p)``.
+            such as those of jaxlie and mink. Rounded rotations are repaired as by ``Pose(R, p)``.
 
         Raises
         ------
         ValueError
-            If it is none of these; a four-vector is refused, since nothing tells the order of a
-            quaternion.
+            If it is none of these; a four-vector is refused, since the order of a quaternion cannot
+            be known.
         """
         return value if isinstance(value, Pose) else cls(*_parts(value))
 
@@ -110,8 +110,8 @@ class Pose(KeepsReadOnly):
     def nearest(cls, value: PoseLike) -> Pose:
         """Make a pose of the rotation nearest to a matrix that is not one.
 
-        For matrices that are farther off than what `of` repairs, such as those of text with few
-        digits, of half precision, or summed up from small turns. A scale and a shear are lost:
+        For matrices that are farther off than `of` repairs, such as those from text with few
+        digits, in half precision, or accumulated from small turns. A scale or a shear is lost:
         those of a body belong to ``Body.transformed``.
 
         Parameters
@@ -149,7 +149,7 @@ class Pose(KeepsReadOnly):
         Parameters
         ----------
         quaternion : array_like, shape (4,)
-            (w, x, y, z), of unit norm to 1e-3; brought to it, which `repaired` tells.
+            (w, x, y, z), of unit norm to 1e-3; normalised, and marked by `repaired`.
         translation : array_like, shape (3,)
             The body's origin in world coordinates [length].
 
@@ -168,7 +168,7 @@ class Pose(KeepsReadOnly):
         Parameters
         ----------
         quaternion : array_like, shape (4,)
-            (x, y, z, w), of unit norm to 1e-3; brought to it, which `repaired` tells.
+            (x, y, z, w), of unit norm to 1e-3; normalised, and marked by `repaired`.
         translation : array_like, shape (3,)
             The body's origin in world coordinates [length].
 
@@ -260,7 +260,7 @@ class Pose(KeepsReadOnly):
         Raises
         ------
         ValueError
-            If the last axis has not three components.
+            If the last axis does not have three components.
         """
         array = numbers(points, "points", None)
         if array.ndim == 0 or array.shape[-1] != 3:
@@ -339,8 +339,8 @@ def _parts(value: PoseLike) -> tuple[RotationLike, ArrayLike]:
     matrix = finite(given, "pose", (4, 4))
     if np.abs(matrix[3] - LAST_ROW).max() > ORTHONORMALITY:
         raise StandoffError(
-            f"the last row of a homogeneous matrix is (0, 0, 0, 1), not {text(matrix[3])}; "
-            "if the translation stands there, transpose the matrix",
+            f"the last row of a homogeneous matrix is (0, 0, 0, 1), not {text(matrix[3])}; if the "
+            "translation is there, transpose the matrix",
             "value",
             value,
         )

@@ -20,7 +20,7 @@ from standoff.read_only import KeepsReadOnly
 STEP = 2.0**-10
 """Between the poses of a difference [s]: fourth order leaves (ω step)⁴/30 of a speed that swings at
 ω, 3e-10 at 10 rad/s, and rounding 1e-12 of the distance a second. A power of two, so that most
-times are met exactly."""
+times are exact."""
 
 NODES = 5
 """Poses of a difference, the one at its own time among them: exact for quartics of the time."""
@@ -40,13 +40,13 @@ class PoseFunction(KeepsReadOnly):
         `start` and `end`; else all five are moved inside. It is off by ``step⁴/30`` times the fifth
         derivative of the pose (``step⁴/5`` at an end), and by the roundings of the pose over
         `step`: a function in single precision needs a longer step. A function with a kink should
-        bring its own twist.
+        come with its own twist.
     step : float
         Time between the poses of a difference [s]. In four steps the body may turn less than half
         a turn.
     start, end : float
-        The times [s] between which the motion is to be used. `pose` answers outside them too, but
-        no difference within them reaches beyond.
+        The times [s] between which the motion is to be used. `pose` also answers outside them, but
+        no difference within them uses times beyond them.
 
     Raises
     ------
@@ -75,7 +75,7 @@ class PoseFunction(KeepsReadOnly):
         self.start, self.end = _time(start, "start"), _time(end, "end")
         if not self.start < self.end:
             raise StandoffError(
-                f"start is {self.start!r} and end {self.end!r}: the end comes after the start",
+                f"start is {self.start!r} and end {self.end!r}: the end must come after the start",
                 "end",
                 end,
             )
@@ -89,7 +89,7 @@ class PoseFunction(KeepsReadOnly):
         Raises
         ------
         ValueError
-            If the function returns no pose.
+            If the function does not return a pose.
         """
         seconds = number(t, "t")
         given = self._pose(seconds)
@@ -106,7 +106,7 @@ class PoseFunction(KeepsReadOnly):
         Raises
         ------
         ValueError
-            If the function returns no twist, or no pose.
+            If `twist` does not return a twist, or `pose` a pose.
         """
         seconds = number(t, "t")
         if self._twist is None:
@@ -124,8 +124,8 @@ class PoseFunction(KeepsReadOnly):
         here, times = self.pose(t), self._times_beside(t)
         if len({t, *times}) < NODES:
             raise StandoffError(
-                f"times {self._step!r} s beside t = {t!r} are no other times in floating point: "
-                "give the function a clock nearer to zero, or a twist of its own",
+                f"times {self._step!r} s apart around t = {t!r} are not distinct in floating "
+                "point: give the function a clock nearer to zero, or a twist of its own",
                 "t",
                 t,
             )
@@ -161,7 +161,7 @@ def path_of(given: Any, start: float = 0.0, end: float = math.inf) -> Any:
     TypeError
         If it is neither.
     """
-    known = not isinstance(given, type)  # a class is none, only what it makes
+    known = not isinstance(given, type)  # a class is not one, only its instances
     if known and all(callable(getattr(given, name, None)) for name in ("pose", "twist")):
         return given
     if known and callable(given):

@@ -50,15 +50,15 @@ def matrices_of(rotations: FloatArray, translations: FloatArray) -> FloatArray:
 class Poses(KeepsReadOnly):
     """Many rigid placements: n poses as arrays, checked and repaired all at once.
 
-    ``poses[k]`` is one `Pose`, ``len(poses)`` their number. Takes about a microsecond a pose, where
-    a list of `Pose` takes fifty.
+    ``poses[k]`` is one `Pose`, ``len(poses)`` their number. Takes about a microsecond per pose,
+    where a list of `Pose` takes fifty.
 
     Parameters
     ----------
     rotations : array_like, shape (n, 3, 3), or SciPy's ``Rotation`` of n
         Each is checked, and repaired where it is rounded, as by `Pose`.
     translations : array_like, shape (n, 3) or (3,)
-        The body's origins in world coordinates [length]; one goes with all rotations.
+        The body's origins in world coordinates [length]; one is used for all rotations.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Poses(KeepsReadOnly):
     Raises
     ------
     ValueError
-        If a shape is wrong, or a pose is none; the first such is named.
+        If a shape is wrong, or a pose is invalid; the first such is named.
     """
 
     rotations: FloatArray
@@ -100,7 +100,7 @@ class Poses(KeepsReadOnly):
     ) -> None:
         """Take over arrays of its own, with rounded rotations repaired.
 
-        Some may be known to be wrong; `given` are the poses for an error to speak of.
+        Some may be known to be wrong; `given` are the poses that an error names.
         """
         with np.errstate(invalid="ignore", over="ignore"):  # of numbers that are refused below
             off = defect(rotations)
@@ -129,7 +129,7 @@ class Poses(KeepsReadOnly):
         TypeError
             If it is none of these.
         ValueError
-            If a pose is none; the first such is named.
+            If a pose is invalid; the first such is named.
         """
         if isinstance(poses, Poses):
             return poses
@@ -175,9 +175,9 @@ class Poses(KeepsReadOnly):
         Parameters
         ----------
         quaternions : array_like, shape (n, 4)
-            Rows (w, x, y, z), each of unit norm to 1e-3; brought to it, which `repaired` tells.
+            Rows (w, x, y, z), each of unit norm to 1e-3; normalised, and marked by `repaired`.
         translations : array_like, shape (n, 3) or (3,)
-            The body's origins in world coordinates [length]; one goes with all quaternions.
+            The body's origins in world coordinates [length]; one is used for all quaternions.
 
         Raises
         ------
@@ -195,9 +195,9 @@ class Poses(KeepsReadOnly):
         Parameters
         ----------
         quaternions : array_like, shape (n, 4)
-            Rows (x, y, z, w), each of unit norm to 1e-3; brought to it, which `repaired` tells.
+            Rows (x, y, z, w), each of unit norm to 1e-3; normalised, and marked by `repaired`.
         translations : array_like, shape (n, 3) or (3,)
-            The body's origins in world coordinates [length]; one goes with all quaternions.
+            The body's origins in world coordinates [length]; one is used for all quaternions.
 
         Raises
         ------
@@ -254,7 +254,7 @@ PosesLike: TypeAlias = (
     | HasMatrix
     | tuple[RotationLike, ArrayLike]
 )
-"""What stands for many poses, or for one that goes with all: see `standoff.distances`."""
+"""What stands for many poses, or for one that is used for all rows: see `standoff.distances`."""
 
 
 def _rows(value: Any, name: str, shape: tuple[int, ...]) -> FloatArray:
@@ -269,14 +269,14 @@ def _rows(value: Any, name: str, shape: tuple[int, ...]) -> FloatArray:
 
 
 def _shifts(translations: ArrayLike, count: int) -> FloatArray:
-    """A new array of `count` translations, of as many or of one."""
+    """A new array of `count` translations, from as many or from one."""
     if shape_of(translations) == (3,):
         return np.tile(finite(translations, "translations", (3,)), (count, 1))
     shifts = _rows(translations, "translations", (3,))
     if len(shifts) != count:
         raise StandoffError(
-            f"{count} rotations and {len(shifts)} translations: give as many of both, or one "
-            "translation for all",
+            f"{count} rotations and {len(shifts)} translations: give the same number of both, or "
+            "one translation for all",
             "translations",
             translations,
         )

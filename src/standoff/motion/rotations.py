@@ -1,6 +1,6 @@
 """Matrices that should be rotations: how far off they are, and the nearest rotations.
 
-All of it for stacks of matrices, shape (..., 3, 3), as for one.
+All functions take stacks of matrices, shape (..., 3, 3), as well as one.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from standoff.errors import StandoffError
 from standoff.motion.tolerances import FLAT, ORTHONORMALITY, ROUNDED
 
 _STEPS = 2
-"""Each squares the defect, and takes three eighths of it: 1e-5, 4e-11, below rounding."""
+"""Each squares the defect and multiplies it by three eighths: 1e-5, 4e-11, below rounding."""
 
 
 def _entries(matrices: FloatArray) -> Sequence[Any]:
@@ -76,7 +76,8 @@ def without_rounding(matrices: FloatArray) -> FloatArray:
 
 
 def as_rotation(matrix: FloatArray) -> tuple[FloatArray, bool]:
-    """Return the rotation that a matrix is, or was before it was rounded; was it?
+    """Return the rotation that a matrix is, or was before it was rounded, and whether it was
+    rounded.
 
     One that is orthonormal to `ORTHONORMALITY` is returned as it is.
 
@@ -106,7 +107,7 @@ def as_rotation(matrix: FloatArray) -> tuple[FloatArray, bool]:
 
 
 def nearest_rotation(matrix: FloatArray) -> tuple[FloatArray, bool]:
-    """Return the rotation nearest to any one matrix, in the sum of squares; is it another?
+    """Return the rotation nearest to any one matrix, in the sum of squares, and whether it differs.
 
     Raises
     ------
@@ -128,7 +129,7 @@ def nearest_rotation(matrix: FloatArray) -> tuple[FloatArray, bool]:
     if mirrored(nearest):
         raise StandoffError(
             f"rotation {text(matrix)} is mirrored: its determinant is below 0, and no rotation is "
-            "near; mirror the body instead (Body.transformed), or flip one axis",
+            "close to it; mirror the body instead (Body.transformed), or flip one axis",
             "rotation",
             matrix,
         )

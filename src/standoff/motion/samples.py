@@ -20,20 +20,21 @@ from standoff.motion.twist import Twist, screws
 from standoff.read_only import KeepsReadOnly
 
 FASTER = 10.0
-"""A screw is no more than this faster than its ends' distances from the origin in its time."""
+"""A screw is at most this much faster than the distances of its ends from the origin over its
+time."""
 
 
 class PoseSamples(KeepsReadOnly):
     """A body whose pose is known at certain times, and moves on a screw between two of them.
 
-    Between samples the pose is the geodesic of SE(3), ``P_i exp(s log(P_i⁻¹ P_{i+1}))`` with s
-    from 0 to 1, so that the twist is constant in the body's axes. At a sample it jumps: `twist`
-    gives there the one of the interval that begins, and at the end that of the last.
+    Between samples the pose is the geodesic of SE(3), ``P_i exp(s log(P_i⁻¹ P_{i+1}))`` with s from
+    0 to 1, so that the twist is constant in the body's axes. It jumps at a sample: there `twist`
+    returns that of the interval that begins, and at the end that of the last interval.
 
     Parameters
     ----------
     times : array_like, shape (n,)
-        Times of the samples [s], strictly increasing, at least two; uneven steps are welcome.
+        Times of the samples [s], strictly increasing, at least two; the steps may be uneven.
     poses : Poses, sequence of n poses, array (n, 4, 4), or SciPy's ``RigidTransform`` of n
         Of a sequence each is a Pose or what `Pose.of` reads; an array holds homogeneous matrices,
         and is read some hundred times as fast. Rounded rotations are repaired as by `Pose.of`.
@@ -43,16 +44,16 @@ class PoseSamples(KeepsReadOnly):
     times : ndarray, shape (n,)
         Read-only, float64.
     repaired : int
-        How many poses had a rounded rotation, and were brought to the nearest one: their
+        How many poses had a rounded rotation, and were replaced by the nearest one: their
         `Pose.repaired`.
 
     Raises
     ------
     TypeError
-        If the poses are no sequence and no array.
+        If the poses are neither a sequence nor an array.
     ValueError
         If there are fewer than two samples, as many times as poses are not given, times do not
-        increase strictly or are not finite, a pose is none (the first such is named), or two
+        increase strictly or are not finite, a pose is invalid (the first such is named), or two
         samples differ by a half turn, which has two shortest screws.
     """
 
@@ -95,8 +96,8 @@ class PoseSamples(KeepsReadOnly):
         half = turns > np.pi - HALF_TURN_ANGLE
         if half.any():
             raise StandoffError(
-                f"{self._between(half)} differ by a half turn, so that the way from one to the "
-                "other is open: add a sample between them",
+                f"{self._between(half)} differ by a half turn, so the way from one to the other "
+                "is ambiguous: add a sample between them",
                 "poses",
             )
         v.setflags(write=False)
@@ -104,7 +105,7 @@ class PoseSamples(KeepsReadOnly):
         return v, omega
 
     def _between(self, marked: ArrayLike) -> str:
-        """Name the two samples about the first of the ways between samples that is marked."""
+        """Name the two samples around the first marked interval."""
         index = int(np.argmax(marked))
         first, second = self.times[index : index + 2].tolist()
         return f"poses {index} and {index + 1} (t = {first!r} and {second!r})"
@@ -132,7 +133,7 @@ class PoseSamples(KeepsReadOnly):
     def starting_at(self, start: float) -> PoseSamples:
         """Return the same motion with its times shifted so that it starts at `start` [s].
 
-        Recorded files often count from a far epoch, where double precision resolves a time to
+        Recorded files often count from a distant epoch, where double precision resolves a time to
         little better than a microsecond.
         """
         first = number(start, "start")
@@ -217,7 +218,9 @@ class PoseSamples(KeepsReadOnly):
 def _check_times(times: FloatArray) -> None:
     if len(times) < 2:
         raise StandoffError(
-            f"{len(times)} samples make no motion: give at least two, or use Fixed", "times", times
+            f"{len(times)} samples do not make a motion: give at least two, or use Fixed",
+            "times",
+            times,
         )
     steps = np.diff(times)
     if (steps <= 0.0).any():

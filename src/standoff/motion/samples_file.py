@@ -19,7 +19,7 @@ from standoff.motion.samples_table import parquet_rows
 _NUMBER = re.compile(
     r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|inf(?:inity)?|nan)", re.I
 )
-"""A number as TUM and CSV files write it; which of them have no place here is told by name."""
+"""A number as TUM and CSV files write it; those that are not allowed here are refused by name."""
 
 _TUM_HEADER = "timestamp tx ty tz qx qy qz qw"
 
@@ -28,10 +28,10 @@ def read_pose_samples(file: str | os.PathLike[str]) -> PoseSamples:
     """Read a recorded motion.
 
     ``.tum`` and ``.txt``: a TUM trajectory, ``timestamp tx ty tz qx qy qz qw`` on each line,
-    parted by blanks. ``.csv``: a header that names the columns ``t,x,y,z,qx,qy,qz,qw`` in any
-    order, then one sample a line. Empty lines and lines that begin with ``#`` are passed over.
+    separated by blanks. ``.csv``: a header that names the columns ``t,x,y,z,qx,qy,qz,qw`` in any
+    order, then one sample a line. Empty lines and lines that begin with ``#`` are ignored.
     ``.parquet``: a table with the columns ``time`` (or ``timestamp``, ``t``), ``x y z`` (or
-    ``tx ty tz``) and ``qx qy qz qw``; others are left alone. Times are in seconds and must
+    ``tx ty tz``) and ``qx qy qz qw``; others are ignored. Times are in seconds and must
     increase strictly; the quaternions' scalar is ``qw``.
 
     Parameters
@@ -41,13 +41,13 @@ def read_pose_samples(file: str | os.PathLike[str]) -> PoseSamples:
     Returns
     -------
     PoseSamples
-        Its `repaired` counts the quaternions that were not of unit norm, but to 1e-3, and were
-        brought to it.
+        Its `repaired` counts the quaternions whose norm was off 1, by up to 1e-3, and that were
+        normalised.
 
     Raises
     ------
     TypeError
-        If `file` is neither a text nor a path.
+        If `file` is neither a string nor a path.
     FileNotFoundError, IsADirectoryError, OSError
         If there is no such file, or it cannot be looked up or read.
     ValueError
@@ -59,7 +59,7 @@ def read_pose_samples(file: str | os.PathLike[str]) -> PoseSamples:
     given: object = file
     if not isinstance(given, str | os.PathLike):
         raise StandoffTypeError(
-            f"file is {shown(given)}: give the name of a file, a text or a path", "file", file
+            f"file is {shown(given)}: give a file name, as a string or a path", "file", file
         )
     path = Path(file)
     noun, rows = _rows_of(path)
@@ -100,9 +100,9 @@ def _rows_of(path: Path) -> tuple[str, Iterator[tuple[int, list[float]]]]:
     ending = path.suffix.lower()
     if ending not in (".tum", ".txt", ".csv", ".parquet"):
         raise StandoffError(
-            f"{_told(path)}: the ending {shown(ending)} names no format of pose samples; "
-            "use .tum (or .txt) for a TUM trajectory, .csv for a text table with a header, "
-            ".parquet for a Parquet one",
+            f"{_told(path)}: the ending {shown(ending)} is not a format of pose samples; use .tum "
+            "(or .txt) for a TUM trajectory, .csv for a text table with a header, .parquet for a "
+            "Parquet one",
             "file",
             path,
         )
@@ -119,7 +119,7 @@ def _check_file(path: Path) -> None:
     # Unlike a path's own `exists`, this one takes names that no file can have, such as a long one.
     if not os.path.exists(path):
         raise FileNotFoundError(
-            f"{_told(path)}: no such file; the path counts from the folder {Path.cwd()}"
+            f"{_told(path)}: no such file; the path is relative to the folder {Path.cwd()}"
         )
 
 
@@ -155,7 +155,7 @@ def _table(path: Path, lines: Iterable[tuple[int, str]]) -> Iterator[tuple[int, 
             path,
             line,
             f"the header is {','.join(header)!r}: name the columns {','.join(_COLUMNS)}, in any "
-            "order, each once and no other",
+            "order, each once and no others",
         )
     order = [header.index(column) for column in _COLUMNS]
     for line, fields in rows:
@@ -174,7 +174,7 @@ def _numbers(path: Path, line: int, fields: list[str]) -> list[float]:
         # Python alone would also read 5_0 as 50, and the digits of other scripts.
         if _NUMBER.fullmatch(field) is None:
             raise _fault(
-                path, line, f"{column} is {shown(field)}, no number; write it such as -12.5e-3"
+                path, line, f"{column} is {shown(field)}, not a number; write it like -12.5e-3"
             )
         value = float(field)
         if not math.isfinite(value):

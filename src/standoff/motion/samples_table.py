@@ -27,12 +27,12 @@ ALIASES = {
 def parquet_rows(path: Path) -> Iterator[tuple[int, list[float]]]:
     """Yield each sample's row number, from 1, and its eight numbers in the order of `COLUMNS`.
 
-    Time is in seconds, or of one of Arrow's types of instants and durations, which say their unit.
+    Time is in seconds, or has one of Arrow's types of instants and durations, which say their unit.
 
     Raises
     ------
     ValueError
-        If the file is no Parquet, a column is missing, named twice or not of numbers, or a value
+        If the file is not Parquet, a column is missing, named twice or not of numbers, or a value
         is missing or not finite.
     ModuleNotFoundError
         If pyarrow is not installed.

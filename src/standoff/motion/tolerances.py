@@ -9,9 +9,9 @@ from typing import Final
 ORTHONORMALITY: Final = 1e-9
 
 #: No unit. Greatest component of ``RᵀR − I`` in a matrix that counts as a rotation rounded when it
-#: was stored: the nearest rotation is taken in its place, and told. Single precision leaves 2e-7,
-#: and 1e-6 after long products of rotations; text with six decimals leaves 2e-6. Beyond five times
-#: that, a scale or a shear may be meant. No axis moves by more than 1.5 times this.
+#: was stored: the nearest rotation is taken in its place, and reported. Single precision leaves
+# 2e-7, : and 1e-6 after long products of rotations; text with six decimals leaves 2e-6. Beyond five
+# times : that, a scale or a shear may be meant. No axis moves by more than 1.5 times this.
 ROUNDED: Final = 1e-5
 
 #: No unit. Least over greatest singular value of a matrix that has a nearest rotation. Below it

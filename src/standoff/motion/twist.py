@@ -1,4 +1,4 @@
-"""Twists: how a body moves at an instant, and where it comes when the twist lasts."""
+"""Twists: how a body moves at an instant, and where it gets to while the twist lasts."""
 
 from __future__ import annotations
 
@@ -147,10 +147,11 @@ class Twist(KeepsReadOnly):
         return Twist(rotation @ self.v, rotation @ self.omega)
 
     def carry(self, pose: PoseLike, duration: float) -> Pose:
-        """Return where a body comes from `pose` when this twist lasts, constant in its own frame.
+        """Return where a body gets to from `pose` while this twist lasts, constant in its own
+        frame.
 
         In body axes the motion is a screw, ``pose @ exp(twist · duration)``. In world axes the
-        origin goes straight while the body turns.
+        origin moves straight on while the body turns.
 
         Parameters
         ----------

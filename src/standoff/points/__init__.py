@@ -7,42 +7,20 @@ from standoff.on_demand import on_demand
 if TYPE_CHECKING:
     from standoff.points.answer import Minimum, PointCounts, PointEvent, PointProximity
     from standoff.points.recording import PointRecording, PointVisit, record_point
-    from standoff.points.spatial_answer import (
-        DepthMinimum,
-        SpatialPointProximity,
-        SpatialPointState,
-    )
-    from standoff.points.spatial_tracker import SpatialPointTracker
     from standoff.points.state import PointState
     from standoff.points.tracker import PointTracker
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
         {
-            "standoff.points.answer": (
-                "Minimum",
-                "PointCounts",
-                "PointEvent",
-                "PointProximity",
-            ),
-            "standoff.points.recording": (
-                "PointRecording",
-                "PointVisit",
-                "record_point",
-            ),
-            "standoff.points.spatial_answer": (
-                "DepthMinimum",
-                "SpatialPointProximity",
-                "SpatialPointState",
-            ),
-            "standoff.points.spatial_tracker": ("SpatialPointTracker",),
+            "standoff.points.answer": ("Minimum", "PointCounts", "PointEvent", "PointProximity"),
+            "standoff.points.recording": ("PointRecording", "PointVisit", "record_point"),
             "standoff.points.state": ("PointState",),
             "standoff.points.tracker": ("PointTracker",),
         },
     )
 
 __all__ = [
-    "DepthMinimum",
     "Minimum",
     "PointCounts",
     "PointEvent",
@@ -51,8 +29,5 @@ __all__ = [
     "PointState",
     "PointTracker",
     "PointVisit",
-    "SpatialPointProximity",
-    "SpatialPointState",
-    "SpatialPointTracker",
     "record_point",
 ]

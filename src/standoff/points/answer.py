@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from standoff.bodies.features import Feature
 from standoff.bodies.plain_data import PlainData, plain, without_roundoff
 from standoff.read_only import KeepsReadOnly
+from standoff.tracking.branches import BranchCounts, Change
 from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
@@ -23,7 +24,7 @@ class PointEvent(NamedTuple):
     Attributes
     ----------
     time : float
-        s; that of the frame, or, where `located`, the instant itself.
+        Since the start [s]: that of the frame, or, where `located`, the instant itself.
     kind : "medial", "crossing" or "voronoi"
         Inside, another local minimum has become the least, which is on the medial axis; the point
         crosses the boundary; or outside, it crosses a Voronoi line between a curve and a vertex.
@@ -49,25 +50,30 @@ class PointEvent(NamedTuple):
 
 
 class Minimum(NamedTuple):
-    """A local minimum of the distance on one curve, as it is tracked in parallel.
+    """A local minimum of the distance from the point to the boundary, or to one curve of it.
 
     Attributes
     ----------
     feature : Feature
-        Its curve.
-    parameter : float
+        It lies on.
+    parameters : tuple of float
+        (u, v) on a face, (u, v, chart) on one with an atlas, (t,) on an edge, () on a vertex.
     distance : float
         Without sign [length].
+    witness, normal : ndarray, shape (3,)
+        Its place on the boundary, and the outward unit normal there.
     residual : float
-        Length of the witness vector's projection on the curve's unit tangent; zero at the minimum
-        and at an end that holds it [length].
+        Length of the witness vector's projection on the boundary's tangents; zero at the minimum,
+        and at the end of a curve that holds it [length].
     key : int
         Tells it from the other minima of the run.
     """
 
     feature: Feature
-    parameter: float
+    parameters: tuple[float, ...]
     distance: float
+    witness: Array
+    normal: Array
     residual: float
     key: int
 
@@ -79,48 +85,25 @@ class PointCounts(NamedTuple):
     ----------
     switches : int
         Events of the frame.
-    found : int
-        Minima that were new and are tracked from this frame on.
+    born, ended : int
+        Minima that are tracked from this frame on, and that are tracked no more; the answer's
+        ``changes`` have the reasons.
     restarts : int
-        Nearer points that the certificate met, or global starts of the tracker outside.
+        Nearer points that the proof met inside, or global starts of the tracker outside.
     samples : int
-        Points of the boundary that the certificate took.
+        Points of the boundary, or evaluations, that the proof inside took.
     """
 
     switches: int
-    found: int
+    born: int
+    ended: int
     restarts: int
     samples: int
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PointDistance(KeepsReadOnly, PlainData):
-    """What the answers of both kinds of point tracker begin with; they say what each field is."""
-
-    distance: float
-    lower_bound: float
-    upper_bound: float
-    witness: Array
-    normal: Array
-    inside: bool
-    feature: Feature
-    parameters: tuple[float, ...]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return the answer as plain data, by the attributes' names; as `Proximity.as_dict`."""
-        return {part.name: plain(getattr(self, part.name)) for part in fields(self)}
-
-    def __repr__(self) -> str:
-        numbers = [self.distance, self.distance - self.lower_bound]
-        distance, gap = without_roundoff(numbers, float(np.abs(self.witness).max()))
-        side = "inside" if self.inside else "outside"
-        kind = type(self).__name__
-        return f"{kind}(distance={distance:.12g}, gap={gap:.2g}, {self.feature}, {side})"
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class PointProximity(PointDistance):
-    """The signed distance of a point to a body, and how it was proven. Vectors in world axes.
+class PointProximity(KeepsReadOnly, PlainData):
+    """The signed distance of a point to a body, and how it was proven. Vectors in the body's frame.
 
     Attributes
     ----------
@@ -133,28 +116,43 @@ class PointProximity(PointDistance):
     normal : ndarray, shape (3,)
         Unit, outward, from the body to the point outside; it is kept through zero distance.
     inside : bool
-        Is the point in the body's core? Decided by the point's place alone.
+        Is the point inside the body? Of a planar body with a swept radius: inside its core.
     feature : Feature
         Active feature.
     parameters : tuple of float
-        (t,) on a curve, () on a vertex.
+        As in `Minimum`.
     minima : tuple of Minimum
-        All that are tracked in parallel, at least one of each curve.
+        All that are tracked in parallel, the least first: of a planar body one at least of each
+        curve of its core, outside too; of a spatial one those found, none outside.
     active : int
-        Key of the least of them.
+        Key of the one that answers inside; -1 where there is none.
     rate : float
         Time derivative of the distance; nan where no velocity was given.
     residual : float
         As in `Minimum`, of the active feature.
     status : Status
-        CONVERGED: the bounds are within the tolerance.
+        As of a pair. Outside CONVERGED, where the bounds are within the tolerance. Inside GLOBAL,
+        where it is proven that no other minimum is less: of a planar body to within the tolerance,
+        of a spatial one to a part of 0.999; else LOCAL.
     counts : PointCounts
     events : tuple of PointEvent
-        The switches of this step, dated to its frame.
+        The switches of this step, in their order.
     time : float
         Since the start [s].
+    changes : tuple of Change
+        Minima that have begun or ended in this frame, each with the reason.
+    total : BranchCounts
+        How many have since the start, by reason.
     """
 
+    distance: float
+    lower_bound: float
+    upper_bound: float
+    witness: Array
+    normal: Array
+    inside: bool
+    feature: Feature
+    parameters: tuple[float, ...]
     minima: tuple[Minimum, ...]
     active: int
     rate: float
@@ -163,11 +161,13 @@ class PointProximity(PointDistance):
     counts: PointCounts
     events: tuple[PointEvent, ...]
     time: float
+    changes: tuple[Change, ...]
+    total: BranchCounts
 
     @property
     def certified(self) -> bool:
-        """Are the bounds within the tolerance?"""
-        return self.status is Status.CONVERGED
+        """Is the signed distance proven: CONVERGED outside, GLOBAL inside?"""
+        return self.status.certified
 
     @property
     def mode(self) -> tuple[bool, Feature, int]:
@@ -175,6 +175,17 @@ class PointProximity(PointDistance):
         return self.inside, self.feature, self.active if self.inside else -1
 
     def of_curve(self, index: int) -> Minimum:
-        """The nearest minimum of one curve."""
-        own = [m for m in self.minima if m.feature.index == index]
+        """The nearest minimum of one curve of a planar body."""
+        own = [m for m in self.minima if m.feature == Feature("edge", index)]
         return min(own, key=lambda m: m.distance)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the answer as plain data, by the attributes' names; as `Proximity.as_dict`."""
+        return {part.name: plain(getattr(self, part.name)) for part in fields(self)}
+
+    def __repr__(self) -> str:
+        numbers = [self.distance, self.distance - self.lower_bound]
+        distance, gap = without_roundoff(numbers, float(np.abs(self.witness).max()))
+        side = "inside" if self.inside else "outside"
+        kind = type(self).__name__
+        return f"{kind}(distance={distance:.12g}, gap={gap:.2g}, {self.feature}, {side})"

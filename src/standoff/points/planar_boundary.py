@@ -7,13 +7,13 @@ whether the point is inside. Chords are halved only where that is not sharp enou
 
 from __future__ import annotations
 
-import heapq
 import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.best_first import Part, best_first
 from standoff.bodies.body import Body
 from standoff.kernels.entries.queries import planar_edge_normal
 from standoff.points.tolerances import ON_BOUNDARY, SHORTEST_CHORD
@@ -198,31 +198,35 @@ class PlanarBoundary(KeepsReadOnly):
             Its ``depth`` is at least the goal, unless a point of the boundary nearer than the
             goal was met, or more than `MOST_CHORDS` would be needed.
         """
-        nearest, distance = known, math.dist(self.point(*known), x)
+        distance = math.dist(self.point(*known), x)
         bounds = self._chord_bounds(x)
         low = np.flatnonzero(bounds < goal)
         others = float(np.delete(bounds, low).min()) if len(low) < len(bounds) else math.inf
         shortest = SHORTEST_CHORD * self.body.size
-        # the chord that bounds the least is halved first; numbers tell equal ones apart
-        queue = [(float(bounds[k]), int(k), self._chord(int(k))) for k in low]
-        heapq.heapify(queue)
-        samples, ended = 0, math.inf
-        while queue and queue[0][0] < goal and distance >= goal and samples < MOST_CHORDS:
-            bound, _, (edge, t0, a, t1, b) = heapq.heappop(queue)
-            if math.dist(a, b) <= shortest:
-                ended = min(ended, bound)
-                continue
+
+        def part(chord: Chord, bound: float, seen: float = math.inf) -> Part[Chord]:
+            return Part(bound, chord, seen, math.dist(chord[2], chord[4]) <= shortest)
+
+        def halves(chosen: list[Part[Chord]]) -> list[Part[Chord]]:
+            edge, t0, a, t1, b = chosen[0].body
             t = 0.5 * (t0 + t1)
             m = self.point(edge, t)
-            samples += 1
-            if (far := math.dist(m, x)) < distance:
-                nearest, distance = (edge, t), far
-            for k, half in enumerate(((edge, t0, a, t, m), (edge, t, m, t1, b))):
-                number = len(bounds) + 2 * samples + k
-                heapq.heappush(queue, (self._bound(half, x), number, half))
-        least = queue[0][0] if queue else math.inf
-        depth = min(least, ended, others, distance) - self.body.report.slack
-        return Bounds(depth, nearest, distance, samples)
+            first, last = (edge, t0, a, t, m), (edge, t, m, t1, b)
+            # what is met in the first half is its end, the middle
+            met = part(first, self._bound(first, x), math.dist(m, x))
+            return [met, part(last, self._bound(last, x))]
+
+        searched = best_first(
+            [part(self._chord(int(k)), float(bounds[k])) for k in low],
+            halves,
+            goal=lambda met: goal if min(met, distance) >= goal else -math.inf,
+            most=lambda _: MOST_CHORDS,
+        )
+        nearest = known
+        if searched.found < distance and searched.place is not None:
+            distance, nearest = searched.found, (searched.place[0], searched.place[3])
+        depth = min(searched.least, others, distance) - self.body.report.slack
+        return Bounds(depth, nearest, distance, searched.splits)
 
     def _chord_bounds(self, x: Array) -> Array:
         """`_bound` of all the chords at first, (n,)."""
@@ -282,3 +286,12 @@ def _height(a: Array, b: Array, sense: float, x: Array) -> float:
     along = (b[0] - a[0], b[1] - a[1])
     length = math.hypot(*along)
     return float(sense * _cross(np.array(along), x - a) / length)
+
+
+def without_radius(body: Body) -> Body:
+    """Return a planar body without its swept radius."""
+    if body.radius == 0.0:
+        return body
+    return Body.from_brep(
+        body.vertex_points, body.edge_parts, dimension=2, name=f"core of {body.name}"
+    )

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -15,17 +17,14 @@ from standoff.bodies.features import Feature
 from standoff.checks.arrays import finite
 from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.kernels.tolerances import SLOPE
 from standoff.motion import PoseLike
 from standoff.motion.moving import Moving
 from standoff.motion.pose_function import path_of
-from standoff.points.answer import PointEvent, PointProximity
-from standoff.points.events import Switching, events_between
+from standoff.points.answer import Minimum, PointEvent, PointProximity
 from standoff.points.state import PointState
-from standoff.points.tolerances import RELEASE_SLOPES
+from standoff.points.switches import Way
 from standoff.points.tracker import PointTracker
 from standoff.read_only import KeepsReadOnly
-from standoff.recording.tolerances import INSTANT_RESOLUTION, INSTANT_ROUNDINGS
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.wording import counted, short_name
 
@@ -64,10 +63,11 @@ class PointRecording(KeepsReadOnly):
     witness, normal : ndarray, shape (n, 3)
     inside : ndarray of bool, shape (n,)
     feature : ndarray of Feature, shape (n,)
-    parameter : ndarray, shape (n,)
-        Of the active curve; nan on a vertex.
+    parameters : ndarray, shape (n, 3)
+        Of the active feature, nan where there is none: t of a curve, u, v and chart of a face.
     curve_parameter, curve_distance, curve_residual : ndarray, shape (n, curves)
         Of each curve's nearest minimum, as they are tracked in parallel; distances without sign.
+        Of a spatial body there are none.
     answers : tuple of PointProximity
     events : tuple of PointEvent
         In order of time.
@@ -85,7 +85,7 @@ class PointRecording(KeepsReadOnly):
     normal: Array
     inside: NDArray[np.bool_]
     feature: NDArray[np.object_]
-    parameter: Array
+    parameters: Array
     curve_parameter: Array
     curve_distance: Array
     curve_residual: Array
@@ -108,7 +108,7 @@ class PointRecording(KeepsReadOnly):
         visits: list[PointVisit] = []
         for event in self.events:
             if event.time > start:
-                visits.append(PointVisit(inside, feature, start, event.time))
+                visits.append(PointVisit(inside, event.source, start, event.time))
                 start = event.time
             inside, feature = inside ^ (event.kind == "crossing"), event.target
         visits.append(PointVisit(inside, feature, start, float(self.time[-1])))
@@ -128,6 +128,7 @@ def record_point(
     Parameters
     ----------
     tracker : PointTracker
+        Of a planar or a spatial body.
     path : path or function
         A path of ``standoff.motion``, anything with ``pose(t)`` and ``twist(t)``, or a function of
         the time that returns a pose; its origin is the point.
@@ -152,8 +153,7 @@ def record_point(
     """
     if not isinstance(tracker, PointTracker):
         raise StandoffTypeError(
-            f"{shown(tracker)} is not a PointTracker: so.points.record_point serves planar bodies; "
-            "so.points.SpatialPointTracker locates the switches itself, in step.",
+            f"{shown(tracker)} is not a PointTracker: make one with so.PointTracker(body).",
             "tracker",
             tracker,
         )
@@ -162,19 +162,12 @@ def record_point(
     moving: Moving = path_of(path, float(clock[0]), last)
     x, v = _placed(moving, float(clock[0]))
     state = tracker.start(x, v) if start is None else start
-    states, events = [state], list[PointEvent]()
-    for k, time in enumerate(clock[1:].tolist()):
-        before = float(clock[k])
-        x, v = _placed(moving, time)
-        following, answer = tracker.step(state, x, v, time - before)
-        if answer.events and locate:
-            step = _Step(tracker, moving, state, before)
-            events += step.between(before, state, time, following)
-        else:
-            events += [event._replace(time=time) for event in answer.events]
-        state = following
+    states = [state]
+    for before, time in pairwise(clock.tolist()):
+        way = Way(before, time, partial(_placed, moving))
+        state = tracker.step_along(state, *way.place(time), way, locate)
         states.append(state)
-    return _recording(tracker, clock, states, tuple(events))
+    return _recording(tracker, clock, states)
 
 
 def _clock(times: ArrayLike) -> Array:
@@ -190,73 +183,27 @@ def _clock(times: ArrayLike) -> Array:
     return clock
 
 
-class _Step(NamedTuple):
-    """One frame's step, to be looked into: the state of the frame before, and its time."""
-
-    tracker: PointTracker
-    path: Moving
-    state: PointState
-    before: float
-
-    def between(
-        self, low: float, at_low: PointState, high: float, at_high: PointState
-    ) -> list[PointEvent]:
-        """Return the switches between two times, each found by halving the time between."""
-        if at_low.proximity.mode == at_high.proximity.mode:
-            return []
-        spacing = INSTANT_ROUNDINGS * float(np.spacing(max(abs(low), abs(high))))
-        middle = 0.5 * (low + high)
-        least = max(INSTANT_RESOLUTION * self.tracker.dt, spacing)
-        if high - low <= least or not low < middle < high:
-            return self._switches(at_low, high, at_high)
-        x, v = _placed(self.path, middle)
-        at_middle, _ = self.tracker.step(self.state, x, v, middle - self.before)
-        return [
-            *self.between(low, at_low, middle, at_middle),
-            *self.between(middle, at_middle, high, at_high),
-        ]
-
-    def _switches(self, before: PointState, time: float, after: PointState) -> list[PointEvent]:
-        left = after.parallel.of_key(before.proximity.active)
-        at = self._switching(time)
-        found = events_between(before.moment, after.moment, left, (), at, time)
-        return [self._sharpened(event)._replace(located=True) for event in found]
-
-    def _switching(self, time: float) -> Switching:
-        x, v = _placed(self.path, time)
-        return Switching(self.tracker.boundary, x[:2], v[:2])
-
-    def _sharpened(self, event: PointEvent) -> PointEvent:
-        """Move a switch at a Voronoi line from the threshold of release to the line itself."""
-        if event.kind != "voronoi" or not 0.0 < abs(event.value) <= RELEASE_SLOPES * SLOPE:
-            return event
-        time = event.time - event.value / event.slope if event.slope else event.time
-        if not abs(time - event.time) <= self.tracker.dt:
-            return event
-        value, slope = self._switching(time).voronoi((event.source, event.target))
-        return event._replace(time=time, value=value, slope=slope)
-
-
 def _placed(path: Moving, time: float) -> tuple[Array, Array]:
     """Place and velocity, (3,), of a path's origin at a time [s]."""
     pose = path.pose(time)
     return flat_pose(pose)[9:].copy(), flat_twist(path.twist(time), pose)[:3].copy()
 
 
-def _recording(
-    tracker: PointTracker, clock: Array, states: list[PointState], events: tuple[PointEvent, ...]
-) -> PointRecording:
+def _recording(tracker: PointTracker, clock: Array, states: list[PointState]) -> PointRecording:
     answers = tuple(state.proximity for state in states)
-    curves = range(tracker.body.n_edges)
+    curves = range(tracker.body.n_edges if tracker.body.dimension == 2 else 0)
     nearest = [[answer.of_curve(c) for c in curves] for answer in answers]
+    parameters = np.full((len(answers), 3), np.nan)
+    for row, answer in zip(parameters, answers, strict=True):
+        row[: len(answer.parameters)] = answer.parameters
     features = np.empty(len(answers), dtype=object)
     features[:] = [answer.feature for answer in answers]
 
     def numbers(name: str) -> Array:
         return np.array([getattr(answer, name) for answer in answers], dtype=np.float64)
 
-    def of_curves(name: str) -> Array:
-        return np.array([[getattr(m, name) for m in row] for row in nearest])
+    def of_curves(number: Callable[[Minimum], float]) -> Array:
+        return np.array([[number(m) for m in row] for row in nearest], dtype=np.float64)
 
     return PointRecording(
         time=clock,
@@ -270,13 +217,11 @@ def _recording(
         normal=numbers("normal"),
         inside=np.array([answer.inside for answer in answers]),
         feature=features,
-        parameter=np.array(
-            [answer.parameters[0] if answer.parameters else np.nan for answer in answers]
-        ),
-        curve_parameter=of_curves("parameter"),
-        curve_distance=of_curves("distance"),
-        curve_residual=of_curves("residual"),
+        parameters=parameters,
+        curve_parameter=of_curves(lambda m: m.parameters[0]),
+        curve_distance=of_curves(lambda m: m.distance),
+        curve_residual=of_curves(lambda m: m.residual),
         answers=answers,
-        events=events,
+        events=tuple(event for answer in answers[1:] for event in answer.events),
         body=tracker.body,
     )

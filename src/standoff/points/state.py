@@ -1,20 +1,19 @@
-"""A point tracker's state, and its answer in the making."""
+"""A point tracker's state, and an answer in the making."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
 from standoff.points.answer import Minimum, PointCounts, PointEvent, PointProximity
-from standoff.points.events import Leg, Moment
-from standoff.points.parallel_minima import Parallel
-from standoff.points.planar_boundary import PlanarBoundary
 from standoff.read_only import KeepsReadOnly
+from standoff.tracking.branches import Branches, End
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
 
@@ -32,17 +31,18 @@ class PointState(KeepsReadOnly):
     point : ndarray, shape (3,)
     velocity : ndarray or None, shape (3,)
         Of the point at that frame; None where none was given.
-    parallel : Parallel
+    branches : Branches
         The minima with their states.
-    outside : TrackerState or None
-        Of the automaton outside; None inside.
+    pair : TrackerState or None
+        Of the body and the point as a pair: tracked outside; in a spatial body the last proof of
+        the depth, in a planar one None.
     """
 
     proximity: PointProximity
     point: Array
     velocity: Array | None
-    parallel: Parallel
-    outside: TrackerState | None
+    branches: Branches[Any]
+    pair: TrackerState | None
 
     @property
     def time(self) -> float:
@@ -50,100 +50,87 @@ class PointState(KeepsReadOnly):
         return self.proximity.time
 
     @property
-    def moment(self) -> Moment:
-        """What switches depend on."""
-        p = self.proximity
-        return Moment(p.inside, p.feature, next(m for m in p.minima if m.key == p.active))
+    def inside(self) -> bool:
+        """Is the point inside?"""
+        return self.proximity.inside
+
+    def with_events(self, events: Iterable[PointEvent]) -> PointState:
+        """The state with the switches of its step."""
+        told = tuple(events)
+        counts = self.proximity.counts._replace(switches=len(told))
+        return replace(self, proximity=replace(self.proximity, events=told, counts=counts))
+
+
+class Leg(NamedTuple):
+    """A change of the feature outside; value and slope as in `PointEvent`."""
+
+    source: Feature
+    target: Feature
+    value: float = math.nan
+    slope: float = math.nan
 
 
 class Found(NamedTuple):
-    """An answer for the body's core, in the making; distance and bounds are signed [length]."""
+    """An answer in the making.
 
-    parallel: Parallel
-    active: int
+    Attributes
+    ----------
+    inside : bool
+    distance : float
+        Signed [length].
+    bounds : (float, float)
+        Of the signed distance, from below and from above [length].
+    witness, normal, feature, parameters, residual, status
+        As in `PointProximity`.
+    branches : Branches
+        Settled.
+    pair : TrackerState or None
+        As in `PointState`.
+    told : tuple of Leg
+        Changes of feature that the tracker outside tells of this step.
+    restarts, samples : int
+        As in `PointCounts`.
+    """
+
+    inside: bool
     distance: float
     bounds: tuple[float, float]
     witness: Array
+    normal: Array
     feature: Feature
     parameters: tuple[float, ...]
     residual: float
-    outside: TrackerState | None = None
+    status: Status
+    branches: Branches[Any]
+    pair: TrackerState | None
     told: tuple[Leg, ...] = ()
     restarts: int = 0
     samples: int = 0
 
-    @property
-    def nearest(self) -> Minimum:
-        """The least of the minima."""
-        nearest = self.parallel.of_key(self.active)
-        assert nearest is not None  # the active one is tracked
-        return nearest
-
-    def moment(self, inside: bool) -> Moment:
-        """What switches depend on."""
-        return Moment(inside, self.feature, self.nearest)
-
-    def normal(self, boundary: PlanarBoundary, x: Array) -> Array:
-        """Outward unit normal, (3,): a curve's own; at a vertex the direction to the point."""
-        away = x - self.witness
-        d = float(np.linalg.norm(away))
-        if self.feature.kind == "vertex" and d > 0.0:
-            return np.asarray(away / d)
-        edge, t = self.nearest.feature.index, self.nearest.parameter
-        if self.feature.kind == "edge":
-            edge, t = self.feature.index, self.parameters[0]
-        return np.append(boundary.normal(edge, t), 0.0)
-
-
-class Answering(NamedTuple):
-    """What turns a core's answer into the body's.
-
-    Attributes
-    ----------
-    boundary : PlanarBoundary
-        Of the core.
-    radius : float
-        Swept around it [length].
-    gap : float
-        Between the bounds, below which an answer is certified [length].
-    doubt : Status
-        Of an answer that is not.
-    """
-
-    boundary: PlanarBoundary
-    radius: float
-    gap: float
-    doubt: Status
-
     def state(
-        self,
-        found: Found,
-        inside: bool,
-        x: Array,
-        v: Array | None,
-        time: float,
-        fresh: int = 0,
-        events: tuple[PointEvent, ...] = (),
+        self, minima: Iterable[Minimum], x: Array, v: Array | None, time: float
     ) -> PointState:
-        """The state with its answer; `fresh` minima were added."""
-        normal = found.normal(self.boundary, x)
-        lower, upper = found.bounds
+        """The state with its answer; without the switches of the step."""
+        changes = self.branches.changes
+        ended = sum(isinstance(change.reason, End) for change in changes)
         proximity = PointProximity(
-            distance=found.distance - self.radius,
-            lower_bound=lower - self.radius,
-            upper_bound=upper - self.radius,
-            witness=found.witness + self.radius * normal,
-            normal=normal,
-            inside=inside,
-            feature=found.feature,
-            parameters=found.parameters,
-            minima=found.parallel.minima,
-            active=found.active,
-            rate=math.nan if v is None else float(normal @ v),
-            residual=found.residual,
-            status=Status.CONVERGED if upper - lower <= self.gap else self.doubt,
-            counts=PointCounts(len(events), fresh, found.restarts, found.samples),
-            events=events,
+            distance=self.distance,
+            lower_bound=self.bounds[0],
+            upper_bound=self.bounds[1],
+            witness=self.witness,
+            normal=self.normal,
+            inside=self.inside,
+            feature=self.feature,
+            parameters=self.parameters,
+            minima=tuple(sorted(minima, key=lambda m: (m.distance, m.key))),
+            active=self.branches.active,
+            rate=math.nan if v is None else float(self.normal @ v),
+            residual=self.residual,
+            status=self.status,
+            counts=PointCounts(0, len(changes) - ended, ended, self.restarts, self.samples),
+            events=(),
             time=time,
+            changes=changes,
+            total=self.branches.counts,
         )
-        return PointState(proximity, x, v, found.parallel, found.outside)
+        return PointState(proximity, x, v, self.branches, self.pair)

@@ -28,7 +28,8 @@ TIE: Final = 4.0 * float(np.finfo(float).eps)
 stays."""
 
 ENTRY_INSTANT: Final = 1e-9
-"""Part of a step in which the automaton outside switches, but hardly moves, when it is entered."""
+"""Part of the tracker's frame in which the automaton outside switches, but hardly moves, when it is
+entered."""
 
 DEPTH_SWITCH_RESOLUTION: Final = 1e-15
 """Part of the step within which a switch is found; the roundoff of the depths is above it."""

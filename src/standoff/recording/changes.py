@@ -7,13 +7,10 @@ from typing import Any, Protocol, TypeVar
 
 
 class Known(Protocol):
-    """An answer at a time; its mode is what may change."""
+    """An answer at a time."""
 
     @property
     def time(self) -> float: ...
-
-    @property
-    def mode(self) -> Any: ...
 
 
 K = TypeVar("K", bound=Known)
@@ -21,6 +18,11 @@ S = TypeVar("S")
 
 Found = tuple[S | None, bool]
 """A change that was found otherwise, or None; and whether one was found that is not proven."""
+
+
+def of_mode(low: Any, high: Any) -> bool:
+    """Have two answers different modes?"""
+    return bool(low.mode != high.mode)
 
 
 def changes(
@@ -31,10 +33,11 @@ def changes(
     change: Callable[[K, K], S],
     otherwise: Callable[[K, K], Found[S]] | None = None,
     tries: int = 0,
+    changed: Callable[[K, K], bool] = of_mode,
 ) -> list[S]:
-    """Return the changes of mode between two answers, in order of time.
+    """Return the changes between two answers, in order of time.
 
-    A mode that comes and goes between two answers with the same one is not seen.
+    What comes and goes between two answers that are alike is not seen.
 
     Parameters
     ----------
@@ -50,8 +53,10 @@ def changes(
         Finds the one change between two answers faster than by halving, where it can.
     tries : int
         How often in a row `otherwise` may find what is not proven; then halving goes on alone.
+    changed : callable
+        Is there a change between an earlier and a later answer? By default one of their mode.
     """
-    if low.mode == high.mode:
+    if not changed(low, high):
         return []
     middle = 0.5 * (low.time + high.time)
     if high.time - low.time <= resolution or not low.time < middle < high.time:
@@ -62,5 +67,5 @@ def changes(
             return [found]
         tries -= failed
     between = look(middle, low, high)
-    more = look, resolution, change, otherwise, tries
+    more = look, resolution, change, otherwise, tries, changed
     return [*changes(low, between, *more), *changes(between, high, *more)]

@@ -21,7 +21,7 @@ VECTORS = ("point_a", "point_b", "normal", "velocity_a", "velocity_b")
 
 
 def data_frame(recording: RecordedFrames) -> Any:
-    """Return one row a frame; `Recording.to_pandas` describes the columns."""
+    """Return one row per frame; `Recording.to_pandas` describes the columns."""
     columns: dict[str, Any] = {name: getattr(recording, name) for name in NUMBERS}
     for name in VECTORS:
         columns |= {f"{name}_{x}": getattr(recording, name)[:, k] for k, x in enumerate("xyz")}

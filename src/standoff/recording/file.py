@@ -1,4 +1,4 @@
-"""A recording as a Parquet file: one row a frame; docs/scene-format.md lists the columns."""
+"""A recording as a Parquet file: one row per frame; docs/scene-format.md lists the columns."""
 
 from __future__ import annotations
 
@@ -162,11 +162,11 @@ def read_table(path: Path) -> dict[str, Any]:
         table = pq.read_table(path)
     except (pa.ArrowException, UnicodeDecodeError) as error:
         raise StandoffError(
-            f"{path} is no Parquet file, or is cut off or damaged: {error}", "path", path
+            f"{path} is not a Parquet file, or is truncated or damaged: {error}", "path", path
         ) from error
     except OSError as error:  # damaged pages; nothing else tells them from a disk's failure
         raise StandoffError(
-            f"{path} cannot be read, perhaps it is damaged: {error}", "path", path
+            f"{path} cannot be read; it may be damaged: {error}", "path", path
         ) from error
     try:
         return _fields(table, _info(metadata), metadata["format_version"])
@@ -191,7 +191,7 @@ def _checked(path: Path, metadata: dict[bytes, bytes]) -> dict[str, Any]:
         kind, content, version = None, {}, None
     if kind != FORMAT:
         raise StandoffError(
-            f"{path} is a Parquet file but no recording of Standoff: write one with "
+            f"{path} is a Parquet file but not a Standoff recording: write one with "
             "recording.save or `standoff track -o`",
             "path",
             path,

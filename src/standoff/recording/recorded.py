@@ -1,4 +1,4 @@
-"""What a tracked run leaves, as data: one row a frame, and the switching events."""
+"""The data that a tracked run leaves: one row per frame, and the switching events."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class RecordedEvent(NamedTuple):
         Rate of the switching function at `time`, 1/s: positive where the higher feature is
         left, negative where it is entered; nan where it is not known.
     located : bool
-        Was the instant found within the step, or is it only dated to the frame?
+        Was the instant found within the step, or is it only the time of the frame?
     """
 
     frame: int
@@ -90,8 +90,8 @@ class RunInfo:
     source : mapping
         What the caller adds, such as a scene's text; plain data that JSON can hold.
     repaired : int
-        How many of the poses that the paths gave, two a frame, had a rounded rotation and were
-        brought to the nearest one. What a path was made of, it counts itself.
+        How many of the poses that the paths gave, two per frame, had a rounded rotation and were
+        replaced by the nearest one. A path counts the poses that it was made of itself.
     """
 
     bodies: tuple[str, str]
@@ -191,7 +191,8 @@ class RecordedFrames(KeepsReadOnly):
 
         A stay ends at the instant of the switch that ends it. Where an overlap has no depth there
         is no mode: the stay before ends at the last frame with one, the next one begins at the
-        first frame that has one again. Of switches at one instant only the last mode is visited.
+        first frame that has one again. Of several switches at one instant, only the last mode is
+        visited.
         """
         visits: list[Visit] = []
         events = list(self.events)

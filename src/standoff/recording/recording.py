@@ -50,17 +50,17 @@ class Recording(RecordedFrames):
     parameters_a, parameters_b : ndarray, shape (n, 3)
         nan where the feature has fewer parameters.
     status : ndarray of Status, shape (n,)
-    counts : ndarray of int, shape (n, 10)
+    counts : ndarray of int, shape (n, 11)
         Work of each frame, in the order of `Counts`.
     events : tuple of RecordedEvent
         In order of frame and time. Of each body the source of an event is the target of the one
         before.
     info : RunInfo
     pair : (Body, Body) or None
-        A and B; None in a recording opened from a file, which keeps their digests only.
+        A and B; None in a recording opened from a file, which keeps only their digests.
     paths : (path, path) or None
-        Those of A and B, as `animate` asks them for poses; None in a recording opened from a file,
-        and in a copy or a pickle, as a path may be a function.
+        Those of A and B, which `animate` asks for poses; None in a recording opened from a file,
+        and in a copy or a pickle, because a path may be a function.
     """
 
     @classmethod
@@ -73,7 +73,8 @@ class Recording(RecordedFrames):
         info: RunInfo,
         paths: Paths | None = None,
     ) -> Recording:
-        """Return the recording of a run's flat answers, (n, N_OUT) as ``kernels.frame`` has it."""
+        """Return the recording of a run's flat answers, (n, N_OUT) as in
+        ``kernels.state.arrays``."""
         a, b = pair
         statuses = {status.value: status for status in Status}
         rows = AnswerRows(np.array(answers))
@@ -136,9 +137,9 @@ class Recording(RecordedFrames):
         ModuleNotFoundError
             If matplotlib is not installed; the message names the extra.
         TypeError
-            If `path` is neither a text nor a Path.
+            If `path` is neither a string nor a Path.
         ValueError
-            If it is empty, or the file's ending is another.
+            If it is empty, or the file has another ending.
         OSError
             If the file cannot be written, or is a folder, a FIFO or a device.
             A link stays: what it leads to is replaced.
@@ -170,7 +171,7 @@ class Recording(RecordedFrames):
         Parameters
         ----------
         pictures : int
-            Most frames of the recording that are drawn, evenly chosen from the first to the last.
+            Greatest number of frames to draw, evenly chosen from the first to the last.
         view : (float, float), optional
             Elevation and azimuth of the viewer, degrees. If not given, the view is across the
             normal of the closest frame.
@@ -217,9 +218,9 @@ class Recording(RecordedFrames):
         return table_of(self)
 
     def to_pandas(self) -> Any:
-        """Return a data frame of pandas: one row a frame, columns of plain numbers and words.
+        """Return a data frame of pandas: one row per frame, columns of plain numbers and words.
 
-        The columns are those of the Parquet file, but that the parameters have a column each,
+        The columns are those of the Parquet file, except that each parameter has its own column,
         ``parameters_a_0`` to ``parameters_b_2``, NaN where a feature has fewer, and that the events
         are left out: ``pandas.DataFrame(recording.events)`` is a table of them. The facts of
         ``info`` are in ``attrs["standoff"]``.
@@ -247,7 +248,7 @@ class Recording(RecordedFrames):
         ModuleNotFoundError
             If pyarrow is not installed; the message names the extra.
         TypeError
-            If `path` is neither a text nor a Path.
+            If `path` is neither a string nor a Path.
         ValueError
             If it is empty, or ``info.source`` is nested too deeply.
         OSError
@@ -263,8 +264,8 @@ class Recording(RecordedFrames):
 def open_recording(path: str | Path) -> Recording:
     """Read a recording that `Recording.save` or ``standoff track -o`` wrote.
 
-    Everything is as it was, but for ``pair``: the file holds the bodies' names and digests, not
-    the bodies.
+    Everything is as it was, except ``pair``: the file holds the bodies' names and digests, not the
+    bodies.
 
     Parameters
     ----------
@@ -278,11 +279,11 @@ def open_recording(path: str | Path) -> Recording:
     Raises
     ------
     TypeError
-        If `path` is neither a text nor a Path.
+        If `path` is neither a string nor a Path.
     FileNotFoundError
         If there is no such file.
     ValueError
-        If it is not a Parquet file or is cut off, is not a recording, or is of a format that this
+        If it is not a Parquet file or is truncated, is not a recording, or is of a format that this
         Standoff does not read.
     ModuleNotFoundError
         If pyarrow is not installed; the message names the extra.
@@ -292,7 +293,7 @@ def open_recording(path: str | Path) -> Recording:
     given: object = path
     if not isinstance(given, str | Path):
         raise StandoffTypeError(
-            f"path is {shown(given)}: give the name of a file, a text or a Path.", "path", path
+            f"path is {shown(given)}: give a file name, as a string or a Path.", "path", path
         )
     return Recording(**read_table(Path(path)))
 

@@ -126,7 +126,7 @@ def switching_function(
     switching : int
         0 where A switches, 1 where B does; the other body's feature is the same in both.
     lower, higher : ndarray
-        Flat answers as ``kernels.frame`` has them: with the feature of the boundary, and with the
+        Flat answers as in ``kernels.state.arrays``: with the feature of the boundary, and with the
         one that it bounds.
 
     Returns

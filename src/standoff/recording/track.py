@@ -59,14 +59,14 @@ def track(
         Of the pair, with its law; frames are its ``dt`` apart.
     path_a, path_b : path, function or pose
         A path of ``standoff.motion``, or anything with ``pose(t)`` and ``twist(t)``; a function of
-        the time that returns a pose, which is asked from the first frame to the last only and
-        differentiated as ``standoff.motion.PoseFunction`` tells; with a pose the body is at rest.
+        time that returns a pose, which is called only from the first frame to the last and
+        differentiated as in ``standoff.motion.PoseFunction``; with a pose the body is at rest.
     duration : float
         Time from the first frame to the last [s]; frames are at ``start + k dt``, as many as fit.
     start : float
         Time of the first frame on the paths' clock [s].
     locate : bool
-        Find the instants of the switches within their steps; else they are dated to the frames.
+        Find the instants of the switches within their steps; else they get the times of the frames.
         Paths are asked for poses between the frames.
     progress : callable, optional
         Called now and then with the frames done and the frames in all.
@@ -80,11 +80,11 @@ def track(
     ValueError
         Times that give fewer than two frames or more than ten million, or what a path refuses.
     TypeError
-        If there is no tracker, or a path is neither path nor function nor pose.
+        If there is no tracker, or a path is neither a path nor a function nor a pose.
     """
     if not isinstance(tracker, Tracker):
         raise StandoffTypeError(
-            f"{shown(tracker)} is not a Tracker: make one by so.Tracker(a, b, dt).",
+            f"{shown(tracker)} is not a Tracker: make one with so.Tracker(a, b, dt).",
             "tracker",
             tracker,
         )
@@ -126,7 +126,7 @@ def track_along(
     Raises
     ------
     TypeError
-        If the state is none.
+        If the state is not one.
     ValueError
         What a path or the tracker refuses; a state of another pair.
     """

@@ -33,7 +33,7 @@ class SceneError(StandoffError):
         self.key = key
         self.file = file
         place = key if len(key) <= SHOWN_CHARACTERS else key[: SHOWN_CHARACTERS - 1] + "…"
-        # Of one line each: what they are called is not ours.
+        # On one line each: their names are not ours.
         parts = (printable(str(file or "")), printable(place), problem)
         message = ": ".join(part for part in parts if part)
         super().__init__(message, key, value)

@@ -32,7 +32,7 @@ SIMULATION_KEYS = ("free", "contact", "contacts", "coupler", "device", "simulate
 
 @dataclass(frozen=True, eq=False)
 class FileContent:
-    """What a scene's file says, read as far as all scenes are alike.
+    """What a scene's file says, as far as it is common to all scenes.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class FileContent:
     length_unit : str
         Label of lengths; no number is converted.
     top : Table
-        The rest is read from it.
+        What else is read is read from it.
     bodies : mapping of str to Body
     placements : mapping of str to Pose
         Of the bodies that have one.
@@ -74,12 +74,12 @@ def read_content(
     keys : sequence of str
         Those that the top of this kind of scene may have besides `KEYS`.
     refuse_other_kind : callable
-        Raises SceneError with the command to use where the file is of the other kind.
+        Raises SceneError with the command to use if the file is of the other kind.
 
     Raises
     ------
     SceneError
-        If the file is missing or is no TOML, or anything in what is read is unknown, missing, of
+        If the file is missing or is not TOML, or anything in what is read is unknown, missing, of
         the wrong type or shape, or refused by the shape or pose that it describes.
     """
     path = Path(file)

@@ -17,7 +17,7 @@ from standoff.scene.reader import Table, shown
 
 NEAREST_FILE_CUTOFF = 0.8
 """Least likeness (difflib ratio, 0 to 1) of a file name that is suggested for another: file names
-are alike by their ending alone."""
+are similar because of their endings alone."""
 
 NAMED = 3
 """Most keys that the place of too deep a nesting has, such as ``bodies.tool.size``."""
@@ -98,7 +98,7 @@ def toml_tables(text: str) -> dict[str, Any]:
     Raises
     ------
     SceneError
-        If it is no TOML, is nested too deeply, or holds a number of more digits than Python reads.
+        If it is not TOML, is nested too deeply, or holds a number of more digits than Python reads.
     """
     problem = text_problem(text, TOML)
     if problem:
@@ -106,7 +106,7 @@ def toml_tables(text: str) -> dict[str, Any]:
     try:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"is no TOML: {error}") from error
+        raise SceneError(f"is not TOML: {error}") from error
     except ValueError as error:
         raise SceneError(beyond_python(text, error)) from error
     # Dotted keys nest tables without a bracket.
@@ -117,7 +117,7 @@ def toml_tables(text: str) -> dict[str, Any]:
 
 
 def beyond_python(text: str, error: Exception) -> str:
-    """Return the sentence about valid TOML or JSON that Python's parsers refuse all the same."""
+    """Return the sentence about valid TOML or JSON that Python's parsers nevertheless refuse."""
     most = sys.get_int_max_str_digits()
     long = re.search(rf"\d[\d_]{{{most},}}", text) if most else None
     if long is None:

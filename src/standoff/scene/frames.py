@@ -52,7 +52,7 @@ def check_instant(time: float, settings: TrackSettings, motions: Iterable[Motion
     """Return `time` [s] if it lies within the scene's times.
 
     They go from the start to the end of the duration, or of the pose samples. A scene that has
-    neither ends nowhere.
+    neither has no end.
 
     Raises
     ------
@@ -93,15 +93,16 @@ def time_window(settings: TrackSettings, motions: Iterable[Motion]) -> tuple[flo
     Raises
     ------
     SceneError
-        If the end is not settled, is beyond the samples, or is no later than the start.
+        If the end is not given, is beyond the samples, or is not later than the start.
     """
     motions = list(motions)
     start = start_time(settings, motions)
     end = _end(settings, motions, start)
     if not end > start:
         raise SceneError(
-            f"no time is left after {start!r} s, as the pose samples end at {end!r} s or times "
-            f"there are {math.ulp(start):.2g} s apart; begin earlier, or give a longer duration",
+            f"no time is left after {start!r} s, because the pose samples end at {end!r} s or "
+            f"times there are {math.ulp(start):.2g} s apart; begin earlier, or give a longer "
+            "duration",
             key="track.start" if settings.duration is None else "track.duration",
         )
     return start, end
@@ -116,8 +117,8 @@ def frame_times(settings: TrackSettings, motions: Iterable[Motion]) -> Array:
     Raises
     ------
     SceneError
-        If the times are not settled or not possible: no duration and no samples, a duration
-        beyond the samples, ``step = "samples"`` without samples, or too many frames.
+        If the times are not given or not possible: no duration and no samples, a duration beyond
+        the samples, ``step = "samples"`` without samples, or too many frames.
     """
     motions = list(motions)
     start = start_time(settings, motions)
@@ -164,7 +165,7 @@ def _end(settings: TrackSettings, motions: list[Motion], start: float) -> float:
     end = start + settings.duration
     if end > last + WHOLE_STEPS * settings.duration:
         raise SceneError(
-            f"{settings.duration:g} s from {start:g} s on end at {end:g} s, after the last pose "
+            f"{settings.duration:g} s from {start:g} s end at {end:g} s, after the last pose "
             f"sample at {last:g} s; give at most {last - start:g}, or leave 'duration' out",
             key="track.duration",
         )

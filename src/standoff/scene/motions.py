@@ -49,7 +49,7 @@ class Motion:
     file : Path or None
         The file of the pose samples.
     repaired : int
-        How many of its poses had a rounded quaternion or matrix, and were brought to the nearest
+        How many of its poses had a rounded quaternion or matrix, and were replaced by the nearest
         rotation.
     """
 
@@ -61,7 +61,7 @@ class Motion:
 
 
 class MotionKind(NamedTuple):
-    """One kind of motion: its keys, whether it sets out from a placement, and what reads it."""
+    """One kind of motion: its keys, whether it starts from a placement, and what reads it."""
 
     keys: tuple[str, ...]
     placed: bool
@@ -157,8 +157,8 @@ def read_motion(table: Table, placement: Pose | None) -> Motion:
     Raises
     ------
     SceneError
-        At an unknown kind or key, a value that the motion refuses, a file that is missing or not
-        to be read, or a placement beside a motion that gives the whole pose itself.
+        At an unknown kind or key, a value that the motion refuses, a file that is missing or cannot
+        be read, or a placement together with a motion that gives the whole pose itself.
     """
     kind = MOTIONS[table.choice("kind", list(MOTIONS))]
     own = [key + ENDING for key in kind.keys if key in (*ANGLES, *ANGLE_VECTORS)]

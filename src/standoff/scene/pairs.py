@@ -9,7 +9,7 @@ from standoff.scene.reader import Table, shown
 from standoff.scene.settings import TrackSettings, read_settings
 
 PLAIN = "-_"
-"""What a pair's name may have beside letters and digits: it becomes part of file names."""
+"""What a pair's name may have besides letters and digits: it becomes part of file names."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +45,8 @@ def read_pairs(top: Table, bodies: Sequence[str]) -> tuple[Pair, ...]:
     Raises
     ------
     SceneError
-        If neither or both are given, a body is unknown or meets itself, two names are alike, or
-        a pair's settings do not go together.
+        If neither or both are given, a body is unknown or paired with itself, two names are the
+        same, or a pair's settings do not go together.
     """
     track = (top.table("track"),) if "track" in top else ()
     if "pairs" not in top:
@@ -55,7 +55,7 @@ def read_pairs(top: Table, bodies: Sequence[str]) -> tuple[Pair, ...]:
         a, b = _bodies(table, bodies)
         return (Pair("pair", a, b, read_settings(*track)),)
     if "pair" in top:
-        raise top.error("is given beside [[pairs]]; write it as one more [[pairs]]", "pair")
+        raise top.error("is given together with [[pairs]]; write it as another [[pairs]]", "pair")
     pairs: list[Pair] = []
     for table in top.tables("pairs"):
         settings = read_settings(table, *track, beside=("name", "a", "b"))
@@ -80,11 +80,11 @@ def _name(table: Table, usual: str, before: Sequence[Pair]) -> str:
             "name",
         )
     for number, pair in enumerate(before):
-        # Some file systems take names that differ in case only for one.
+        # Some file systems treat names that differ only in case as the same.
         if pair.name.casefold() == name.casefold():
             raise table.error(
                 f"two pairs are called '{name}', this one and pairs[{number}]; give each its own "
-                "name, it tells their results apart",
+                "name, so that their results can be told apart",
                 "name",
             )
     return name

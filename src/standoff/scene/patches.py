@@ -16,7 +16,7 @@ from standoff.scene.reader import Table, shown
 
 FORMAT = "standoff-patches"
 FORMAT_VERSION = 1
-"""What a JSON file of patches says of itself; docs/scene-format.md describes it."""
+"""What a JSON file of patches calls itself; docs/scene-format.md describes it."""
 
 
 class PatchKind(NamedTuple):
@@ -66,8 +66,8 @@ def read_patches(table: Table) -> list[Surface]:
     Raises
     ------
     SceneError
-        At an unknown kind or key, a value that the patch refuses, or a file that is missing, cut
-        off, or of another format or version.
+        At an unknown kind or key, a value that the patch refuses, or a file that is missing,
+        truncated, or of another format or version.
     """
     given = table.only_one(("patches", "file"))
     if given == "file":
@@ -96,7 +96,7 @@ def _of_file(file: Path) -> Table:
         ended = text.rstrip().endswith("}") and error.pos < len(text.rstrip())
         cut = "" if ended else "; it seems to be cut off: write it again"
         raise SceneError(
-            f"is no JSON: {error.msg}: line {error.lineno}, column {error.colno}{cut}", file=file
+            f"is not JSON: {error.msg}: line {error.lineno}, column {error.colno}{cut}", file=file
         ) from error
     except UnicodeDecodeError as error:
         raise SceneError(
@@ -128,5 +128,5 @@ def _each_key_once(pairs: list[tuple[str, object]]) -> dict[str, object]:
     if len(content) < len(pairs):
         names = [name for name, _ in pairs]
         twice = next(name for name in names if names.count(name) > 1)
-        raise SceneError(f"the key {shown(twice)} stands twice in one object; keep one of them")
+        raise SceneError(f"the key {shown(twice)} appears twice in one object; keep one of them")
     return content

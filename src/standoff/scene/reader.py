@@ -101,7 +101,8 @@ class Table:
                 raise self.error(unknown_name(key, keys, "key"), key)
 
     def build(self, construct: Callable[[], Value], key: str | None = None) -> Value:
-        """Return ``construct()``, its errors told with this place; a missing extra is one too.
+        """Return ``construct()``, its errors with this place added; a missing extra is an error
+        too.
 
         Without a `key` the place is the argument at fault, where this table has a key of its name.
         """
@@ -132,7 +133,7 @@ class Table:
         """Return the raw value of `key`; `example` is the line to add when it is missing."""
         if key in self:
             return self._content[key]
-        # Once the other keys are known to be right, none of them can be this one misspelt.
+        # Once the other keys are known to be right, none of them can be a misspelling of this one.
         likely = None if self._expected else nearest(key, self._content)
         hint = f", or rename '{likely}'" if likely is not None else ""
         fix = f'add "{key}" to this object' if self._json else f"add a line such as: {example}"
@@ -152,7 +153,7 @@ class Table:
         example: str = "",
         infinite: bool = False,
     ) -> float:
-        """Return a number above zero, finite but where `infinite` says that it need not be."""
+        """Return a number above zero, finite unless `infinite` says that it need not be."""
         if infinite and self._content.get(key) == math.inf:
             return math.inf
         value = self.number(key, default, example=example)
@@ -187,13 +188,13 @@ class Table:
             return default
         value = self.required(key, example or f'{key} = "..."')
         if not isinstance(value, str) or not value.strip():
-            raise self.error(f"must be a text in quotes, got {shown(value)}", key)
+            raise self.error(f"must be a string in quotes, got {shown(value)}", key)
         return value
 
     def choice(
         self, key: str, known: Sequence[str], default: str | None = None, *, noun: str = ""
     ) -> str:
-        """Return a text out of `known`; `noun` is what the message calls it, if not `key`."""
+        """Return one of the words in `known`; `noun` is what the message calls it, if not `key`."""
         value = self.text(key, default, example=f'{key} = "{known[0]}"')
         if value not in known:
             raise self.error(unknown_name(value, known, noun or key), key)

@@ -139,7 +139,7 @@ def record(
 
 
 def _source(scene: Scene, settings: TrackSettings) -> dict[str, Any]:
-    """Return what tells a recording's reader how it came about, without this machine's paths."""
+    """Return what shows a recording's reader how it was made, without this machine's paths."""
     files = [motion.file for motion in scene.pair_motions if motion.file is not None]
     return {
         "scene": scene.file.name,

@@ -40,7 +40,7 @@ class Scene:
     pairs : tuple of Pair
         At least one, in the file's order; their names differ.
     selected : Pair
-        The pair that the properties below speak of; `load_scene` selects the first.
+        The pair that the properties below refer to; `load_scene` selects the first.
     """
 
     file: Path
@@ -82,9 +82,9 @@ class Scene:
 
     @property
     def notes(self) -> list[str]:
-        """What was mended in the pair's input, a sentence each."""
+        """What was repaired in the pair's input, one sentence each."""
         return [
-            f"{motion.repaired} rotations of {name} were rounded; brought to the nearest ones"
+            f"{motion.repaired} rotations of {name} were rounded; replaced by the nearest ones"
             for name, motion in zip(self.pair, self.pair_motions, strict=True)
             if motion.repaired
         ]
@@ -139,7 +139,7 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
     Raises
     ------
     SceneError
-        If the file is missing or is no TOML, or anything in it is unknown, missing, of the wrong
+        If the file is missing or is not TOML, or anything in it is unknown, missing, of the wrong
         type or shape, not finite, or refused by the shape, pose or motion that it describes. The
         message names the file, the key and the fix.
     """

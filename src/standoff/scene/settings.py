@@ -64,9 +64,8 @@ class TrackSettings:
         Raises
         ------
         SceneError
-            If a given one would be refused in a scene as well, or does not go with the others.
-            Its key is then the name alone, and no file is named, since the value did not come
-            from one.
+            If a value would also be refused in a scene, or does not go with the others. Its key is
+            then just the name, and no file is named, since the value did not come from one.
         """
         table = Table({name: value for name, value in given.items() if value is not None})
         return read_settings(table, usual=self)
@@ -84,11 +83,11 @@ def read_settings(
     Parameters
     ----------
     *tables : Table
-        Those first whose values stand over the others'.
+        In order of precedence: values of the first win over those of the others.
     usual : TrackSettings, optional
         What holds where no table says anything; the library's defaults if not given.
     beside : sequence of str
-        Keys of the first table that are no settings.
+        Keys of the first table that are not settings.
 
     Raises
     ------
@@ -143,7 +142,7 @@ def _law(tables: Sequence[Table], usual: Law) -> Law:
 
 
 def _made(kind: type[Law], options: dict[str, Any], tables: Sequence[Table]) -> Law:
-    """The law; what does not go together is told of the first table that says it."""
+    """The law; what does not go together is reported for the first table that says it."""
     try:
         return kind(**options)
     except OptionsConflict as error:

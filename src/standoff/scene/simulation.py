@@ -61,7 +61,7 @@ class SimulationScene:
         Time of the first tick on the clock of the motions [s].
     ticks : int
     every : int
-        A record every so many ticks.
+        Ticks from one record to the next.
     allow_overlap : bool
     device : SimulatedDevice or None
         What moves the handle of the system's coupler, where it has one.
@@ -103,7 +103,7 @@ def load_simulation(
     file : str or path
         A TOML file; docs/simulation.md describes the format.
     given : mapping, optional
-        Values that stand in place of those of ``[simulate]``; None stands in place of none.
+        Values that replace those of ``[simulate]``; None replaces nothing.
     rate : float, optional
         Readings a second of the coupler's device, in place of the file's; the step becomes the
         longest that is not above the file's and fits into their period.
@@ -157,7 +157,7 @@ def _refuse_pair(top: Table) -> None:
 
 
 def _every(settings: Table, ticks_a_reading: int) -> int:
-    """Ticks a record: whole readings where a device is read."""
+    """Ticks per record: whole readings if a device is read."""
     every = settings.count("every", ticks_a_reading)
     if every % ticks_a_reading:
         raise settings.error(

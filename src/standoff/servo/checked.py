@@ -23,7 +23,7 @@ LONGEST_RUN: Final = 1e9
 
 
 def system_of(operator: Any) -> None:
-    """Refuse what is no operator, or one that no device can feel."""
+    """Refuse what is not an operator, or one that no device can feel."""
     if not isinstance(operator, Operator):
         raise StandoffTypeError(
             f"operator is {shown(operator)}: give a standoff.simulation.Operator.",
@@ -48,7 +48,7 @@ def system_of(operator: Any) -> None:
 
 
 def rate_of(period: float, given: Any) -> float:
-    """Ticks a second of an operator, which what is given must be."""
+    """An operator's ticks a second; a rate that is given must equal them."""
     rate = 1.0 / period
     if not SLOWEST * (1.0 - RATES_AGREE) <= rate <= FASTEST * (1.0 + RATES_AGREE):
         raise StandoffError(
@@ -60,7 +60,7 @@ def rate_of(period: float, given: Any) -> float:
         wanted = positive(given, "rate")
         if abs(wanted - rate) > RATES_AGREE * rate:
             raise StandoffError(
-                f"rate is {wanted:g}, and the operator makes {rate:g} ticks a second: give "
+                f"rate is {wanted:g}, but the operator makes {rate:g} ticks a second: give "
                 f"Operator(..., dt={1.0 / wanted:g}), with a coupler whose sampling has that "
                 "period.",
                 "rate",
@@ -76,7 +76,7 @@ def ticks_in(seconds: Any, rate: float) -> int:
     given = positive(seconds, "seconds")
     if given > LONGEST_RUN:
         raise StandoffError(
-            f"seconds is {given:g}: give {LONGEST_RUN:g} at most, or None for no end.",
+            f"seconds is {given:g}: give at most {LONGEST_RUN:g}, or None to run without end.",
             "seconds",
             seconds,
         )
@@ -89,7 +89,7 @@ def log_ticks(given: Any) -> int:
 
 
 def kind_of_device(device: Any) -> None:
-    """Refuse what is no device."""
+    """Refuse what is not a device."""
     if device is not None and not isinstance(device, LiveDevice | Device | Trace):
         raise StandoffTypeError(
             f"device is {shown(device)}: give a Trace, a device of standoff.devices, one with the "

@@ -15,9 +15,10 @@ class Box:
     """The newest row of one writer, for any number of readers.
 
     The writer goes round a few rows and then publishes the number of the newest. A reader copies
-    that row and looks at the number again: had the writer come round to the row meanwhile, the copy
-    is thrown away. So no lock is taken, and a thread that is held up in mid-row holds up nobody.
-    Numbers and rows go by the processor's own acquire and release, on both sides in compiled code.
+    that row and looks at the number again: if the writer has come round to the row meanwhile, the
+    copy is discarded. So no lock is taken, and a thread that is delayed in the middle of a row
+    delays nobody. Numbers and rows are passed by the processor's own acquire and release, in
+    compiled code on both sides.
 
     Parameters
     ----------

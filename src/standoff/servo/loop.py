@@ -39,7 +39,7 @@ LOG_TICKS: Final = 100_000
 
 
 class Snapshot(NamedTuple):
-    """What a servo told last.
+    """What a servo published last.
 
     Attributes
     ----------
@@ -92,7 +92,8 @@ class Servo(BoundToRun):
     The loop is one compiled call in a thread of its own: it sleeps, spins, takes the newest
     reading, moves coupler, bodies and trackers by one tick, and publishes its whole state. It holds
     no lock, allocates nothing and calls no Python. The coupler is at rest until `engage`, and after
-    any fault until `engage` again. Used as a context manager it is started, and stopped after.
+    any fault until `engage` again. Used as a context manager, it is started, and stopped
+    afterwards.
 
     Parameters
     ----------
@@ -101,10 +102,10 @@ class Servo(BoundToRun):
     state : SystemState, optional
         Where it begins; `operator.start()` if not given.
     device : LiveDevice, Device or Trace, optional
-        What moves the handle. A `Device` is read and written by a thread in Python, once a period.
-        Without one readings are given by `put`.
+        What moves the handle. A `Device` is read and written by a thread in Python, once per
+        period. Without one, readings are given by `put`.
     rate : float, optional
-        Ticks a second, as a check: it is the operator's.
+        Ticks a second, as a check: it must be the operator's.
     seconds : float, optional
         How long to run [s]; until `stop` if not given.
     max_age : float, optional
@@ -124,10 +125,10 @@ class Servo(BoundToRun):
     Raises
     ------
     StandoffTypeError
-        An argument of another kind than named here.
+        An argument of the wrong kind.
     StandoffError
-        A system without a coupler, or with driven bodies; a rate that the operator has not, or
-        beyond 10 to 10 000 a second; a system without the clocks that are needed.
+        A system without a coupler, or with driven bodies; a rate that is not the operator's, or not
+        within 10 to 10 000 a second; a system without the clocks that are needed.
     """
 
     def __init__(
@@ -181,7 +182,7 @@ class Servo(BoundToRun):
         return None
 
     def _planned(self, ticks: int, device: Any) -> np.ndarray[Any, np.dtype[np.int64]]:
-        """What the loop goes by, laid out in ``servo_arrays``."""
+        """The loop's plan, laid out in ``servo_arrays``."""
         plan = np.zeros(V.N_PLAN, dtype=np.int64)
         plan[V.V_PERIOD] = round(self._period * NANO)
         plan[V.V_SPIN] = round(min(SPIN, SPIN_SHARE * self._period) * NANO)
@@ -211,7 +212,7 @@ class Servo(BoundToRun):
             It was started before.
         """
         if self._thread is not None:
-            raise StandoffError("this servo was started before: make another one.")
+            raise StandoffError("this servo was already started: make another one.")
         if self._device is not None:
             self._device.attach(self.port)
         self._thread = threading.Thread(target=self._run, name="servo", daemon=True)
@@ -259,7 +260,7 @@ class Servo(BoundToRun):
 
     @property
     def problem(self) -> str:
-        """Why the device gives no readings any more; empty while nothing is wrong."""
+        """Why the device no longer gives readings; empty while nothing is wrong."""
         return "" if self._device is None else self._device.problem
 
     def engage(self) -> None:
@@ -280,7 +281,7 @@ class Servo(BoundToRun):
         Parameters
         ----------
         force : float
-            [N]; one above what holds changes nothing.
+            [N]; one above the present limit changes nothing.
 
         Raises
         ------
@@ -298,7 +299,7 @@ class Servo(BoundToRun):
             self._limits[which] = min(float(self._limits[which]), most)
 
     def latest(self) -> Snapshot:
-        """Return what the loop told last; never waits for it."""
+        """Return what the loop published last; never waits for it."""
         row = self._outbox.newest_row()
         if row is None:
             at = int(self._operator.packed[0][A.I_COUPLER])
@@ -322,18 +323,18 @@ class Servo(BoundToRun):
         return SystemState(self._system, data)
 
     def wait(self, seconds: float | None = None) -> bool:
-        """Wait until the loop has ended, or so long [s]; has it ended?"""
+        """Wait until the loop has ended, or for so long [s]; has it ended?"""
         if self._thread is not None:
             self._thread.join(seconds)
         return not self.running
 
     def stop(self) -> ServoReport:
-        """End the loop with no force on the handle, and let go of the device.
+        """End the loop with no force on the handle, and release the device.
 
         Returns
         -------
         ServoReport
-            The same where it had ended before.
+            The same if it had already ended.
 
         Raises
         ------

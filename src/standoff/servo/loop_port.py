@@ -22,15 +22,15 @@ Array = NDArray[np.float64]
 NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 TICKS_TO_SEE = 2
-"""Ticks after the one that was told last, at the end of which a reading was surely taken in: the
-next one may have begun before it came."""
+"""Ticks after the one that was published last, at the end of which a reading has surely been taken
+in: the next one may have begun before it came."""
 
 
 class LoopPort:
     """The end of a servo loop that a device holds; see `standoff.devices.Port`.
 
-    A reading at fault stays the newest until the loop has taken it in, whatever comes after it, and
-    until then the wrench is zero here already.
+    A faulty reading stays the newest until the loop has taken it in, whatever comes after it, and
+    until then the wrench here is already zero.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class LoopPort:
             self._put(row)
 
     def fail(self, fault: Fault) -> None:
-        """Tell that the device cannot be trusted."""
+        """Say that the device cannot be trusted."""
         row = np.zeros(K.N_READING)
         row[K.G_FAULT] = fault
         with self._lock:
@@ -88,13 +88,13 @@ class LoopPort:
             self._until = ticks + TICKS_TO_SEE
 
     def _waits(self) -> bool:
-        """Is a reading at fault still to be taken in?"""
+        """Has a faulty reading not been taken in yet?"""
         if self._until is not None and self._look() and self._told[V.TOLD_TICK] >= self._until:
             self._until = None
         return self._until is not None
 
     def _look(self) -> int:
-        """Copy what the loop told last; 0 where it told nothing yet."""
+        """Copy what the loop published last; 0 if it has published nothing yet."""
         newest, rows = self._outbox.arrays
         number = entries.take_row(newest, rows, 0, self._told)
         while number < 0:

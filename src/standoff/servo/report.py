@@ -29,7 +29,7 @@ class Ended(IntEnum):
 
     @property
     def sound(self) -> bool:
-        """Did it end as it was asked to?"""
+        """Did it end as asked?"""
         return self in (Ended.STOPPED, Ended.DONE)
 
 
@@ -37,9 +37,9 @@ _TOLD = {
     Ended.STOPPED: "stopped as it was asked to",
     Ended.DONE: "done: its time is over",
     Ended.BROKEN: "a body's motion was no longer finite: take a shorter step or less stiffness",
-    Ended.JUMPED: "the clock went back by {away:.3g} s: look after the machine's clock",
-    Ended.STALLED: "nothing ran for {away:.3g} s: the clock jumped ahead, or the machine was held "
-    "up; look after its load, its power saving, and a virtual machine's host",
+    Ended.JUMPED: "the clock went back by {away:.3g} s: check the machine's clock",
+    Ended.STALLED: "nothing ran for {away:.3g} s: the clock jumped ahead, or the machine was "
+    "held up; check its load, its power saving, and a virtual machine's host",
     Ended.SUSPENDED: "the machine was suspended for {away:.3g} s",
 }
 
@@ -54,12 +54,12 @@ class ServoReport(KeepsReadOnly):
     message : str
         The same in words, with what to do.
     rate : float
-        Ticks a second that were meant.
+        Intended ticks a second.
     statistics : ServoStatistics
     state : SystemState
         At the end; its coupler is at rest.
     fault : Fault
-        Why the coupler let go last; `Fault.NONE` where it never did.
+        Why the coupler let go last; `Fault.NONE` if it never did.
     notes : tuple of str
         What the system refused: a real-time priority, locked memory.
     problem : str

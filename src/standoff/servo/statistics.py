@@ -46,7 +46,7 @@ class ServoStatistics(NamedTuple):
         From a tick's start to the publication of its force.
     ticks : int
     missed : int
-        Deadlines that passed while an earlier tick was not done: no tick was made for them.
+        Deadlines that passed while an earlier tick was still running: no tick was made for them.
     engaged : int
         Ticks with the coupler engaged.
     fresh : int

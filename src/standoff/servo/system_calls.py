@@ -11,7 +11,8 @@ from typing import Final, NamedTuple
 from standoff.errors import StandoffError
 
 PRIORITY: Final = 50
-"""Of SCHED_FIFO, 1 to 99: half way, above the threads of interrupts' users, below its own."""
+"""Of SCHED_FIFO, 1 to 99: half way, above the threads that use interrupts, below those that serve
+them."""
 
 TIMER_SLACK: Final = 29
 """Linux's PR_SET_TIMERSLACK."""
@@ -30,7 +31,7 @@ class Clocks(NamedTuple):
 
 
 def clocks() -> Clocks:
-    """Return what the compiled loop waits by.
+    """Return what the compiled loop waits with.
 
     Raises
     ------
@@ -46,8 +47,8 @@ def clocks() -> Clocks:
         boot = time.CLOCK_BOOTTIME
     except (AttributeError, OSError, TypeError) as error:
         raise StandoffError(
-            f"A servo needs clock_nanosleep and CLOCK_BOOTTIME, which Linux has and "
-            f"{sys.platform} has not ({error}): run it on Linux. Simulations run everywhere."
+            "A servo needs clock_nanosleep and CLOCK_BOOTTIME, which Linux has and "
+            f"{sys.platform} does not ({error}): run it on Linux. Simulations run everywhere."
         ) from error
     return Clocks(found[0], found[1], time.CLOCK_MONOTONIC, boot)
 
@@ -58,7 +59,7 @@ def ask_for_real_time() -> list[str]:
     Returns
     -------
     list of str
-        What was refused, and what to do; empty where all was given.
+        What was refused, and what to do; empty if all was granted.
     """
     notes = []
     libc = ctypes.CDLL(None, use_errno=True)
@@ -73,7 +74,7 @@ def ask_for_real_time() -> list[str]:
     if libc.mlockall(LOCK_ALL) != 0:
         reason = os.strerror(ctypes.get_errno())
         notes.append(
-            f"memory is not locked ({reason}): a page that was put out to disk holds the loop up; "
+            f"memory is not locked ({reason}): a page swapped out to disk can hold the loop up; "
             "allow it with `ulimit -l unlimited`, or memlock in /etc/security/limits.conf"
         )
     return notes

@@ -3,8 +3,8 @@
 from typing import Final
 
 LONGEST_GAP: Final = 0.1
-"""Seconds, a time many times over what a loaded machine holds a loop up: beyond it a clock jumped
-or the machine stood still, and a force of then is not to be held now."""
+"""Seconds, many times what a loaded machine delays a loop by: beyond it a clock jumped or the
+machine stood still, and a force from before must not be held now."""
 
 SPIN: Final = 1e-4
 """Seconds before each deadline, parts of a period, in which the loop spins: a sleeping thread is
@@ -15,13 +15,13 @@ SPIN_SHARE: Final = 0.3
 others."""
 
 RATES_AGREE: Final = 1e-9
-"""Relative: by this part a rate that is given may differ from the operator's: roundoff of both."""
+"""Relative: a rate that is given may differ from the operator's by this part: roundoff of both."""
 
 SLOWEST: Final = 10.0
-"""Times a second: below it no hand takes a force for one."""
+"""Times a second: below it no hand feels a steady force."""
 
 FASTEST: Final = 10_000.0
-"""Times a second: beyond it what a period leaves beside a tick is less than a clock's own cost."""
+"""Times a second: beyond it a period leaves less time beside a tick than a clock costs."""
 
 STOPPED_WITHIN: Final = 5.0
-"""Seconds, many times a period, in which a loop that is asked to stop must have ended."""
+"""Seconds, many times a period, within which a loop that is asked to stop must have ended."""

@@ -94,19 +94,19 @@ def solve(
 ) -> Solution | SystemSolution:
     """Solve a system's equations of motion from time 0.
 
-    At every evaluation the witness points are tracked to roundoff at the coordinates asked for,
-    so they are a function of these and no part of the error that the method controls. The solution
-    is stopped where a pair touches or parts, and goes on from there: the force has a kink there.
+    At every evaluation the witness points are tracked to roundoff at the coordinates asked for, so
+    they are a function of these and not part of the error that the method controls. The solution is
+    stopped where a pair touches or separates, and continues from there: the force has a kink there.
 
-    Free bodies turn in charts of rotation vectors, about the rotation at which a leg began; where
-    one has turned by 1.5 rad the next leg begins, so their rotations stay rotations.
+    Free bodies turn in charts of rotation vectors, about the rotation at which a leg began; after a
+    turn of 1.5 rad the next leg begins, so their rotations stay rotations.
 
     Parameters
     ----------
     system : GeneralisedSystem or System
         In your own coordinates, or of rigid bodies, which start at their own poses and twists.
     theta, rate : (n,) array_like
-        Where a GeneralisedSystem starts; of no use to a System.
+        Where a GeneralisedSystem starts; not for a System.
     duration : float
         [time], positive.
     method : str
@@ -115,9 +115,9 @@ def solve(
         Relative and absolute tolerance of the state in a step, positive.
     max_step : float, optional
         Longest step [time], a hundredth of the duration if not given: a contact that begins and
-        ends within one step is not seen.
+        ends within one step is missed.
     allow_overlap : bool
-        Of a System: start also where bodies overlap.
+        For a System: start even if bodies overlap.
 
     Returns
     -------
@@ -145,8 +145,8 @@ def solve(
         for name, given in (("theta", theta), ("rate", rate)):
             if given is not None:
                 raise StandoffError(
-                    f"{name} = {shown(given)} is of a GeneralisedSystem; the bodies of a System "
-                    "start at their own poses and twists: leave it out.",
+                    f"{name} = {shown(given)} belongs to a GeneralisedSystem; the bodies of a "
+                    "System start at their own poses and twists: leave it out.",
                     name,
                     given,
                 )

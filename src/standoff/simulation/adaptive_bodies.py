@@ -1,9 +1,9 @@
 """Rigid bodies solved by SciPy's adaptive methods: charts of rotation vectors, and true rotations.
 
-A leg of the solution turns a body by exp(f) from the rotation at which the leg began, and the
-method integrates the rotation vector f, whose rate is J_r(f)⁻¹ w. A body that has turned far ends
-the leg; the next one begins with f = 0 at the rotation reached. So no constraint has to be kept,
-and no singularity of the chart, at a full turn, comes near.
+Within a leg of the solution, a body has turned by exp(f) from the rotation at which the leg began,
+and the method integrates the rotation vector f, whose rate is J_r(f)⁻¹ w. A body that has turned
+far ends the leg; the next one begins with f = 0 at the rotation reached. So there is no constraint
+to keep, and the singularity of the chart, at a full turn, stays far away.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ CHART: Final = 1.5
 
 TURN, CENTRE, VELOCITY, SPIN = 0, 3, 6, 9
 WIDTH = 12
-"""A free body's part of what is integrated; behind all of them the energies lost and given."""
+"""A free body's part of what is integrated; the energies lost and given come after all of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,7 +168,7 @@ class _Bodies(Legs):
         return [_left(k) for k in range(len(self.free))]
 
     def kept(self, t: float, y: Array) -> Array:
-        """A row of the record, which counts the steps alone, not what was tried between them."""
+        """A row of the record, which has only the steps, not what was tried between them."""
         counts = slice(K.S_DEEPEST, K.S_UNCERTIFIED + 1)
         self.data[counts] = self.so_far
         self.place(t, y)

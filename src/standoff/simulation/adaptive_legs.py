@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 METHODS: Final = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 
 MOST_EVENTS: Final = 10_000
-"""Contacts and releases of one solution: bodies that settle touch ever more often."""
+"""Contacts and releases of one solution: bodies that settle touch more and more often."""
 
 
 class SystemEvent(NamedTuple):
@@ -55,8 +55,8 @@ class Solved(NamedTuple):
 class Legs(ABC):
     """Equations of motion with contacts, which are solved from kink to kink.
 
-    A subclass gives the right-hand side and what its pairs are at a state; it may end legs by
-    events of its own, and put a state into other coordinates between them.
+    A subclass gives the right-hand side and the distances and features of its pairs at a state; it
+    may end legs by its own events, and change a state's coordinates between them.
     """
 
     evaluations = 0
@@ -120,7 +120,7 @@ class Legs(ABC):
         return Solved(np.array(times), states, ordered)
 
     def _crossing(self, pair: int, inside: bool) -> Any:
-        """Where a pair that is apart touches, or one that touches parts."""
+        """Where a pair that is apart touches, or one that touches separates."""
 
         def distance(t: float, y: Array) -> float:
             return float(self.distances(t, y)[pair])

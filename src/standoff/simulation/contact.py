@@ -27,12 +27,12 @@ class HuntCrossley:
     friction : float
         Coefficient mu, no unit.
     slip_speed : float
-        Speed s [length/time] below which friction gives way; positive where there is friction. A
-        body at rest on a slope creeps at a part of it.
+        Speed s [length/time] below which friction gives way; positive if there is friction. A body
+        at rest on a slope creeps at a fraction of it.
     depth : float, optional
-        Greatest depth [length] that the contact is meant for: there the step is checked against its
-        stiffness. A hundredth of the lesser body's size if not given. A run that went deeper
-        says so (`SystemRun.deepest`).
+        Greatest depth [length] for which the contact is meant: its stiffness there is checked
+        against the step. A hundredth of the smaller body's size if not given. A run that went
+        deeper says so (`SystemRun.deepest`).
 
     Raises
     ------
@@ -79,7 +79,7 @@ class HuntCrossley:
         -------
         float
             e of ``ln((1 + a v)/(1 - a e v)) = a v (1 + e)`` with a = 1.5 c: what both phases of the
-            impact give, integrated over the depth. It depends on no stiffness.
+            impact give, integrated over the depth. It does not depend on the stiffness.
         """
         x = 1.5 * self.damping * positive(speed, "speed")
         if x == 0.0:

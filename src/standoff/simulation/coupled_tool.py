@@ -15,7 +15,7 @@ def check_tool(system: System, dt: float, method: str) -> None:
     Raises
     ------
     StandoffError
-        It tells the largest stable stiffness.
+        The message gives the largest stable stiffness.
     """
     coupler, tool = system.coupler, system.tool
     if coupler is None or tool is None:
@@ -34,7 +34,7 @@ def check_tool(system: System, dt: float, method: str) -> None:
         cure = (
             f"the largest stable one is {largest:.4g}"
             if largest > 0.0
-            else f"beside {kind}damping = {damping:g} none is stable"
+            else f"with {kind}damping = {damping:g} none is stable"
         )
         raise StandoffError(
             f"{kind}stiffness = {stiffness:g} of the coupler, held over a step, is beyond what "

@@ -38,8 +38,8 @@ LOST: Final = np.full(18, math.nan)
 """In place of the pose and twist of a tool that has none."""
 
 SLOW: Final = 1.1
-"""No unit. A tick longer by this factor than the period for which passivity was checked is
-counted: clocks of common systems are late by some hundredths of a millisecond."""
+"""No unit. A tick longer by this factor than the period for which passivity was checked is counted:
+clocks of common systems are late by some hundredths of a millisecond."""
 
 
 ABOVE_ZERO = ("max_force", "max_age", "max_force_rate", "max_torque_rate")
@@ -49,15 +49,15 @@ ABOVE_ZERO = ("max_force", "max_age", "max_force_rate", "max_torque_rate")
 class VirtualCoupler:
     """A spring and damper in six degrees of freedom between a device's handle and a tool.
 
-    On the tool act, at its origin, ``K (p_d − p_t) + B (v_d − v_t)`` and, about it,
-    ``K_r log(R_d R_tᵀ) + B_r (ω_d − ω_t)``; on the handle, at its own origin, the opposite
-    (Colgate, Stanley and Brown, IROS 1995). All vectors are along the world's axes. So each of the
-    six axes takes no more than the spring gave, whatever the others do, and a device with three
-    axes is served with a rotational stiffness and damping of 0.
+    The force ``K (p_d − p_t) + B (v_d − v_t)`` acts on the tool at its origin, and the torque ``K_r
+    log(R_d R_tᵀ) + B_r (ω_d − ω_t)`` about it; the opposite acts on the handle at its own origin
+    (Colgate, Stanley and Brown, IROS 1995). All vectors are along the world's axes. So none of the
+    six axes gives back more than its spring took, whatever the others do, and a device with three
+    axes needs a rotational stiffness and damping of 0.
 
     The rotation is the shorter one, of any angle below π; at `LET_GO_ANGLE` the coupler lets go.
 
-    A coupler never changes: what runs is a `CouplerState`, which goes into `step` and comes out.
+    A coupler never changes: what changes is a `CouplerState`, which goes into `step` and comes out.
     Until it is engaged, and from the first tick with a fault on until it is engaged again, both
     wrenches are zero.
 
@@ -81,9 +81,9 @@ class VirtualCoupler:
     engage_time : float
         Time in which stiffness and damping grow from 0 once it is engaged [s].
     max_age : float
-        Greatest age of a reading, and the most that it may be ahead of the clock [s].
+        Greatest age of a reading, and the most by which it may be ahead of the clock [s].
     sampling : Sampling, optional
-        Of the loop and the device. With it a stiffness and damping that would not be passive are
+        Of the loop and the device. With it, a stiffness and damping that would not be passive are
         refused (see `standoff.simulation.passivity`), and the device's friction is part of the
         account of energy.
     controller : PassivityController, optional
@@ -95,7 +95,8 @@ class VirtualCoupler:
         A number that is not finite (rates may be infinite), or below zero; a greatest force, rate
         or age of zero.
     PassivityError
-        A stiffness or damping beyond what the device keeps passive: it has the largest stiffness.
+        A stiffness or damping beyond what the device keeps passive; the error has the largest
+        stiffness.
     """
 
     stiffness: float
@@ -157,7 +158,7 @@ class VirtualCoupler:
         Raises
         ------
         StandoffTypeError
-            If that is no `CouplerState`.
+            If that is not a `CouplerState`.
         """
         _check_state(state)
         if state.engaged:
@@ -171,7 +172,7 @@ class VirtualCoupler:
         Raises
         ------
         StandoffTypeError
-            If that is no `CouplerState`.
+            If that is not a `CouplerState`.
         """
         _check_state(state)
         return CouplerState(fault=state.fault, counts=state.counts)
@@ -202,8 +203,8 @@ class VirtualCoupler:
             Time since the last tick [s].
         now : float, optional
             The time [s] on the clock of the readings, by which their age is judged. Without it the
-            coupler's own clock serves: the time of the first reading after it was engaged, and
-            `dt` on with each tick.
+            coupler's own clock is used: the time of the first reading after it was engaged, plus
+            `dt` for each tick.
 
         Returns
         -------
@@ -214,8 +215,8 @@ class VirtualCoupler:
         Raises
         ------
         StandoffError
-            A `dt` that is not above zero, a `now` that is not finite, or an invalid state: a
-            fault of the calling program, before anything is changed.
+            A `dt` that is not above zero, a `now` that is not finite, or an invalid state: a fault
+            of the calling program, raised before anything is changed.
         """
         _check_state(state)
         seconds = positive(dt, "dt")

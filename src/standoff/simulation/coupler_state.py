@@ -19,7 +19,7 @@ NO_WRENCH = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class CouplerCounts(NamedTuple):
-    """How often a coupler did what its user should know of, since its start.
+    """How often a coupler did what its user should know about, since its start.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class CouplerCounts(NamedTuple):
     engaged : int
         Ticks with the coupler engaged.
     repeated : int
-        Readings that came twice, none newer being there.
+        Readings that came twice, because there was no newer one.
     skipped : int
         Readings that never came, by their sequence numbers.
     force_limits, torque_limits : int
@@ -37,7 +37,7 @@ class CouplerCounts(NamedTuple):
     controlled : int
         Ticks in which the passivity controller damped.
     control_limits : int
-        Those of them in which it was not allowed to damp enough.
+        Those in which it was not allowed to damp enough.
     slow : int
         Ticks longer than the period for which passivity was checked.
     faults : int

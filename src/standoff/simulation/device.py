@@ -27,15 +27,15 @@ class DeviceReading(NamedTuple):
     time : float
         When it was sampled [s], on the clock that the loop gives the coupler as `now`.
     sequence : int
-        Grows by one with each sample of the device, so that doubled and lost ones are seen.
+        Grows by one with each sample of the device, so that doubled and lost ones are noticed.
     pose : Pose or what `Pose.of` reads
         Of the handle, in the world [length].
     twist : Twist, what `Twist.of` reads, or None
-        Of the handle. None where the driver has none: the coupler takes differences of poses.
+        Of the handle. None if the driver has none: the coupler then takes differences of poses.
     buttons : sequence of bool
         Pressed or not, in the device's own order.
     valid : bool
-        False where the device itself says that its data cannot be trusted.
+        False if the device itself says that its data cannot be trusted.
     """
 
     time: float
@@ -81,8 +81,8 @@ class DeviceLimits:
 class Device(Protocol):
     """A haptic device that reads a pose and renders a wrench (impedance type).
 
-    Used as a context manager it is open within, and its wrench is zero after, however the block
-    ends.
+    Used as a context manager, it is open within the block and its wrench is zero afterwards,
+    however the block ends.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ class Device(Protocol):
         ...
 
     def read(self) -> DeviceReading | None:
-        """Return the newest sample, again where there is no newer; None where there is none.
+        """Return the newest sample, again if there is no newer one; None if there is none.
 
         Raises `DeviceError` once the device is closed or gone: give the coupler None then.
         """
@@ -108,7 +108,7 @@ class Device(Protocol):
         ...
 
     def close(self) -> None:
-        """Set the wrench to zero and let go of the device; does nothing where it is closed."""
+        """Set the wrench to zero and release the device; does nothing if it is closed."""
         ...
 
     def __enter__(self) -> Self: ...
@@ -142,17 +142,16 @@ class Fault(IntEnum):
 
 _ADVICE = {
     Fault.NONE: "No fault.",
-    Fault.MISSING: "The device gave no reading; look after its connection, then engage again.",
-    Fault.LATE: "The newest reading is older than max_age, or ahead of the clock; look after the "
-    "load of the machine and the device's rate, then engage again.",
-    Fault.NON_FINITE: "A number of the reading is not finite; look after the driver.",
-    Fault.MALFORMED: "The reading has another shape than a pose and a twist; look after the "
-    "driver.",
-    Fault.OUT_OF_ORDER: "A reading came after a newer one; look after the connection.",
+    Fault.MISSING: "The device gave no reading; check its connection, then engage again.",
+    Fault.LATE: "The newest reading is older than max_age, or ahead of the clock; check the load "
+    "of the machine and the device's rate, then engage again.",
+    Fault.NON_FINITE: "A number of the reading is not finite; check the driver.",
+    Fault.MALFORMED: "The reading does not have the shape of a pose and a twist; check the driver.",
+    Fault.OUT_OF_ORDER: "A reading came after a newer one; check the connection.",
     Fault.INVALID: "The device says that its data cannot be trusted; calibrate it.",
     Fault.HALF_TURN: "Handle and tool came near a half turn apart, beyond which the torque would "
-    "turn round; bring them together, then engage again.",
-    Fault.TOOL: "The tool's pose or twist is not finite, or none at all; the simulation failed.",
+    "reverse; bring them together, then engage again.",
+    Fault.TOOL: "The tool's pose or twist is not finite, or is missing; the simulation failed.",
 }
 
 
@@ -178,8 +177,8 @@ _AT_REST = Twist.zero()
 
 def read_motion(pose: Any, twist: Any) -> Seen | Fault:
     """Return a pose and a twist (or None) as plain numbers, or what is wrong with them."""
-    # Whatever a driver hands over, and whatever it raises when it is looked into, the answer is a
-    # fault, never an exception: the force on the handle must go to zero in this very tick.
+    # Whatever a driver hands over, and whatever it raises when it is read, the answer is a fault,
+    # never an exception: the force on the handle must go to zero in this very tick.
     try:
         placed = Pose.of(pose)
         moving = _AT_REST if twist is None else Twist.of(twist)

@@ -62,7 +62,7 @@ def given_readings(device: Any, first: int, count: int) -> Array:
 
 
 def read(device: Device) -> Array:
-    """Return what a device says now; nothing where it is gone."""
+    """Return what a device says now; nothing if it is gone."""
     try:
         return reading_row(device.read())
     except DeviceError:

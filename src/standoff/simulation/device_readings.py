@@ -21,7 +21,7 @@ from standoff.simulation.device import DeviceReading
 Array = NDArray[np.float64]
 
 MOST_MADE: Final = 1_000_000
-"""Readings that are made of one path: a quarter of an hour at 1 kHz, 180 MB."""
+"""Greatest number of readings made from one path: a quarter of an hour at 1 kHz, 180 MB."""
 
 
 class DeviceReadings(KeepsReadOnly):
@@ -30,8 +30,8 @@ class DeviceReadings(KeepsReadOnly):
     Parameters
     ----------
     readings : iterable of DeviceReading or None
-        None where nothing came. What is wrong with one is no error here: the coupler lets go when
-        its turn comes, as with a device.
+        None where nothing came. A faulty one is not an error here: the coupler lets go when its
+        turn comes, as with a device.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class DeviceReadings(KeepsReadOnly):
     Raises
     ------
     StandoffTypeError
-        What is nothing to go through.
+        Not iterable.
     StandoffError
         No reading at all.
     """
@@ -64,7 +64,7 @@ class DeviceReadings(KeepsReadOnly):
         rows = [reading_row(reading) for reading in listed]
         if not rows:
             raise StandoffError(
-                "readings is empty: give one reading at least.", "readings", readings
+                "readings is empty: give at least one reading.", "readings", readings
             )
         self.rows = np.array(rows)
         self.rows.flags.writeable = False

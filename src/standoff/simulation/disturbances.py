@@ -29,20 +29,20 @@ class Disturbances:
     ----------
     script : mapping from int to str
         By the number of the reading, from 0: "missing" (None comes), "late" (this reading and all
-        later ones never come, the last one comes again and again), "nan" and "inf" (in the
-        position), "shape" (a position of two numbers), "order" (an older sequence number),
-        "invalid" (the device says so itself), "disconnect" (`DeviceError`, from then on).
+        later ones never come; the last one is repeated), "nan" and "inf" (in the position), "shape"
+        (a position of two numbers), "order" (an older sequence number), "invalid" (the device says
+        so itself), "disconnect" (`DeviceError`, from then on).
     drop_out : float
         Probability of each reading to be lost; the last one comes again.
     malformed : float
         Probability of each reading to come as one of "nan", "inf", "shape", "order", "invalid".
     seed : int
-        Of the two.
+        Seed of both.
 
     Raises
     ------
     StandoffError
-        No mapping, an unknown word, a number of a reading below zero, or what is no
+        Not a mapping, an unknown word, a number of a reading below zero, or what is not a
         probability.
     """
 

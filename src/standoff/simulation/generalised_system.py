@@ -99,7 +99,7 @@ class GeneralisedSystem(KeepsReadOnly):
     def acceleration(
         self, t: float, theta: Array, rate: Array, wrenches: Sequence[Array] | None = None
     ) -> Array:
-        """Return θ'' = M⁻¹ (F − C − N + Σ Jᵀ w), what acts on the bodies among the forces.
+        """Return θ'' = M⁻¹ (F − C − N + Σ Jᵀ w), including the wrenches w on the bodies.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The human hand on a device's handle: a mass, a damper and a spring to where it means to be."""
+"""The human hand on a device's handle: a mass, a damper and a spring to where it tries to be."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from standoff.checks.numbers import not_negative
 class HumanArm:
     """The mechanical impedance of a hand that holds a handle firmly.
 
-    Second order, the same in all directions. Spring and damper act between the handle and the
-    pose that the hand means to have.
+    Second order, the same in all directions. Spring and damper act between the handle and the pose
+    that the hand tries to reach.
 
     Parameters
     ----------
@@ -49,15 +49,15 @@ class HumanArm:
 
     @classmethod
     def none(cls) -> HumanArm:
-        """Return the hand that is not there."""
+        """Return the absence of a hand."""
         return cls(mass=0.0, damping=0.0, stiffness=0.0)
 
     @classmethod
     def fingertip(cls) -> HumanArm:
-        """Return a light touch: a mass that hides nothing of the device.
+        """Return a light touch, with a mass that masks nothing of the device.
 
         Chosen values, of the order that Hajian and Howe (J. Biomechanical Engineering 119(1), 1997)
-        report of index fingers in extension, not taken from a table: fit your own for a study of
+        report for index fingers in extension, not taken from a table: fit your own for a study of
         people. A fingertip does not hold the handle's rotation.
         """
         return cls(mass=0.006, damping=5.0, stiffness=400.0)

@@ -27,7 +27,8 @@ LAW = PredictorCorrector(predictor="none", depth="local")
 
 
 class LoadedBodies:
-    """A system's state in place: rows of bodies are written into it, its trackers go along.
+    """A system's state, changed in place: rows of bodies are written into it, and its trackers
+    follow.
 
     Parameters
     ----------
@@ -36,7 +37,7 @@ class LoadedBodies:
     dt : float
         The longest step that will be made [s].
     allow_overlap : bool
-        Take bodies that overlap.
+        Accept bodies that overlap.
 
     Attributes
     ----------

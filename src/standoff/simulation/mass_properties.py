@@ -22,7 +22,7 @@ GIVE_THEM = "give mass, centre and inertia yourself (so.simulation.MassPropertie
 
 
 class MassErrors(NamedTuple):
-    """Bounds of what mass properties may be off: zero where they were given.
+    """Bounds on the errors of mass properties: zero if they were given.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class MassProperties(KeepsReadOnly):
     volume : float or None
         Length cubed; None where the properties were given.
     error : MassErrors
-        Bounds of what they may be off.
+        Bounds on their errors.
 
     Raises
     ------
@@ -86,7 +86,8 @@ class MassProperties(KeepsReadOnly):
 
     @staticmethod
     def of(*, mass: float, centre: Any, inertia: Any) -> MassProperties:
-        """Mass properties that are known: of a body that is not solid, or not of one density.
+        """Mass properties that are known: for a body that is not solid, or whose density is not
+        uniform.
 
         Parameters
         ----------
@@ -131,9 +132,9 @@ def checked_inertia(value: Any) -> Array:
     small, middle, large = (float(x) for x in np.linalg.eigvalsh(inertia))
     if small <= LEAST_MOMENT * large:
         raise StandoffError(
-            f"inertia is not positive definite: its least principal moment is {small:.3g}, beside "
-            f"{large:.3g}. A body of any width has three positive ones; give a thin rod or a point "
-            "mass the width that it has.",
+            f"inertia is not positive definite: its least principal moment is {small:.3g}, and "
+            f"its largest {large:.3g}. A body of any width has three positive ones; give a thin "
+            "rod or a point mass its real width.",
             "inertia",
             value,
         )
@@ -165,8 +166,8 @@ def mass_properties(
     density : float
         Mass over length cubed, positive.
     tolerance : float
-        Where the refinement of the integrals ends, over the volume, positive. What was reached is
-        in `error`, whatever it is; but a volume that is not told from nothing is refined further.
+        Where the refinement of the integrals ends, over the volume, positive. Whatever was reached
+        is in `error`; but a volume that cannot be distinguished from zero is refined further.
 
     Returns
     -------
@@ -175,9 +176,9 @@ def mass_properties(
     Raises
     ------
     StandoffTypeError
-        Something else than a body.
+        Not a body.
     StandoffError
-        A body without volume or without end; a density or tolerance that is not positive.
+        A body without volume or without bounds; a density or tolerance that is not positive.
     """
     if not isinstance(body, Body):
         raise StandoffTypeError(f"body is {shown(body)}: give a Body.", "body", body)
@@ -204,7 +205,9 @@ def _has_volume(found: Moments) -> bool:
 def _check_solid(body: Body) -> None:
     if not body.bounded:
         raise StandoffError(
-            f"{body!r} has no end, so no mass: fix it in the world, or {GIVE_THEM}.", "body", body
+            f"{body!r} is unbounded and has no mass: fix it in the world, or {GIVE_THEM}.",
+            "body",
+            body,
         )
     if body.dimension == 2:
         raise StandoffError(

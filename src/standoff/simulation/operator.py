@@ -53,7 +53,7 @@ MOST_NUMBERS = 200_000_000
 """Numbers that one run may record: 1.6 GB."""
 
 BLOCK = 20_000
-"""Ticks of one compiled loop, a tenth of a second or so: progress is told between them."""
+"""Ticks of one compiled loop, a tenth of a second or so: progress is reported between them."""
 
 
 class Going(NamedTuple):
@@ -78,13 +78,13 @@ class Operator(KeepsReadOnly):
     tracker : str
         "inside": the parameters of the witness points are part of the state and of every stage,
         advanced by the paper's law (in contact by its contact-regular form). "beside": one step of
-        the tracker a tick, at whose witness points the forces are held over the tick's stages.
+        the tracker per tick; the forces at its witness points are held over the stages of the tick.
     gain : float, optional
         K [1/time] of the law inside; one over the step if not given.
     law : PredictorCorrector, PaperLaw, or mapping of pairs (int, int) to these, optional
-        Of the trackers beside the operator, with all options: one for all pairs, or some pairs'
-        own. A pair without one has ``PredictorCorrector(depth="local")``. With depth "global" the
-        proof of a depth is kept from tick to tick, as part of the state.
+        Of the trackers beside the operator, with all options: one for all pairs, or one for each of
+        some pairs. A pair without one has ``PredictorCorrector(depth="local")``. With depth
+        "global" the proof of a depth is kept from tick to tick, as part of the state.
 
     Attributes
     ----------
@@ -147,15 +147,15 @@ class Operator(KeepsReadOnly):
         if self.tracker == "beside":
             if gain is not None:
                 raise StandoffError(
-                    f"gain = {shown(gain)} is of the law inside; a tracker beside the operator "
-                    "has its gain in its law: leave it out.",
+                    f"gain = {shown(gain)} belongs to the law inside; a tracker beside the "
+                    "operator has its gain in its law: leave it out.",
                     "gain",
                     gain,
                 )
             return laws_beside(self.system, law)
         if law is not None:
             raise StandoffError(
-                "law is of trackers beside the operator; inside, the operator's own method "
+                "law belongs to trackers beside the operator; inside, the operator's own method "
                 'integrates the paper\'s law: give gain, or tracker="beside".',
                 "law",
                 law,
@@ -189,8 +189,8 @@ class Operator(KeepsReadOnly):
         )
         if contact.friction > 0.0 and contact.slip_speed < least:
             raise StandoffError(
-                f"slip_speed = {contact.slip_speed:g} is too small for dt = {self.dt:g}: under its "
-                f"own weight a body would be thrown to and fro by friction. Give at least "
+                f"slip_speed = {contact.slip_speed:g} is too small for dt = {self.dt:g}: friction "
+                "would throw a body back and forth under its own weight. Give at least "
                 f"{least:.4g}, or take a shorter step.",
                 "slip_speed",
                 contact.slip_speed,
@@ -204,12 +204,12 @@ class Operator(KeepsReadOnly):
         time : float
             On the clock of the driven bodies' paths [time].
         allow_overlap : bool
-            Start also where bodies overlap: they will push each other apart.
+            Start even if bodies overlap: they will push each other apart.
 
         Raises
         ------
         StandoffError
-            Bodies overlap, by a depth that is told, and that is not allowed.
+            Bodies overlap, by a depth that the message gives, and that is not allowed.
         """
         t = number(time, "time")
         overlap = yes_or_no(allow_overlap, "allow_overlap")
@@ -233,22 +233,22 @@ class Operator(KeepsReadOnly):
         ticks : int
             How many steps.
         every : int
-            Record every so many of them; ``ticks`` is a multiple of it, and it is one of the ticks
-            from reading to reading, where a coupler has a device.
+            Ticks from one record to the next; ``ticks`` is a multiple of it, and if a coupler has a
+            device, it is a multiple of the ticks from reading to reading.
         device : Device or DeviceReadings, optional
-            What moves the handle of the system's coupler. A device is open; it is read, and its
-            wrench written, once a period: that many ticks are one compiled call. Readings that are
-            given run without Python. Without either an engaged coupler lets go.
+            What moves the handle of the system's coupler. A device must be open; it is read, and
+            its wrench written, once per period: the ticks of a period are one compiled call.
+            Readings that are given run without Python. Without either, an engaged coupler lets go.
         progress : callable, optional
             Called now and then with the ticks done and the ticks in all.
 
         Raises
         ------
         StandoffTypeError
-            No state; no device.
+            Not a state; not a device.
         StandoffError
-            The motion left all bounds, at a tick that is told: a step too long for it; too few
-            readings; a device without a coupler.
+            The motion left all bounds, at a tick that the message gives: a step too long for it;
+            too few readings; a device without a coupler.
         """
         self._check_state(state)
         ticks, every = self._counts(ticks, every)
@@ -260,8 +260,8 @@ class Operator(KeepsReadOnly):
         length = state_length(self.system)
         if count * (length + width) > MOST_NUMBERS:
             raise StandoffError(
-                f"{count} records of {length + width} numbers are more than "
-                f"{MOST_NUMBERS}: record every so many ticks (every=...), or run in parts.",
+                f"{count} records of {length + width} numbers are more than {MOST_NUMBERS}: "
+                "record fewer ticks (every=...), or run in parts.",
                 "ticks",
                 ticks,
             )
@@ -351,7 +351,7 @@ class Operator(KeepsReadOnly):
         ----------
         state : SystemState
         reading : DeviceReading, optional
-            Of the coupler's device; None where nothing came, and an engaged coupler lets go. The
+            Of the coupler's device; None if nothing came: then an engaged coupler lets go. The
             wrench to be held on the handle is `state.coupler.wrench_on_device` of the new state.
 
         Raises

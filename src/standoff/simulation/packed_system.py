@@ -68,7 +68,7 @@ def pack_system(
 
 
 def ticks_a_reading(system: System, dt: float) -> int:
-    """Ticks from a reading of a coupler's device to the next; 1 where nothing is known of it.
+    """Ticks from a reading of a coupler's device to the next; 1 if its period is not known.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def body_start(body: RigidBody) -> Array:
 
 
 def driven_table(system: System, start: float, dt: float, ticks: int) -> Array:
-    """Motions of the driven bodies, a row each half tick: (pose 12, twist 6) for each."""
+    """Motions of the driven bodies, one row per half tick: (pose 12, twist 6) for each."""
     driven = [body for body in system.bodies if body.kind == DRIVEN]
     if not driven:
         return np.zeros((1, 1))

@@ -22,7 +22,7 @@ Laws = Law | Mapping[tuple[int, int], Law] | None
 """Of a system's pairs: one for all, or one for each of some pairs of body numbers."""
 
 BESIDE = PredictorCorrector(depth="local")
-"""Of pairs that are given none: contact forces follow the depth that the bodies have come to."""
+"""Of pairs that are given none: contact forces follow the depth that the bodies have reached."""
 
 
 def laws_beside(system: System, given: Laws) -> tuple[Law, ...]:
@@ -43,8 +43,8 @@ def laws_beside(system: System, given: Laws) -> tuple[Law, ...]:
         number = known.get(tuple(pair), known.get(tuple(pair)[::-1]))
         if number is None:
             raise StandoffError(
-                f"law has an entry for {shown(pair)}, which is no pair of the system: its pairs "
-                f"are {', '.join(map(str, known))}.",
+                f"law has an entry for {shown(pair)}, which is not a pair of the system: its "
+                f"pairs are {', '.join(map(str, known))}.",
                 "law",
                 pair,
             )
@@ -59,7 +59,7 @@ def law_inside(method: str, gain: float | None) -> PaperLaw:
 
 
 def packed_laws(system: System, laws: tuple[Law, ...], dt: float, inside: bool) -> Array:
-    """All pairs' options, one behind the other, with the addresses of their frames."""
+    """All pairs' options, one after the other, with the addresses of their frames."""
     rows = [np.zeros(0)]
     for (a, b), law in zip(system.pairs, laws, strict=True):
         if inside:

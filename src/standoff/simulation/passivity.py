@@ -1,9 +1,9 @@
-r"""Which stiffness and damping a sampled spring and damper may show and stay passive.
+r"""Which stiffness and damping a sampled spring and damper may have and stay passive.
 
 A haptic device reads its position every T seconds and holds its force in between. A spring of
-stiffness K that is rendered so gives back more than it took, by up to K T/2 times v² dt: it is
-drawn late. What the device's own friction takes must cover that, or the device can hum against a
-hand that is passive itself.
+stiffness K that is rendered this way gives back more than it took, by up to K T/2 times v² dt,
+because it acts late. The device's own friction must take that, or the device can hum against a hand
+that is passive itself.
 
 Colgate and Schenkel (J. Robotic Systems 14(1), 1997, Eq. (1)) prove: a device with the damping b,
 rendering the law H(z) from sampled position to force held, is passive if and only if
@@ -65,7 +65,7 @@ class Sampling:
     device_rotational_damping : float
         The same against rotation [N m s/rad].
     delay : int
-        Whole periods from a reading to the force that answers it, beyond none, 0 to 20.
+        Whole periods from a reading to the force that answers it, 0 to 20.
     velocity_time_constant : float
         Of the first-order filter (backward Euler) behind the velocity's differences [s].
 
@@ -106,12 +106,12 @@ def required_damping(stiffness: float, damping: float, sampling: Sampling) -> fl
     Returns
     -------
     float
-        The least b [N s/m], or [N m s/rad]: the greatest right side over all frequencies.
+        The least b [N s/m], or [N m s/rad]: the greatest right-hand side over all frequencies.
 
     Raises
     ------
     StandoffError
-        A number that is not finite, a stiffness below zero, or what is no `Sampling`.
+        A number that is not finite, a stiffness below zero, or not a `Sampling`.
     """
     k = not_negative(stiffness, "stiffness")
     _check_sampling(sampling)
@@ -126,26 +126,26 @@ def required_damping(stiffness: float, damping: float, sampling: Sampling) -> fl
 
 
 def largest_stiffness(damping: float, device_damping: float, sampling: Sampling) -> float:
-    """Return the largest stiffness that stays passive beside a damping.
+    """Return the largest stiffness that stays passive with a damping.
 
     Parameters
     ----------
     damping : float
         B of the coupler [N s/m], or [N m s/rad].
     device_damping : float
-        b of the device, in the same unit; that of `sampling` is not looked at.
+        b of the device, in the same unit; that of `sampling` is ignored.
     sampling : Sampling
         Period, delay and filter.
 
     Returns
     -------
     float
-        K [N/m], or [N m/rad]; -inf where no stiffness is passive beside so much damping.
+        K [N/m], or [N m/rad]; -inf if no stiffness is passive with so much damping.
 
     Raises
     ------
     StandoffError
-        A number that is not finite, a device's damping below zero, or what is no `Sampling`.
+        A number that is not finite, a device's damping below zero, or not a `Sampling`.
     """
     b = number(damping, "damping")
     own = not_negative(device_damping, "device_damping")
@@ -192,7 +192,7 @@ def required_damping_of(
     Raises
     ------
     StandoffError
-        A period that is not above zero, fewer than 8 angles or more than 10⁶, no function, or
+        A period that is not above zero, fewer than 8 angles or more than 10⁶, not a function, or
         one that answers with another shape or with numbers that are not finite.
     """
     seconds = positive(period, "period")
@@ -234,7 +234,7 @@ def check_passive(stiffness: float, damping: float, sampling: Sampling, *, of: s
     Raises
     ------
     PassivityError
-        It tells by how much, and the largest stiffness.
+        The message says by how much, and gives the largest stiffness.
     """
     kind, unit, spring = (
         ("rotational_", "N m s/rad", "N m/rad") if of == "rotation" else ("", "N s/m", "N/m")
@@ -245,9 +245,9 @@ def check_passive(stiffness: float, damping: float, sampling: Sampling, *, of: s
         return
     largest = largest_stiffness(damping, own, sampling)
     cure = (
-        f"the largest passive {kind}stiffness beside this damping is {largest:.6g} {spring}"
+        f"the largest passive {kind}stiffness with this damping is {largest:.6g} {spring}"
         if largest > 0.0
-        else f"no {kind}stiffness is passive beside so much damping; lower {kind}damping first"
+        else f"no {kind}stiffness is passive with so much damping; lower {kind}damping first"
     )
     raise PassivityError(
         f"{kind}stiffness {stiffness:g} {spring} with {kind}damping {damping:g} {unit} at a period "

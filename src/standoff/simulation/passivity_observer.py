@@ -1,7 +1,7 @@
 """The energy that goes through a coupler's two ports, and the damping that keeps it passive.
 
-After Hannaford and Ryu (IEEE Trans. Robotics and Automation 18(1), 2002), with the held force over
-the displacement until the next sample, which is the work itself and no estimate (Ryu, Kim and
+After Hannaford and Ryu (IEEE Trans. Robotics and Automation 18(1), 2002), with the held force times
+the displacement until the next sample, which is exactly the work and not an estimate (Ryu, Kim and
 Hannaford, IEEE Trans. Robotics 20(4), 2004).
 """
 
@@ -23,10 +23,10 @@ class PortEnergy(NamedTuple):
     tool : float
         Into the coupler from the tool.
     friction : float
-        Taken by the device's own damping, at least: b |Δx|²/dt of each tick, where the coupler was
-        given a `Sampling`. It covers what the holding of the force makes.
+        The least that the device's own damping took: b |Δx|²/dt of each tick, if the coupler was
+        given a `Sampling`. It covers the energy that holding the force creates.
     least : float
-        The least that the three were together. It stays above minus a tolerance where coupler and
+        The least that the three ever summed to. It stays above minus a tolerance if coupler and
         device are passive.
     """
 

@@ -31,7 +31,7 @@ class RigidBody(KeepsReadOnly):
     kind : str
         "free", "fixed" or "driven".
     mass_properties : MassProperties or None
-        None of one that does not move freely.
+        None for one that does not move freely.
     pose : Pose
         Of the body's frame in the world, where the system starts.
     twist : Twist
@@ -58,7 +58,7 @@ class RigidBody(KeepsReadOnly):
         pose: PoseLike | None = None,
         twist: TwistLike | None = None,
     ) -> RigidBody:
-        """Return a body that moves by the forces on it.
+        """Return a body that is moved by the forces on it.
 
         Parameters
         ----------
@@ -68,9 +68,9 @@ class RigidBody(KeepsReadOnly):
         mass : float, optional
             [mass]. Alone it is spread evenly over the body's volume.
         inertia : (3, 3) array_like, optional
-            About the centre of mass, in the body's axes [mass length²], beside the mass.
+            About the centre of mass, in the body's axes [mass length²], together with the mass.
         centre : (3,) array_like, optional
-            Centre of mass, body frame [length], beside the inertia; the origin if not given.
+            Centre of mass, body frame [length], together with the inertia; the origin if not given.
         pose : Pose or what ``Pose.of`` reads, optional
             At the start; the identity if not given.
         twist : Twist or what ``Twist.of`` reads, optional
@@ -81,13 +81,13 @@ class RigidBody(KeepsReadOnly):
         StandoffTypeError
             No body.
         StandoffError
-            A body without end; both or none of density and mass; a mass that is not positive; a
+            A body without bounds; both or none of density and mass; a mass that is not positive; a
             body without volume and no inertia; an inertia that no body can have.
         """
         check_spatial(body)
         if not body.bounded:
             raise StandoffError(
-                f"{body!r} has no end and cannot move freely: fix it, or drive it.", "body", body
+                f"{body!r} is unbounded and cannot move freely: fix it, or drive it.", "body", body
             )
         if (density is None) == (mass is None):
             raise StandoffError(
@@ -121,7 +121,7 @@ class RigidBody(KeepsReadOnly):
         Parameters
         ----------
         body : Body
-            Of any kind but planar, a half-space too.
+            Of any kind but planar; a half-space is allowed.
         pose : Pose or what ``Pose.of`` reads, optional
             The identity if not given.
 
@@ -179,7 +179,7 @@ def check_spatial(body: Body) -> None:
 
 
 def _even(body: Body, density: float | None, mass: float | None) -> MassProperties:
-    """Mass properties of a solid of one density, which a mass alone tells too."""
+    """Mass properties of a solid of uniform density, which a mass alone determines too."""
     if density is not None:
         return mass_properties(body, density)
     wanted = magnitude(mass, "mass")

@@ -73,12 +73,12 @@ class Mechanism:
 
 @dataclass(frozen=True, kw_only=True)
 class ScriptedHand:
-    """A hand that holds the handle and means to follow a path.
+    """A hand that holds the handle and tries to follow a path.
 
     Parameters
     ----------
     path : Path or function of the time
-        Where the hand means to have the handle, from time 0 to the last reading.
+        Where the hand tries to have the handle, from time 0 to the last reading.
     arm : HumanArm
         What holds it there.
 
@@ -117,9 +117,9 @@ class SimulatedDevice:
         path if not given, else the identity.
     encoder : Encoder, optional
     delay : int
-        Whole periods by which readings are late, 0 to 20; the first one is waited for.
+        Whole periods by which readings are late, 0 to 20; the device waits for the first one.
     limits : DeviceLimits, optional
-        Larger wrenches are cut, as by motors, and counted in `cut`.
+        Larger wrenches are limited, as by motors, and counted in `cut`.
     disturbances : Disturbances, optional
 
     Attributes
@@ -137,7 +137,7 @@ class SimulatedDevice:
         A period that is not above zero, a delay that is not a whole number from 0 to 20, no pose;
         a mass too small for damping, stiffness and period.
     StandoffTypeError
-        A part of another kind than named here.
+        A part of the wrong kind.
     """
 
     def __init__(
@@ -221,7 +221,7 @@ class SimulatedDevice:
         self._open, self.held = True, Wrench.zero()
 
     def close(self) -> None:
-        """Set the wrench to zero and let go of the device."""
+        """Set the wrench to zero and release the device."""
         self._open, self.held = False, Wrench.zero()
 
     def __enter__(self) -> Self:
@@ -271,7 +271,7 @@ class SimulatedDevice:
         DeviceError
             If the device is not open.
         StandoffTypeError
-            If that is no `Wrench`.
+            If that is not a `Wrench`.
         """
         self._check_open()
         if not isinstance(wrench, Wrench):
@@ -321,7 +321,8 @@ class SimulatedDevice:
         self._moving = Seen(R, combined(1.0, p, 1.0, way), v, omega)
 
     def _meant(self, t: float) -> Seen:
-        """Where the hand means to be; the home where there is none, which pulls at nothing."""
+        """Where the hand tries to be; the home position if there is no hand, which pulls at
+        nothing."""
         if self._path is None:
             return Seen(self._moving.R, self._moving.p, STILL, STILL)
         pose = self._path.pose(t)

@@ -1,4 +1,5 @@
-"""Which contact a fixed step still follows: the largest stable stiffness, the least slip speed."""
+"""Which contact a fixed step can still follow: the largest stable stiffness, the least slip
+speed."""
 
 from __future__ import annotations
 
@@ -55,7 +56,7 @@ def _keeps(radius: float, stiffness: float, dt: float) -> bool:
 def largest_stable_stiffness(
     contact: HuntCrossley, method: str, dt: float, give: float, depth: float
 ) -> float:
-    """The largest k [force/length^1.5] that a step follows at a depth.
+    """The largest k [force/length^1.5] that a step can follow at a depth.
 
     Parameters
     ----------

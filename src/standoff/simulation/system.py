@@ -32,7 +32,7 @@ FLAT_SPRINGS = 4.0
 
 @dataclass(frozen=True, init=False, eq=False)
 class System(KeepsReadOnly):
-    """Bodies that move by gravity and by what they do to each other.
+    """Bodies that are moved by gravity and by each other.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class System(KeepsReadOnly):
     Raises
     ------
     StandoffTypeError
-        Something that is no RigidBody or no HuntCrossley.
+        Something that is not a RigidBody or not a HuntCrossley.
     StandoffError
         No body that is free; a pair that does not exist, is given twice, or cannot move; two
         half-spaces; a coupler without its tool, or a tool that is not free.
@@ -165,7 +165,8 @@ class System(KeepsReadOnly):
 
     def give(self, pair: int) -> float:
         """The inverse of the least mass [1/mass] that a push between a pair's bodies moves: at the
-        point of each that is farthest from its centre, square to its least moment of inertia.
+        point of each that is farthest from its centre, perpendicular to the axis of its least
+        moment of inertia.
         """
         total = 0.0
         for number in self.pairs[pair]:
@@ -185,7 +186,7 @@ class System(KeepsReadOnly):
         return max(FLAT_SPRINGS, float(max(a.springs, b.springs)))
 
     def depth(self, pair: int) -> float:
-        """The depth that a pair's contact is meant for, length."""
+        """The depth for which a pair's contact is meant, length."""
         given = self.contacts[pair].depth
         sizes = [self.bodies[k].body.size for k in self.pairs[pair]]
         return given if given is not None else 0.01 * min(sizes)
@@ -246,7 +247,7 @@ def _listed(given: Any, name: str, kind: type) -> tuple[Any, ...]:
     for item in found:
         if not isinstance(item, kind):
             raise StandoffTypeError(
-                f"{name} has {shown(item)}, which is no {kind.__name__}.", name, given
+                f"{name} has {shown(item)}, which is not a {kind.__name__}.", name, given
             )
     return found
 

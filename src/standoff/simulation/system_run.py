@@ -50,7 +50,7 @@ class SystemRun(KeepsReadOnly):
         return self.state(len(self.states) - 1) if self.last is None else self.last
 
     def state(self, row: int) -> SystemState:
-        """Return a state of the record, from which a run can go on."""
+        """Return a state of the record, from which a run can continue."""
         data = self.states[row].copy()
         data.flags.writeable = False
         return SystemState(self.system, data)

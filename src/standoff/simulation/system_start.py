@@ -30,7 +30,7 @@ def started(
     Raises
     ------
     StandoffError
-        Bodies overlap, by a depth that is told, and that is not allowed.
+        Bodies overlap, by a depth that the message gives, and that is not allowed.
     """
     header = np.zeros(K.STATE_HEADER)
     header[K.S_TIME] = time

@@ -51,7 +51,8 @@ class Energy(NamedTuple):
 
     @property
     def balance(self) -> Any:
-        """What no step of an exact method changes: mechanical and dissipated less supplied."""
+        """What no step of an exact method changes: mechanical plus dissipated less supplied
+        energy."""
         return self.mechanical + self.dissipated - self.supplied
 
 
@@ -137,13 +138,13 @@ class SystemState(KeepsReadOnly):
 
 
 def state_length(system: System) -> int:
-    """How many numbers a row of states has: all of a state but the polytopes that are kept."""
+    """How many numbers a row of states has: all of a state except the polytopes that are kept."""
     own = system.coupler
     return coupler_at(system) + (0 if own is None else len(packed_state(own.start(), own.past)))
 
 
 def coupler_at(system: System) -> int:
-    """Where a coupler's state begins in a row of states: behind all bodies and pairs."""
+    """Where a coupler's state begins in a row of states: after all bodies and pairs."""
     return K.STATE_HEADER + K.N_BODY * len(system.bodies) + K.N_PAIR * len(system.pairs)
 
 

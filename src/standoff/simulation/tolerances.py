@@ -6,7 +6,7 @@ STIFFNESS_FOUND: Final = 1e-6
 """Relative: how near the largest stable stiffness is found."""
 
 RIM_GAP: Final = 1e-9
-"""Radians: an arc that lacks less of a full turn is a rim."""
+"""Radians: an arc that is short of a full turn by less than this is a rim."""
 
 EVENT_INSTANT: Final = 1e-12
 """Part of the duration to which a switch is located: the tracker's own answers carry no more."""
@@ -20,15 +20,16 @@ SYMMETRIC_INERTIA: Final = 1e-9
 whoever computed them."""
 
 DAMPING_ROUNDING: Final = 1e-12
-"""No unit. By this part the damping needed may pass the damping there is: so that the largest
-stiffness, which an error tells, is accepted when it is given back."""
+"""No unit. The damping needed may exceed the damping there is by this part, so that the largest
+stiffness, which an error gives, is accepted when it is used."""
 
 TOUCHING_START: Final = 1e-9
-"""Part of the lesser body's size: a start that overlaps by no more touches, to roundoff."""
+"""Part of the smaller body's size: a start that overlaps by no more than this touches, to
+roundoff."""
 
 INERTIA_ROUNDOFF: Final = 1e-12
-"""Relative: two entries across an inertia's diagonal are one number where they differ by no more
-than this part of its largest, and a moment above the sum of the others by no more is at it:
+"""Relative: two entries across an inertia's diagonal count as equal if they differ by no more than
+this part of the largest, and a moment above the sum of the others by no more counts as equal to it:
 roundoff of whoever computed them."""
 
 MOMENTS_END: Final = 1e-11
@@ -50,14 +51,14 @@ STABLE_ROUNDING: Final = 1e-12
 eigenvalues."""
 
 LEAST_STABLE: Final = 1e-14
-"""Relative: where the search for a stable stiffness gives up, as there is none."""
+"""Relative: where the search for a stable stiffness gives up, because there is none."""
 
 SHARED_END: Final = 1e-9
 """Relative to a face's reach: corners nearer than this are the shared end of two edges."""
 
 STIFFNESS_ROUNDING: Final = 1e-9
-"""Relative: by this part the damping needed by the stiffness found may pass the damping there is,
-as the search ends there."""
+"""Relative: the damping needed by the stiffness found may exceed the damping there is by this part,
+since the search ends there."""
 
 NO_DAMPING: Final = 1e-300
 """N s/m, parts of the least damping: keeps the comparison true where both are zero."""

@@ -8,6 +8,14 @@ if TYPE_CHECKING:
     from standoff.bodies.features import Feature
     from standoff.tracking import feedback
     from standoff.tracking.answers import Answers
+    from standoff.tracking.branches import (
+        Birth,
+        Branch,
+        BranchCounts,
+        Branches,
+        Change,
+        End,
+    )
     from standoff.tracking.cold_query import distance
     from standoff.tracking.contact.witness_set import WitnessSet, witness_set
     from standoff.tracking.derivatives import DerivativeArrays, Derivatives, Smoothness
@@ -26,6 +34,14 @@ else:
         __name__,
         {
             "standoff.bodies.features": ("Feature",),
+            "standoff.tracking.branches": (
+                "Birth",
+                "Branch",
+                "BranchCounts",
+                "Branches",
+                "Change",
+                "End",
+            ),
             "standoff.tracking.cold_query": ("distance",),
             "standoff.tracking.many_distances": ("Distances", "distances"),
             "standoff.tracking.contact.witness_set": (
@@ -63,10 +79,16 @@ else:
 
 __all__ = [
     "Answers",
+    "Birth",
+    "Branch",
+    "BranchCounts",
+    "Branches",
+    "Change",
     "Counts",
     "DerivativeArrays",
     "Derivatives",
     "Distances",
+    "End",
     "Event",
     "Feature",
     "FrameBuffer",

@@ -14,7 +14,7 @@ Pair = tuple[Ints, NDArray[np.float64], Ints, NDArray[np.float64]]
 
 
 def packed(a: Body, b: Body) -> Pair:
-    """What the kernels read of two bodies."""
+    """What the kernels read from two bodies."""
     return a.ints, a.reals, b.ints, b.reals
 
 

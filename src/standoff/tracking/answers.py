@@ -72,7 +72,7 @@ class Answers(AnswerArrays):
     point_a, point_b, normal, velocity_a, velocity_b : (n, 3) arrays
         As in `Proximity`, in world axes.
     repaired : (n,) array of int
-        How many of a frame's two poses had a rounded rotation and were brought to the nearest.
+        How many of a frame's two poses had a rounded rotation and were replaced by the nearest.
     """
 
     __slots__ = ("_a", "_b", "_longer", "blocks", "repaired")

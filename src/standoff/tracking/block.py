@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 
 def with_polytope(data: Array, polytope: Array) -> Array:
-    """A copy of a block of an answer and its switches, and behind them the polytope, if any."""
+    """A copy of a block: the answer and its switches, followed by the polytope, if any."""
     some = bool(len(polytope)) and polytope[0] > 0.0
     block = np.concatenate([data, polytope]) if some else data.copy()
     block[K.BLOCK_POLYTOPE] = len(data) if some else 0.0
@@ -24,11 +24,11 @@ def with_polytope(data: Array, polytope: Array) -> Array:
 
 
 class Block:
-    """One frame's block of memory by name, views of it: what was given, and what came of it.
+    """One frame's block of memory by name, views of it: what was given, and the result.
 
     Attributes
     ----------
-    out : (39,) array
+    out : (40,) array
         The answer.
     state : (55,) array
         The state after it.
@@ -80,7 +80,7 @@ class Block:
 
     @property
     def warm_start(self) -> Array:
-        """A copy of the state, with a polytope behind it where one has been kept."""
+        """A copy of the state, followed by a polytope if one has been kept."""
         polytope = self.polytope
         if not (len(polytope) and polytope[0]):
             return self.state.copy()

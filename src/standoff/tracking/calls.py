@@ -40,7 +40,7 @@ ANYWHERE, DESCEND, HERE = K.START_ANYWHERE, K.START_DESCEND, K.START_HERE
 def start(
     table: AddressTable, frame: Frame, state: StateRow, given: int = ANYWHERE
 ) -> tuple[AnswerRows, bool]:
-    """Begin as `given` says: the answer, and is it one? The state is changed in place."""
+    """Begin as `given` says: the answer, and whether it is one. The state is changed in place."""
     block = Block.empty(state.data, frame.row, 0.0, frame.has_twist)
     done = kernels.start_anywhere(table.address, block.data, given)
     state.data[:] = block.state
@@ -78,7 +78,7 @@ def run(
     Parameters
     ----------
     motions : (n, N_MOTION) array
-        Poses and twists, a row a frame.
+        Poses and twists, one row per frame.
     steps : (n,) array
         Time since the frame before, s.
     state : (N_STATE,) array

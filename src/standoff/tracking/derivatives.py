@@ -40,12 +40,12 @@ class Derivatives(NamedTuple):
     ----------
     smoothness : Smoothness
         ONE_SIDED: a witness point lies where two features meet. The gradient holds on all sides,
-        the rest where the features stay those of the answer. PARTIAL: the normal is unique, but
-        the witness points are not (flat and line contact): the gradient's components by
+        the rest as long as the features stay those of the answer. PARTIAL: the normal is unique,
+        but the witness points are not (flat and line contact): the gradient's components by
         translation, and by turns that move all of them alike; nan in its others and in the other
         arrays. UNDEFINED: all arrays are nan.
     reason : str
-        Why they are one-sided, partial or undefined; empty where they are smooth.
+        Why they are one-sided, partial or undefined; empty if they are smooth.
     gradient : (12,) array
         Of the signed distance: length per length, and length per radian.
     hessian : (12, 12) array
@@ -100,8 +100,8 @@ NO_POSES = "the answer keeps no poses."
 
 
 def defined(derivatives: Derivatives) -> Derivatives:
-    """The same, or a StandoffError with the reason where they are undefined, or the gradient's
-    alone."""
+    """The same, or a StandoffError with the reason if they are undefined, or if only the gradient
+    is defined."""
     if derivatives.smoothness in (Smoothness.PARTIAL, Smoothness.UNDEFINED):
         some = derivatives.smoothness is Smoothness.PARTIAL
         raise _error(derivatives.reason, "but parts of its gradient " if some else "")
@@ -132,7 +132,7 @@ def gradient(answer: Answer) -> Array:
 
 
 class Table(Protocol):
-    """A table of answers that gives a row as an `Answer` too."""
+    """A table of answers that can also give a row as an `Answer`."""
 
     rows: Array
 
@@ -199,7 +199,7 @@ def _derived(answer: Answer, numbers: Array) -> tuple[Smoothness, str]:
 
 
 def _kept(answer: Callable[[], Answer], kind: int, numbers: Array) -> tuple[Smoothness, str]:
-    """What is left of derivatives that are not smooth, and why; nan for the rest of `numbers`."""
+    """What remains of derivatives that are not smooth, and why; nan for the rest of `numbers`."""
     if kind == D.SINGULAR:
         return _partial(numbers)
     if kind in REASONS:
@@ -225,9 +225,10 @@ def _partial(numbers: Array) -> tuple[Smoothness, str]:
 
 
 def _clear_turns(answer: Answer, points: Array, numbers: Array) -> None:
-    """Nan for the turns that move the pairs of witness points that serve unequally along n.
+    """Nan for the turns that do not move all optimal pairs of witness points equally along n.
 
-    As the kernel does by the null directions of its system; here by the pairs themselves.
+    The kernel does this by the null directions of its system, this function by the pairs
+    themselves.
     """
     n = answer.normal
     ways = np.eye(3) - np.outer(n, n)  # of one point, which has no digits

@@ -117,7 +117,7 @@ class Feedback(Protocol):
     """What `so.PaperLaw` asks of a feedback."""
 
     def resolved(self, integrator: str, dt: float) -> Feedback:
-        """Return the feedback with the defaults that hang on integrator and step filled in."""
+        """Return the feedback with the defaults that depend on integrator and step filled in."""
 
     def packed(self) -> tuple[int, float, Array]:
         """Return the kernels' kind of feedback, its gain K [1/s] and up to 16 numbers more."""
@@ -129,7 +129,7 @@ class Feedback(Protocol):
 @lru_cache(maxsize=64)
 def _growth(integrator: str, z: tuple[complex, ...]) -> Array:
     """|R(z)|, kept: from frame to frame the gain and the time are mostly the same."""
-    with np.errstate(over="ignore", invalid="ignore"):  # beyond float64 it is no less unstable
+    with np.errstate(over="ignore", invalid="ignore"):  # beyond float64 it is just as unstable
         return np.asarray(np.abs(growth_factor(integrator, np.array(z))))
 
 
@@ -176,7 +176,7 @@ class Linear:
 
 
 class GainMatrix(KeepsReadOnly):
-    """Linear feedback with a gain of its own for each error, or a matrix: v = K Psi.
+    """Linear feedback with a separate gain for each error, or a matrix: v = K Psi.
 
     Parameters
     ----------
@@ -246,7 +246,7 @@ class GainMatrix(KeepsReadOnly):
 class PI:
     """Proportional-integral feedback: v = K Psi + K_i ∫Psi dt.
 
-    The integral takes up a constant disturbance, such as that of wrong twists; it begins again
+    The integral compensates for a constant disturbance, such as that of wrong twists; it restarts
     for a body whose feature or chart changes.
 
     Attributes
@@ -366,15 +366,15 @@ class MotionGain:
     def rates(self) -> Array:
         """Those of the least and of the greatest gain."""
         if self.least is None or self.most is None:
-            raise StandoffError(f"{self}: its bounds hang on the step; use resolved().")
+            raise StandoffError(f"{self}: its bounds depend on the step; use resolved().")
         return np.array([-float(self.least), -float(self.most)])
 
 
 def checked_feedback(feedback: Any) -> Feedback:
-    """Return a feedback, or raise TypeError where it is none."""
+    """Return a feedback, or raise TypeError if it is not one."""
     if isinstance(feedback, type) or not isinstance(feedback, Feedback):
         raise StandoffTypeError(
-            f"feedback = {feedback!r} is none: give one of so.feedback's, such as "
+            f"feedback = {feedback!r} is not a feedback: give one of so.feedback, such as "
             "so.feedback.PI(500.0, 2e4).",
             "feedback",
             feedback,

@@ -28,16 +28,18 @@ def feedback_facts(feedback: Feedback) -> dict[str, Any]:
 
 
 def feedback_of_facts(facts: Any) -> Feedback:
-    """Return the feedback that `feedback_facts` made data of.
+    """Return the feedback that `feedback_facts` turned into data.
 
     Raises
     ------
     ValueError
-        If it is no such data, as of a program's own feedback.
+        If it is not such data, such as that of a program's own feedback.
     """
     if not isinstance(facts, Mapping) or facts.get("kind") not in KINDS:
         raise StandoffError(
-            f"feedback = {shown(facts)} is none of standoff's: {sorted(KINDS)}.", "feedback", facts
+            f"feedback = {shown(facts)} is not one of standoff's: {sorted(KINDS)}.",
+            "feedback",
+            facts,
         )
     return KINDS[facts["kind"]](**{name: x for name, x in facts.items() if name != "kind"})
 

@@ -30,7 +30,7 @@ class FrameBuffer:
 
     The arrays are written into, not replaced: the kernels read them by address. ``normal``,
     ``point_a`` and ``point_b`` are views of the answer, made once: each frame changes them, so copy
-    what is to outlive it.
+    what must outlive it.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class FrameBuffer:
     Attributes
     ----------
     repaired : int
-        How many of the last frame's two poses were rounded, and brought to the nearest rotation.
+        How many of the last frame's two poses were rounded, and replaced by the nearest rotation.
     """
 
     def __init__(self, reached: Reached, state: TrackerState) -> None:
@@ -83,7 +83,7 @@ class FrameBuffer:
     pose_b = property(lambda self: self._pose_b, doc="(12,) pose of B.")
     twist_a = property(lambda self: self._twist_a, doc="(6,) twist of A, (v, omega) in world.")
     twist_b = property(lambda self: self._twist_b, doc="(6,) twist of B, (v, omega) in world.")
-    motion = property(lambda self: self._motion, doc="(36,) all four, one behind the other.")
+    motion = property(lambda self: self._motion, doc="(36,) all four, one after the other.")
     state = property(lambda self: self._state, doc="The warm start, changed in place.")
     out = property(lambda self: self._out, doc="The answer, as kernels.state.arrays lays it out.")
     events = property(lambda self: Block(self._block).events, doc="The log of switches, flat.")
@@ -116,8 +116,8 @@ class FrameBuffer:
         return Proximity(self.reached.a, self.reached.b, Block(self._block).kept(), self.repaired)
 
     def step(self, h: float) -> float:
-        """The distance of a frame of the poses and twists that stand in the buffer, h seconds after
-        the last."""
+        """The distance of a frame with the poses and twists in the buffer, h seconds after the
+        last."""
         data = self._block
         data[K.BLOCK_TIME_STEP], data[K.BLOCK_HAS_TWIST] = h, self.has_twist
         self.repaired = step_in(self.reached.table, Block(data))
@@ -144,7 +144,7 @@ class FrameBuffer:
         return self._block.item(K.DISTANCE)
 
     def step_anew(self, given: Given, h: float) -> float:
-        """A frame of what the compiled one does not read: says what is wrong with it, or mends
+        """A frame of what the compiled one does not read: says what is wrong with it, or repairs
         it."""
         self._motion[:], self.has_twist, repaired = motion_of(*given)
         distance = self.step(h)

@@ -33,9 +33,10 @@ ABSENT = np.array([NOT_GIVEN])
 def plain(
     pose_a: Any, pose_b: Any, twist_a: Any, twist_b: Any
 ) -> tuple[tuple[Array, Array, Array, Array], int]:
-    """Poses (4, 4) and twists for the compiled step to read and to check, and poses repaired.
+    """Poses (4, 4) and twists for the compiled step to read and check, and the number of poses
+    repaired.
 
-    Arrays are given on as they are.
+    Arrays are passed on as they are.
     """
     repaired = 0
     if type(pose_a) is not np.ndarray:
@@ -107,7 +108,8 @@ def repair(flat: Array, name: str) -> None:
 
 
 def repair_rows(flats: Array) -> int:
-    """Repair the rounded ones of many flat poses (n, 12), in place; how many there were."""
+    """Repair the rounded ones among many flat poses (n, 12), in place; returns how many there
+    were."""
     rotations = flats[:, :9].reshape(-1, 3, 3)
     with np.errstate(invalid="ignore", over="ignore"):  # of numbers that the kernel refuses
         off = defect(rotations)
@@ -159,8 +161,8 @@ def mend(why: int, motion: Array) -> int:
 
 
 def motion_of(pose_a: Any, pose_b: Any, twist_a: Any, twist_b: Any) -> tuple[Array, bool, int]:
-    """A frame's row of motion, of poses and twists in any form; are there twists; how many poses
-    were repaired."""
+    """A frame's row of motion from poses and twists in any form, whether there are twists, and how
+    many poses were repaired."""
     (flat_a, mark_a), (flat_b, mark_b) = flat_and_mark(pose_a), flat_and_mark(pose_b)
     xi_a, xi_b = flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
     has_twist = twist_a is not None or twist_b is not None
@@ -190,7 +192,7 @@ def same_body(a: Body, b: Body) -> bool:
 
 
 def check_body(body: object) -> None:
-    """Raise TypeError where something given is not a body."""
+    """Raise TypeError if something given is not a body."""
     if not isinstance(body, Body):
         raise StandoffTypeError(
             f"{shown(body)} is not a Body: make one with so.shapes or Body.from_brep.", "body", body
@@ -198,7 +200,7 @@ def check_body(body: object) -> None:
 
 
 def check_pair(a: Body, b: Body) -> None:
-    """Raise ValueError where two bodies cannot be a pair."""
+    """Raise ValueError if two bodies cannot be a pair."""
     check_body(a)
     check_body(b)
     if not a.bounded and not b.bounded:

@@ -156,8 +156,8 @@ class PaperLaw(Law):
 
         if self.reset == "nearest" and self.switching != "voronoi":
             raise OptionsConflict(
-                f"reset='nearest' is of the Voronoi tests, and switching={self.switching!r} makes "
-                "none: take switching='voronoi'.",
+                f"reset='nearest' belongs to the Voronoi tests, and switching={self.switching!r} "
+                "makes none: take switching='voronoi'.",
                 ("reset", "switching"),
             )
 
@@ -168,26 +168,26 @@ class PaperLaw(Law):
         """Return the system that the paper prints, without any safeguard of the library's.
 
         Errors are evaluated from Eqs. (1)-(4) (Fig. 4), M is solved as it is, Eq. (12), components
-        that lead out of a patch are zeroed, Voronoi tests on the opposing witness point switch,
-        and a switch onto an edge takes the pcurve's parameter nearest to the face's own. There is
-        no restart and no search: ``answer.counts`` tells that none was made, and how many foot
-        points the Voronoi tests have looked for.
+        that lead out of a patch are zeroed, Voronoi tests on the opposing witness point switch, and
+        a switch onto an edge takes the pcurve's parameter nearest to the face's own. There is no
+        restart and no search: ``answer.counts`` shows that none was made, and how many foot points
+        the Voronoi tests have searched for.
 
         Parameters
         ----------
         gain : float
-            K, 1/s. In its simulations the paper takes "a very low controller gain"; 25 to 100
-            serve at 1 kHz.
+            K, 1/s. In its simulations the paper uses "a very low controller gain"; 25 to 100 work
+            at 1 kHz.
         integrator : str, default "heun"
         far_side : {"kept", "left"}
-            The paper's regions can be read both ways: a face's on both sides of it, or, as in Lin
-            and Canny's algorithm, in front alone.
+            The paper's regions can be read both ways: that of a face is on both sides of it, or, as
+            in Lin and Canny's algorithm, only in front.
 
         Notes
         -----
         M of two bodies may be indefinite far from the minimum, in one parametrisation and not in
-        another. Such a start is left for ever in a corner of the right faces: docs/paper has the
-        fractions. With ``solve="covariant"`` M is definite anywhere.
+        another. Such a start stays for ever in a corner of the right faces: docs/paper has the
+        fractions. With ``solve="covariant"`` M is semidefinite anywhere.
         """
         return cls(
             integrator=integrator,
@@ -227,7 +227,7 @@ PYTHON = {law: f"so.{law.__name__}" for law in LAWS.values()}
 
 
 def every_option() -> Mapping[str, Option]:
-    """Return the options of all laws by name; those of one name are one option."""
+    """Return the options of all laws by name; those with the same name are one option."""
     return {name: each for law in LAWS.values() for name, each in options_of(law).items()}
 
 
@@ -257,12 +257,12 @@ def law_of_facts(facts: Mapping[str, Any]) -> Law:
     Raises
     ------
     ValueError
-        What is no such data, such as a feedback that a program made itself.
+        What is not such data, for instance a feedback that a program made itself.
     """
     options = dict(facts)
     name = options.pop("law", None)
     if not isinstance(name, str) or name not in LAWS:
-        raise StandoffError(f"law = {name!r} is none of {list(LAWS)}.", "law", name)
+        raise StandoffError(f"law = {name!r} is not one of {list(LAWS)}.", "law", name)
     known = options_of(LAWS[name])
     for unknown in options.keys() - known.keys():
         raise StandoffError(

@@ -1,4 +1,4 @@
-"""Distances at many poses: arrays in, arrays out, no Python object a row."""
+"""Distances at many poses: arrays in, arrays out, no Python object per row."""
 
 from __future__ import annotations
 
@@ -46,12 +46,12 @@ class Distances(AnswerArrays):
     point_a, point_b, normal : (n, 3) arrays
         As in `Proximity`, in world axes.
     repaired : (n,) array of int
-        How many of a row's two poses had a rounded rotation and were brought to the nearest.
+        How many of a row's two poses had a rounded rotation and were replaced by the nearest.
     errors : mapping of int to StandoffError
         Of the rows that were refused; each error is made when it is asked for.
     poses : pair of (n, 4, 4) arrays
-        World poses of A and B that the rows hold for, nan where they are none; (1, 4, 4) where one
-        was given for all.
+        World poses of A and B for which the rows hold, nan where they are invalid; (1, 4, 4) where
+        one was given for all.
     """
 
     __slots__ = ("_a", "_b", "errors", "poses", "repaired", "rows")
@@ -80,7 +80,7 @@ class Distances(AnswerArrays):
 
     @property
     def status(self) -> NDArray[np.object_]:
-        """(n,) the status of each row, REFUSED where a pose is none."""
+        """(n,) the status of each row, REFUSED where a pose is invalid."""
         return statuses(self.rows[:, K.STATUS])
 
     @property
@@ -114,8 +114,8 @@ class Distances(AnswerArrays):
     def gradient(self) -> Array:
         """(n, 12) derivatives of the distance by unit twists (v_A, omega_A, v_B, omega_B).
 
-        nan where there is none, in flat contact by some turns only; computed at each call, as those
-        below.
+        nan where there is none, in flat contact only for some turns; computed at each call, like
+        those below.
         """
         from standoff.tracking.derivatives import gradients
 
@@ -183,12 +183,12 @@ def distances(
     a, b : Body
         Two spatial bodies, or two planar ones.
     poses_a, poses_b : array_like, shape (n, 4, 4) or (n, 12), and others, or one pose for all rows
-        World poses; rows of 12 are R row-major, p. Also a pair (R, p) of stacks (n, 3, 3) and
-        (n, 3), a list of poses, SciPy's ``RigidTransform`` of n, and `Poses`, which quaternions
-        take: ``so.Poses.from_xyzw(q, p)`` or ``from_wxyz``.
+        World poses; rows of 12 are R row-major, p. Also a pair (R, p) of stacks (n, 3, 3) and (n,
+        3), a list of poses, SciPy's ``RigidTransform`` of n, and `Poses`, for quaternions:
+        ``so.Poses.from_xyzw(q, p)`` or ``from_wxyz``.
     warm : bool
         False: every row is a cold query by itself, as ``so.distance``. True: each starts from the
-        row before, as ``Tracker.run``: several times as fast where rows follow a motion.
+        row before, as in ``Tracker.run``: several times as fast if the rows follow a motion.
     workers : int
         Threads that share cold rows. The answers are the same, to the last bit, for any number.
 
@@ -207,8 +207,8 @@ def distances(
     TypeError
         Not a body.
     ValueError
-        Arrays of another shape, or of different lengths; no positive number of workers; a planar
-        body with a spatial one; two half-spaces.
+        Arrays of another shape, or of different lengths; a number of workers that is not positive;
+        a planar body with a spatial one; two half-spaces.
     """
     found = answered_rows(a, b, poses_a, poses_b, warm=warm, workers=workers)
     if found.errors:

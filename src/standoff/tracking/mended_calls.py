@@ -1,4 +1,4 @@
-"""A start or a frame on a long block, with poses mended that are only rounded."""
+"""A start or a frame on a long block, with repair of poses that are only rounded."""
 
 from __future__ import annotations
 

@@ -27,13 +27,13 @@ def plot(
     """Draw two bodies where an answer holds, their active features, and the witness line.
 
     In equal scales. The active face or edge of each body is drawn in a stronger colour, and the
-    legend names it. Where the bodies overlap, both are drawn through.
+    legend names it. Where the bodies overlap, both are drawn transparent.
 
     Parameters
     ----------
     a, b : Body
     answer : Proximity
-        Of these bodies; it knows their poses.
+        Of these bodies; it holds their poses.
     path : str or path, optional
         Also write the picture there, whole or not at all: .png, .svg or .pdf.
     view : (float, float), optional
@@ -51,10 +51,10 @@ def plot(
     ModuleNotFoundError
         If matplotlib is not installed; the message names the extra.
     TypeError
-        No bodies, no answer, or a path that is neither a text nor a Path.
+        No bodies, no answer, or a path that is neither a string nor a Path.
     ValueError
-        The answer is of other bodies, or holds no poses; the view is not two numbers; the file's
-        ending is another.
+        The answer is of other bodies, or holds no poses; the view is not two numbers; the file has
+        another ending.
     OSError
         If the file cannot be written.
     """

@@ -46,7 +46,7 @@ class PairSystem(NamedTuple):
         S Psi, S M, S b with S = diag(1, 1, -1, -1): gradient and Hessian of E = |dR|^2 / 2 and
         the gradient's rate by the motion.
     repaired : int
-        How many of the two poses were given with a rounded rotation, and were brought to the
+        How many of the two poses were given with a rounded rotation, and were replaced by the
         nearest one.
     """
 
@@ -110,7 +110,7 @@ def pair_system(
 class PairSystems:
     """The paper's system of one pair of features, for many parameters and poses.
 
-    Neither is checked. A little outside a feature its own surface or curve goes on.
+    Neither is checked. A little outside a feature, its surface or curve continues.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ def put(state: StateRow, side: int, body: Body, place: PlaceLike) -> None:
     Raises
     ------
     ValueError
-        No pair of feature and parameters, no such feature, or parameters outside it.
+        Not a pair of feature and parameters, no such feature, or parameters outside it.
     """
     feature, parameters = _two(place, ("place_a", "place_b")[side])
     kind, index = _feature_of(body, feature)

@@ -33,11 +33,12 @@ ORDERS = {
     "the position stands first": [3, 4, 5, 6, 7, 8, 9, 10, 11, 0, 1, 2],
     "rows are 3 by 4 matrices [R p]": [0, 1, 2, 4, 5, 6, 8, 9, 10, 3, 7, 11],
 }
-"""In which 12 numbers are given at times that are to be R row-major, p: where these stand then."""
+"""Orders in which the 12 numbers R row-major, p are sometimes given instead, and where R and p are
+in each."""
 
 
 TOGETHER = 2048
-"""So many poses are repaired together: their numbers stay in the processor's cache."""
+"""Number of poses repaired together: their numbers stay in the processor's cache."""
 
 
 class PoseArray(NamedTuple):
@@ -73,7 +74,7 @@ def numbers(value: Any, name: str, forms: str) -> Array:
 
 
 def read_poses(value: Any, name: str) -> PoseArray:
-    """Poses in any of `FORMS`; what is wrong with their numbers is not looked at.
+    """Poses in any of `FORMS`; their numbers are not checked.
 
     Raises
     ------
@@ -162,16 +163,16 @@ def _item(given: Any, name: str) -> PoseArray:
 
 
 class Mended(NamedTuple):
-    """Poses with what rounding has left repaired, as ``Tracker.step`` does it one by one.
+    """Poses with rounding repaired, as ``Tracker.step`` does one by one.
 
     Attributes
     ----------
     matrices : (n, 4, 4) array
-        In C order, and no array of the caller's.
+        In C order, and not the caller's array.
     repaired : (n,) array of bool
         Which were rounded.
     refused : (n,) array of bool
-        Which are no poses; their matrices are as they were given.
+        Which are not poses; their matrices are as they were given.
     """
 
     matrices: Array

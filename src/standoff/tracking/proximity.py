@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 
 class Event(NamedTuple):
-    """A switch of one body's feature, dated to its frame.
+    """A switch of one body's feature, at the time of its frame.
 
     Attributes
     ----------
@@ -34,9 +34,9 @@ class Event(NamedTuple):
     source, target : Feature
     value : float
         Slope of the energy (length) for a release; 1 - s, the part of the step that did not fit,
-        for a boundary reached; nan where a restart changed the feature.
+        for a boundary that was reached; nan where a restart changed the feature.
     slope : float
-        Slope of the distance along the direction of release; 0 for a boundary reached.
+        Slope of the distance along the direction of release; 0 for a boundary that was reached.
     """
 
     time: float
@@ -53,12 +53,12 @@ class Proximity(Answer, PlainData):
     Attributes
     ----------
     distance : float
-        Signed: between the witness points while apart, an upper bound of the true distance; less
+        Signed: between the witness points while apart, an upper bound on the true distance; minus
         the depth in penetration: B moved by depth * normal touches A.
     lower_bound : float
         A certified lower bound of the true signed distance (docs/certificate.md).
     upper_bound : float
-        An upper bound of it: the distance itself while apart, less than 0.999 of the depth where
+        An upper bound on it: the distance itself while apart, at most minus 0.999 of the depth if
         the status is GLOBAL.
     depth : float
         0 while apart, else how deep B is in A along the normal.
@@ -86,12 +86,12 @@ class Proximity(Answer, PlainData):
     events : tuple of Event
         The switches of this step.
     time : float
-        Of the frame, s; 0 where no tracker asked.
+        Of the frame, s; 0 if there was no tracker.
     poses : pair of (12,) arrays
-        World poses of A and B that the answer holds for: R row-major, p.
+        World poses of A and B for which the answer holds: R row-major, p.
     repaired : int
-        How many of these two were given with a rounded rotation, and were brought to the nearest
-        one, as `Pose.repaired` tells of each.
+        How many of these two were given with a rounded rotation, and were replaced by the nearest
+        one, as `Pose.repaired` says of each.
     """
 
     __slots__ = ("repaired",)
@@ -117,7 +117,7 @@ class Proximity(Answer, PlainData):
         )
 
     def witness_set(self) -> WitnessSet:
-        """All pairs of witness points that this answer could have named (docs/touching.md)."""
+        """All pairs of witness points that this answer could have given (docs/touching.md)."""
         from standoff.tracking.contact.witness_set import witness_set
 
         return witness_set(self)
@@ -166,11 +166,11 @@ class Proximity(Answer, PlainData):
         return defined(self.derivatives())
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the answer as plain data: numbers, texts, lists and dictionaries of these.
+        """Return the answer as plain data: numbers, strings, lists and dictionaries of these.
 
         The keys are the attributes' names; ``poses`` are two 4×4 matrices, or None. Features are
-        texts such as ``"face 2"``, the status its name. The numbers are the same to the last bit,
-        but that no zero has a sign; NaN stays NaN.
+        strings such as ``"face 2"``, the status is its name. The numbers are the same to the last
+        bit, except that no zero has a sign; NaN stays NaN.
         """
         facts = {name: plain(getattr(self, name)) for name in _PLAIN}
         poses = self.poses
@@ -194,7 +194,8 @@ _PLAIN = (
 
 
 def shown_size(answer: Proximity) -> float:
-    """Length beside which numbers of an answer are roundoff: of a body, or of a far point."""
+    """Length compared with which numbers of an answer are roundoff: of a body, or of a far
+    point."""
     sizes = [body.size for body in answer.bodies if body.bounded]
     return float(np.nanmax([*sizes, *np.abs(answer.point_a), *np.abs(answer.point_b), 0.0]))
 

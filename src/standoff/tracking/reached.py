@@ -23,7 +23,7 @@ ANY_TIME = 1.0
 """A frame time [s]: the default law does not depend on it."""
 
 PAIRS = 64
-"""Pairs that are kept at hand, with their bodies: those that were asked for last."""
+"""Number of pairs kept at hand, with their bodies: the ones used last."""
 
 
 class Reached:
@@ -33,7 +33,7 @@ class Reached:
     ----------
     a, b : Body
     law : Law
-        With what it leaves open settled for the frame time.
+        With the defaults that depend on the frame time filled in.
     options : array
         As the kernels read it, with the addresses of its frames.
     table : AddressTable
@@ -87,7 +87,7 @@ def cold_table(a: Body, b: Body) -> AddressTable:
     Raises
     ------
     TypeError, ValueError
-        They are no pair.
+        They cannot be a pair.
     """
     check_pair(a, b)
     return table_of(a, b, resolved_options(DEFAULT_LAW, ANY_TIME)[1])

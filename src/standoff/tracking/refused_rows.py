@@ -1,4 +1,4 @@
-"""Rows of a batch whose poses are none: which, and why, told when it is asked."""
+"""Rows of a batch whose poses are invalid: which, and why, computed on request."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from standoff.tracking.pose_arrays import another_order
 Array = NDArray[np.float64]
 HOME = flat_pose(np.eye(4))
 SHOWN = 3
-"""So many errors are in the repr."""
+"""Number of errors shown in the repr."""
 
 
 class RefusedPoses(NamedTuple):
@@ -67,7 +67,7 @@ class RefusedRows(Mapping[int, StandoffError], KeepsReadOnly):
     Parameters
     ----------
     refused : (n,) array of bool
-        Which rows are.
+        Which rows are refused.
     of_a, of_b : RefusedPoses
     planar : bool
         Must the poses stay in z = 0?
@@ -116,10 +116,10 @@ class RefusedRows(Mapping[int, StandoffError], KeepsReadOnly):
         if 2 * count <= n:
             return
         first = next(iter(self))
-        told = f"{count} of {n} rows are refused, and nan. {self[first]}".rstrip(".")
+        told = f"{count} of {n} rows are refused, and are nan. {self[first]}".rstrip(".")
         advice = f" {self.advice()}".rstrip()
         warnings.warn(
-            f"{told}.{advice} `errors` of the result tells of each row.",
+            f"{told}.{advice} `errors` of the result says why, row by row.",
             RefusedRowsWarning,
             stacklevel=stacklevel + 1,
         )

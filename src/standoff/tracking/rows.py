@@ -1,7 +1,7 @@
 """The numbers of a frame's motion, of a tracker's state and of its answers by name.
 
 The kernels read and write them as flat arrays, whose slots ``standoff.kernels.state.arrays``
-numbers. This is the one place above the kernels that knows these numbers. The state is in A's
+numbers. The layers above the kernels read most of them by the names given here. The state is in A's
 frame, the answers are in world axes.
 """
 
@@ -61,15 +61,15 @@ class Counts(NamedTuple):
     restarts : int
         Global starts after the first.
     regularised : int
-        Solves in which the Hessian had to be decomposed (with ``solve="plain"``: that had no
-        solution, so that no step was made).
+        Solves in which the Hessian had to be decomposed (with ``solve="plain"``: those without a
+        solution, in which no step was made).
     saturations : int
-        Components of a step that were zeroed at a boundary (``saturation="zero"``); of the
-        paper's law also components of a PI feedback's integral that were cut, and frames whose
+        Components of a step that were zeroed at a boundary (``saturation="zero"``); with the
+        paper's law also components of a PI feedback's integral that were limited, and frames whose
         integration overflowed and so changed nothing.
     searches : int
-        Searches over all directions of depth in penetration that began with nothing. None where
-        the polytope of the frame before proved the depth.
+        Searches over all directions of depth in penetration that began from scratch. None where the
+        polytope of the frame before proved the depth.
     foot_points : int
         Points of edges closest to the opposing witness point that Voronoi tests have looked for.
     solved_parameters : int
@@ -176,7 +176,7 @@ class StateRow:
 
 
 class AnswerRows:
-    """Answers as the kernels write them, (..., 37), by name; `data` may be one row or many.
+    """Answers as the kernels write them, (..., N_OUT), by name; `data` may be one row or many.
 
     Attributes
     ----------
@@ -217,11 +217,11 @@ class AnswerRows:
 
     @property
     def counts(self) -> NDArray[np.int64]:
-        """(..., 8) in the order of `Counts`."""
+        """(..., 11) in the order of `Counts`."""
         return np.asarray(self.data[..., COUNT_SLOTS], dtype=np.int64)
 
     def parameters(self, body: Body, side: int) -> tuple[float, ...]:
-        """One row's parameters of A (0) or B (1), as `Proximity` gives them."""
+        """One row's parameters of A (0) or B (1), as in `Proximity`."""
         at = 2 * side
         number, chart = (int(n) for n in self.mode[at : at + 2])
         kind = feature_of(body, number).kind
@@ -251,12 +251,12 @@ class Answer(KeepsReadOnly):
 
     @property
     def row(self) -> Array:
-        """The answer as the kernels write it, read-only; laid out in ``kernels.frame``."""
+        """The answer as the kernels write it, read-only; laid out in ``kernels.state.arrays``."""
         return self._out[: K.N_OUT]
 
     @property
     def poses(self) -> tuple[Array, Array] | None:
-        """World poses (12,) that it holds for; None of an answer that was made by hand."""
+        """World poses (12,) that it holds for; None for an answer that was made by hand."""
         if (
             len(self._out) < K.BLOCK_EVENTS
             or self._out[K.BLOCK_MOTION + K.POSE_A] != self._out[K.BLOCK_MOTION + K.POSE_A]

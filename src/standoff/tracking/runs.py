@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 
 class Frames(NamedTuple):
-    """What a run is given, as the kernels read it, for n frames.
+    """The input of a run of n frames, as the kernels read it.
 
     Attributes
     ----------
@@ -76,8 +76,8 @@ class Frames(NamedTuple):
         return cls(of_a, of_b, xi_a, xi_b, h, marks)
 
     def mended(self, refused: int, first: int) -> Frames:
-        """The same with the rounded poses of frames `first` and on repaired, and counted: those of
-        the body that the kernel has refused, as BAD_POSE_A or BAD_POSE_B."""
+        """The same with the rounded poses from frame `first` on repaired and counted: those of the
+        body that the kernel has refused, as BAD_POSE_A or BAD_POSE_B."""
         given = self.poses_a if refused == K.BAD_POSE_A else self.poses_b
         matrices, rounded, _ = mended(given[first:])
         repaired = self.repaired.copy()
@@ -88,7 +88,7 @@ class Frames(NamedTuple):
         return self._replace(poses_b=poses, repaired=repaired)
 
     def advice(self, first: int) -> str:
-        """A sentence about another order that the refused poses of frames `first` and on fit."""
+        """A sentence about another order that fits the refused poses from frame `first` on."""
         told = []
         for poses in (self.poses_a[first:], self.poses_b[first:]):
             refused = mended(poses).refused
@@ -139,7 +139,7 @@ def steps_of(dt: Any, usual: float, check: Callable[[float], float]) -> Array:
 
 
 Single = Callable[[TrackerState, tuple[Any, Any, Any, Any], float], Proximity]
-"""Makes one frame that the compiled loop does not make: its state, what was given, its time."""
+"""Makes one frame that the compiled loop does not make, from its state, its input and its time."""
 
 
 def run(
@@ -184,7 +184,7 @@ def _take(polytope: Array, answer: Proximity) -> None:
 
 
 def _told(single: Single, before: TrackerState, given: Frames, k: int) -> Proximity:
-    """A frame by itself; what is wrong with it is told with its number."""
+    """A frame by itself; its number is in the error if something is wrong with it."""
     try:
         return single(before, given.frame(k), float(given.steps[k]))
     except StandoffError as error:

@@ -65,7 +65,7 @@ def _kind(body: Body, record: int) -> Kind:
 
 
 def main_kind(body: Body) -> Kind | None:
-    """The kind of most of a body's charts, a flat one only where there is no other; None where no
+    """The most common kind of a body's charts, a flat one only if there is no other; None if no
     frame can be made for it."""
     kinds = Counter(kinds_of(body))
     for each in [kind for kind in kinds if kind[1] == MIXED or kind[0] == L.FORMULA]:
@@ -76,7 +76,7 @@ def main_kind(body: Body) -> Kind | None:
 
 
 def smooth_frame_of(a: Body, b: Body, specialise: bool | None) -> Any:
-    """The entry of a pair's smooth frame; None where it is to have none."""
+    """The entry of a pair's smooth frame; None if it should have none."""
     if specialise is False:
         return None
     kinds = main_kind(a), main_kind(b)

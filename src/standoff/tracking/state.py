@@ -44,8 +44,8 @@ class TrackerState(KeepsReadOnly):
 
     @property
     def warm_start(self) -> Array:
-        """``data``, and behind it what a frame in penetration has kept of its proof: a polytope
-        that the next frame moves with the bodies and asks first, (565,) then."""
+        """``data``, followed by what a frame in penetration has kept of its proof: a polytope that
+        the next frame moves with the bodies and tries first; then (565,)."""
         return Block(self._proximity._out).warm_start
 
     @property

@@ -32,8 +32,8 @@ def sample_points(body: Body) -> Array:
 def support_point(body: Body, direction: Array) -> Array:
     """The farthest point, (3,), of a body's core along a direction, in the body's frame.
 
-    The witness point against a half-space (in the plane, a long segment) that stands off along
-    the direction, square to it, by the kernels' cold query.
+    It is the witness point against a half-space (in the plane, a long segment) that lies off along
+    the direction and perpendicular to it, from the kernels' cold query.
     """
     n = direction / np.linalg.norm(direction)
     gap = body.size if body.size > 0.0 else 1.0

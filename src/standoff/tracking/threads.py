@@ -11,7 +11,7 @@ import numpy as np
 def in_parts(work: Callable[[int, int], None], n: int, workers: int) -> None:
     """Do ``work(first, end)`` for n rows: one part for each worker, each part in a thread.
 
-    One worker, or one row, is done in the caller's thread: to start another takes some 0.1 ms.
+    One worker, or one row, is done in the caller's thread: starting another takes some 0.1 ms.
     """
     if workers == 1 or n <= 1:
         work(0, n)

@@ -40,7 +40,7 @@ N_BLOCK, N_KEEPING_BLOCK = K.N_BLOCK, K.N_KEEPING_BLOCK
 INSIDE = K.BLOCK_STATE + K.INSIDE  # was a block's frame solved in contact?
 
 HIDDEN = ("check_frame_time", "check_state", "options", "reached", "step_anew", "table")
-"""What the run and the studies need and users do not."""
+"""What runs and the studies need but users do not."""
 
 
 @hides(*HIDDEN)
@@ -50,18 +50,18 @@ class Tracker(KeepsReadOnly):
     Parameters
     ----------
     a, b : Body
-        Two spatial bodies, or two planar ones (a point, or another body without faces in z = 0,
-        goes with both).
+        Two spatial bodies, or two planar ones (a point, or another body without faces in z = 0, can
+        be paired with either).
     dt : float
-        Frame time, s; ``step`` may be given another where frames are uneven.
+        Frame time, s; ``step`` takes another one if frames are uneven.
     law : PredictorCorrector or PaperLaw
         How the witness points are kept, with all options.
     specialise : bool, optional
-        A frame compiled for the kinds of the bodies' faces is tried before the general one, and
-        answers alike, two to four times as fast while both witness points stay inside faces. If
-        not given it is used for pairs compiled ahead (ellipsoids and lenses with each other and
-        with polytopes; two NURBS solids of one degree, 2 to 5). True compiles one for any other
-        pair, before the loop; False uses none. The paper's law has none.
+        A frame compiled for the kinds of the bodies' faces is tried before the general one; it
+        gives the same answers, two to four times as fast while both witness points stay inside
+        faces. If not given, it is used for pairs compiled ahead of time (ellipsoids and lenses with
+        each other and with polytopes; two NURBS solids of the same degree, 2 to 5). True compiles
+        one for any other pair, before the loop; False uses none. The paper's law has none.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ class Tracker(KeepsReadOnly):
 
     @property
     def resolved_law(self) -> Law:
-        """With what it leaves open settled for the frame time."""
+        """With the defaults that depend on the frame time filled in."""
         return self.reached.law
 
     def start(
@@ -169,8 +169,8 @@ class Tracker(KeepsReadOnly):
             (t,) on an edge, () on a vertex.
         settle : bool
             True descends from there to the certified minimum (the default of the
-            predictor-corrector), False begins there as it stands (the default of the paper's
-            law, whose feedback then does the work).
+            predictor-corrector), False begins exactly there (the default of the paper's law, whose
+            feedback then does the work).
 
         Raises
         ------
@@ -204,8 +204,8 @@ class Tracker(KeepsReadOnly):
         pose_a, pose_b : Pose or what ``Pose.of`` reads
             World poses at the end of the step: the answer holds for them.
         twist_a, twist_b : Twist or what ``Twist.of`` reads, optional
-            Those at this instant; without any, the prediction is the secant of the last two
-            frames and the rates are nan. One twist given, the other body is at rest.
+            Those at this instant; without any, the prediction is the secant of the last two frames
+            and the rates are nan. If only one twist is given, the other body is at rest.
         dt : float, optional
             Time since the frame before, s; the tracker's own if not given.
 
@@ -216,7 +216,7 @@ class Tracker(KeepsReadOnly):
         Raises
         ------
         TypeError
-            ``state`` is none.
+            ``state`` is not a state.
         ValueError
             A state of another pair; no pose or twist; a time that is not positive, or too long for
             the paper's law; a planar pair out of its plane.
@@ -244,8 +244,8 @@ class Tracker(KeepsReadOnly):
         return TrackerState(answer), answer
 
     def step_anew(self, state: TrackerState, given: Given, h: float) -> Proximity:
-        """The answer of a frame that the compiled one does not make from what is given: says what
-        is wrong with it, or mends it. Also of one with more switches than its block holds.
+        """The answer of a frame that the compiled one does not make from its input: says what is
+        wrong with it, or repairs it. Also for one with more switches than its block holds.
         """
         self.check_state(state)
         block, repaired = stepped(self.table, given, state.warm_start, h)
@@ -260,15 +260,16 @@ class Tracker(KeepsReadOnly):
         twists_b: ArrayLike | TwistLike | None = None,
         dt: ArrayLike | None = None,
     ) -> tuple[TrackerState, Answers]:
-        """Many frames in one compiled loop, each from the state of the one before, as by ``step``.
+        """Many frames in one compiled loop, each from the state of the one before, as with
+        ``step``.
 
         Parameters
         ----------
         state : TrackerState
             Of this pair; it is not changed.
         poses_a, poses_b : array_like, shape (n, 4, 4) or (n, 12), or one pose for all frames
-            World poses at the end of each step; rows of 12 are R row-major, p. Also every other
-            form that `distances` reads: (R, p) stacks, `Poses`, a list of poses.
+            World poses at the end of each step; rows of 12 are R row-major, p. Also any other form
+            that `distances` reads: (R, p) stacks, `Poses`, a list of poses.
         twists_a, twists_b : array_like, shape (n, 6), or one twist for all frames, optional
             (v, omega) in world axes, as in ``step``.
         dt : float or array_like, shape (n,), optional
@@ -317,7 +318,7 @@ class Tracker(KeepsReadOnly):
         Returns
         -------
         float
-            The distance; where the answer is uncertified ``buffer.proximity()`` says why.
+            The distance; if the answer is uncertified, ``buffer.proximity()`` says why.
 
         Raises
         ------
@@ -365,7 +366,7 @@ class Tracker(KeepsReadOnly):
         Raises
         ------
         TypeError
-            ``state`` is none.
+            ``state`` is not a state.
         ValueError
             A state of another pair, or stored by another version.
         """

@@ -1,9 +1,8 @@
 """Who may talk to a live page, and with which messages.
 
 Any web page in a user's browser can reach a port of the user's own machine, and a name that is
-looked up twice can lead a browser to it under a foreign origin (DNS rebinding). So each request
-must carry the token of this run, name the page's own host, and, on a socket, come from the page
-itself.
+looked up twice can lead a browser to it under another origin (DNS rebinding). So each request must
+carry the token of this run, name the page's own host, and, on a socket, come from the page itself.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ ANYWHERE = ("0.0.0.0", "::")
 """Hosts that bind to all of the machine's addresses."""
 
 TOKEN_BYTES = 24
-"""Of a token: 192 bits, more than anybody can try."""
+"""Of a token: 192 bits, more than anyone can try."""
 
 TYPES = frozenset(
     {
@@ -45,12 +44,12 @@ TYPES = frozenset(
         "TransformControlsDragEndMessage",
     }
 )
-"""Messages that a page sends here. Viser's others are for what this page has not: uploads,
+"""Messages that a page sends here. Viser's others are for what this page does not have: uploads,
 commands, and a tunnel to another host that shares the page."""
 
 
 class Headers(Protocol):
-    """What is asked of a request's headers."""
+    """The part of a request's headers that is read here."""
 
     def get_all(self, key: str, /) -> list[str]:
         """All values of a header; none where it is not there."""
@@ -160,8 +159,8 @@ class Allowance:
 def message_fault(message: Any) -> str | None:
     """Return why a message of a page is refused; None where it may pass.
 
-    Viser writes what an update names into its own handle of that element, whatever it is; so only
-    values pass, and only plain finite ones.
+    Viser writes whatever an update names into its own handle of that element, so only values pass,
+    and only plain finite ones.
 
     Parameters
     ----------
@@ -176,7 +175,7 @@ def message_fault(message: Any) -> str | None:
     if not _plain(message, MAX_DEPTH):
         return "the message holds something that is neither a short text nor a finite number"
     if not all(isinstance(message.get(key, ""), str) for key in ("name", "owner", "uuid")):
-        return "the message names what it changes by something that is no text"
+        return "the message names what it changes by something that is not text"
     if kind == "GuiUpdateMessage":
         updates = message.get("updates")
         if not isinstance(updates, Mapping) or set(updates) != {"value"}:
@@ -189,7 +188,7 @@ def message_fault(message: Any) -> str | None:
 def value_fault(value: Any, current: Any, options: Sequence[str] | None = None) -> str | None:
     """Return why a value is refused for an element of the page; None where it may be set.
 
-    Viser would cast it: a text to a number, NaN among them, and anything to a text.
+    Viser would cast it: a string to a number, including NaN, and anything to a string.
 
     Parameters
     ----------
@@ -198,13 +197,13 @@ def value_fault(value: Any, current: Any, options: Sequence[str] | None = None) 
     current : object
         The element's own value.
     options : sequence of str, optional
-        All that the element can be set to, where these are few.
+        Everything that the element can be set to, if that is a few choices.
     """
     number = isinstance(current, int | float) and not isinstance(current, bool)
     if number and (isinstance(value, bool) or not isinstance(value, int | float)):
-        return "the message gives something else than a number where one stands"
+        return "the message gives something other than a number for a number"
     if not number and type(value) is not type(current):
-        return "the message gives a value of another kind than the one that stands there"
+        return "the message gives a value of another kind than the present one"
     if options is not None and value not in options:
         return "the message gives a choice that the page does not have"
     return None
@@ -216,7 +215,7 @@ def _pose_fault(wxyz: Any, position: Any) -> str | None:
         if not isinstance(numbers, list) or len(numbers) != count:
             return "the message gives no pose: four numbers and three"
         if any(isinstance(x, bool) or not isinstance(x, int | float) for x in numbers):
-            return "the message gives no pose: one of its parts is no number"
+            return "the message gives no pose: one of its parts is not a number"
     if not abs(math.hypot(*wxyz) - 1.0) < UNIT_QUATERNION:
         return "the message gives no pose: its quaternion is not of length 1"
     if not math.hypot(*position) < FARTHEST:

@@ -88,7 +88,7 @@ def save_page(recording: Recording, path: str | Path) -> None:
     Raises
     ------
     StandoffError
-        As `page_of`; if the file's ending is another.
+        As `page_of`; if the file has another ending.
     OSError
         If the file cannot be written.
     """

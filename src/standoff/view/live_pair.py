@@ -13,7 +13,7 @@ from standoff.tracking import Event, Proximity, Tracker
 from standoff.tracking.law_options import Law
 
 MOST_FRAMES = 60
-"""Frames that one move is cut into at most: what a page shows at once takes no more than some
+"""Frames that one move is cut into at most: what a page shows at once takes at most a few
 milliseconds."""
 
 
@@ -56,7 +56,7 @@ class LivePair:
         return self.tracker.a, self.tracker.b
 
     def follow(self, law: Law) -> None:
-        """Go on by another law, from a new start here.
+        """Continue with another law, from a new start here.
 
         Raises
         ------

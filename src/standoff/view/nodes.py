@@ -85,7 +85,7 @@ class BodyNodes:
         self.frame.wxyz, self.frame.position = quaternion(pose), tuple(pose.translation)
 
     def glass(self, on: bool) -> None:
-        """Be of glass, or solid again."""
+        """Become glass, or solid again."""
         if on == self._glass:
             return
         self._glass = on

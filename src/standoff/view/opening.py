@@ -37,7 +37,7 @@ def view(*what: Any, host: str = "127.0.0.1", port: int | None = None, open: boo
         The file of a scene, a Scene, or a Recording that ``so.track`` returned; or two bodies
         and where they are, ``so.view(a, b, pose_a, pose_b)``.
     host : str
-        Name or address to serve the page at: this machine alone, if not given.
+        Name or address to serve the page at; only this machine, if not given.
     port : int, optional
         Any that is free, if not given.
     open : bool
@@ -46,17 +46,17 @@ def view(*what: Any, host: str = "127.0.0.1", port: int | None = None, open: boo
     Returns
     -------
     Page
-        It serves until its ``close``, as a context too; ``address`` is to be opened, and in a
-        notebook it shows itself.
+        It serves until ``close``, or until the end of its ``with`` block; open its ``address``. In
+        a notebook it shows itself.
 
     Raises
     ------
     ModuleNotFoundError
         If viser is not installed; the message names the extra.
     TypeError
-        If that is nothing that can be shown.
+        If that cannot be shown.
     ValueError
-        If a scene is refused, the pair cannot be tracked, or the port cannot be had.
+        If a scene is refused, the pair cannot be tracked, or the port is not available.
     """
     scene = _scene(what)
     from standoff.view.page import Page
@@ -99,7 +99,7 @@ class _Stretch:
 
 
 def scene_of(recording: Recording) -> Scene:
-    """Return the scene that a recording was made of.
+    """Return the scene of which a recording was made.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class Page:
     ModuleNotFoundError
         If viser is not installed; the message names the extra.
     StandoffError
-        If the port cannot be had, or the pair cannot be tracked.
+        If the port is not available, or the pair cannot be tracked.
     """
 
     def __init__(
@@ -120,7 +120,7 @@ class Page:
         self.stage.seek(time)
 
     def speed(self, factor: float) -> None:
-        """Play so many times as fast as the motion is."""
+        """Play this many times as fast as the motion."""
         self.stage.speed(factor)
 
     def hand(self, which: str) -> None:
@@ -164,7 +164,7 @@ class Page:
         try:
             self._serve()
         finally:
-            self._closing.set()  # who waits for the page is told, whatever ended it
+            self._closing.set()  # whoever waits for the page is told, whatever ended it
 
     def _serve(self) -> None:
         last = time.monotonic()

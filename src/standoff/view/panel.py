@@ -218,16 +218,16 @@ class Panel:
         self.forget()
 
     def strayed(self, off: bool) -> None:
-        """Tell whether bodies are elsewhere than the scene says, and there is a way back."""
+        """Show whether bodies are elsewhere than the scene says, so that there is a way back."""
         self._back.visible = off
 
     def pull_is(self, on: bool, limit: float) -> None:
-        """Tell whether the body is pulled through the coupler, and its greatest force [N]."""
+        """Show whether the body is pulled through the coupler, and its greatest force [N]."""
         self._pull.value, self._limit.visible = on, on
         self._limit.max = self._limit.value = limit
 
     def law_is(self, name: str, integrator: str, share: float, gain: float | None) -> None:
-        """Tell the law that is followed; `gain` [1/s] of the paper's."""
+        """Show the law that is followed; `gain` [1/s] is that of the paper's law."""
         self._law.value, self._integrator.value, self._share.value = name, integrator, share
         self._integrator.visible = self._share.visible = gain is not None
         text = "" if gain is None else f"K = {gain:.4g} / s"

@@ -20,7 +20,7 @@ MASS = 0.2
 """Of the tool [kg]: that of a pen with its holder."""
 
 STIFFNESS = 200.0
-"""Of the coupler [N/m]: a handle a few centimetres off pulls with some newtons."""
+"""Of the coupler [N/m]: a handle a few centimetres off pulls with a few newtons."""
 
 MAX_FORCE = 10.0
 """Greatest force when a page begins [N]; a page can lower it, and never raise it."""

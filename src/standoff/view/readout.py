@@ -37,7 +37,7 @@ def length(value: float, unit: str, digits: int = DIGITS) -> str:
 
 
 def verdict(answer: Shown, unit: str, size: float) -> str:
-    """Return in a sentence how the bodies stand, and how far that is proven.
+    """Return in a sentence how far apart the bodies are, and how far that is proven.
 
     Parameters
     ----------

@@ -29,9 +29,9 @@ CLOCK = "time"
 def save_rerun(recording: Recording, path: str | Path) -> None:
     """Write a run for the viewer of rerun: bodies, active features, witness points, and curves.
 
-    On the timeline ``time`` stand ``/A`` and ``/B`` with their active features, the witness points
-    and the line between them, ``/distance`` and ``/lower_bound``, and every switch as a line of
-    text. Of a run of more than 2000 frames so many are written, evenly chosen.
+    The timeline ``time`` has ``/A`` and ``/B`` with their active features, the witness points and
+    the line between them, ``/distance`` and ``/lower_bound``, and every switch as a line of text.
+    Of a run of more than 2000 frames, 2000 are written, evenly chosen.
 
     Parameters
     ----------
@@ -45,9 +45,9 @@ def save_rerun(recording: Recording, path: str | Path) -> None:
     ModuleNotFoundError
         If rerun-sdk is not installed; the message names the extra.
     TypeError
-        If `path` is neither a text nor a Path.
+        If `path` is neither a string nor a Path.
     ValueError
-        If the file's ending is another, or the recording was opened from a file or copied.
+        If the file has another ending, or the recording was opened from a file or copied.
     OSError
         If the file cannot be written.
     """

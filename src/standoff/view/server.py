@@ -229,8 +229,8 @@ def guarded_server(access: Access, port: int | None = None) -> viser.ViserServer
     Raises
     ------
     StandoffError
-        If the port or the host cannot be had; if this viser opens its port in another way than
-        those that the guard was made for, and is stopped at once.
+        If the port or the host is not available; if this viser opens its port in another way than
+        those for which the guard was made, and is stopped at once.
     """
     check_free(access.host, port or 0)
     kind = type("GuardedServer", (GuardedServer,), {"access": access})
@@ -245,7 +245,7 @@ def guarded_server(access: Access, port: int | None = None) -> viser.ViserServer
     elements = server.gui._gui_input_handle_from_uuid
 
     def fault(uuid: str, value: Any) -> str | None:
-        element: Any = elements.get(uuid)  # viser passes over what is not there any more
+        element: Any = elements.get(uuid)  # viser ignores what is no longer there
         if element is None:
             return None
         return value_fault(value, element.value, getattr(element, "options", None))
@@ -255,7 +255,7 @@ def guarded_server(access: Access, port: int | None = None) -> viser.ViserServer
 
 
 def name_tab(server: viser.ViserServer, title: str) -> None:
-    """Put a title on the browser's tab of every page, those that are opened later too."""
+    """Put a title on the browser's tab of every page, including those that are opened later."""
     # Viser has no word for it. As JSON the title is a text to the browser, whatever it holds.
     source = f"document.title = {json.dumps(title)};"
     server._websock_server.queue_message(_messages.RunJavascriptMessage(source))
@@ -275,7 +275,7 @@ def check_free(host: str, port: int) -> None:
             probe.bind((host, port))
     except (OSError, OverflowError) as error:
         raise StandoffError(
-            f"{host}:{port} cannot be had ({getattr(error, 'strerror', None) or error}): name "
+            f"{host}:{port} is not available ({getattr(error, 'strerror', None) or error}): name "
             "another port, or none for any that is free; a host must be one of this machine's.",
             "port",
             port,
@@ -290,7 +290,8 @@ def stop(server: viser.ViserServer) -> None:
 
 @contextlib.contextmanager
 def made_by(kind: type) -> Iterator[None]:
-    """While viser makes a server: of this kind, and without a word on an address without token."""
+    """While viser makes a server: of this kind, and without a message about an address without a
+    token."""
     with _making, contextlib.redirect_stdout(io.StringIO()):
         infra.WebsockServer = kind
         try:

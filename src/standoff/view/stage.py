@@ -48,7 +48,7 @@ class Stage:
     Raises
     ------
     StandoffError
-        What tracking the scene raises; nothing on the page is changed then.
+        What tracking the scene raises; then nothing on the page is changed.
     """
 
     def __init__(
@@ -111,7 +111,7 @@ class Stage:
             self._show_frame(self.player)
 
     def speed(self, factor: float) -> None:
-        """Play so many times as fast as the motion is."""
+        """Play this many times as fast as the motion."""
         if self.player is not None:
             self.player.speed = factor
 
@@ -124,7 +124,7 @@ class Stage:
             handle.visible = name == which
 
     def back(self) -> None:
-        """Put the bodies back to where the scene has them, of a motion where it stands."""
+        """Put the bodies back to where the scene has them; in a motion, at its present time."""
         if self.player is not None:
             self._play_on()
             self._show_frame(self.player)
@@ -149,7 +149,7 @@ class Stage:
             return
         if self._hand is None:
             raise StandoffError(
-                "Nothing is dragged that could be pulled: choose a body under 'drag'."
+                "No body is being dragged, so nothing can be pulled: choose one under 'drag'."
             )
         if not self._by_hand:
             self._take_in_hand()
@@ -160,7 +160,7 @@ class Stage:
         self.panel.strayed(True)
 
     def limit(self, force: float) -> None:
-        """Lower the coupler's greatest force [N]; a higher one than now is not taken."""
+        """Lower the coupler's greatest force [N]; one above the present one is ignored."""
         lowered = max(min(force, self.max_force), LEAST_FORCE)
         if lowered < self.max_force:
             self.max_force = lowered

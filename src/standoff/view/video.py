@@ -30,7 +30,7 @@ def save_video(
     view: tuple[float, float] | None = None,
     progress: Progress | None = None,
 ) -> None:
-    """Write a run as a film of both bodies, their active features and the witness line.
+    """Write a run as a video of both bodies, their active features and the witness line.
 
     Parameters
     ----------
@@ -39,10 +39,10 @@ def save_video(
     path : str or path
         An .mp4 or a .gif file, written whole or not at all.
     pictures : int
-        Most pictures that are drawn, each in a tenth of a second or so. At most 25 are shown a
-        second; a long run is shown with fewer a second, but at least 2.
+        Greatest number of pictures to draw, each in a tenth of a second or so. At most 25 are shown
+        per second; a long run is shown with fewer per second, but at least 2.
     speed : float
-        Seconds of the motion in a second of the film: 0.1 shows it ten times as slow.
+        Seconds of the motion in a second of the video: 0.1 shows it ten times slower.
     view : (float, float), optional
         Elevation and azimuth of the viewer, degrees. If not given, the view is across the normal of
         the closest frame.
@@ -54,10 +54,10 @@ def save_video(
     ModuleNotFoundError
         If matplotlib, or for an MP4 imageio-ffmpeg, is not installed; the message names the extra.
     TypeError
-        If `path` is neither a text nor a Path.
+        If `path` is neither a string nor a Path.
     ValueError
-        If the file's ending is another, a number is not one that it may be, or the recording was
-        opened from a file or copied.
+        If the file has another ending, a number is out of range, or the recording was opened from a
+        file or copied.
     OSError
         If the file cannot be written.
     """
@@ -106,7 +106,7 @@ def write_video(
     view: tuple[float, float] | None = None,
     progress: Progress | None = None,
 ) -> None:
-    """Write a film to a stream; `save_video` describes it, and checks what it is given."""
+    """Write a video to a stream; `save_video` describes it, and checks its arguments."""
     from standoff.recording.animation import drawing
 
     pair, paths = what_moved(recording)

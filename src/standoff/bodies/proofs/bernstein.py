@@ -15,11 +15,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from heapq import heappop, heappush
 from itertools import pairwise
 
 import numpy as np
 
+from standoff.best_first import Part, best_first
 from standoff.bodies.proofs.boxes import ROOT, Cell, CurvatureBound, curvature_bound, deep_enough
 from standoff.bodies.proofs.defects import Dent, dents_total
 from standoff.bodies.proofs.forms import Forms, forms_of, with_poles
@@ -39,10 +39,12 @@ from standoff.geometry.domains import Domain
 from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.validation import Array
 
-# Boxes looked at in one span before what is left counts as a dent of its bound.
-MOST_BOXES = 2000
-# Enough boxes to show the size of the dents of a patch that is not convex.
-FINE_BOXES = 300
+Box = tuple[Cell, CurvatureBound]
+
+# Boxes halved in one span before what is left counts as a dent of its bound.
+MOST_SPLITS = 1000
+# Enough of them to show the size of the dents of a patch that is not convex.
+FINE_SPLITS = 150
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,30 +221,28 @@ def _flat(pieces: Sequence[Piece], sense: int) -> bool:
 
 def _search(piece: Piece, sense: int) -> SpanBound:
     """Halve the box that may dent most, until all are proven or the dents are known well."""
-    open_cells: list[tuple[float, int, Cell, CurvatureBound]] = []
-    settled: list[tuple[Cell, CurvatureBound]] = []
-    found, place, count = np.inf, ROOT, 0
 
-    def look(cell: Cell) -> None:
-        nonlocal found, place, count
-        count += 1
+    def part(cell: Cell) -> Part[Box]:
         bound = curvature_bound(piece.forms, cell, sense)
-        if bound.found < found:
-            found, place = bound.found, cell
         known = bound.least >= 0.0 or (bound.convex and bound.tight)
-        if known or deep_enough(piece.forms, cell):
-            settled.append((cell, bound))
-        else:
-            heappush(open_cells, (_weight(bound), count, cell, bound))
+        closed = known or deep_enough(piece.forms, cell)
+        return Part(_weight(bound), (cell, bound), bound.found, closed)
 
-    look(ROOT)
-    while open_cells and count < (FINE_BOXES if found < -CURVATURE_ROUNDING else MOST_BOXES):
-        _, _, cell, bound = heappop(open_cells)
-        for half in cell.halves(bound.along_u):
-            look(half)
-    left = [(cell, bound) for _, _, cell, bound in open_cells]
-    dents = [_dent(piece, c, b) for c, b in settled + left if b.least < 0.0]
-    return SpanBound(dents, not left and all(b.convex for _, b in settled), found, place)
+    def halves(chosen: list[Part[Box]]) -> list[Part[Box]]:
+        cell, bound = chosen[0].body
+        return [part(half) for half in cell.halves(bound.along_u)]
+
+    searched = best_first(
+        [part(ROOT)],
+        halves,
+        goal=lambda _: np.inf,
+        most=lambda found: FINE_SPLITS if found < -CURVATURE_ROUNDING else MOST_SPLITS,
+    )
+    boxes = [part.body for part in searched.closed + searched.open]
+    dents = [_dent(piece, cell, bound) for cell, bound in boxes if bound.least < 0.0]
+    convex = not searched.open and all(bound.convex for _, bound in boxes)
+    place = ROOT if searched.place is None else searched.place[0]
+    return SpanBound(dents, convex, searched.found, place)
 
 
 def _weight(bound: CurvatureBound) -> float:

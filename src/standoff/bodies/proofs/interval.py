@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from standoff.best_first import Part, best_first
 from standoff.bodies.proofs.defects import Dent, dents_total
 from standoff.bodies.proofs.formulas.forms import (
     CurvatureForms,
@@ -105,6 +106,9 @@ class Bent:
     bounds: Array
 
 
+Box = tuple[list[float], list[float], int]
+"""A box's corners, and the axis to halve it across."""
+
 NO_DENTS = Boxes(np.zeros((0, 2)), np.zeros((0, 2)))
 
 
@@ -148,21 +152,31 @@ class _Search:
         # outward is the side to which most of the patch bulges
         side = np.nansum(np.sign(seen.lo[2] + seen.hi[2]))
         self.sense = sense or -int(np.sign(side)) or 1
-        self.found, self.place = np.inf, (float("nan"), float("nan"))
+        self.enough = -BEND_ROUNDOFF / self.diameter
 
-    def least(self, boxes: Boxes) -> tuple[Array, Any]:
-        """Lower bounds (n,) of k over boxes, and the axis to halve each; notes what is seen."""
+    def parts(self, boxes: Boxes, wholes: Array | float = -np.inf) -> list[Part[Box]]:
+        """Boxes with lower bounds of k, and its values at their middles.
+
+        `wholes` are the bounds (n,) of the boxes that they are parts of: a part's bound is never
+        worse than that of its whole.
+        """
         value, middle, slopes = self.bounds(boxes)
         at_middle = self.curvature(middle)
         seen = np.where(np.isfinite(at_middle), at_middle, np.inf)
-        if seen.min(initial=np.inf) < self.found:
-            self.found = float(seen.min())
-            u, v = boxes.middle[int(seen.argmin())]
-            self.place = (float(u), float(v))
         with np.errstate(all="ignore"):
             bound = self.curvature(value)
-        bound = np.where(np.isnan(bound), -np.inf, bound)
-        return bound, widest(boxes, slopes, self.size)
+        bound = np.maximum(np.where(np.isnan(bound), -np.inf, bound), wholes)
+        axis = widest(boxes, slopes, self.size)
+        rows = zip(boxes.low.tolist(), boxes.high.tolist(), axis.tolist(), strict=True)
+        return [
+            Part(k, box, at, k >= self.enough)
+            for k, box, at in zip(bound.tolist(), rows, seen.tolist(), strict=True)
+        ]
+
+    def halves(self, chosen: list[Part[Box]]) -> list[Part[Box]]:
+        boxes, axis = _boxes(chosen)
+        bound = np.array([part.bound for part in chosen])
+        return self.parts(boxes.halves(axis), np.concatenate([bound, bound]))
 
     def curvature(self, value: Interval) -> Array:
         """Lower bounds of k = H - sqrt(H^2 - K), from those of K, H^2 and what has H's sign.
@@ -182,34 +196,32 @@ class _Search:
         return np.asarray(bound * (1.0 + FEW_OPERATIONS))
 
     def run(self) -> Bent:
-        boxes, count = self.boxes, len(self.boxes)
-        bound, axis = self.least(boxes)
-        enough = -BEND_ROUNDOFF / self.diameter
-        while count * self.bounds.cost < MOST_BOXES:
-            worst = float(bound.min())
-            if worst >= enough or worst >= NEARNESS * min(self.found, 0.0) + 0.5 * enough:
-                break
-            chosen = np.argpartition(bound, min(WORST, len(bound)) - 1)[:WORST]
-            chosen = chosen[bound[chosen] < enough]
-            halves = boxes[chosen].halves(axis[chosen])
-            kept = np.ones(len(bound), dtype=bool)
-            kept[chosen] = False
-            new_bound, new_axis = self.least(halves)
-            # a part's bound is never worse than that of its whole
-            new_bound = np.maximum(new_bound, np.concatenate([bound[chosen], bound[chosen]]))
-            boxes = Boxes(
-                np.concatenate([boxes.low[kept], halves.low]),
-                np.concatenate([boxes.high[kept], halves.high]),
-            )
-            bound = np.concatenate([bound[kept], new_bound])
-            axis = np.concatenate([axis[kept], new_axis])
-            count += len(halves)
-        if not np.isfinite(self.found):  # nothing is known: where the bound is worst
-            u, v = boxes.middle[int(bound.argmin())]
-            self.place = (float(u), float(v))
-        dents = bound < 0.0
-        least = min(0.0, float(bound.min()))
-        return Bent(least >= enough, least, self.place, self.sense, boxes[dents], bound[dents])
+        enough, first = self.enough, self.parts(self.boxes)
+        # each split makes two boxes
+        most = 0.5 * (MOST_BOXES / self.bounds.cost - len(first))
+        searched = best_first(
+            first,
+            self.halves,
+            goal=lambda found: min(enough, NEARNESS * min(found, 0.0) + 0.5 * enough),
+            most=lambda _: most,
+            batch=WORST,
+        )
+        parts = searched.open + searched.closed
+        place = searched.place
+        if place is None:  # nothing is known: where the bound is worst
+            place = min(parts, key=lambda part: part.bound).body
+        u, v = Boxes(*np.array([place[:2]]).swapaxes(0, 1)).middle[0].tolist()
+        least = min(0.0, searched.least)
+        dents = [part for part in parts if part.bound < 0.0]
+        bounds = np.array([part.bound for part in dents])
+        return Bent(least >= enough, least, (u, v), self.sense, _boxes(dents)[0], bounds)
+
+
+def _boxes(parts: list[Part[Box]]) -> tuple[Boxes, Any]:
+    """The boxes (n,) of parts, and the axis to halve each."""
+    low = np.reshape([part.body[0] for part in parts], (-1, 2))
+    high = np.reshape([part.body[1] for part in parts], (-1, 2))
+    return Boxes(low, high), np.array([part.body[2] for part in parts], dtype=np.int64)
 
 
 def _sharper(

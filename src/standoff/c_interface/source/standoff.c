@@ -362,10 +362,10 @@ const char *standoff_message(int code)
         return "all is well";
     case STANDOFF_BAD_POSE_A:
         return "pose A is not a pose: its rotation must be orthonormal to 1e-9 and not mirrored, "
-               "and all numbers finite; standoff_orthonormalise mends one of single precision";
+               "and all numbers finite; standoff_orthonormalise repairs one in single precision";
     case STANDOFF_BAD_POSE_B:
         return "pose B is not a pose: its rotation must be orthonormal to 1e-9 and not mirrored, "
-               "and all numbers finite; standoff_orthonormalise mends one of single precision";
+               "and all numbers finite; standoff_orthonormalise repairs one in single precision";
     case STANDOFF_BAD_TWIST:
         return "a twist is not finite";
     case STANDOFF_BAD_TIME_STEP:
@@ -380,14 +380,14 @@ const char *standoff_message(int code)
     case STANDOFF_NO_FILE:
         return "the file cannot be opened or read";
     case STANDOFF_NOT_A_PAIR:
-        return "the file holds no pair: write one with standoff.c_interface.save_pair in Python";
+        return "the file does not hold a pair: write one with standoff.c_interface.save_pair in Python";
     case STANDOFF_DAMAGED:
-        return "the file is cut short or was changed: save the pair again";
+        return "the file is truncated or was changed: save the pair again";
     case STANDOFF_OTHER_VERSION:
         return "the pair was saved by another version of Standoff than this library was built "
                "from: save it again, or build the library again";
     case STANDOFF_NO_MEMORY:
-        return "no memory is left";
+        return "out of memory";
     default:
         return "a fault of the library: please report it with the pair and its poses";
     }

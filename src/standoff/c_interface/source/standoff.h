@@ -16,7 +16,7 @@
  *
  * Units are those of the bodies (length) and seconds; all vectors are in world axes. No function
  * but standoff_load allocates memory, takes a lock or opens a file. A pair is never changed once it
- * is loaded: threads may share it, each with a state of its own.
+ * is loaded: threads may share it, each with its own state.
  */
 
 #ifndef STANDOFF_H
@@ -41,13 +41,13 @@ enum standoff_code {
     STANDOFF_BAD_POSE_A = -1,    /* not a rotation (to 1e-9), or not finite */
     STANDOFF_BAD_POSE_B = -2,
     STANDOFF_BAD_TWIST = -3,     /* not finite */
-    STANDOFF_BAD_TIME_STEP = -4, /* not positive, or longer than the law is stable for */
+    STANDOFF_BAD_TIME_STEP = -4, /* not positive, or too long for the law to be stable */
     STANDOFF_OUT_OF_PLANE = -5,  /* a planar pair moves in z = 0 */
     STANDOFF_OTHER_STATE = -6,   /* the state was not started with this pair */
     STANDOFF_NULL = -7,          /* a pointer that must be given is NULL */
     STANDOFF_NO_FILE = -10,      /* cannot be opened or read */
     STANDOFF_NOT_A_PAIR = -11,   /* not a file of save_pair */
-    STANDOFF_DAMAGED = -12,      /* cut short, or changed */
+    STANDOFF_DAMAGED = -12,      /* truncated, or changed */
     STANDOFF_OTHER_VERSION = -13,/* saved for another version of this library */
     STANDOFF_NO_MEMORY = -14,
     STANDOFF_FAILED = -20        /* a fault of the library: please report it */
@@ -56,7 +56,7 @@ enum standoff_code {
 /* How an answer ended; the numbers are those of standoff.Status in Python. */
 enum standoff_status {
     STANDOFF_CONVERGED = 0,     /* apart, and certified */
-    STANDOFF_TRACKING = 1,      /* the law still converges; the lower bound holds */
+    STANDOFF_TRACKING = 1,      /* the law is still converging; the lower bound holds */
     STANDOFF_OVERLAPPING = 2,   /* they are proven to overlap, but no depth is proven */
     STANDOFF_NOT_CERTIFIED = 3, /* the distance is an upper bound; the lower bound holds */
     STANDOFF_LOCAL = 4,         /* overlap: moving B by depth * normal separates the bodies */
@@ -66,7 +66,7 @@ enum standoff_status {
 
 enum standoff_kind { STANDOFF_FACE = 0, STANDOFF_EDGE = 1, STANDOFF_VERTEX = 2 };
 
-/* Of a body's frame in world: x -> rotation x + position. */
+/* The pose of a body's frame in the world: x -> rotation x + position. */
 typedef struct {
     double rotation[9]; /* by rows, orthonormal to 1e-9 */
     double position[3]; /* length */
@@ -89,7 +89,7 @@ typedef struct {
     double point_a[3]; /* the witness points */
     double point_b[3];
     double normal[3];        /* unit, from A to B */
-    double velocity_a[3];    /* of the witness points, length/s; nan where no twist is given */
+    double velocity_a[3];    /* of the witness points, length/s; nan if no twist is given */
     double velocity_b[3];
     double parameters_a[2];  /* (u, v) of a face, (u, 0) of an edge */
     double parameters_b[2];
@@ -121,20 +121,20 @@ typedef struct standoff_pair standoff_pair;
 
 #define STANDOFF_STATE_NUMBERS 1024
 
-/* The warm start: a value. Copy it to go back to it; it points nowhere. */
+/* The warm start: a value without pointers. Copy it to return to it. */
 typedef struct {
     uint64_t pair; /* of which pair */
     double numbers[STANDOFF_STATE_NUMBERS];
 } standoff_state;
 
-/* Read a pair from a file of save_pair. The file is trusted as a program is: it is checked against
- * damage, not against malice. */
+/* Read a pair from a file of save_pair. The file is trusted like a program: it is checked for damage,
+ * not for malice. */
 STANDOFF_API int standoff_load(const char *path, standoff_pair **pair);
 
 STANDOFF_API void standoff_free(standoff_pair *pair);
 
-/* Find the witness points anywhere, by a global query. Takes as long as a cold query: not for
- * within a loop. Twists may be NULL: a body without one is at rest, and if neither has one the
+/* Find the witness points anywhere, by a global query. Takes as long as a cold query: do not
+ * call it in a loop. Twists may be NULL: a body without one is at rest, and if neither has one the
  * predictions come from the last two frames. */
 STANDOFF_API int standoff_start(const standoff_pair *pair, const standoff_pose *pose_a,
                                 const standoff_pose *pose_b, const standoff_twist *twist_a,
@@ -152,15 +152,14 @@ STANDOFF_API int standoff_step(const standoff_pair *pair, standoff_state *state,
 STANDOFF_API int standoff_switches(const standoff_pair *pair, const standoff_state *state,
                                    standoff_switch *switches, int room);
 
-/* How many features of a kind a body (0: A, 1: B) has; -1 where there is no such body or kind. */
+/* How many features of a kind a body (0: A, 1: B) has; -1 if there is no such body or kind. */
 STANDOFF_API int standoff_features(const standoff_pair *pair, int body, int kind);
 
 /* The frame time, s, that the pair was saved with. */
 STANDOFF_API double standoff_frame_time(const standoff_pair *pair);
 
-/* Make the nearest rotation of one that is off by rounding, as single precision leaves it (up to
- * 1e-5). Returns STANDOFF_OK, or STANDOFF_BAD_POSE_A, with nothing changed, where it is farther
- * off. */
+/* Replace a rotation that is off by rounding, as in single precision (up to 1e-5), by the nearest
+ * one. Returns STANDOFF_OK, or, with nothing changed, STANDOFF_BAD_POSE_A if it is farther off. */
 STANDOFF_API int standoff_orthonormalise(standoff_pose *pose);
 
 /* What a code means and what to do, in one sentence. */

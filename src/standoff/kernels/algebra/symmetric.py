@@ -63,7 +63,7 @@ def sort_ascending(values, V, n):
 @kernel
 def symmetric_eigen(A, values, n):
     """Ascending eigenvalues of a symmetric n x n matrix A, n <= 8; its rows become the unit
-    eigenvectors. False, with nothing of use, where A is not finite.
+    eigenvectors. False, and no result, if A is not finite.
     """
     if not all_finite(A, n * n):
         return False
@@ -91,8 +91,8 @@ def least_norm_solve(A, b, n, cutoff):
     """b becomes the x of least norm that minimises |A x - b|; A, symmetric, n x n with n <= 8, is
     lost.
 
-    Eigenvalues below `cutoff` times the greatest count as 0. False, with nothing of use, where a
-    number is not finite.
+    Eigenvalues below `cutoff` times the greatest count as 0. False, and no result, if a number is
+    not finite.
     """
     values = stack_reals()
     if not (all_finite(b, n) and symmetric_eigen(A, values, n)):

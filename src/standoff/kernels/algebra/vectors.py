@@ -1,4 +1,4 @@
-"""3-vectors as tuples and rotations as row-major 9-tuples: the alphabet of the kernels."""
+"""3-vectors as tuples and rotations as row-major 9-tuples: the basics of the kernels."""
 
 from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.compiler.decorators import small

@@ -28,11 +28,11 @@ ZERO = (0.0, 0.0, 0.0)
 
 @kernel
 def pair_span(pair, p, d):
-    """The length that roundoff and tolerances are measured by: both cores' sizes, the distance,
-    and how far their boxes' centres stand from their own origins, whose digits are lost.
+    """The length that roundoff and tolerances are measured by: both cores' sizes, the distance, and
+    how far their boxes' centres are from their own origins, which costs digits.
 
-    p is B's origin in A's frame. A half-space has no size: how far off its origin the other body
-    stands counts instead.
+    p is B's origin in A's frame. A half-space has no size: the distance of the other body from its
+    origin counts instead.
     """
     ra, rb = pair.reals_a, pair.reals_b
     span = ra[L.SIZE] + rb[L.SIZE] + d + ra[L.OFFSET] + rb[L.OFFSET]
@@ -88,7 +88,7 @@ def coedge_jet(ints, reals, coedge, t):
 
 @kernel
 def is_creased(ints, feature):
-    """Has the curvature across an edge no bound?"""
+    """Is the curvature across an edge unbounded?"""
     return (
         dimension(ints, feature) == 1
         and ints[edge_record(ints, feature) + L.EDGE_FLAGS] & L.CREASED != 0
@@ -141,7 +141,7 @@ def moved_jet(pose, jet):
 
 @kernel
 def jet_moved_back(pose, jet):
-    """The jet that `moved_jet` has moved, but for roundoff."""
+    """The jet that `moved_jet` has moved, up to roundoff."""
     R = pose.R
     return (
         rotate_back(R, sub(jet[0], pose.p)),

@@ -1,4 +1,4 @@
-"""Where everything stands in a packed body: two flat arrays, ``ints`` and ``reals``.
+"""Where everything is in a packed body: two flat arrays, ``ints`` and ``reals``.
 
 A packed body is read by every kernel and written by one place, ``standoff.bodies.packing``.
 Features have one number: faces 0 .. F-1, then edges, then vertices. A *chart* is one surface

@@ -124,7 +124,7 @@ def well_inside(reals, o, u, v):
 def far_out(reals, o, u, v):
     """Are parameters so much greater than those on the face that their roundoff is wider than it?
 
-    A half-space's face, and one without area, have no rectangle to tell by.
+    The face of a half-space, and one without area, have no rectangle to decide by.
     """
     b = o + L.INNER
     low, high = reals[b] + reals[b + 2], reals[b + 1] + reals[b + 3]

@@ -2,9 +2,9 @@
 
 Numba unpickles what it finds in a cache, and the machine code in it is run: a folder that other
 users can write to is refused. A module is kept under a digest of all the kernels' sources, so an
-edit of any of them compiles anew. Asked are the folder of modules that a wheel carries
-(`shipped`), then, for reading and writing, NUMBA_CACHE_DIR or the package's own
-``__pycache__``, or else the user's cache folder.
+edit of any of them makes them compile again. Modules are looked for in the folder that a wheel
+carries (`shipped`), then, for reading and writing, in NUMBA_CACHE_DIR or the package's own
+``__pycache__``, or else in the user's cache folder.
 """
 
 from __future__ import annotations
@@ -42,12 +42,13 @@ DAMAGED = (
 """What reading a truncated or overwritten file of pickles raises."""
 
 compiled_elsewhere: Callable[[Any], None] | None = None
-"""Set in a process beside others: has a function's entry, which is not on disk, compiled by the one
-that they all ask, so that it is compiled once and told once."""
+"""Set in a process among others: has the entry of a function that is not on disk compiled by the
+process that they all ask, so that it is compiled once and reported once."""
 
 
 class _Trusted:
-    """Part of a locator: the digest in place of the file's own, and no folder of strangers."""
+    """Part of a locator: the digest in place of the file's own, and no folder that others can write
+    to."""
 
     _cache_path: str
 
@@ -75,7 +76,7 @@ class _Trusted:
 def _refuse(folder: str, why: str) -> None:
     say(
         f"not using the cache folder {folder}: {why}, and the machine code in it would be run. "
-        "Take that right away (chmod go-w), or name another folder in NUMBA_CACHE_DIR."
+        "Remove that permission (chmod go-w), or name another folder in NUMBA_CACHE_DIR."
     )
 
 
@@ -196,7 +197,7 @@ class ModuleCache(Cache):  # type: ignore[misc]
                 with self._guard_against_spurious_io_errors():
                     return self._load_overload(signature, target_context)
         except DAMAGED as error:
-            say(f"{self._cache_path}: what was kept there is damaged ({error}); compiling anew.")
+            say(f"{self._cache_path}: what was kept is damaged ({error}); compiling it again.")
             self.flush()
         return None
 
@@ -225,4 +226,4 @@ def _tell_stock() -> None:
 
 @lru_cache(maxsize=1)
 def _unsaved(folder: str, why: str) -> None:
-    say(f"the compiled kernels could not be kept ({why}): each process will compile them anew.")
+    say(f"the compiled kernels could not be kept ({why}): each process will compile them again.")

@@ -34,8 +34,8 @@ class WrongKind(TypeError):
 class Entry(CPUDispatcher):  # type: ignore[misc]
     """A function that Python calls, compiled for the types of `signature` alone.
 
-    A terse one refuses other types without a word on which (`WrongKind`): its caller converts them.
-    `ready` tells that its machine code is loaded.
+    A terse one refuses other types without saying which (`WrongKind`): its caller converts them.
+    `ready` says whether its machine code is loaded.
     """
 
     def __init__(

@@ -31,8 +31,8 @@ HAVE_V3 = frozenset({
     "grandridge", "clearwaterforest", "znver1", "znver2", "znver3", "znver4", "znver5",
 })
 # fmt: on
-"""LLVM's names of processors with all of `X86_64_V3`: llvmlite tells the features of the host only,
-so of a processor that NUMBA_CPU_NAME names nothing but the name is known."""
+"""LLVM's names of processors with all of `X86_64_V3`: llvmlite only knows the features of the host,
+so of a processor that NUMBA_CPU_NAME names only the name is known."""
 
 
 KERNELS = Path(__file__).parents[1]

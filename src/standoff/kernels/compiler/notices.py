@@ -1,4 +1,4 @@
-"""What the library says on stderr while somebody waits, for the compiler first of all."""
+"""What the library says on stderr while someone waits, above all for the compiler."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class Work(NamedTuple):
     what: str
     seconds: int
     alone: int
-    """Where nothing but bodies was compiled before in the process: the kernels below all works are
-    read then."""
+    """The same if only bodies were compiled before in the process: then the kernels that all works
+    share are read too."""
     parts: int
-    """Entries; 0 where the kinds of a pair may bring others."""
+    """Number of entries; 0 if the kinds of a pair may need others."""
 
 
 WORK = {
@@ -54,8 +54,8 @@ SHORTEST_LOOK = 0.05
 """Between two looks at the clock, s."""
 
 LET_GO = 1.0
-"""Longest time that the end of a wait is held up by a line that is being written, s: nobody may be
-reading a full pipe."""
+"""Longest time that the end of a wait is delayed by a line that is being written, s: a full pipe
+may have no reader."""
 
 Item = TypeVar("Item")
 
@@ -82,10 +82,10 @@ def say(text: str) -> None:
 
 @contextmanager
 def alive(line: Callable[[], str]) -> Iterator[None]:
-    """While this lasts, a line is said whenever nothing was said for `PERIOD`.
+    """While this lasts, a line is printed whenever nothing was printed for `PERIOD`.
 
-    A thread says it: LLVM lets other threads run while it compiles. Where one such wait is part of
-    another, the inner one's line is said.
+    A thread prints it: LLVM lets other threads run while it compiles. If one such wait is part of
+    another, the inner one's line is printed.
     """
     ended, begun = threading.Event(), time.monotonic()
 
@@ -112,7 +112,7 @@ def alive(line: Callable[[], str]) -> Iterator[None]:
 
 
 def parts(items: Iterable[Item]) -> Iterator[Item]:
-    """Each of the items; what is compiled for it is told as that part of so many."""
+    """Each of the items; what is compiled for it is reported as that part of so many."""
     each = list(items)
     for number, item in enumerate(each, 1):
         token = _place.set((number, len(each)))
@@ -145,7 +145,8 @@ _current: _Part | None = None
 
 @contextmanager
 def waiting(work: str, name: str) -> Iterator[None]:
-    """While an entry is loaded or compiled; says how long it took where that was told."""
+    """While an entry is loaded or compiled; says how long it took if its compilation was
+    announced."""
     global _current
     _begun[work] += 1
     with ExitStack() as watching:
@@ -161,7 +162,7 @@ def waiting(work: str, name: str) -> Iterator[None]:
 
 
 def _place_of(work: str) -> str:
-    """Which part of how many the entry is that is begun now."""
+    """Which part of how many the entry begun now is."""
     place, most = _place.get(), WORK[work].parts
     if place is not None and place[1] > 1:
         return f", part {place[0]} of {place[1]}"
@@ -169,7 +170,7 @@ def _place_of(work: str) -> str:
 
 
 def compiling(kept: bool) -> None:
-    """Say that the entry at work was not found and is compiled now; once a process for each work.
+    """Say that the present entry was not found and is compiled now; once per process for each work.
 
     Parameters
     ----------
@@ -196,7 +197,8 @@ def compiling(kept: bool) -> None:
 
 @contextmanager
 def told_elsewhere() -> Iterator[None]:
-    """While somebody else tells what is compiled: `compiling` says only that it goes on."""
+    """While someone else reports what is compiled: `compiling` only says that it is still
+    running."""
     before = set(_said)
     _said.update(WORK)
     try:

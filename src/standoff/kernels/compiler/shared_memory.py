@@ -1,6 +1,6 @@
 """What two threads share without a lock, and the system's clocks, for compiled loops.
 
-Loads and stores are LLVM's atomic ones, with the order that each name tells: plain ones may be
+Loads and stores are LLVM's atomic ones, with the order that each name says: plain ones may be
 merged, moved out of a loop, or seen by another core in another order. All take an array in C order
 and the place of an element among all of its elements.
 
@@ -89,7 +89,7 @@ else:
 
     @intrinsic
     def store_released(typingctx, array, index, value):  # type: ignore[no-untyped-def]
-        """Set an element; who sees it sees all that was stored before it."""
+        """Set an element; whoever sees it sees all that was stored before it."""
         return _store(array, index, value, "release")
 
     @intrinsic
@@ -104,7 +104,7 @@ else:
 
     @intrinsic
     def fence_released(typingctx):  # type: ignore[no-untyped-def]
-        """Who sees what is stored after it sees what was stored before it."""
+        """Whoever sees what is stored after it sees what was stored before it."""
         return _fence("release")
 
     @intrinsic

@@ -1,7 +1,7 @@
-"""Machine code that a wheel carries: taken where it surely fits, else that is said once.
+"""Machine code that a wheel carries: used if it certainly fits; if not, a message says so once.
 
 `shipping` writes it: a manifest, and a file for each compiled module (an entry, or a kernel that
-several entries share). Where anything does not fit, the kernels are compiled as ever.
+several entries share). If anything does not fit, the kernels are compiled as usual.
 """
 
 from __future__ import annotations
@@ -94,7 +94,8 @@ def misfit(manifest: dict[str, Any]) -> str | None:
     unsafe = others_can_write(FOLDER.resolve())
     if unsafe is not None:
         return (
-            f"{unsafe}, and the machine code in it would be run; take that right away (chmod go-w)"
+            f"{unsafe}, and the machine code in it would be run; remove that permission (chmod "
+            "go-w)"
         )
     return None
 

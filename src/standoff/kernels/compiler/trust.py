@@ -13,8 +13,8 @@ def others_can_write(folder: Path) -> str | None:
     """Why a folder is not safe from other users, or None.
 
     It, and each folder above it, must belong to this user or to root, or to the owner of the
-    package, and nobody else may write to it; a folder where each may delete only his own (sticky,
-    as the system's temporary one) is safe above.
+    package, and nobody else may write to it; a folder where users may delete only their own files
+    (sticky, such as the system's temporary one) is safe as a parent.
     """
     if os.name != "posix":
         return None  # Windows: the rights of a user's own folders are inherited

@@ -253,7 +253,8 @@ def farthest_from(points, n, k, a, b, c):
 def begin_hull(hull, n, size):
     """Facets over the first n points, which stand in the hull's array already.
 
-    Returns (solid, direction): where they lie in a plane, or a line, `direction` is square to it.
+    Returns (solid, direction): if they lie in a plane, or on a line, `direction` is perpendicular
+    to it.
     """
     sizes, points = hull.sizes, hull.points
     sizes[POINTS], sizes[FACETS] = n, 0

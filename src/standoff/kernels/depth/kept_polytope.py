@@ -1,9 +1,9 @@
 """The polytope inside A - B, kept from one frame in penetration for the next.
 
 A vertex is a difference x_a - x_b of points that move with their bodies, so it stays in A - B
-however these move. What holds of its facets is asked anew: the surface is closed still, and where
-all its facets have the origin below them it goes round the origin once or more, so that each ray
-from there meets one of them. No facet is nearer than the least of their distances, nor then is the
+however these move. What holds for its facets is checked again: the surface is still closed, and if
+all its facets have the origin below them, it goes round the origin once or more, so each ray from
+there meets one of them. No facet is nearer than the least of their distances, nor then is the
 boundary of A - B (docs/penetration.md).
 """
 

@@ -134,7 +134,7 @@ def farthest_place(pair, pose, n, work):
 
 @kernel
 def grows_about(pair, pose, hull, margin, work):
-    """Does the polytope come to hold a ball about the origin whose radius is the margin?"""
+    """Does the polytope grow to contain a ball about the origin whose radius is the margin?"""
     size = contact_scale(pair)
     for _ in range(OVERLAP_ROUNDS):
         if nearest_facet(hull, False)[1] > margin:
@@ -163,8 +163,8 @@ def within_radii(pair, pose, place, margin):
 
 @kernel
 def below_plane(pair, pose, n, margin, work):
-    """Is a point of the other body below a half-space's plane, by more than the margin, or so near
-    above it that the swept body is? n is the plane's normal from A to B."""
+    """Is a point of the other body below a half-space's plane by more than the margin, or so little
+    above it that the swept body is below? n is the plane's normal from A to B."""
     for seed in (True, False):
         on_both, place = True, begin_along(pair, pose, n)
         if not seed:

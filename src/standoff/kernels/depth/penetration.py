@@ -51,7 +51,7 @@ UP = (0.0, 0.0, 1.0)  # square to the plane of planar bodies
 
 @kernel
 def contact_scale(pair):
-    """The length that shifts and depths are measured by: both sizes and radii."""
+    """The length by which shifts and depths are measured: both sizes and radii."""
     ra, rb = pair.reals_a, pair.reals_b
     total = ra[L.SIZE] + rb[L.SIZE] + ra[L.RADIUS] + rb[L.RADIUS]
     return total if total > 0.0 else 1.0
@@ -107,7 +107,7 @@ def begin_along(pair, pose, n):
 
 @kernel
 def tangents(n):
-    """Two unit vectors square to n and to each other."""
+    """Two unit vectors perpendicular to n and to each other."""
     axis = (1.0, 0.0, 0.0) if abs(n[0]) < 0.6 else (0.0, 1.0, 0.0)
     e = unit(cross(n, axis))
     return e, cross(n, e)

@@ -55,7 +55,7 @@ def start_direction(pair, pose, n, k):
 
 @kernel
 def is_new(n, found, count):
-    """Is a normal none of those found?"""
+    """Is a normal not among those found?"""
     for k in range(count):
         if norm(sub(n, (found[3 * k], found[3 * k + 1], found[3 * k + 2]))) <= AROUND:
             return False
@@ -101,7 +101,7 @@ def alone(pair, pose, best, work):
     farther from the origin than the depth, but for those around its normal.
 
     A facet that is not, and on whose other side there is nothing of A - B, points along a direction
-    that is as little deep. Minima nearer to each other than SAME_MINIMUM are not told apart.
+    that is as little deep. Minima nearer to each other than SAME_MINIMUM are not distinguished.
     """
     hull = Hull(
         ints_on_stack(N_SIZES),

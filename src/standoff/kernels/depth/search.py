@@ -156,8 +156,8 @@ def less_deep(candidate, best):
 
 @kernel
 def search_flat(pair, pose, way, best, tolerance, work):
-    """What `search` returns where A - B has no inside: two segments, say. The origin is on one
-    side of it, square to `way`, or on it.
+    """What `search` returns if A - B has no interior: for two segments, say. It is perpendicular to
+    `way`, with the origin on one side of it or on it.
     """
     for side in (1.0, -1.0):
         nu = scale(side, way)
@@ -196,6 +196,10 @@ def settles(pair, best, least, proof):
 def narrow(pair, pose, hull, best, how, work):
     """(depth, least) of `search`, by probes beyond the nearest facets of a polytope about the
     origin. `how` is (tolerance, proof, rivals).
+
+    It is no `standoff.best_first`: no facet is split. Each probe makes the one polytope grow, which
+    takes away facets and makes others, and the least of those that are left is found in passing;
+    nor may a frame call Python.
     """
     tolerance, proof, rivals = how
     size = contact_scale(pair)
@@ -253,7 +257,7 @@ def search(pair, pose, best, tolerance, proof, rivals, work):
     ends uncertified still gives a depth that parts the bodies: its bound.
 
     In a frame that is KEEPING its polytope the one of the frame before, moved with the bodies, is
-    tried first. Where that proves no depth the polytope is made anew.
+    tried first. If that proves no depth, the polytope is built again.
     """
     hull = Hull(
         ints_on_stack(N_SIZES),

@@ -1,4 +1,4 @@
-"""Where everything of a simulated system stands: its flat arrays, its state and its rates.
+"""Where everything of a simulated system is: its flat arrays, its state and its rates.
 
 A free body is kept by its rotation, its centre of mass, that centre's velocity and its angular
 momentum about it, all in world axes. Momentum, not angular velocity, so that without a torque

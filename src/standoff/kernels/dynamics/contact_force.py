@@ -11,7 +11,7 @@ from standoff.kernels.values import Vector
 
 
 class Material(NamedTuple):
-    """What two bodies are to each other; units follow the length, mass and time in use."""
+    """How two bodies push each other; units follow the length, mass and time in use."""
 
     stiffness: float  # k of F = k d^1.5, force/length^1.5
     damping: float  # c, time/length
@@ -29,7 +29,7 @@ class Push(NamedTuple):
 
 @kernel
 def spot_push(material, share, depth, n, velocity):
-    """F = share k d^1.5 (1 + 1.5 c d'), never pulling, and friction against the slip.
+    """F = share k d^1.5 (1 + 1.5 c d'), which never pulls, and friction against the slip.
 
     Hunt and Crossley, J. Appl. Mech. 42 (1975). n is the unit normal from A to B, velocity that of
     B's point less that of A's. Friction is mu F u / sqrt(u² + slip²), u the slip: Coulomb's law

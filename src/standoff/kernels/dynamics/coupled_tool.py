@@ -36,7 +36,7 @@ def tool_motion(system, rows, first):
 def pull_tool(system, state, readings, tick, h, clock, scratch):
     """The coupler's part of a tick: its wrenches, by a reading if one is due.
 
-    `clock` is the time on the clock of the readings, nan where the coupler's own serves.
+    `clock` is the time on the clock of the readings, nan if the coupler's own is used.
     """
     every = system.layout[I_READING]
     rows = readings.shape[0] // N_READING

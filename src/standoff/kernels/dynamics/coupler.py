@@ -185,7 +185,8 @@ def take_in(state, reading, arrival, tool, fresh):
 
 @kernel
 def damped_port(missing, motion, linear, turning, dt):
-    """Force and torque of a damper that dissipates what is missing, and what is missing after."""
+    """Force and torque of a damper that dissipates what is missing, and what is still missing
+    afterwards."""
     able = (linear * dot(motion.v, motion.v) + turning * dot(motion.w, motion.w)) * dt
     share = 0.0 if able == 0.0 else min(1.0, missing / able)
     asked = Asked(scale(-share * linear, motion.v), scale(-share * turning, motion.w))
@@ -217,7 +218,7 @@ def controlled(coupler, state, handle, tool, moment):
 
 @kernel
 def held_within(coupler, asked, state, o, dt):
-    """Put a wrench within its limits where the last one stands; what limited it, four truths."""
+    """Limit a wrench, in place of the last one; what limited it, as four truth values."""
     force, forced, rose = limited(
         asked.force, read_vector(state, o), coupler[Q_FORCE], coupler[Q_FORCE_RATE] * dt
     )
@@ -285,7 +286,7 @@ def pull(coupler, state, moment):
 
 @kernel
 def remember(coupler, state):
-    """The wrench just written joins those whose work is still to be seen; the oldest leaves."""
+    """The wrench just written joins those whose work is not yet known; the oldest leaves."""
     last = 6 * (int(coupler[Q_HELD]) - 1)
     for k in range(last):
         state[C_HELD + k] = state[C_HELD + k + 6]

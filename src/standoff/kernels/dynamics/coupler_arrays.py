@@ -1,4 +1,4 @@
-"""Where everything of a virtual coupler stands: its numbers, its state, and a device's reading."""
+"""Where everything of a virtual coupler is: its numbers, its state, and a device's reading."""
 
 # Why a coupler let go.
 (

@@ -1,4 +1,4 @@
-"""A device's reading, taken in or found at fault."""
+"""A device's reading, taken in or found to be faulty."""
 
 from __future__ import annotations
 

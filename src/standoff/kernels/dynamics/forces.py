@@ -78,7 +78,8 @@ def velocity_between(motion, x):
 
 @kernel
 def press(system, pair, rows, first, motion, n, spot, scratch):
-    """Put the force of one spot on both bodies; the power that it loses. n is in world axes."""
+    """Add the force of one spot to both bodies; returns the power that it loses. n is in world
+    axes."""
     done = spot_push(
         material_of(system, pair), spot.share, spot.depth, n, velocity_between(motion, spot.point)
     )
@@ -146,8 +147,8 @@ def plane_and_corners(system, pair, side, pose):
 
 @kernel
 def touch_corners(system, packed, pair, witness, rows, first, motion, scratch):
-    """`touch_pair`, of a half-space and a body of flat faces: every corner below the plane carries
-    a spring of its own, so the force is the slope of an energy, whatever the tilt.
+    """`touch_pair`, of a half-space and a body of flat faces: every corner below the plane has its
+    own spring, so the force is the gradient of an energy, whatever the tilt.
     """
     side = plane_of(system, pair)
     n, placed, at, count = plane_and_corners(system, pair, side, witness.pose)
@@ -171,7 +172,7 @@ def touch_corners(system, packed, pair, witness, rows, first, motion, scratch):
 
 @kernel
 def touch_pair(system, packed, pair, witness, rows, first, motion, scratch):
-    """Put a pair's contact on its bodies' loads; the power that it loses.
+    """Add a pair's contact to its bodies' loads; returns the power that it loses.
 
     `rows[first]` are the bodies, whose twists stand in `motion` too.
     """

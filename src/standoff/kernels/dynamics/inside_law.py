@@ -1,4 +1,5 @@
-"""The tracker's parameters at a stage whose poses nobody knew before: places, normals and rates.
+"""The tracker's parameters at a stage whose poses were not known in advance: places, normals and
+rates.
 
 Apart the rates are the paper's, w = -M⁻¹(K Psi + b); at contact, where M loses its rank, those of
 the contact-regular form, y' = -J⁻¹(K r + r_t), of which the parameters are the first four.
@@ -47,7 +48,7 @@ def normal_at(pair, pose, place, known):
 def stage_normal(pair, pose, place, near, known):
     """The normal of a contact at a place that the law has come to: near contact what the features
     give; else the direction between the witness points, as swept bodies touch by it. A certificate
-    has its own, which tells nothing of the points while the law lags behind them.
+    has its own, which says nothing about the points while the law lags behind them.
     """
     if near:
         return normal_at(pair, pose, place, known)[0]

@@ -154,7 +154,7 @@ def take_from_box(newest, rows, seen, row, count):
 
 @kernel
 def rest(coupler, state):
-    """The coupler at rest, its wrenches zero: no fault, and its counts go on."""
+    """Put the coupler to rest, its wrenches zero: no fault, and its counts continue."""
     state[C_ENGAGED] = 0.0
     state[C_RAMP], state[C_SEEN] = 0.0, 0.0
     state[C_CLOCK], state[C_TIME], state[C_SEQUENCE] = float("nan"), float("nan"), -1.0
@@ -166,7 +166,7 @@ def rest(coupler, state):
 
 @kernel
 def engage(coupler, state):
-    """The coupler at work, its wrenches growing from zero; nothing where it is at work."""
+    """Engage the coupler, its wrenches growing from zero; does nothing if it is engaged."""
     if state[C_ENGAGED] == 0.0:
         rest(coupler, state)
         state[C_ENGAGED], state[C_FAULT] = 1.0, NO_FAULT
@@ -175,7 +175,7 @@ def engage(coupler, state):
 
 @kernel
 def lower_limits(system, numbers, limits):
-    """The greatest force and torque become the least of what they are and what is asked."""
+    """The greatest force and torque become the lesser of what they are and what is asked for."""
     at = system.layout[I_COUPLER]
     force, torque = load_relaxed(limits, L_FORCE), load_relaxed(limits, L_TORQUE)
     if force < numbers[at + Q_FORCE]:

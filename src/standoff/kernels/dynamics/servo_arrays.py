@@ -1,4 +1,4 @@
-"""Where everything of a servo loop stands: its plan, what it shares, tells and keeps."""
+"""Where everything of a servo loop is: its plan, what it shares, publishes and keeps."""
 
 # The plan, integers: nanoseconds of a period, of the spin at its end and of the longest gap; ticks
 # to run, 0 for no end; whether the scripted readings begin again; whether bodies are left alone.

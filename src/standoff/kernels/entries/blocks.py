@@ -61,7 +61,7 @@ def tabled_options(table):
 
 
 class Polytopes(NamedTuple):
-    """Where the polytope of the frame before stands, and where this one's may be kept."""
+    """Where the polytope of the frame before is, and where this one's may be kept."""
 
     last: Any  # pointers
     own: Any
@@ -167,7 +167,7 @@ def read_poses(pose_a, pose_b):
 
 @kernel
 def copied(given, h, block):
-    """Copy a frame's poses, twists and time into its block. False where a pose is none."""
+    """Copy a frame's poses, twists and time into its block. False where a pose is invalid."""
     motion = ahead(block, BLOCK_MOTION)
     square = copy_pose(given.pose_a, ahead(motion, POSE_A))
     if not (copy_pose(given.pose_b, ahead(motion, POSE_B)) and square):

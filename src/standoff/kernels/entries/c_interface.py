@@ -22,7 +22,7 @@ from standoff.kernels.state.arrays import (
 def start_in_block(table, address):
     """Begin anywhere, by a global query, at the poses in a block.
 
-    Returns FINE, or what of the poses and twists is refused.
+    Returns FINE, or which of the poses and twists is refused.
     """
     block = reals_at(address, N_LONG_BLOCK)
     for k in range(N_STATE):
@@ -34,7 +34,7 @@ def start_in_block(table, address):
 
 @shared
 def step_in_block(table, address):
-    """A frame of the pair's law: FINE or, with nothing changed, what of the poses and
-    twists is refused.
+    """A frame of the pair's law: FINE or, with nothing changed, which of the poses and twists is
+    refused.
     """
     return answered_in_place(table, reals_at(address, N_LONG_BLOCK), N_LONG_BLOCK)

@@ -1,4 +1,4 @@
-"""Loading or compiling ahead what a loop will call, so that no frame waits for it."""
+"""Loading or compiling ahead of time what a loop will call, so that no frame waits for it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MODULES = (
     "standoff.kernels.entries.simulation",
     "standoff.kernels.entries.servo",
 )
-"""Where entries stand."""
+"""The modules that have entries."""
 
 LOCATING = ("feature_jet", "edge_jet", "coedge_conormal", "end_direction")
 """What locates the instant of a switch in a recorded run."""
@@ -32,8 +32,8 @@ ready_for: set[bool] = set()
 
 
 def prepare(runs: bool = False) -> None:
-    """Have ready what a tracker's frames are called by; the frame of its own law, which reaches
-    all that is to be met in contact and out of it, is there by then.
+    """Prepare what calls a tracker's frames; the frame of its own law, which reaches everything
+    needed in contact and out of it, is ready by then.
 
     Parameters
     ----------
@@ -50,19 +50,19 @@ def prepare(runs: bool = False) -> None:
 
 
 def prepare_buffer() -> None:
-    """Have ready what a frame in a buffer is made by."""
+    """Prepare what makes a frame in a buffer."""
     _prepare_each([tracker.moved, tracker.moved_by_poses])
 
 
 def prepare_simulation() -> None:
-    """Have ready what a simulated system runs by."""
+    """Prepare what runs a simulated system."""
     from standoff.kernels.entries import simulation
 
     _prepare_each([simulation.run_system])
 
 
 def prepare_servo() -> None:
-    """Have ready what a servo loop runs by, and what the slower side calls meanwhile."""
+    """Prepare what runs a servo loop, and what the slower side calls meanwhile."""
     from standoff.kernels.entries import servo, simulation
 
     _prepare_each([simulation.run_system, servo.serve, servo.put_row, servo.take_row])
@@ -83,12 +83,12 @@ def every_entry() -> Iterator[Entry]:
 
 
 def prepare_all() -> None:
-    """Have every entry ready, before other processes that ask for them are started."""
+    """Prepare every entry, before other processes that ask for them are started."""
     _prepare_each(list(every_entry()))
 
 
 def prepare_named(module: str, name: str) -> None:
-    """Have an entry ready for another process that asks for it; nothing where there is none."""
+    """Prepare an entry for another process that asks for it; does nothing if there is none."""
     entry = getattr(importlib.import_module(module), name, None)
     if isinstance(entry, Entry):
         entry.prepare()

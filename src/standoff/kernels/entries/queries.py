@@ -1,7 +1,7 @@
 """Kernels as Python calls them: packed arrays in, pointers below.
 
 A kernel that got arrays from Python and pointers from other kernels would be compiled twice with
-all that it calls. These are the few that the layers above ask for.
+all that it calls. These are the few that the layers above need.
 """
 
 from standoff.kernels.algebra.rigid import relative_pose, relative_twist

@@ -1,8 +1,8 @@
 """The servo loop as Python calls it: one call that lasts from its first tick to its last.
 
-All of it is compiled, the waiting too, and it holds no lock of Python's: whatever the interpreter
-does meanwhile, its garbage collector included, the loop does not wait for it. It allocates before
-its first tick alone.
+All of it is compiled, including the waiting, and it does not hold Python's lock: whatever the
+interpreter does meanwhile, its garbage collector included, the loop does not wait for it. It
+allocates only before its first tick.
 """
 
 import numpy as np
@@ -139,7 +139,7 @@ def must_end(plan, asked, moment, times, asleep, tallies):
 
 @kernel
 def answer(asked, answered, coupler, state):
-    """Do what was asked since: to let go comes last, so that of both it holds."""
+    """Obey what was asked since: letting go comes last, so it wins if both were asked."""
     wanted, released = load_relaxed(asked, W_ENGAGE), load_relaxed(asked, W_REST)
     if wanted != answered[0]:
         answered[0] = wanted

@@ -106,8 +106,8 @@ def pointed(arrays):
 
 @kernel
 def keep_alive(arrays, counts, log):
-    """Named after the last use of what points into them: Numba frees an array after its own last
-    use, which a pointer is not."""
+    """Call this after the last use of what points into the arrays: Numba frees an array after its
+    own last use, and a pointer is not one."""
     total = len(counts) + len(log)
     for k in range(10):
         total += len(arrays[k])
@@ -204,7 +204,7 @@ def run_system(packed, state, drives, every, records):
 
     `packed` is (layout, numbers, ints, reals, options). `records` are the states and the accounts:
     row 0 is of the start, each next one of a tick `every` later. `drives` are a table of the driven
-    bodies' motions, a row each half tick, and readings of a coupler's device, N_READING numbers
+    bodies' motions, one row per half tick, and readings of a coupler's device, N_READING numbers
     each (``coupler_arrays``), the first of which is for the first tick. Returns (-1, FINE), or the
     tick after which a pose or twist was refused, and why: the rows before it are written.
     """
@@ -247,7 +247,7 @@ def couple_once(coupler, state, reading, tool, dt, clock):
 
 @entry(SYSTEM, WRITE, WRITE, WRITE, work="simulation")
 def load_system(packed, state, loads, row):
-    """What contacts do to bodies where these stand in a state, for methods that are not ours.
+    """What contacts do to bodies at their places in a state, for methods that are not ours.
 
     The trackers go to the state's poses from where they are in it, in place. `loads` become those
     of the bodies, N_LOAD numbers each, and then the power that the contacts lose and that driven

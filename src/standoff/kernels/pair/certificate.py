@@ -51,11 +51,12 @@ def nearer(n, a, b):
 
 @small
 def square_to(n, t):
-    """A vector near n and square to the unit vector t, to a few roundings: n less its part along t.
+    """A vector near n and perpendicular to the unit vector t, to a few roundings: n less its part
+    along t.
 
-    Its roundoff is eps whatever its length is, so it is made a unit vector only where it is long.
-    A short one is roundoff where n lies along t, and as a unit vector would point anywhere. It
-    bounds as it is: a normal cone holds the zero vector too, and every shorter one.
+    Its roundoff is eps whatever its length is, so it is made a unit vector only where it is long. A
+    short one is roundoff where n lies along t, and as a unit vector would point anywhere. Unscaled,
+    it still gives a bound: a normal cone also contains the zero vector and every shorter one.
     """
     flat = axpy(-dot(n, t), t, n)
     return unit(flat) if dot(flat, flat) > FLAT_PART else flat
@@ -160,7 +161,7 @@ def nearest_normal(ints, reals, feature, cone, n):
 
 @kernel
 def behind(ints, reals, feature, n):
-    """Do some points of the body lie behind the plane square to n at a vertex, as they must?
+    """Do some points of the body lie behind the plane perpendicular to n at a vertex, as they must?
 
     At a smooth vertex no direction rises along the inward normal either.
     """

@@ -164,7 +164,7 @@ class Stationary(NamedTuple):
 def newton(pair, pose, place, n, d, span, work):
     """Newton's method on r(y) = 0 with the features held.
 
-    It ends where the residual falls no more.
+    It ends where the residual no longer falls.
     """
     jet_a, jet_b = pair_jets(pair, pose, place)
     r, y, scales = stack_reals(), stack_reals(), stack_reals()

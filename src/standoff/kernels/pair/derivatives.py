@@ -4,9 +4,9 @@ By the 12 unit twists (v_A, w_A, v_B, w_B) in world axes, R <- exp(w) R, p <- p 
 a root of the contact-regular form r(y) = 0, y = (q, n, d), and stays one while the bodies move:
 dy = -J^-1 r_t, once for each unit twist. This is regular apart, in contact and in penetration.
 
-Where J is singular, as in flat and line contact, its null directions are those in which the
-witness points may go with n and d held. All pairs (x, y) that serve share n; d has the derivative
-least over them of n . (y' - x') along any motion. So the gradient (-n, -a x n, n, c x n) keeps its
+Where J is singular, as in flat and line contact, its null directions are those in which the witness
+points may go with n and d held. All optimal pairs (x, y) share n; along any motion, the derivative
+of d is the least of n . (y' - x') over them. So the gradient (-n, -a x n, n, c x n) keeps its
 components by translation, and those by turns about axes e with e . (delta x n) = 0 for all ways
 delta that the points may go: there all pairs agree.
 

@@ -59,7 +59,7 @@ def erase(events, body, first, last):
 
 @kernel
 def erase_loops(events, n, body, start, end):
-    """Keep of one body's events the loop-free path from start to end. True where there is one.
+    """Keep only the loop-free path from start to end of one body's events. True if there is one.
 
     A prediction may cross a boundary and the correction come back: that is no event.
     """
@@ -89,7 +89,7 @@ def erase_loops(events, n, body, start, end):
 def tidy_events(work, old_a, old_b, new_a, new_b):
     """Reduce the log to the net events of a frame, packed to its front, and count them.
 
-    Where a restart has cut a path, one event without value or slope tells the whole change.
+    Where a restart has cut a path, one event without value or slope stands for the whole change.
     """
     counts, events = work.counts, work.events
     n = counts[EVENTS]

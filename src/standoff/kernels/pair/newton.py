@@ -251,7 +251,8 @@ def levelled(inverse, first, second):
 
 @kernel
 def plainly_definite(metrics, H, pivots):
-    """(is the law's rank rule passed by far, is every direction stiff): by the pivots of H itself.
+    """(does H pass the law's rank rule by far, is every direction stiff): by the pivots of H
+    itself.
 
     L⁻¹ H L⁻ᵀ with a lower triangular L has the pivots of H over those of D. Where they are all
     above LEAN of its greatest diagonal, no factor's square exceeds 1 / LEAN, and the bound of the

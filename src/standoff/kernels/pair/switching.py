@@ -257,8 +257,8 @@ def off_crease(ints, reals, source, feature, chart, p, q, gap):
     """(p, q) a little inside the feature that was released, where it leaves a crease.
 
     Across a crease the curvature is infinite, and no Newton step leads off it. The slope of the
-    distance to the other body's witness point, `gap` from here, changes its sign at a parameter
-    of any order of magnitude: it is sought on a logarithmic scale along the way inwards.
+    distance to the other body's witness point, `gap` from here, changes its sign at a parameter of
+    any order of magnitude: it is searched for on a logarithmic scale along the way inwards.
     """
     dim = dimension(ints, feature)
     if dim == 1:

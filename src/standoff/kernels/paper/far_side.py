@@ -2,8 +2,8 @@
 
 The printed regions end at an edge's ruled surface of normals, drawn on both sides of the face. A
 point behind the body, within a face's normals drawn backwards, is in that face's region by these
-tests. Lin and Canny and V-Clip leave the face there; so do these guards, unless they are told to
-keep it. The way leads over the edge of the body that is nearest to the opposing point.
+tests. Lin and Canny and V-Clip leave the face there; so do these guards, unless told to keep it.
+The way leads over the edge of the body that is nearest to the opposing point.
 """
 
 from standoff.kernels.algebra.vectors import active, dot, norm, sub

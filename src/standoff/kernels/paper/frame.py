@@ -1,5 +1,5 @@
-"""A frame of the paper's law: integrate, saturate, switch; contact and global starts as they are
-for the predictor-corrector."""
+"""A frame of the paper's law: integrate, saturate, switch; contact and global starts are as for the
+predictor-corrector."""
 
 from standoff.kernels.algebra.vectors import dot, sub
 from standoff.kernels.compiler.decorators import kernel
@@ -30,7 +30,7 @@ from standoff.kernels.values import NO_RATES, ORIGIN, Found
 
 @kernel
 def left_alone(options):
-    """Is nothing but the law to move the witness points?"""
+    """May only the law move the witness points?"""
     return options.switching == SWITCH_NONE or not options.restarts
 
 
@@ -72,7 +72,7 @@ def outside(advance, pair, motion, before, options, step, work):
 
 @kernel
 def anew(pair, pose, tracked, gain):
-    """The law begins anew: its integrated errors are those of the witness points."""
+    """The law begins again: its integrated errors are those of the witness points."""
     return Tracked(tracked.shown, begun(pair, pose, tracked.shown.found.place, gain))
 
 

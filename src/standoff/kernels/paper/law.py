@@ -197,7 +197,7 @@ def held_step(pair, place, change):
 
 @kernel
 def as_before(before, place):
-    """Is a place the one before it but for roundoff?"""
+    """Is a place the one before it, up to roundoff?"""
     most = max(
         max(abs(place.u - before.u), abs(place.v - before.v)),
         max(abs(place.r - before.r), abs(place.s - before.s)),
@@ -212,8 +212,8 @@ def released(pair, pose, before, place, gap, work):
     """The place after the test of the multipliers; gap is (n, d, least slope).
 
     A frame may hold a boundary that its step leads out of at once, and the test release it again:
-    nothing has moved, and the next frame would do the same for ever. Then the boundary is kept,
-    so that the next frame solves on it, and moves.
+    nothing has moved, and the next frame would do the same for ever. Then the boundary is kept, so
+    that the next frame solves on it, and moves.
     """
     n, d, floor = gap
     switches = work.counts[EVENTS]

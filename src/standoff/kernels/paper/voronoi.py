@@ -217,7 +217,7 @@ def log_left(work, body, source, to, slope, gap):
 
 @kernel
 def gives_to(ints, reals, side, face, x, noise, work):
-    """Would an edge give x to this face?"""
+    """Would an edge pass x on to this face?"""
     if dimension(ints, side.feature) != 1:
         return False
     return off_edge(ints, reals, side, x, noise, FAR_SIDE_LEFT, work)[2] == face

@@ -131,7 +131,7 @@ def in_plane(T):
 
 @kernel
 def refusal(planar, Ta, Tb, xi_a, xi_b):
-    """FINE, or what of the poses and twists is refused."""
+    """FINE, or which of the poses and twists is refused."""
     if not is_pose(Ta):
         return BAD_POSE_A
     if not is_pose(Tb):

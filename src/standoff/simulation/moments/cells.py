@@ -79,7 +79,7 @@ class Total:
     ----------
     values : array
     remainder : array
-        What they may be off for want of nodes.
+        What they may be off because of too few nodes.
     magnitude : array
         Integrals of absolute values.
     nodes : int
@@ -150,8 +150,8 @@ def integrate(
     tolerance : float
         Relative to them.
     most : int
-        Points to take at most, about: what is reached by then is the answer, as its remainder
-        tells.
+        Points to take at most, about: what is reached by then is the answer, and its remainder says
+        how good it is.
     """
     found = [(cell, evaluated(cell)) for cell in cells]
     nodes = sum(_count(cell) for cell in cells)

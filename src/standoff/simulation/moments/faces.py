@@ -185,9 +185,9 @@ def superellipsoid_cells(charts: list[Chart], loop: bool) -> list[Cell]:
     if loop:
         if not all(_is_octant(chart) for chart in charts):
             raise StandoffError(
-                "A face of a superellipsoid with several charts, trimmed otherwise than to an "
-                "octant, is not integrated: give each part one chart, or give mass, centre and "
-                "inertia yourself (so.simulation.MassProperties.of).",
+                "A face of a superellipsoid with several charts, trimmed other than to an "
+                "octant, cannot be integrated: give each part one chart, or give mass, centre "
+                "and inertia yourself (so.simulation.MassProperties.of).",
                 "body",
                 charts[0].body,
             )

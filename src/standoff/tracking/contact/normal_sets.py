@@ -1,4 +1,4 @@
-"""How many normals serve a pair that touches or overlaps: one, a curve of them, or a region."""
+"""How many normals a pair that touches or overlaps has: one, a curve of them, or a region."""
 
 from __future__ import annotations
 

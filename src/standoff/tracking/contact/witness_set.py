@@ -1,4 +1,4 @@
-"""Are the witness points unique? If not, the set of all pairs that serve."""
+"""Are the witness points unique? If not, the set of all pairs that are equally near."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ class WitnessSet(KeepsReadOnly):
     normals : (k, 3) array
         That normal and, in overlap, others along which the bodies are as deep in each other: two
         for an ellipsoid about the centre of another, six for a cube in the middle of a cube. Found
-        by descents from 53 directions, so a narrow one may be missed; where ``normal_dimension``
-        is not 0, not looked for.
+        by descents from 53 directions, so a narrow one may be missed; not searched for if
+        ``normal_dimension`` is not 0.
     residual : float
-        Greatest length of point_b - point_a - distance * normal over the pairs: large where the
-        answer was no optimum.
+        Greatest length of point_b - point_a - distance * normal over the pairs: large if the answer
+        was not an optimum.
     """
 
     dimension: int
@@ -63,7 +63,7 @@ class WitnessSet(KeepsReadOnly):
 
     @property
     def unique(self) -> bool:
-        """Are witness points and normal the only ones?"""
+        """Are the witness points and the normal the only ones?"""
         return self.dimension == self.normal_dimension == 0 and len(self.normals) == 1
 
     def __repr__(self) -> str:
@@ -75,14 +75,14 @@ class WitnessSet(KeepsReadOnly):
 def witness_set(
     proximity: Answer, pose_a: PoseLike | None = None, pose_b: PoseLike | None = None
 ) -> WitnessSet:
-    """The set of all pairs of witness points that an answer could have named.
+    """The set of all pairs of witness points that an answer could have given.
 
     Parameters
     ----------
     proximity : Proximity
         A converged answer, apart or overlapping.
     pose_a, pose_b : Pose or what ``Pose.of`` reads, optional
-        World poses that it holds for; those that the answer keeps if not given.
+        World poses for which it holds; those that the answer keeps if not given.
 
     Returns
     -------

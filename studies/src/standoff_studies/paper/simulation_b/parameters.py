@@ -88,7 +88,8 @@ def heavy(simulation: Run, curve: int, *, exact: bool = False) -> Array:
     """Return a curve's parameter where it is the active one, else nan, shape (n,)."""
     recording = simulation.exact if exact else simulation.paper
     own = [f.kind == "edge" and f.index == curve for f in recording.feature]
-    return np.where(own, recording.parameter, np.nan)
+    held = simulation.exact.parameters[:, 0] if exact else simulation.paper.parameter
+    return np.where(own, held, np.nan)
 
 
 def resets(simulation: Run) -> list[Reset]:
@@ -133,8 +134,9 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
     others = not_nearest(simulation)
     jumps = np.array([event.time for event in paper.events if event.kind == "medial"])
     since = max((float(t - jumps[jumps < t].max()) for t in paper.time[others]), default=0.0)
-    on_curve = np.isfinite(paper.parameter) & np.isfinite(exact.parameter) & settled & same
-    lag = np.abs(paper.parameter - exact.parameter)[on_curve]
+    due = exact.parameters[:, 0]
+    on_curve = np.isfinite(paper.parameter) & np.isfinite(due) & settled & same
+    lag = np.abs(paper.parameter - due)[on_curve]
     return (
         Statement(
             "Fig. 11",
