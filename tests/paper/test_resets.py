@@ -15,6 +15,7 @@ from standoff.recording.track import track_along
 from standoff.tracking import Feature, Tracker
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.bodies import lens_of_patches, planar_body
+from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.resets import (
     ROUNDED,
     Move,
@@ -26,7 +27,6 @@ from standoff_studies.paper.resets import (
     resets_of,
 )
 from standoff_studies.paper.simulation_b import run as b
-from standoff_studies.paper.simulation_b.printed import REST
 from standoff_studies.paper.simulation_c import run as c
 from standoff_studies.paper.simulation_d import runs as d
 from standoff_studies.paper.simulation_e import runs as e

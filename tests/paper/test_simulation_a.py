@@ -6,6 +6,8 @@ import pytest
 import standoff as so
 from standoff_studies.paper import style
 from standoff_studies.paper.catalogue import chosen, make
+from standoff_studies.paper.many_starts import motion_along
+from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.simulation_a import errors, gains, raw_law, snapshots
 from standoff_studies.paper.simulation_a import run as runs
 from standoff_studies.paper.simulation_a import statements as said
@@ -27,7 +29,7 @@ STILL = so.Twist.zero()
 def system(q, time):
     place = (FACE, tuple(q)), (VERTEX, ())
     return so.tracking.pair_system(
-        vault(), point(), runs.HOME, PATH.pose(time), *place, STILL, PATH.twist(time)
+        vault(), point(), REST.pose(time), PATH.pose(time), *place, STILL, PATH.twist(time)
     )
 
 
@@ -45,9 +47,9 @@ def roof_point(u, v):
 def rates(q, time, gain):
     """w = -H^-1 (K Psi + b) and H, with Psi = F'dR, H = F'F + dR.f'', b = -F'v."""
     f, *first, uu, uv, vv = roof_jet(*q)
-    F, dR = np.array(first).T, f - PATH.positions(time)
+    F, dR = np.array(first).T, f - PATH.pose(time).translation
     H = F.T @ F + [[dR @ uu, dR @ uv], [dR @ uv, dR @ vv]]
-    return -np.linalg.solve(H, gain * F.T @ dR - F.T @ PATH.velocities(time)), H
+    return -np.linalg.solve(H, gain * F.T @ dR - F.T @ PATH.twist(time).v), H
 
 
 def test_vault_is_proven_convex_and_its_roof_is_the_patch():
@@ -62,26 +64,26 @@ def test_vault_is_proven_convex_and_its_roof_is_the_patch():
 def test_twist_is_the_rate_of_the_path():
     h = 1e-6
     for time in (0.0, 0.7, 2.9):
-        rate = (PATH.positions(time + h) - PATH.positions(time - h)) / (2 * h)
-        np.testing.assert_allclose(PATH.twist(time).v, rate, atol=1e-9)
-        np.testing.assert_array_equal(PATH.pose(time).translation, PATH.positions(time))
+        after, before = (PATH.pose(time + step).translation for step in (h, -h))
+        np.testing.assert_allclose(PATH.twist(time).v, (after - before) / (2 * h), atol=1e-9)
+        # 1.1 [length/s] around, 0.25 [length] higher after a turn
+        around = [0.55 * np.cos(2 * time), 0.55 * np.sin(2 * time), 1.3 + 0.08 * time]
+        np.testing.assert_allclose(PATH.pose(time).translation, around, atol=1e-14)
 
 
 def test_system_is_that_of_the_paper():
     """Eqs. (1)-(4), (9), (10); also beyond the patch's rims, where trial stages come."""
-    times = np.array([0.0, 1.3])
-    moving = runs.motion(times)
-    for k, time in enumerate(times):
+    for time in (0.0, 1.3):
         for q in PLACES:
-            s, public = runs.system_at(q, moving, k), system(q, time)
+            s, public = runs.system_at(q, time), system(q, time)
             for name, value in public._asdict().items():
                 np.testing.assert_array_equal(getattr(s, name), value)
             w, H = rates(q, time, 300.0)
             np.testing.assert_allclose(-np.linalg.solve(s.M, 300.0 * s.Psi + s.b), w, rtol=1e-10)
             np.testing.assert_allclose(s.H, H, atol=1e-13)
     np.testing.assert_allclose(
-        runs.system_at(np.array([1.2, -0.1]), moving, 0).dR,
-        roof_point(1.2, -0.1) - moving.x[0],
+        runs.system_at(np.array([1.2, -0.1]), 0.0).dR,
+        roof_point(1.2, -0.1) - PATH.pose(0.0).translation,
         atol=1e-13,
     )
 
@@ -92,7 +94,7 @@ def test_tracker_runs_the_law_by_the_book(raw):
     q, gain = np.array(START), 1000.0
     made = errors.shown(gain).q
     if raw:
-        moving = runs.motion(STEP * np.arange(60))
+        moving = motion_along(REST, PATH, STEP * np.arange(60))
         made = raw_law.follow(raw_law.raw_tracker(gain), q, moving).q
         assert len(made) == 11
     for k, found in enumerate(made[:41]):
@@ -152,12 +154,12 @@ def test_a_growth_that_does_not_rise_has_no_limit(monkeypatch):
 def test_figures_are_run_by_the_raw_law():
     """Figs. 6 and 7: M as it is, on one face, and nothing else that moves the witness point."""
     for made in (snapshots.snapshot_run(), errors.shown(100.0), errors.shown(1000.0)):
-        law = made.tracker.law
+        law, counts = made.recording.info.law, made.recording.total_counts()
         assert (law.solve, law.switching, law.saturation) == ("plain", "none", "zero")
         assert (law.restarts, law.feedforward, law.integrator) == (False, True, "heun")
         assert law.gain == made.gain
-        assert made.counts.regularised == made.counts.restarts == made.counts.saturations == 0
-        assert made.counts.corrections == len(made.q) - 1
+        assert counts.regularised == counts.restarts == counts.saturations == 0
+        assert counts.corrections == len(made.q) - 1
     assert [errors.shown(1000.0).steps_below(level) for level in (1e-2, 1e-3, 1e-4)] == [8, 12, 15]
 
 
@@ -275,4 +277,5 @@ def test_animation_draws_its_first_and_last_frame():
         for k in (0, animation.frames - 1):
             figure = style.new_figure(*animation.size)
             animation.draw(figure, k)
-            assert len(figure.axes[0].lines) > 3
+            (painted,) = figure.axes[0].collections
+            assert len(painted.get_paths()) > snapshots.GRID**2

@@ -19,6 +19,7 @@ from standoff_studies.paper.held_features import (
 )
 from standoff_studies.paper.simulation_d import modes, parameters, runs, scene
 from standoff_studies.paper.simulation_e.runs import SIMULATION as OTHER
+from standoff_studies.paper.voronoi_drawing import region_sheets
 
 AT_POINT = (("vertex", 0), ())
 LENS = support.Lens(1.0, 0.45)
@@ -284,7 +285,7 @@ def test_the_automaton_lists_what_was_taken(run):
 
 def test_the_voronoi_surfaces_part_the_regions(run):
     """Fig. 16: a point of a surface has its closest point where the surface stands on the lens."""
-    sheets = scene.region_sheets(run.a)
+    sheets = region_sheets(so.voronoi_regions(run.a), scene.REACH)
     assert len(sheets) == 12  # two along each edge, one at each end
     for sheet in sheets:
         for row in sheet[::3]:

@@ -172,7 +172,8 @@ def test_damaged_failures(refused, failure, tmp_path, place, value):
 def test_damaged_exceptions(refused, tmp_path, place, value):
     file = tmp_path / "failure.json"
     file.write_text(json.dumps(changed(exception_facts(SEED, 1, FRAMES, "died"), place, value)))
-    assert f"'{place}' is" in refused("--replay", file)
+    wrong = "is missing" if value == MISSING else f"= {value}: must be a whole number"
+    assert f"'{place}' {wrong}" in refused("--replay", file)
 
 
 def test_the_whole_files_are_read(failure, ledger, tmp_path, capsys):

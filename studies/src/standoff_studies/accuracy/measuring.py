@@ -13,7 +13,7 @@ import numpy as np
 from standoff.tracking import Status, distance
 from standoff_studies.accuracy.cases import Case, catalogue, draw_cases, pairs
 from standoff_studies.accuracy.least_depth import least_depth
-from standoff_studies.accuracy.peers.answer import Peer, PeerAnswer, Pose
+from standoff_studies.accuracy.peers.answer import NOTHING, Peer, PeerAnswer, Pose
 from standoff_studies.accuracy.solids import Kind
 from standoff_studies.accuracy.truth import support_sum
 from standoff_studies.oracles import Array
@@ -242,8 +242,7 @@ def measure_peer(case: Case, peer: Peer) -> Row | None:
     try:
         answer = query(case.truth.pose_a, case.truth.pose_b)
     except (RuntimeError, ValueError, ArithmeticError):
-        nothing = np.full(3, nan)
-        answer = PeerAnswer(nan, nothing, nothing, nothing)
+        answer = NOTHING
     return _row(case, peer.name, answer)
 
 

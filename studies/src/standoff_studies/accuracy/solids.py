@@ -86,6 +86,11 @@ class Solid:
         return self.kind.support(*self.values.values())
 
     @property
+    def lengths(self) -> list[float]:
+        """Those of its values that are numbers."""
+        return [float(x) for x in self.values.values() if np.ndim(x) == 0]
+
+    @property
     def bounded(self) -> bool:
         return self.kind.name != "halfspace"
 

@@ -7,14 +7,16 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
+from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking import Feature
 from standoff_studies.paper import style
 
-Array = NDArray[np.float64]
+Spot = tuple[float, float]
+"""A place in a picture."""
 
 CURVE_SAMPLES = 65
 """Points of a drawn curve: its chords are off by less than a line's width."""
@@ -40,10 +42,12 @@ def planar_features(body: Body) -> tuple[Feature, ...]:
     return tuple(Feature(kind, index) for index in range(body.n_edges) for kind in kinds)
 
 
-def curve_points(body: Body, edge: int, pose: Pose | None = None) -> Array:
-    """Return points along a curve of a planar body, world x and y [length], shape (n, 2)."""
+def curve_points(
+    body: Body, edge: int, pose: Pose | None = None, count: int = CURVE_SAMPLES
+) -> Array:
+    """Return points along a curve of a planar body, world x and y [length], shape (count, 2)."""
     curve = body.edge_parts[edge].curve
-    points = [curve.point(t) for t in np.linspace(curve.first, curve.last, CURVE_SAMPLES)]
+    points = [curve.point(t) for t in np.linspace(curve.first, curve.last, count)]
     return placed(np.array(points), pose)
 
 
@@ -131,6 +135,32 @@ def draw_witness_line(axes: Axes, point_a: Array, point_b: Array, **line: Any) -
     look: dict[str, Any] = {"color": style.BLACK, "linewidth": 1.2, "markersize": 3.5, "zorder": 5}
     look |= line
     axes.plot(ends[:, 0], ends[:, 1], "o-", **look)
+
+
+def show_plane(axes: Axes, half: float) -> None:
+    """Show the square of this half width about the origin [length], without a grid."""
+    axes.grid(visible=False)
+    axes.set(xlim=(-half, half), ylim=(-half, half), xlabel="x [length]", ylabel="y [length]")
+
+
+def draw_arrow(axes: Axes, start: Spot, end: Spot, **look: Any) -> None:
+    """Draw an arrow from spot to spot; `look` is what matplotlib's ``FancyArrowPatch`` takes."""
+    usual: dict[str, Any] = {"arrowstyle": "-|>", "shrinkA": 0.0, "shrinkB": 0.0}
+    usual |= {"mutation_scale": 11.0, "zorder": 2}
+    axes.add_patch(FancyArrowPatch(start, end, **(usual | look)))
+
+
+def draw_box(
+    axes: Axes, middle: Spot, half: tuple[float, float], rounding: float, **look: Any
+) -> None:
+    """Draw a box with round corners; `look` is what matplotlib's ``FancyBboxPatch`` takes."""
+    (x, y), (width, height) = middle, half
+    shape = f"round,pad=0,rounding_size={rounding:g}"
+    axes.add_patch(
+        FancyBboxPatch(
+            (x - width, y - height), 2.0 * width, 2.0 * height, boxstyle=shape, zorder=3, **look
+        )
+    )
 
 
 def _place(body: Body, feature: Feature) -> tuple[Array, Array]:

@@ -13,13 +13,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff_studies.paper import style
-
-Array = NDArray[np.float64]
 
 PALE = ("#9FD3F2", "#F7D08A", "#7FD1B9", "#F4B8A0", "#E3B7D0", "#C9C9C9")
 """Faces side by side are told apart by any eye, and black lines stand out from all of them."""
@@ -35,6 +34,9 @@ GRID = 20
 
 PIECE = 0.04
 """Longest piece of a line [length], unless told: shorter than the patches' pieces."""
+
+LOOKS = {"face": (style.BLUE, "o"), "edge": (style.RED, "s"), "vertex": (style.BLACK, "^")}
+"""Colour and mark of a witness point by the kind of its feature."""
 
 SHAPES = {"o": (24, 0.0), "s": (4, 45.0), "^": (3, 90.0), "D": (4, 0.0)}
 """Corners of a mark and the angle of the first [degrees]."""
@@ -126,6 +128,12 @@ class View:
             self.line(points[k], style.QUIET, 0.5)
         for k in np.linspace(0, points.shape[1] - 1, lines + 2).round().astype(int)[1:-1]:
             self.line(points[:, k], style.QUIET, 0.5)
+
+    def patch(self, points: Array, colour: str, *, opacity: float = 1.0, lines: int = 0) -> None:
+        """Add a grid of points as `surface` does, with a black rim."""
+        self.surface(points, colour, opacity=opacity, lines=lines)
+        for rim in (points[0], points[-1], points[:, 0], points[:, -1]):
+            self.line(rim, style.BLACK, 1.4)
 
     def body(
         self,

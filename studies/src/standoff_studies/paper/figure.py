@@ -13,6 +13,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+HYBRID = "Section on the hybrid system"
+"""Of the paper; many statements stand there."""
+
+
+NOTHING = "-"
+"""What the paper states where a measurement stands for itself."""
+
+
 class Statement(NamedTuple):
     """One checkable statement of the paper beside what was measured.
 
@@ -42,6 +50,11 @@ class Statement(NamedTuple):
     why: str = ""
     by: str = ""
     constructed: bool = False
+
+
+def own_statement(source: str, measured: str, why: str = "", by: str = "") -> Statement:
+    """Return a measurement of our own, which stands for itself: the paper states nothing."""
+    return Statement(source, NOTHING, measured, None, why, by)
 
 
 def measured_by(by: str, statements: Iterable[Statement]) -> tuple[Statement, ...]:

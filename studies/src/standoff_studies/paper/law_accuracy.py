@@ -9,14 +9,13 @@ from time import perf_counter
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from standoff.geometry.validation import Array
 from standoff.tracking.calls import run
 from standoff.tracking.inputs import flat_pose
 
-Array = NDArray[np.float64]
 Placement = tuple[so.Pose, so.Twist]
 Motion = Callable[[float], tuple[Placement, Placement]]
 

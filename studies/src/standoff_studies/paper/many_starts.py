@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.kernels.state import arrays as K
 from standoff.motion import Path, Pose
 from standoff.tracking import Proximity, Tracker, TrackerState, pair_system
-from standoff.tracking.calls import run
+from standoff.tracking.frame_buffer import FrameBuffer
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.rows import poses_of, twists_of
-
-Array = NDArray[np.float64]
 
 AT_SIDE = 1e-9
 """Parameters that are nearer to 0 or 1 are at a side: the zeroing holds them there exactly."""
@@ -32,36 +30,6 @@ INDEFINITE = (
 """Why starts on the right faces do not arrive."""
 
 
-class Motion(NamedTuple):
-    """The poses and twists of both bodies at some times, as the kernels read them.
-
-    Attributes
-    ----------
-    times : ndarray, shape (n,)
-        s; the first is that of the start.
-    rows : ndarray, shape (n - 1, ...)
-        Of the times after the first.
-    """
-
-    times: Array
-    rows: Array
-
-
-class Arrivals(NamedTuple):
-    """How many of the tried starts have arrived.
-
-    Attributes
-    ----------
-    arrived, tried : int
-    by : str
-        The law that they were tried with.
-    """
-
-    arrived: int
-    tried: int
-    by: str
-
-
 class Ends(NamedTuple):
     """Where the tried starts have ended.
 
@@ -72,14 +40,15 @@ class Ends(NamedTuple):
         The law that they were tried with.
     placed, pinned : int
         Of those that have not arrived: how many are on the features of the closest points, and how
-        many are held at a side of a patch with M indefinite and projection errors left.
+        many are held at a side of a patch with M indefinite and projection errors left. 0 where
+        nobody has looked.
     """
 
     arrived: int
     tried: int
     by: str
-    placed: int
-    pinned: int
+    placed: int = 0
+    pinned: int = 0
 
     @property
     def lost(self) -> int:
@@ -103,32 +72,37 @@ def is_pinned(bodies: tuple[Body, Body], poses: tuple[Pose, Pose], answer: Proxi
     return at_side and indefinite and bool(np.linalg.norm(system.Psi) > LEFT)
 
 
-def motion_along(path_a: Path, path_b: Path, times: Array) -> Motion:
-    """Return two paths' poses and twists at some times [s]."""
+def begun(
+    tracker: Tracker, paths: tuple[Path, Path], place_a: Any, place_b: Any, time: float = 0.0
+) -> TrackerState:
+    """Return a law's state at a place of each body, whatever these are worth, at a time [s]."""
+    a, b = paths
+    poses, twists = (a.pose(time), b.pose(time)), (a.twist(time), b.twist(time))
+    return tracker.start_from(*poses, place_a, place_b, *twists, settle=False)
+
+
+def motion_along(path_a: Path, path_b: Path, times: Array) -> Array:
+    """Return two paths' poses and twists at some times but the first, that of the start [s].
+
+    A row a time, as the kernels read them.
+    """
     rows = np.empty((len(times) - 1, K.N_MOTION))
     poses, twists = poses_of(rows), twists_of(rows)
     for k, time in enumerate(times[1:].tolist()):
         for body, path in enumerate((path_a, path_b)):
             pose = path.pose(time)
             poses[body][k], twists[body][k] = flat_pose(pose), flat_twist(path.twist(time), pose)
-    return Motion(times, rows)
+    return rows
 
 
-def distances(tracker: Tracker, state: TrackerState, motion: Motion) -> Array:
-    """Return the distance in every frame after a start, shape (n - 1,) [length].
-
-    Nothing but the law moves the witness points: a frame that it refuses is nan, with all after.
-
-    Parameters
-    ----------
-    tracker : Tracker
-        With a law without restarts.
-    state : TrackerState
-        Of the motion's first time.
-    motion : Motion
-    """
-    steps = np.diff(motion.times)
-    return run(tracker.table, motion.rows, True, steps, state.data.copy()).rows[:, K.DISTANCE]
+def stepped(tracker: Tracker, state: TrackerState, rows: Array) -> Iterator[FrameBuffer]:
+    """Yield a tracker's buffer after each row of a motion: one buffer, written anew."""
+    poses, twists, buffer = poses_of(rows), twists_of(rows), tracker.buffer(state)
+    for k in range(len(rows)):
+        buffer.pose_a[:], buffer.pose_b[:] = poses[0][k], poses[1][k]
+        buffer.twist_a[:], buffer.twist_b[:] = twists[0][k], twists[1][k]
+        tracker.step_into(buffer)
+        yield buffer
 
 
 def last_answers(
@@ -145,12 +119,7 @@ def last_answers(
     times : ndarray, shape (n,)
         s
     """
-    rows = motion_along(*paths, times).rows
-    poses, twists = poses_of(rows), twists_of(rows)
+    rows = motion_along(*paths, times)
     for state in states:
-        buffer = tracker.buffer(state)
-        for k in range(len(rows)):
-            buffer.pose_a[:], buffer.pose_b[:] = poses[0][k], poses[1][k]
-            buffer.twist_a[:], buffer.twist_b[:] = twists[0][k], twists[1][k]
-            tracker.step_into(buffer)
+        *_, buffer = stepped(tracker, state, rows)
         yield buffer.proximity()

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from standoff.geometry.validation import Array
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.normals_contact import Track, tracked
 from standoff_studies.paper.normals_study import (
     FORMS,
@@ -26,13 +27,9 @@ from standoff_studies.paper.normals_study import (
     turned,
 )
 
-Array = NDArray[np.float64]
-
 PAPER, NORMALS, CONTACT = FORMS
 NAMES = {PAPER: "Eqs. (1)–(4)", NORMALS: "normals, ref. [28]", CONTACT: "contact-regular"}
-LOOK: dict[str, dict[str, Any]] = {
-    form: {"color": style.COLOURS[k], "linestyle": style.DASHES[k]} for k, form in enumerate(FORMS)
-}
+LOOK: dict[str, dict[str, Any]] = {form: style.line(k) for k, form in enumerate(FORMS)}
 
 GAPS = np.logspace(-8, 2, 41)
 """Distances at which matrices are judged [length]; A's longest semi-axis is 1."""
@@ -173,7 +170,7 @@ def statements(study: Study) -> tuple[Statement, ...]:
 
 
 def _measured(text: str, why: str = "") -> Statement:
-    return Statement("Ref. [28]", "-", text, None, why)
+    return own_statement("Ref. [28]", text, why)
 
 
 def _near_contact(study: Study) -> Statement:
@@ -342,13 +339,7 @@ def _draw_least(axes: Axes, study: Study) -> None:
 
 def _draw_shares(axes: Axes, study: Study, distance: float, title: str) -> None:
     for k, form in enumerate(FORMS):
-        axes.plot(
-            ANGLES,
-            study.shares[form, distance],
-            **LOOK[form],
-            marker=style.MARKERS[k],
-            markersize=4,
-        )
+        axes.plot(ANGLES, study.shares[form, distance], **style.marked(k, 4))
     axes.set(xlabel="angle of the starts [rad]", ylabel="part found", ylim=(-0.03, 1.05))
     axes.set_title(title)
 
@@ -356,13 +347,8 @@ def _draw_shares(axes: Axes, study: Study, distance: float, title: str) -> None:
 def _draw_steps(axes: Axes, study: Study) -> None:
     apart = np.array(START_DISTANCES) > 0.0
     for k, form in enumerate(FORMS):
-        axes.semilogx(
-            np.array(START_DISTANCES)[apart],
-            study.counts[form][apart],
-            **LOOK[form],
-            marker=style.MARKERS[k],
-            markersize=4,
-        )
+        distances = np.array(START_DISTANCES)[apart]
+        axes.semilogx(distances, study.counts[form][apart], **style.marked(k, 4))
     axes.set(xlabel="distance d [length]", ylabel="Newton steps", ylim=(0.0, 20.0))
     axes.set_yticks(range(0, 21, 4))
     axes.set_title(f"steps from {NEAR_ANGLE:g} rad off")

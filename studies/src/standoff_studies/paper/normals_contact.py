@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from standoff.geometry.validation import Array
 from standoff_studies.paper.normals_study import (
     AXES_A,
     AXES_B,
     NORMAL,
     TURN_A,
     TURN_B,
-    Array,
     Ellipsoid,
     Pair,
     corrected,

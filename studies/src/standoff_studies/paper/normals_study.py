@@ -14,13 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from standoff.geometry.validation import Array
 from standoff_studies.paper.normals_system import (
     evaluate_contact,
     evaluate_normals,
     evaluate_projection_errors,
 )
-
-Array = NDArray[np.float64]
 
 FORMS = ("projection errors", "normals", "contact-regular")
 """Eqs. (1)-(4); the set of reference [28]; the form in (q, n, d) that Standoff uses at contact."""

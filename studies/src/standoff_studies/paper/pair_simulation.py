@@ -7,20 +7,20 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.automaton import Visit
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Fixed, Path, Pose
 from standoff.recording import RecordedEvent, Recording, track
 from standoff.recording.times import even_times
 from standoff.recording.track import track_along
 from standoff.tracking import Proximity, Tracker, TrackerState, distance
 from standoff.tracking.laws import PaperLaw
-from standoff_studies.paper.figure import Statement
+from standoff_studies.paper.figure import HYBRID, Statement, own_statement
 from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth
 from standoff_studies.paper.law_words import law_words
-from standoff_studies.paper.many_starts import Ends, is_pinned, last_answers
+from standoff_studies.paper.many_starts import Ends, begun, is_pinned, last_answers
 from standoff_studies.paper.resets import (
     Errors,
     Move,
@@ -29,8 +29,6 @@ from standoff_studies.paper.resets import (
     projection_errors,
     resets_of,
 )
-
-Array = NDArray[np.float64]
 
 Place = tuple[tuple[str, int], tuple[float, ...]]
 """A feature, kind and number, and parameters on it."""
@@ -141,9 +139,7 @@ class Simulation:
         self, law: Tracker, start: Start, paths: tuple[Path, Path] | None = None
     ) -> TrackerState:
         """Return a law's state at a start, whatever it is worth, at the motion's beginning."""
-        both = self.paths if paths is None else paths
-        poses, twists = [path.pose(0.0) for path in both], [path.twist(0.0) for path in both]
-        return law.start_from(poses[0], poses[1], *start, *twists, settle=False)
+        return begun(law, self.paths if paths is None else paths, *start)
 
     def entered_events(self, recording: Recording) -> list[RecordedEvent]:
         """Return the switches after a wrong start has come to the true features."""
@@ -180,11 +176,22 @@ def printed_runs(simulation: Simulation) -> tuple[Recording, ...]:
     return tuple(track_along(law, *simulation.paths, times, state=state) for state in states)
 
 
+def random_starts(kind: str, count: int) -> list[Start]:
+    """Draw starts on both bodies, each of three faces or edges with parameters from 0 to 1."""
+    rng, parameters = np.random.default_rng(1), {"edge": 1, "face": 2}[kind]
+    found = []
+    for _ in range(count):
+        on, at = rng.integers(3, size=2).tolist(), rng.uniform(0.02, 0.98, (2, parameters)).tolist()
+        a, b = (((kind, index), tuple(own)) for index, own in zip(on, at, strict=True))
+        found.append((a, b))
+    return found
+
+
 def ends_of(
     simulation: Simulation,
     tried: Sequence[Start],
     patience: float,
-    arrived: Callable[[Proximity], bool],
+    arrived: Callable[[Proximity, Proximity], bool],
     told: str,
     paths: tuple[Path, Path] | None = None,
 ) -> Ends:
@@ -197,7 +204,7 @@ def ends_of(
     patience : float
         s
     arrived : callable
-        Has an answer of the last frame arrived?
+        Has an answer of the last frame arrived? The second argument is that of a global search.
     told : str
         Of the starts, in the words of the law.
     paths : (Path, Path), optional
@@ -208,7 +215,7 @@ def ends_of(
     times = even_times(0.0, patience, simulation.step)
     poses = both[0].pose(patience), both[1].pose(patience)
     due = distance(*simulation.pair, *poses)
-    lost = [one for one in last_answers(law, states, both, times) if not arrived(one)]
+    lost = [one for one in last_answers(law, states, both, times) if not arrived(one, due)]
     placed = sum((one.feature_a, one.feature_b) == (due.feature_a, due.feature_b) for one in lost)
     pinned = sum(is_pinned(simulation.pair, poses, one) for one in lost)
     return Ends(len(tried) - len(lost), len(tried), law_words(law, told=told), placed, pinned)
@@ -223,9 +230,6 @@ def moves_from(simulation: Simulation, tried: Sequence[Start], until: float) -> 
         made = track_along(law, *simulation.paths, times, state=state)
         found += moves_of(made, simulation.paths, simulation.gain)
     return found
-
-
-HYBRID = "Section on the hybrid system"
 
 
 def never_grows(simulation: Simulation, told: str) -> Statement:
@@ -249,6 +253,31 @@ def never_grows(simulation: Simulation, told: str) -> Statement:
     )
 
 
+def follows(simulation: Simulation, since: str = "", more: str = "") -> Statement:
+    """Say whether the printed system takes the switches of the library's own law, and when.
+
+    With b fed forward the law lags by no time constant, only by what a step leaves: less than a
+    frame. Without b it lags by about 1/K.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    since, more : str
+        Told before and after.
+    """
+    off = simulation.furthest()
+    return Statement(
+        HYBRID,
+        "the features follow those of the closest points",
+        f"{since}{'the same' if np.isfinite(off) else 'other'} "
+        f"{len(simulation.entered_events(simulation.paper))} switches as the library's own law, at "
+        f"most {off:.1e} s apart (a frame is {simulation.step:g} s; without b it would be about "
+        f"1/K = {1.0 / simulation.gain:g} s){more}",
+        off < simulation.step,
+        by=simulation.by,
+    )
+
+
 def anywhere(ends: Ends, told: str, why: str = "") -> Statement:
     """Say whether starts anywhere arrive; `told` is what was tried, and of what became of it."""
     return Statement(
@@ -264,11 +293,9 @@ def anywhere(ends: Ends, told: str, why: str = "") -> Statement:
 def certified(simulation: Simulation, figure: str) -> Statement:
     """Say how many frames the library's own law certifies, and how closely."""
     exact = simulation.exact
-    return Statement(
+    return own_statement(
         figure,
-        "-",
         f"the default law certifies {int(exact.certified.sum())} of {len(exact)} frames; distance "
         f"less lower bound is at most {exact.gap.max():.0e} of the radius",
-        None,
         by=simulation.own,
     )

@@ -6,11 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from standoff.automaton import Visit
 from standoff_studies.paper import style
@@ -36,6 +32,14 @@ def draw_errors(axes: Axes, simulation: Simulation, *, least: float = 0.0, **loo
     axes.legend(frameon=False, ncols=3, loc="upper right")
 
 
+def tint(axes: Axes, stays: Iterable[tuple[Visit, str | None]]) -> None:
+    """Tint the times of stays, each in its colour if it has one, in place of a grid."""
+    axes.grid(visible=False)
+    for stay, colour in stays:
+        if colour:
+            axes.axvspan(stay.start, stay.end, facecolor=colour, linewidth=0.0, zorder=0)
+
+
 def name_above(axes: Axes, names: Iterable[tuple[Visit, str]]) -> None:
     """Write names over the middles of stays, just above the axes."""
     for stay, words in names:
@@ -56,20 +60,3 @@ def unit_interval(axes: Axes, label: str) -> None:
     axes.set_ylim(-0.08, 1.08)
     axes.set_yticks([0.0, 0.5, 1.0])
     axes.set_ylabel(label)
-
-
-def key_line(
-    label: str, colour: str, width: float | None = None, dashes: Any = "-", **look: Any
-) -> Artist:
-    """Return a line for a key; without a width that of the settings."""
-    return Line2D([], [], color=colour, linewidth=width, linestyle=dashes, label=label, **look)
-
-
-def key_fill(label: str, colour: str, **look: Any) -> Artist:
-    """Return a patch for a key."""
-    return Patch(facecolor=colour, label=label, **look)
-
-
-def key_below(figure: Figure, handles: Iterable[Artist], columns: int) -> None:
-    """Write the key below a figure."""
-    figure.legend(handles=list(handles), loc="outside lower center", ncols=columns, frameon=False)

@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.recording import Recording
 from standoff.tracking import Feature
-
-Array = NDArray[np.float64]
 
 FeaturePlace = tuple[Feature, Array]
 """A feature, and the parameters of a point on it."""

@@ -8,18 +8,16 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 import standoff as so
 from standoff.bodies import Body
 from standoff.geometry import BezierPatch
+from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking import PairSystem, Proximity
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import PALE, View
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
-
-Array = NDArray[np.float64]
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 
 HALF = (1.0, 0.8)
 """Half the block's extent in x and y [length]."""
@@ -174,8 +172,8 @@ def _quotients(u: float, v: float) -> Statement:
     across = (face.jet(u + h, v)[0] - face.jet(u - h, v)[0]) / (2 * h)
     along = (face.jet(u, v + h)[0] - face.jet(u, v - h)[0]) / (2 * h)
     off = max(float(np.linalg.norm(f_u - across)), float(np.linalg.norm(f_v - along)))
-    return Statement(
-        "Fig. 1", "-", f"f_u and f_v are difference quotients of f to {off:.0e} [length]", None
+    return own_statement(
+        "Fig. 1", f"f_u and f_v are difference quotients of f to {off:.0e} [length]"
     )
 
 
@@ -191,11 +189,9 @@ def _perpendicular(source: str, stated: str, system: PairSystem) -> Statement:
 
 def _certified(answer: Proximity) -> Statement:
     gap = answer.distance - answer.lower_bound
-    return Statement(
+    return own_statement(
         "Fig. 2",
-        "-",
         f"distance {answer.distance:.12f}, proven to be no less than that minus {gap:.1e} [length]",
-        None,
     )
 
 
@@ -273,9 +269,7 @@ def _add_patch(view: View, pose: Pose, colour: str, opacity: float = 1.0) -> Non
     """The curved face with its isoparametric curves and its rim."""
     face = curved_face()
     grid = np.array([[pose.apply(face.jet(u, v)[0]) for v in SAMPLES] for u in SAMPLES])
-    view.surface(grid, colour, opacity=opacity, lines=len(CURVES) - 2)
-    for rim in (grid[0], grid[-1], grid[:, 0], grid[:, -1]):
-        view.line(rim, style.BLACK, 1.4)
+    view.patch(grid, colour, opacity=opacity, lines=len(CURVES) - 2)
 
 
 def _add_witnesses(view: View, answer: Proximity) -> None:

@@ -12,19 +12,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Path
 from standoff.recording import RecordedEvent, Recording
 from standoff.tracking import Feature, Tracker, pair_system
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Statement
+from standoff_studies.paper.figure import HYBRID, Statement, own_statement
 from standoff_studies.paper.patch_places import BothPlaces, FeaturePlace, places_at, short
-
-Array = NDArray[np.float64]
 
 SAMPLES = 64
 """Of a pcurve, between which the parameter nearest to a face's own is sought."""
@@ -144,11 +142,9 @@ def growth_statement(moves: Sequence[Move], starts: int, by: str) -> Statement:
         if moved
         else f"move a witness point {of}, so the distance does not change"
     )
-    return Statement(
-        "Section on the hybrid system",
-        "-",
+    return own_statement(
+        HYBRID,
         f"the printed resets, from {starts} wrong start{'s' * (starts > 1)}, {told}",
-        None,
         "where they move none, the zeroing has already brought it to the boundary",
         by,
     )

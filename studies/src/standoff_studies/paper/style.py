@@ -50,6 +50,16 @@ SETTINGS: dict[Any, Any] = {
 }
 
 
+def line(k: int, **look: Any) -> dict[str, Any]:
+    """Return how line k of several is drawn, its colour and dashes, and what else is given."""
+    return {"color": COLOURS[k], "linestyle": DASHES[k], **look}
+
+
+def marked(k: int, size: float, **look: Any) -> dict[str, Any]:
+    """Return the same with the line's marker, of a size in points."""
+    return line(k, marker=MARKERS[k], markersize=size, **look)
+
+
 def new_figure(width: float = WIDTH, height: float = 4.2) -> Figure:
     """Return an empty figure [inches] with its canvas, laid out so that nothing overlaps.
 

@@ -9,7 +9,7 @@ from standoff.recording import Recording
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.rows import Counts
-from standoff_studies.paper.figure import Statement
+from standoff_studies.paper.figure import HYBRID, Statement
 from standoff_studies.paper.law_words import law_of
 
 
@@ -92,7 +92,7 @@ def unaided(parts: Sequence[Part], by: str, *, runs: int | None = None) -> State
     guards = f"; the guards sought {feet} foot points, and {wrote}" if feet else ""
     number = len(parts) if runs is None else runs
     return Statement(
-        "Section on the hybrid system",
+        HYBRID,
         "no search, restart or exact solution is part of the tracking",
         f"in {number} {'run' if number == 1 else 'runs'} with {sum(p.frames for p in parts)} "
         f"frames{'' if runs is None else ' of all trackers'} {aid.restarts} restarts, "

@@ -8,15 +8,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from standoff.tracking.inputs import flat_pose, flat_twist
+from standoff.geometry.validation import Array
 from standoff.tracking.pair_system import PairSystem, PairSystems
+from standoff.tracking.rows import poses_of, twists_of
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, SIMULATION, pair
-
-Array = NDArray[np.float64]
+from standoff_studies.paper.figure import Artwork, Statement, own_statement
+from standoff_studies.paper.many_starts import motion_along
+from standoff_studies.paper.simulation_e.runs import SIMULATION, pair
 
 FIRST, UPDATES = 50, 400
 """First frame, and number of updates: simulation E's first stay, face against face, 0 to 1.06 s."""
@@ -101,16 +100,10 @@ class Spent(NamedTuple):
 @cache
 def frames() -> tuple[Frame, ...]:
     """The frames of the updates, and the one before."""
-    exact, found = SIMULATION.exact, []
-    for k in range(FIRST, FIRST + UPDATES + 1):
-        t = k * SIMULATION.step
-        poses = PATH_A.pose(t), PATH_B.pose(t)
-        flat_a, flat_b = (flat_pose(pose) for pose in poses)
-        xi_a = flat_twist(PATH_A.twist(t), poses[0])
-        xi_b = flat_twist(PATH_B.twist(t), poses[1])
-        points = np.array([exact.point_a[k], exact.point_b[k]])
-        found.append(Frame(flat_a, flat_b, xi_a, xi_b, points))
-    return tuple(found)
+    exact, numbers = SIMULATION.exact, np.arange(FIRST - 1, FIRST + UPDATES + 1)
+    rows = motion_along(*SIMULATION.paths, np.asarray(numbers * SIMULATION.step))
+    points = np.stack([exact.point_a, exact.point_b], axis=1)[numbers[1:]]
+    return tuple(map(Frame, *poses_of(rows), *twists_of(rows), points))
 
 
 def start() -> tuple[PairSystems, Array]:
@@ -362,12 +355,10 @@ def _where_less_is_asked() -> Statement:
     times = ", ".join(
         f"{spent('Newton', target).cost / heun.cost:.1f} at {target:.0e}" for target in targets
     )
-    return Statement(
+    return own_statement(
         "Section I",
-        "-",
         "Newton's cost in parts of that of the law's update by the paper's integrator, where less "
         f"accuracy is asked: {times} length",
-        None,
         "one Newton step and the evaluation that finds it enough cost as much as Heun's two stages",
         BY,
     )
@@ -379,11 +370,11 @@ def draw() -> Figure:
     axes = figure.subplots()
     for k, name in enumerate(PRICES, start=1):
         costs = [spent(name, target).cost for target in TARGETS]
-        look: dict[str, Any] = {"color": style.COLOURS[k], "linestyle": style.DASHES[k]}
-        axes.plot(TARGETS, costs, marker=style.MARKERS[k], label=name, **look)
+        axes.plot(TARGETS, costs, marker=style.MARKERS[k], label=name, **style.line(k))
     for integrator, marker in (("heun", "*"), ("euler", "P")):
         law = law_spent(integrator)
-        look = {"color": style.BLUE, "markersize": 15 if marker == "*" else 10}
+        size = 15 if marker == "*" else 10
+        look: dict[str, Any] = {"color": style.BLUE, "markersize": size}
         axes.plot(law.error, law.cost, marker, label=LAWS[integrator], **look)
     axes.set(xscale="log", yscale="log")
     axes.invert_xaxis()

@@ -9,16 +9,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 import standoff as so
+from standoff.geometry.validation import Array
 from standoff.motion import Pose, Twist
 from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.law_words import law_words
-
-Array = NDArray[np.float64]
 
 STEP = 1e-3
 """Frame time [s]: the paper's 1 kHz."""
@@ -295,13 +293,11 @@ def statements() -> tuple[Statement, ...]:
             by_voronoi.same and max(by_voronoi.entries) == 0.0,
             "multipliers are tested at the witness point, which must first have come near",
         ),
-        Statement(
+        own_statement(
             "Switching",
-            "-",
             f"with both, once converged, frames on another feature than the true one: default "
             f"{wrong_frames(default)}, printed {wrong_frames(printed)} of "
             f"{len(default.time) - first}",
-            None,
         ),
         Statement(
             "Lower gain",
@@ -343,7 +339,7 @@ def draw() -> Figure:
 
 def _line(axes: Axes, name: str, k: int, values: Callable[[Run], Array]) -> None:
     one = run(name)
-    axes.plot(one.time, values(one), color=style.COLOURS[k], linestyle=style.DASHES[k], label=name)
+    axes.plot(one.time, values(one), **style.line(k), label=name)
 
 
 def _shade_edges(axes: Axes) -> None:

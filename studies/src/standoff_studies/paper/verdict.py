@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from standoff.tracking import Tracker
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.law_accuracy import LAWS, STEPS, even, frame_time, measure
 from standoff_studies.paper.law_words import law_words
 
@@ -102,10 +102,9 @@ def verdict() -> Artwork:
             "two steps by the blend of the last two. Below: what twists that are wrong by a part "
             "of their length do, at 10 ms frames; -1 means no twist at all. In short: the paper's "
             "law holds what it claims (a fixed step, errors that decay at a rate and a limit known "
-            "in advance, "
-            "feedforward that pays), but its order of integration buys nothing at K h = 1, it "
-            "needs safeguards from a start far away, and once the next pose is known its own two "
-            "parts, applied one after the other, are better by orders for half the cost."
+            "in advance, feedforward that pays), but its order of integration buys nothing at K h "
+            "= 1, it needs safeguards from a start far away, and once the next pose is known its "
+            "own two parts, applied one after the other, are better by orders for half the cost."
         ),
         text=(
             "Two diagrams of witness errors on logarithmic scales. The predictor-correctors lie "
@@ -191,20 +190,16 @@ def _times(name: str, other: str) -> list[float]:
 def _claims() -> tuple[Statement, Statement]:
     gains = _times("Heun, no feedforward", PAPER)
     return (
-        Statement(
+        own_statement(
             "Verdict",
-            "-",
             f"the paper's law, Heun at K h = 1, keeps witness errors of {_three(PAPER)} on bodies "
             f"of size 2 {AT}",
-            None,
             "bounded, without any search; at 33 ms a thousandth of the size",
         ),
-        Statement(
+        own_statement(
             "Verdict",
-            "-",
             f"without the feedforward b its errors are {gains[0]:.0f}, {gains[1]:.0f} and "
             f"{gains[2]:.0f} times as large {AT}",
-            None,
         ),
     )
 
@@ -214,42 +209,34 @@ def _own() -> tuple[Statement, ...]:
     wrong = with_wrong_twists()
     pc_wrong, paper_wrong = (wrong[name][STEPS[0], 0.2] for name in ("PC", PAPER))
     return (
-        Statement(
+        own_statement(
             "Verdict",
-            "-",
             f"with feedforward, Euler at K h = 1 is as accurate as Heun "
             f"({_three('Euler, K h = 1')} against {_three(PAPER)}) for half the evaluations; RK4 "
             f"reaches {_three('RK4, K h = 1')} for four",
-            None,
             "K h = 1 is deadbeat for Euler, while Heun halves the errors; the paper's second order "
             "shows at a fixed K only",
         ),
-        Statement(
+        own_statement(
             "Verdict",
-            "-",
             "for the same two evaluations as Heun, two warm Newton steps reach "
             f"{_three('two warm Newton steps')} {AT}, with no twists at all",
-            None,
             f"one warm Newton step, for half the cost, is off by up to {max(newton):.1f} times "
             "Heun's error: the paper's law is not the best use of its evaluations once the next "
             "pose is known",
         ),
-        Statement(
+        own_statement(
             "Verdict",
-            "-",
             f"for one evaluation, the predictor-corrector reaches {_three('PC')} {AT}, its "
             f"two-step form {_three('PC2')}, the secant without twists "
             f"{_three('secant, no twists')}",
-            None,
             "the paper's two parts, feedforward and feedback, applied one after the other, the "
             "second at the new pose",
         ),
-        Statement(
+        own_statement(
             "Verdict",
-            "-",
             f"with twists 20 % too long at 1 ms: paper's law {paper_wrong:.1e}, "
             f"predictor-corrector {pc_wrong:.1e}",
-            None,
             "what the prediction misses the correction squares; the paper's law carries it into "
             "its steady error. RK4 is spared, as its stages within the frame take their velocities "
             "from the poses",
@@ -286,13 +273,7 @@ def _logarithmic(axes: Axes, label: str) -> None:
     axes.set_ylabel("greatest witness error [length]")
 
 
-def _look(name: str) -> dict[str, object]:
+def _look(name: str) -> dict[str, Any]:
     k = FIRST_STYLE[name.replace("PC2", "PC").split()[0].strip(",")]
     hollow = name.endswith("no feedforward") or name == "PC2"
-    return {
-        "color": style.COLOURS[k],
-        "linestyle": style.DASHES[k],
-        "marker": style.MARKERS[k],
-        "markerfacecolor": "white" if hollow else style.COLOURS[k],
-        "markersize": 6,
-    }
+    return style.marked(k, 6, markerfacecolor="white" if hollow else style.COLOURS[k])

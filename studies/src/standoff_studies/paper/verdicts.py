@@ -6,10 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import Enum
 
-from standoff_studies.paper.figure import Statement
-
-NOTHING = "-"
-"""What the paper states where a measurement stands for itself."""
+from standoff_studies.paper.figure import NOTHING, Statement
 
 
 class Verdict(Enum):

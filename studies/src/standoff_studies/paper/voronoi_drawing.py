@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from standoff.bodies.voronoi import VoronoiRegions
+from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import placed
@@ -89,14 +90,19 @@ def draw_space_regions(
         Of surfaces along edges, and of sectors and fans at vertices.
     opacity : float
     """
-    length = regions.reach if reach is None else reach
-    shares = np.linspace(0.0, 1.0, PIECES + 1)[:, None]
-    for boundary in regions.external:
-        grid = posed(boundary.grid(length), pose)
-        points = grid[:, None, 0] + shares * (grid[:, None, 1] - grid[:, None, 0])
+    sheets = region_sheets(regions, regions.reach if reach is None else reach)
+    for boundary, sheet in zip(regions.external, sheets, strict=True):
+        points = posed(sheet, pose)
         at_vertex = boundary.features[1].kind == "vertex"
         colour = colours[1] if at_vertex else colours[0]
         view.surface(points, colour, opacity=opacity, shaded=False)
         rim = [points[:, -1]] if at_vertex else [points[:, -1], points[0], points[-1]]
         for line in rim:
             view.line(line, colour, 1.0)
+
+
+def region_sheets(regions: VoronoiRegions, reach: float) -> list[Array]:
+    """Return points (n, m, 3), body frame, on each of the surfaces between external regions."""
+    shares = np.linspace(0.0, 1.0, PIECES + 1)[:, None]
+    grids = [boundary.grid(reach) for boundary in regions.external]
+    return [grid[:, None, 0] + shares * (grid[:, None, 1] - grid[:, None, 0]) for grid in grids]

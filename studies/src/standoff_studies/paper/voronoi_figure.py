@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from standoff.bodies import Body, shapes
@@ -20,9 +19,10 @@ from standoff.motion import Pose
 from standoff.tracking import distance
 from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches, planar_body
-from standoff_studies.paper.drawing import draw_planar_body, short_name
+from standoff_studies.paper.drawing import curve_points, draw_planar_body, short_name
 from standoff_studies.paper.drawing_3d import View
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
+from standoff_studies.paper.keys import key_fill
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions, draw_space_regions
 
 REACH = 0.8
@@ -83,10 +83,8 @@ def study() -> Study:
 
 
 def _worst_depth(regions: VoronoiRegions) -> float:
-    curves = [edge.curve for edge in regions.body.edge_parts]
-    samples = [
-        np.array([c.point(t)[:2] for t in np.linspace(c.first, c.last, DENSE)]) for c in curves
-    ]
+    body = regions.body
+    samples = [curve_points(body, k, count=DENSE) for k in range(body.n_edges)]
     worst = 0.0
     for branch in regions.medial_axis:
         for point, depth in zip(branch.points[:, :2], branch.depth.tolist(), strict=True):
@@ -198,12 +196,10 @@ def _statements(found: Study) -> tuple[Statement, ...]:
             f"curves and to the nearest one within {found.worst_depth:.0e} length (dense samples)",
             len(found.planar.medial_axis) == 3 and found.worst_depth < SAME,
         ),
-        Statement(
+        own_statement(
             "Fig. 16",
-            "-",
             f"lens: {sheets} surfaces between face and edge, {sectors} sectors between edge and "
             "vertex",
-            None,
         ),
         Statement(
             "so.distance",
@@ -265,11 +261,8 @@ def _draw_lens(axes: Axes, regions: VoronoiRegions) -> None:
     draw_space_regions(view, regions)
     view.paint(axes)
     marks = [
-        Patch(facecolor=colour, edgecolor=colour, alpha=0.5, label=words)
-        for colour, words in (
-            (style.ORANGE, "between a face and an edge"),
-            (style.BLUE, "between an edge and a vertex"),
-        )
+        key_fill("between a face and an edge", style.ORANGE, edgecolor=style.ORANGE, alpha=0.5),
+        key_fill("between an edge and a vertex", style.BLUE, edgecolor=style.BLUE, alpha=0.5),
     ]
     axes.legend(handles=marks, loc="upper center", bbox_to_anchor=(0.5, -0.01), frameon=False)
     corner = view.flat(np.zeros(3)) + np.array([-1.75, -1.55])

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from standoff_studies.soak import any_places as P
 from standoff_studies.soak import certificate_checks, wild_runs
 from standoff_studies.soak.certificate_checks import Miss
 from standoff_studies.soak.known_gaps import Scene, draw_scene, draw_walk
+from standoff_studies.soak.motions import stream
 from standoff_studies.soak.shapes import Shape
 from standoff_studies.soak.tally import Tally
 
@@ -56,7 +55,7 @@ class Breach(NamedTuple):
 def run_round(seed: int, number: int, cases: int = CASES) -> tuple[Tally, list[Breach]]:
     """Run a round: count, and return the worst case of every check that fails."""
     tally = Tally()
-    rng = _stream(seed, SCENES, number)
+    rng = stream(seed, SCENES, number)
     scene = draw_scene(rng, seed, number // PER_DRAWER)
     asked = certificate_checks.ask_all(scene, rng.random((cases, P.N_DRAWN)))
     certificate_checks.count(tally, scene, asked)
@@ -65,7 +64,7 @@ def run_round(seed: int, number: int, cases: int = CASES) -> tuple[Tally, list[B
         for miss in certificate_checks.misses(scene, asked)
     ]
     if number % WILD_EVERY == 0:
-        rng = _stream(seed, WALKS, number)
+        rng = stream(seed, WALKS, number)
         walk = draw_walk(rng, seed, number // PER_DRAWER, WILD_FRAMES)
         run = wild_runs.run(rng, walk)
         wild_runs.count(tally, run)
@@ -79,10 +78,6 @@ def run_round(seed: int, number: int, cases: int = CASES) -> tuple[Tally, list[B
 def wild_frames(rounds: int) -> int:
     """Return how many frames the wild runs of rounds 0 .. rounds - 1 have."""
     return -(-rounds // WILD_EVERY) * WILD_FRAMES
-
-
-def _stream(seed: int, stream: int, number: int) -> np.random.Generator:
-    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(stream, number)))
 
 
 def _scene_facts(scene: Scene) -> dict[str, Any]:

@@ -7,16 +7,15 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PredictorCorrector, law_of_facts
 from standoff_studies.soak.directions import shift_into
-from standoff_studies.soak.motions import Frames, Motion, Path, draw_path, random_direction
+from standoff_studies.soak.motions import Frames, Motion, Path, draw_path, random_direction, stream
 from standoff_studies.soak.placing import heights
 from standoff_studies.soak.shapes import Made, Shape, draw_shape, made
 
-Array = NDArray[np.float64]
 Rng = np.random.Generator
 
 DRAWER = 8
@@ -86,7 +85,7 @@ class Case:
 
 def draw_case(seed: int, number: int, frames: int) -> tuple[Case, Made, Made, Frames]:
     """Return pair `number` of a seed, its two bodies, and its frames."""
-    rng = _stream(seed, PAIRS, number)
+    rng = stream(seed, PAIRS, number)
     drawer = drawer_of(seed, number // PER_DRAWER)
     while True:
         a, b = (drawer[int(k)] for k in rng.integers(0, DRAWER, 2))
@@ -101,15 +100,11 @@ def draw_case(seed: int, number: int, frames: int) -> tuple[Case, Made, Made, Fr
 @lru_cache(maxsize=2)
 def drawer_of(seed: int, number: int) -> tuple[Made, ...]:
     """Return the shapes that a run of PER_DRAWER pairs shares."""
-    rng = _stream(seed, SHAPES, number)
+    rng = stream(seed, SHAPES, number)
     shapes = [draw_shape(rng) for _ in range(DRAWER)]
     while all(shape.kind == "halfspace" for shape in shapes):
         shapes = [draw_shape(rng) for _ in range(DRAWER)]
     return tuple(made(shape) for shape in shapes)
-
-
-def _stream(seed: int, stream: int, number: int) -> Rng:
-    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(stream, number)))
 
 
 def _draw_options(rng: Rng) -> dict[str, Any]:

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.pair.certified import CERTIFIED
 from standoff.kernels.state.arrays import N_MOTION
@@ -20,7 +20,6 @@ from standoff_studies.soak.known_gaps import Scene
 from standoff_studies.soak.placing import heights, to_world
 from standoff_studies.soak.tally import Tally
 
-Array = NDArray[np.float64]
 Rng = np.random.Generator
 
 SQUARE = 1e-9

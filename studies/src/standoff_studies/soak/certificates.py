@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections import Counter
-from functools import partial
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
@@ -15,6 +13,7 @@ from standoff.cli.output import make_folder, write_whole
 from standoff.cli.terminal import tell
 from standoff_studies.soak.adversary import Breach, run_round
 from standoff_studies.soak.failures import breach_facts
+from standoff_studies.soak.reading import written
 from standoff_studies.soak.tally import Tally
 
 PER_ROUND = 1000
@@ -71,19 +70,12 @@ def _write(worst: dict[str, Breach], folder: Path) -> dict[str, Path]:
     """Write a file for the worst case of each check."""
     files = {}
     for k, (what, breach) in enumerate(sorted(worst.items())):
-        text = json.dumps(breach_facts(breach), indent=1, allow_nan=False).encode()
         files[what] = folder / FAILURE.format(k)
-        write_whole({files[what]: partial(_put, text)})
+        write_whole({files[what]: written(breach_facts(breach))})
     return files
-
-
-def _put(text: bytes, stream: IO[bytes]) -> None:
-    stream.write(text)
 
 
 def _print(tally: Tally, seed: int, seconds: float) -> None:
     tell(f"seed {seed}: {tally.sums['certificates']:,} certificates in {seconds:.1f} s")
-    for name, number in sorted(tally.sums.items()):
-        tell(f"{number:>13,}  {name}")
-    for name, value in sorted(tally.worst.items()):
-        tell(f"{value:>13.6g}  worst: {name}")
+    for line in tally.lines():
+        tell(line)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import BLUR
@@ -24,8 +25,6 @@ from standoff_studies.soak.motion_checks import number_checks, rate_checks, resi
 from standoff_studies.soak.motions import Frames
 from standoff_studies.soak.placing import heights, outside
 from standoff_studies.soak.shapes import Made
-
-Array = NDArray[np.float64]
 
 ROUNDOFF = 1e-13
 """Part of the pair's size and place by which roundoff may shift a length: some hundred of its

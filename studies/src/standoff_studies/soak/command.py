@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,10 +15,11 @@ from standoff_studies.soak.certificates import run_certificates
 from standoff_studies.soak.failures import Facts, read_failure, replay
 from standoff_studies.soak.ledger import NAME, Ledger
 from standoff_studies.soak.processes import Done, Tell, soak
+from standoff_studies.soak.reading import written
 from standoff_studies.soak.shapes import missing_library
 
 if TYPE_CHECKING:
-    from standoff_studies.soak.options import SoakOptions
+    from standoff_studies.soak.arguments import SoakCommand
 
 JOBS = 2
 """Processes if no number is given."""
@@ -30,7 +30,7 @@ SAVE_EVERY = 5.0
 """Seconds between two writings of the ledger."""
 
 
-def run_soak(command: SoakOptions) -> int:
+def run_soak(command: SoakCommand) -> int:
     """Run a soak, or a failure of one again, and print what was counted.
 
     Raises
@@ -81,7 +81,7 @@ def run_soak(command: SoakOptions) -> int:
     return ExitCode.DONE
 
 
-def _ledger(command: SoakOptions) -> Ledger:
+def _ledger(command: SoakCommand) -> Ledger:
     folder = command.output
     make_folder(folder, "-o")
     check_target(folder / NAME, "-o", [".json"])
@@ -121,8 +121,7 @@ def _save(ledger: Ledger, folder: Path) -> None:
 
 def _write_failure(failed: Done, folder: Path) -> Path:
     file = folder / FAILURE.format(failed.failed)
-    text = json.dumps(failed.facts, indent=1, allow_nan=False)
-    write_whole({file: lambda stream: stream.write(text.encode())})
+    write_whole({file: written(failed.facts or {})})
     return file
 
 
@@ -130,11 +129,8 @@ def _print(ledger: Ledger, seconds: float, pairs: int) -> None:
     tally = ledger.tally
     rate = f" ({pairs} of them in {seconds:.1f} s)" if pairs else ""
     tell(f"seed {ledger.seed}: {ledger.pairs_done()} pairs of {ledger.frames} frames{rate}")
-    for name, number in sorted(tally.sums.items()):
-        if name != "pairs":
-            tell(f"{number:>13,}  {name}")
-    for name, value in sorted(tally.worst.items()):
-        tell(f"{value:>13.6g}  worst: {name}")
+    for line in tally.lines():
+        tell(line)
     for pair, frame, status, names, distance in tally.examples:
         tell(f"pair {pair} frame {frame}: {status}, {names}, distance {distance}")
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff_studies.soak.motions import Frames
 from standoff_studies.soak.placing import heights
 from standoff_studies.soak.shapes import Made
-
-Array = NDArray[np.float64]
 
 COUNT = 200
 """Directions of the first look: some 15 degrees from one to the next."""

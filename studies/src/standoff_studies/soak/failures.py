@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from standoff.checks.numbers import whole_number
+from standoff.geometry.validation import Array
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import ROTATION
@@ -20,11 +21,10 @@ from standoff_studies.soak.adversary import Breach, run_round
 from standoff_studies.soak.cases import Case
 from standoff_studies.soak.checks import Fault, judge
 from standoff_studies.soak.motions import Frames
-from standoff_studies.soak.reading import entry, mapping, number, numbers, read_facts, text, whole
+from standoff_studies.soak.reading import entry, mapping, number, numbers, read_facts, text
 from standoff_studies.soak.running import Failure, run_case, start
 from standoff_studies.soak.shapes import Made, made
 
-Array = NDArray[np.float64]
 Facts = dict[str, Any]
 
 KIND = "standoff soak failure"
@@ -51,12 +51,7 @@ class Replayed(NamedTuple):
 def failure_facts(failure: Failure) -> Facts:
     """Return a failure as plain data: the case, and the step with the state before it."""
     case, fault = failure.case, failure.fault
-    facts = {
-        "kind": KIND,
-        "standoff": __version__,
-        "what": fault.what,
-        "value": _number(fault.value),
-        "allowed": _number(fault.allowed),
+    facts = _told(fault.what, fault.value, fault.allowed) | {
         "frame": fault.frame,
         "cold": failure.cold,
         "case": case.facts(),
@@ -70,14 +65,10 @@ def failure_facts(failure: Failure) -> Facts:
 
 def breach_facts(breach: Breach) -> Facts:
     """Return a failure of the adversary's as plain data."""
-    return {
-        "kind": KIND,
-        "standoff": __version__,
-        "what": breach.miss.what,
-        "value": _number(breach.miss.value),
-        "allowed": _number(breach.miss.allowed),
+    miss = breach.miss
+    return _told(miss.what, miss.value, miss.allowed) | {
         "round": {"seed": breach.seed, "number": breach.number, "cases": breach.cases},
-        "asked": breach.miss.case,
+        "asked": miss.case,
         "about": _plain(breach.facts),
     }
 
@@ -93,14 +84,13 @@ def _plain(value: Any) -> Any:
 
 def exception_facts(seed: int, number: int, frames: int, text: str) -> Facts:
     """Return an exception, a death or a hang of a pair as plain data: it has no answers."""
-    return {
-        "kind": KIND,
-        "standoff": __version__,
-        "what": text,
-        "seed": seed,
-        "number": number,
-        "frames": frames,
-    }
+    return _told(text) | {"seed": seed, "number": number, "frames": frames}
+
+
+def _told(what: str, *measured: float) -> Facts:
+    """What every failure tells: what has failed, and, of a check, the value and the allowed one."""
+    numbers = zip(("value", "allowed"), map(_number, measured), strict=False)
+    return {"kind": KIND, "standoff": __version__, "what": what, **dict(numbers)}
 
 
 def _number(value: float) -> float | str:
@@ -160,20 +150,20 @@ def read_failure(file: Path) -> Facts:
     if "round" in facts:
         numbers_of = mapping(facts["round"], "'round'")
         for name, least in (("seed", 0), ("number", 0), ("cases", 1)):
-            whole(entry(numbers_of, name), f"the round's '{name}'", least)
+            whole_number(entry(numbers_of, name), f"the round's '{name}'", least)
         for name in ("value", "allowed"):
             number(entry(facts, name), f"'{name}'")
-        whole(entry(facts, "asked"), "'asked'")
+        whole_number(entry(facts, "asked"), "'asked'", 0)
         return facts
     if "case" not in facts:
         for name, least in (("seed", 0), ("number", 0), ("frames", 1)):
-            whole(entry(facts, name), f"'{name}'", least)
+            whole_number(entry(facts, name), f"'{name}'", least)
         return facts
     case = mapping(facts["case"], "'case'")
     for name, least in (("seed", 0), ("number", 0), ("frames", 1)):
-        whole(entry(case, name), f"the case's '{name}'", least)
+        whole_number(entry(case, name), f"the case's '{name}'", least)
     mapping(entry(case, "options"), "the case's 'options'")
-    if whole(entry(facts, "frame"), "'frame'") >= case["frames"]:
+    if whole_number(entry(facts, "frame"), "'frame'", 0) >= case["frames"]:
         raise ValueError(f"'frame' is {facts['frame']}, beyond the case's {case['frames']} frames")
     for name in ("value", "allowed"):
         number(entry(facts, name), f"'{name}'")

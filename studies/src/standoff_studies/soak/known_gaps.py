@@ -16,17 +16,20 @@ from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.errors import BodyError
 from standoff.geometry import Line
+from standoff.geometry.validation import Array
 from standoff_studies import oracles
 from standoff_studies.soak.lattice import PER_LENGTH, signed_distance, whole
-from standoff_studies.soak.motions import random_direction, random_rotation
+from standoff_studies.soak.motions import random_direction, random_rotation, stream
 from standoff_studies.soak.placing import heights
 from standoff_studies.soak.shapes import Made, Shape, draw_shape, made
 
-Array = NDArray[np.float64]
 Rng = np.random.Generator
 
 DRAWER = 8
 """Bodies that scenes share: they take longer to make than to ask about."""
+
+BUILT, LATTICE = 2, 3
+"""Streams of a seed's random numbers, of the two drawers."""
 
 LENGTHS = frozenset({"axes", "r", "radius", "length", "height", "offset", "rounding", "vertices"})
 """Parameters that scale with a body."""
@@ -85,7 +88,7 @@ def draw_walk(rng: Rng, seed: int, number: int, count: int) -> list[Scene]:
 @lru_cache(maxsize=2)
 def built_drawer(seed: int, number: int) -> tuple[Made, ...]:
     """Return bodies of the soak's kinds, some far smaller or larger than those."""
-    rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(2, number)))
+    rng = stream(seed, BUILT, number)
     found: list[Made] = []
     while len(found) < DRAWER:
         shape = draw_shape(rng)
@@ -214,7 +217,7 @@ class Corners(NamedTuple):
 @lru_cache(maxsize=2)
 def lattice_drawer(seed: int, number: int) -> tuple[Corners, ...]:
     """Return points, segments, boxes, polytopes and polygons with corners on a lattice."""
-    rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(3, number)))
+    rng = stream(seed, LATTICE, number)
     makers = [_segment, _segment, _box, _polytope, _polytope, _point, _polygon, _loop, _loop]
     return tuple(maker(rng) for maker in makers)
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from standoff.checks.numbers import whole_number
 from standoff.tracking.status import Status
 from standoff.version import __version__
 from standoff.whole_files import write_whole
 from standoff_studies.soak.adversary import CASES, WILD_FRAMES
 from standoff_studies.soak.cases import PER_DRAWER
-from standoff_studies.soak.reading import entry, read_facts, rows, whole
+from standoff_studies.soak.reading import entry, read_facts, rows, written
 from standoff_studies.soak.tally import Tally
 
 NAME = "soak.json"
@@ -81,8 +81,7 @@ class Ledger:
         OSError
             As on a full disk.
         """
-        text = json.dumps(self.facts(), indent=1, allow_nan=False)
-        write_whole({folder / NAME: lambda file: file.write(text.encode())})
+        write_whole({folder / NAME: written(self.facts())})
 
     @classmethod
     def read(cls, folder: Path, seed: int, frames: int) -> Ledger:
@@ -149,6 +148,6 @@ def _parts(facts: Any) -> list[Part]:
     parts: list[Part] = []
     for first, end in rows(facts, "'done'", 2):
         least = parts[-1][1] + 1 if parts else 0
-        first = whole(first, "the first pair of a part of 'done'", least)
-        parts.append((first, whole(end, "the end of a part of 'done'", first + 1)))
+        first = whole_number(first, "the first pair of a part of 'done'", least)
+        parts.append((first, whole_number(end, "the end of a part of 'done'", first + 1)))
     return parts

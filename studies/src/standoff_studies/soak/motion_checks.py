@@ -8,13 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.state import arrays as K
 from standoff_studies.oracles import dot, lengths
 from standoff_studies.soak.motions import Frames
 from standoff_studies.soak.shapes import Made
 
-Array = NDArray[np.float64]
 Where = NDArray[np.bool_]
 
 ROUNDOFF = 1e-12

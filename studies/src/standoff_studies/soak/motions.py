@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from standoff.geometry.validation import Array
+
 Rng = np.random.Generator
 
 GOLDEN = 0.6180339887498949
@@ -166,6 +167,11 @@ class Motion:
             parts.append((pose, told + np.array(self.twist_error)))
         (pose_a, twist_a), (pose_b, twist_b) = parts
         return Frames(pose_a, pose_b, twist_a, twist_b, steps)
+
+
+def stream(seed: int, which: int, number: int) -> Rng:
+    """Return one of a seed's streams of random numbers, which no other draw changes."""
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(which, number)))
 
 
 def random_direction(rng: Rng) -> Array:

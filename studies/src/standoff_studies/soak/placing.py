@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff_studies.oracles import HalfSpace, Region, Swept, dot
 from standoff_studies.soak.shapes import Made
-
-Array = NDArray[np.float64]
 
 
 def to_body(poses: Array, vectors: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Plain data of the soak's files, checked before anything is made of it."""
+"""Plain data of the soak's files: written, and checked before anything is made of it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ import math
 from pathlib import Path
 from typing import Any
 
+from standoff.checks.real_numbers import shown
 from standoff.nesting import JSON, text_problem
+from standoff.whole_files import Writer
 
 Facts = dict[str, Any]
 
@@ -29,6 +31,12 @@ def read_facts(file: Path) -> Facts:
     return mapping(json.loads(content, parse_constant=_refused, parse_float=_finite), "it")
 
 
+def written(facts: Facts) -> Writer:
+    """Return what writes such an object to a file."""
+    content = json.dumps(facts, indent=1, allow_nan=False).encode()
+    return lambda file: file.write(content)
+
+
 def _refused(text: str) -> float:
     raise ValueError(f"{text} is not a number that these files hold")
 
@@ -45,18 +53,11 @@ def entry(facts: Facts, name: str) -> Any:
     return facts[name]
 
 
-def whole(value: Any, what: str, least: int = 0) -> int:
-    """Return a whole number; a ValueError where it is none, or below the least."""
-    if isinstance(value, bool) or not isinstance(value, int) or value < least:
-        raise ValueError(f"{what} is {_shown(value)}, not a whole number of {least} or more")
-    return value
-
-
 def number(value: Any, what: str) -> float:
     """Return a number, also "inf" or "nan" by name; a ValueError where it is none."""
     known = isinstance(value, int | float) and not isinstance(value, bool)
     if not known and value not in ("inf", "-inf", "nan"):
-        raise ValueError(f"{what} is {_shown(value)}, not a number")
+        raise ValueError(f"{what} is {shown(value)}, not a number")
     return float(value)
 
 
@@ -70,28 +71,22 @@ def numbers(values: Any, what: str, count: int | None = None) -> list[float]:
 def text(value: Any, what: str) -> str:
     """Return a text with something in it; a ValueError where it is none."""
     if not isinstance(value, str) or not value.strip():
-        raise ValueError(f"{what} is {_shown(value)}, not a text")
+        raise ValueError(f"{what} is {shown(value)}, not a text")
     return value
 
 
 def mapping(value: Any, what: str) -> Facts:
     """Return an object; a ValueError where it is none."""
     if not isinstance(value, dict):
-        raise ValueError(f"{what} is {_shown(value)}, not an object")
+        raise ValueError(f"{what} is {shown(value)}, not an object")
     return value
 
 
 def rows(value: Any, what: str, length: int) -> list[list[Any]]:
     """Return a list of lists of one length; a ValueError where it is none."""
     if not isinstance(value, list):
-        raise ValueError(f"{what} is {_shown(value)}, not a list")
+        raise ValueError(f"{what} is {shown(value)}, not a list")
     for row in value:
         if not isinstance(row, list) or len(row) != length:
-            raise ValueError(f"{what} holds {_shown(row)}, not a list of {length}")
+            raise ValueError(f"{what} holds {shown(row)}, not a list of {length}")
     return value
-
-
-def _shown(value: Any) -> str:
-    """A value for a message, cut short."""
-    shown = repr(value)
-    return shown if len(shown) <= 40 else f"{shown[:37]}..."

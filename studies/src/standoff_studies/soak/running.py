@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
@@ -32,7 +33,6 @@ from standoff_studies.soak.motions import Frames
 from standoff_studies.soak.shapes import Made
 from standoff_studies.soak.tally import Tally
 
-Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 COLD_EVERY = 100

@@ -7,13 +7,12 @@ from importlib import import_module
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.geometry.validation import Array
 from standoff_studies import oracles
 from standoff_studies.kinds import TWINS
 
-Array = NDArray[np.float64]
 Rng = np.random.Generator
 Numbers = dict[str, Any]
 

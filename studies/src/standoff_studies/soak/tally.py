@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from standoff_studies.soak.reading import entry, mapping, number, rows, text, whole
+from standoff.checks.numbers import whole_number
+from standoff_studies.soak.reading import entry, mapping, number, rows, text
 
 EXAMPLES = 40
 """Frames without a certificate that are kept as examples: those of the lowest pairs."""
@@ -52,6 +54,14 @@ class Tally:
             "examples": self.examples,
         }
 
+    def lines(self) -> Iterator[str]:
+        """Yield the sums, but that of the pairs, and the worst numbers as they are printed."""
+        for name, count in sorted(self.sums.items()):
+            if name != "pairs":
+                yield f"{count:>13,}  {name}"
+        for name, value in sorted(self.worst.items()):
+            yield f"{value:>13.6g}  worst: {name}"
+
     @classmethod
     def of(cls, facts: dict[str, Any]) -> Tally:
         """Return the tally of plain data.
@@ -65,14 +75,14 @@ class Tally:
         worst = mapping(entry(facts, "worst"), "'worst'")
         examples = rows(entry(facts, "examples"), "'examples'", 5)
         for pair, frame, status, shapes, distance in examples:
-            whole(pair, "an example's pair")
-            whole(frame, "an example's frame")
+            whole_number(pair, "an example's pair", 0)
+            whole_number(frame, "an example's frame", 0)
             text(status, "an example's status")
             text(shapes, "an example's pair of shapes")
             if distance is not None:
                 number(distance, "an example's distance")
         return cls(
-            Counter({name: whole(value, f"the sum '{name}'") for name, value in sums.items()}),
+            Counter({name: whole_number(n, f"the sum '{name}'", 0) for name, n in sums.items()}),
             {name: number(value, f"the worst '{name}'") for name, value in worst.items()},
             examples,
         )

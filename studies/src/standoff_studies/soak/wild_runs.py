@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.state import arrays as K
@@ -31,7 +32,6 @@ from standoff_studies.soak.motions import Frames
 from standoff_studies.soak.placing import heights, outside
 from standoff_studies.soak.tally import Tally
 
-Array = NDArray[np.float64]
 Rng = np.random.Generator
 
 STEP = 1e-3

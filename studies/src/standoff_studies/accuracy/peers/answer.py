@@ -11,11 +11,10 @@ from importlib.metadata import version
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff_studies.accuracy.solids import Solid
 
-Array = NDArray[np.float64]
 Pose = tuple[Array, Array]
 
 
@@ -28,6 +27,19 @@ class PeerAnswer:
     point_b: Array
     normal: Array
 
+
+NOTHING = PeerAnswer(np.nan, *[np.full(3, np.nan)] * 3)
+"""That of a peer that has none."""
+
+SAME_LENGTHS = {
+    "sphere": "Sphere",
+    "capsule": "Capsule",
+    "ellipsoid": "Ellipsoid",
+    "cylinder": "Cylinder",
+    "cone": "Cone",
+    "box": "Box",
+}
+"""Kinds whose lengths Coal and FCL take in the same order, with the names that both have."""
 
 Query = Callable[[Pose, Pose], PeerAnswer]
 

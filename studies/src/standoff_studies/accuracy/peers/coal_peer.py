@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from standoff_studies.accuracy.peers.answer import (
+    SAME_LENGTHS,
     Peer,
     PeerAnswer,
     Pose,
@@ -35,27 +36,14 @@ def coal_request(tight: bool = False) -> Any:
     return request
 
 
-SAME_LENGTHS = {
-    "sphere": "Sphere",
-    "capsule": "Capsule",
-    "ellipsoid": "Ellipsoid",
-    "cylinder": "Cylinder",
-    "cone": "Cone",
-    "box": "Box",
-}
-"""Kinds whose lengths Coal takes in the same order, with its names."""
-
-
 @once_a_solid
 def coal_shape(solid: Solid) -> Any:
     """Return Coal's shape; None where it has none. A point is a ball without radius."""
     coal = require("coal")
-    lengths = [float(x) for x in solid.values.values() if np.ndim(x) == 0]
-    support = solid.support
-    kind = solid.kind.name
-    if kind in SAME_LENGTHS:
-        return getattr(coal, SAME_LENGTHS[kind])(*lengths)
-    match kind:
+    lengths, support = solid.lengths, solid.support
+    if solid.kind.name in SAME_LENGTHS:
+        return getattr(coal, SAME_LENGTHS[solid.kind.name])(*lengths)
+    match solid.kind.name:
         case "point":
             return coal.Sphere(0.0)
         case "segment":

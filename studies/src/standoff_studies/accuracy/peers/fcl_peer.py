@@ -12,6 +12,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from standoff_studies.accuracy.peers.answer import (
+    SAME_LENGTHS,
     Peer,
     PeerAnswer,
     Pose,
@@ -28,26 +29,14 @@ from standoff_studies.oracles import Array
 def fcl_shape(solid: Solid) -> Any:
     """Return FCL's shape; None where it has none."""
     fcl = require("fcl")
-    lengths = [float(x) for x in solid.values.values() if np.ndim(x) == 0]
-    match solid.kind.name:
-        case "sphere":
-            return fcl.Sphere(*lengths)
-        case "capsule":
-            return fcl.Capsule(*lengths)
-        case "ellipsoid":
-            return fcl.Ellipsoid(*lengths)
-        case "cylinder":
-            return fcl.Cylinder(*lengths)
-        case "cone":
-            return fcl.Cone(*lengths)
-        case "box":
-            return fcl.Box(*lengths)
-        case "polytope":
-            vertices = np.asarray(solid.values["vertices"])
-            triangles = _outward_triangles(vertices)
-            rows = np.column_stack([np.full(len(triangles), 3), triangles])
-            return fcl.Convex(vertices, len(triangles), rows.ravel())
-    return None
+    if solid.kind.name in SAME_LENGTHS:
+        return getattr(fcl, SAME_LENGTHS[solid.kind.name])(*solid.lengths)
+    if solid.kind.name != "polytope":
+        return None
+    vertices = np.asarray(solid.values["vertices"])
+    triangles = _outward_triangles(vertices)
+    rows = np.column_stack([np.full(len(triangles), 3), triangles])
+    return fcl.Convex(vertices, len(triangles), rows.ravel())
 
 
 def _outward_triangles(vertices: Array) -> Array:

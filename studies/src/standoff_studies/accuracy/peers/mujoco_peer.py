@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from standoff.geometry.validation import Array
 from standoff_studies.accuracy.peers.answer import (
-    Array,
     Peer,
     PeerAnswer,
     Pose,
@@ -28,7 +28,7 @@ FARTHEST = 1e6
 
 def _geometry(solid: Solid) -> tuple[str, Array] | None:
     """Return MuJoCo's type and size (3,): radii and half lengths; None where it has none."""
-    lengths = [float(x) for x in solid.values.values() if np.ndim(x) == 0]
+    lengths = solid.lengths
     match solid.kind.name:
         case "sphere":
             return "sphere", np.array([lengths[0], 0.0, 0.0])

@@ -9,6 +9,7 @@ import numpy as np
 from standoff.geometry.ellipsoid_patches import ellipsoid_patches
 from standoff.geometry.nurbs import BezierPatch
 from standoff_studies.accuracy.peers.answer import (
+    NOTHING,
     Peer,
     PeerAnswer,
     Pose,
@@ -31,7 +32,7 @@ def cascade_shape(solid: Solid) -> Any:
     """Return OpenCASCADE's shape; None where there is none here."""
     primitives = require("OCP.BRepPrimAPI")
     gp = require("OCP.gp")
-    lengths = [float(x) for x in solid.values.values() if np.ndim(x) == 0]
+    lengths = solid.lengths
 
     def axes(height: float) -> Any:
         return gp.gp_Ax2(gp.gp_Pnt(0.0, 0.0, -height / 2), gp.gp_Dir(0.0, 0.0, 1.0))
@@ -106,8 +107,7 @@ class OpenCascade(Peer):
         def query(pose_a: Pose, pose_b: Pose) -> PeerAnswer:
             found = extrema(placed(shape_a, pose_a), placed(shape_b, pose_b))
             if not found.IsDone() or found.NbSolution() == 0:
-                nothing = np.full(3, np.nan)
-                return PeerAnswer(np.nan, nothing, nothing, nothing)
+                return NOTHING
             points = [np.array(p.Coord()) for p in (found.PointOnShape1(1), found.PointOnShape2(1))]
             return by_points(float(found.Value()), *points)
 

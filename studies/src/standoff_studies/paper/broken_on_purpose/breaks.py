@@ -19,7 +19,6 @@ from standoff.motion import Pose, Twist
 from standoff.recording.track import track_along
 from standoff.tracking import Tracker, TrackerState, max_gain
 from standoff.tracking.laws import PaperLaw
-from standoff_studies.paper.many_starts import motion_along
 
 PAPER = "standoff_studies.paper"
 
@@ -193,13 +192,9 @@ def broken(one: Break, *, trials: bool = True) -> Iterator[None]:
     def along(tracker: Tracker, a: Any, b: Any, *rest: Any, **options: Any) -> Any:
         return track_along(tracker, *_told((a, b), one.backwards), *rest, **options)
 
-    def motion(a: Any, b: Any, *rest: Any) -> Any:
-        told: Any = _told((a, b), one.backwards)
-        return motion_along(*told, *rest)
-
-    names = {"Tracker": tracker, "track_along": along, "motion_along": motion}
+    names = {"Tracker": tracker, "track_along": along}
     with ExitStack() as stack:
-        for module in map(_module, (*TRACKERS, "simulation_b.run")):
+        for module in map(_module, TRACKERS):
             for name in names.keys() & vars(module).keys():
                 stack.enter_context(patch.object(module, name, names[name]))
         for kept in (RUNS, TRIALS) if trials else (RUNS,):

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from standoff_studies.paper.broken_on_purpose.breaks import BREAKS, Break, broken
 from standoff_studies.paper.catalogue import chosen, make
-from standoff_studies.paper.figure import Statement
-from standoff_studies.paper.verdicts import NOTHING, Verdict
+from standoff_studies.paper.figure import NOTHING, Statement
+from standoff_studies.paper.verdicts import Verdict
 
 FIGURES = tuple(entry.key for entry in chosen(["6-7", "9-11", "13-20"]))
 """Those that a tracker of the paper's law ran for; Figs. 8 and 12 are of the bodies alone."""

@@ -9,18 +9,18 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from numpy.typing import NDArray
 from scipy.ndimage import label
 
 import standoff as so
-from standoff.bodies import Body
 from standoff.control.basin import Basin, basin
 from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking.places import PlaceLike
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.control.decay import bodies as ellipsoids
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
+from standoff_studies.paper.keys import key_fill
 
 STEP = 1e-3
 """Frame time [s]."""
@@ -52,12 +52,6 @@ LAW = (
     "safeguarded one so.PredictorCorrector(), on untiled ellipsoids at rest; random starts"
 )
 """What the statements say they were measured with."""
-
-
-@cache
-def ellipsoids() -> tuple[Body, Body]:
-    """A, which the point goes with too, and B."""
-    return so.shapes.ellipsoid(1.0, 0.7, 0.5), so.shapes.ellipsoid(0.4, 0.9, 0.6)
 
 
 def place_of(direction: Array) -> PlaceLike:
@@ -182,21 +176,14 @@ def _statements() -> tuple[Statement, ...]:
     sizes, own = (parts(beside_a_point(law).found) for law in ("Newton", "raw law"))
     lone = stray(beside_a_point("raw law").found)
     return (
-        Statement(
+        own_statement(
             "Convergence",
-            "-",
             f"raw law: {share('raw law')} of the starts (body and point, two bodies)",
-            None,
             "The paper claims that a start anywhere converges on two convex bodies composed of "
             "tiled convex surface patches; these ellipsoids have no tiles. M⁻¹ also leads to the "
             "farthest points and to saddles: M must be definite",
         ),
-        Statement(
-            "Convergence",
-            "-",
-            f"Newton, K h = 1: {share('Newton')} of the starts",
-            None,
-        ),
+        own_statement("Convergence", f"Newton, K h = 1: {share('Newton')} of the starts"),
         Statement(
             "Section I",
             "the basin of Newton's method is not connected",
@@ -207,13 +194,11 @@ def _statements() -> tuple[Statement, ...]:
             by="PaperLaw(integrator='euler', gain=1000, solve='plain'): Newton's method; "
             f"{ROWS * COLUMNS} starts on an ellipsoid beside a point",
         ),
-        Statement(
+        own_statement(
             "Section I",
-            "-",
             f"the raw law's basin on that map has parts of {', '.join(map(str, own))} starts; at "
             f"K h = {GAIN * STEP / GENTLER:g} {strays_in_small_steps()} of the {len(lone)} stray "
             "starts find the minimum",
-            None,
             "Such a start is near a singular M, and its first step is long enough to land in the "
             "basin, as many of Newton's steps are.",
         ),
@@ -263,7 +248,7 @@ def _draw() -> Figure:
     first.set_title("raw law", loc="left")
     second.set_title("Newton, K h = 1", loc="left")
     keys = [
-        Patch(facecolor=shade, hatch=hatch, edgecolor=style.BLACK, linewidth=0.5, label=fate)
+        key_fill(fate, shade, hatch=hatch, edgecolor=style.BLACK, linewidth=0.5)
         for fate, shade, hatch in zip(FATES, SHADES, HATCHES, strict=True)
     ]
     figure.legend(handles=keys, loc="outside upper center", ncols=3)

@@ -8,15 +8,14 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.spatial.transform import Rotation
 
 import standoff as so
 from standoff.bodies import Body
 from standoff.geometry.validation import Array
-from standoff.motion import Pose, Twist
+from standoff.motion import ConstantTwist, Pose, Twist
 from standoff.tracking import feedback
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.law_words import law_words
 
 STEP = 1e-3
@@ -87,14 +86,7 @@ def bodies() -> tuple[Body, Body]:
 
 def pose(frame: int) -> Pose:
     """B's pose at a frame."""
-    turn, shift = POSE_B
-    v, omega = DRIFT
-    start = Pose.exp(turn, shift)
-    time = frame * STEP
-    return Pose(
-        Rotation.from_rotvec(time * omega).as_matrix() @ start.rotation,
-        start.translation + time * v,
-    )
+    return ConstantTwist(Pose.exp(*POSE_B), Twist(*DRIFT)).pose(frame * STEP)
 
 
 @cache
@@ -176,18 +168,14 @@ def _statements() -> tuple[Statement, ...]:
             f"error below {FALLEN:g} of the start's after: {reached}",
             works,
         ),
-        Statement(
+        own_statement(
             "Feedback",
-            "-",
             f"steady error with wrong twists [length]: {steady}",
-            None,
             "PI takes up the constant part; the others keep b/K, or the power law's root of it",
         ),
-        Statement(
+        own_statement(
             "Feedback",
-            "-",
             f"chatter, frames at which Ψ_u changes its sign: {chatter}",
-            None,
             "a gain near 2/h turns the error round at each frame; 1/h takes it away in one",
         ),
     )
@@ -221,16 +209,8 @@ def _draw_errors(axes: Axes) -> None:
     time = 1e3 * STEP * np.arange(FRAMES + 1)
     axes.axvspan(WRONG_FROM, FRAMES, color=style.QUIET, alpha=0.15, linewidth=0)
     for k, name in enumerate(LAWS):
-        axes.plot(
-            time,
-            run(name).error,
-            color=style.COLOURS[k],
-            linestyle=style.DASHES[k],
-            marker=style.MARKERS[k],
-            markersize=4.5,
-            markevery=(3 * k, 20),
-            label=name,
-        )
+        look = style.marked(k, 4.5, markevery=(3 * k, 20))
+        axes.plot(time, run(name).error, **look, label=name)
     axes.set(
         yscale="log",
         xlabel="time [ms]",
@@ -244,14 +224,7 @@ def _draw_errors(axes: Axes) -> None:
 def _draw_chatter(axes: Axes) -> None:
     frames = np.arange(8, 41)
     for k, name in ((3, "finite-time"), (4, "finite-time, capped late")):
-        axes.plot(
-            1e3 * STEP * frames,
-            1e3 * run(name).psi_u[frames],
-            color=style.COLOURS[k],
-            linestyle=style.DASHES[k],
-            marker=style.MARKERS[k],
-            markersize=4.5,
-            label=name,
-        )
+        errors = 1e3 * run(name).psi_u[frames]
+        axes.plot(1e3 * STEP * frames, errors, **style.marked(k, 4.5), label=name)
     axes.set(xlabel="time [ms]", ylabel="$\\Psi_u$ [1e-3 length²]", ylim=(-1.6, 2.4))
     axes.legend(loc="upper right", ncols=2)

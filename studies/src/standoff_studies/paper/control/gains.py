@@ -13,7 +13,7 @@ from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.control.decay import arrival, decays, loops
 from standoff_studies.paper.control.lag import FRAMES, PAIRS, Lag, measured_lags
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.law_words import law_words
 
 CASES = 480
@@ -90,11 +90,9 @@ def _statements() -> tuple[Statement, ...]:
             "their stable range",
             worst_decay() < AGREE,
         ),
-        Statement(
+        own_statement(
             "Gains",
-            "-",
             f"K h below {limits}: where |R(−Kh)| reaches 1",
-            None,
             "so.max_gain; the paper's 1500 at 1 kHz is a practical value below 2000",
         ),
         Statement(
@@ -158,13 +156,8 @@ def _draw_decay(axes: Axes) -> None:
         colour = style.COLOURS[k]
         if name in same:
             z = np.linspace(0.0, 1.04 * stability_limit(name), 200)
-            axes.plot(
-                z,
-                growth_factor(name, -z),
-                color=colour,
-                linestyle=style.DASHES[k],
-                label=f"R(−K h), {'Heun and midpoint' if name == 'heun' else same[name]}",
-            )
+            words = f"R(−K h), {'Heun and midpoint' if name == 'heun' else same[name]}"
+            axes.plot(z, growth_factor(name, -z), **style.line(k), label=words)
         axes.plot(
             d.z,
             d.measured,

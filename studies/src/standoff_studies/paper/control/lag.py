@@ -6,14 +6,14 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 import standoff as so
 from standoff.bodies import Body
-from standoff.motion import Pose, Twist
-
-Array = NDArray[np.float64]
+from standoff.geometry.validation import Array
+from standoff.motion import ConstantTwist, Pose, Twist
+from standoff.recording import Recording, track
+from standoff_studies.paper.pair_simulation import REST
 
 DT = 1e-3
 """Frame time [s]."""
@@ -101,13 +101,12 @@ def measured_lag(case: Case) -> Lag | None:
 
     The truth is the certified distance at the same poses.
     """
-    poses = poses_of(case)
-    truth = run(so.Tracker(case.a, case.b, dt=DT), case, poses)
-    distances = [answer.distance for answer in truth]
+    paths = REST, ConstantTwist(case.pose_b, case.twist_b)
+    truth = track(so.Tracker(case.a, case.b, dt=DT), *paths, FRAMES * DT, locate=False)
     v, omega = case.twist_b.v, case.twist_b.omega
     speed, spin = float(np.linalg.norm(v)), float(np.linalg.norm(omega))
     wanted = LAG * min(body.size or 1.0 for body in (case.a, case.b))
-    among = min(distances), max(distances)
+    among = float(truth.distance.min()), float(truth.distance.max())
     least = so.min_gain(case.a, case.b, wanted, speed, spin, distance=among)
     gain = float(np.clip(least, LEAST_STEP / DT, MOST_STEP / DT))
     bound = wanted * least / gain
@@ -116,38 +115,16 @@ def measured_lag(case: Case) -> Lag | None:
     law = so.Tracker(
         case.a, case.b, DT, law=so.PaperLaw(integrator="euler", gain=gain, feedforward=False)
     )
-    off = core_points(case, run(law, case, poses)) - core_points(case, truth)
+    made = track(law, *paths, FRAMES * DT, locate=False)
+    off = core_points(case, made) - core_points(case, truth)
     error = float(np.linalg.norm(off, axis=2).max())
     return Lag(case.kind, error, bound, law)
 
 
-def run(tracker: so.Tracker, case: Case, poses: Array) -> list[so.Proximity]:
-    """The answers at each frame, from a certified start at the first."""
-    home, still = np.eye(4), (np.zeros(3), np.zeros(3))
-    twist = case.twist_b.v, case.twist_b.omega
-    state = tracker.start(home, poses[0], still, twist)
-    answers = [state.proximity]
-    for pose in poses[1:]:
-        state, answer = tracker.step(state, home, pose, still, twist)
-        answers.append(answer)
-    return answers
-
-
-def core_points(case: Case, answers: list[so.Proximity]) -> Array:
+def core_points(case: Case, made: Recording) -> Array:
     """Both witness points of each answer, without the swept radii, (n, 2, 3)."""
     inwards = np.array([[-case.a.radius], [case.b.radius]])
-    return np.array([(one.point_a, one.point_b) + inwards * one.normal for one in answers])
-
-
-def poses_of(case: Case) -> Array:
-    """B's poses, (FRAMES + 1, 4, 4): its twist is constant in world axes, of its origin."""
-    time = DT * np.arange(FRAMES + 1)[:, None]
-    poses = np.zeros((FRAMES + 1, 4, 4))
-    turn = Rotation.from_rotvec(time * case.twist_b.omega).as_matrix()
-    poses[:, :3, :3] = turn @ case.pose_b.rotation
-    poses[:, :3, 3] = case.pose_b.translation + time * case.twist_b.v
-    poses[:, 3, 3] = 1.0
-    return poses
+    return np.stack([made.point_a, made.point_b], axis=1) + inwards * made.normal[:, None]
 
 
 def measured_lags(count: int, seed: int = 4) -> list[Lag]:

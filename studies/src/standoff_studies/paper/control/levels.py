@@ -6,9 +6,9 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 import standoff as so
 from standoff.bodies import Body
@@ -17,7 +17,8 @@ from standoff.control.lyapunov import LyapunovLevels, lyapunov_level
 from standoff.geometry.validation import Array
 from standoff.motion import Pose, Twist
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
+from standoff_studies.paper.keys import key_line
 from standoff_studies.paper.law_words import law_words
 
 STEP, GAIN = 1e-3, 100.0
@@ -211,12 +212,10 @@ def _statements(bodies: str) -> tuple[Statement, ...]:
             f"E − E* < {levels.energy_level:.4g} length² the raw law found the minimum in {found}",
             found == starts,
         ),
-        Statement(
+        own_statement(
             "Convergence",
-            "-",
             f"{subject}: in {seen.frames} frames V or E rose in {seen.rises}, H was not positive "
             f"definite in {seen.indefinite}; dV/dt = −2KV to {seen.rate:.0e} (RK4, K h = 0.05)",
-            None,
         ),
     )
 
@@ -290,27 +289,13 @@ def _draw_sets(axes: Axes) -> None:
     axes.set(xlabel="u", ylabel="v", aspect="equal")
 
 
-def _keys() -> list[Line2D]:
+def _keys() -> list[Artist]:
     levels = case("point").levels
     return [
-        Line2D([], [], color=style.RED, linewidth=2.2, label="det H = 0"),
-        Line2D(
-            [],
-            [],
-            color=style.BLUE,
-            linestyle="--",
-            linewidth=2.6,
-            label=f"V = {levels.level:.4f} length²",
-        ),
-        Line2D(
-            [],
-            [],
-            color=style.GREEN,
-            linestyle="-.",
-            linewidth=2.6,
-            label=f"E − E* = {levels.energy_level:.4f} length²",
-        ),
-        Line2D([], [], color=style.QUIET, linewidth=0.7, label="trajectories"),
+        key_line("det H = 0", style.RED, 2.2),
+        key_line(f"V = {levels.level:.4f} length²", style.BLUE, 2.6, "--"),
+        key_line(f"E − E* = {levels.energy_level:.4f} length²", style.GREEN, 2.6, "-."),
+        key_line("trajectories", style.QUIET, 0.7),
     ]
 
 

@@ -15,7 +15,7 @@ from standoff.tracking import feedback
 from standoff_studies.paper import style
 from standoff_studies.paper.control.decay import DAMPINGS, PROPORTIONAL, loops
 from standoff_studies.paper.control.gains import AGREE, worst_loop
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.law_words import law_words
 
 DAMPING = DAMPINGS[1:]
@@ -118,17 +118,12 @@ def _statements() -> tuple[Statement, ...]:
             f"the root leaves the unit circle at K h = {linear}",
             exact,
         ),
-        Statement(
+        own_statement(
             "Gains",
-            "-",
             f"with PI of damping {DAMPING[-1]:g} at K h = {weak}: integral action costs gain",
-            None,
         ),
-        Statement(
-            "Gains",
-            "-",
-            f"measured roots of the PI loop lie on the loci to {worst_loop():.0e}",
-            None,
+        own_statement(
+            "Gains", f"measured roots of the PI loop lie on the loci to {worst_loop():.0e}"
         ),
     )
 
@@ -171,14 +166,8 @@ def _draw_regions(axes: Axes) -> None:
     for k in (2, 1, 0):
         size = np.abs(growth_factor(METHODS[k], x + 1j * y))
         axes.contourf(x, y, size, levels=[0.0, 1.0], colors=[style.COLOURS[k]], alpha=0.16)
-        axes.contour(
-            x,
-            y,
-            size,
-            levels=[1.0],
-            colors=[style.COLOURS[k]],
-            linestyles=[style.DASHES[k]],
-        )
+        dashes = [style.DASHES[k]]
+        axes.contour(x, y, size, levels=[1.0], colors=[style.COLOURS[k]], linestyles=dashes)
         limit = -stability_limit(METHODS[k])
         if k != 1:
             axes.plot(limit, 0.0, style.MARKERS[k], color=style.COLOURS[k], markersize=6)
@@ -196,13 +185,8 @@ def _draw_loci(axes: Axes, name: str) -> None:
     axes.plot(around.real, around.imag, color=style.QUIET, linewidth=1.0)
     for k, one in enumerate(o for o in loci() if o.integrator == name and np.isfinite(o.damping)):
         for j in range(2):
-            axes.plot(
-                one.roots[:, j].real,
-                one.roots[:, j].imag,
-                color=style.COLOURS[k],
-                linestyle=style.DASHES[k],
-                label=f"ζ = {one.damping:g}" if j == 0 else None,
-            )
+            root, label = one.roots[:, j], f"ζ = {one.damping:g}" if j == 0 else None
+            axes.plot(root.real, root.imag, **style.line(k), label=label)
     _draw_proportional(axes, name)
     for loop in loops():
         if loop.integrator == name:

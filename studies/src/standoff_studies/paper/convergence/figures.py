@@ -10,7 +10,6 @@ from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from standoff_studies.paper import style
 from standoff_studies.paper.convergence.cells import (
@@ -26,10 +25,9 @@ from standoff_studies.paper.convergence.cells import (
 )
 from standoff_studies.paper.convergence.pairs import DRAWN_PAIRS, GRIDS, LENSES
 from standoff_studies.paper.convergence.starts import ARRIVED, CAUSES, LEAST_FRAMES, PATIENCE
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import HYBRID, Artwork, Statement, own_statement
+from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.many_starts import INDEFINITE
-
-SOURCE = "Section on the hybrid system"
 
 GROUPS = {
     "D, patches": ("D patches",),
@@ -83,14 +81,13 @@ def anew() -> Artwork:
 def _artwork(cells: tuple[Cell, ...]) -> Artwork:
     return Artwork(
         caption=(
-            "Part of random starts that has come to the true distance, within "
-            f"{ARRIVED:g} length, {PATIENCE:g}/K and {LEAST_FRAMES} frames after the start, "
-            "without restarts. A mark is a gain K: "
-            f"{', '.join(f'{gain:g}' for gain in GAINS)} 1/s; a line joins the gains. D and E are "
-            "the lens with a point and with a stretched lens, the same bodies and the same starts "
-            "in three parametrisations; the drawn pairs are stretched lenses of patches. A mark "
-            "stands for 1000 starts of a pair with the covariant M, in some cells for 200 or 300, "
-            "and for 300 as printed, 100 on a drawn pair."
+            f"Part of random starts that has come to the true distance, within {ARRIVED:g} length, "
+            f"{PATIENCE:g}/K and {LEAST_FRAMES} frames after the start, without restarts. A mark "
+            f"is a gain K: {', '.join(f'{gain:g}' for gain in GAINS)} 1/s; a line joins the gains. "
+            "D and E are the lens with a point and with a stretched lens, the same bodies and the "
+            "same starts in three parametrisations; the drawn pairs are stretched lenses of "
+            "patches. A mark stands for 1000 starts of a pair with the covariant M, in some cells "
+            "for 200 or 300, and for 300 as printed, 100 on a drawn pair."
         ),
         text=(
             "Two diagrams, bodies at rest and moving, with a row for each pair. As printed the "
@@ -231,31 +228,25 @@ def _statements(cells: tuple[Cell, ...]) -> tuple[Statement, ...]:
         _switching(cells),
         _definite(cells),
         _anywhere(cells, f"{_words('printed')}; {gains}"),
-        Statement(
-            SOURCE,
-            "-",
+        own_statement(
+            HYBRID,
             f"on D's grid {_sum(grid, 'right')} of {_sum(grid, 'tried')} starts are on the closest "
             f"features after one frame, M is definite at {_sum(grid, 'definite')} of them, and "
             f"{_sum(grid, 'definite_arrived')} of these and {_sum(grid, 'arrived')} in all arrive",
-            None,
             by=f"{_words('printed')}; K = {GAINS[0]:g} 1/s",
         ),
-        Statement(
-            SOURCE,
-            "-",
+        own_statement(
+            HYBRID,
             f"covariant M, boundaries held: {_pooled(held)} arrive, in the worst cell "
             f"{min(cell.part for cell in held):.1%}",
-            None,
             by=f"{_words('covariant-hold')}; {gains}",
         ),
-        Statement(
-            SOURCE,
-            "-",
+        own_statement(
+            HYBRID,
             "covariant M, zeroed as printed: lenses of D and E "
             f"{_pooled(_of(cells, 'covariant', LENSES))}; drawn pairs "
             f"{_pooled(_of(cells, 'covariant', DRAWN_PAIRS))}, in the worst cell "
             f"{min(cell.part for cell in _of(cells, 'covariant')):.1%}",
-            None,
             by=f"{_words('covariant')}; {gains}",
         ),
     )
@@ -265,7 +256,7 @@ def _switching(cells: tuple[Cell, ...]) -> Statement:
     left, kept = _of(cells, "printed-left"), _of(cells, "printed", SPATIAL)
     lenses = _of(left, "printed-left", LENSES)
     return Statement(
-        SOURCE,
+        HYBRID,
         "the discrete switching finds the closest features",
         f"far side left: {_part(lenses, 'settled')} of the starts on the lenses of D and E end on "
         f"them, of all spatial pairs {_part(left, 'settled')}; far side kept: "
@@ -283,7 +274,7 @@ def _definite(cells: tuple[Cell, ...]) -> Statement:
     parts = [_sum(own, "definite_arrived") / _sum(own, "definite") for own in by_gain]
     words = ", ".join(f"{part:.1%}" for part in parts)
     return Statement(
-        SOURCE,
+        HYBRID,
         "any start where M is positive definite converges",
         f"of the starts on the closest features after one frame with M definite there: {words} at "
         f"K = {', '.join(f'{gain:g}' for gain in GAINS)} 1/s",
@@ -300,7 +291,7 @@ def _anywhere(cells: tuple[Cell, ...], by: str) -> Statement:
         return _range(_of(printed, "printed", pairs))
 
     return Statement(
-        SOURCE,
+        HYBRID,
         "from a start anywhere on tiled convex bodies the errors converge",
         f"in the plane {of('B', 'C')} arrive; in space it depends on the parametrisation: lenses "
         f"of patches {of('D patches', 'E patches')}, gnomonic {of('D gnomonic', 'E gnomonic')}, "
@@ -339,19 +330,13 @@ def _draw_law(axes: Axes, cells: list[Cell], law: str) -> None:
             same = [cell for cell in own if cell.gain == gain]
             if same:
                 parts.append(_sum(same, "arrived") / _sum(same, "tried"))
-        axes.plot(
-            parts,
-            [shift - k] * len(parts),
-            color=colour,
-            marker=marker,
-            markersize=4.0,
-            linewidth=1.2,
-        )
+        look: dict[str, Any] = {"color": colour, "marker": marker, "markersize": 4.0}
+        axes.plot(parts, [shift - k] * len(parts), linewidth=1.2, **look)
 
 
 def _legend(figure: Figure) -> None:
     handles = [
-        Line2D([], [], color=colour, marker=marker, markersize=4.0, label=LAWS[law].name)
+        key_line(LAWS[law].name, colour, marker=marker, markersize=4.0)
         for law, (colour, marker, _) in LOOKS.items()
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False)
+    key_below(figure, handles, 3)

@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies import Body, shapes
 from standoff.bodies.topology import Face
 from standoff.geometry.curves import ConicArc, Curve
 from standoff.geometry.nurbs import BezierPatch
 from standoff.geometry.pcurves import Pcurve
+from standoff.geometry.validation import Array
 from standoff_studies.paper.bodies import lens_of_patches
-
-Array = NDArray[np.float64]
 
 RADIUS, OFFSET = 1.0, 0.45
 """Of the lens's balls, and of their centres from its middle [length]: those of D and E."""

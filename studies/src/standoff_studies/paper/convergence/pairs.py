@@ -8,23 +8,19 @@ from functools import cache, partial
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies import Body, shapes
+from standoff.geometry.validation import Array
 from standoff.motion import ConstantTwist, Fixed, Path, Pose, Spiral, Twist
 from standoff.tracking import distance
 from standoff_studies.paper.bodies import leaf, lens_of_patches, planar_body
 from standoff_studies.paper.convergence.lenses import PARAMETRISATIONS, Lens, lens
+from standoff_studies.paper.pair_simulation import AT_POINT, Place, Start
 from standoff_studies.paper.simulation_a import setting
 from standoff_studies.paper.simulation_b import run as simulation_b
 from standoff_studies.paper.simulation_c import run as simulation_c
 from standoff_studies.paper.simulation_d.runs import HELIX, TRIED
 from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, SEMI_AXES
-
-Array = NDArray[np.float64]
-
-Place = tuple[tuple[str, int], tuple[float, ...]]
-"""A feature and parameters on it, as ``Tracker.start_from`` takes them."""
 
 DRAWN = 10
 """Drawn pairs: stretched lenses of patches at random poses."""
@@ -65,8 +61,8 @@ class Pair:
     a: Body
     b: Body
     path: Path
-    draw: Callable[[np.random.Generator], tuple[Place, Place]]
-    grid: tuple[tuple[Place, Place], ...] = ()
+    draw: Callable[[np.random.Generator], Start]
+    grid: tuple[Start, ...] = ()
 
     def path_of(self, motion: str) -> Path:
         """Return B's path, at rest or moving."""
@@ -85,14 +81,8 @@ def on_a_curve(curves: int, rng: np.random.Generator) -> Place:
     return ("edge", int(rng.integers(curves))), (float(rng.uniform()),)
 
 
-def at_the_point(rng: np.random.Generator) -> Place:
-    """Return the place on a point."""
-    return ("vertex", 0), ()
-
-
-def on_a_lens(one: Lens, home: Body, rng: np.random.Generator) -> Place:
-    """Draw a place on the patches (`home`), and find the same point in a lens's parameters."""
-    feature, at = on_a_face(3, rng)
+def on_a_lens(one: Lens, home: Body, feature: tuple[str, int], at: tuple[float, ...]) -> Place:
+    """Return a place on the patches (`home`), in the parameters of a lens."""
     if one.parametrisation == "patches":
         return feature, at
     point = home.face_parts[feature[1]].charts[0].jet(*at)[0]
@@ -107,20 +97,18 @@ def _lens_and_point(parametrisation: str) -> Pair:
         one.body,
         shapes.point(),
         HELIX,
-        lambda rng: (on_a_lens(one, home, rng), at_the_point(rng)),
+        lambda rng: (on_a_lens(one, home, *on_a_face(3, rng)), AT_POINT),
     )
 
 
 def _grid(parametrisation: str) -> Pair:
     """D with the 75 starts of simulation D's grid on the patches, at the same points in space."""
     one, home = lens(parametrisation), lens_of_patches()
-    places: list[tuple[Place, Place]] = []
-    for face, u, v in product(range(3), TRIED, TRIED):
-        at = u, v
-        if parametrisation != "patches":
-            at = one.place(face, home.face_parts[face].charts[0].jet(u, v)[0])
-        places.append(((("face", face), at), (("vertex", 0), ())))
-    return replace(_lens_and_point(parametrisation), grid=tuple(places))
+    grid = tuple(
+        (on_a_lens(one, home, ("face", face), (u, v)), AT_POINT)
+        for face, u, v in product(range(3), TRIED, TRIED)
+    )
+    return replace(_lens_and_point(parametrisation), grid=grid)
 
 
 def _two_lenses(parametrisation: str) -> Pair:
@@ -129,17 +117,13 @@ def _two_lenses(parametrisation: str) -> Pair:
     home, home_b = lens_of_patches(), lens_of_patches().transformed(by)
     assert (PATH_A.pose(0.0).translation == 0.0).all(), "A is at home"
 
-    def draw(rng: np.random.Generator) -> tuple[Place, Place]:
+    def draw(rng: np.random.Generator) -> Start:
         # as the study has always drawn: both faces, then both places
-        faces, at = rng.integers(3, size=2).tolist(), rng.uniform(size=(2, 2)).tolist()
-        places = []
-        for lens_, home_, face, where in zip((one, other), (home, home_b), faces, at, strict=True):
-            place = where
-            if lens_.parametrisation != "patches":
-                point = home_.face_parts[face].charts[0].jet(*where)[0]
-                place = lens_.place(face, point)
-            places.append((("face", face), tuple(place)))
-        return places[0], places[1]
+        (k, m), (at, at_b) = rng.integers(3, size=2).tolist(), rng.uniform(size=(2, 2)).tolist()
+        return (
+            on_a_lens(one, home, ("face", k), tuple(at)),
+            on_a_lens(other, home_b, ("face", m), tuple(at_b)),
+        )
 
     name = f"E: two lenses, {PARAMETRISATIONS[parametrisation]}"
     return Pair(name, one.body, other.body, PATH_B, draw)
@@ -188,7 +172,7 @@ def _vaults(*, alone: bool) -> Pair:
             vault,
             setting.point(),
             setting.PATH,
-            lambda rng: (on_a_face(6, rng), at_the_point(rng)),
+            lambda rng: (on_a_face(6, rng), AT_POINT),
         )
     rng = np.random.default_rng(SEED_OF_PAIRS)
     turn = Pose.exp((2.5, 0.4, 0.7)).rotation
@@ -219,7 +203,7 @@ def _planar(*, alone: bool) -> Pair:
         body,
         shapes.point(),
         path,
-        lambda rng: (on_a_curve(3, rng), at_the_point(rng)),
+        lambda rng: (on_a_curve(3, rng), AT_POINT),
     )
 
 

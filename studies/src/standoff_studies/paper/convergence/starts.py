@@ -9,18 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature, feature_of
+from standoff.geometry.validation import Array
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
-from standoff.motion import Fixed, Path, Pose, Twist
+from standoff.motion import Fixed, Path, Pose
 from standoff.recording import track
 from standoff.recording.times import even_times
 from standoff.tracking import Tracker, pair_system
 from standoff.tracking.calls import run
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.convergence.pairs import Pair
-from standoff_studies.paper.many_starts import LEFT, Motion, motion_along
-
-Array = NDArray[np.float64]
+from standoff_studies.paper.many_starts import LEFT, begun, motion_along
+from standoff_studies.paper.pair_simulation import REST
 
 STEP = 1e-3
 """Sample time [s]: the paper's 1 kHz."""
@@ -121,8 +121,8 @@ class Trial:
     law : PaperLaw
         Without restarts, with a gain.
     tracker : Tracker
-    motion, rest : Motion
-        Of the trial, and of the bodies at rest where it ends.
+    motion, rest : ndarray
+        Poses and twists, a row a frame: of the trial, and of the bodies at rest where it ends.
     due : ndarray, shape (frames,)
         The true distance after each frame [length].
     features : ndarray of Feature, shape (frames, 2)
@@ -133,8 +133,8 @@ class Trial:
     path: Path
     law: PaperLaw
     tracker: Tracker
-    motion: Motion
-    rest: Motion
+    motion: Array
+    rest: Array
     due: Array
     features: NDArray[np.object_]
 
@@ -142,9 +142,6 @@ class Trial:
     def still(self) -> bool:
         """Are the bodies at rest?"""
         return isinstance(self.path, Fixed)
-
-
-HOME = Fixed(Pose.identity())
 
 
 def frames_of(gain: float) -> int:
@@ -156,15 +153,15 @@ def trial(pair: Pair, motion: str, law: PaperLaw) -> Trial:
     """Prepare a trial."""
     assert law.gain is not None
     n, path = frames_of(law.gain), pair.path_of(motion)
-    exact = track(Tracker(pair.a, pair.b, STEP), HOME, path, n * STEP)
+    exact = track(Tracker(pair.a, pair.b, STEP), REST, path, n * STEP)
     last = Fixed(path.pose(n * STEP))
     return Trial(
         pair,
         path,
         law,
         Tracker(pair.a, pair.b, STEP, law=law),
-        motion_along(HOME, path, even_times(0.0, n * STEP, STEP)),
-        motion_along(HOME, last, even_times(0.0, MORE * n * STEP, STEP)),
+        motion_along(REST, path, even_times(0.0, n * STEP, STEP)),
+        motion_along(REST, last, even_times(0.0, MORE * n * STEP, STEP)),
         exact.distance[1:],
         np.column_stack([exact.feature_a[1:], exact.feature_b[1:]]),
     )
@@ -172,16 +169,12 @@ def trial(pair: Pair, motion: str, law: PaperLaw) -> Trial:
 
 def outcome(tried: Trial, place_a: Any, place_b: Any) -> Outcome:
     """Start the law at a place of each body, and follow it."""
-    pose, twist = tried.path.pose(0.0), tried.path.twist(0.0)
-    begun = tried.tracker.start_from(
-        Pose.identity(), pose, place_a, place_b, Twist.zero(), twist, settle=False
-    )
-    state = begun.data.copy()
+    state = begun(tried.tracker, (REST, tried.path), place_a, place_b).data.copy()
     answers, time = _followed(tried, state)
     first, last = answers[0], answers[-1]
     right = _features(tried, first) == tuple(tried.features[0])
     settled = _features(tried, last) == tuple(tried.features[len(answers) - 1])
-    definite = right and _system(tried, first, tried.motion.rows[0])[1] > 0.0
+    definite = right and _system(tried, first, tried.motion[0])[1] > 0.0
     end = None if np.isfinite(time) else _end(tried, state, answers, settled)
     return Outcome(time, right, settled, definite, end)
 
@@ -194,7 +187,7 @@ def _run(tried: Trial, rows: Array, state: Array) -> Array:
 def _followed(tried: Trial, state: Array) -> tuple[Array, float]:
     """The answers, and the time of arrival: until it has stayed, or stands still, or time is up."""
     assert tried.law.gain is not None
-    rows, n = tried.motion.rows, len(tried.due)
+    rows, n = tried.motion, len(tried.due)
     stay = round(STAYED / tried.law.gain / STEP) + LEAST_FRAMES
     length, answers = max(LEAST_FRAMES, n // 12), np.empty((0, K.N_OUT))
     while len(answers) < n:
@@ -250,7 +243,7 @@ def _system(tried: Trial, answer: Array, row: Array) -> tuple[float, float]:
 def _end(tried: Trial, state: Array, answers: Array, settled: bool) -> End:
     """Trace a start that has not arrived."""
     last = answers[-1]
-    row = tried.motion.rows[len(answers) - 1]
+    row = tried.motion[len(answers) - 1]
     if not np.isfinite(last[K.DISTANCE]):
         return End("other", False, "", "", (), np.nan, np.nan, np.nan, 0)
     psi, least = _system(tried, last, row)
@@ -272,7 +265,7 @@ def _end(tried: Trial, state: Array, answers: Array, settled: bool) -> End:
 
 def _is_late(tried: Trial, state: Array) -> bool:
     """Does it arrive after all, with the bodies at rest where the motion ends?"""
-    rows, due = tried.rest.rows, tried.due[-1]
+    rows, due = tried.rest, tried.due[-1]
     answers, n = np.empty((0, K.N_OUT)), len(tried.due)
     for k in range(MORE):
         answers = _run(tried, rows[k * n : (k + 1) * n], state)

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from standoff.bodies.features import Feature, feature_of
+from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import View
 from standoff_studies.paper.figure import Artwork
@@ -27,10 +26,9 @@ from standoff_studies.paper.in_the_loop.run import (
     run,
 )
 from standoff_studies.paper.in_the_loop.statements import all_statements, by_gain
+from standoff_studies.paper.keys import key_line
 from standoff_studies.paper.patch_places import place_on, short
 from standoff_studies.paper.simulation_d.parameters import SHADES
-
-Array = NDArray[np.float64]
 
 AZIMUTH, ELEVATION = 62.0, 30.0
 """Where the viewer stands [degrees]: above the edge that is crossed."""
@@ -160,12 +158,11 @@ def _draw_scene(axes: Axes, runs: Runs) -> None:
             out = 0.86 if feature.kind == "vertex" else 0.93
             place = runs.answers.point_a[k[len(k) // 2]] / RADIUS
             view.text(axes, out * place, short(feature), fontweight="bold")
-    looks: tuple[tuple[str, str, Any], ...] = (
-        ("tool", style.BLACK, "-"),
-        ("device", style.RED, "--"),
-        ("witness point", style.GREEN, "-"),
-    )
-    handles = [Line2D([], [], color=c, linestyle=s, label=name) for name, c, s in looks]
+    handles = [
+        key_line("tool", style.BLACK),
+        key_line("device", style.RED, dashes="--"),
+        key_line("witness point", style.GREEN),
+    ]
     axes.legend(
         handles=handles,
         loc="upper center",

@@ -7,17 +7,15 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 import standoff as so
 from standoff import simulation as sim
 from standoff.bodies import Body, shapes
+from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking.rows import AnswerRows
 from standoff_studies.paper.bodies import lens_of_patches
-
-Array = NDArray[np.float64]
 
 RADIUS, OFFSET = 0.05, 0.0225
 """Of the lens's balls, and of their centres from its middle [m]: simulation D's, to be held."""
@@ -71,7 +69,7 @@ class Runs:
 
     Attributes
     ----------
-    lens, ball : Body
+    lens : Body
     operator : Operator
         That of `inside`.
     inside : SystemRun
@@ -85,7 +83,6 @@ class Runs:
     """
 
     lens: Body
-    ball: Body
     operator: sim.Operator
     inside: sim.SystemRun
     beside: sim.SystemRun
@@ -205,7 +202,6 @@ def run() -> Runs:
     made = dragged(inside)
     return Runs(
         lens(),
-        made.system.bodies[1].body,
         inside,
         made,
         dragged(beside),

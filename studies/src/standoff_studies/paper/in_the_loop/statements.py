@@ -6,11 +6,11 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff import simulation as sim
 from standoff.bodies.features import feature_of
-from standoff_studies.paper.figure import Statement, measured_by
+from standoff.geometry.validation import Array
+from standoff_studies.paper.figure import Statement, measured_by, own_statement
 from standoff_studies.paper.in_the_loop.run import (
     BALL,
     CONTACT,
@@ -22,8 +22,6 @@ from standoff_studies.paper.in_the_loop.run import (
     operator,
 )
 from standoff_studies.paper.law_words import law_words
-
-Array = NDArray[np.float64]
 
 CLOSE = 1e-6
 """Greatest error of the law's distance that counts as tracked [m]: a thousandth of the depth."""
@@ -138,23 +136,19 @@ def _smooth(runs: Runs) -> Statement:
 
 def _energy(runs: Runs) -> Statement:
     part, least = grown(runs.inside), float(runs.coupler.energy.least.min())
-    return Statement(
+    return own_statement(
         "Fig. 5",
-        "-",
         f"what is held and was lost in contact passes what came in by {part:.0e} of the hand's "
         f"work at most; the observer of the coupler's ports never falls below {least:.0e} J",
-        None,
     )
 
 
 def _beside(runs: Runs) -> Statement:
     apart = np.linalg.norm(runs.inside.positions(1) - runs.beside.positions(1), axis=1)
-    return Statement(
+    return own_statement(
         "Fig. 5",
-        "-",
         "with a certified tracker beside the operator, whose forces are held over a tick, the tool "
         f"goes elsewhere by {1e6 * apart.max():.1f} µm at most",
-        None,
     )
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from matplotlib.axes import Axes
-from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch
+from matplotlib.patches import Circle
 
 from standoff_studies.paper import style
-
-Spot = tuple[float, float]
+from standoff_studies.paper.drawing import Spot, draw_arrow, draw_box
 
 HALF_HEIGHT = 0.32
 """Half a box's height, in the diagram's own unit."""
@@ -93,20 +93,9 @@ def box(
     height: float = HALF_HEIGHT,
 ) -> None:
     """A box with its text; one that integrates has a thick rim."""
-    corner = centre[0] - half_width, centre[1] - height
     thick = 2.2 if colour == STATE else 1.2
-    axes.add_patch(
-        FancyBboxPatch(
-            corner,
-            2.0 * half_width,
-            2.0 * height,
-            boxstyle="round,pad=0,rounding_size=0.08",
-            facecolor="white",
-            edgecolor=colour,
-            linewidth=thick,
-            zorder=3,
-        )
-    )
+    look: dict[str, Any] = {"facecolor": "white", "edgecolor": colour, "linewidth": thick}
+    draw_box(axes, centre, (half_width, height), 0.08, **look)
     axes.text(*centre, text, ha="center", va="center", zorder=4)
 
 
@@ -130,21 +119,9 @@ def arrow(
     colour = style.RED if motion else STRAIGHT
     dashes = "--" if dashed else "-"
     xs, ys = zip(*spots, strict=True)
-    axes.plot(xs[:-1], ys[:-1], color=colour, linestyle=dashes, linewidth=1.2, zorder=2)
-    axes.add_patch(
-        FancyArrowPatch(
-            spots[-2],
-            spots[-1],
-            arrowstyle="-|>",
-            mutation_scale=11,
-            shrinkA=0,
-            shrinkB=0,
-            linestyle=dashes,
-            linewidth=1.2,
-            color=colour,
-            zorder=2,
-        )
-    )
+    look: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 1.2}
+    axes.plot(xs[:-1], ys[:-1], zorder=2, **look)
+    draw_arrow(axes, *spots[-2:], **look)
     if text:
         x, y = (0.5 * (spots[-2][k] + spots[-1][k]) + shift[k] for k in (0, 1))
         axes.text(x, y, text, ha="center", va="center", color=colour, zorder=5)

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, measured_by
+from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.realisations import comparison as c
 from standoff_studies.paper.realisations.diagrams import draw_evaluated, draw_integrated
@@ -114,16 +112,7 @@ def _draw_integrated() -> Figure:
         )
     ):
         seen = errors > LEAST_DRAWN
-        below.plot(
-            time[seen],
-            errors[seen],
-            color=style.COLOURS[n],
-            linestyle=style.DASHES[n],
-            marker=style.MARKERS[n],
-            markevery=20,
-            markersize=5,
-            label=name,
-        )
+        below.plot(time[seen], errors[seen], **style.marked(n, 5, markevery=20), label=name)
     below.set(yscale="log", xlabel="time [s]", ylabel="|Ψ| [length²]", xlim=(0.0, time[-1]))
     below.legend(loc="upper right", handlelength=4.5)
     return figure
@@ -159,27 +148,16 @@ def _draw_evaluated() -> Figure:
 
 def _tell_dashes(figure: Figure) -> None:
     """Below the lower plots: solid is the one realisation, dashed the other."""
-    look: dict[str, Any] = {"color": style.BLACK}
     handles = [
-        Line2D([], [], linestyle="-", label="Fig. 3: Ψ integrated (lower plots)", **look),
-        Line2D([], [], linestyle="--", label="Fig. 4: Ψ evaluated (lower plots)", **look),
+        key_line("Fig. 3: Ψ integrated (lower plots)", style.BLACK),
+        key_line("Fig. 4: Ψ evaluated (lower plots)", style.BLACK, dashes="--"),
     ]
-    figure.legend(
-        handles=handles, loc="outside lower center", ncols=2, frameon=False, handlelength=4.0
-    )
+    key_below(figure, handles, 2, handlelength=4.0)
 
 
 def _draw_apart(axes: Axes, lines: dict[str, c.Difference], title: str) -> None:
     for n, (name, made) in enumerate(lines.items()):
-        axes.plot(
-            1e3 * made.step,
-            made.apart,
-            color=style.COLOURS[n],
-            linestyle=style.DASHES[n],
-            marker=style.MARKERS[n],
-            markersize=5,
-            label=name,
-        )
+        axes.plot(1e3 * made.step, made.apart, **style.marked(n, 5), label=name)
     axes.set(xscale="log", yscale="log", title=title, xlabel="h [ms]", ylabel="apart [length]")
     axes.set_xticks(1e3 * made.step, [f"{1e3 * step:g}" for step in made.step])
     axes.minorticks_off()
@@ -190,14 +168,7 @@ def _draw_drift(axes: Axes, runs: list[tuple[str, float, str]], title: str) -> N
     time = c.long_time()[EVERY::EVERY]
     for n, (method, bias, label) in enumerate(runs):
         for name, dashes in zip(c.REALISATIONS, ("-", "--"), strict=True):
-            axes.plot(
-                time,
-                c.drift(name, method, bias)[EVERY::EVERY],
-                color=style.COLOURS[n],
-                linestyle=dashes,
-                marker=style.MARKERS[n],
-                markevery=20,
-                markersize=5,
-                label=label if dashes == "-" else None,
-            )
+            errors = c.drift(name, method, bias)[EVERY::EVERY]
+            look = style.marked(n, 5, markevery=20) | {"linestyle": dashes}
+            axes.plot(time, errors, **look, label=label if dashes == "-" else None)
     axes.set(yscale="log", title=title, xlabel="time [s]", ylabel="error [length]")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -13,8 +12,9 @@ from standoff.geometry.validation import Array
 from standoff.kernels.state import arrays as K
 from standoff.motion import Pose, Screw, Twist
 from standoff.tracking import Feature, Tracker, TrackerState, distance, pair_system
-from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.laws import PaperLaw
+from standoff.tracking.rows import poses_of, twists_of
+from standoff_studies.paper.many_starts import motion_along, stepped
 from standoff_studies.paper.simulation_a.setting import vault
 
 FACE = Feature("face", 0)
@@ -32,9 +32,6 @@ PATH_B = Screw(
 
 MISS = (0.08, -0.06, 0.05, 0.07)
 """How far the parameters are off at the start, where a run begins wrong."""
-
-HOME = Pose.identity()
-"""Twists are given in the world: no attitude is needed to read them."""
 
 RIGHT = (0.0, 0.0, 0.0, 0.0)
 """The start at the closest points."""
@@ -65,15 +62,6 @@ class Trace:
     tracker: Tracker
 
 
-class Motion(NamedTuple):
-    """Poses (n, 12) and twists (n, 6) of A and of B by frame, flat as the kernels read them."""
-
-    pose_a: Array
-    pose_b: Array
-    twist_a: Array
-    twist_b: Array
-
-
 def body() -> Body:
     """Both bodies: the vault of simulation A."""
     return vault()
@@ -87,15 +75,9 @@ def closest() -> tuple[float, ...]:
 
 
 @cache
-def motion(step: float, frames: int) -> Motion:
-    """Poses and twists of both bodies at the frames."""
-    times = (step * np.arange(frames + 1)).tolist()
-    return Motion(
-        np.array([flat_pose(PATH_A.pose(t)) for t in times]),
-        np.array([flat_pose(PATH_B.pose(t)) for t in times]),
-        np.array([flat_twist(PATH_A.twist(t), HOME) for t in times]),
-        np.array([flat_twist(PATH_B.twist(t), HOME) for t in times]),
-    )
+def motion(step: float, frames: int) -> Array:
+    """Poses and twists of both bodies at the frames after the start, as the kernels read them."""
+    return motion_along(PATH_A, PATH_B, np.asarray(step * np.arange(frames + 1)))
 
 
 @cache
@@ -137,14 +119,14 @@ def trace(
         step,
         law=PaperLaw(integrator=integrator, gain=gain, realisation=realisation),
     )
-    moved = motion(step, frames)
-    told = moved.twist_b.copy()
-    told[:, :3] += bias * moved.pose_a[:, [0, 3, 6]]  # the first column of A's rotation
+    told = motion(step, frames).copy()
+    twists_of(told)[1][:, :3] += bias * poses_of(told)[0][:, [0, 3, 6]]  # along A's x axis
     q = np.array(closest()) + miss
-    start = Twist(told[0, :3], told[0, 3:])
-    poses, twists = (PATH_A.pose(0.0), PATH_B.pose(0.0)), (PATH_A.twist(0.0), start)
+    poses, true = (PATH_A.pose(0.0), PATH_B.pose(0.0)), PATH_B.twist(0.0)
+    start = Twist(true.v + bias * poses[0].rotation[:, 0], true.omega)
+    twists = PATH_A.twist(0.0), start
     state = tracker.start_from(*poses, (FACE, q[:2]), (FACE, q[2:]), *twists, settle=False)
-    rows, believed = _follow(tracker, state, moved, told)
+    rows, believed = _follow(tracker, state, told)
     left = (rows[:, [K.OUT_MODE, K.OUT_MODE + 2]] != FACE.index).any(axis=1)
     if left.any():
         raise RuntimeError(
@@ -161,26 +143,19 @@ def trace(
 def exact(step: float, frames: int) -> Array:
     """Both witness points of the certified answer at the frames, shape (n, 6)."""
     tracker = Tracker(body(), body(), step)
-    moved = motion(step, frames)
     state = tracker.start(PATH_A.pose(0.0), PATH_B.pose(0.0), PATH_A.twist(0.0), PATH_B.twist(0.0))
-    rows, _ = _follow(tracker, state, moved, moved.twist_b)
+    rows, _ = _follow(tracker, state, motion(step, frames))
     if (rows[:, K.STATUS] != K.CONVERGED).any():
         raise RuntimeError("a reference answer is not certified")
     return _points(rows)
 
 
-def _follow(
-    tracker: Tracker, state: TrackerState, moved: Motion, twist_b: Array
-) -> tuple[Array, Array]:
+def _follow(tracker: Tracker, state: TrackerState, moved: Array) -> tuple[Array, Array]:
     """Answers of all frames as ``kernels.state.arrays`` lays them out, and the state's errors."""
-    buffer = tracker.buffer(state)
-    rows = np.empty((len(moved.pose_a), K.N_OUT))
+    rows = np.empty((len(moved) + 1, K.N_OUT))
     believed = np.empty((len(rows), 4))
     rows[0], believed[0] = state.proximity.row, state.data[K.ERRORS : K.ERRORS + 4]
-    for k in range(1, len(rows)):
-        buffer.pose_a[:], buffer.pose_b[:] = moved.pose_a[k], moved.pose_b[k]
-        buffer.twist_a[:], buffer.twist_b[:] = moved.twist_a[k], twist_b[k]
-        tracker.step_into(buffer)
+    for k, buffer in enumerate(stepped(tracker, state, moved), start=1):
         rows[k], believed[k] = buffer.out, buffer.state[K.ERRORS : K.ERRORS + 4]
     return rows, believed
 

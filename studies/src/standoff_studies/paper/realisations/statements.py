@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.control import growth_factor
-from standoff_studies.paper.figure import Statement
+from standoff_studies.paper.figure import Statement, own_statement
 from standoff_studies.paper.realisations import comparison as c
 
 ORDER_SLACK = 0.15
@@ -19,30 +19,24 @@ def of_integrated() -> tuple[Statement, ...]:
     off = float(np.abs(made.believed / made.believed[0] - predicted).max())
     slope, misfit = c.rate_of(c.drift("integrated"))
     return (
-        Statement(
+        own_statement(
             "Fig. 3",
-            "-",
             f"the integrated errors fall by 1 − Kh + (Kh)²/2 a step, to {off:.0e} of the first, "
             "whatever the bodies do",
-            None,
             "w = −M⁻¹(KΨ + b) makes Ψ' = Mw + b = −KΨ exactly, so the state Ψ knows nothing of q.",
         ),
-        Statement(
+        own_statement(
             "Fig. 3",
-            "-",
             f"after {c.SHORT_STEP * c.SHORT_FRAMES:g} s the true errors are still "
             f"{made.integrated[-1]:.1e} [length²], the believed ones {made.believed[-1]:.0e}; "
             f"Fig. 4's true errors are {made.evaluated[-1]:.1e}",
-            None,
             "For the parameters this realisation is open loop: what a step loses is never "
             "corrected.",
         ),
-        Statement(
+        own_statement(
             "Fig. 3",
-            "-",
             f"from the right start the witness points drift at {slope:.1e} [length/s] (Heun, "
             f"h = {1e3 * c.LONG_STEP:g} ms, 20 s), {misfit:.0%} off a straight line at most",
-            None,
         ),
     )
 
@@ -76,13 +70,11 @@ def _gain() -> Statement:
         for low, high in zip(c.GAINS[:-1], c.GAINS[1:], strict=True)
     ]
     same = float(np.abs(np.concatenate(pairs[-2:]) - 1.0).max())
-    return Statement(
+    return own_statement(
         "Figs. 3, 4",
-        "-",
         f"at h = 8 ms they are {first:.0e} [length] apart with K = {c.GAINS[0]:g} 1/s, {last:.0e} "
         f"with {c.GAINS[-1]:g}; from K = {c.GAINS[-3]:g} 1/s on, twice the gain at half the step "
         f"leaves them as far apart, within {same:.0%}",
-        None,
         "What the integrated one loses after a wrong start depends on the product K h.",
     )
 
@@ -90,13 +82,11 @@ def _gain() -> Statement:
 def _level() -> Statement:
     early, late = c.level_of(c.drift("evaluated"))
     _, lost = c.level_of(c.drift("integrated"))
-    return Statement(
+    return own_statement(
         "Fig. 4",
-        "-",
         f"the evaluated one's errors stay level: at most {early:.1e} [length] in the first 10 s "
         f"and {late:.1e} in the second (Heun, h = {1e3 * c.LONG_STEP:g} ms), where the integrated "
         f"one has reached {lost:.1e}",
-        None,
     )
 
 
@@ -105,13 +95,11 @@ def _wrong_twists() -> Statement:
     slope, misfit = c.rate_of(c.drift("integrated", "heun", bias))
     _, level = c.level_of(c.drift("evaluated", "heun", bias))
     half = c.level_of(c.drift("evaluated", "heun", 0.5 * bias))[1]
-    return Statement(
+    return own_statement(
         "Figs. 3, 4",
-        "-",
         f"B's velocity told wrong by {bias:g} [length/s]: the integrated one drifts at "
         f"{slope:.3f} [length/s] ({misfit:.0%} off a line), the evaluated one stays within "
         f"{level:.1e} [length]; told wrong by half of that, within {half:.1e}",
-        None,
         "The loop of Fig. 4 sees the wrong b as a disturbance and holds it at δb/K; that of Fig. 3 "
         "cannot see it.",
     )
@@ -120,13 +108,11 @@ def _wrong_twists() -> Statement:
 def _rk4() -> Statement:
     slope, _ = c.rate_of(c.drift("integrated", "rk4"))
     _, level = c.level_of(c.drift("evaluated", "rk4"))
-    return Statement(
+    return own_statement(
         "Figs. 3, 4",
-        "-",
         f"with RK4, the right start and exact twists Fig. 3 is the better one at first: it drifts "
         f"at {slope:.1e} [length/s], Fig. 4 stays at {level:.1e} [length], so it takes "
         f"{level / slope / 60:.0f} minutes until it is worse",
-        None,
         "Within a step the stages of Fig. 4 lag behind the moving minimum, and its feedback acts "
         "on that lag; in Fig. 3 there is no error to act on.",
     )

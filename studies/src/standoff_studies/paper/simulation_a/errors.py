@@ -57,7 +57,7 @@ def _tables() -> dict[str, dict[str, Array]]:
         made = shown(gain)
         tables[f"errors-{gain:.0f}"] = {
             "step": np.arange(len(made.q), dtype=float),
-            "time_s": made.time,
+            "time_s": made.recording.time,
             "normalised_psi_u": made.normalised[:, 0],
             "normalised_psi_v": made.normalised[:, 1],
             "predicted": np.asarray(gains.growth(gain) ** np.arange(len(made.q))),
@@ -103,10 +103,7 @@ def _draw_errors(axes: Axes, gain: float) -> None:
         axes.plot(
             step,
             made.normalised[: end + 1, k],
-            color=style.COLOURS[k],
-            linestyle=style.DASHES[k],
-            marker=style.MARKERS[k],
-            markersize=8 - 4 * k,
+            **style.marked(k, 8 - 4 * k),
             markerfacecolor="none" if k == 0 else None,
             markevery=max(1, end // 20),
             label=name,

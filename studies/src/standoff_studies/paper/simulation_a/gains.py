@@ -10,15 +10,13 @@ import numpy as np
 
 from standoff.control import growth_factor
 from standoff.geometry.validation import Array
-from standoff.kernels.state import arrays as K
 from standoff.tracking import Tracker, distance, max_gain
 from standoff.tracking.laws import PaperLaw
+from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.simulation_a.raw_law import Trials, growth_of_small_errors, try_all
 from standoff_studies.paper.simulation_a.run import (
-    HOME,
     SETTLED,
     Run,
-    motion,
     projection_errors,
     run,
     system_at,
@@ -146,16 +144,15 @@ def rescued() -> tuple[int, int]:
 
     It holds the rims and takes an indefinite H by the magnitudes of its eigenvalues.
     """
-    moving = motion(np.asarray(STEP * np.arange(TRIED_FRAMES + 1)))
     failed = np.argwhere(trials().steps < 0)
     home = 0
     for at, start in failed.tolist():
         begin = (float(starts()[start, 0]), float(starts()[start, 1]))
         safe = Tracker(vault(), point(), STEP, law=PaperLaw(gain=float(TRIED_GAINS[at])))
-        rows = track(safe, moving, begin)[[0, -1]]
-        psi = projection_errors(rows[:, K.OUT_Q : K.OUT_Q + 2], moving.x[[0, -1]])
+        made = Run(TRIED_GAINS[at], track(safe, TRIED_FRAMES, begin))
+        psi = projection_errors(made.q[[0, -1]], made.target[[0, -1]])
         first, last = np.linalg.norm(psi, axis=1).tolist()
-        home += rows[-1, K.OUT_MODE] == FACE.index and last < SETTLED * first
+        home += made.recording.feature_a[-1] == FACE and last < SETTLED * first
     return home, len(failed)
 
 
@@ -177,7 +174,7 @@ def small_error_limit() -> float:
 @cache
 def closest_start() -> tuple[float, float]:
     """Parameters (u, v) of the closest point at the start."""
-    u, v = distance(vault(), point(), HOME, PATH.pose(0.0)).parameters_a
+    u, v = distance(vault(), point(), REST.pose(0.0), PATH.pose(0.0)).parameters_a
     return float(u), float(v)
 
 
@@ -206,13 +203,13 @@ def greatest_feedforward() -> float:
     made = held(1000.0, True)
     if made is None:
         raise RuntimeError("K = 1000 1/s: the witness point left the patch.")
-    moving = motion(made.time)
-    return float(max(np.abs(system_at(q, moving, k).b).max() for k, q in enumerate(made.q)))
+    found = zip(made.q, made.recording.time.tolist(), strict=True)
+    return float(max(np.abs(system_at(q, time).b).max() for q, time in found))
 
 
 def first_errors() -> Array:
     """Errors at `START` [length²], shape (2,)."""
-    return np.asarray(projection_errors(np.array([START]), motion(np.zeros(1)).x)[0])
+    return np.asarray(system_at(np.array(START), 0.0).Psi)
 
 
 def _greatest_error(made: Run | None) -> float:

@@ -11,16 +11,18 @@ from numpy.typing import NDArray
 from standoff.geometry.validation import Array
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
-from standoff.motion import Twist
+from standoff.motion import Fixed
 from standoff.tracking import Tracker
+from standoff_studies.paper.many_starts import begun, motion_along, stepped
+from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.simulation_a.run import (
-    HOME,
+    FLAT_HOME,
     SETTLED,
-    Motion,
-    motion,
     raw_tracker,
     system_at,
     systems,
+    times_of,
+    track,
 )
 from standoff_studies.paper.simulation_a.setting import FACE, PATH, STEP, VERTEX
 
@@ -58,7 +60,7 @@ def try_all(starts: Array, gains: Array, frames: int) -> Trials:
     A run ends settled, or fails as soon as a step leads out of the patch, or when `frames` are
     over.
     """
-    moving = motion(np.asarray(STEP * np.arange(frames + 1)))
+    moving = motion_along(REST, PATH, times_of(frames))
     shape = len(gains), len(starts)
     trials = Trials(np.full(shape, -1), np.ones(shape, bool), np.zeros(shape, bool))
     for row, gain in enumerate(gains.tolist()):
@@ -73,22 +75,17 @@ def try_all(starts: Array, gains: Array, frames: int) -> Trials:
     return trials
 
 
-def follow(tracker: Tracker, start: Array, moving: Motion) -> Trial:
+def follow(tracker: Tracker, start: Array, moving: Array) -> Trial:
     """Run the law from one start (2,)."""
-    poses, twists = (HOME, PATH.pose(0.0)), (Twist.zero(), PATH.twist(0.0))
-    state = tracker.start_from(*poses, (FACE, start), (VERTEX, ()), *twists, settle=False)
-    buffer, now = tracker.buffer(state), systems()
-    buffer.pose_b[9:] = moving.x[0]
-    before = np.abs(now.psi(start, buffer.pose_a, buffer.pose_b))
+    state = begun(tracker, (REST, PATH), (FACE, start), (VERTEX, ()))
+    before = np.abs(system_at(start, 0.0).Psi)
     goal = SETTLED * np.linalg.norm(before)
     q, monotone = [start], True
-    for x, v in zip(moving.x[1:], moving.v[1:], strict=True):
-        buffer.pose_b[9:], buffer.twist_b[:3] = x, v
-        tracker.step_into(buffer)
+    for buffer in stepped(tracker, state, moving):
         if buffer.out[K.OUT_COUNTS + N.SATURATIONS]:
             break
         q.append(buffer.out[K.OUT_Q : K.OUT_Q + 2].copy())
-        errors = np.abs(now.psi(q[-1], buffer.pose_a, buffer.pose_b))
+        errors = np.abs(systems().psi(q[-1], FLAT_HOME, buffer.pose_b))
         monotone = monotone and bool((errors <= before).all())
         if errors.max() < goal:
             return Trial(np.array(q), True, monotone)
@@ -98,11 +95,10 @@ def follow(tracker: Tracker, start: Array, moving: Motion) -> Trial:
 
 def indefinite(q: Array, gain: float) -> bool:
     """Is H not positive definite at a stage of a run (n, 2) by Heun's method?"""
-    moving = motion(np.asarray(STEP * np.arange(len(q) + 1)))
     for k, at in enumerate(q):
-        now = system_at(at, moving, k)
+        now = system_at(at, k * STEP)
         w = -np.linalg.solve(now.M, gain * now.Psi + now.b)
-        trial = system_at(at + STEP * w, moving, k + 1)
+        trial = system_at(at + STEP * w, (k + 1) * STEP)
         if min(np.linalg.eigvalsh(stage.H)[0] for stage in (now, trial)) <= 0.0:
             return True
     return False
@@ -111,11 +107,6 @@ def indefinite(q: Array, gain: float) -> bool:
 @cache
 def growth_of_small_errors(gain: float, start: tuple[float, float], frames: int) -> float:
     """What a step multiplies a small error by, measured with the point at rest."""
-    tracker = raw_tracker(gain)
-    pose = PATH.pose(0.0)
-    state = tracker.start_from(HOME, pose, (FACE, start), (VERTEX, ()), settle=False)
-    first = system_at(np.array(start), motion(np.zeros(1)), 0).Psi
-    for _ in range(frames):
-        state, answer = tracker.step(state, HOME, pose, Twist.zero(), Twist.zero())
-    last = system_at(np.array(answer.parameters_a), motion(np.zeros(1)), 0).Psi
+    made = track(raw_tracker(gain), frames, start, Fixed(PATH.pose(0.0)))
+    first, last = (system_at(q, 0.0).Psi for q in made.parameters_a[[0, -1], :2])
     return float((np.linalg.norm(last) / np.linalg.norm(first)) ** (1.0 / frames))

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from standoff.geometry.validation import Array
-from standoff.kernels.pair import events as N
-from standoff.kernels.state import arrays as K
-from standoff.motion import Pose, Twist
+from standoff.motion import Path
+from standoff.recording import Recording
+from standoff.recording.track import track_along
 from standoff.tracking import PairSystem, Tracker
-from standoff.tracking.inputs import flat_pose
+from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.pair_system import PairSystems
-from standoff.tracking.rows import COUNT_SLOTS, Counts
+from standoff.tracking.rows import Counts
+from standoff_studies.paper.many_starts import begun
+from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.simulation_a.setting import (
     FACE,
     PATH,
@@ -26,29 +27,21 @@ from standoff_studies.paper.simulation_a.setting import (
     point,
     vault,
 )
-from standoff_studies.paper.unaided import Part
 
-HOME = Pose.identity()
-"""The vault stands still."""
-
-FLAT_HOME = flat_pose(HOME)
-"""Its pose as the kernels read it."""
+FLAT_HOME = flat_pose(REST.pose(0.0))
+"""The vault's pose as the kernels read it: it stands still."""
 
 SETTLED = 1e-3
 """Part of its initial value to which an error must fall to count as settled: below what can be
 seen in the paper's Fig. 7."""
 
-
-class Motion(NamedTuple):
-    """The point at n instants: x [length] and v [length/s], (n, 3)."""
-
-    x: Array
-    v: Array
+SATURATIONS = Counts._fields.index("saturations")
+"""Column of a recording's counts."""
 
 
-def motion(time: Array) -> Motion:
-    """The point at times [s], (n,)."""
-    return Motion(PATH.positions(time), PATH.velocities(time))
+def times_of(frames: int) -> Array:
+    """The times of a run's start and of so many frames after it [s], (frames + 1,)."""
+    return np.asarray(STEP * np.arange(frames + 1))
 
 
 @cache
@@ -57,11 +50,10 @@ def systems() -> PairSystems:
     return PairSystems(vault(), point(), (FACE, START), (VERTEX, ()))
 
 
-def system_at(q: Array, moving: Motion, k: int) -> PairSystem:
-    """The system at parameters (2,), also outside the patch, and instant k of a motion."""
-    pose, twist = FLAT_HOME.copy(), np.zeros(6)
-    pose[9:], twist[:3] = moving.x[k], moving.v[k]
-    return systems().at(q, FLAT_HOME, pose, xi_b=twist)
+def system_at(q: Array, time: float) -> PairSystem:
+    """The system at parameters (2,), also outside the patch, and a time [s]."""
+    pose = PATH.pose(time)
+    return systems().at(q, FLAT_HOME, flat_pose(pose), xi_b=flat_twist(PATH.twist(time), pose))
 
 
 def projection_errors(q: Array, x: Array) -> Array:
@@ -75,43 +67,37 @@ def projection_errors(q: Array, x: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One run, by frame; row k belongs to the time k `STEP`.
+    """One run, by frame.
 
     Attributes
     ----------
     gain : float
         K [1/s].
-    q : ndarray, shape (n, 2)
-        Parameters (u, v).
-    witness, target : ndarray, shape (n, 3)
-        Witness point on the patch and the moving point [length], world.
-    tracker : Tracker
-        What followed it.
-    counts : Counts
-        In all frames.
+    recording : Recording
     """
 
     gain: float
-    q: Array
-    witness: Array
-    target: Array
-    tracker: Tracker
-    counts: Counts
+    recording: Recording
+
+    @property
+    def q(self) -> Array:
+        """Parameters (u, v), shape (n, 2)."""
+        return self.recording.parameters_a[:, :2]
+
+    @property
+    def witness(self) -> Array:
+        """Witness point on the patch [length], world, shape (n, 3)."""
+        return self.recording.point_a
+
+    @property
+    def target(self) -> Array:
+        """The moving point [length], world, shape (n, 3)."""
+        return self.recording.point_b
 
     @cached_property
     def psi(self) -> Array:
         """Projection errors [length²], Eqs. (1)-(2), shape (n, 2)."""
         return projection_errors(self.q, self.target)
-
-    @property
-    def part(self) -> Part:
-        """What its tracker did."""
-        return Part(self.tracker.resolved_law, self.counts, len(self.q))
-
-    @property
-    def time(self) -> Array:
-        """s, shape (n,)."""
-        return np.asarray(STEP * np.arange(len(self.q)))
 
     @property
     def normalised(self) -> Array:
@@ -183,18 +169,15 @@ def run(
     RuntimeError
         If the witness point leaves the patch: a step had a component that leads out of it.
     """
-    moving = motion(np.asarray(STEP * np.arange(frames + 1)))
     tracker = raw_tracker(gain, feedforward, integrator)
-    rows = track(tracker, moving, start)
-    leaves = rows[:, K.OUT_COUNTS + N.SATURATIONS] > 0
+    recording = track(tracker, frames, start)
+    leaves = recording.counts[:, SATURATIONS] > 0
     if leaves.any():
         raise RuntimeError(
             f"K = {gain:g} 1/s from {start}: the witness point left the patch at step "
             f"{int(np.argmax(leaves))}."
         )
-    q, witness = rows[:, K.OUT_Q : K.OUT_Q + 2], rows[:, K.POINT_A : K.POINT_A + 3]
-    counts = Counts(*rows[:, COUNT_SLOTS].sum(axis=0).astype(int).tolist())
-    return Run(gain, q.copy(), witness.copy(), moving.x, tracker, counts)
+    return Run(gain, recording)
 
 
 def raw_tracker(gain: float, feedforward: bool = True, integrator: str = "heun") -> Tracker:
@@ -211,15 +194,9 @@ def raw_tracker(gain: float, feedforward: bool = True, integrator: str = "heun")
     return Tracker(vault(), point(), STEP, law=law)
 
 
-def track(tracker: Tracker, moving: Motion, start: tuple[float, float]) -> Array:
-    """Answers of all frames, (n, N_OUT), as ``standoff.kernels.state.arrays`` lays them out."""
-    poses, twists = (HOME, PATH.pose(0.0)), (Twist.zero(), PATH.twist(0.0))
-    state = tracker.start_from(*poses, (FACE, start), (VERTEX, ()), *twists, settle=False)
-    buffer = tracker.buffer(state)
-    rows = np.empty((len(moving.x), K.N_OUT))
-    rows[0] = state.proximity.row
-    for k in range(1, len(rows)):
-        buffer.pose_b[9:], buffer.twist_b[:3] = moving.x[k], moving.v[k]
-        tracker.step_into(buffer)
-        rows[k] = buffer.out
-    return rows
+def track(
+    tracker: Tracker, frames: int, start: tuple[float, float], path: Path = PATH
+) -> Recording:
+    """Track the point from parameters (u, v) for so many steps of `STEP`."""
+    state = begun(tracker, (REST, path), (FACE, start), (VERTEX, ()))
+    return track_along(tracker, REST, path, times_of(frames), state=state)

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from standoff.bodies import Body, shapes
 from standoff.geometry.nurbs import BezierPatch
 from standoff.geometry.validation import Array
-from standoff.motion import Pose, Twist
+from standoff.motion import Helix
 from standoff.tracking import Feature
 
 STEP = 1e-3
@@ -38,52 +36,7 @@ START = (0.08, 0.9)
 """Parameters (u, v) at which the run begins, far from the closest point's (0.68, 0.48)."""
 
 
-@dataclass(frozen=True)
-class Helix:
-    """A point's motion about the z axis; a path, as ``so.track`` takes it.
-
-    Attributes
-    ----------
-    radius, height : float
-        Of the first position (radius, 0, height) [length].
-    rate : float
-        Turn about z [rad/s].
-    rise : float
-        Along z [length/s].
-    """
-
-    radius: float
-    height: float
-    rate: float
-    rise: float
-
-    start = 0.0
-    end = math.inf
-
-    def positions(self, time: ArrayLike) -> Array:
-        """Return where the point is at times [s], shape (..., 3), world [length]."""
-        t = np.asarray(time, dtype=np.float64)
-        angle = self.rate * t
-        x, y = self.radius * np.cos(angle), self.radius * np.sin(angle)
-        return np.stack([x, y, self.height + self.rise * t], axis=-1)
-
-    def velocities(self, time: ArrayLike) -> Array:
-        """Return its velocity at times [s], shape (..., 3), world [length/s]."""
-        angle = self.rate * np.asarray(time, dtype=np.float64)
-        speed = self.radius * self.rate
-        rise = np.full_like(angle, self.rise)
-        return np.stack([-speed * np.sin(angle), speed * np.cos(angle), rise], axis=-1)
-
-    def pose(self, t: float) -> Pose:
-        """Return the position as a pose without turn: a point has no attitude."""
-        return Pose.from_wxyz((1.0, 0.0, 0.0, 0.0), self.positions(t))
-
-    def twist(self, t: float) -> Twist:
-        """Return how it moves, world axes."""
-        return Twist(self.velocities(t), (0.0, 0.0, 0.0))
-
-
-PATH = Helix(radius=0.55, height=1.3, rate=2.0, rise=0.08)
+PATH = Helix(radius=0.55, pitch=0.08 * math.pi, rate=2.0, centre=(0.0, 0.0, 1.3))
 """The point's path: 1.1 [length/s] around, 0.25 [length] higher after each turn of pi seconds."""
 
 

@@ -6,17 +6,18 @@ from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d import Axes3D
 
 from standoff.geometry.validation import Array
 from standoff.tracking import distance
 from standoff_studies.paper import style
-from standoff_studies.paper.drawing_space import space_axes
+from standoff_studies.paper.drawing_3d import PALE, View, patch_points
 from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
 from standoff_studies.paper.law_words import law_words
+from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.simulation_a.gains import TURN
-from standoff_studies.paper.simulation_a.run import HOME, Run, run
+from standoff_studies.paper.simulation_a.run import Run, run
 from standoff_studies.paper.simulation_a.setting import FACE, PATH, STEP, point, vault
 from standoff_studies.paper.simulation_a.statements import TOLD
 
@@ -39,17 +40,26 @@ KEPT = 1e-6
 """A line that is longer than the distance by less [length] counts as the shortest one: with K = 100
 1/s a thousandth of the first errors is left at step 75, and the length is off by its square."""
 
-VIEW = (30.0, 68.0)
-"""Elevation and azimuth that the patch is seen from [degrees]."""
+AZIMUTH, ELEVATION = 68.0, 30.0
+"""Where the viewer stands [degrees]."""
+
+ACROSS, UP = (-1.35, 1.35), (-1.15, 1.6)
+"""What is shown [length on the paper]: the patch, and the point at all times."""
+
+TRIAD = (0.8, 1.0)
+"""Where the world's axes are drawn [length on the paper]."""
+
+IN_FRONT = 100.0
+"""Rank of the witness lines: the first ones go through the body, and are seen all the way."""
+
+DASHES = (0.07, 0.05)
+"""Of the point's way: drawn and left out [length]."""
 
 BEYOND = 0.16
 """From a line's foot to its number [length], on along the line."""
 
-ZOOM = 0.88
-"""Of the axes in their panel, so that their labels are within."""
-
-CURVES = np.linspace(0.0, 1.0, 9)
-SAMPLES = np.linspace(0.0, 1.0, 33)
+GRID = 32
+"""Pieces along each side of the drawn patch."""
 
 
 @cache
@@ -78,7 +88,7 @@ def figure_6() -> Artwork:
         ),
         draw=_draw,
         tables={"run": run_table(made)},
-        statements=measured_by(law_words(made.tracker, told=TOLD), _statements(made)),
+        statements=measured_by(law_words(made.recording, told=TOLD), _statements(made)),
         animation=Animation(
             frames=len(ANIMATED),
             draw=_draw_frame,
@@ -91,7 +101,7 @@ def figure_6() -> Artwork:
 
 def run_table(made: Run) -> dict[str, Array]:
     """Columns of a run: time, parameters, witness point, point, errors."""
-    columns = {"time_s": made.time, "u": made.q[:, 0], "v": made.q[:, 1]}
+    columns = {"time_s": made.recording.time, "u": made.q[:, 0], "v": made.q[:, 1]}
     for name, points in (("witness", made.witness), ("point", made.target)):
         columns |= {f"{name}_{axis}_length": points[:, k] for k, axis in enumerate("xyz")}
     columns |= {"psi_u_length2": made.psi[:, 0], "psi_v_length2": made.psi[:, 1]}
@@ -105,9 +115,9 @@ def lengths(made: Run) -> Array:
 
 def exact(made: Run, frames: Sequence[int]) -> Array:
     """Certified distances at some frames [length], by a search that knows no start."""
-    home, other = vault(), point()
     poses = (PATH.pose(frame * STEP) for frame in frames)
-    return np.array([distance(home, other, HOME, pose).distance for pose in poses])
+    found = [distance(vault(), point(), REST.pose(0.0), pose).distance for pose in poses]
+    return np.array(found)
 
 
 def _statements(made: Run) -> tuple[Statement, ...]:
@@ -127,74 +137,59 @@ def _statements(made: Run) -> tuple[Statement, ...]:
 
 
 def _way(frame: int) -> float:
-    return float(np.linalg.norm(PATH.velocities(0.0)) * frame * STEP)
+    return float(np.linalg.norm(PATH.twist(0.0).v) * frame * STEP)
 
 
 def _draw() -> Figure:
     made = snapshot_run()
     figure = style.new_figure(style.WIDTH, 4.0)
-    above = space_axes(figure, *VIEW, place=(1, 2, 1))
-    _draw_patch(above)
+    left, right = figure.subplots(1, 2)
+    view = _view()
     for n, frame in enumerate(FIRST):
-        colour = style.COLOURS[n]
-        _draw_line(above, made, frame, colour, 1.6)
+        _add_line(view, made, frame, style.COLOURS[n], 1.6)
+    _paint(left, view)
+    for frame in FIRST:
         foot, top = made.witness[frame], made.target[frame]
         place = foot + BEYOND * (foot - top) / np.linalg.norm(foot - top)
-        above.text(*place, str(frame), ha="center", va="center", fontweight="bold", zorder=9)
-    below = space_axes(figure, *VIEW, place=(1, 2, 2))
-    _draw_patch(below)
-    settled = made.witness[FIRST[-1] :]
-    below.plot(*settled.T, color=style.GREEN, linewidth=2.6, zorder=6)
-    below.plot(*made.target.T, color=style.RED, linestyle="--", zorder=8)
+        view.text(left, place, str(frame), fontweight="bold")
+    view.triad(left, TRIAD, 0.4, "length")
+    left.set_title(f"the first {FIRST[-1]} steps: numbers are steps")
+    view = _view()
+    view.line(made.witness[FIRST[-1] :], style.GREEN, 2.6, rank=1.5)
+    view.line(made.target, style.RED, 1.6, dashes=DASHES)
     for frame in range(FIRST[-1], len(made.q), EACH):
-        _draw_line(below, made, frame, style.BLACK, 1.2)
-    for axes, title in (
-        (above, f"the first {FIRST[-1]} steps: numbers are steps"),
-        (below, "one turn"),
-    ):
-        axes.set_title(title)
-        _same_limits(axes)
+        _add_line(view, made, frame, style.BLACK, 1.2)
+    _paint(right, view)
+    right.set_title("one turn")
     return figure
 
 
 def _draw_frame(figure: Figure, k: int) -> None:
     made, frame = snapshot_run(), ANIMATED[k]
-    axes = space_axes(figure, *VIEW)
-    _draw_patch(axes)
-    axes.plot(*made.witness[: frame + 1].T, color=style.GREEN, linewidth=2.6, zorder=6)
-    axes.plot(*made.target[: frame + 1].T, color=style.RED, linestyle="--", zorder=8)
-    _draw_line(axes, made, frame, style.BLACK, 2.0)
+    axes, view = figure.add_subplot(), _view()
+    view.line(made.witness[: frame + 1], style.GREEN, 2.6, rank=1.5)
+    view.line(made.target[: frame + 1], style.RED, 1.6, dashes=DASHES)
+    _add_line(view, made, frame, style.BLACK, 2.0)
+    _paint(axes, view)
     errors = made.normalised[frame].max()
     axes.set_title(f"step {frame}: greatest normalised error {errors:.0e}")
-    _same_limits(axes)
 
 
-@cache
-def patch_points() -> Array:
-    """Points of the patch at `SAMPLES` of u and of v [length], shape (n, n, 3)."""
-    (patch,) = vault().face_parts[FACE.index].charts
-    return np.array([[patch.jet(u, v)[0] for v in SAMPLES.tolist()] for u in SAMPLES.tolist()])
+def _view() -> View:
+    """A view of the patch alone."""
+    view = View(AZIMUTH, ELEVATION)
+    view.patch(patch_points(vault(), FACE.index, GRID), PALE[0], lines=7)
+    return view
 
 
-def _draw_patch(axes: Axes3D) -> None:
-    grid = patch_points()
-    axes.plot_surface(
-        *np.moveaxis(grid, -1, 0), color=style.BLUE, alpha=0.13, linewidth=0, rcount=17, ccount=17
-    )
-    step = (len(SAMPLES) - 1) // (len(CURVES) - 1)
-    for net in (grid[::step], grid.swapaxes(0, 1)[::step]):
-        for k, line in enumerate(net):
-            rim = k in (0, len(net) - 1)
-            colour = style.BLUE if rim else style.QUIET
-            axes.plot(*line.T, color=colour, linewidth=1.4 if rim else 0.5)
-
-
-def _draw_line(axes: Axes3D, made: Run, frame: int, colour: str, width: float) -> None:
+def _add_line(view: View, made: Run, frame: int, colour: str, width: float) -> None:
     ends = np.array([made.witness[frame], made.target[frame]])
-    axes.plot(*ends.T, "o-", color=colour, linewidth=width, markersize=4, zorder=7)
+    view.line(ends, colour, width, rank=IN_FRONT)
+    for end in ends:
+        view.mark(end, colour)
 
 
-def _same_limits(axes: Axes3D) -> None:
-    """The whole patch and the point, in the same place in every frame."""
-    axes.set(xlim=(-1.1, 1.1), ylim=(-1.2, 1.2), zlim=(-0.7, 1.6))
-    axes.set_box_aspect((2.2, 2.4, 2.3), zoom=ZOOM)
+def _paint(axes: Axes, view: View) -> None:
+    """The whole patch and the point's way, in the same place in every frame."""
+    view.paint(axes)
+    axes.set(xlim=ACROSS, ylim=UP)

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from standoff_studies.paper.figure import Statement, measured_by
+from standoff_studies.paper.figure import Statement, measured_by, own_statement
 from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.simulation_a import gains
 from standoff_studies.paper.simulation_a.run import SETTLED, Run
 from standoff_studies.paper.simulation_a.setting import STEP
-from standoff_studies.paper.unaided import unaided
+from standoff_studies.paper.unaided import Part, unaided
 
 STATED = (75, 10)
 """The paper's steps to the steady state at K = 100 and 1000 1/s."""
@@ -41,8 +41,9 @@ def statements(slow: Run, fast: Run) -> tuple[Statement, ...]:
         _slowness(),
         _without_feedforward(),
     )
-    by = law_words(slow.tracker, fast.tracker, told=TOLD)
-    return (*measured_by(by, made), unaided([slow.part, fast.part], by))
+    both = slow.recording, fast.recording
+    by = law_words(*both, told=TOLD)
+    return (*measured_by(by, made), unaided([Part.of(one) for one in both], by))
 
 
 def _steps(made: Run, stated: int) -> Statement:
@@ -152,14 +153,12 @@ def _lower_end() -> Statement:
 
 def _theory() -> Statement:
     limit = gains.small_error_limit()
-    return Statement(
+    return own_statement(
         "Fig. 7",
-        "-",
         f"stable here: an error of {gains.SMALL:g} in the parameters does not grow, the point at "
         f"rest; its growth a step, measured at K = {gains.NEAR[0]:g} and {gains.NEAR[1]:g} 1/s, "
         f"reaches 1 at {limit:.1f} 1/s. Linear theory: K h < 2 for Heun's method, "
         f"K < {gains.LIMIT:g} 1/s at 1 kHz, and so.Tracker refuses more",
-        None,
     )
 
 
@@ -168,14 +167,12 @@ def _starts() -> Statement:
     failed = trials.steps < 0
     home, of = gains.rescued()
     worst = failed.mean(axis=1).max()
-    return Statement(
+    return own_statement(
         "Fig. 7",
-        "-",
         f"stable here: every one of {gains.GRID**2} starts on the patch settles; so it is up to "
         f"K = {gains.greatest_for_all():g} 1/s, above that up to {worst:.1%} of the starts fail "
         f"({trials.indefinite.sum()} of {of} failures after H lost positive definiteness at a "
         f"stage); the tracker's safeguards bring {home} of those {of} home",
-        None,
         "Heun's trial stage goes (Kh − 1) times the error beyond the minimum: from far away it "
         "leaves the region where H is positive definite. So a limit found by experiment from "
         "large errors is below 2000, as the paper's 1500 is.",
@@ -187,13 +184,11 @@ def _slowness() -> Statement:
     steps = dict(zip(made.gain.tolist(), made.steps.tolist(), strict=True))
     steady = gains.steady()
     swell = steady.forward[-1] / steady.forward[steady.gain.tolist().index(1000.0)]
-    return Statement(
+    return own_statement(
         "Fig. 7",
-        "-",
         f"above K = 1000 1/s more gain is slower: {steps[1000.0]:.0f} steps at 1000 1/s, "
         f"{steps[1500.0]:.0f} at 1500, {steps[1900.0]:.0f} at 1900, {steps[1990.0]:.0f} at 1990; "
         f"and the steady error at {steady.gain[-1]:g} 1/s is {swell:.0f} times that at 1000",
-        None,
         "1 − Kh + (Kh)²/2 is least, 0.5, at Kh = 1 and back at 1 for Kh = 2; the steady error "
         "grows as 1/(1 − Kh/2).",
     )
@@ -204,13 +199,11 @@ def _without_feedforward() -> Statement:
     first = float(np.abs(gains.first_errors()).max())
     low, mid = steady.without[0], float(steady.without[steady.gain.tolist().index(100.0)])
     need = gains.greatest_feedforward() / (SETTLED * first)
-    return Statement(
+    return own_statement(
         "Fig. 7",
-        "-",
         f"without the feedforward the errors stay at b/K: {mid:.3f} [length²] at K = 100 1/s "
         f"(max|b|/K = {gains.greatest_feedforward() / 100.0:.3f}), {low:.2f} at 0.5; below "
         f"{SETTLED:g} of the first error, {SETTLED * first:.4f} [length²], takes K above "
         f"{need:.0f} 1/s",
-        None,
         "This is the lower limit that the motion sets: K ≥ max|b|/Ψ for a tolerance Ψ.",
     )

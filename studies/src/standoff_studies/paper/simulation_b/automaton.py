@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike
 
 from standoff.points import PointEvent
 from standoff.tracking import Feature
 from standoff_studies.paper import style
-from standoff_studies.paper.drawing import planar_features, short_name
-from standoff_studies.paper.figure import Artwork
+from standoff_studies.paper.drawing import draw_arrow, planar_features, short_name
+from standoff_studies.paper.figure import Artwork, measured_by
 from standoff_studies.paper.simulation_b.run import GAIN, Run, run
 from standoff_studies.paper.simulation_b.switching import statements
 
@@ -65,7 +64,7 @@ def figure_9() -> Artwork:
         ),
         draw=lambda: _draw(simulation),
         tables={"stays": _stays(simulation), "switches": _switches(simulation)},
-        statements=statements(simulation),
+        statements=measured_by(simulation.paper.by, statements(simulation)),
     )
 
 
@@ -180,22 +179,13 @@ def _draw_switch(axes: Axes, switch: Switch, places: dict[Mode, tuple[float, flo
     taken = bool(switch.times)
     start, end = places[switch.source], places[switch.target]
     # The line and its head apart: dashes would break the head, too.
-    for arrow, line, width in (("-", dashes, 2.0 if taken else 0.8), ("-|>", "-", 0.0)):
-        axes.add_patch(
-            FancyArrowPatch(
-                start,
-                end,
-                arrowstyle=arrow,
-                linestyle=line,
-                linewidth=width,
-                connectionstyle=f"arc3,rad={BEND}",
-                color=colour if taken else style.QUIET,
-                mutation_scale=18.0 if taken else 11.0,
-                shrinkA=27.0,
-                shrinkB=27.0,
-                zorder=3 if taken else 2,
-            )
-        )
+    look: dict[str, Any] = {"connectionstyle": f"arc3,rad={BEND}", "shrinkA": 27.0, "shrinkB": 27.0}
+    look |= (
+        {"color": colour, "mutation_scale": 18.0, "zorder": 3} if taken else {"color": style.QUIET}
+    )
+    width = 2.0 if taken else 0.8
+    draw_arrow(axes, start, end, arrowstyle="-", linestyle=dashes, linewidth=width, **look)
+    draw_arrow(axes, start, end, linewidth=0.0, **look)
     if taken:
         _write_times(axes, switch.times, start, end, colour)
 

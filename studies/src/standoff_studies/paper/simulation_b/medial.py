@@ -6,13 +6,12 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from standoff.bodies import Body
 from standoff.bodies.voronoi import MedialBranch, VoronoiRegions
-
-Array = NDArray[np.float64]
+from standoff.geometry.validation import Array
+from standoff_studies.paper.drawing import curve_points
 
 PIECES = 2000
 """Chords of a branch's spline: they leave it by less than the spline leaves the axis, 1e-7."""
@@ -49,9 +48,7 @@ class MedialRegions:
 
     def _around(self, body: Body, curve: int) -> tuple[Array, Array]:
         """The polygon of a curve's region: first and second ends of its sides, (n, 2) each."""
-        shape = body.edge_parts[curve].curve
-        along = np.linspace(shape.first, shape.last, ALONG + 1)
-        boundary = np.array([shape.point(t)[:2] for t in along.tolist()])
+        boundary = curve_points(body, curve, count=ALONG + 1)
         out, back = self._branches[curve], self._branches[(curve + 1) % self.curves]
         loop = np.vstack([out, boundary, back[::-1]])
         return loop, np.roll(loop, -1, axis=0)

@@ -9,9 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
+from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.resets import (
     Errors,
     Reset,
@@ -21,7 +23,6 @@ from standoff_studies.paper.resets import (
     resets_of,
 )
 from standoff_studies.paper.simulation_b.automaton import FILLS, KINDS
-from standoff_studies.paper.simulation_b.printed import REST
 from standoff_studies.paper.simulation_b.run import (
     CONVERGED,
     DURATION,
@@ -30,8 +31,6 @@ from standoff_studies.paper.simulation_b.run import (
     psi,
     run,
 )
-
-Array = NDArray[np.float64]
 
 VERTEX_FILL = "#E9A63A"
 """Behind the time at a vertex."""
@@ -65,7 +64,7 @@ def figure_11() -> Artwork:
             "frames": _frames(simulation),
             "resets": reset_table(resets(simulation)),
         },
-        statements=_statements(simulation),
+        statements=measured_by(simulation.paper.by, _statements(simulation)),
     )
 
 
@@ -147,7 +146,6 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"the nearest of the three, in the others at most {1e3 * since:.0f} ms have gone since "
             f"the jump to it (1/K is {1e3 / GAIN:g} ms)",
             since < 1.0 / GAIN,
-            by=paper.by,
         ),
         Statement(
             "Fig. 11",
@@ -155,19 +153,15 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"{frames} frames at vertices, the witness point leaves them by {slip:.0e} length",
             slip == 0.0,
             "a vertex has no parameter that could move",
-            paper.by,
             constructed=True,
         ),
         reset_statement(resets(simulation), paper.by),
-        Statement(
+        own_statement(
             "Fig. 11",
-            "-",
             f"active parameter of the paper's law against the certified one after {CONVERGED} s: "
             f"median {np.median(lag):.0e}, at most {lag.max():.2g}; the same feature in "
             f"{np.mean(same[settled]):.2%} of the frames",
-            None,
             "The greatest lag is where a curve takes over soon after its parameter left its bound.",
-            paper.by,
         ),
     )
 

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from standoff.bodies import Body, shapes
 from standoff.bodies.voronoi import VoronoiRegions
-from standoff.motion import Fixed, Pose, Spiral, Twist
+from standoff.geometry.validation import Array
+from standoff.motion import Spiral
 from standoff.points import PointEvent, PointVisit
 from standoff.points.planar_boundary import PlanarBoundary
 from standoff.recording import RecordedEvent, Recording
@@ -22,14 +23,9 @@ from standoff.recording.track import track_along
 from standoff.tracking import Feature, Tracker, TrackerState
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.law_words import law_words
+from standoff_studies.paper.many_starts import begun
+from standoff_studies.paper.pair_simulation import AT_POINT, REST
 from standoff_studies.paper.simulation_b.medial import MedialRegions, first_change
-
-Array = NDArray[np.float64]
-
-REST = Fixed(Pose.identity())
-"""The body stays where it is."""
-
-POINT = ("vertex", 0), ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,12 +132,8 @@ class Printed:
 
     def begun(self, law: Tracker, feature: Feature, parameter: float, frame: int) -> TrackerState:
         """Return a law's state at a parameter of a curve, whatever it is worth."""
-        time = float(self.times[frame])
-        poses, twists = (
-            (Pose.identity(), self.path.pose(time)),
-            (Twist.zero(), self.path.twist(time)),
-        )
-        return law.start_from(*poses, (feature, (parameter,)), POINT, *twists, settle=False)
+        paths, time = (REST, self.path), float(self.times[frame])
+        return begun(law, paths, (feature, (parameter,)), AT_POINT, time)
 
     def run(self, start: tuple[float, ...]) -> PrintedRun:
         """Track the point all the way from one parameter for each curve."""

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from standoff.bodies.voronoi import MedialBranch
 from standoff_studies.paper import style
-from standoff_studies.paper.drawing import draw_planar_body, name_features, short_name
+from standoff_studies.paper.drawing import draw_planar_body, name_features, short_name, show_plane
 from standoff_studies.paper.figure import Artwork, Statement
 from standoff_studies.paper.simulation_b.run import NO_LAW, Run, run
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
@@ -125,11 +125,7 @@ def _draw(simulation: Run) -> Figure:
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85},
         zorder=6,
     )
-    axes.set_xlim(-EXTENT, EXTENT)
-    axes.set_ylim(-EXTENT, EXTENT)
-    axes.grid(visible=False)
-    axes.set_xlabel("x [length]")
-    axes.set_ylabel("y [length]")
+    show_plane(axes, EXTENT)
     figure.legend(loc="outside lower center", ncols=3, frameon=False)
     return figure
 

@@ -11,15 +11,16 @@ from numpy.typing import NDArray
 
 from standoff.bodies import Body
 from standoff.bodies.voronoi import VoronoiRegions, voronoi_regions
+from standoff.geometry.validation import Array
 from standoff.motion import Spiral
 from standoff.points import PointEvent, PointRecording, PointTracker, record_point
 from standoff.tracking import Feature
 from standoff_studies.paper.bodies import planar_body
+from standoff_studies.paper.drawing import curve_points
 from standoff_studies.paper.law_words import law_words
-from standoff_studies.paper.many_starts import Arrivals, distances, motion_along
-from standoff_studies.paper.simulation_b.printed import REST, Printed, PrintedRun
-
-Array = NDArray[np.float64]
+from standoff_studies.paper.many_starts import Ends, last_answers
+from standoff_studies.paper.pair_simulation import REST
+from standoff_studies.paper.simulation_b.printed import Printed, PrintedRun
 
 DURATION = 4.0
 """Of the motion [s]."""
@@ -132,18 +133,21 @@ def run() -> Run:
 
 
 @cache
-def arrivals() -> Arrivals:
+def arrivals() -> Ends:
     """Try starts all over each curve: each of the parallel trackers is alone on its curve."""
     simulation = run()
     printed, k, found = simulation.printed, round(CONVERGED / FRAME), 0
-    motion = motion_along(REST, simulation.path, printed.times[: k + 1])
+    paths, times = (REST, simulation.path), printed.times[: k + 1]
     for curve in range(simulation.body.n_edges):
         due = simulation.exact.curve_distance[k, curve]
-        for u in np.linspace(0.0, 1.0, TRIED).tolist():
-            state = printed.begun(printed.parallel, Feature("edge", curve), u, 0)
-            found += bool(abs(distances(printed.parallel, state, motion)[-1] - due) < ARRIVED)
+        states = (
+            printed.begun(printed.parallel, Feature("edge", curve), u, 0)
+            for u in np.linspace(0.0, 1.0, TRIED).tolist()
+        )
+        last = last_answers(printed.parallel, states, paths, times)
+        found += sum(bool(abs(answer.distance - due) < ARRIVED) for answer in last)
     by = law_words(printed.parallel, told="starts along each curve")
-    return Arrivals(found, TRIED * simulation.body.n_edges, by)
+    return Ends(found, TRIED * simulation.body.n_edges, by)
 
 
 def late(recording: PointRecording | PrintedRun) -> list[PointEvent]:
@@ -170,17 +174,13 @@ def brute_modes(body: Body, points: Array) -> list[str]:
 
     "C0" and the like for a curve, "V0" for a vertex.
     """
-    curves = [part.curve for part in body.edge_parts]
-    parameters = [np.linspace(c.first, c.last, DENSE) for c in curves]
-    samples = np.array(
-        [[c.point(t)[:2] for t in own] for c, own in zip(curves, parameters, strict=True)]
-    )
+    samples = np.array([curve_points(body, k, count=DENSE) for k in range(body.n_edges)])
     found = []
     for point in points:
         far = np.linalg.norm(samples - point, axis=2)
         curve, k = (int(i) for i in np.unravel_index(far.argmin(), far.shape))
         at_end = k in (0, DENSE - 1)
-        found.append(f"V{(curve + (k > 0)) % len(curves)}" if at_end else f"C{curve}")
+        found.append(f"V{(curve + (k > 0)) % len(samples)}" if at_end else f"C{curve}")
     return found
 
 

@@ -5,16 +5,19 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from standoff.geometry.validation import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import (
     draw_feature,
     draw_planar_body,
     draw_witness_line,
     short_name,
+    show_plane,
 )
-from standoff_studies.paper.figure import Animation, Artwork, Statement
+from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by, own_statement
+from standoff_studies.paper.simulation_b.regions import EXTENT
 from standoff_studies.paper.simulation_b.run import (
     CONVERGED,
     FRAME,
@@ -27,10 +30,6 @@ from standoff_studies.paper.simulation_b.run import (
 )
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
 
-Array = NDArray[np.float64]
-
-EXTENT = 1.85
-"""Half width of the view [length]."""
 OFF = 0.01
 """Snapshots whose witness point is off by more [length], before `CONVERGED`, still come from the
 wrong start: on paper it is half a millimetre."""
@@ -55,13 +54,12 @@ def figure_10() -> Artwork:
     return Artwork(
         caption=(
             "A hundred snapshots, one every 40 ms: the point (dots) and its witness line, by the "
-            f"printed system at K = {GAIN:g}/s; thin and grey, the library's own law. The "
-            f"first ones (thick, black, off by more than {OFF:g}) still come from the "
-            "deliberately wrong start; then the "
-            "lines are square to the curve. Arrows show which way the point goes. "
-            "Inside (vermilion, dashed) they jump over the medial axis; "
-            "outside they end on a curve (blue), or are anchored at a vertex (green, "
-            "dash-dotted). The animation also shows, inside, the two curves that are not nearest."
+            f"printed system at K = {GAIN:g}/s; thin and grey, the library's own law. The first "
+            f"ones (thick, black, off by more than {OFF:g}) still come from the deliberately wrong "
+            "start; then the lines are square to the curve. Arrows show which way the point goes. "
+            "Inside (vermilion, dashed) they jump over the medial axis; outside they end on a "
+            "curve (blue), or are anchored at a vertex (green, dash-dotted). The animation also "
+            "shows, inside, the two curves that are not nearest."
         ),
         text=(
             "A planar body with witness lines like spokes from a spiral; they jump between curves "
@@ -69,7 +67,7 @@ def figure_10() -> Artwork:
         ),
         draw=lambda: _draw(simulation),
         tables={"snapshots": _table(simulation)},
-        statements=_statements(simulation),
+        statements=measured_by(simulation.paper.by, _statements(simulation)),
         animation=Animation(
             SNAPSHOTS,
             lambda figure, k: _draw_moment(figure, simulation, k),
@@ -134,18 +132,14 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             f"curves' errors fall at {min(rates):.2f} to {max(rates):.2f} per s with "
             f"K = {GAIN:g} per s",
             max(abs(rate - GAIN) for rate in rates) < 0.02 * GAIN,
-            by=simulation.paper.by,
         ),
-        Statement(
+        own_statement(
             "Fig. 10",
-            "-",
             f"distance off by {error[round(CONVERGED / FRAME)]:.0e} length at {CONVERGED} s; later "
             f"by {np.median(error[exact.time > CONVERGED]):.0e} in the middle, "
             f"{error[exact.time > CONVERGED].max():.1e} at most",
-            None,
             "The greatest errors come after a parameter has left its bound, from which the law "
             "sets off early, by its rate over K.",
-            simulation.paper.by,
         ),
         Statement(
             "Fig. 10",
@@ -185,7 +179,7 @@ def _draw(simulation: Run) -> Figure:
     axes.plot([], [], color=style.QUIET, linewidth=0.8, label="library's own law")
     for span in SWEEP:
         _draw_sweep(axes, simulation, *span)
-    _frame_view(axes)
+    show_plane(axes, EXTENT)
     figure.legend(loc="outside lower center", ncols=2, frameon=False, handlelength=3.5)
     return figure
 
@@ -198,14 +192,6 @@ def _draw_sweep(axes: Axes, simulation: Run, first: float, last: float) -> None:
     axes.plot(way[:, 0], way[:, 1], color=style.BLACK, linewidth=1.3, zorder=6)
     head = {"arrowstyle": "-|>", "color": style.BLACK, "mutation_scale": 13.0, "shrinkA": 0.0}
     axes.annotate("", tuple(way[-1]), tuple(way[-12]), arrowprops=head, zorder=6)
-
-
-def _frame_view(axes: Axes) -> None:
-    axes.grid(visible=False)
-    axes.set_xlim(-EXTENT, EXTENT)
-    axes.set_ylim(-EXTENT, EXTENT)
-    axes.set_xlabel("x [length]")
-    axes.set_ylabel("y [length]")
 
 
 def _draw_moment(figure: Figure, simulation: Run, k: int) -> None:
@@ -222,7 +208,7 @@ def _draw_moment(figure: Figure, simulation: Run, k: int) -> None:
             ends = np.array([paper.point[frame], part.curve.point(float(u))])
             axes.plot(ends[:, 0], ends[:, 1], "--", color=style.RED, linewidth=1.1)
     draw_witness_line(axes, paper.point[frame], paper.witness[frame], linewidth=2.2)
-    _frame_view(axes)
+    show_plane(axes, EXTENT)
     side = "inside" if paper.inside[frame] else "outside"
     axes.set_title(
         f"{paper.time[frame]:4.2f} s   {short_name(paper.feature[frame])} {side}   "

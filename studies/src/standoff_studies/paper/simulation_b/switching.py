@@ -11,10 +11,10 @@ from standoff.motion import Pose
 from standoff.points import PointVisit
 from standoff.tracking import Feature
 from standoff_studies.paper.drawing import short_name
-from standoff_studies.paper.figure import Statement
+from standoff_studies.paper.figure import HYBRID, Statement
 from standoff_studies.paper.held_features import CONTINUOUS, SHARED, held_distance
+from standoff_studies.paper.pair_simulation import REST, anywhere
 from standoff_studies.paper.resets import growth_statement, moves_of
-from standoff_studies.paper.simulation_b.printed import REST
 from standoff_studies.paper.simulation_b.run import (
     ARRIVED,
     CONVERGED,
@@ -58,7 +58,6 @@ def statements(simulation: Run) -> tuple[Statement, ...]:
             f"boundary, {onto} switches from a curve to a vertex and {back} back",
             counts["medial"] >= 6 and onto >= 3 and back >= 3,
             "the motion is ours, chosen so that they occur",
-            simulation.paper.by,
             constructed=True,
         ),
         _curve_to_curve(simulation),
@@ -69,7 +68,6 @@ def statements(simulation: Run) -> tuple[Statement, ...]:
             f"boundary: the same in {agree} of {int(settled.sum())} snapshots after "
             f"{CONVERGED:g} s",
             agree == int(settled.sum()),
-            by=simulation.paper.by,
         ),
         _instants(simulation),
         *_starts(simulation),
@@ -83,7 +81,7 @@ def _curve_to_curve(simulation: Run) -> Statement:
     said = "Fig. 9", "curve to curve outside"
     stays = [v for v in simulation.paper.modes() if not v.inside and v.feature.kind == "vertex"]
     if not stays:
-        return Statement(*said, "no vertex is passed outside", False, by=simulation.paper.by)
+        return Statement(*said, "no vertex is passed outside", False)
     first: PointVisit = stays[0]
     frames = [math.ceil(t / FRAME) for t in (first.start, first.end)]
     (source,) = (e.source for e in simulation.paper.events if e.time == first.start)
@@ -95,7 +93,6 @@ def _curve_to_curve(simulation: Run) -> Statement:
         frames[0] == frames[1] and source.kind == target.kind == "edge",
         "At a sharp vertex two curves' regions do not touch: the point passes the vertex at "
         f"{PAST} length, by a motion chosen for it, and its region within a step.",
-        simulation.paper.by,
         constructed=True,
     )
 
@@ -113,7 +110,6 @@ def _instants(simulation: Run) -> Statement:
         f"{off['voronoi']:.0e} s of it, at the boundary {off['crossing']:.0e} s, at the medial "
         f"axis computed before the run {off['medial']:.0e} s",
         all(near) and max(off.values()) < WITHIN,
-        by=simulation.paper.by,
     )
 
 
@@ -153,7 +149,7 @@ def _growth(simulation: Run) -> Statement:
     found = growths(simulation)
     grows = max(max(found["medial"]), max(found["voronoi"]))
     return Statement(
-        "Section on the hybrid system",
+        HYBRID,
         "the distance between features never grows at a switch",
         f"at the instants of {len(found['medial'])} jumps and {len(found['voronoi'])} Voronoi "
         f"switches the feature after it is at most {grows:.0e} length farther away than the one "
@@ -185,22 +181,20 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
     )
     return (
         Statement(
-            "Section on the hybrid system",
+            HYBRID,
             claim,
             f"outside, from {len(runs)} wrong starts: the same {int(outside.sum())} Voronoi "
             f"switches, instants within {outer:.0e} s",
             bool(same and outside.any() and outer < INSTANT),
-            by=simulation.paper.by,
         ),
         Statement(
-            "Section on the hybrid system",
+            HYBRID,
             claim,
             f"inside, from {len(runs)} wrong starts: the same {int((~outside).sum())} switches, "
             f"instants within {inner:.0e} s, also while the errors still converge",
             same and inner < INSTANT,
             "which side of the medial axis the point is on is read from its place; the trackers "
             "are not asked",
-            simulation.paper.by,
             constructed=True,
         ),
     )
@@ -210,13 +204,10 @@ def _as_printed(simulation: Run) -> tuple[Statement, Statement]:
     """What becomes of starts anywhere, and that nothing beside the law helps."""
     tried, runs = arrivals(), (simulation.paper, *simulation.others)
     return (
-        Statement(
-            "Section on the hybrid system",
-            "from a start anywhere on tiled convex bodies the errors converge",
-            f"{tried.arrived} of {tried.tried} starts all over the three curves are at the "
-            f"distance to their curve to {ARRIVED:g} after {CONVERGED:g} s",
-            tried.arrived == tried.tried,
-            by=tried.by,
+        anywhere(
+            tried,
+            "starts all over the three curves are at the distance to their curve to "
+            f"{ARRIVED:g} after {CONVERGED:g} s",
         ),
         unaided(
             [Part.of(part) for one in runs for part in (*one.parts, one.outside)],

@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import math
 from collections import Counter, defaultdict
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 from numpy.typing import ArrayLike
 
 from standoff.tracking import Feature
 from standoff_studies.paper import style
-from standoff_studies.paper.drawing import planar_features, short_name
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.drawing import (
+    Spot,
+    draw_arrow,
+    draw_box,
+    planar_features,
+    short_name,
+)
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.held_features import growth
+from standoff_studies.paper.keys import key_below
 from standoff_studies.paper.many_starts import Ends
-from standoff_studies.paper.pair_simulation import HYBRID, Simulation, anywhere, never_grows
-from standoff_studies.paper.panels import key_below
+from standoff_studies.paper.pair_simulation import Simulation, anywhere, follows, never_grows
 from standoff_studies.paper.resets import growth_statement, moves_of
 from standoff_studies.paper.simulation_c.kinds import FILLS, KINDS, kind_of, show_kinds
 from standoff_studies.paper.simulation_c.kinds import mode_name as name_of
@@ -31,7 +36,8 @@ from standoff_studies.paper.simulation_c.run import (
 from standoff_studies.paper.unaided import Part, unaided
 
 Mode = tuple[Feature, Feature]
-Place = tuple[float, float]
+TAKEN: dict[str, Any] = {"color": style.BLUE, "linewidth": 2.2}
+"""Of the arrow of a switch that was taken."""
 
 HALF_WIDTH, HALF_HEIGHT = 0.29, 0.25
 """Of a mode's box, in steps of the grid."""
@@ -56,11 +62,9 @@ def figure_13() -> Artwork:
             "Automaton of the pair: rows are A's features, columns are B's, both in the order of "
             "the loop, so that every switch goes to a neighbour, and over the edge of the grid to "
             f"its other side. The printed system at K = {simulation.gain:g}/s ran through it from "
-            "a wrong "
-            "start: framed modes were visited, with the time spent in them; blue "
-            "arrows were taken, at the times beside them [s]; those before "
-            f"{simulation.entered:g} s are of the start. Grey lines were not taken. Letters are "
-            "the snapshots of Fig. 14."
+            "a wrong start: framed modes were visited, with the time spent in them; blue arrows "
+            f"were taken, at the times beside them [s]; those before {simulation.entered:g} s are "
+            "of the start. Grey lines were not taken. Letters are the snapshots of Fig. 14."
         ),
         text=(
             "A grid of six rows and six columns of modes; arrows lead through the visited ones, "
@@ -72,7 +76,7 @@ def figure_13() -> Artwork:
             "switches": _switches(simulation),
             "growth": _growths(simulation),
         },
-        statements=_statements(simulation),
+        statements=measured_by(simulation.by, _statements(simulation)),
     )
 
 
@@ -138,17 +142,13 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
             "stays: " + ", ".join(f"{kinds[k]} {KINDS[k]}" for k in range(3)),
             min(kinds[k] for k in range(3)) >= 2,
             "the motion is ours, chosen so that all three occur",
-            simulation.by,
             constructed=True,
         ),
-        Statement(
+        own_statement(
             "Fig. 13",
-            "-",
             f"{len(modes)} of {every} modes visited in {len(stays)} stays, "
             f"{len(simulation.paper.events)} switches, {len(simulation.paper.events) - settled} "
             "of them those of the wrong start",
-            None,
-            by=simulation.by,
         ),
         _sequence(simulation),
         *_as_printed(simulation, arrivals()),
@@ -164,27 +164,11 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
 
 
 def _sequence(simulation: Simulation) -> Statement:
-    """The order of the modes after the start, and what a low gain is late or leaves out.
-
-    With b fed forward the law lags by no time constant, only by what a step leaves: less than a
-    frame. Without b it lags by about 1/K.
-    """
-    off = simulation.furthest()
+    """The order of the modes after the start, and what a low gain might leave out."""
     short = [v for v in simulation.exact.modes() if v.end - v.start < 3.0 / simulation.gain]
-    return Statement(
-        HYBRID,
-        "the features follow those of the closest points",
-        f"after {simulation.entered:g} s {'the same' if off < math.inf else 'other'} "
-        f"{len(simulation.entered_events(simulation.paper))} switches as the library's own law, "
-        f"at most {off:.1e} s "
-        f"apart (a frame is {simulation.step:g} s; without b it would be about 1/K = "
-        f"{1.0 / simulation.gain:g} s); "
-        f"none is skipped, not even the {len(short)} stays shorter than 3/K"
-        if off < math.inf
-        else f"after {simulation.entered:g} s other switches than the library's own law",
-        off < simulation.step,
-        by=simulation.by,
-    )
+    more = f"; none is skipped, not even the {len(short)} stays shorter than 3/K"
+    same = simulation.furthest() < math.inf
+    return follows(simulation, f"after {simulation.entered:g} s ", more if same else "")
 
 
 def _as_printed(simulation: Simulation, tried: Ends) -> tuple[Statement, Statement]:
@@ -240,23 +224,21 @@ def _draw_lines(axes: Axes, columns: int, rows: int) -> None:
         axes.plot([column, column], [-0.5, rows - 0.5], color=style.QUIET, linewidth=0.7, zorder=1)
 
 
-def _draw_mode(axes: Axes, simulation: Simulation, mode: Mode, place: Place) -> None:
+def _draw_mode(axes: Axes, simulation: Simulation, mode: Mode, place: Spot) -> None:
     x, y = place
     stays = [s for s in simulation.paper.modes() if (s.feature_a, s.feature_b) == mode]
     letters = ", ".join(s.letter for s in snapshots() if s[3:] == mode)
     kind = kind_of(*mode)
-    box = FancyBboxPatch(
-        (x - HALF_WIDTH, y - HALF_HEIGHT),
-        2.0 * HALF_WIDTH,
-        2.0 * HALF_HEIGHT,
-        boxstyle="round,pad=0,rounding_size=0.06",
+    draw_box(
+        axes,
+        place,
+        (HALF_WIDTH, HALF_HEIGHT),
+        0.06,
         facecolor=FILLS[kind] if stays else "white",
         edgecolor=style.BLACK if stays else style.QUIET,
         linestyle="-" if stays else ":",
         linewidth=1.2 if stays else 0.8,
-        zorder=3,
     )
-    axes.add_patch(box)
     text = name_of(*mode)
     if stays:
         text += f"\n{sum(s.end - s.start for s in stays):.2f} s"
@@ -274,7 +256,7 @@ def _draw_mode(axes: Axes, simulation: Simulation, mode: Mode, place: Place) -> 
     )
 
 
-def _draw_way(axes: Axes, source: Place, target: Place, times: tuple[float, ...]) -> None:
+def _draw_way(axes: Axes, source: Spot, target: Spot, times: tuple[float, ...]) -> None:
     """An arrow between two neighbours; over the side of the grid, the two ends of one."""
     label = "\n".join(f"{time:.3f}" for time in times)
     along = 0 if source[1] == target[1] else 1
@@ -284,12 +266,13 @@ def _draw_way(axes: Axes, source: Place, target: Place, times: tuple[float, ...]
     forward = step if near else -step / abs(step)
     start, end = _aside(source, along, forward * half), _aside(target, along, -forward * half)
     if near:
-        _arrow(axes, start, end)
+        draw_arrow(axes, start, end, **TAKEN)
         middle = _aside(start, along, 0.5 * (end[along] - start[along]))
     else:
-        _arrow(axes, start, _aside(start, along, forward * STUBS[along]), head="-")
-        _arrow(axes, _aside(end, along, -forward * STUBS[along]), end)
-        middle = _aside(start, along, 0.5 * forward * STUBS[along])
+        stub = forward * STUBS[along]
+        draw_arrow(axes, start, _aside(start, along, stub), **TAKEN, arrowstyle="-")
+        draw_arrow(axes, _aside(end, along, -stub), end, **TAKEN)
+        middle = _aside(start, along, 0.5 * stub)
     x, y = middle
     small = style.FONT - 3.0
     if along == 0:
@@ -298,21 +281,5 @@ def _draw_way(axes: Axes, source: Place, target: Place, times: tuple[float, ...]
         axes.text(x + 0.04, y, label, ha="left", va="center", color=style.BLUE, fontsize=small)
 
 
-def _aside(place: Place, along: int, by: float) -> Place:
+def _aside(place: Spot, along: int, by: float) -> Spot:
     return (place[0] + by, place[1]) if along == 0 else (place[0], place[1] + by)
-
-
-def _arrow(axes: Axes, start: Place, end: Place, head: str = "-|>") -> None:
-    axes.add_patch(
-        FancyArrowPatch(
-            start,
-            end,
-            arrowstyle=head,
-            shrinkA=0.0,
-            shrinkB=0.0,
-            mutation_scale=11.0,
-            color=style.BLUE,
-            linewidth=2.2,
-            zorder=2,
-        )
-    )

@@ -6,7 +6,7 @@ from matplotlib.artist import Artist
 
 from standoff.tracking import Feature
 from standoff_studies.paper.drawing import short_name
-from standoff_studies.paper.panels import key_fill
+from standoff_studies.paper.keys import key_fill
 
 KINDS = ("vertex–vertex", "vertex–curve", "curve–curve")
 """What a mode may be, by its number of parameters: 0, 1 or 2."""

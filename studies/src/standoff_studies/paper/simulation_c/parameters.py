@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
 from standoff.automaton import Visit
+from standoff.geometry.validation import Array
 from standoff.recording import Recording
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
+from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.pair_simulation import Simulation
-from standoff_studies.paper.panels import draw_errors, key_below, key_line, unit_interval
+from standoff_studies.paper.panels import draw_errors, tint, unit_interval
 from standoff_studies.paper.resets import reset_statement, reset_table
 from standoff_studies.paper.simulation_c.kinds import FILLS, kind_of, mode_name, show_kinds
 from standoff_studies.paper.simulation_c.run import (
@@ -25,8 +27,6 @@ from standoff_studies.paper.simulation_c.run import (
     vertex_slip,
 )
 from standoff_studies.paper.start_decay import decay_statement
-
-Array = NDArray[np.float64]
 
 SPANS = ((0.0, 0.5), (0.0, 6.0), (6.0, 12.0))
 """The rows: the start by itself, and the motion in two, so that short stays can be seen [s]."""
@@ -78,7 +78,7 @@ def figure_15() -> Artwork:
             "frames": _frames(simulation),
             "resets": reset_table(simulation.resets),
         },
-        statements=_statements(simulation),
+        statements=measured_by(simulation.by, _statements(simulation)),
     )
 
 
@@ -127,38 +127,29 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
             f"the witness point leaves its vertex by at most {slip:.1e} length",
             slip <= SLIP,
             "a vertex has no parameter that could move",
-            simulation.by,
             constructed=True,
         ),
         decay_statement(simulation.paper, simulation.paths, DECAY, simulation.gain, simulation.by),
         reset_statement(simulation.resets, simulation.by),
-        Statement(
+        own_statement(
             "Fig. 15",
-            "-",
             f"the start is off the exact witness points by {error[0]:.2f} length; after "
             f"{simulation.entered:g} s by at most {error[late].max():.1e}, and by "
-            f"{error[quiet].max():.1e} "
-            f"outside the {SETTLING:g} s after a switch",
-            None,
+            f"{error[quiet].max():.1e} outside the {SETTLING:g} s after a switch",
             "The rest of a switch's frame still goes with the feedforward of the old feature, and "
             f"what that leaves decays as exp(−K t), 1/K = {1.0 / simulation.gain:g} s.",
-            simulation.by,
         ),
-        Statement(
+        own_statement(
             "Fig. 15",
-            "-",
             f"{len(exact.events)} switching instants, {'all' if located else 'not all'} "
             f"located; slope of the switching function {slopes.min():.2g} to {slopes.max():.2g} "
             "per s",
-            None,
             by=simulation.own,
         ),
-        Statement(
+        own_statement(
             "Fig. 15",
-            "-",
             f"certified in {np.mean(exact.certified):.0%} of the frames, distance "
             f"at most {exact.gap.max():.1e} length above its proven lower bound",
-            None,
             by=simulation.own,
         ),
     )
@@ -188,9 +179,8 @@ def _draw(simulation: Simulation) -> Figure:
 
 def _draw_panel(axes: Axes, simulation: Simulation, letter: str, span: tuple[float, float]) -> None:
     recording = simulation.paper
-    for stay in simulation.paper.modes():
-        fill = FILLS[kind_of(stay.feature_a, stay.feature_b)]
-        axes.axvspan(stay.start, stay.end, facecolor=fill, linewidth=0.0, zorder=0)
+    stays = simulation.paper.modes()
+    tint(axes, [(stay, FILLS[kind_of(stay.feature_a, stay.feature_b)]) for stay in stays])
     for event in recording.events:
         own = event.body == letter
         axes.axvline(
@@ -201,12 +191,10 @@ def _draw_panel(axes: Axes, simulation: Simulation, letter: str, span: tuple[flo
             zorder=1,
         )
     for k, values in enumerate(parameters_of(simulation, recording, letter).T):
-        colour, dashes = style.COLOURS[k], style.DASHES[k]
-        axes.plot(recording.time, values, color=colour, linestyle=dashes, linewidth=2.4, zorder=3)
+        axes.plot(recording.time, values, **style.line(k), linewidth=2.4, zorder=3)
     for values in parameters_of(simulation, simulation.exact, letter).T:
         axes.plot(recording.time, values, color=style.BLACK, linewidth=0.6, zorder=4)
     axes.set_xlim(span)
-    axes.grid(visible=False)
     names = ", ".join(NAMES[letter]).replace("r_b", "r$_b$").replace("r_c", "r$_c$")
     unit_interval(axes, f"{letter}: {names} [–]")
 

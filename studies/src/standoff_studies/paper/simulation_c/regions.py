@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from standoff.bodies import Body
 from standoff.bodies.voronoi import VoronoiRegions, voronoi_regions
@@ -21,14 +21,12 @@ from standoff_studies.paper.drawing import (
     planar_features,
     short_name,
 )
-from standoff_studies.paper.figure import Artwork, Statement
-from standoff_studies.paper.pair_simulation import HYBRID, Simulation
+from standoff_studies.paper.figure import HYBRID, Artwork, Statement
+from standoff_studies.paper.pair_simulation import Simulation
 from standoff_studies.paper.simulation_c.run import (
     SIMULATION,
 )
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
-
-Array = NDArray[np.float64]
 
 VIEWS = (((-1.75, 1.95), 0.34), ((-1.45, 1.45), 0.17))
 """Of A and of B: the range of x [length], and how far inside a curve its inner region is named."""

@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Carried, ConstantTwist, Path, Pose, Spiral, Twist
 from standoff.tracking import Feature
 from standoff_studies.paper.bodies import leaf, planar_body
 from standoff_studies.paper.many_starts import Ends
-from standoff_studies.paper.pair_simulation import REST, Simulation, Start, ends_of
-
-Array = NDArray[np.float64]
+from standoff_studies.paper.pair_simulation import REST, Simulation, ends_of, random_starts
 
 RADIUS, GROWTH = 3.0, -0.13
 """Of B's centre from A's origin at t = 0 [length], and by the angle turned [length/rad]."""
@@ -74,18 +73,11 @@ def snapshots() -> tuple[Snapshot, ...]:
 @cache
 def arrivals() -> Ends:
     """Try random starts on both bodies with the printed system."""
-    rng, patience = np.random.default_rng(1), SIMULATION.entered
-    starts: list[Start] = []
-    for _ in range(TRIED):
-        curves, at = rng.integers(3, size=2).tolist(), rng.uniform(0.02, 0.98, 2).tolist()
-        a, b = ((("edge", curve), (u,)) for curve, u in zip(curves, at, strict=True))
-        starts.append((a, b))
-    due = float(SIMULATION.exact.distance[round(patience / SIMULATION.step)])
     return ends_of(
         SIMULATION,
-        starts,
-        patience,
-        lambda answer: abs(answer.distance - due) < ARRIVED,
+        random_starts("edge", TRIED),
+        SIMULATION.entered,
+        lambda answer, due: abs(answer.distance - due.distance) < ARRIVED,
         "random starts",
     )
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import (
@@ -16,7 +17,7 @@ from standoff_studies.paper.drawing import (
     outline,
     short_name,
 )
-from standoff_studies.paper.figure import Animation, Artwork, Statement
+from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
 from standoff_studies.paper.pair_simulation import Simulation
 from standoff_studies.paper.simulation_c.kinds import KINDS, kind_of, mode_name
 from standoff_studies.paper.simulation_c.run import (
@@ -24,8 +25,6 @@ from standoff_studies.paper.simulation_c.run import (
     SIMULATION,
     snapshots,
 )
-
-Array = NDArray[np.float64]
 
 COLUMNS = 3
 MARGIN = 0.12
@@ -48,13 +47,11 @@ def figure_14() -> Artwork:
     return Artwork(
         caption=(
             "Twelve moments of the motion, the middles of twelve equal parts of it, all at one "
-            f"scale; the printed system at K = {simulation.gain:g}/s from a wrong start. A "
-            "(solid, blue) "
-            "rests; B (dashed, "
-            "vermilion) spins while its centre spirals in. Thick curves and squares are the active "
-            "features, named in the middle of their bodies; the black line joins the witness "
-            "points, the thin grey one under it those of the library's own law. "
-            "Titles: time [s], mode (A's feature, then B's), distance d [length]. The "
+            f"scale; the printed system at K = {simulation.gain:g}/s from a wrong start. A (solid, "
+            "blue) rests; B (dashed, vermilion) spins while its centre spirals in. Thick curves "
+            "and squares are the active features, named in the middle of their bodies; the black "
+            "line joins the witness points, the thin grey one under it those of the library's own "
+            "law. Titles: time [s], mode (A's feature, then B's), distance d [length]. The "
             "animation shows the whole motion; grey is the way of B's centre."
         ),
         text=(
@@ -63,7 +60,7 @@ def figure_14() -> Artwork:
         ),
         draw=lambda: _draw(simulation),
         tables={"snapshots": _table(simulation)},
-        statements=_statements(simulation),
+        statements=measured_by(simulation.by, _statements(simulation)),
         animation=Animation(
             PICTURES,
             lambda figure, k: _draw_moment(figure, simulation, k),
@@ -108,7 +105,6 @@ def _statements(simulation: Simulation) -> tuple[Statement, ...]:
             f"witness points at most {simulation.witness_error[frames].max():.0e} length off; "
             + ", ".join(f"{kinds.count(k)} {KINDS[k]}" for k in range(3)),
             right == len(kinds) == 12,
-            by=simulation.by,
         ),
         Statement(
             "Fig. 14",

@@ -7,17 +7,18 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from standoff.automaton.graph import Automaton, Transition
 from standoff.bodies import Body
 from standoff.bodies.tessellation import edge_lines
+from standoff.geometry.validation import Array
 from standoff.tracking import Feature, distance
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement
+from standoff_studies.paper.drawing import draw_arrow
+from standoff_studies.paper.figure import HYBRID, Artwork, Statement, measured_by
+from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.many_starts import INDEFINITE
-from standoff_studies.paper.pair_simulation import HYBRID, Simulation, anywhere, never_grows
-from standoff_studies.paper.panels import key_below, key_line
+from standoff_studies.paper.pair_simulation import Simulation, anywhere, never_grows
 from standoff_studies.paper.patch_places import short
 from standoff_studies.paper.resets import growth_statement
 from standoff_studies.paper.simulation_d.runs import (
@@ -29,8 +30,6 @@ from standoff_studies.paper.simulation_d.runs import (
     tried,
 )
 from standoff_studies.paper.unaided import Part, unaided
-
-Array = NDArray[np.float64]
 
 RING, OUTER = 1.0, 1.62
 """Radii at which faces and edges stand around the upper vertex, and of the lower one's circle."""
@@ -55,23 +54,21 @@ def figure_17() -> Artwork:
     return Artwork(
         caption=(
             f"Simulation D, the printed system at K = {runs.gain:g}/s from a wrong start on F0: "
-            "the "
-            "hybrid automaton of the lens and the point, laid out as the lens is "
-            "seen from above: its upper vertex V1 in the middle, faces F and edges E around it, "
-            "the lower vertex V0 as the outer circle. Grey arrows are the switches that the "
-            "automaton allows; blue ones were taken, at the instants [s] beside them, in the order "
-            "of their numbers; the first two are those of the wrong start, whose face is not the "
-            "closest one. Below each visited feature stands the time spent on it."
+            "the hybrid automaton of the lens and the point, laid out as the lens is seen from "
+            "above: its upper vertex V1 in the middle, faces F and edges E around it, the lower "
+            "vertex V0 as the outer circle. Grey arrows are the switches that the automaton "
+            "allows; blue ones were taken, at the instants [s] beside them, in the order of their "
+            "numbers; the first two are those of the wrong start, whose face is not the closest "
+            "one. Below each visited feature stands the time spent on it."
         ),
         text=(
             "A ring of three faces and three edges around a vertex. The run goes at once to face "
-            "1, from there "
-            "around the ring by way of edge 2, face 2, edge 1, face 0 and edge 0 back to face 1, "
-            "then over edge 0 to the vertex and over edge 1 to face 0."
+            "1, from there around the ring by way of edge 2, face 2, edge 1, face 0 and edge 0 "
+            "back to face 1, then over edge 0 to the vertex and over edge 1 to face 0."
         ),
         draw=_draw,
         tables={"stays": _stays(runs), "transitions": _transitions(automaton)},
-        statements=_statements(runs, automaton),
+        statements=measured_by(runs.by, _statements(runs, automaton)),
     )
 
 
@@ -125,7 +122,6 @@ def _statements(runs: Simulation, automaton: Automaton) -> tuple[Statement, ...]
             f"{len(automaton.taken)} switches, each one that the automaton lists",
             len(automaton.taken) == len(paper.events) and not automaton.restarts,
             "the picture is drawn from the list of switches",
-            runs.by,
             constructed=True,
         ),
         Statement(
@@ -134,17 +130,14 @@ def _statements(runs: Simulation, automaton: Automaton) -> tuple[Statement, ...]
             f"from {1e3 * runs.entered:g} ms on the mode is that of a global search in {agree} of "
             f"{len(frames)} frames",
             agree == len(frames),
-            by=runs.by,
         ),
         Statement(
             HYBRID,
             "for a body and a point the switching times do not depend on the continuous state",
             f"from {len(runs.starts)} wrong starts the same switches after {1e3 * runs.entered:g} "
-            "ms, "
-            f"at the instants of the library's own law to {off:.1e} s",
+            f"ms, at the instants of the library's own law to {off:.1e} s",
             off < INSTANT,
             "the projection errors of the starts take 0.4 s to fall below a ten-thousandth",
-            runs.by,
         ),
         *_as_printed(runs),
         never_grows(
@@ -237,18 +230,12 @@ def _arrow(
         end = end - NODE * along
     taken = _instants(automaton, transition)
     look: dict[str, Any] = (
-        {"color": style.BLUE, "lw": 2.2, "mutation_scale": 15}
+        {"color": style.BLUE, "linewidth": 2.2, "mutation_scale": 15, "zorder": 3}
         if taken
-        else {"color": style.QUIET, "lw": 0.8, "mutation_scale": 9}
+        else {"color": style.QUIET, "linewidth": 0.8, "mutation_scale": 9, "zorder": 1}
     )
     shift = 0.035 * aside
-    axes.annotate(
-        "",
-        tuple(end + shift),
-        tuple(start + shift),
-        arrowprops={"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, **look},
-        zorder=3 if taken else 1,
-    )
+    draw_arrow(axes, tuple(start + shift), tuple(end + shift), **look)
     if taken:
         words = "\n".join(f"{number}: {time:.3f}" for number, time in taken)
         level = abs(aside[0]) < 0.3

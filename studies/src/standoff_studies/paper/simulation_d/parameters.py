@@ -5,26 +5,19 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from standoff.geometry.validation import Array
 from standoff.recording import Recording
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
+from standoff_studies.paper.keys import key_below, key_fill, key_line
 from standoff_studies.paper.pair_simulation import Simulation
-from standoff_studies.paper.panels import (
-    draw_errors,
-    key_below,
-    key_fill,
-    key_line,
-    name_above,
-    unit_interval,
-)
+from standoff_studies.paper.panels import draw_errors, name_above, tint, unit_interval
 from standoff_studies.paper.patch_places import place_on, short
 from standoff_studies.paper.resets import reset_statement, reset_table
 from standoff_studies.paper.simulation_d.runs import SIMULATION, face_parameters, settling_steps
 from standoff_studies.paper.start_decay import decay_statement
-
-Array = NDArray[np.float64]
 
 SHADES = {"face": None, "edge": "#FBE3C0", "vertex": "#BDBDBD"}
 """Behind the stays on each kind of feature."""
@@ -48,15 +41,14 @@ def figure_18() -> Artwork:
     table["error"] = runs.witness_error
     return Artwork(
         caption=(
-            "Simulation D: the parameters u and v of the lens's faces against time, by the "
-            f"printed system at K = {runs.gain:g}/s from a wrong start; thin and dark, the "
-            "library's "
-            "own law. A face's parameters are drawn while the closest point is on it or on its "
-            "boundary: an edge belongs to two faces, a vertex to all three. The modes are named "
-            "on top; while the closest point is on an edge (tinted) u stays at exactly 0 or 1, "
-            "and at the vertex (grey) v stays at 1 and u has no meaning. Below: how far the law's "
-            "point is from the closest one, and the projection errors |Ψ|; rings are what each "
-            "reset makes of them."
+            "Simulation D: the parameters u and v of the lens's faces against time, by the printed "
+            f"system at K = {runs.gain:g}/s from a wrong start; thin and dark, the library's own "
+            "law. A face's parameters are drawn while the closest point is on it or on its "
+            "boundary: an edge belongs to two faces, a vertex to all three. The modes are named on "
+            "top; while the closest point is on an edge (tinted) u stays at exactly 0 or 1, and at "
+            "the vertex (grey) v stays at 1 and u has no meaning. Below: how far the law's point "
+            "is from the closest one, and the projection errors |Ψ|; rings are what each reset "
+            "makes of them."
         ),
         text=(
             "Three panels, one a face, with two curves each. The curves of u end in level "
@@ -69,7 +61,7 @@ def figure_18() -> Artwork:
             "parameters": table,
             "resets": reset_table(runs.resets),
         },
-        statements=measured_by(runs.own, _statements(runs)),
+        statements=measured_by(runs.by, _statements(runs)),
     )
 
 
@@ -100,19 +92,15 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             f"{offsets.max(initial=0.0):.0e} in {len(offsets)} frames",
             bool(len(offsets) and offsets.max() == 0.0),
             "on an edge u is read from the edge's own line in (u, v)",
-            runs.by,
             constructed=True,
         ),
-        Statement(
+        own_statement(
             "Fig. 18",
-            "-",
             f"once settled 99 % of the frames are within {np.quantile(error, 0.99):.1e} of the "
             f"closest point, and all within {error.max():.1e} (Heun, 1 kHz; the point moves at "
             "3.2/s)",
-            None,
             "a switch falls into a frame, and what it leaves decays within 3/K = "
             f"{3.0 / runs.gain:g} s",
-            runs.by,
         ),
     )
 
@@ -152,9 +140,6 @@ def _draw() -> Figure:
 
 
 def _shade(axes: Axes, runs: Simulation) -> None:
-    axes.grid(visible=False)
+    tint(axes, [(visit, SHADES[visit.feature_a.kind]) for visit in runs.exact.modes()])
     for visit in runs.exact.modes():
-        shade = SHADES[visit.feature_a.kind]
-        if shade:
-            axes.axvspan(visit.start, visit.end, color=shade, linewidth=0.0, zorder=0)
         axes.axvline(visit.start, color=style.QUIET, linewidth=0.5, zorder=1)

@@ -6,13 +6,12 @@ from collections.abc import Iterable
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.automaton import Visit
 from standoff.bodies import shapes
+from standoff.geometry.validation import Array
 from standoff.motion import Fixed, Helix
 from standoff.recording import Recording
-from standoff.tracking import distance
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.many_starts import Ends
 from standoff_studies.paper.pair_simulation import (
@@ -25,8 +24,6 @@ from standoff_studies.paper.pair_simulation import (
 )
 from standoff_studies.paper.patch_places import place_on
 from standoff_studies.paper.resets import Move
-
-Array = NDArray[np.float64]
 
 RADIUS, OFFSET = 1.0, 0.45
 """Of the lens's balls, and of their centres from its middle [length]."""
@@ -75,12 +72,11 @@ def arrivals(*, moving: bool = True) -> Ends:
     The point goes along its helix, or rests where that begins.
     """
     paths = REST, HELIX if moving else Fixed(HELIX.pose(0.0))
-    due = distance(*SIMULATION.pair, *(path.pose(PATIENCE) for path in paths)).point_a
     return ends_of(
         SIMULATION,
         tried(),
         PATIENCE,
-        lambda answer: bool(np.linalg.norm(answer.point_a - due) < ARRIVED),
+        lambda answer, due: bool(np.linalg.norm(answer.point_a - due.point_a) < ARRIVED),
         "starts on a grid",
         paths,
     )

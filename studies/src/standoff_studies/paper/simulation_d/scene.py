@@ -6,17 +6,18 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from standoff.bodies import Body
 from standoff.bodies.tessellation import edge_lines
 from standoff.bodies.voronoi import voronoi_regions
+from standoff.geometry.validation import Array
 from standoff.tracking import Feature
 from standoff_studies.paper import style
-from standoff_studies.paper.drawing_3d import View
-from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
+from standoff_studies.paper.drawing_3d import LOOKS, View
+from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by, own_statement
+from standoff_studies.paper.keys import key_below, key_fill, key_line
 from standoff_studies.paper.pair_simulation import Simulation, certified
-from standoff_studies.paper.panels import key_below, key_fill, key_line
 from standoff_studies.paper.patch_places import short
 from standoff_studies.paper.simulation_d.runs import (
     HELIX,
@@ -25,8 +26,7 @@ from standoff_studies.paper.simulation_d.runs import (
     sequence,
     settling_steps,
 )
-
-Array = NDArray[np.float64]
+from standoff_studies.paper.voronoi_drawing import draw_space_regions
 
 AZIMUTH, ELEVATION = 40.0, 26.0
 """Where the viewer stands [degrees]: beside the helix's axis, and above the upper vertex."""
@@ -44,12 +44,6 @@ SLOW, APART, FRAMES = 14, 15, 80
 """Pictures of the animation: of its slow beginning, so many samples apart, and in all."""
 
 KINDS = ("face", "edge", "vertex")
-LOOKS = {
-    "face": (style.BLUE, "o"),
-    "edge": (style.RED, "s"),
-    "vertex": (style.BLACK, "^"),
-}
-"""Colour and mark of a witness line by the kind of its feature on the lens."""
 
 REGION_COLOUR = style.QUIET
 LIT, UNLIT = "#7CC4F0", "#E2E2E2"
@@ -73,16 +67,14 @@ def figure_16() -> Artwork:
     return Artwork(
         caption=(
             "Simulation D: a lens of three four-sided patches (u and v lines grey) and a point on "
-            "a helix (thick black). Witness lines are drawn "
-            f"every {runs.duration / WITNESS_LINES:.2g} s; their mark and colour tell the kind of "
-            "the "
+            "a helix (thick black). Witness lines are drawn every "
+            f"{runs.duration / WITNESS_LINES:.2g} s; their mark and colour tell the kind of the "
             "closest feature. Grey sheets (so.voronoi_regions) bound the external regions of the "
             "edges and vertices: a witness line changes its kind where the helix crosses one. The "
             "dashed line leads to the wrong point where the printed system was started on purpose, "
             f"at K = {runs.gain:g}/s; thin purple lines are its first ones, {1e3 * EARLY:.0f} ms "
-            "apart. "
-            "The path of its point is green, that of the library's own law thin. Lengths are in "
-            "the radius of the lens's faces."
+            "apart. The path of its point is green, that of the library's own law thin. Lengths "
+            "are in the radius of the lens's faces."
         ),
         text=(
             "A convex body like a three-sided lemon with sharp edges stands upright inside a "
@@ -91,7 +83,7 @@ def figure_16() -> Artwork:
         ),
         draw=_draw,
         tables={"run": table},
-        statements=measured_by(runs.own, _statements(runs)),
+        statements=measured_by(runs.by, _statements(runs)),
         animation=Animation(
             frames=FRAMES,
             draw=_draw_frame,
@@ -117,18 +109,13 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             f"{len(visits)} stays",
             set(sequence(visits)) >= {"face 0", "edge 0", "vertex 1"},
             "the helix is ours, chosen so that it does",
-            runs.by,
             constructed=True,
         ),
-        Statement(
+        own_statement(
             "Fig. 16",
-            "-",
-            "from wrong starts on faces "
-            f"{', '.join(str(place[0][1]) for place, _ in runs.starts)} the "
-            f"projection errors fall below {SETTLED:g} in "
+            f"from wrong starts on faces {', '.join(str(place[0][1]) for place, _ in runs.starts)} "
+            f"the projection errors fall below {SETTLED:g} in "
             f"{', '.join(str(count) for count in steps)} steps of 1 ms",
-            None,
-            by=runs.by,
         ),
         certified(runs, "Fig. 16"),
     )
@@ -141,9 +128,8 @@ def _draw() -> Figure:
     axes = figure.add_subplot()
     view = View(AZIMUTH, ELEVATION)
     view.body(runs.a)
-    for sheet in region_sheets(runs.a):
-        view.surface(sheet, REGION_COLOUR, opacity=0.2, shaded=False)
-        view.line(sheet[:, -1], REGION_COLOUR, 0.9)
+    between = voronoi_regions(runs.a, REACH)
+    draw_space_regions(view, between, colours=(REGION_COLOUR, REGION_COLOUR), opacity=0.2)
     first = settling_steps(recording)
     view.line(recording.point_a[first:], style.GREEN, 2.0, rank=1.5)
     view.line(recording.point_b, style.BLACK, 2.2)
@@ -162,24 +148,6 @@ def _draw() -> Figure:
     view.triad(axes, (1.75, -1.3), 0.4, "radius")
     key_below(figure, _key(), 3)
     return figure
-
-
-def region_sheets(lens: Body) -> list[Array]:
-    """Return grids of points (n, m, 3) on the surfaces between the external Voronoi regions.
-
-    Between an edge and each of its faces stand the normals of that face along the edge, between a
-    vertex and each of its edges the plane sector between the normals of both faces there. A face
-    and a vertex have a ray in common, no surface.
-    """
-    out = np.linspace(0.0, REACH, 7)[:, None]
-    sheets = []
-    for boundary in voronoi_regions(lens, REACH).external:
-        if "edge" in {feature.kind for feature in boundary.features}:
-            count = len(boundary.origins)
-            some = np.linspace(0, count - 1, min(count, 25)).astype(int)
-            starts, rays = boundary.origins[some, None], boundary.directions[some, None]
-            sheets.append(starts + out * rays)
-    return sheets
 
 
 def _witness(view: View, foot: Array, point: Array, feature: Feature) -> None:

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
+from itertools import cycle
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from standoff.geometry.validation import Array
 from standoff_studies.paper import style
-from standoff_studies.paper.figure import Artwork, Statement, measured_by
+from standoff_studies.paper.figure import HYBRID, Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.held_features import growth
 from standoff_studies.paper.many_starts import INDEFINITE
-from standoff_studies.paper.pair_simulation import HYBRID, Simulation, anywhere, never_grows
-from standoff_studies.paper.panels import draw_errors, name_above, unit_interval
+from standoff_studies.paper.pair_simulation import Simulation, anywhere, follows, never_grows
+from standoff_studies.paper.panels import draw_errors, name_above, tint, unit_interval
 from standoff_studies.paper.patch_places import short
 from standoff_studies.paper.resets import growth_statement, reset_statement, reset_table
 from standoff_studies.paper.simulation_e.own_point import AROUND, POINTS, decisions
@@ -31,8 +32,6 @@ from standoff_studies.paper.simulation_e.runs import (
 )
 from standoff_studies.paper.start_decay import decay_statement
 from standoff_studies.paper.unaided import Part, unaided
-
-Array = NDArray[np.float64]
 
 BESIDE = 0.2
 """By which our instants may be off the paper's [s]."""
@@ -53,15 +52,14 @@ def figure_20() -> Artwork:
     return Artwork(
         caption=(
             "Simulation E: the parameters u, v of A's patch and r, s of B's (solid, dashed) that "
-            f"the witness points are on, by the printed system at 1 kHz, K = {runs.gain:g}/s, "
-            "from a "
-            "wrong start on another pair of faces, which the switching leaves in the first frame; "
-            "thin and dark, the library's own law. The modes are shaded in turn and "
-            "named on top, A's feature first; thin lines mark the switching instants. On an edge "
-            "(bar) the point keeps the parameters of the patch that it came from, and u or r stays "
-            "at 1; when it leaves to the next patch they jump to that one's. Below: the distance, "
-            "how far the worse witness point is off, in the radius of A's faces, and the "
-            "projection errors |Ψ|; rings are what each reset makes of them."
+            f"the witness points are on, by the printed system at 1 kHz, K = {runs.gain:g}/s, from "
+            "a wrong start on another pair of faces, which the switching leaves in the first "
+            "frame; thin and dark, the library's own law. The modes are shaded in turn and named "
+            "on top, A's feature first; thin lines mark the switching instants. On an edge (bar) "
+            "the point keeps the parameters of the patch that it came from, and u or r stays at 1; "
+            "when it leaves to the next patch they jump to that one's. Below: the distance, how "
+            "far the worse witness point is off, in the radius of A's faces, and the projection "
+            "errors |Ψ|; rings are what each reset makes of them."
         ),
         text=(
             "Two panels of parameters between 0 and 1, one a body. In each, u rises to 1, stays "
@@ -75,7 +73,7 @@ def figure_20() -> Artwork:
             "switches": _switch_table(runs),
             "resets": reset_table(runs.resets),
         },
-        statements=measured_by(runs.own, _statements(runs)),
+        statements=measured_by(runs.by, _statements(runs)),
     )
 
 
@@ -99,7 +97,6 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             "; ".join(f"{body}: {' → '.join(path)}" for body, path in paths.items()),
             all(passes_an_edge(path) for path in paths.values()),
             "the motion is ours, chosen so that both do",
-            runs.by,
             constructed=True,
         ),
         Statement(
@@ -108,7 +105,6 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             f"in {len(offsets)} frames on an edge it is off 1 by {offsets.max(initial=0.0):.0e}",
             bool(len(offsets) and offsets.max() == 0.0),
             "on an edge it is read from the edge's own line in the parameters",
-            runs.by,
             constructed=True,
         ),
         Statement(
@@ -117,7 +113,6 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             f"A's witness point from {stay[0]:.2f} s to {stay[1]:.2f} s",
             abs(stay[0] - 2.67) < BESIDE and abs(stay[1] - 3.66) < BESIDE,
             f"the motion is ours, chosen to come within {BESIDE:g} s of the paper's",
-            runs.by,
             constructed=True,
         ),
         *_as_printed(runs),
@@ -129,38 +124,22 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             "before it",
         ),
         growth_statement(moves_by_resets(), TRIED, runs.by),
-        Statement(
+        own_statement(
             "Fig. 20",
-            "-",
             f"the default law locates all {len(runs.exact.events)} switches, whose functions "
             f"cross 0 at {min(slopes):.1f} to {max(slopes):.1f} per second; the printed system "
             f"switches at most {1e6 * np.abs(late).max():.2f} µs off",
-            None,
+            by=runs.own,
         ),
     )
 
 
 def _as_printed(runs: Simulation) -> tuple[Statement, ...]:
-    """The order of the modes, what becomes of starts anywhere, and that nothing helps the law.
-
-    With b fed forward the law lags by no time constant, only by what a step leaves: less than a
-    frame. Without b it lags by about 1/K.
-    """
-    late = np.abs(runs.late()).max()
-    same = np.isfinite(late)
+    """The order of the modes, what becomes of starts anywhere, and that nothing helps the law."""
     tried = arrivals()
     printed, own = decisions("voronoi"), decisions("multipliers")
     return (
-        Statement(
-            HYBRID,
-            "the features follow those of the closest points",
-            f"{'the same' if same else 'other'} {len(runs.entered_events(runs.paper))} switches "
-            "as the "
-            f"library's own law, at most {late:.1e} s apart (a frame is {runs.step:g} s; "
-            f"without b it would be about 1/K = {1.0 / runs.gain:g} s)",
-            bool(late < runs.step),
-            by=runs.by,
-        ),
+        follows(runs),
         anywhere(
             tried,
             f"random starts on both bodies are at the distance to {ARRIVED:g} after {PATIENCE:g} "
@@ -276,8 +255,7 @@ def _draw_parameters(axes: Axes, runs: Simulation, body: str) -> None:
 
 
 def _shade(axes: Axes, runs: Simulation) -> None:
-    axes.grid(visible=False)
-    for k, stay in enumerate(runs.exact.modes()):
-        axes.axvspan(stay.start, stay.end, color=SHADES[k % 2], linewidth=0.0, zorder=0)
-        if k:
-            axes.axvline(stay.start, color=style.QUIET, linewidth=0.8, zorder=1)
+    stays = runs.exact.modes()
+    tint(axes, zip(stays, cycle(SHADES), strict=False))
+    for stay in stays[1:]:
+        axes.axvline(stay.start, color=style.QUIET, linewidth=0.8, zorder=1)

@@ -12,15 +12,21 @@ from numpy.typing import NDArray
 
 from standoff.automaton import Visit
 from standoff.bodies import Body
+from standoff.geometry.validation import Array
 from standoff.motion import Carried, ConstantTwist, Helix, Pose, Twist
 from standoff.recording import Recording
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.many_starts import Ends
-from standoff_studies.paper.pair_simulation import REST, Simulation, Start, ends_of, moves_from
+from standoff_studies.paper.pair_simulation import (
+    REST,
+    Simulation,
+    Start,
+    ends_of,
+    moves_from,
+    random_starts,
+)
 from standoff_studies.paper.patch_places import place_on, short
 from standoff_studies.paper.resets import Move
-
-Array = NDArray[np.float64]
 
 SEMI_AXES = (0.8, 0.6, 0.7)
 """Body B is the lens stretched by these along x, y and z."""
@@ -65,23 +71,17 @@ SIMULATION = Simulation(
 
 def tried() -> list[Start]:
     """Return the random starts on both bodies that are tried."""
-    rng, found = np.random.default_rng(1), []
-    for _ in range(TRIED):
-        faces, at = rng.integers(3, size=2).tolist(), rng.uniform(0.02, 0.98, (2, 2)).tolist()
-        a, b = ((("face", face), tuple(uv)) for face, uv in zip(faces, at, strict=True))
-        found.append((a, b))
-    return found
+    return random_starts("face", TRIED)
 
 
 @cache
 def arrivals() -> Ends:
     """Try random starts on both bodies with the printed system: which are there at `PATIENCE`."""
-    due = float(SIMULATION.exact.distance[round(PATIENCE / SIMULATION.step)])
     return ends_of(
         SIMULATION,
         tried(),
         PATIENCE,
-        lambda answer: abs(answer.distance - due) < ARRIVED,
+        lambda answer, due: abs(answer.distance - due.distance) < ARRIVED,
         "random starts",
     )
 

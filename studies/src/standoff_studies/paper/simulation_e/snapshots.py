@@ -8,17 +8,16 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from standoff.bodies import Body
 from standoff.bodies.tessellation import edge_lines
 from standoff.motion import Pose
 from standoff.tracking import Feature
 from standoff_studies.paper import style
-from standoff_studies.paper.drawing_3d import View, posed
-from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by
+from standoff_studies.paper.drawing_3d import LOOKS, View, posed
+from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by, own_statement
+from standoff_studies.paper.keys import key_below, key_line
 from standoff_studies.paper.pair_simulation import Simulation, certified
-from standoff_studies.paper.panels import key_below, key_line
 from standoff_studies.paper.patch_places import short
 from standoff_studies.paper.simulation_e.runs import (
     CONVERGED,
@@ -29,16 +28,11 @@ from standoff_studies.paper.simulation_e.runs import (
     sequence,
 )
 
-Array = NDArray[np.float64]
-
 AZIMUTH, ELEVATION = 8.0, 56.0
 """Where the viewer stands [degrees]: so that both ends of the witness lines are seen."""
 
 COLOURS = {"A": ("#CBE6F6", "#5F9FC8", "#9FD3F2"), "B": ("#F7D08A", "#DDA03F", "#FBE9C6")}
 """Of each body's three patches: one hue a body, three brightnesses."""
-
-LOOKS = {"face": (style.BLUE, "o"), "edge": (style.RED, "s"), "vertex": (style.BLACK, "^")}
-"""Colour and mark of a witness point by the kind of its feature."""
 
 HEIGHTS = (1.25, 1.0, 1.0)
 """Of the rows of panels."""
@@ -64,15 +58,13 @@ def figure_19() -> Artwork:
     return Artwork(
         caption=(
             "Simulation E: body A (blue) is a lens of three four-sided patches, body B (orange) "
-            f"the same stretched by {axes} along its axes. B's centre winds about A while B "
-            "turns. One snapshot in each of the five modes: patches are named, their u and v lines "
-            "grey; the witness line is black, its ends are marked by the kind of the active "
-            "feature (hollow where a body hides them), and an active edge is thick and vermilion. "
-            f"The printed system at K = {runs.gain:g}/s, from a wrong start: its first witness "
-            "line is "
-            "dashed in the first picture. Last: the path "
-            f"of B's centre (dashed) and a witness line every {FAN:g} s. Lengths are in the radius "
-            "of A's faces."
+            f"the same stretched by {axes} along its axes. B's centre winds about A while B turns. "
+            "One snapshot in each of the five modes: patches are named, their u and v lines grey; "
+            "the witness line is black, its ends are marked by the kind of the active feature "
+            "(hollow where a body hides them), and an active edge is thick and vermilion. The "
+            f"printed system at K = {runs.gain:g}/s, from a wrong start: its first witness line is "
+            "dashed in the first picture. Last: the path of B's centre (dashed) and a witness line "
+            f"every {FAN:g} s. Lengths are in the radius of A's faces."
         ),
         text=(
             "Six pictures of two bodies like three-sided lemons. The line between their closest "
@@ -92,7 +84,7 @@ def figure_19() -> Artwork:
                 "feature_b": [short(feature) for feature in recording.feature_b],
             }
         },
-        statements=measured_by(runs.own, _statements(runs)),
+        statements=measured_by(runs.by, _statements(runs)),
         animation=Animation(
             frames=FRAMES,
             draw=_draw_frame,
@@ -123,17 +115,13 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
             f"{', '.join(f'{a}–{b}' for a, b in modes)}",
             (runs.a.n_faces, runs.b.n_faces, len(modes)) == (3, 3, 5),
             "bodies, motion and instants are ours",
-            runs.by,
             constructed=True,
         ),
-        Statement(
+        own_statement(
             "Fig. 19",
-            "-",
             f"the start is off the exact witness points by {error[0]:.2f} of the radius; after "
             f"{CONVERGED:g} s by at most {late.max():.1e}, in the median {np.median(late):.1e}",
-            None,
             "the greatest errors are those of the frames after a switch",
-            runs.by,
         ),
         certified(runs, "Fig. 19"),
     )
