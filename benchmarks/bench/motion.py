@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from benchmarks.nurbs_ellipsoids import elevated
 from standoff_studies.accuracy.solids import Kind, Solid, named
+from standoff_studies.kinds import Twin
 from standoff_studies.oracles import Ellipsoid
 
 Array = NDArray[np.float64]
@@ -110,7 +111,7 @@ def nurbs(degree: int) -> Callable[..., Solid]:
     def build(a: float, b: float, c: float) -> so.Body:
         return elevated(degree)((a, b, c))
 
-    kind = Kind(f"NURBS of degree {degree}", lambda rng: {}, build, Ellipsoid)
+    kind = Kind(f"NURBS of degree {degree}", lambda rng: {}, own=Twin(build, Ellipsoid))
     return lambda a, b, c: Solid(kind, {"a": a, "b": b, "c": c})
 
 

@@ -12,7 +12,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from standoff.bodies.body import Body
 from standoff_studies import oracles
-from standoff_studies.kinds import TWINS
+from standoff_studies.kinds import TWINS, Twin
 from standoff_studies.oracles import Array
 
 SHORTEST, LONGEST = 0.35, 1.05
@@ -40,7 +40,7 @@ Rng = np.random.Generator
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of `TWINS`: how to draw its lengths, in their order."""
+    """A kind of shape: how to draw the lengths of its twin, in their order."""
 
     name: str
     draw: Callable[[Rng], Values]
@@ -51,14 +51,20 @@ class Kind:
     ``so.shapes`` if empty."""
     judge: Callable[..., oracles.Shape] | None = None
     """Its support function, if not that of the twin."""
+    own: Twin | None = None
+    """Its twin, if it is not among `TWINS`."""
+
+    @property
+    def twin(self) -> Twin:
+        return self.own or TWINS[self.name]
 
     @property
     def build(self) -> Callable[..., Body]:
-        return TWINS[self.name].body
+        return self.twin.body
 
     @property
     def support(self) -> Callable[..., oracles.Shape]:
-        return self.judge or TWINS[self.name].support
+        return self.judge or self.twin.support
 
 
 @dataclass(frozen=True, eq=False)
