@@ -157,7 +157,7 @@ def test_help_loads_only_what_reads_the_arguments(command: str) -> None:
     options = {
         f"standoff_studies.{study}{part}"
         for study in shown
-        for part in ("", ".arguments", ".options")
+        for part in ("", ".arguments")
     }
     assert {name for name in modules if packages({name}) == {"standoff_studies"}} == (
         {"standoff_studies"} | options if shown else set()
