@@ -157,7 +157,7 @@ def test_help_loads_only_what_reads_the_arguments(command: str) -> None:
     options = {
         f"standoff_studies.{study}{part}"
         for study in shown
-        for part in ("", ".arguments")
+        for part in ("", ".arguments", ".options")
     }
     assert {name for name in modules if packages({name}) == {"standoff_studies"}} == (
         {"standoff_studies"} | options if shown else set()
@@ -343,7 +343,10 @@ LOOP = so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (1, 0), (0, 1))])
             "a b buffer dt law resolved_law run specialise start start_from step step_into",
         ),
         (so.PointTracker(LOOP), "body dt law start start_from step"),
-        (so.PredictorCorrector(), "deadline depth facts name predictor resolved tolerance"),
+        (
+            so.PredictorCorrector(),
+            "deadline depth facts name predictor resolved restarts tolerance",
+        ),
     ],
     ids=lambda value: type(value).__name__,
 )

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from solids import SOLIDS, Solid, X, Y, Z, apple, drilled, prism, shells_of_balls
+from brep_solids import SOLIDS, Solid, X, Y, Z, apple, drilled, prism, shells_of_balls
 
 import standoff as so
 from draws import draws

@@ -159,7 +159,7 @@ def test_knots_of_a_profile_are_breaks():
         (lambda: Extrusion(ARC, (0, 1, 0), 1, 0), "from v = 1.0 to 0.0: give first < last"),
         (lambda: Torus(0, 1), "major = 0.0: must be positive"),
         (lambda: Torus(1, -1), "minor = -1.0: must be positive"),
-        (lambda: Torus(2, 1, 0, 1, 0, 2), "from v = 0.0 to 2.0: give -pi/2 <= v0"),
+        (lambda: Torus(1, 2, 0, 1, 0, 3), "from v = 0.0 to 3.0: it meets its axis"),
         (lambda: Torus(2, 1, 0, 9), "from angle 0.0 to 9.0: give"),
     ],
 )

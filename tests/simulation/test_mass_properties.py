@@ -144,12 +144,12 @@ def test_a_face_that_is_missed_or_counted_twice_shows_in_the_bound(
     counted: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The integrals that close the boundary find it, whatever the volume says."""
-    whole = boundary._face_cells
+    whole = boundary.face_cells
 
     def wrong(body: so.Body, face: int, frame: Frame) -> list[Cell]:
         return whole(body, face, frame) * (counted if face == 0 else 1)
 
-    monkeypatch.setattr(boundary, "_face_cells", wrong)
+    monkeypatch.setattr(boundary, "face_cells", wrong)
     for body, true in ((SHAPES.box(1, 2, 3), 6.0), (SHAPES.cone(1, 2), 2 / 3 * np.pi)):
         found = boundary.moments_of(body, 1e-9)
         assert abs(found.volume - true) > 0.1

@@ -25,7 +25,7 @@ from standoff_studies.accuracy.peers.answer import Peer, not_installed
 from standoff_studies.accuracy.solids import Kind, named
 
 if TYPE_CHECKING:
-    from standoff_studies.accuracy.arguments import AccuracyCommand
+    from standoff_studies.accuracy.options import AccuracyOptions
 
 WIDTH = 140
 """Characters of a table where stdout is not a terminal, such as a file."""
@@ -33,7 +33,7 @@ WIDTH = 140
 FILES = ("accuracy.parquet", "accuracy.md", "gaps.md", "depths.md", "accuracy.png")
 
 
-def run_accuracy(command: AccuracyCommand) -> int:
+def run_accuracy(command: AccuracyOptions) -> int:
     """Measure, print the tables, and write the files.
 
     Raises
@@ -71,7 +71,7 @@ def run_accuracy(command: AccuracyCommand) -> int:
     return ExitCode.NOT_CERTIFIED if bad else ExitCode.DONE
 
 
-def _text(command: AccuracyCommand) -> str:
+def _text(command: AccuracyOptions) -> str:
     """The command that makes the same numbers again."""
     words = ["standoff accuracy", *(repr(name) for name in command.shapes)]
     words += [f"--cases {command.cases}", f"--seed {command.seed}"]
@@ -95,7 +95,7 @@ def _versions(peers: tuple[Peer, ...]) -> dict[str, str]:
 
 
 def _measure(
-    kinds: tuple[Kind, ...], command: AccuracyCommand, peers: tuple[Peer, ...]
+    kinds: tuple[Kind, ...], command: AccuracyOptions, peers: tuple[Peer, ...]
 ) -> list[Row]:
     try:
         with progress_shown() as show:

@@ -22,8 +22,8 @@ from standoff_studies.paper.progress import figures_bar
 from standoff_studies.paper.verdicts import Verdict, counted
 
 if TYPE_CHECKING:
-    from standoff_studies.paper.arguments import PaperCommand
     from standoff_studies.paper.making import Made
+    from standoff_studies.paper.options import PaperOptions
 
 JOBS = 2
 """Processes if no number is given: each takes half a gigabyte, and a laptop has both to spare."""
@@ -31,7 +31,7 @@ JOBS = 2
 REPORT = "report.html"
 
 
-def run_paper(command: PaperCommand) -> int:
+def run_paper(command: PaperOptions) -> int:
     """Make figures, write their files and the report, and print a summary.
 
     Raises
@@ -70,7 +70,7 @@ def run_paper(command: PaperCommand) -> int:
     return ExitCode.FAILED if any(one.error for one in made) else ExitCode.DONE
 
 
-def _listing(command: PaperCommand) -> str:
+def _listing(command: PaperOptions) -> str:
     if command.json:
         return json_text({"standoff": __version__, "figures": [e._asdict() for e in CATALOGUE]})
     wide = max((len(entry.key) for entry in CATALOGUE), default=0)
@@ -82,7 +82,7 @@ def _make_folder(folder: Path) -> None:
     check_target(folder / REPORT, "-o", [".html"])
 
 
-def _make(entries: Sequence[Entry], command: PaperCommand, jobs: int) -> list[Made] | None:
+def _make(entries: Sequence[Entry], command: PaperOptions, jobs: int) -> list[Made] | None:
     """Make the figures; None if it was interrupted, which is told with what is complete."""
     from standoff_studies.paper.processes import Order, make_all
 

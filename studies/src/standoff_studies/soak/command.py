@@ -19,7 +19,7 @@ from standoff_studies.soak.reading import written
 from standoff_studies.soak.shapes import missing_library
 
 if TYPE_CHECKING:
-    from standoff_studies.soak.arguments import SoakCommand
+    from standoff_studies.soak.options import SoakOptions
 
 JOBS = 2
 """Processes if no number is given."""
@@ -30,7 +30,7 @@ SAVE_EVERY = 5.0
 """Seconds between two writings of the ledger."""
 
 
-def run_soak(command: SoakCommand) -> int:
+def run_soak(command: SoakOptions) -> int:
     """Run a soak, or a failure of one again, and print what was counted.
 
     Raises
@@ -81,7 +81,7 @@ def run_soak(command: SoakCommand) -> int:
     return ExitCode.DONE
 
 
-def _ledger(command: SoakCommand) -> Ledger:
+def _ledger(command: SoakOptions) -> Ledger:
     folder = command.output
     make_folder(folder, "-o")
     check_target(folder / NAME, "-o", [".json"])
