@@ -17,10 +17,12 @@ class Status(Ordered):
     DEADLINE = 6
     NOT_RESTARTED = 7
     REFUSED = 8
+    FAR = 9
 
     @property
     def certified(self) -> bool:
-        """Is the signed distance proven: CONVERGED while apart, GLOBAL in penetration?"""
+        """Is what was asked proven: the signed distance (CONVERGED while apart, GLOBAL in
+        penetration), or that the bodies are beyond the horizon (FAR)?"""
         return self in _CERTIFIED
 
     @property
@@ -34,7 +36,7 @@ class Status(Ordered):
         return _ADVICE[self]
 
 
-_CERTIFIED = (Status.CONVERGED, Status.GLOBAL)
+_CERTIFIED = (Status.CONVERGED, Status.GLOBAL, Status.FAR)
 _PENETRATING = (Status.LOCAL, Status.GLOBAL, Status.OVERLAPPING)
 _ADVICE = {
     Status.CONVERGED: (
@@ -75,6 +77,10 @@ _ADVICE = {
     Status.REFUSED: (
         "There is no answer, because a pose of this row is invalid: `errors` of so.distances' "
         "result says what is wrong with it."
+    ),
+    Status.FAR: (
+        "The bodies are proven to be farther apart than the horizon: the lower bound holds, and no "
+        "distance was asked for; for one, raise `within`."
     ),
 }
 BY_NUMBER = tuple(sorted(Status))

@@ -42,6 +42,7 @@ WORK = {
     "simulation": Work("simulations of bodies", 12, 45, 2),
     "coupler": Work("the virtual coupler", 2, 3, 1),
     "servo": Work("the servo loop", 7, 45, 3),
+    "world": Work("worlds of many bodies", 20, 45, 9),
 }
 
 ALL_SECONDS = 85

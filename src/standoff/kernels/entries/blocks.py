@@ -79,12 +79,16 @@ def answered(table, block, room, polytopes):
     """One frame on a block with switches up to its `room`-th number: the state is changed in place,
     the answer and its switches written."""
     tabled = ints_at(table, N_TABLE)
-    pair = tabled_pair(tabled)
+    return answered_by(tabled_pair(tabled), tabled_options(tabled), block, room, polytopes)
+
+
+@kernel
+def answered_by(pair, options, block, room, polytopes):
+    """`answered` of a pair that is at hand."""
     inputs = inputs_at(ahead(block, BLOCK_MOTION), block[BLOCK_HAS_TWIST] != 0.0)
     why = refused(pair, inputs)
     if why != FINE:
         return why
-    options = tabled_options(tabled)
     if not has_frame(options):
         return BAD_ARRAYS
     counts, log = stack_counts(), stack_log()
@@ -186,7 +190,12 @@ def started(query_from, table, block, given):
     Returns FINE, or what is refused, or NOT_KNOWN_APART; nothing is changed then.
     """
     tabled = ints_at(table, N_TABLE)
-    pair = tabled_pair(tabled)
+    return started_by(query_from, tabled_pair(tabled), tabled_options(tabled), block, given)
+
+
+@kernel
+def started_by(query_from, pair, options, block, given):
+    """`started` of a pair that is at hand."""
     inputs = inputs_at(ahead(block, BLOCK_MOTION), block[BLOCK_HAS_TWIST] != 0.0)
     why = refused(pair, inputs)
     if why != FINE:
@@ -195,7 +204,6 @@ def started(query_from, table, block, given):
     none = reals_on_stack(N_POLYTOPE)  # a start has none, and keeps none
     work = Work(stack_counts(), stack_log(), none, none)
     clear_counts(work)
-    options = tabled_options(tabled)
     return start_frame(query_from, pair, inputs, options, state, given, block, work)
 
 

@@ -22,6 +22,7 @@ MODULES = (
     "standoff.kernels.entries.smooth",
     "standoff.kernels.entries.simulation",
     "standoff.kernels.entries.servo",
+    "standoff.kernels.entries.world",
 )
 """The modules that have entries."""
 

@@ -1,0 +1,446 @@
+"""A frame of a world as Python calls it, in parts: where the pieces are, which pairs are sought,
+which are due, and their answers.
+"""
+
+from math import inf
+from typing import Any, NamedTuple
+
+from numba import types
+
+from standoff.kernels.algebra.vectors import cross
+from standoff.kernels.compiler.decorators import (
+    ahead,
+    entry,
+    ints_at,
+    kernel,
+    pointer,
+    reals_at,
+    reals_on_stack,
+    shared,
+)
+from standoff.kernels.compiler.entry import (
+    INT,
+    INTS,
+    READ,
+    READ_BLOCKS,
+    REAL,
+    ROWS,
+    WRITE_INTS,
+)
+from standoff.kernels.entries.blocks import Polytopes, answered_by, started_by
+from standoff.kernels.frame.restart import anywhere
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
+from standoff.kernels.state.arrays import (
+    BLOCK_EVENTS,
+    BLOCK_HAS_TWIST,
+    BLOCK_MOTION,
+    BLOCK_POLYTOPE,
+    BLOCK_STATE,
+    BLOCK_TIME_STEP,
+    FINE,
+    INSIDE,
+    LOWER_BOUND,
+    N_BLOCK,
+    N_LONG_BLOCK,
+    N_OPTIONS,
+    N_STATE,
+    POSE_A,
+    POSE_B,
+    START_ANYWHERE,
+    STATUS,
+    TWIST_A,
+    TWIST_B,
+    UPPER_BOUND,
+)
+from standoff.kernels.state.options import read_options
+from standoff.kernels.values import Pair
+from standoff.kernels.world.arrays import (
+    C_BOUND,
+    C_TRAVEL,
+    C_UPPER,
+    F_PLACED,
+    I_A,
+    I_B,
+    I_INSIDE,
+    I_STATUS,
+    N_FACT,
+    N_INTS,
+    N_KNOWN,
+    N_PLACED,
+    P_PAD,
+)
+from standoff.kernels.world.filter import Filter, counts
+from standoff.kernels.world.pairs import (
+    Pairs,
+    Pieces,
+    look,
+    look_again,
+    merge,
+    travel_of,
+    write_pair,
+)
+from standoff.kernels.world.pieces import apart, flat_pose, put_piece
+from standoff.kernels.world.tree import (
+    GRID,
+    N_BOX,
+    Tree,
+    empty_leaves,
+    fill_leaf,
+    find,
+    in_box,
+    morton,
+    pad_box,
+    refit,
+)
+
+ROWS_OF_INTS = types.Array(INT, 2, "C")
+READ_INTS_2 = types.Array(INT, 2, "C", readonly=True)
+READ_2 = types.Array(REAL, 2, "C", readonly=True)
+
+# What does not change of a world's pieces: owners; first piece of each body, then how many pieces
+# there are and how many a body has at most; half-spaces (1); facts.
+PIECES = types.Tuple((INTS, INTS, INTS, READ_2))
+# And what a frame writes of them: placed, searched, still.
+PLACED = types.Tuple((ROWS, WRITE_INTS, WRITE_INTS))
+# Which pairs count: kinds, meets, pairs left out.
+RULES = types.Tuple((INTS, READ_INTS_2, INTS))
+# Margins: numbers of pairs of bodies, and their margins.
+MARGINS = types.Tuple((INTS, READ))
+# The tree: nodes, order, leaf.
+TREE = types.Tuple((ROWS, WRITE_INTS, WRITE_INTS))
+# A table of pairs.
+PAIRS = types.Tuple((ROWS_OF_INTS, ROWS))
+
+
+@kernel
+def pieces_at(fixed, frame):
+    owners, first, _, facts = fixed
+    placed, searched, still = frame
+    n = len(first) - 2
+    most = first[n + 1]
+    return Pieces(
+        pointer(owners, 0),
+        pointer(first, 0),
+        pointer(facts, 0),
+        pointer(placed, 0),
+        pointer(searched, 0),
+        pointer(still, 0),
+        n,
+        most,
+    )
+
+
+@kernel
+def rules_at(rules, n_bodies):
+    kinds, meets, left_out = rules
+    return Filter(
+        pointer(kinds, 0),
+        meets.shape[0],
+        pointer(meets, 0),
+        pointer(left_out, 0),
+        len(left_out),
+        n_bodies,
+    )
+
+
+@kernel
+def tree_at(tree, n_filled):
+    nodes, order, leaf = tree
+    return Tree(
+        pointer(nodes, 0), pointer(order, 0), pointer(leaf, 0), nodes.shape[0] // 2, n_filled
+    )
+
+
+@kernel
+def pairs_at(table, n):
+    ints, known = table
+    return Pairs(pointer(ints, 0), pointer(known, 0), n)
+
+
+@entry(PIECES, READ_BLOCKS, ROWS, ROWS, PLACED, work="world")
+def place(fixed, poses, boxes, before, frame):
+    """Where all pieces are at the bodies' poses (n, 4, 4).
+
+    Fills in the rows of `frame` from those `before`, marks the pieces that have left their padded
+    boxes, and those that are still. Returns (-1, how many have left, how many are still), or the
+    first body whose pose is none.
+    """
+    _, first, planes, facts = fixed
+    placed, searched, still = frame
+    n_left, n_still = 0, 0
+    flat = reals_on_stack(12)
+    for body in range(len(first) - 2):
+        if not flat_pose(pointer(poses, 16 * body), flat):
+            return body, 0, 0
+        for p in range(first[body], first[body + 1]):
+            row = pointer(placed, N_PLACED * p)
+            fact, last = pointer(facts, N_FACT * p), pointer(before, N_PLACED * p)
+            rests = put_piece(flat, fact, last, row)
+            left = planes[p] == 0 and not rests and not in_box(row, pointer(boxes, N_BOX * p))
+            still[p], searched[p] = 1 if rests else 0, 1 if left else 0
+            n_still += still[p]
+            n_left += searched[p]
+    return -1, n_left, n_still
+
+
+@entry(READ_2, WRITE_INTS, work="world")
+def codes(boxes, found):
+    """The Morton codes of the centres of boxes (n, N_BOX)."""
+    low, high = reals_on_stack(3), reals_on_stack(3)
+    for i in range(3):
+        low[i], high[i] = inf, -inf
+    for k in range(len(boxes)):
+        for i in range(3):
+            centre = 0.5 * (boxes[k, i] + boxes[k, 3 + i])
+            low[i], high[i] = min(low[i], centre), max(high[i], centre)
+    widest = max(max(high[0] - low[0], high[1] - low[1]), high[2] - low[2])
+    scale = GRID / widest if widest > 0.0 else 0.0
+    for k in range(len(boxes)):
+        found[k] = morton(pointer(boxes, N_BOX * k), low, scale)
+    return 0
+
+
+@entry(PIECES, PLACED, ROWS, READ, TREE, INT, work="world")
+def pad(fixed, frame, boxes, ways, tree, n_filled):
+    """New padded boxes of the pieces that are searched for, and the tree of them; `ways` are how
+    far the pieces went in the last frame."""
+    pieces, at = pieces_at(fixed, frame), tree_at(tree, n_filled)
+    for p in range(len(fixed[0])):
+        if pieces.searched[p] != 0:
+            box = pointer(boxes, N_BOX * p)
+            pad_box(
+                ahead(pieces.placed, N_PLACED * p), ahead(pieces.facts, N_FACT * p), ways[p], box
+            )
+            if at.leaf[p] >= 0 and n_filled > 0:
+                fill_leaf(at, p, box)
+    if n_filled > 0:
+        empty_leaves(at)
+        refit(at)
+    return 0
+
+
+@entry(PIECES, PLACED, READ_2, TREE, INT, RULES, REAL, ROWS_OF_INTS, work="world")
+def seek(fixed, frame, boxes, tree, n_filled, rules, reach, found):
+    """Pairs of the pieces that are searched for with all whose padded boxes come within `reach`.
+
+    Returns how many there are: more than len(found), and only these are written.
+    """
+    pieces, at = pieces_at(fixed, frame), tree_at(tree, n_filled)
+    filter, emit, n = rules_at(rules, pieces.n_bodies), (pointer(found, 0), len(found)), 0
+    planes = fixed[2]
+    for p in range(len(planes)):
+        if pieces.searched[p] == 0:
+            continue
+        if planes[p] == 0:
+            box = pointer(boxes, N_BOX * p)
+            n = find(at, filter, pieces, p, box, reach, emit, n)
+        else:  # of a half-space once: its pairs last
+            for q in range(len(planes)):
+                if planes[q] == 0 and counts(filter, pieces.owners[p], pieces.owners[q]):
+                    n = write_pair(pieces, p, q, emit, n)
+    return n
+
+
+@entry(PIECES, PLACED, RULES, ROWS_OF_INTS, work="world")
+def all_pairs(fixed, frame, rules, found):
+    """All pairs of pieces that count; returns how many there are."""
+    pieces = pieces_at(fixed, frame)
+    filter, emit, n = rules_at(rules, pieces.n_bodies), (pointer(found, 0), len(found)), 0
+    planes = fixed[2]
+    for p in range(len(planes)):
+        for q in range(p + 1, len(planes)):
+            both = planes[p] != 0 and planes[q] != 0
+            if not both and counts(filter, pieces.owners[p], pieces.owners[q]):
+                n = write_pair(pieces, p, q, emit, n)
+    return n
+
+
+@entry(PIECES, PLACED, PAIRS, ROWS_OF_INTS, MARGINS, REAL, PAIRS, work="world")
+def merged(fixed, frame, old, found, margins, within, new):
+    """The table of pairs after a search, into `new`, which has room for all; how many there are."""
+    pieces = pieces_at(fixed, frame)
+    before = pairs_at(old, len(old[0]))
+    room = pairs_at(new, len(new[0]))
+    lasting, (numbers, values) = pointer(fixed[2], 0), margins
+    horizons = (pointer(numbers, 0), pointer(values, 0), len(numbers)), within
+    return merge(before, pointer(found, 0), len(found), pieces, lasting, horizons, room)
+
+
+@entry(PIECES, PLACED, PAIRS, REAL, INT, WRITE_INTS, work="world")
+def due(fixed, frame, table, minima, last, fates):
+    """What becomes of each pair in this frame; see `pairs.look`."""
+    look(pieces_at(fixed, frame), pairs_at(table, len(fates)), minima, last, pointer(fates, 0))
+    return 0
+
+
+@entry(PIECES, PLACED, PAIRS, REAL, WRITE_INTS, WRITE_INTS, work="world")
+def due_again(fixed, frame, table, minima, fates, again):
+    """Of bodies of several pieces, pairs of pieces that may be nearer than those asked."""
+    pairs = pairs_at(table, len(fates))
+    return look_again(pieces_at(fixed, frame), pairs, minima, pointer(fates, 0), pointer(again, 0))
+
+
+@entry(PIECES, PLACED, INT, INT, work="world")
+def apart_by_boxes(fixed, frame, i, j):
+    """A lower bound of two bodies' signed distance, from the boxes of their pieces."""
+    pieces, first = pieces_at(fixed, frame), fixed[1]
+    least = inf
+    for p in range(first[i], first[i + 1]):
+        for q in range(first[j], first[j + 1]):
+            a, fact_a = ahead(pieces.placed, N_PLACED * p), ahead(pieces.facts, N_FACT * p)
+            b, fact_b = ahead(pieces.placed, N_PLACED * q), ahead(pieces.facts, N_FACT * q)
+            least = min(least, apart(a, fact_a, b, fact_b))
+    return least
+
+
+class Bodies(NamedTuple):
+    """What the frames of all pairs read; pointers."""
+
+    addresses: Any  # (n pieces, 4): ints, how many, reals, how many
+    classes: Any  # of each piece, by the kinds of its faces
+    options: Any  # (n_classes, n_classes, N_OPTIONS): each with the addresses of its frames
+    n_classes: int
+
+
+@kernel
+def pair_of(bodies, p, q):
+    a, b = ahead(bodies.addresses, 4 * p), ahead(bodies.addresses, 4 * q)
+    return Pair(
+        ints_at(a[0], a[1]), reals_at(a[2], a[3]), ints_at(b[0], b[1]), reals_at(b[2], b[3])
+    )
+
+
+@kernel
+def options_of(bodies, p, q):
+    row = bodies.classes[p] * bodies.n_classes + bodies.classes[q]
+    return read_options(ahead(bodies.options, N_OPTIONS * row))
+
+
+@kernel
+def put_twist(twist, row, fact, motion):
+    """The twist of a piece in the world: that of its body, at the piece's own origin."""
+    w = (twist[3], twist[4], twist[5])
+    for k in range(6):
+        motion[k] = twist[k]
+    if fact[F_PLACED] != 0.0:
+        # row[9:12] is the piece's origin; its body's lies R s before it, in twist[6:9]
+        arm = (row[9] - twist[6], row[10] - twist[7], row[11] - twist[8])
+        turn = cross(w, arm)
+        for k in range(3):
+            motion[k] += turn[k]
+
+
+@kernel
+def put_motion(pieces, p, q, twists, has_twist, block):
+    """A pair's poses and twists, into its block."""
+    motion = ahead(block, BLOCK_MOTION)
+    a, b = ahead(pieces.placed, N_PLACED * p), ahead(pieces.placed, N_PLACED * q)
+    for k in range(12):
+        motion[POSE_A + k], motion[POSE_B + k] = a[k], b[k]
+    for k in range(6):
+        motion[TWIST_A + k], motion[TWIST_B + k] = 0.0, 0.0
+    block[BLOCK_HAS_TWIST] = 1.0 if has_twist else 0.0
+    if has_twist:
+        fact_a, fact_b = ahead(pieces.facts, N_FACT * p), ahead(pieces.facts, N_FACT * q)
+        put_twist(ahead(twists, 9 * pieces.owners[p]), a, fact_a, ahead(motion, TWIST_A))
+        put_twist(ahead(twists, 9 * pieces.owners[q]), b, fact_b, ahead(motion, TWIST_B))
+
+
+@shared
+def answer_anew(pair, options, block):
+    """A cold query of a pair, at the poses in its block."""
+    for k in range(N_STATE):
+        block[BLOCK_STATE + k] = 0.0
+    block[BLOCK_POLYTOPE] = 0.0
+    return started_by(anywhere, pair, options, block, START_ANYWHERE)
+
+
+@kernel
+def answer_next(pair, options, old, block, polytopes):
+    """A frame of a pair from the state in another block. Of more switches than a block holds the
+    first are kept, and counted are all."""
+    long = reals_on_stack(N_LONG_BLOCK)
+    for k in range(BLOCK_STATE, BLOCK_EVENTS):
+        long[k] = block[k]
+    for k in range(N_STATE):
+        long[BLOCK_STATE + k] = old[BLOCK_STATE + k]
+    done = answered_by(pair, options, long, N_LONG_BLOCK, polytopes)
+    for k in range(N_BLOCK):
+        block[k] = long[k]
+    return done
+
+
+@kernel
+def composed(pieces, p):
+    """What roundoff of a placement may have moved a piece by (length)."""
+    placed = pieces.facts[N_FACT * p + F_PLACED] != 0.0
+    return pieces.placed[N_PLACED * p + P_PAD] if placed else 0.0
+
+
+@kernel
+def note(pieces, known, ints, block):
+    """What a pair's answer says, into the table of pairs."""
+    p, q = ints[I_A], ints[I_B]
+    doubt = composed(pieces, p) + composed(pieces, q)
+    if doubt > 0.0:
+        block[LOWER_BOUND] -= doubt
+        block[UPPER_BOUND] += doubt
+    known[C_BOUND], known[C_UPPER] = block[LOWER_BOUND], block[UPPER_BOUND]
+    known[C_TRAVEL] = travel_of(pieces, p, q)
+    ints[I_STATUS] = int(block[STATUS])
+    ints[I_INSIDE] = 1 if block[BLOCK_STATE + INSIDE] != 0.0 else 0
+
+
+# What the frames of a world's pairs read: addresses, classes, options.
+BODIES = types.Tuple((READ_INTS_2, INTS, READ_BLOCKS))
+# Of each pair asked: its row in the table; addresses of the block before (0: none), of its own, of
+# the polytopes before and its own (0: none); its time since the frame before, s.
+ASKED = types.Tuple((ROWS_OF_INTS, READ))
+A_PAIR, A_OLD, A_OWN, A_LAST_POLYTOPE, A_POLYTOPE = range(5)
+# Velocities (n bodies, 9): twist, and the body's origin; and whether there are any.
+TWISTS = types.Tuple((READ_2, INT))
+PART = types.UniTuple(INT, 2)
+
+
+@kernel
+def answer_one(bodies, pieces, pairs, asked, h, twists):
+    """The answer of one pair; FINE, or what is refused."""
+    twist, has_twist = twists
+    at = asked[A_PAIR]
+    ints, known = ahead(pairs.ints, N_INTS * at), ahead(pairs.known, N_KNOWN * at)
+    p, q = ints[I_A], ints[I_B]
+    pair, options = pair_of(bodies, p, q), options_of(bodies, p, q)
+    block = reals_at(asked[A_OWN], N_BLOCK)
+    put_motion(pieces, p, q, twist, has_twist != 0, block)
+    block[BLOCK_TIME_STEP] = h
+    if asked[A_OLD] == 0:
+        done = answer_anew(pair, options, block)
+    else:
+        scratch = reals_on_stack(N_POLYTOPE)
+        scratch[N_VERTICES] = 0.0
+        last = (
+            reals_at(asked[A_LAST_POLYTOPE], N_POLYTOPE) if asked[A_LAST_POLYTOPE] != 0 else scratch
+        )
+        own = reals_at(asked[A_POLYTOPE], N_POLYTOPE) if asked[A_POLYTOPE] != 0 else scratch
+        block[BLOCK_POLYTOPE] = N_BLOCK if asked[A_POLYTOPE] != 0 else 0.0
+        old = reals_at(asked[A_OLD], N_BLOCK)
+        done = answer_next(pair, options, old, block, Polytopes(last, own))
+        block[BLOCK_POLYTOPE] = 0.0
+    if done == FINE:
+        note(pieces, known, ints, block)
+    return done
+
+
+@entry(BODIES, PIECES, PLACED, PAIRS, ASKED, TWISTS, PART, WRITE_INTS, work="world")
+def answer(bodies, fixed, frame, table, asked, twists, part, done):
+    """The answers of the pairs asked from part[0] to part[1] - 1, each into its own block; the
+    table of pairs is brought up to date. done[k] is FINE, or what is refused."""
+    addresses, classes, options = bodies
+    read = Bodies(pointer(addresses, 0), pointer(classes, 0), pointer(options, 0), options.shape[0])
+    pieces, pairs = pieces_at(fixed, frame), pairs_at(table, len(table[0]))
+    numbers, steps = asked
+    twist = (pointer(twists[0], 0), twists[1])
+    for k in range(part[0], part[1]):
+        one = pointer(numbers, 5 * k)
+        done[k] = answer_one(read, pieces, pairs, one, steps[k], twist)
+    return 0

@@ -1,0 +1,165 @@
+"""Which pairs of pieces may be within the horizon: boxes, their tree, and the table of pairs.
+
+While every piece stays in its padded box, the table misses no pair: two pieces that are not in it
+have padded boxes beyond the horizon. A piece that leaves its box gets another, and its pairs are
+found anew (docs/worlds.md).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels.entries import world as kernels
+from standoff.kernels.world import arrays as W
+from standoff.kernels.world.tree import N_BOX
+from standoff.world.packed import PackedPieces
+from standoff.world.rules import Rules
+from standoff.world.state import Tree
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+SOUGHT_PART = 0.25
+"""Of the pieces: where more leave their boxes at once, the tree's leaves are put in order anew."""
+MOST_REFITS = 200
+"""Frames after which they are in any case: a tree that is only refitted grows loose."""
+FIRST_ROOM = 1024
+"""Pairs that a search has room for at first."""
+
+
+class Placed(NamedTuple):
+    """Where the pieces are in a frame, as the kernels read it.
+
+    Attributes
+    ----------
+    placed : (n, N_PLACED) array
+    sought : (n,) array
+        1 where a piece has left its padded box.
+    still : (n,) array
+        1 where a piece is where it was, to the last bit.
+    """
+
+    placed: Array
+    sought: Ints
+    still: Ints
+
+
+class Table(NamedTuple):
+    """Pairs of pieces, sorted: integers (n, N_INTS) and numbers (n, N_KNOWN)."""
+
+    ints: Ints
+    known: Array
+
+
+class Search(NamedTuple):
+    """What a world's search needs that does not change."""
+
+    pieces: PackedPieces
+    rules: Rules
+    within: float
+    reach: float  # the greatest horizon of any pair
+
+    @property
+    def everything(self) -> bool:
+        """Is there no horizon, so that all pairs are in the table?"""
+        return self.reach == math.inf
+
+
+def empty_placed(n: int) -> Placed:
+    """Before the first frame: nothing is still, and travel begins at 0."""
+    placed = np.full((n, W.N_PLACED), np.nan)
+    placed[:, W.P_TRAVEL] = 0.0
+    return Placed(placed, np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64))
+
+
+def place(search: Search, poses: Array, tree: Tree, before: Array) -> tuple[Placed, int, int, int]:
+    """Where the pieces are, the first body whose pose is none (-1: all are poses), how many pieces
+    have left their padded boxes, and how many are still."""
+    n = len(search.pieces.owners)
+    frame = Placed(np.empty((n, W.N_PLACED)), *np.empty((2, n), dtype=np.int64))
+    bad, left, still = kernels.place(search.pieces[:], poses, tree.boxes, before, frame[:])
+    return frame, bad, left, still
+
+
+def first_tree(search: Search, frame: Placed) -> Tree:
+    """The tree of the first frame: every piece has its box and place."""
+    n = len(search.pieces.owners)
+    filled = int(np.count_nonzero(search.pieces.planes == 0))
+    leaves = 1 << max(0, (filled - 1).bit_length()) if filled else 1
+    boxes, nodes = np.empty((n, N_BOX)), np.empty((2 * leaves, N_BOX))
+    order, leaf = np.zeros(max(filled, 1), dtype=np.int64), np.full(n, -1)
+    tree = Tree(boxes, nodes, order, leaf, filled, 0)
+    frame.sought[:] = 1
+    kernels.pad(search.pieces[:], frame[:], boxes, np.zeros(n), tree.arrays, 0)
+    return _ordered(search, frame, tree)
+
+
+def _ordered(search: Search, frame: Placed, tree: Tree) -> Tree:
+    """The same boxes in leaves in the order of their Morton codes, their tree made anew."""
+    bounded = np.flatnonzero(search.pieces.planes == 0)
+    if not len(bounded):
+        return tree
+    codes = np.empty(len(bounded), dtype=np.int64)
+    kernels.codes(np.ascontiguousarray(tree.boxes[bounded]), codes)
+    order = bounded[np.argsort(codes, kind="stable")]
+    leaf = tree.leaf.copy()
+    leaf[order] = np.arange(len(order))
+    leaves = len(tree.nodes) // 2
+    nodes = np.empty_like(tree.nodes)
+    nodes[leaves : leaves + len(order)] = tree.boxes[order]
+    made = Tree(tree.boxes, nodes, order, leaf, tree.n_filled, 0)
+    none = Placed(frame.placed, np.zeros_like(frame.sought), frame.still)
+    kernels.pad(search.pieces[:], none[:], made.boxes, np.zeros(len(leaf)), made.arrays, tree.n_filled)
+    return made
+
+
+def repadded(search: Search, frame: Placed, tree: Tree, before: Array, left: int) -> Tree:
+    """New padded boxes for the pieces that have left theirs, and the tree of all."""
+    ways = frame.placed[:, W.P_TRAVEL] - before[:, W.P_TRAVEL]
+    boxes = tree.boxes.copy()
+    if left > SOUGHT_PART * len(boxes) or tree.refits >= MOST_REFITS:
+        kernels.pad(search.pieces[:], frame[:], boxes, ways, tree.arrays, 0)
+        return _ordered(search, frame, tree._replace(boxes=boxes))
+    made = tree._replace(boxes=boxes, nodes=tree.nodes.copy(), refits=tree.refits + 1)
+    kernels.pad(search.pieces[:], frame[:], boxes, ways, made.arrays, tree.n_filled)
+    return made
+
+
+def table_of(search: Search, frame: Placed, tree: Tree, old: Table) -> Table:
+    """The pairs after the pieces that are sought have found theirs."""
+    found = _found(search, frame, tree)
+    room = len(old.ints) + len(found)
+    ints, known = np.empty((room, W.N_INTS), dtype=np.int64), np.empty((room, W.N_KNOWN))
+    margins = search.rules.margin_pairs, search.rules.margins
+    n = kernels.merged(
+        search.pieces[:], frame[:], old[:], found, margins, search.within, (ints, known)
+    )
+    return Table(ints[:n].copy(), known[:n].copy())
+
+
+def _found(search: Search, frame: Placed, tree: Tree) -> Ints:
+    """What the search finds, sorted."""
+    rules, room = search.rules[:3], FIRST_ROOM
+    while True:
+        found = np.empty((room, W.N_EMIT), dtype=np.int64)
+        if search.everything:
+            n = kernels.all_pairs(search.pieces[:], frame[:], rules, found)
+        else:
+            n = kernels.seek(
+                search.pieces[:],
+                frame[:],
+                tree.boxes,
+                tree.arrays,
+                tree.n_filled,
+                rules,
+                search.reach,
+                found,
+            )
+        if n <= room:
+            found = found[:n]
+            return np.ascontiguousarray(found[np.argsort(found[:, W.E_KEY], kind="stable")])
+        room = n

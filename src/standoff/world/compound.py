@@ -1,0 +1,119 @@
+"""Rigid bodies of several convex pieces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple, TypeAlias
+
+from standoff.bodies.body import Body
+from standoff.checks.real_numbers import shown
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.motion import Pose, PoseLike
+from standoff.read_only import KeepsReadOnly
+from standoff.wording import counted
+
+
+class Piece(NamedTuple):
+    """One convex piece of a compound, and where it is fixed.
+
+    Attributes
+    ----------
+    body : Body
+    pose : Pose
+        Of the piece's frame in the compound's.
+    """
+
+    body: Body
+    pose: Pose
+
+
+PieceLike: TypeAlias = "Body | Piece | tuple[Body, PoseLike]"
+"""A body in its place, or with its pose in the compound's frame."""
+
+
+class Compound(KeepsReadOnly):
+    """A rigid body of several convex pieces with fixed placements: their union.
+
+    Attributes
+    ----------
+    pieces : dict of str to Piece
+    dimension : int
+        2 for planar pieces, 3 for spatial ones.
+    """
+
+    __slots__ = ("dimension", "pieces")
+
+    def __init__(self, pieces: Mapping[str, PieceLike]) -> None:
+        if not isinstance(pieces, Mapping) or not pieces:
+            raise StandoffTypeError(
+                f"pieces = {shown(pieces)}: give a mapping of names to bodies, or to (body, pose); "
+                "at least one.",
+                "pieces",
+                pieces,
+            )
+        self.pieces = {name_of(name): _piece(name, given) for name, given in pieces.items()}
+        self.dimension = dimension_of({n: piece.body for n, piece in self.pieces.items()})
+
+    def __len__(self) -> int:
+        return len(self.pieces)
+
+    def __repr__(self) -> str:
+        return f"<Compound of {counted(len(self), 'piece')}: {', '.join(self.pieces)}>"
+
+
+def compound(pieces: Mapping[str, PieceLike]) -> Compound:
+    """A rigid body of several convex pieces with fixed placements.
+
+    Parameters
+    ----------
+    pieces : mapping of str to Body or (Body, pose)
+        By name; a piece without a pose has the compound's frame for its own.
+
+    Returns
+    -------
+    Compound
+
+    Raises
+    ------
+    TypeError
+        Not a mapping, a name that is no string, a piece that is no body.
+    ValueError
+        No piece, no pose, planar pieces among spatial ones.
+    """
+    return Compound(pieces)
+
+
+def name_of(name: Any) -> str:
+    """A name, checked.
+
+    Raises
+    ------
+    StandoffTypeError
+    """
+    if isinstance(name, str) and name:
+        return name
+    raise StandoffTypeError(f"The name {shown(name)} is not a string of one letter or more.")
+
+
+def _piece(name: str, given: Any) -> Piece:
+    body, pose = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
+    if not isinstance(body, Body):
+        raise StandoffTypeError(
+            f"The piece {name!r} is {shown(given)}: give a Body, or (body, pose).", "pieces", given
+        )
+    try:
+        return Piece(body, Pose.identity() if pose is None else Pose.of(pose))
+    except StandoffError as error:
+        raise type(error)(f"The piece {name!r}: {error}", "pieces", given) from error
+
+
+def dimension_of(bodies: Mapping[str, Body]) -> int:
+    planar = [name for name, body in bodies.items() if body.dimension == 2]
+    spatial = [name for name, body in bodies.items() if not body.flat]
+    if planar and spatial:
+        raise StandoffError(
+            f"{planar[0]!r} is planar and {spatial[0]!r} is not: a compound, and a world, is of "
+            "planar bodies or of spatial ones.",
+            "pieces",
+        )
+    return 2 if planar else 3

@@ -1,0 +1,129 @@
+"""One frame of a world: places, pairs, answers; from the state before to the state after."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels.world import arrays as W
+from standoff.tracking.answers import proven
+from standoff.world.broad_phase import (
+    Placed,
+    Table,
+    empty_placed,
+    first_tree,
+    place,
+    repadded,
+    table_of,
+)
+from standoff.world.narrow_phase import Asked, Moment, ask
+from standoff.world.poses import GivenPoses, mend_poses
+from standoff.world.state import Tree, WorldCounts, WorldState
+
+if TYPE_CHECKING:
+    from standoff.world.world import World
+
+Array = NDArray[np.float64]
+Twists = tuple[Array, bool]
+
+NO_PAIRS = Table(np.empty((0, W.N_INTS), dtype=np.int64), np.empty((0, W.N_KNOWN)))
+
+
+def started_state(world: World, given: GivenPoses, twists: Twists) -> WorldState:
+    """The state of a first frame."""
+    search = world.search
+    nothing = empty_placed(len(search.pieces.owners))
+    n = len(nothing.placed)
+    endless = Tree(np.zeros((n, 6)), np.empty((2, 6)), *np.zeros((2, 1), dtype=np.int64), 0, 0)
+    frame, given = _placed(world, given, endless, nothing.placed)
+    tree = first_tree(search, frame)
+    frame.sought[:] = 1
+    table = table_of(search, frame, tree, NO_PAIRS)
+    moment = Moment(0, 0.0, 0.0, *twists, False, world.minima, 1)
+    asked = ask(world.laws, search.pieces, frame, table, (), moment)
+    return _state(world, given, (frame, tree, table), asked, moment)
+
+
+def next_state(
+    world: World, before: WorldState, given: GivenPoses, twists: Twists, dt: float, workers: int
+) -> WorldState:
+    """The state of the next frame."""
+    search = world.search
+    may_rest = not twists[1] and not before.has_twist
+    if may_rest and before.counts.uncertified == 0 and np.array_equal(before.poses, given.matrices):
+        return _rested(before, dt)
+    frame, given = _placed(world, given, before.tree, before.placed)
+    tree, table = before.tree, Table(before.ints, before.known)
+    left = int(frame.sought.sum())
+    if left and not search.everything:
+        tree = repadded(search, frame, tree, before.placed, left)
+        table = table_of(search, frame, tree, table)
+    else:
+        table = Table(table.ints.copy(), table.known.copy())
+    time = before.time + dt
+    moment = Moment(
+        before.frame + 1, time, dt, *twists, may_rest, world.minima, workers
+    )
+    asked = ask(world.laws, search.pieces, frame, table, before.pages, moment)
+    return _state(world, given, (frame, tree, table), asked, moment)
+
+
+def _placed(
+    world: World, given: GivenPoses, tree: Tree, before: Array
+) -> tuple[Placed, GivenPoses]:
+    """Where the pieces are; poses that are only rounded are repaired."""
+    frame, bad, _, _ = place(world.search, given.matrices, tree, before)
+    if bad >= 0:
+        given = mend_poses(given, tuple(world.bodies))
+        frame, bad, _, _ = place(world.search, given.matrices, tree, before)
+    return frame, given
+
+
+def _rested(before: WorldState, dt: float) -> WorldState:
+    """Where nothing has moved, all answers hold."""
+    counts = before.counts
+    resting = counts.tracked + counts.started + counts.resting
+    parts = {name: getattr(before, name) for name in WorldState.__slots__ if name != "key"}
+    parts["counts"] = counts._replace(tracked=0, started=0, resting=resting, sought=0)
+    parts["time"] = before.time + dt
+    return WorldState(before.key, **parts)
+
+
+def _state(
+    world: World,
+    given: GivenPoses,
+    found: tuple[Placed, Tree, Table],
+    asked: Asked,
+    moment: Moment,
+) -> WorldState:
+    frame, tree, (ints, known) = found
+    fates = asked.fates
+    near = np.flatnonzero((fates != W.FAR) & (known[:, W.C_BOUND] <= known[:, W.C_HORIZON]))
+    tally = np.bincount(fates, minlength=4)
+    sound = proven(ints[near, W.I_STATUS].astype(float))
+    counts = WorldCounts(
+        open=int(np.count_nonzero(ints[:, W.I_ROW] >= 0)),
+        tracked=int(tally[W.MOVED]),
+        started=int(tally[W.NEW]),
+        resting=int(tally[W.RESTING]),
+        bounded=int(tally[W.FAR]),
+        sought=int(frame.sought.sum()),
+        uncertified=int(np.count_nonzero(~sound)),
+    )
+    return WorldState(
+        world.key,
+        time=moment.time,
+        frame=moment.frame,
+        has_twist=moment.has_twist,
+        poses=given.matrices,
+        placed=frame.placed,
+        tree=tree,
+        ints=ints,
+        known=known,
+        near=near,
+        pages=asked.pages,
+        counts=counts,
+        repaired=given.repaired,
+    )

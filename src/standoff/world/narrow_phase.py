@@ -1,0 +1,195 @@
+"""The pairs that are due in a frame, asked: each goes on from its kept state, or starts cold."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.errors import StandoffError
+from standoff.kernels.entries import world as kernels
+from standoff.kernels.state import arrays as K
+from standoff.kernels.world import arrays as W
+from standoff.tracking.threads import in_parts
+from standoff.world.broad_phase import Placed, Table
+from standoff.world.packed import PackedLaws, PackedPieces
+from standoff.world.state import IN_PAGE, PAGE
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+NUMBER = np.dtype(np.float64).itemsize
+
+
+class Moment(NamedTuple):
+    """A frame's place in time, and what else its answers are made with.
+
+    Attributes
+    ----------
+    frame : int
+        Its number.
+    time, dt : float
+        Since the start, and since the frame before, s.
+    twists : (n, 9) array
+        Of each body: (v, omega) and its origin, world axes.
+    has_twist : bool
+    may_rest : bool
+        May answers of the frame before be kept where nothing has moved?
+    minima : float
+        All minima below it are asked, length.
+    workers : int
+    """
+
+    frame: int
+    time: float
+    dt: float
+    twists: Array
+    has_twist: bool
+    may_rest: bool
+    minima: float
+    workers: int
+
+
+class Asked(NamedTuple):
+    """What came of a frame.
+
+    Attributes
+    ----------
+    fates : (n,) array
+        FAR, RESTING, MOVED or NEW, of each pair in the table.
+    pages : tuple of arrays
+        All blocks that the table's rows stand in.
+    """
+
+    fates: Ints
+    pages: tuple[Array, ...]
+
+
+def ask(
+    laws: PackedLaws,
+    pieces: PackedPieces,
+    frame: Placed,
+    table: Table,
+    pages: tuple[Array, ...],
+    moment: Moment,
+) -> Asked:
+    """Bring a table of pairs, which is changed in place, up to a frame."""
+    n = len(table.ints)
+    fates = np.empty(n, dtype=np.int64)
+    last = moment.frame - 1 if moment.may_rest else -1
+    kernels.due(pieces[:], frame[:], table[:], moment.minima, last, fates)
+    asking = np.flatnonzero(fates >= W.MOVED)
+    again = np.empty(n, dtype=np.int64)
+    several = int(pieces.first[-1]) > 1
+    while True:
+        pages = _answered(laws, pieces, frame, table, pages, moment, asking, fates)
+        if not several or not kernels.due_again(
+            pieces[:], frame[:], table[:], moment.minima, fates, again
+        ):
+            break
+        asking = np.flatnonzero(again)
+    kept = fates != W.FAR
+    table.ints[kept, W.I_FRAME] = moment.frame
+    table.known[kept, W.C_TIME] = moment.time
+    return Asked(fates, _without_unused(table.ints, pages))
+
+
+def _answered(
+    laws: PackedLaws,
+    pieces: PackedPieces,
+    frame: Placed,
+    table: Table,
+    pages: tuple[Array, ...],
+    moment: Moment,
+    asking: Ints,
+    fates: Ints,
+) -> tuple[Array, ...]:
+    """The answers of some pairs, on new pages."""
+    if not len(asking):
+        return pages
+    ints, known = table.ints[asking], table.known[asking]
+    moved = fates[asking] == W.MOVED
+    keeping = moved & (ints[:, W.I_INSIDE] != 0)
+    asked = np.zeros((len(asking), 5), dtype=np.int64)
+    asked[:, 0] = asking
+    asked[moved, 1], asked[moved, 3] = _addresses(ints[moved, W.I_ROW], pages)
+    made: list[Array] = []
+    rows = np.empty(len(asking), dtype=np.int64)
+    for some, width in ((~keeping, K.N_BLOCK), (keeping, K.N_KEEPING_BLOCK)):
+        if some.any():
+            count = int(np.count_nonzero(some))
+            rows[some] = (len(pages) + len(made) << PAGE) + np.arange(count)
+            made.append(np.empty((count, width)))
+    pages = (*pages, *made)
+    asked[:, 2], asked[:, 4] = _addresses(rows, pages)
+    since = moment.time - known[:, W.C_TIME]
+    steps = np.where(ints[:, W.I_FRAME] == moment.frame - 1, moment.dt, since)
+    done = np.empty(len(asking), dtype=np.int64)
+    twists = moment.twists, int(moment.has_twist)
+    read = laws[:], pieces[:], frame[:]
+
+    def some_of(first: int, end: int) -> None:
+        part = first, end
+        kernels.answer(*read, table[:], (asked, steps), twists, part, done)
+
+    in_parts(some_of, len(asking), moment.workers)
+    if done.any():
+        k = int(np.flatnonzero(done)[0])
+        raise StandoffError(f"A frame of pair {int(asking[k])} was refused: {int(done[k])}.")
+    table.ints[asking, W.I_ROW] = rows
+    return pages
+
+
+def _addresses(rows: Ints, pages: tuple[Array, ...]) -> tuple[Ints, Ints]:
+    """Where the blocks of rows begin in memory, and their polytopes, 0 for none."""
+    bases = np.array([page.ctypes.data for page in pages] or [0], dtype=np.int64)
+    widths = np.array([page.shape[1] for page in pages] or [0], dtype=np.int64)
+    at = rows >> PAGE
+    blocks = bases[at] + (rows & IN_PAGE) * widths[at] * NUMBER
+    return blocks, np.where(widths[at] == K.N_KEEPING_BLOCK, blocks + K.N_BLOCK * NUMBER, 0)
+
+
+def _without_unused(ints: Ints, pages: tuple[Array, ...]) -> tuple[Array, ...]:
+    """Drop pages that no row stands in, and gather rows that fill little of theirs; the rows'
+    numbers are changed in place."""
+    rows = ints[:, W.I_ROW]
+    some = rows >= 0
+    at, within = rows[some] >> PAGE, rows[some] & IN_PAGE
+    used = np.bincount(at, minlength=len(pages))
+    kept: list[Array] = []
+    numbers = at.copy()
+    for number, page in enumerate(pages):
+        if not used[number]:
+            continue
+        here = at == number
+        if 2 * used[number] < len(page):
+            page = np.ascontiguousarray(page[within[here]])
+            within[here] = np.arange(len(page))
+        numbers[here] = len(kept)
+        kept.append(page)
+    if len(kept) > MOST_PAGES:
+        kept, numbers, within = _gathered(kept, numbers, within)
+    ints[some, W.I_ROW] = (numbers << PAGE) + within
+    return tuple(kept)
+
+
+MOST_PAGES = 16
+"""Where there are more, all are gathered into one of each width."""
+
+
+def _gathered(
+    pages: list[Array], numbers: Ints, within: Ints
+) -> tuple[list[Array], Ints, Ints]:
+    """All rows on one page of each width."""
+    made: list[Array] = []
+    for width in sorted({page.shape[1] for page in pages}):
+        parts, n = [], 0
+        for number, page in enumerate(pages):
+            if page.shape[1] == width:
+                here = numbers == number
+                parts.append(page[within[here]])
+                within[here] = n + np.arange(len(parts[-1]))
+                numbers[here] = -1 - len(made)
+                n += len(parts[-1])
+        made.append(np.concatenate(parts))
+    return made, -1 - numbers, within

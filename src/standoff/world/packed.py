@@ -1,0 +1,136 @@
+"""A world's pieces as the kernels read them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.bodies.planes import outer_plane
+from standoff.kernels.body import layout as L
+from standoff.kernels.state import arrays as K
+from standoff.kernels.world import arrays as W
+from standoff.motion import Pose
+from standoff.tracking.law_options import Law
+from standoff.tracking.reached import reach
+from standoff.tracking.specialised import kinds_of, main_kind
+from standoff.world.compound import Compound, Piece
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class PackedPieces(NamedTuple):
+    """What does not change from frame to frame.
+
+    Attributes
+    ----------
+    owners : (n,) array
+        The body of each piece.
+    first : (n_bodies + 2,) array
+        The first piece of each body, how many pieces there are, and how many a body has at most.
+    planes : (n,) array
+        1 for a half-space.
+    facts : (n, N_FACT) array
+    """
+
+    owners: Ints
+    first: Ints
+    planes: Ints
+    facts: Array
+
+
+def pieces_of(body: Body | Compound) -> tuple[Piece, ...]:
+    """Those of a compound, or a body as the only one."""
+    if isinstance(body, Compound):
+        return tuple(body.pieces.values())
+    return (Piece(body, Pose.identity()),)
+
+
+def packed_pieces(bodies: Sequence[Sequence[Piece]]) -> PackedPieces:
+    """Of the pieces of all bodies."""
+    counts = [len(pieces) for pieces in bodies]
+    owners = np.repeat(np.arange(len(bodies)), counts)
+    first = np.concatenate([[0], np.cumsum(counts), [max(counts)]]).astype(np.int64)
+    known: dict[int, Array] = {}
+    facts = np.empty((len(owners), W.N_FACT))
+    for row, piece in zip(facts, (p for pieces in bodies for p in pieces), strict=True):
+        body = piece.body
+        if id(body) not in known:
+            known[id(body)] = _facts(body)
+        row[:] = known[id(body)]
+        _place(row, piece.pose)
+    planes = facts[:, W.F_PLANE].astype(np.int64)
+    packed = PackedPieces(owners.astype(np.int64), first, planes, facts)
+    for array in packed:
+        array.flags.writeable = False
+    return packed
+
+
+def _facts(body: Body) -> Array:
+    """A piece's row without its placement."""
+    row = np.zeros(W.N_FACT)
+    row[W.F_RADIUS] = body.reals[L.RADIUS] + body.reals[L.SLACK]
+    if not body.bounded:
+        row[W.F_PLANE] = 1.0
+        normal, offset = outer_plane(body)
+        row[W.F_NORMAL : W.F_NORMAL + 3], row[W.F_OFFSET] = normal, offset
+        return row
+    row[W.F_CENTRE : W.F_CENTRE + 3] = body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
+    half = body.reals[L.BOX_HALF : L.BOX_HALF + 3]
+    row[W.F_HALF : W.F_HALF + 3] = half
+    row[W.F_REACH] = np.linalg.norm(half) * (1.0 + 8.0 * np.finfo(float).eps)
+    return row
+
+
+def _place(row: Array, pose: Pose) -> None:
+    row[W.F_ROTATION : W.F_SHIFT] = pose.rotation.ravel()
+    row[W.F_SHIFT : W.F_PLACED] = pose.translation
+    identity = np.array_equal(pose.rotation, np.eye(3)) and not pose.translation.any()
+    row[W.F_PLACED] = 0.0 if identity else 1.0
+
+
+class PackedLaws(NamedTuple):
+    """What the frames of all pairs read: where the pieces' arrays lie, the class of each by the
+    kinds of its faces, and options with the addresses of frames for each pair of classes."""
+
+    addresses: Ints
+    classes: Ints
+    options: Array
+
+
+def packed_laws(pieces: Sequence[Piece], law: Law, dt: float) -> PackedLaws:
+    """Of all pieces, in their order."""
+    classes: dict[Any, int] = {}
+    examples: list[Body] = []
+    known: dict[int, tuple[list[int], int]] = {}
+    for piece in pieces:
+        body = piece.body
+        if id(body) in known:
+            continue
+        kind = main_kind(body), len(kinds_of(body)) > 1, body.bounded
+        if kind not in classes:
+            classes[kind] = len(classes)
+            examples.append(body)
+        lies = [body.ints.ctypes.data, len(body.ints), body.reals.ctypes.data, len(body.reals)]
+        known[id(body)] = lies, classes[kind]
+    rows = [known[id(piece.body)] for piece in pieces]
+    options = np.array([[_options(a, b, law, dt) for b in examples] for a in examples])
+    found = PackedLaws(
+        np.array([lies for lies, _ in rows], dtype=np.int64),
+        np.array([number for _, number in rows], dtype=np.int64),
+        options,
+    )
+    for array in found:
+        array.flags.writeable = False
+    return found
+
+
+def _options(a: Body, b: Body, law: Law, dt: float) -> Array:
+    """The options of a pair of classes; two half-spaces are no pair, and have a body's."""
+    if not a.bounded and not b.bounded:
+        return np.zeros(K.N_OPTIONS)
+    return reach(a, b, law, dt, None).options

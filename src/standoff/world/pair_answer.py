@@ -1,0 +1,148 @@
+"""The answer of one pair of a world's bodies."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.errors import StandoffError
+from standoff.kernels.state import arrays as K
+from standoff.tracking.proximity import Proximity
+from standoff.tracking.status import Status
+
+Array = NDArray[np.float64]
+
+
+class PairAnswer(Proximity):
+    """Witness points of two bodies of a world: a `Proximity` of the nearest pieces, with names.
+
+    Of a pair beyond the horizon, with status FAR, only ``lower_bound`` is known: ``distance`` and
+    ``upper_bound`` are inf, points and normal are nan, and there are no features. Of two bodies of
+    several pieces in penetration, ``depth`` is the least translation that frees the deepest pair of
+    pieces, with its bounds; another pair may then still overlap: of the whole no depth is claimed.
+
+    Attributes
+    ----------
+    names : (str, str)
+        Of the bodies.
+    pieces : (str, str)
+        Of the pieces, by name; empty for a body that is no compound.
+    """
+
+    __slots__ = ("_arms", "_time", "names", "pieces")
+
+    def __init__(
+        self,
+        bodies: tuple[Body, Body],
+        block: Array,
+        names: tuple[str, str],
+        pieces: tuple[str, str],
+        arms: Array,
+        time: float,
+    ) -> None:
+        super().__init__(*bodies, block)
+        self.names, self.pieces = names, pieces
+        self._arms, self._time = arms, time
+
+    @property
+    def time(self) -> float:
+        return self._time
+
+    @property
+    def far(self) -> bool:
+        """Is only a bound known, because the pair is beyond the horizon?"""
+        return self.status is Status.FAR
+
+    def derivatives(self) -> Any:
+        """As of a `Proximity`, by the motions of the two *bodies*.
+
+        Raises
+        ------
+        StandoffError
+            Of a pair that is FAR; of the normal's and points' where a piece stands off its body's
+            origin: ask ``gradient``.
+        """
+        self._refuse_far()
+        if self._arms.any():
+            raise StandoffError(
+                "Derivatives beyond the gradient are those of single bodies: ask "
+                "so.distance(...) of the pieces, or the gradient."
+            )
+        return super().derivatives()
+
+    @property
+    def gradient(self) -> Array:
+        """(12,) of the distance by unit twists (v_A, omega_A, v_B, omega_B) of the bodies."""
+        self._refuse_far()
+        found = np.array(super().gradient)
+        for side, arm in enumerate(self._arms):
+            part = found[6 * side : 6 * side + 6]
+            part[3:] += np.cross(arm, part[:3])
+        return found
+
+    def witness_set(self) -> Any:
+        self._refuse_far()
+        return super().witness_set()
+
+    def as_dict(self) -> dict[str, Any]:
+        if self.far:
+            known = ("distance", "lower_bound", "upper_bound")
+            facts: dict[str, Any] = {name: float(getattr(self, name)) for name in known}
+            facts |= {"status": self.status.name, "time": self.time}
+        else:
+            facts = super().as_dict()
+        return {"names": list(self.names), "pieces": list(self.pieces), **facts}
+
+    def _refuse_far(self) -> None:
+        if self.far:
+            raise StandoffError(
+                f"The pair {self.names} is beyond the horizon: only its lower bound is known; "
+                "raise `within`."
+            )
+
+    def __repr__(self) -> str:
+        a, b = (" ".join(filter(None, each)) for each in zip(self.names, self.pieces, strict=True))
+        if self.far:
+            return f"PairAnswer({a!r}, {b!r}, FAR: at least {self.lower_bound:.6g} apart)"
+        return (
+            f"PairAnswer({a!r}, {b!r}, distance={self.distance:.12g}, {self.feature_a} - "
+            f"{self.feature_b}, {self.status.name})"
+        )
+
+
+def far_block(bound: float) -> Array:
+    """The block of a pair of which only a lower bound is known."""
+    block = np.full(K.N_BLOCK, np.nan)
+    block[K.DISTANCE] = block[K.UPPER_BOUND] = math.inf
+    block[K.LOWER_BOUND] = bound
+    block[K.STATUS] = Status.FAR.value
+    block[K.OUT_COUNTS : K.N_OUT] = 0.0
+    return block
+
+
+OF_SIDES = ((K.POINT_A, K.POINT_B, 3), (K.OUT_MODE, K.OUT_MODE + 2, 2), (K.OUT_Q, K.OUT_Q + 2, 2))
+"""Where A's numbers and B's stand in an answer, and how many; its velocities follow."""
+
+
+def swapped(block: Array) -> Array:
+    """The answer of the pair (B, A): without the switches and the state of its tracker."""
+    found = np.full(K.N_BLOCK, np.nan)
+    found[: K.N_OUT] = block[: K.N_OUT]
+    motion, first = K.BLOCK_MOTION, K.BLOCK_MOTION + K.TWIST_A
+    sides = [
+        *OF_SIDES,
+        (K.VELOCITY_A, K.VELOCITY_B, 3),
+        (motion + K.POSE_A, motion + K.POSE_B, 12),
+        (first, motion + K.TWIST_B, 6),
+    ]
+    for a, b, n in sides:
+        found[a : a + n], found[b : b + n] = block[b : b + n], block[a : a + n]
+    found[K.NORMAL : K.NORMAL + 3] = -block[K.NORMAL : K.NORMAL + 3]
+    for k in (K.BLOCK_TIME_STEP, K.BLOCK_HAS_TWIST):
+        found[k] = block[k]
+    found[K.BLOCK_POLYTOPE] = found[K.BLOCK_DONE] = 0.0
+    return found

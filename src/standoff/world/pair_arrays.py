@@ -1,0 +1,112 @@
+"""The near pairs of a world in one frame, as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels.state import arrays as K
+from standoff.kernels.world import arrays as W
+from standoff.read_only import KeepsReadOnly
+from standoff.tracking.answers import proven, statuses
+from standoff.wording import counted
+from standoff.world.pair_answer import PairAnswer
+
+if TYPE_CHECKING:
+    from standoff.world.answer import WorldAnswer
+
+Array = NDArray[np.float64]
+
+
+class PairArrays(KeepsReadOnly):
+    """All pairs of bodies within their horizon, nearest or not, in arrays of n rows.
+
+    Sorted by the bodies' numbers; iterating yields a `PairAnswer` each.
+
+    Attributes
+    ----------
+    bodies : (n, 2) array of int
+        Numbers of the two bodies, in the world's order.
+    distance, lower_bound, upper_bound : (n,) arrays
+    point_a, point_b, normal : (n, 3) arrays
+        As in `Proximity`, in world axes.
+    rate : (n,) array
+        Time derivatives of the distances; nan where no twists were given.
+    """
+
+    __slots__ = ("_answer", "_rows")
+
+    def __init__(self, answer: WorldAnswer, rows: NDArray[np.int64]) -> None:
+        self._answer = answer
+        self._rows = rows  # in the state's table: of each pair of bodies the nearest pieces
+
+    def _column(self, slots: Any) -> Array:
+        state = self._answer.state
+        found: Array = state.column(self._rows, slots)
+        found.flags.writeable = False
+        return found
+
+    @property
+    def bodies(self) -> NDArray[np.int64]:
+        ints = self._answer.state.ints[self._rows]
+        owners = self._answer.world.search.pieces.owners
+        return np.stack([owners[ints[:, W.I_A]], owners[ints[:, W.I_B]]], axis=1)
+
+    @property
+    def names(self) -> list[tuple[str, str]]:
+        """The names of the two bodies of each pair."""
+        names = list(self._answer.world.bodies)
+        return [(names[i], names[j]) for i, j in self.bodies.tolist()]
+
+    @property
+    def distance(self) -> Array:
+        return self._column(K.DISTANCE)
+
+    @property
+    def lower_bound(self) -> Array:
+        return self._answer.lower_bounds(self._rows)
+
+    @property
+    def upper_bound(self) -> Array:
+        return self._column(K.UPPER_BOUND)
+
+    @property
+    def rate(self) -> Array:
+        return self._column(K.OUT_RATE)
+
+    @property
+    def point_a(self) -> Array:
+        return self._column(slice(K.POINT_A, K.POINT_A + 3))
+
+    @property
+    def point_b(self) -> Array:
+        return self._column(slice(K.POINT_B, K.POINT_B + 3))
+
+    @property
+    def normal(self) -> Array:
+        return self._column(slice(K.NORMAL, K.NORMAL + 3))
+
+    @property
+    def status(self) -> NDArray[np.object_]:
+        """(n,) the status of each pair."""
+        return statuses(self._answer.state.ints[self._rows, W.I_STATUS].astype(float))
+
+    @property
+    def certified(self) -> NDArray[np.bool_]:
+        """(n,) is the answer proven?"""
+        return proven(self._answer.state.ints[self._rows, W.I_STATUS].astype(float))
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __getitem__(self, k: int) -> PairAnswer:
+        return self._answer.of_row(int(self._rows[k]))
+
+    def __iter__(self) -> Iterator[PairAnswer]:
+        return (self[k] for k in range(len(self)))
+
+    def __repr__(self) -> str:
+        return f"<PairArrays of {counted(len(self), 'pair')}>"

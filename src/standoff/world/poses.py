@@ -1,0 +1,170 @@
+"""Poses and twists of many bodies: an array, a list, or a mapping by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.checks.names import did_you_mean
+from standoff.checks.real_numbers import shown
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.motion import Pose, Twist
+from standoff.tracking.inputs import check_in_plane, flat_twist, matrix_and_mark, out_of_plane
+from standoff.tracking.pose_arrays import flat_poses, mended, read_poses
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class GivenPoses(NamedTuple):
+    """Of all bodies.
+
+    Attributes
+    ----------
+    matrices : (n, 4, 4) array
+    repaired : int
+        How many had a rounded rotation and were replaced by the nearest one.
+    """
+
+    matrices: Array
+    repaired: int
+
+
+def read_poses_of(poses: Any, names: Sequence[str], planar: bool) -> GivenPoses:
+    """Poses of the named bodies, in this order; their numbers are left for the kernel to check.
+
+    Raises
+    ------
+    StandoffError
+        Another number of poses, a name that is missing or unknown, a planar body out of z = 0.
+    """
+    if isinstance(poses, Mapping):
+        check_names(poses, names, "poses")
+        matrices = np.empty((len(names), 4, 4))
+        repaired = 0
+        for k, name in enumerate(names):
+            try:
+                matrices[k], mark = matrix_and_mark(poses[name])
+            except StandoffError as error:
+                raise type(error)(f"poses[{name!r}]: {error}", "poses", poses[name]) from error
+            repaired += mark
+    elif not names and (poses is None or len(poses) == 0):
+        return GivenPoses(np.empty((0, 4, 4)), 0)
+    else:
+        read = read_poses(poses, "poses")
+        matrices, repaired = read.matrices, int(read.repaired.sum())
+    if len(matrices) != len(names):
+        raise StandoffError(
+            f"poses are {len(matrices)}, but the world has {len(names)} bodies that move: give one "
+            "of each, in the order of world.moving, or a mapping of names.",
+            "poses",
+        )
+    if planar and len(matrices):
+        flat = flat_poses(np.ascontiguousarray(matrices))
+        for k in np.flatnonzero(out_of_plane(flat))[:1]:
+            try:
+                check_in_plane(flat[k], flat[k])
+            except StandoffError as error:
+                raise StandoffError(f"{names[k]!r}: {error}", "poses", matrices[k]) from error
+    return GivenPoses(np.ascontiguousarray(matrices), repaired)
+
+
+def mend_poses(given: GivenPoses, names: Sequence[str]) -> GivenPoses:
+    """Poses that the kernel has refused, repaired where they are only rounded.
+
+    Raises
+    ------
+    StandoffError
+        More than rounding is wrong with one; its name is told.
+    """
+    found = mended(given.matrices)
+    for k in np.flatnonzero(found.refused)[:1]:
+        told = f"The pose of {names[k]!r} is none"
+        try:
+            Pose.of(given.matrices[k])
+        except StandoffError as error:
+            raise StandoffError(f"{told}: {error}", "poses", given.matrices[k]) from error
+        raise StandoffError(f"{told}.", "poses", given.matrices[k])
+    return GivenPoses(found.matrices, given.repaired + int(found.repaired.sum()))
+
+
+def check_names(given: Mapping[str, Any], names: Sequence[str], argument: str) -> None:
+    """Refuse a mapping that does not have each of the names and no other.
+
+    Raises
+    ------
+    StandoffError
+    """
+    for name in names:
+        if name not in given:
+            raise StandoffError(f"{argument} has none of {name!r}: give one of each.", argument)
+    for name in given:
+        if name not in names:
+            raise StandoffError(
+                f"{argument} has {shown(name)}, which is no body of the world that moves."
+                f"{did_you_mean(str(name), names)}",
+                argument,
+                name,
+            )
+
+
+def read_twists_of(
+    twists: Any, names: Sequence[str], poses: Array, rows: Ints
+) -> tuple[Array, bool]:
+    """(twist and origin of each body (n, 9), are there any?); fixed bodies are at rest.
+
+    Raises
+    ------
+    StandoffError
+        Another number of twists, a name that is missing or unknown, a number that is not finite.
+    """
+    if twists is None:
+        return NO_TWISTS, False
+    found = np.zeros((len(poses), 9))
+    found[:, 6:] = poses[:, :3, 3]
+    if isinstance(twists, Mapping):
+        check_names(twists, names, "twists")
+        for row, name in zip(rows, names, strict=True):
+            found[row, :6] = flat_twist(twists[name], Pose.of(poses[row]))
+    elif isinstance(twists, list | tuple) and any(isinstance(x, Twist | tuple) for x in twists):
+        _check_count(len(twists), names)
+        for row, twist in zip(rows, twists, strict=True):
+            found[row, :6] = flat_twist(twist, Pose.of(poses[row]))
+    else:
+        try:
+            array = np.asarray(twists, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise StandoffTypeError(
+                f"twists = {shown(twists)}: give (n, 6), or a mapping of names.", "twists", twists
+            ) from error
+        if array.ndim != 2 or array.shape[1] != 6:
+            raise StandoffError(
+                f"twists have the shape {array.shape}: give (n, 6), or a mapping of names.",
+                "twists",
+                twists,
+            )
+        _check_count(len(array), names)
+        found[rows, :6] = array
+    for k in np.flatnonzero(~np.isfinite(found[rows, :6]).all(axis=1))[:1]:
+        raise StandoffError(
+            f"The twist of {names[k]!r} has a NaN or infinite number: {found[rows[k], :6]}.",
+            "twists",
+            found[rows[k], :6],
+        )
+    return found, True
+
+
+def _check_count(count: int, names: Sequence[str]) -> None:
+    if count != len(names):
+        raise StandoffError(
+            f"twists are {count}, but the world has {len(names)} bodies that move: give one of "
+            "each, in the order of world.moving.",
+            "twists",
+        )
+
+
+NO_TWISTS = np.zeros((1, 9))
+NO_TWISTS.flags.writeable = False

@@ -1,0 +1,374 @@
+"""Many bodies at once: which are near each other, and the proven clearance of all."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.checks.numbers import not_negative, positive, whole_number
+from standoff.checks.real_numbers import shown
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.motion import Pose, PoseLike
+from standoff.motion.moving import MotionLike
+from standoff.read_only import KeepsReadOnly
+from standoff.shown_names import hides
+from standoff.tracking.inputs import matrix_and_mark
+from standoff.tracking.law_options import Law
+from standoff.tracking.laws import DEFAULT_LAW, checked_law
+from standoff.wording import counted
+from standoff.world.answer import WorldAnswer
+from standoff.world.broad_phase import Search
+from standoff.world.compound import Compound, dimension_of, name_of
+from standoff.world.frame import next_state, started_state
+from standoff.world.packed import PackedLaws, packed_laws, packed_pieces, pieces_of
+from standoff.world.poses import GivenPoses, read_poses_of, read_twists_of
+from standoff.world.rules import Given, Names, packed_rules
+from standoff.world.state import WorldState
+
+Array = NDArray[np.float64]
+BodyLike = Body | Compound
+PosesLike = Any
+"""World poses of the moving bodies: (n, 4, 4) in the world's order, a list of poses, or a mapping
+of names to poses."""
+
+HIDDEN = ("key", "laws", "names", "search")
+
+
+@hides(*HIDDEN)
+class World(KeepsReadOnly):
+    """Named bodies, which pairs of them count, and how far away they matter.
+
+    Immutable, and compiled once: what changes from frame to frame is its state, a value.
+
+    Parameters
+    ----------
+    bodies : mapping of str to Body or Compound
+        Spatial ones, or planar ones.
+    within : float
+        The horizon, length: of pairs that are farther apart only that is proven. Without one, the
+        distances of all pairs are tracked.
+    fixed : mapping of str to pose, optional
+        World poses of bodies that never move; two of them are no pair.
+    groups : mapping of str to list of str, optional
+        Names for several bodies, to be used in `ignore`, `only` and `margins`.
+    ignore : iterable of (str, str), optional
+        Pairs of bodies or groups that do not count.
+    only : iterable of (str, str), optional
+        The pairs that count; all if not given.
+    parents : mapping of str to str, optional
+        The parent of each child: the two are no pair, as of links at one joint.
+    margins : mapping of (str, str) to float, optional
+        The clearance that a pair must keep, length; its horizon is at least that.
+    minima : float, optional
+        Of bodies of several pieces, all local minima below this distance are kept, length; the
+        nearest alone if not given.
+    law : PredictorCorrector or PaperLaw
+        By which pairs are tracked.
+    dt : float
+        Frame time, s; ``step`` takes another one.
+
+    Attributes
+    ----------
+    bodies : dict of str to Body or Compound
+    moving, fixed : tuple of str
+        Names, in the order of the bodies.
+    within : float
+
+    Raises
+    ------
+    TypeError
+        Not a body, a name that is no string, not a law.
+    ValueError
+        A name that nobody has, planar bodies among spatial ones, a group of nobody, two half-spaces
+        that would be a pair, a number that is negative or NaN.
+    """
+
+    def __init__(
+        self,
+        bodies: Mapping[str, BodyLike],
+        *,
+        within: float = math.inf,
+        fixed: Mapping[str, PoseLike] | None = None,
+        groups: Mapping[str, Sequence[str]] | None = None,
+        ignore: Iterable[tuple[str, str]] = (),
+        only: Iterable[tuple[str, str]] | None = None,
+        parents: Mapping[str, str] | None = None,
+        margins: Mapping[tuple[str, str], float] | None = None,
+        minima: float | None = None,
+        law: Law = DEFAULT_LAW,
+        dt: float = 1e-3,
+    ) -> None:
+        self.bodies = _checked_bodies(bodies)
+        self.names = Names(tuple(self.bodies), groups or {})
+        placed = dict(fixed or {})
+        still = np.zeros(len(self.bodies), dtype=bool)
+        for name in placed:
+            still[self.names.body(name, "fixed")] = True
+        self.fixed = tuple(name for name in self.bodies if name in placed)
+        self.moving = tuple(name for name in self.bodies if name not in placed)
+        self.within = positive(within, "within", infinite=True)
+        self.minima = -math.inf if minima is None else not_negative(minima, "minima")
+        self.dt, self.law = positive(dt, "dt"), checked_law(law)
+        self.poses_of_fixed = _fixed_poses(self.fixed, placed)
+        self._rules = Given(
+            dict(groups or {}),
+            tuple(ignore),
+            None if only is None else tuple(only),
+            dict(parents or {}),
+            dict(margins or {}),
+        )
+        rules = packed_rules(self.names, still, self._rules)
+        self.dimension = dimension_of(self._bodies_by_piece())
+        self._check_half_spaces(rules)
+        reach = max([self.within, *rules.margins.tolist()])
+        pieces = packed_pieces([pieces_of(body) for body in self.bodies.values()])
+        self.search = Search(pieces, rules, self.within, reach)
+        self._compile()
+
+    def _compile(self) -> None:
+        """Have at hand, by address, what the frames read; load or compile what they call."""
+        # the mark of this world: states of another one have another
+        self.key = object()
+        self.laws: PackedLaws = packed_laws(
+            [piece for body in self.bodies.values() for piece in pieces_of(body)],
+            self.law,
+            self.dt,
+        )
+
+    def __getstate__(self) -> Any:
+        raise StandoffTypeError(
+            "A World is not stored: store what it was made of, and its states' poses.", "world"
+        )
+
+    def start(self, poses: PosesLike, twists: Any = None) -> WorldState:
+        """Find all pairs within the horizon, and their distances, at some poses.
+
+        Parameters
+        ----------
+        poses : (n, 4, 4) array, list of poses, or mapping of str to pose
+            World poses of the moving bodies, in the order of ``moving`` or by name.
+        twists : (n, 6) array or mapping of str to twist, optional
+            (v, omega) in world axes.
+
+        Returns
+        -------
+        WorldState
+            ``world.answer(state)`` is the answer at these poses.
+
+        Raises
+        ------
+        ValueError
+            A body's pose is missing, or none: its name is told; a planar body out of its plane.
+        """
+        given = self._read(poses)
+        return started_state(self, given, self._twists(twists, given))
+
+    def step(
+        self,
+        state: WorldState,
+        poses: PosesLike,
+        twists: Any = None,
+        dt: float | None = None,
+        *,
+        workers: int = 1,
+    ) -> tuple[WorldState, WorldAnswer]:
+        """All near pairs at the given poses, from the state of the frame before.
+
+        Parameters
+        ----------
+        state : WorldState
+            Of this world; it is not changed.
+        poses, twists
+            As in ``start``, at the end of the step.
+        dt : float, optional
+            Time since the frame before, s; the world's own if not given.
+        workers : int
+            Threads that share the pairs; the answers are the same, to the last bit, for any number.
+
+        Returns
+        -------
+        (WorldState, WorldAnswer)
+
+        Raises
+        ------
+        TypeError, ValueError
+            As ``start``; a state of another world.
+        """
+        self.check_state(state)
+        workers = whole_number(workers, "workers")
+        given = self._read(poses)
+        h = self.dt if dt is None else positive(dt, "dt")
+        after = next_state(self, state, given, self._twists(twists, given), h, workers)
+        return after, WorldAnswer(self, after)
+
+    def run(
+        self, state: WorldState, poses: Any, twists: Any = None, *, workers: int = 1
+    ) -> tuple[WorldState, list[WorldAnswer]]:
+        """Many frames, each from the state of the one before, as with ``step``.
+
+        Parameters
+        ----------
+        poses : (m, n, 4, 4) array, or an iterable of what ``step`` reads
+        twists : (m, n, 6) array or an iterable, optional
+
+        Returns
+        -------
+        (WorldState, list of WorldAnswer)
+        """
+        answers = []
+        each = itertools.repeat(None) if twists is None else twists
+        for k, (frame, velocities) in enumerate(zip(poses, each, strict=twists is not None)):
+            try:
+                state, answer = self.step(state, frame, velocities, workers=workers)
+            except StandoffError as error:
+                told = f"Frame {k}: {error}"
+                raise type(error)(told, error.argument, error.value) from error
+            answers.append(answer)
+        return state, answers
+
+    def answer(self, state: WorldState) -> WorldAnswer:
+        """The answer at the frame of a state."""
+        self.check_state(state)
+        return WorldAnswer(self, state)
+
+    def distances(self, poses: PosesLike) -> WorldAnswer:
+        """All near pairs at some poses by themselves, from nothing."""
+        return WorldAnswer(self, self.start(poses))
+
+    def time_of_impact(
+        self, paths: Mapping[str, MotionLike], duration: float, **options: Any
+    ) -> Any:
+        """The first time at which any pair comes to its clearance: never later than the true one.
+
+        Parameters
+        ----------
+        paths : mapping of str to path or pose
+            Of each moving body, as ``so.time_of_impact`` reads them.
+        duration : float
+            Time to search [s].
+        **options
+            ``clearance``, ``tolerance``, ``start``, ``max_evaluations`` of ``so.time_of_impact``.
+
+        Returns
+        -------
+        WorldImpact
+        """
+        from standoff.world.impact import first_impact
+
+        return first_impact(self, paths, duration, options)
+
+    def pairs(self) -> Iterator[tuple[str, str]]:
+        """The names of all pairs that count."""
+        names = list(self.bodies)
+        for i, j in itertools.combinations(range(len(names)), 2):
+            if self.search.rules.counts(i, j):
+                yield names[i], names[j]
+
+    def check_state(self, state: WorldState) -> None:
+        """Refuse what is not a state of this world.
+
+        Raises
+        ------
+        TypeError, ValueError
+        """
+        if not isinstance(state, WorldState):
+            raise StandoffTypeError(
+                f"{shown(state)} is not a WorldState: get one from world.start.", "state", state
+            )
+        if state.key is not self.key:
+            raise StandoffError(
+                "The state belongs to another world: begin with world.start.", "state", state
+            )
+
+    def _read(self, poses: Any) -> GivenPoses:
+        given = read_poses_of(poses, self.moving, self.dimension == 2)
+        if not self.fixed:
+            return given._replace(matrices=given.matrices.copy())
+        every = np.empty((len(self.bodies), 4, 4))
+        every[self.moving_rows] = given.matrices
+        every[self.fixed_rows] = self.poses_of_fixed
+        return given._replace(matrices=every)
+
+    def _twists(self, twists: Any, given: GivenPoses) -> tuple[Array, bool]:
+        return read_twists_of(twists, self.moving, given.matrices, self.moving_rows)
+
+    @property
+    def moving_rows(self) -> NDArray[np.int64]:
+        """The numbers of the moving bodies."""
+        return np.array([self.names.bodies[name] for name in self.moving], dtype=np.int64)
+
+    @property
+    def fixed_rows(self) -> NDArray[np.int64]:
+        """Those of the fixed ones."""
+        return np.array([self.names.bodies[name] for name in self.fixed], dtype=np.int64)
+
+    def _bodies_by_piece(self) -> dict[str, Body]:
+        found = {}
+        for name, body in self.bodies.items():
+            if isinstance(body, Compound):
+                found |= {f"{name}.{part}": piece.body for part, piece in body.pieces.items()}
+            else:
+                found[name] = body
+        return found
+
+    def _check_half_spaces(self, rules: Any) -> None:
+        names = list(self.bodies)
+        endless = [
+            k
+            for k, body in enumerate(self.bodies.values())
+            if any(not piece.body.bounded for piece in pieces_of(body))
+        ]
+        for i, j in itertools.combinations(endless, 2):
+            if rules.counts(i, j):
+                raise StandoffError(
+                    f"{names[i]!r} and {names[j]!r} are half-spaces: such a pair has no witness "
+                    "points; fix both, or ignore the pair.",
+                    "bodies",
+                )
+
+    def __len__(self) -> int:
+        return len(self.bodies)
+
+    def __repr__(self) -> str:
+        horizon = "" if self.within == math.inf else f" within {self.within:g}"
+        return f"<World of {counted(len(self), 'body', 'bodies')}{horizon}>"
+
+
+def _checked_bodies(bodies: Any) -> dict[str, BodyLike]:
+    """Bodies by name.
+
+    Raises
+    ------
+    StandoffTypeError
+    """
+    if not isinstance(bodies, Mapping) or not bodies:
+        raise StandoffTypeError(
+            f"bodies = {shown(bodies)}: give a mapping of names to bodies, at least one.",
+            "bodies",
+            bodies,
+        )
+    for name, body in bodies.items():
+        if not isinstance(body, Body | Compound):
+            raise StandoffTypeError(
+                f"The body {name_of(name)!r} is {shown(body)}: give a Body or so.compound({{...}}).",
+                "bodies",
+                body,
+            )
+        name_of(name)
+    return dict(bodies)
+
+
+def _fixed_poses(names: Sequence[str], given: Mapping[str, PoseLike]) -> Array:
+    poses = np.empty((len(names), 4, 4))
+    for k, name in enumerate(names):
+        try:
+            poses[k] = matrix_and_mark(Pose.of(given[name]))[0]
+        except StandoffError as error:
+            raise type(error)(f"fixed[{name!r}]: {error}", "fixed", given[name]) from error
+    return poses
