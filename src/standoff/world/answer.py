@@ -15,7 +15,6 @@ from standoff.kernels.entries import world as kernels
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.read_only import KeepsReadOnly
-from standoff.world.broad_phase import Placed
 from standoff.world.compound import Compound
 from standoff.world.packed import pieces_of
 from standoff.world.pair_answer import PairAnswer, far_block, swapped
@@ -188,9 +187,7 @@ class WorldAnswer(KeepsReadOnly):
     def _far(self, i: int, j: int) -> PairAnswer:
         """The answer of a pair that is beyond its horizon."""
         search, state = self.world.search, self.state
-        still = np.zeros(len(state.placed), dtype=np.int64)
-        frame = Placed(state.placed, still, still)
-        bound = kernels.apart_by_boxes(search.pieces[:], frame[:], i, j)
+        bound = kernels.apart_by_boxes(search.pieces[:], state.placed, i, j)
         key = (min(i, j) * len(self.world.bodies) + max(i, j)) * int(search.pieces.first[-1]) ** 2
         end = key + int(search.pieces.first[-1]) ** 2
         first, last = np.searchsorted(state.ints[:, W.I_KEY], [key, end])

@@ -108,8 +108,9 @@ RULES = types.Tuple((INTS, READ_INTS_2, INTS))
 MARGINS = types.Tuple((INTS, READ))
 # The tree: nodes, order, leaf.
 TREE = types.Tuple((ROWS, WRITE_INTS, WRITE_INTS))
-# A table of pairs.
+# A table of pairs, and one of a state.
 PAIRS = types.Tuple((ROWS_OF_INTS, ROWS))
+OLD_PAIRS = types.Tuple((READ_INTS_2, READ_2))
 
 
 @kernel
@@ -157,7 +158,7 @@ def pairs_at(table, n):
     return Pairs(pointer(ints, 0), pointer(known, 0), n)
 
 
-@entry(PIECES, READ_BLOCKS, ROWS, ROWS, PLACED, work="world")
+@entry(PIECES, READ_BLOCKS, READ_2, READ_2, PLACED, work="world")
 def place(fixed, poses, boxes, before, frame):
     """Where all pieces are at the bodies' poses (n, 4, 4).
 
@@ -255,7 +256,7 @@ def all_pairs(fixed, frame, rules, found):
     return n
 
 
-@entry(PIECES, PLACED, PAIRS, ROWS_OF_INTS, MARGINS, REAL, PAIRS, work="world")
+@entry(PIECES, PLACED, OLD_PAIRS, ROWS_OF_INTS, MARGINS, REAL, PAIRS, work="world")
 def merged(fixed, frame, old, found, margins, within, new):
     """The table of pairs after a search, into `new`, which has room for all; how many there are."""
     pieces = pieces_at(fixed, frame)
@@ -280,15 +281,15 @@ def due_again(fixed, frame, table, minima, fates, again):
     return look_again(pieces_at(fixed, frame), pairs, minima, pointer(fates, 0), pointer(again, 0))
 
 
-@entry(PIECES, PLACED, INT, INT, work="world")
-def apart_by_boxes(fixed, frame, i, j):
+@entry(PIECES, READ_2, INT, INT, work="world")
+def apart_by_boxes(fixed, placed, i, j):
     """A lower bound of two bodies' signed distance, from the boxes of their pieces."""
-    pieces, first = pieces_at(fixed, frame), fixed[1]
+    first, facts = fixed[1], fixed[3]
     least = inf
     for p in range(first[i], first[i + 1]):
         for q in range(first[j], first[j + 1]):
-            a, fact_a = ahead(pieces.placed, N_PLACED * p), ahead(pieces.facts, N_FACT * p)
-            b, fact_b = ahead(pieces.placed, N_PLACED * q), ahead(pieces.facts, N_FACT * q)
+            a, fact_a = pointer(placed, N_PLACED * p), pointer(facts, N_FACT * p)
+            b, fact_b = pointer(placed, N_PLACED * q), pointer(facts, N_FACT * q)
             least = min(least, apart(a, fact_a, b, fact_b))
     return least
 
