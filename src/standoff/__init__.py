@@ -2,7 +2,7 @@
 
 The names of every day; the rest is in modules that load when asked for: `so.points`, `so.voronoi`,
 `so.impact`, `so.recording`, `so.automaton`, `so.bodies`, `so.geometry`, `so.motion`, `so.tracking`,
-`so.control`, `so.simulation`, `so.devices`, `so.servo`, `so.scene`.
+`so.control`, `so.simulation`, `so.devices`, `so.servo`, `so.scene`, `so.world`.
 """
 
 from typing import TYPE_CHECKING
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
         witness_set,
     )
     from standoff.view import view
+    from standoff.world import Compound, World, WorldState, compound
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -77,6 +78,7 @@ else:
             "standoff.points": ("PointTracker",),
             "standoff.recording": ("Recording", "open_recording", "track"),
             "standoff.view": ("view",),
+            "standoff.world": ("Compound", "World", "WorldState", "compound"),
         },
         modules=(
             "automaton",
@@ -93,12 +95,14 @@ else:
             "simulation",
             "tracking",
             "voronoi",
+            "world",
         ),
     )
 
 __all__ = [
     "Body",
     "BodyError",
+    "Compound",
     "Event",
     "Feature",
     "PaperLaw",
@@ -114,6 +118,9 @@ __all__ = [
     "TrackerState",
     "Twist",
     "WitnessSet",
+    "World",
+    "WorldState",
+    "compound",
     "distance",
     "distances",
     "feedback",
