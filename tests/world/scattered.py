@@ -1,4 +1,4 @@
-"""Worlds of bodies of many kinds, their motion, and what is true of them by queries of all pairs."""
+"""Worlds of bodies of many kinds, their motion, and what queries of all pairs find."""
 
 import itertools
 from typing import NamedTuple
@@ -33,7 +33,11 @@ def bodies_of(rng: np.random.Generator, n: int, compounds: int) -> dict[str, obj
     found: dict[str, object] = {f"b{k}": SHAPES[k % len(SHAPES)] for k in range(n)}
     turned = poses_of(rng, 1, 0.5)[0]
     hand = so.compound(
-        {"palm": SHAPES[1], "finger": (SHAPES[4], turned), "tip": (SHAPES[2], (np.eye(3), [1.0, 0, 0]))}
+        {
+            "palm": SHAPES[1],
+            "finger": (SHAPES[4], turned),
+            "tip": (SHAPES[2], (np.eye(3), [1.0, 0, 0])),
+        }
     )
     return found | {f"c{k}": hand for k in range(compounds)} | {"floor": so.shapes.halfspace()}
 

@@ -18,7 +18,8 @@ def at(x: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
 
 def test_the_nearest_piece_is_told_with_the_bounds_of_all() -> None:
     answer = so.World({"two": TWO, "ball": BALL}).distances([at(0.0), at(4.5)])["two", "ball"]
-    assert answer.distance == pytest.approx(1.5) and answer.pieces == ("right", "")
+    assert answer.distance == pytest.approx(1.5)
+    assert answer.pieces == ("right", "")
     assert answer.lower_bound <= 1.5
 
 
@@ -41,7 +42,8 @@ def test_depth_is_that_of_the_deepest_pair_of_pieces() -> None:
     answer = world.distances([at(0.0), at(1.0, 0.0)])["two", "ball"]
     assert answer.distance == pytest.approx(0.0, abs=1e-9)
     answer = world.distances([at(0.0), at(1.3, 0.0)])["two", "ball"]
-    assert answer.depth == pytest.approx(0.3) and answer.pieces[0] == "right"
+    assert answer.depth == pytest.approx(0.3)
+    assert answer.pieces[0] == "right"
     assert answer.lower_bound <= -0.3 <= answer.upper_bound + 1e-12
 
 

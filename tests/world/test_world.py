@@ -83,13 +83,15 @@ def test_bodies_at_rest_keep_their_answers(rng: np.random.Generator) -> None:
     poses = poses_of(rng, len(world.moving), 1.5)
     before = world.start(poses)
     state, answer = world.step(before, poses.copy(), dt=0.5)
-    assert state.ints is before.ints and answer.time == 0.5
+    assert state.ints is before.ints
+    assert answer.time == 0.5
     assert answer.counts.tracked == answer.counts.started == 0
     poses = poses.copy()
     poses[0, 0, 3] += 1e-3
     state, answer = world.step(state, poses)
     counts = answer.counts
-    assert counts.resting > 0 and counts.tracked + counts.started < counts.open
+    assert counts.resting > 0
+    assert counts.tracked + counts.started < counts.open
     check(answer, truth_of(world, poses), 1.0)
 
 
@@ -102,7 +104,8 @@ def test_a_state_is_a_value(rng: np.random.Generator) -> None:
     after = [world.step(state, motion.step(H))[1].pairs.distance for _ in range(3)]
     assert np.array_equal(world.answer(state).pairs.distance, shown)
     again = world.step(state, first)[1].pairs.distance
-    assert np.allclose(again, shown, atol=1e-9) and len(after[0])
+    assert np.allclose(again, shown, atol=1e-9)
+    assert len(after[0])
     first[0, 0, 3] = 7.0  # the caller's own array: the state has a copy
     assert state.poses[0, 0, 3] != 7.0
     with pytest.raises(ValueError, match="another world"):
@@ -134,12 +137,18 @@ def test_the_clearance_holds_for_far_pairs_too() -> None:
     poses = np.tile(np.eye(4), (3, 1, 1))
     poses[:, 0, 3] = 0.0, 10.0, 30.0
     answer = world.distances(poses)
-    assert answer.closest is None and len(answer.pairs) == 0
+    assert answer.closest is None
+    assert len(answer.pairs) == 0
     assert answer.clearance == 2.0
     far = answer["c", "b"]
-    assert far.status is so.Status.FAR and far.certified and far.far
-    assert 2.0 < far.lower_bound <= 19.0 and far.distance == far.upper_bound == np.inf
-    assert far.names == ("c", "b") and "FAR" in repr(far) and far.as_dict()["status"] == "FAR"
+    assert far.status is so.Status.FAR
+    assert far.certified
+    assert far.far
+    assert 2.0 < far.lower_bound <= 19.0
+    assert far.distance == far.upper_bound == np.inf
+    assert far.names == ("c", "b")
+    assert "FAR" in repr(far)
+    assert far.as_dict()["status"] == "FAR"
     with pytest.raises(ValueError, match="beyond the horizon"):
         _ = far.gradient
     poses[:, 0, 3] = 0.0, 2.5, 30.0
@@ -157,7 +166,8 @@ def test_both_orders_of_a_pair(rng: np.random.Generator) -> None:
     turned = so.Tracker(SHAPES[5], SHAPES[0]).start(*poses[::-1], *twists[::-1]).proximity
     for name in ("distance", "lower_bound", "normal", "point_a", "point_b", "velocity_a", "rate"):
         assert getattr(ba, name) == pytest.approx(getattr(turned, name), abs=1e-9)
-    assert np.array_equal(ab.point_a, ba.point_b) and np.array_equal(ab.normal, -ba.normal)
+    assert np.array_equal(ab.point_a, ba.point_b)
+    assert np.array_equal(ab.normal, -ba.normal)
     assert (ab.feature_a, ab.parameters_a) == (ba.feature_b, ba.parameters_b)
     assert np.array_equal(ba.poses[0], ab.poses[1])
     assert ba.gradient == pytest.approx(turned.gradient, abs=1e-9)
@@ -169,7 +179,8 @@ def test_planar_worlds() -> None:
     poses = np.tile(np.eye(4), (3, 1, 1))
     poses[:, 0, 3] = 0.0, 1.7, 9.0
     answer = world.distances(poses)
-    assert answer.closest.distance == pytest.approx(0.7) and len(answer.pairs) == 1
+    assert answer.closest.distance == pytest.approx(0.7)
+    assert len(answer.pairs) == 1
     poses[2, 2, 3] = 0.1
     with pytest.raises(ValueError, match="'c'"):
         world.distances(poses)
