@@ -114,12 +114,13 @@ def normals(boundary: Boundary) -> list[np.ndarray]:
     return spots
 
 
-@pytest.mark.parametrize("name", SOLIDS)
+@pytest.mark.parametrize("name", [name for name in SOLIDS if name != "ring"])
 def test_whichever_side_of_a_surface_is_up(name: str) -> None:
-    """Every chart mirrored in its parameters, so that x_u × x_v turns round."""
+    """Every chart mirrored in its parameters, so that x_u × x_v points the other way.
+
+    The edges of the ring are curves on its own surfaces, which must stay as they are.
+    """
     solid = SOLIDS[name]()
-    if name == "ring":
-        pytest.skip("its edges are curves on its own surfaces")
     mirror = np.diag([1.0, -1.0, 1.0])
     faces = [
         replace(f, charts=tuple(replace(c, linear=c.linear @ mirror) for c in f.charts))
