@@ -175,7 +175,7 @@ class PointProximity(KeepsReadOnly, PlainData):
         return self.inside, self.feature, self.active if self.inside else -1
 
     def of_curve(self, index: int) -> Minimum:
-        """The nearest minimum of one curve of a planar body."""
+        """The nearest of the minima that are followed on one curve of a planar body."""
         own = [m for m in self.minima if m.feature == Feature("edge", index)]
         return min(own, key=lambda m: m.distance)
 

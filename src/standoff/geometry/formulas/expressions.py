@@ -154,9 +154,7 @@ def read_expression(
         )
     if not result.is_number and result.free_symbols <= set(symbols.values()):
         if result.has(sympy.zoo, sympy.nan, sympy.oo, sympy.I):
-            raise FormulaError(
-                f"{name} = {given} divides by zero or is not real.", name, given
-            )
+            raise FormulaError(f"{name} = {given} divides by zero or is not real.", name, given)
         return result
     if result.is_finite is False or result.is_real is False or result is sympy.nan:
         raise FormulaError(f"{name} = {given} is not a finite real number: {result}.", name, given)

@@ -45,8 +45,9 @@ class PrintedRun:
     parameter : ndarray, shape (n,)
         Of the active curve; nan at a vertex.
     curve_parameter, curve_distance : ndarray, shape (n, curves)
-        Of the parallel trackers, distances without sign; outside those of the active curve alone,
-        else nan.
+        Of the parallel trackers, distances without sign; outside, only of the active curve, else
+        nan. A tracker follows one local minimum of the distance to its curve, not always the
+        nearest.
     events : tuple of PointEvent
         In order of time. The value of a jump inside is the point's distance from the medial axis.
     parts : tuple of Recording
