@@ -131,7 +131,7 @@ def moves_of(recording: Recording, paths: tuple[Path, Path], gain: float) -> lis
 
 
 def growth_statement(moves: Sequence[Move], starts: int, by: str) -> Statement:
-    """Return how the printed resets change the distance; the paper's claim is about closest points."""
+    """Return how the printed resets change the distance; the paper's claim is on closest points."""
     moved = [move for move in moves if move.way > ROUNDED]
     grown = [move.growth for move in moved if move.growth > ROUNDED]
     of = f"in {len(moved)} of {len(moves)} frames with switches"

@@ -331,7 +331,7 @@ WHY = {
 
 
 def _cheaper_than(name: str) -> Statement:
-    """The law's update compared with an iteration's, by both integrators: a verdict if they agree."""
+    """The law's update against an iteration's, by both integrators: a verdict if they agree."""
     error, laws = same_accuracy(), [law_spent(integrator) for integrator in STAGES]
     got = spent(name, error)
     cheaper = [got.cost > law.cost for law in laws]
