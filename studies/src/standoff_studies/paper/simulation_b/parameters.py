@@ -33,7 +33,7 @@ from standoff_studies.paper.simulation_b.run import (
 )
 
 VERTEX_FILL = "#E9A63A"
-"""Behind the time at a vertex."""
+"""Background of the time at a vertex."""
 LEAST_NAMED = 0.12
 """Stays shorter than this [s] are not named in the strip: their names would overlap."""
 
