@@ -173,8 +173,8 @@ def test_two_neighbouring_sides_collapsed():
     ("patches", "words"),
     [
         ([], "No patches"),
-        ([Plane(IDENTITY, np.zeros(3))], r"patch 0 is a Plane without limits.*\.restricted\(u0"),
-        ([Cylinder(IDENTITY, np.zeros(3))], "patch 0 is a Cylinder without limits"),
+        ([Plane(IDENTITY, np.zeros(3))], r"patch 0 is an unbounded Plane.*\.restricted\(u0"),
+        ([Cylinder(IDENTITY, np.zeros(3))], "patch 0 is an unbounded Cylinder"),
         (["patch"], "patch 0 is 'patch': give a Surface"),
     ],
 )

@@ -57,7 +57,7 @@ def test_what_was_proven(standoff: Standoff, tmp_path: Path) -> None:
     assert f"slack {body.check().slack:.3g} m, taken off" in told
     told = " ".join(standoff("check", 'shape = "halfspace"').out.split())
     assert "size unbounded" in told
-    assert "closed no: it has no end" in told
+    assert "closed no: it is unbounded" in told
     assert "nan" not in told
 
 
