@@ -86,7 +86,7 @@ class PointCounts(NamedTuple):
     switches : int
         Events of the frame.
     born, ended : int
-        Minima that are tracked from this frame on, and that are tracked no more; the answer's
+        Minima that are tracked from this frame on, and that are no longer tracked; the answer's
         ``changes`` have the reasons.
     restarts : int
         Nearer points that the proof met inside, or global starts of the tracker outside.

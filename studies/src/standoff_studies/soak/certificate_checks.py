@@ -99,7 +99,7 @@ def misses(scene: Scene, asked: Array) -> Iterator[Miss]:
     # a point may be past its face's boundary, as witness points of the soak may
     shares = slack + ON_BODY / ROUNDOFF * noise
 
-    yield from worst("a bound that is no number", np.isnan(lower) * 1.0, 0.0)
+    yield from worst("a bound that is not a number", np.isnan(lower) * 1.0, 0.0)
     yield from worst("a distance that is not finite", 1.0 * ~np.isfinite(d), 0.0)
     # callers of a direction have checked where the points are; `weigh` must do so itself
     asked_of = on | ~along
@@ -122,7 +122,7 @@ def misses(scene: Scene, asked: Array) -> Iterator[Miss]:
     yield from worst("GLOBAL at a wrong depth", off, loose, proven)
     yield from worst("a point off its face is certified", 1.0 * certified, 0.0, ~on)
     if not {scene.a.shape.kind, scene.b.shape.kind} & BLURRED:
-        yield from worst("a normal that is not square to its edge", asked[:, P.NEAREST], SQUARE)
+        yield from worst("a normal not perpendicular to its edge", asked[:, P.NEAREST], SQUARE)
 
 
 def count(tally: Tally, scene: Scene, asked: Array) -> None:

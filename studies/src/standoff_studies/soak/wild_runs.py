@@ -177,7 +177,7 @@ def _bounds(one: Run) -> Iterator[Miss]:
     told = np.column_stack([distance, upper, rows[:, FINITE]])
     yield from worst("a number that is not finite", (~np.isfinite(told)).sum(axis=1) * 1.0, 0.0)
     no_bound = np.isnan(lower) | (lower == np.inf)
-    yield from worst("a lower bound that is no number", no_bound * 1.0, 0.0)
+    yield from worst("a lower bound that is not a number", no_bound * 1.0, 0.0)
     yield from worst("the lower bound is above the distance", lower - truth, noise)
     yield from worst("the upper bound is below the distance", truth - upper, noise + slack)
     yield from worst("the distance is above its upper bound", distance - upper, noise)

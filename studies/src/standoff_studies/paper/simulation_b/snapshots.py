@@ -56,7 +56,7 @@ def figure_10() -> Artwork:
             "A hundred snapshots, one every 40 ms: the point (dots) and its witness line, by the "
             f"printed system at K = {GAIN:g}/s; thin and grey, the library's own law. The first "
             f"ones (thick, black, off by more than {OFF:g}) still come from the deliberately wrong "
-            "start; then the lines are square to the curve. Arrows show which way the point goes. "
+            "start; then the lines are normal to the curve. Arrows show which way the point goes. "
             "Inside (vermilion, dashed) they jump over the medial axis; outside they end on a "
             "curve (blue), or are anchored at a vertex (green, dash-dotted). The animation also "
             "shows, inside, the two curves that are not nearest."
