@@ -1,11 +1,11 @@
 """The equation set of the paper's reference [28], with the tangents of A and the normals of both.
 
-r = (f_u.dR, f_v.dR, f_u.n_h, f_v.n_h): dR is along A's normal, and B's normal is parallel to
-A's. For dR not zero it has the roots of Eqs. (1)-(4); at dR = 0 it still asks for parallel normals,
-which (1)-(4) do not. That the normals be parallel may be written n_f x n_h = 0 as well: along A's
-unit tangents that is the same pair of numbers, turned by a right angle.
+r = (f_u.dR, f_v.dR, f_u.n_h, f_v.n_h): dR is along A's normal, and B's normal is parallel to A's.
+If dR is not zero it has the same roots as Eqs. (1)-(4); at dR = 0 it still requires parallel
+normals, which (1)-(4) do not. Parallel normals could also be written n_f x n_h = 0: along A's unit
+tangents these are the same two numbers, rotated by a right angle.
 
-Two faces only: an edge or a vertex has no normal. Notation and frames as in
+Only for two faces: an edge or a vertex has no normal. Notation and frames as in
 ``standoff.kernels.pair.system``.
 """
 
@@ -24,19 +24,19 @@ from standoff.kernels.pair.system import (
 )
 
 compiled = njit(error_model="numpy", fastmath={"contract"})
-"""As the kernels are compiled; it is made once a process, in a few seconds. It cannot be an entry:
-those are kept under a digest of the library's sources, which these lines are not part of."""
+"""Compiled like the kernels, once per process, in a few seconds. It cannot be an entry: those are
+cached under a digest of the library's sources, of which this file is not a part."""
 
 
 @compiled
 def unit_normal(jet):
-    """h_r x h_s by its length; outward or inward, as the chart has it: r = 0 is the same."""
+    """h_r x h_s, normalised; outward or inward by the chart, which does not change r = 0."""
     return unit(cross(jet[1], jet[2]))
 
 
 @compiled
 def normal_partials(jet, n):
-    """(n_r, n_s) by Weingarten's equations: second derivatives of h, no third ones.
+    """(n_r, n_s) by Weingarten's equations, with second but no third derivatives of h.
 
     n_i = -sum_jk h_j (I^-1)_jk (n.h_ik), with I the first fundamental form.
     """
@@ -60,7 +60,7 @@ def normals_residual(jet_a, jet_b):
 
 @compiled
 def normals_jacobian(jet_a, jet_b, J):
-    """dr/dq into the 4 x 4 array J, q = (u, v, r, s). Not symmetric: r is no gradient."""
+    """dr/dq into the 4 x 4 array J, q = (u, v, r, s). Not symmetric, as r is not a gradient."""
     fu, fv, fuu, fuv, fvv = jet_a[1], jet_a[2], jet_a[3], jet_a[4], jet_a[5]
     dR = sub(jet_a[0], jet_b[0])
     n = unit_normal(jet_b)
@@ -79,7 +79,7 @@ def normals_jacobian(jet_a, jet_b, J):
 
 @compiled
 def normals_feedforward(jet_a, jet_b, motion_a, motion_b):
-    """r_t, the rate of r by the bodies' motion: F' dV(x_h), then F' ((w_B - w_A) x n_h)."""
+    """r_t, the rate of r from the bodies' motion: F' dV(x_h), then F' ((w_B - w_A) x n_h)."""
     x_h = jet_b[0]
     slip = sub(point_velocity(x_h, motion_a), point_velocity(x_h, motion_b))
     turn = cross(sub(motion_b[2], motion_a[2]), unit_normal(jet_b))
@@ -112,7 +112,7 @@ def both_motions(rows):
     )
 
 
-# What Python calls, on batches: jets of A and B and the motions are arrays (n, 6, 3).
+# Called from Python, for batches: jets of A and B and the motions are arrays (n, 6, 3).
 
 
 @compiled
