@@ -25,10 +25,6 @@ OF_EVENTS = (
 )
 
 
-PYTHON_ONLY = (Status.REFUSED, Status.FAR)
-"""Of rows, and of pairs with a horizon: C has neither."""
-
-
 def layout_header(smooth_frames: list[str]) -> str:
     """The text of ``layout.h``.
 
@@ -44,7 +40,7 @@ def layout_header(smooth_frames: list[str]) -> str:
     lines = ["/* Made with the library. */"]
     lines += [f"#define {name} {value!r}" for name, value in constants.items()]
     lines += [f"#define {name} {json.dumps(text)}" for name, text in texts.items()]
-    told = [status.advice for status in Status if status not in PYTHON_ONLY]
+    told = [status.advice for status in Status if status is not Status.REFUSED]  # of rows in Python
     advice = ", ".join(json.dumps(sentence) for sentence in told)
     frames = " ".join(f"SMOOTH_FRAME({name})" for name in smooth_frames)
     lines += [f"#define STATUS_ADVICE {advice}", f"#define SMOOTH_FRAMES {frames}"]

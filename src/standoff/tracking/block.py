@@ -30,7 +30,7 @@ class Block:
     ----------
     out : (40,) array
         The answer.
-    state : (55,) array
+    state : (56,) array
         The state after it.
     motion : (36,) array
         Poses and twists.

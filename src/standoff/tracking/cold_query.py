@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from math import inf
+
 from standoff.bodies.body import Body
+from standoff.checks.numbers import positive
 from standoff.motion import PoseLike
 from standoff.tracking.inputs import check_pair
 from standoff.tracking.mended_calls import found_anywhere
@@ -10,7 +13,9 @@ from standoff.tracking.proximity import Proximity
 from standoff.tracking.reached import cold_table
 
 
-def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
+def distance(
+    a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike, *, within: float = inf
+) -> Proximity:
     """The signed minimum distance of two bodies at two poses: cold, global, certified.
 
     Parameters
@@ -19,6 +24,9 @@ def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
         Two spatial bodies, or two planar ones.
     pose_a, pose_b : Pose or what ``Pose.of`` reads
         World poses of the bodies' frames.
+    within : float
+        Horizon, length: of bodies farther apart only that is proven, with the status FAR and a
+        lower bound, which costs less.
 
     Returns
     -------
@@ -31,10 +39,11 @@ def distance(a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> Proximity:
     TypeError
         Not a body.
     ValueError
-        No pose; a planar body with a spatial one or out of its plane; two half-spaces.
+        No pose; a horizon that is not positive; a planar body with a spatial one or out of its plane; two half-spaces.
     """
+    horizon = inf if within == inf else positive(within, "within")
     try:
-        table = cold_table(a, b)
+        table = cold_table(a, b, horizon)
     except TypeError:
         check_pair(a, b)  # what cannot be hashed is no body either
         raise

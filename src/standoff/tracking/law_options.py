@@ -12,6 +12,7 @@ import functools
 import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf
 from typing import Any, ClassVar, TypeVar
 
 METADATA = "option"
@@ -261,6 +262,14 @@ class Law:
         "where it is lost or may not be the least. With the paper's law false is as printed: "
         "nothing but the law moves the witness points.",
         metavar="true|false",
+    )
+    within: float = option(
+        inf,
+        Positive(infinite=True),
+        "Horizon, in length: of bodies farther apart only that is proven, with the status FAR, "
+        "which costs less; inf if every frame is to find the distance.",
+        metavar="LENGTH",
+        unit="length",
     )
 
     def __post_init__(self) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,13 +11,14 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import feature_of
-from standoff.checks.numbers import whole_number, yes_or_no
+from standoff.checks.numbers import positive, whole_number, yes_or_no
 from standoff.errors import StandoffError
 from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
 from standoff.motion import PosesLike
 from standoff.tracking.answers import AnswerArrays, proven, statuses
 from standoff.tracking.inputs import check_pair
+from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.pose_arrays import PoseArray, mended, read_poses
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.reached import cold_table
@@ -157,10 +159,10 @@ class Distances(AnswerArrays):
 
 
 def _features(body: Body, numbers: Array) -> NDArray[np.void]:
-    """Features by the kernels' numbers; an empty kind and -1 where a row was refused."""
+    """Features by the kernels' numbers; an empty kind and -1 where a row was refused or is FAR."""
     found = np.zeros(len(numbers), dtype=FEATURE)
     found["index"] = -1
-    for number in np.unique(numbers[~np.isnan(numbers)]).astype(int).tolist():
+    for number in np.unique(numbers[numbers >= 0.0]).astype(int).tolist():
         feature = feature_of(body, number)
         here = numbers == number
         found["kind"][here], found["index"][here] = feature.kind, feature.index
@@ -175,6 +177,7 @@ def distances(
     *,
     warm: bool = False,
     workers: int = 1,
+    within: float = inf,
 ) -> Distances:
     """The signed minimum distances of two bodies at n pairs of poses.
 
@@ -191,6 +194,8 @@ def distances(
         row before, as in ``Tracker.run``: several times as fast if the rows follow a motion.
     workers : int
         Threads that share cold rows. The answers are the same, to the last bit, for any number.
+    within : float
+        Horizon, length: of rows farther apart only that is proven, with the status FAR.
 
     Returns
     -------
@@ -210,19 +215,28 @@ def distances(
         Arrays of another shape, or of different lengths; a number of workers that is not positive;
         a planar body with a spatial one; two half-spaces.
     """
-    found = answered_rows(a, b, poses_a, poses_b, warm=warm, workers=workers)
+    found = answered_rows(a, b, poses_a, poses_b, warm=warm, workers=workers, within=within)
     if found.errors:
         found.errors.warn(stacklevel=2)
     return found
 
 
 def answered_rows(
-    a: Body, b: Body, poses_a: Any, poses_b: Any, *, warm: bool = False, workers: int = 1
+    a: Body,
+    b: Body,
+    poses_a: Any,
+    poses_b: Any,
+    *,
+    warm: bool = False,
+    workers: int = 1,
+    within: float = inf,
 ) -> Distances:
     """`distances`, without a warning."""
     whole_number(workers, "workers")
     check_pair(a, b)
-    tracker = Tracker(a, b) if yes_or_no(warm, "warm") else None
+    horizon = inf if within == inf else positive(within, "within")
+    law = PredictorCorrector(within=horizon)
+    tracker = Tracker(a, b, law=law) if yes_or_no(warm, "warm") else None
     planar = a.dimension == 2 or b.dimension == 2
     given_a, given_b = read_poses(poses_a, "poses_a"), read_poses(poses_b, "poses_b")
     counts = len(given_a.matrices), len(given_b.matrices)
@@ -242,7 +256,7 @@ def answered_rows(
         refused[slice(None) if poses.given == 1 and len(poses.rows) else poses.rows] = True
     rows = np.full((n, K.N_OUT), np.nan)
     if tracker is None:
-        _cold(cold_table(a, b).address, (of_a, of_b), rows, workers)
+        _cold(cold_table(a, b, horizon).address, (of_a, of_b), rows, workers)
     else:
         _warm(tracker, (of_a, of_b), rows, refused)
     errors = RefusedRows(refused, refused_a, refused_b, planar)

@@ -118,6 +118,7 @@ class Proximity(Answer, PlainData):
 
     def witness_set(self) -> WitnessSet:
         """All pairs of witness points that this answer could have given (docs/touching.md)."""
+        self._refuse_far()
         from standoff.tracking.contact.witness_set import witness_set
 
         return witness_set(self)
@@ -170,13 +171,19 @@ class Proximity(Answer, PlainData):
 
         The keys are the attributes' names; ``poses`` are two 4×4 matrices, or None. Features are
         strings such as ``"face 2"``, the status is its name. The numbers are the same to the last
-        bit, except that no zero has a sign; NaN stays NaN.
+        bit, except that no zero has a sign; NaN stays NaN. Of an answer that is FAR, features and
+        parameters are None.
         """
-        facts = {name: plain(getattr(self, name)) for name in _PLAIN}
+        none = _OF_POINTS if self.far else ()
+        facts = {
+            name: None if name in none else plain(getattr(self, name)) for name in _PLAIN
+        }
         poses = self.poses
         return facts | {"poses": None if poses is None else [_matrix(pose) for pose in poses]}
 
     def __repr__(self) -> str:
+        if self.far:
+            return f"Proximity(FAR: at least {self.lower_bound:.12g} apart)"
         shown = [self.distance, self.distance - self.lower_bound]
         distance, gap = without_roundoff(shown, shown_size(self))
         return (
@@ -185,6 +192,8 @@ class Proximity(Answer, PlainData):
         )
 
 
+_OF_POINTS = ("feature_a", "feature_b", "parameters_a", "parameters_b")
+"""What only an answer with witness points has."""
 _PLAIN = (
     *("distance", "lower_bound", "upper_bound", "depth", "point_a", "point_b", "normal"),
     *("feature_a", "feature_b", "parameters_a", "parameters_b", "rate", "velocity_a"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from standoff.kernels.entries import laws
 from standoff.tracking.address_table import AddressTable, packed
 from standoff.tracking.inputs import check_pair
 from standoff.tracking.law_options import Law
-from standoff.tracking.laws import DEFAULT_LAW, PaperLaw
+from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, PredictorCorrector
 from standoff.tracking.options import resolved_options, with_frames
 from standoff.tracking.specialised import address_of, smooth_frame_of
 
@@ -81,8 +82,10 @@ def table_of(a: Body, b: Body, options: Array) -> AddressTable:
 
 
 @lru_cache(maxsize=PAIRS)
-def cold_table(a: Body, b: Body) -> AddressTable:
+def cold_table(a: Body, b: Body, within: float = inf) -> AddressTable:
     """Where two bodies lie, with the default law's options: for starts, which call no frame.
+
+    `within` is the horizon, length.
 
     Raises
     ------
@@ -90,4 +93,5 @@ def cold_table(a: Body, b: Body) -> AddressTable:
         They cannot be a pair.
     """
     check_pair(a, b)
-    return table_of(a, b, resolved_options(DEFAULT_LAW, ANY_TIME)[1])
+    law = DEFAULT_LAW if within == inf else PredictorCorrector(within=within)
+    return table_of(a, b, resolved_options(law, ANY_TIME)[1])

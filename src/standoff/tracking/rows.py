@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature, charts_of, feature_of
+from standoff.errors import StandoffError
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
@@ -126,7 +127,7 @@ class Slot:
 
 
 class StateRow:
-    """A tracker's state, (55,), by name; what is assigned is written into ``data``.
+    """A tracker's state, (56,), by name; what is assigned is written into ``data``.
 
     Attributes
     ----------
@@ -293,19 +294,35 @@ class Answer(KeepsReadOnly):
         return self._out[K.NORMAL : K.NORMAL + 3]
 
     @property
+    def far(self) -> bool:
+        """Is only a lower bound known, because the bodies are beyond the horizon?"""
+        return bool(self._out[K.STATUS] == K.FAR)
+
+    @property
     def feature_a(self) -> Feature:
+        self._refuse_far()
         return feature_of(self._a, int(self._out[K.OUT_MODE]))
 
     @property
     def feature_b(self) -> Feature:
+        self._refuse_far()
         return feature_of(self._b, int(self._out[K.OUT_MODE + 2]))
+
+    def _refuse_far(self) -> None:
+        if self.far:
+            raise StandoffError(
+                "The bodies are beyond the horizon: only a lower bound of their distance is known; "
+                "raise `within`."
+            )
 
     @property
     def parameters_a(self) -> tuple[float, ...]:
+        self._refuse_far()
         return AnswerRows(self._out).parameters(self._a, 0)
 
     @property
     def parameters_b(self) -> tuple[float, ...]:
+        self._refuse_far()
         return AnswerRows(self._out).parameters(self._b, 1)
 
     @property
@@ -338,7 +355,7 @@ class Answer(KeepsReadOnly):
 
     @property
     def certified(self) -> bool:
-        """Is the signed distance proven: CONVERGED while apart, GLOBAL in penetration?"""
+        """Is what was asked proven: the signed distance, or that the bodies are FAR?"""
         return self.status.certified
 
     @property

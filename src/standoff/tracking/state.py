@@ -23,7 +23,7 @@ class TrackerState(KeepsReadOnly):
 
     Attributes
     ----------
-    data : (55,) array
+    data : (56,) array
         Read-only, laid out in ``standoff.kernels.state.arrays``.
     proximity : Proximity
         The answer at the frame of this state.
@@ -45,7 +45,7 @@ class TrackerState(KeepsReadOnly):
     @property
     def warm_start(self) -> Array:
         """``data``, followed by what a frame in penetration has kept of its proof: a polytope that
-        the next frame moves with the bodies and tries first; then (565,)."""
+        the next frame moves with the bodies and tries first; then (566,)."""
         return Block(self._proximity._out).warm_start
 
     @property

@@ -16,8 +16,8 @@ class Status(Ordered):
     GLOBAL = 5
     DEADLINE = 6
     NOT_RESTARTED = 7
-    REFUSED = 8
-    FAR = 9
+    FAR = 8
+    REFUSED = 9
 
     @property
     def certified(self) -> bool:
@@ -74,13 +74,13 @@ _ADVICE = {
         "restarts=False: the bounds hold and the next step goes on from here; start anew, or leave "
         "restarts at True."
     ),
-    Status.REFUSED: (
-        "There is no answer, because a pose of this row is invalid: `errors` of so.distances' "
-        "result says what is wrong with it."
-    ),
     Status.FAR: (
         "The bodies are proven to be farther apart than the horizon: the lower bound holds, and no "
         "distance was asked for; for one, raise `within`."
+    ),
+    Status.REFUSED: (
+        "There is no answer, because a pose of this row is invalid: `errors` of so.distances' "
+        "result says what is wrong with it."
     ),
 }
 BY_NUMBER = tuple(sorted(Status))

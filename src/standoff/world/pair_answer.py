@@ -52,11 +52,6 @@ class PairAnswer(Proximity):
     def time(self) -> float:
         return self._time
 
-    @property
-    def far(self) -> bool:
-        """Is only a bound known, because the pair is beyond the horizon?"""
-        return self.status is Status.FAR
-
     def derivatives(self) -> Any:
         """As of a `Proximity`, by the motions of the two *bodies*.
 
@@ -66,7 +61,6 @@ class PairAnswer(Proximity):
             Of a pair that is FAR; of the normal's and points' where a piece stands off its body's
             origin: ask ``gradient``.
         """
-        self._refuse_far()
         if self._arms.any():
             raise StandoffError(
                 "Derivatives beyond the gradient are those of single bodies: ask "
@@ -84,18 +78,8 @@ class PairAnswer(Proximity):
             part[3:] += np.cross(arm, part[:3])
         return found
 
-    def witness_set(self) -> Any:
-        self._refuse_far()
-        return super().witness_set()
-
     def as_dict(self) -> dict[str, Any]:
-        if self.far:
-            known = ("distance", "lower_bound", "upper_bound")
-            facts: dict[str, Any] = {name: float(getattr(self, name)) for name in known}
-            facts |= {"status": self.status.name, "time": self.time}
-        else:
-            facts = super().as_dict()
-        return {"names": list(self.names), "pieces": list(self.pieces), **facts}
+        return {"names": list(self.names), "pieces": list(self.pieces)} | super().as_dict()
 
     def _refuse_far(self) -> None:
         if self.far:
@@ -120,6 +104,7 @@ def far_block(bound: float) -> Array:
     block[K.DISTANCE] = block[K.UPPER_BOUND] = math.inf
     block[K.LOWER_BOUND] = bound
     block[K.STATUS] = Status.FAR.value
+    block[K.OUT_MODE : K.OUT_Q] = -1.0
     block[K.OUT_COUNTS : K.N_OUT] = 0.0
     return block
 

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from standoff.kernels.algebra.rigid import relative_pose
+from math import inf
+
+import numpy as np
+
+from standoff.kernels.algebra.rigid import read_rotation, read_vector, relative_pose
+from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import dimension
 from standoff.kernels.compiler.calls import CAN_CALL
 from standoff.kernels.compiler.decorators import kernel, shared
@@ -29,12 +34,25 @@ from standoff.kernels.pair.events import (
     NO_LIMIT,
     RESTARTS,
 )
+from standoff.kernels.pair.far import boxes_apart, way_between
 from standoff.kernels.pair.polytope_layout import N_VERTICES
 from standoff.kernels.state.arrays import (
+    DISTANCE,
+    FAR,
     FINE,
+    LAST_BOUND,
+    LOWER_BOUND,
     NOT_KNOWN_APART,
+    OUT_COUNTS,
+    OUT_MODE,
+    OUT_Q,
+    POSE,
+    SKIPPED,
     START_ANYWHERE,
     START_HERE,
+    STATUS,
+    TIME,
+    UPPER_BOUND,
 )
 from standoff.kernels.state.state import (
     Integrated,
@@ -44,7 +62,7 @@ from standoff.kernels.state.state import (
 )
 from standoff.kernels.state.tracked import Shown, Tracked, begun, without_rates
 from standoff.kernels.tolerances import START_GAP
-from standoff.kernels.values import NO_RATES, ORIGIN, Found
+from standoff.kernels.values import NO_RATES, ORIGIN, Found, Pose
 
 if not CAN_CALL:
     from standoff.kernels.frame.apart import predicted_frame
@@ -65,9 +83,43 @@ def begin_at(pair, motion, place, given, goal, work):
 
 
 @kernel
+def write_far(bound, out):
+    """The answer of a pair beyond its horizon: a lower bound, and nothing else."""
+    for k in range(OUT_COUNTS):
+        out[k] = np.nan
+    out[DISTANCE], out[UPPER_BOUND], out[LOWER_BOUND] = inf, inf, bound
+    for k in range(OUT_MODE, OUT_Q):
+        out[k] = -1.0
+    out[STATUS] = FAR
+
+
+@kernel
+def beyond(options, out):
+    """Leave of an answer beyond the horizon its bound, whichever way it was found."""
+    if options.within < inf and out[LOWER_BOUND] > options.within:
+        write_far(out[LOWER_BOUND], out)
+
+
+@kernel
+def bound_without(pair, inputs, state):
+    """A lower bound of the distance from the last frame's and the way since, or from the boxes."""
+    pose = relative_pose(inputs.pose_a, inputs.pose_b)
+    before = Pose(read_rotation(state, POSE), read_vector(state, POSE + 9))
+    radii = pair.reals_a[L.RADIUS] + pair.reals_b[L.RADIUS]
+    by_way = state[LAST_BOUND] - radii - way_between(pair, before, pose)
+    return max(by_way, boxes_apart(pair, pose))
+
+
+@kernel
 def start_frame(query_from, pair, inputs, options, state, given, out, work):
     """The first frame: anywhere by the query given, by descent from the state's place, or there."""
     motion = twisted(inputs, relative_pose(inputs.pose_a, inputs.pose_b))
+    if options.within < inf and not has_frame(options):  # no tracker goes on from here
+        bound = boxes_apart(pair, motion.pose)
+        if bound > options.within:
+            write_far(bound, out)
+            copy_counts(work, out)
+            return FINE
     goal = min(options.tolerance, START_GAP)
     place = read_place(state)
     found = Found(UNCERTIFIED, place, 0.0, -1.0, 0.0, ORIGIN)
@@ -91,7 +143,9 @@ def start_frame(query_from, pair, inputs, options, state, given, out, work):
     before = fresh_state(found.place, integrated)
     feed = feeds(options.predictor, inputs.has_twist)
     write_state(next_state(pair, before, motion, 0.0, known, feed, status), state)
+    state[SKIPPED] = 0.0
     copy_counts(work, out)
+    beyond(options, out)
     return FINE
 
 
@@ -141,6 +195,38 @@ def has_frame(options):
     return not CAN_CALL or options.frame != 0
 
 
+@kernel
+def far_frame(pair, inputs, h, options, state, out, work):
+    """Answer a frame by a bound where that exceeds the horizon; did it? The state stays that of the
+    last frame that was made, but for the time.
+
+    The paper's law integrates from frame to frame, so none of its frames is left out.
+    """
+    if options.paper:
+        return False
+    bound = bound_without(pair, inputs, state)
+    if not bound > options.within:
+        return False
+    write_far(bound, out)
+    copy_counts(work, out)
+    state[TIME] += h
+    state[SKIPPED] += h
+    return True
+
+
+@kernel
+def full_frame(pair, inputs, h, options, state, out, work):
+    """A frame that is made, h seconds after the last that was."""
+    if options.smooth != 0:
+        faces = on_faces(pair, state)
+        if faces and call_at(options.smooth, pair, inputs, h, options, state, out, work) != 0:
+            forget_polytope(work)
+            return
+        work.counts[GENERAL_FRAMES] = 1
+    law_frame(pair, inputs, h, options, state, out, work)
+    forget_polytope(work)
+
+
 @shared
 def frame(pair, inputs, h, options, state, out, work):
     """One frame of the law that the options name, on every route: the state is changed in place,
@@ -150,11 +236,13 @@ def frame(pair, inputs, h, options, state, out, work):
     uncleared for the law's frame, to which it sees no pointer go.
     """
     clear_counts(work)
-    if options.smooth != 0:
-        faces = on_faces(pair, state)
-        if faces and call_at(options.smooth, pair, inputs, h, options, state, out, work) != 0:
+    if options.within < inf:
+        if far_frame(pair, inputs, h, options, state, out, work):
             forget_polytope(work)
             return
-        work.counts[GENERAL_FRAMES] = 1
-    law_frame(pair, inputs, h, options, state, out, work)
-    forget_polytope(work)
+        time, skipped = state[TIME], state[SKIPPED]
+        full_frame(pair, inputs, h + skipped, options, state, out, work)
+        state[TIME], state[SKIPPED] = time + h, 0.0
+        beyond(options, out)
+        return
+    full_frame(pair, inputs, h, options, state, out, work)

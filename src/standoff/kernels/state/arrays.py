@@ -38,7 +38,8 @@ LAST_DISTANCE = 51  # of the cores, signed
 INSIDE = 52  # 1 where the last frame was solved in contact: this one begins there
 LAST_BOUND = 53  # lower bound of the cores' signed distance
 CUT = 54  # how many frames in a row ran out of evaluations, this one included
-N_STATE = 55
+SKIPPED = 55  # time since the frame of this state, s: of frames in which a bound was enough
+N_STATE = 56
 
 # Options.
 LAW_PC, LAW_PAPER, LAW_CARRIED = range(3)  # the last: integrated with the bodies
@@ -51,7 +52,8 @@ O_DEADLINE = 11  # most second-order evaluations a frame
 O_RESET = 12  # of the Voronoi tests: where an edge is entered
 O_RESTARTS = 13  # 0: no global start in a frame, whatever the certificate says
 O_FAR_SIDE = 14  # of the Voronoi tests: what a face does with a point behind it
-O_DATA = 15  # what the feedback needs
+O_WITHIN = 15  # beyond this distance a proven bound is enough (length)
+O_DATA = 16  # what the feedback needs
 O_SMOOTH = O_DATA + 16  # address of the frame that is tried first (entries.smooth); 0: none
 O_FRAME = O_SMOOTH + 1  # address of the law's own frame (entries.laws, paper_laws); 0: none
 N_OPTIONS = O_FRAME + 1
@@ -91,7 +93,7 @@ N_LONG_BLOCK = FIRST_POLYTOPE + N_POLYTOPE
 
 # Status numbers, those of standoff.tracking.Status.
 CONVERGED, TRACKING, OVERLAPPING, NOT_CERTIFIED, LOCAL, GLOBAL, DEADLINE = range(7)
-NOT_RESTARTED = 7
+NOT_RESTARTED, FAR = 7, 8
 
 # How a start begins.
 START_ANYWHERE, START_DESCEND, START_HERE = range(3)

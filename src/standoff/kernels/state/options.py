@@ -26,6 +26,7 @@ from standoff.kernels.state.arrays import (
     O_SOLVE,
     O_SWITCHING,
     O_TOLERANCE,
+    O_WITHIN,
 )
 
 
@@ -46,6 +47,7 @@ class Options(NamedTuple):
     reset: int
     far_side: int
     restarts: bool
+    within: float  # beyond it a bound is enough, length; inf: never
     depth: int
     deadline: int  # most evaluations a frame
     smooth: int  # address of the frame that is tried first, 0 for none
@@ -70,6 +72,7 @@ def read_options(numbers):
         int(numbers[O_RESET]),
         int(numbers[O_FAR_SIDE]),
         numbers[O_RESTARTS] != 0.0,
+        numbers[O_WITHIN],
         int(numbers[O_DEPTH]),
         int(numbers[O_DEADLINE]),
         int(numbers[O_SMOOTH]),

@@ -3,9 +3,10 @@
 from math import inf
 
 from standoff.kernels.algebra.roots import sqrt
+from standoff.kernels.algebra.turns import turn_norm
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.state.arrays import is_pose
-from standoff.kernels.tolerances import BOUND_ROUNDINGS, EPS, FARTHEST, ROTATION
+from standoff.kernels.tolerances import BOUND_ROUNDINGS, EPS, FARTHEST
 from standoff.kernels.world.arrays import (
     F_CENTRE,
     F_HALF,
@@ -27,13 +28,6 @@ from standoff.kernels.world.arrays import (
     P_SHIFT,
     P_TRAVEL,
 )
-
-# The norm of R1 - R0, two rotations, is the root of half the sum of its squares; each may be off
-# orthonormal by ROTATION in every entry of R' R, which is less than 3 ROTATION of its norm. It is
-# never more than the root of the whole sum.
-HALF_ROOT = 0.7071067811865476
-OFF_ROTATION = 6.0 * ROTATION
-
 
 @kernel
 def flat_pose(matrix, flat):
@@ -116,8 +110,7 @@ def gone(before, row, fact):
     if turned > 0.0:
         if fact[F_PLANE] != 0.0:
             return FARTHEST
-        norm = sqrt(turned)
-        way += min(norm, HALF_ROOT * norm + OFF_ROTATION) * fact[F_REACH]
+        way += turn_norm(turned) * fact[F_REACH]
     return way + 2.0 * (row[P_PAD] + before[P_PAD])
 
 
