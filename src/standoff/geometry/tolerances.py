@@ -37,8 +37,8 @@ KEPT_EXTENT: Final = 0.5
 1, for a real common extent, and 0.1, for a tangency."""
 
 WIDENINGS: Final = (0.0, 1e-5, 1e-4, 1e-3)
-"""Widenings, as fractions of the tolerance, of which the least that shows the whole intersection is
-used: touching sides are separated by roundoff."""
+"""Widenings, each a fraction of the tolerance, of which the least that shows the whole intersection
+is used: touching sides are separated by roundoff."""
 
 ROUND_SECTION: Final = 1e-12
 """A conic arc on a cylinder or cone is a section perpendicular to the axis if its tilt, its
