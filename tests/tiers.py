@@ -69,18 +69,22 @@ TOGETHER = (
 """Files that look at the same runs of simulations, which take long and are kept in a process."""
 
 LONG = (
-    "soak/test_soak_command.py",
     *TOGETHER,
     "tracking/test_degenerate.py",
+    "soak/test_soak_command.py",
+    "test_imports.py",
     "tracking/test_cold_families.py",
     "tracking/test_mode_sequences.py",
-    "test_imports.py",
     "kernels/test_bounds_check.py",
+    "kernels/test_modules.py",
     "paper/test_control_figures.py",
-    "tracking/test_creases.py",
     "paper/test_in_the_loop.py",
+    "simulation/test_scripted_contact.py",
+    "bodies/test_bodies.py",
+    "tracking/test_penetration.py",
     "soak/test_adversary.py",
     "tracking/test_derivative_precision.py",
     "tracking/test_invariance.py",
+    "tracking/test_point_tracker.py",
 )
 """Files that take longest, the longest first."""
