@@ -61,6 +61,15 @@ def measured_by(by: str, statements: Iterable[Statement]) -> tuple[Statement, ..
     return tuple(s if s.by else s._replace(by=by) for s in statements)
 
 
+def missing_words(statement: Statement) -> str:
+    """Return what a statement of a report does not say and has to; "" if it says all."""
+    if not statement.measured:
+        return "what was measured"
+    if not statement.by:
+        return "the law that it was measured with"
+    return "why it cannot fail" if statement.constructed and not statement.why else ""
+
+
 @dataclass(frozen=True)
 class Animation:
     """A moving picture: ``draw(figure, k)`` draws frame k on an empty figure of the given size.

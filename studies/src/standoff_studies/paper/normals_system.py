@@ -9,8 +9,6 @@ Only for two faces: an edge or a vertex has no normal. Notation and frames as in
 ``standoff.kernels.pair.system``.
 """
 
-from numba import njit
-
 from standoff.kernels.algebra.vectors import add, cross, dot, scale, sub, unit
 from standoff.kernels.compiler.decorators import pointer
 from standoff.kernels.pair.system import (
@@ -22,19 +20,16 @@ from standoff.kernels.pair.system import (
     point_velocity,
     projection_errors,
 )
-
-compiled = njit(error_model="numpy", fastmath={"contract"})
-"""Compiled like the kernels, once per process, in a few seconds. It cannot be an entry: those are
-cached under a digest of the library's sources, of which this file is not a part."""
+from standoff_studies.own_kernels import own_kernel
 
 
-@compiled
+@own_kernel
 def unit_normal(jet):
     """h_r x h_s, normalised; outward or inward by the chart, which does not change r = 0."""
     return unit(cross(jet[1], jet[2]))
 
 
-@compiled
+@own_kernel
 def normal_partials(jet, n):
     """(n_r, n_s) by Weingarten's equations, with second but no third derivatives of h.
 
@@ -50,7 +45,7 @@ def normal_partials(jet, n):
     return n_r, n_s
 
 
-@compiled
+@own_kernel
 def normals_residual(jet_a, jet_b):
     """r: two lengths squared per parameter, two lengths per parameter."""
     dR = sub(jet_a[0], jet_b[0])
@@ -58,7 +53,7 @@ def normals_residual(jet_a, jet_b):
     return dot(jet_a[1], dR), dot(jet_a[2], dR), dot(jet_a[1], n), dot(jet_a[2], n)
 
 
-@compiled
+@own_kernel
 def normals_jacobian(jet_a, jet_b, J):
     """dr/dq into the 4 x 4 array J, q = (u, v, r, s). Not symmetric, as r is not a gradient."""
     fu, fv, fuu, fuv, fvv = jet_a[1], jet_a[2], jet_a[3], jet_a[4], jet_a[5]
@@ -77,7 +72,7 @@ def normals_jacobian(jet_a, jet_b, J):
     J[3, 2], J[3, 3] = dot(fv, n_r), dot(fv, n_s)
 
 
-@compiled
+@own_kernel
 def normals_feedforward(jet_a, jet_b, motion_a, motion_b):
     """r_t, the rate of r from the bodies' motion: F' dV(x_h), then F' ((w_B - w_A) x n_h)."""
     x_h = jet_b[0]
@@ -86,12 +81,12 @@ def normals_feedforward(jet_a, jet_b, motion_a, motion_b):
     return dot(jet_a[1], slip), dot(jet_a[2], slip), dot(jet_a[1], turn), dot(jet_a[2], turn)
 
 
-@compiled
+@own_kernel
 def vector(rows, k):
     return (rows[k, 0], rows[k, 1], rows[k, 2])
 
 
-@compiled
+@own_kernel
 def jet(rows):
     return (
         vector(rows, 0),
@@ -103,7 +98,7 @@ def jet(rows):
     )
 
 
-@compiled
+@own_kernel
 def both_motions(rows):
     """(p, v, w) of A and of B, as feedforward takes them."""
     return (
@@ -115,7 +110,7 @@ def both_motions(rows):
 # Called from Python, for batches: jets of A and B and the motions are arrays (n, 6, 3).
 
 
-@compiled
+@own_kernel
 def evaluate_normals(jets_a, jets_b, motions, r, J, r_t):
     """Into r (n, 4), J (n, 4, 4) and r_t (n, 4): the set of reference [28]."""
     for k in range(len(jets_a)):
@@ -127,7 +122,7 @@ def evaluate_normals(jets_a, jets_b, motions, r, J, r_t):
             r[k, i], r_t[k, i] = residual[i], rate[i]
 
 
-@compiled
+@own_kernel
 def evaluate_projection_errors(jets_a, jets_b, motions, Psi, M, b):
     """Into Psi (n, 4), M (n, 4, 4) and b (n, 4): Eqs. (1)-(14)."""
     for k in range(len(jets_a)):
@@ -145,7 +140,7 @@ def evaluate_projection_errors(jets_a, jets_b, motions, Psi, M, b):
                 at += 1
 
 
-@compiled
+@own_kernel
 def evaluate_contact(jets_a, jets_b, normals, depths, motions, r, J, r_t):
     """Into r (n, 8), J (n, 8, 8) and r_t (n, 8): the contact-regular form at (q, n, d)."""
     for k in range(len(jets_a)):

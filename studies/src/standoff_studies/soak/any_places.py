@@ -6,8 +6,6 @@ points there. A row of uniform numbers selects the features, places on them, and
 
 from math import inf
 
-from numba import njit
-
 from standoff.kernels.algebra.rigid import relative_pose
 from standoff.kernels.algebra.vectors import axpy, cross, dot, scale, sub, unit
 from standoff.kernels.body import layout as L
@@ -26,6 +24,7 @@ from standoff.kernels.pair.certificate import certify, certify_along, cones_at, 
 from standoff.kernels.pair.certified import UNCERTIFIED, on_feature, weigh
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.values import Found, Pair, Side, together
+from standoff_studies.own_kernels import own_kernel
 
 PER_SIDE = 8
 """Uniform numbers used by a side."""
@@ -52,11 +51,8 @@ LEAST_POWER = 16.0
 
 ULP = 2.220446049250313e-16
 
-loop = njit(error_model="numpy", nogil=True)
-"""Compiled like the kernels, once per process, in some ten seconds."""
 
-
-@loop
+@own_kernel
 def part_of(x):
     """A fraction of a range, 0 to 1: often an end, exactly or nearly."""
     if x < 0.12:
@@ -72,7 +68,7 @@ def part_of(x):
     return (x - 0.6) / 0.4
 
 
-@loop
+@own_kernel
 def beside(w, x):
     """A fraction, sometimes outside its range by roundoff, as after a step of a search."""
     if x < 0.9:
@@ -81,7 +77,7 @@ def beside(w, x):
     return -outside if w < 0.5 else 1.0 + outside
 
 
-@loop
+@own_kernel
 def on_boundary(ints, reals, chart, x, y):
     """A point (u, v) on a chart's trimming loop; the chart's middle if there is none."""
     r = chart_record(ints, chart)
@@ -96,7 +92,7 @@ def on_boundary(ints, reals, chart, x, y):
     return u, v
 
 
-@loop
+@own_kernel
 def any_side(ints, reals, drawn):
     """A feature of a body and parameters on it, or, sometimes, next to it."""
     counts = (ints[L.N_FACES], ints[L.N_EDGES], ints[L.N_VERTICES])
@@ -130,7 +126,7 @@ def any_side(ints, reals, drawn):
     return Side(index, chart, u + w * (x - u), v + w * (y - v))
 
 
-@loop
+@own_kernel
 def on_sphere(x, y):
     """The unit vector for two uniform numbers; often an axis."""
     if x < 0.15:
@@ -144,20 +140,20 @@ def on_sphere(x, y):
     return unit((r * (1.0 - t * t), r * 2.0 * t, z * (1.0 + t * t)))
 
 
-@loop
+@own_kernel
 def turned(n, towards, angle):
     """A unit vector turned towards another by an angle (its tangent)."""
     aside = unit(axpy(-dot(n, towards), n, towards))
     return unit(axpy(angle, aside, n))
 
 
-@loop
+@own_kernel
 def upright(jet):
     """The normal of a face's jet, an edge's tangent, zero at a vertex."""
     return unit(cross(jet[1], jet[2])) if dot(jet[2], jet[2]) > 0.0 else unit(jet[1])
 
 
-@loop
+@own_kernel
 def made_of(what, jet_a, jet_b, known, x):
     """The vector from which a direction is made: between the points, a tangent, a normal, or one
     perpendicular to two."""
@@ -175,7 +171,7 @@ def made_of(what, jet_a, jet_b, known, x):
     return unit(cross(gap, jet_b[1] if x < 0.5 else jet_a[1]))
 
 
-@loop
+@own_kernel
 def some_direction(jets, known, drawn):
     """(what it was made from, a direction): random, or along, perpendicular to or near the vector.
 
@@ -195,7 +191,7 @@ def some_direction(jets, known, drawn):
     return what, n
 
 
-@loop
+@own_kernel
 def misses_cone(ints, reals, feature, cone, n):
     """How far the result of `nearest_normal` is from perpendicular to the edge."""
     near, _ = nearest_normal(ints, reals, feature, cone, n)
@@ -204,7 +200,7 @@ def misses_cone(ints, reals, feature, cone, n):
     return abs(dot(near, cone.tangent))
 
 
-@loop
+@own_kernel
 def ask(ints_a, reals_a, ints_b, reals_b, motion, known, drawn, asked):
     """Query the certificate in every case of `drawn` (n, N_DRAWN), into `asked` (n, N_ASKED).
 
