@@ -345,7 +345,7 @@ LOOP = so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (1, 0), (0, 1))])
         (so.PointTracker(LOOP), "body dt law start start_from step"),
         (
             so.PredictorCorrector(),
-            "deadline depth facts name predictor resolved restarts tolerance",
+            "deadline depth facts name predictor resolved restarts tolerance within",
         ),
     ],
     ids=lambda value: type(value).__name__,

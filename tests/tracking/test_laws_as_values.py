@@ -31,7 +31,13 @@ from standoff.tracking.options import pack_options
 
 ROOT = Path(__file__).parents[2]
 DT = 1e-2
-COMMON: dict[str, Any] = {"tolerance": 1e-8, "depth": "local", "deadline": 40, "restarts": False}
+COMMON: dict[str, Any] = {
+    "tolerance": 1e-8,
+    "depth": "local",
+    "deadline": 40,
+    "restarts": False,
+    "within": 0.5,
+}
 VARIANT: dict[str, Any] = {
     "integrator": "rk4",
     "feedforward": False,

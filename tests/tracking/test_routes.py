@@ -76,6 +76,13 @@ CASES = {
     "local depth": lambda: Case(BOX, BOX, so.PredictorCorrector(depth="local"), True, 1.2, 0.9),
     "one minimum": lambda: Case(BOX, BOX, ALONE, True, 1.2, 0.9),
     "one minimum, apart": lambda: Case(BOX, ELLIPSOID, ALONE, True, 2.6, 0.9),
+    "a horizon": lambda: Case(LENS, BOX, so.PredictorCorrector(within=0.3), True, 2.4, 1.6),
+    "a horizon, no twists": lambda: Case(
+        ELLIPSOID, BOX, so.PredictorCorrector(within=0.3), False, 2.4, 1.6
+    ),
+    "a horizon, the paper's law": lambda: Case(
+        ELLIPSOID, LENS, so.PaperLaw(within=0.3), True, 2.6, 0.9
+    ),
     "half-space": lambda: Case(so.shapes.halfspace(), LENS, DEFAULT, True, 1.5, 1.4),
     "planar": lambda: Case(PLANAR, PLANAR, DEFAULT, True, 2.2, 1.6),
     "rounded": lambda: Case(ROUNDED, ELLIPSOID, DEFAULT, True, 2.2, 1.4),
@@ -328,4 +335,6 @@ def test_the_cases_have_all_statuses() -> None:
         case = made()
         seen |= set(by_step(case, frames_of(case), tracker_of(case))[:, K.STATUS].astype(int))
     names = {status.name for status in so.Status if status.value in seen}
-    assert {"CONVERGED", "TRACKING", "LOCAL", "GLOBAL", "DEADLINE", "NOT_RESTARTED"} <= names
+    assert {
+        *("CONVERGED", "TRACKING", "LOCAL", "GLOBAL", "DEADLINE", "NOT_RESTARTED", "FAR")
+    } <= names

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -51,7 +52,8 @@ class PointTracker(KeepsReadOnly):
     TypeError
         Not a body; not a law.
     ValueError
-        The paper's law without switching, or with a spatial body; and as `Tracker`.
+        The paper's law without switching, or with a spatial body; a law with a horizon; and as
+        `Tracker`.
 
     Notes
     -----
@@ -71,6 +73,13 @@ class PointTracker(KeepsReadOnly):
         if not isinstance(body, Body):
             raise StandoffTypeError(
                 f"{shown(body)} is not a Body: make one with so.shapes.", "body", body
+            )
+        if checked_law(law).within < inf:
+            raise StandoffError(
+                f"within = {law.within}: a point's minima are followed at any distance, so a "
+                "PointTracker has no horizon.",
+                "within",
+                law.within,
             )
         kind = PlanarMinima if body.dimension == 2 else SpatialMinima
         self.minima: PointMinima[Any] = kind(body, dt, checked_law(law))

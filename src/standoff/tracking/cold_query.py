@@ -39,7 +39,8 @@ def distance(
     TypeError
         Not a body.
     ValueError
-        No pose; a horizon that is not positive; a planar body with a spatial one or out of its plane; two half-spaces.
+        No pose; a horizon that is not positive; a planar body with a spatial one or out of its
+        plane; two half-spaces.
     """
     horizon = inf if within == inf else positive(within, "within")
     try:

@@ -175,9 +175,7 @@ class Proximity(Answer, PlainData):
         parameters are None.
         """
         none = _OF_POINTS if self.far else ()
-        facts = {
-            name: None if name in none else plain(getattr(self, name)) for name in _PLAIN
-        }
+        facts = {name: None if name in none else plain(getattr(self, name)) for name in _PLAIN}
         poses = self.poses
         return facts | {"poses": None if poses is None else [_matrix(pose) for pose in poses]}
 

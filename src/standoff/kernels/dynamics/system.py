@@ -24,7 +24,7 @@ from standoff.kernels.dynamics.arrays import (
     pair_row,
 )
 from standoff.kernels.dynamics.coupled_tool import add_pull, coupled
-from standoff.kernels.dynamics.forces import Witness, touch_pair
+from standoff.kernels.dynamics.forces import Witness, clear_touch, touch_pair
 from standoff.kernels.dynamics.inside_law import (
     near_contact,
     place_ahead,
@@ -33,7 +33,15 @@ from standoff.kernels.dynamics.inside_law import (
 )
 from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
 from standoff.kernels.dynamics.rigid_body import power, write_rates
-from standoff.kernels.state.arrays import POSE_A, POSE_B, TWIST_A, TWIST_B
+from standoff.kernels.state.arrays import (
+    FAR,
+    N_STATE,
+    POSE_A,
+    POSE_B,
+    STATUS,
+    TWIST_A,
+    TWIST_B,
+)
 from standoff.kernels.state.state import read_four, read_state
 from standoff.kernels.values import Motion
 
@@ -55,7 +63,13 @@ def motion_of(scratch):
 
 @kernel
 def touch_tracked(system, pair, state, rows, first, scratch):
-    """A pair's contact at the tracker's own answer, at the start of a tick; the power it loses."""
+    """A pair's contact at the tracker's own answer, at the start of a tick; the power it loses.
+
+    A pair beyond its horizon has none: its witness points are those of an earlier tick.
+    """
+    if state[pair_row(system, pair) + N_STATE + STATUS] == FAR:
+        clear_touch(scratch, pair)
+        return 0.0
     before = read_state(pointer(state, pair_row(system, pair)))
     write_motion(system, pair, rows, first, scratch.motion)
     pose, n = motion_of(scratch).pose, before.normal

@@ -54,6 +54,7 @@ from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
 from standoff.kernels.state.arrays import (
     CONVERGED,
     DISTANCE,
+    FAR,
     FINE,
     GLOBAL,
     LOCAL,
@@ -144,7 +145,7 @@ def track_pair(system, pair, state, h, work, scratch):
     frame(packed, inputs, h, options, kept, out, own)
     status = out[STATUS]
     # of an overlap alone the contact's depth is not known: its force is not either
-    sound = status in (CONVERGED, TRACKING, LOCAL, GLOBAL)
+    sound = status in (CONVERGED, TRACKING, LOCAL, GLOBAL, FAR)
     state[S_UNCERTIFIED] += 0.0 if sound else 1.0
     state[S_DEEPEST] = max(state[S_DEEPEST], -out[DISTANCE])
     return FINE

@@ -29,6 +29,7 @@ from standoff.kernels.world.arrays import (
     P_TRAVEL,
 )
 
+
 @kernel
 def flat_pose(matrix, flat):
     """Copy a (4, 4) pose as R by rows and p. Is it one?"""
