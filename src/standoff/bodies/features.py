@@ -16,9 +16,9 @@ class Feature:
     Attributes
     ----------
     kind : str
-        "face", "edge" or "vertex".
+        "face", "edge" or "vertex"; empty for no feature.
     index : int
-        From 0.
+        From 0; -1 for no feature.
     """
 
     kind: str
@@ -31,8 +31,15 @@ class Feature:
         return f"{self.kind} {self.index}"
 
 
+NO_FEATURE = Feature("", -1)
+"""Of a pair beyond its horizon, which has no witness points."""
+
+
 def feature_of(body: Body, number: int) -> Feature:
-    """The feature of a packed number: faces first, then edges, then vertices."""
+    """The feature of a packed number: faces first, then edges, then vertices; of a negative one,
+    which stands for none, an empty kind and -1."""
+    if number < 0:
+        return NO_FEATURE
     if number < body.n_faces:
         return Feature("face", number)
     number -= body.n_faces

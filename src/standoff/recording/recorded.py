@@ -189,8 +189,8 @@ class RecordedFrames(KeepsReadOnly):
     def modes(self) -> list[Visit]:
         """Return the visited modes in order of time.
 
-        A stay ends at the instant of the switch that ends it. Where an overlap has no depth there
-        is no mode: the stay before ends at the last frame with one, the next one begins at the
+        A stay ends at the instant of the switch that ends it. Where an overlap has no depth, and
+        beyond the horizon, there is no mode: the stay before ends at the last frame with one, the next one begins at the
         first frame that has one again. Of several switches at one instant, only the last mode is
         visited.
         """
@@ -207,7 +207,7 @@ class RecordedFrames(KeepsReadOnly):
             here = at
             while at < len(events) and events[at].frame == frame:
                 at += 1
-            if self.status[frame] is Status.OVERLAPPING:
+            if self.status[frame] in (Status.OVERLAPPING, Status.FAR):
                 leave(float(self.time[frame - 1]) if frame else time)
                 mode = []
             elif not mode:

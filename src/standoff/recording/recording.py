@@ -314,8 +314,8 @@ def _parameters(body: Body, modes: Array, q: Array) -> Array:
     """
     parameters = np.full((len(q), 3), np.nan)
     numbers = modes[:, 0].astype(np.int64)
-    on_face = numbers < body.n_faces
-    on_edge = ~on_face & (numbers < body.n_faces + body.n_edges)
+    on_face = (numbers >= 0) & (numbers < body.n_faces)
+    on_edge = (numbers >= body.n_faces) & (numbers < body.n_faces + body.n_edges)
     parameters[on_face | on_edge, 0] = q[on_face | on_edge, 0]
     parameters[on_face, 1] = q[on_face, 1]
     for face in np.unique(numbers[on_face]).tolist():

@@ -213,6 +213,8 @@ class _Run:
         known = answer.status in (Status.CONVERGED, Status.TRACKING)
         # in contact the switching functions are those of the pair shifted out: dated to frames
         outside = state.data[K.LOST] == 0.0 and state.data[K.INSIDE] == 0.0
+        # beyond the horizon there are none: what came of a switch there is dated to a frame
+        outside = outside and not state.proximity.far
         if self.locate and known and outside:
             step = Step(self.tracker, self._flat, state, before, time, answer.row)
             events = located_events(step, frame, answer.events)
