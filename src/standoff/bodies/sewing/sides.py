@@ -8,9 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from standoff.bodies.tolerances import PROJECTION_STEP
-from standoff.geometry.domains import inside
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
+from standoff.geometry.validation import Array, inside
 
 # Counterclockwise in (u, v), each with the sense in which its free parameter runs that way.
 SIDE_NAMES = ("v0", "u1", "v1", "u0")
