@@ -1,9 +1,9 @@
 """Vertices, edges and faces, packed: what boundaries and bodies are made of.
 
-The kernels reach a formula by its address, which stands in the packed body, and is of this process
-only. A body that goes to another process, and a digest that is the same in every one, must tell
-these numbers from the others. Addresses are integers above 2^32, so no length is taken for one in
-practice.
+The kernels call a formula by its address, which is stored in the packed body and is valid in this
+process only. Sending a body to another process, or computing a digest that is the same in every
+process, needs to find these numbers among the others. Addresses are integers above 2^32, so in
+practice no length is mistaken for one.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PackedParts(KeepsReadOnly):
-    """The attributes are those of `Boundary`."""
+    """Packed parts; the attributes are those of `Boundary`."""
 
     name: str
     vertex_points: Array
@@ -89,7 +89,7 @@ class PackedParts(KeepsReadOnly):
 
 
 def packed_parts(parts: Assembled) -> PackedParts:
-    """Parts whose senses, box and edges' kinds need not be known yet: their size is 0."""
+    """Packed parts whose senses, box and kinds of edges need not be known yet; their size is 0."""
     nothing = np.zeros(3)
     ints, reals = pack(parts, [], (nothing, nothing), 0.0, 0.0)
     vertices, edges, faces = parts.vertices, tuple(parts.edges), tuple(parts.faces)

@@ -1,4 +1,4 @@
-"""Vectors, maps, weights and domains of shapes, checked."""
+"""Checks of vectors, maps, weights and domains of shapes."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ Domain = tuple[float, float, float, float]
 UNBOUNDED: Domain = (-np.inf, np.inf, -np.inf, np.inf)
 
 WEIGHT_RATIO = 1e12
-"""Greatest ratio of weights. A tangent at the lightest end is so many times the curve's size, and
-products of two such still have digits."""
+"""Greatest ratio of weights. The tangent at an end of least weight is this many times the curve's
+size, and products of two such tangents still have correct digits."""
 
 
 def vector3(value: Any, name: str) -> Array:
@@ -37,19 +37,19 @@ def affine_map(linear: Any, shift: Any) -> tuple[Array, Array]:
 
 
 def check_alike(weights: Array) -> None:
-    """Raise ValueError where positive weights differ by more than `WEIGHT_RATIO`."""
+    """Raise ValueError if positive weights differ by more than `WEIGHT_RATIO`."""
     least, most = float(weights.min()), float(weights.max())
     if most > WEIGHT_RATIO * least:
         raise StandoffError(
-            f"weights from {least:g} to {most:g}: the lighter points are lost in roundoff; give "
-            f"weights within a factor of {WEIGHT_RATIO:g}.",
+            f"weights from {least:g} to {most:g}: points of small weight are lost in roundoff; "
+            f"give weights within a factor of {WEIGHT_RATIO:g}.",
             "weights",
             weights,
         )
 
 
 def checked_domain(domain: Any, name: str) -> Domain:
-    """(u0, u1, v0, v1) as floats; raises ValueError where it is empty or not a number."""
+    """(u0, u1, v0, v1) as floats; raises ValueError if it is empty or not numeric."""
     if shape_of(domain) != (4,):
         raise StandoffError(
             f"{name}.domain = {shown(domain)}: give (u0, u1, v0, v1).", "domain", domain
@@ -70,5 +70,5 @@ def checked_domain(domain: Any, name: str) -> Domain:
 
 
 def inside(values: Array, low: float, high: float) -> Array:
-    """Those between two ends, which do not count."""
+    """The values strictly between two ends."""
     return values[(low < values) & (values < high)]

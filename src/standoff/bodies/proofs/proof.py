@@ -1,5 +1,5 @@
-"""What a convexity proof of one patch says, and the proof by theorem: of planes, quadrics, tori,
-superellipsoids."""
+"""The result of a convexity proof of one patch, and the proof by theorem: of planes, quadrics, tori
+and superellipsoids."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from standoff.geometry.surfaces import Surface
 
 @dataclass(frozen=True)
 class PatchProof:
-    """Is a patch convex over its whole domain, and by how much may it fail to be.
+    """Is a patch convex over its whole domain, and by how much may it fail to be?
 
     Attributes
     ----------
-    convex : no normal curvature bends inward, but for the rounding of the control points (of a
-        pole's points: but for what they miss each other by).
-    defect : length, >= 0. No point of the patch rises by more above the tangent plane of another
-        for want of curvature; so the patch dents by no more below its convex hull. 0 where every
-        curvature is proven not to bend inward.
+    convex : no normal curvature bends inward, up to the rounding of the control points (for the
+        points of a pole: up to their distance from each other).
+    defect : length, >= 0. No point of the patch rises by more above the tangent plane at another
+        because of inward curvature; so the patch dents by no more below its convex hull. 0 if no
+        curvature bends inward, as proven.
     method : "theorem" (by its kind), "bernstein" (bounds of polynomials) or "interval".
     hemisphere : all normals are proven to make less than 90 degrees with one axis.
     place : (u, v) of the least curvature found, the worst place of a patch that is not convex.
-    sense : +1 where f_u x f_v points to the outer, convex side, -1 where it points to the inner
-        one, 0 for a flat patch, which may serve either way.
-    tilt : radians, the greatest turn of a normal the wrong way. A body much greater than the
-        patch may rise above the patch's tangent planes by its own size times this.
-    curvature : 1/length, the least normal curvature over the patch is at least this; negative
-        where the patch bends inward (or is not proven not to), -inf where no bound was found.
+    sense : +1 if f_u x f_v points to the outer, convex side, -1 if it points to the inner one, 0
+        for a flat patch, which can be used either way.
+    tilt : radians, the greatest angle by which normals turn back. A body much larger than the patch
+        may rise above the patch's tangent planes by its own size times this.
+    curvature : 1/length, a lower bound of the normal curvature over the patch; negative if the
+        patch bends inward (or is not proven not to), -inf if no bound was found.
     """
 
     convex: bool
@@ -46,10 +46,10 @@ class PatchProof:
 def prove_by_kind(surface: Surface, outward: int | None = None) -> PatchProof:
     """An affine image of a plane, quadric, torus's outer half or superellipsoid: `Surface.bulge`.
 
-    A torus that goes beyond its outer half has none: it is saddled there.
+    A torus that extends beyond its outer half has no bulge: it is saddle-shaped there.
 
-    They never bend inward: a superellipsoid with exponents up to 2 is the unit ball of a norm, and
-    its charts look at it from its centre.
+    The others never bend inward: a superellipsoid with exponents up to 2 is the unit ball of a
+    norm, and its charts project it from its centre.
     """
     bulge, side = surface.bulge, 1 if np.linalg.det(surface.linear) > 0.0 else -1
     proof = PatchProof(
@@ -61,7 +61,7 @@ def prove_by_kind(surface: Surface, outward: int | None = None) -> PatchProof:
         sense=side if bulge is None else bulge * side,
     )
     if bulge is None or (outward is not None and proof.sense == -outward):
-        # hollow or saddled: no bound is sought, such a face is not a part of a convex body
+        # hollow or saddle-shaped: no bound needed, such a face is no part of a convex body
         sense = outward or proof.sense
         return replace(
             proof, convex=False, defect=np.inf, sense=sense, tilt=np.pi, curvature=-np.inf
