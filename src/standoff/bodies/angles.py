@@ -24,7 +24,7 @@ from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.long_loops import told
-from standoff.motion.bounds import cross
+from standoff.motion.vectors import cross
 
 # Fractions of an edge at which its turn is sampled.
 SHARES = np.linspace(0.0, 1.0, 17)

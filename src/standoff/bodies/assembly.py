@@ -11,7 +11,6 @@ from itertools import pairwise
 import numpy as np
 
 from standoff.bodies.charts import edge_points, make_charts, surface_normal
-from standoff.bodies.enclosed import all_flat, enclosed_by, enclosed_by_planes, outward_right
 from standoff.bodies.orientation import chart_at, orient
 from standoff.bodies.packed_parts import packed_parts
 from standoff.bodies.packing import Assembled, Chart, Sector
@@ -248,6 +247,8 @@ def _volume(parts: Assembled) -> Callable[[Sequence[int]], float]:
     """The volume that a shell encloses, as its charts face at the time of the call."""
 
     def volume(shell: Sequence[int]) -> float:
+        from standoff.bodies.enclosed import all_flat, enclosed_by, enclosed_by_planes
+
         if all_flat(parts, shell):
             return enclosed_by_planes(parts, shell).settled
         return enclosed_by(packed_parts(parts), shell, SIGN_OF_VOLUME).settled
@@ -259,6 +260,8 @@ def _planar_geometry(
     vertices: Array, edges: Sequence[Edge]
 ) -> tuple[list[bool], list[list[Array]]]:
     """Outward sides of a planar loop's edges and the normal cones of its vertices."""
+    from standoff.bodies.enclosed import outward_right
+
     cones: list[list[Array]] = [[] for _ in vertices]
     meeting = Counter(v for edge in edges for v in (edge.first, edge.last) if v is not None)
     for number in range(len(vertices)):

@@ -15,19 +15,19 @@ from standoff.bodies.charts import edge_points, loop_pcurve
 from standoff.bodies.convexity import Known
 from standoff.bodies.finishing import Packed, finish
 from standoff.bodies.report import BodyReport
-from standoff.bodies.sewing import sew
 from standoff.bodies.tolerances import MAX_SPREAD, SIMILARITY_TOLERANCE, SINGULAR_MAP
 from standoff.bodies.topology import Edge, Face, check_parts, parts_of
 from standoff.checks.arrays import finite
 from standoff.checks.numbers import LEAST, magnitude, magnitude_or_zero
 from standoff.checks.real_numbers import shape_of
 from standoff.errors import BodyError, StandoffError
-from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array, matrix3, vector3
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from standoff.geometry.pcurves import Pcurve
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -154,6 +154,8 @@ class Body(Boundary):
         ValueError
             NaN, infinite or negative numbers.
         """
+        from standoff.bodies.sewing import sew
+
         radius = magnitude_or_zero(rounding, "rounding")
         if convexity_tolerance is not None:
             convexity_tolerance = magnitude_or_zero(convexity_tolerance, "convexity_tolerance")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,13 +11,14 @@ from standoff.bodies.packing import Chart, Coedge
 from standoff.bodies.tolerances import CHART_RIM, COLLAPSED_TANGENT, INWARD_STEP
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.errors import BodyError
-from standoff.geometry.exact_pcurves import pcurve_of
-from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.tolerances import EPS, NORMAL_NOISE
-from standoff.motion.bounds import cross
+from standoff.motion.vectors import cross
+
+if TYPE_CHECKING:
+    from standoff.geometry.pcurves import Pcurve
 
 # Greatest |u| and |v| in an atlas's gnomonic charts: they overlap from RECHART (1.2) to here.
 ATLAS_LIMIT = 2.0
@@ -31,6 +33,8 @@ def edge_points(edge: Edge) -> Array:
 
 def loop_pcurve(face: Face, entry: int, edges: Sequence[Edge], surface: Surface) -> Pcurve:
     """The trimming curve of one entry of a face's loop: as given, or exact by construction."""
+    from standoff.geometry.exact_pcurves import pcurve_of
+
     given = face.pcurves[entry] if face.pcurves else None
     return given or pcurve_of(edges[face.loop[entry][0]].curve, surface)
 
@@ -116,6 +120,8 @@ def make_charts(faces: Sequence[Face], edges: Sequence[Edge]) -> list[Chart]:
 
 def _collapsed_side(apex: Apex) -> Coedge:
     """A coedge with the face on its left: u increases along v0 and decreases along v1."""
+    from standoff.geometry.pcurves import Pcurve
+
     along, across = [1.0, 0.0, 0.0], [0.0, 0.0, apex.level]
     rows = [along, across] if apex.side[0] == "v" else [across, along]
     line = Pcurve(L.LINE, np.array([*rows, [0.0, 0.0, 1.0]]))
@@ -125,6 +131,8 @@ def _collapsed_side(apex: Apex) -> Coedge:
 
 def _join_angles(chart: Chart, edges: Sequence[Edge]) -> None:
     """Shift pcurves on a surface whose u is an angle by whole turns, so that they meet in u."""
+    from standoff.geometry.pcurves import Pcurve
+
     placed: dict[int, float] = {}
     waiting = [c for c in chart.coedges if c.edge >= 0 and edges[c.edge].first is not None]
     while waiting:

@@ -14,11 +14,10 @@ from standoff.bodies.charts import edge_points
 from standoff.bodies.crossings import Crossings
 from standoff.bodies.enclosed import Enclosed, enclosed_by
 from standoff.bodies.face_leaves import face_charts, grown_box
-from standoff.bodies.inner_boxes import inner_boxes
 from standoff.bodies.packed_parts import PackedParts, packed_parts
 from standoff.bodies.packing import Assembled, Ints, pack, without_charts
 from standoff.bodies.report import BoundaryReport
-from standoff.bodies.sampling import blind_charts, curve_box
+from standoff.bodies.sampling import blind_charts, curve_box, inner_boxes
 from standoff.bodies.sewing import sew
 from standoff.bodies.tolerances import (
     LEAST_THICKNESS,

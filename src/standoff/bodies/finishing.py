@@ -9,15 +9,14 @@ import numpy as np
 from standoff.bodies.angles import EdgeTurns, check_vertices, dihedral, edge_turns, refined
 from standoff.bodies.assembly import Joined
 from standoff.bodies.convexity import Convexity, Known, convexity
-from standoff.bodies.inner_boxes import inner_boxes
 from standoff.bodies.packing import Assembled, Ints, pack, without_charts
-from standoff.bodies.planar_convexity import planar_convexity
 from standoff.bodies.report import BodyReport
 from standoff.bodies.sampling import (
     blind_charts,
     body_box,
     boundary_samples,
     check_convex,
+    inner_boxes,
 )
 from standoff.bodies.tolerances import (
     CONVEXITY_TOLERANCE,
@@ -74,6 +73,8 @@ def finish(
         check_vertices(parts)
         found = convexity(parts, turns, size, share, known)
     else:
+        from standoff.bodies.planar_convexity import planar_convexity
+
         found = planar_convexity(parts, size, share)
     roundoff = 0.0 if box is None else coordinate_roundoff(np.array(box))
     if box is not None:

@@ -1,20 +1,29 @@
-"""Vertices, edges and faces, packed: what boundaries and bodies are made of."""
+"""Vertices, edges and faces, packed: what boundaries and bodies are made of.
+
+The kernels call a formula by its address, which is stored in the packed body and is valid in this
+process only. Sending a body to another process, or computing a digest that is the same in every
+process, needs to find these numbers among the others. Addresses are integers above 2^32, so in
+practice no length is mistaken for one.
+"""
 
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from standoff.bodies.addresses import formulas_of, readdressed
 from standoff.bodies.packing import Assembled, Ints, pack
 from standoff.bodies.topology import Edge, Face
 from standoff.geometry.validation import Array
 from standoff.read_only import KeepsReadOnly
 from standoff.wording import counted, printable
+
+if TYPE_CHECKING:
+    from standoff.geometry.formulas.compiled import Formula
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -85,3 +94,18 @@ def packed_parts(parts: Assembled) -> PackedParts:
     ints, reals = pack(parts, [], (nothing, nothing), 0.0, 0.0)
     vertices, edges, faces = parts.vertices, tuple(parts.edges), tuple(parts.faces)
     return PackedParts("", vertices, edges, faces, 0.0, parts.dimension, ints, reals, 0.0)
+
+
+def formulas_of(edges: Iterable[Edge], faces: Iterable[Face]) -> list[Formula]:
+    """The formulas of a body's parts, in the order of the parts."""
+    found = [f for edge in edges for f in edge.curve.formulas]
+    return found + [f for face in faces for chart in face.charts for f in chart.formulas]
+
+
+def readdressed(reals: Array, old: Sequence[float], new: Sequence[float]) -> Array:
+    """A read-only copy of a packed body's numbers with other addresses."""
+    changed = reals.copy()
+    for before, after in dict(zip(old, new, strict=True)).items():
+        changed[reals == before] = after
+    changed.flags.writeable = False
+    return changed

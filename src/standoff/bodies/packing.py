@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.errors import BodyError
-from standoff.geometry.pcurves import Pcurve
-from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+
+if TYPE_CHECKING:
+    from standoff.geometry.pcurves import Pcurve
 
 Ints = NDArray[np.int64]
 
@@ -219,11 +221,11 @@ def _coedges_of_edges(body: Assembled) -> list[list[int]]:
             if c.edge >= 0:
                 found[c.edge].setdefault(chart.face, number)
                 curve = body.edges[c.edge].curve
-                if isinstance(curve, SurfaceCurve) and curve.pcurve_on(chart.surface):
+                if curve.kind == L.ON_SURFACE and curve.pcurve_on(chart.surface):
                     own[c.edge].add(chart.face)
             number += 1
     for j, edge in enumerate(body.edges):
-        if isinstance(edge.curve, SurfaceCurve) and not own[j]:
+        if edge.curve.kind == L.ON_SURFACE and not own[j]:
             raise BodyError(
                 f"Edge {j} is a curve on a surface that none of its faces has as a chart.",
                 part=("edge", j),

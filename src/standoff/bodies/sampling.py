@@ -1,7 +1,10 @@
-"""Points on a packed body's boundary: starts for cold queries, its box, a check of convexity."""
+"""Points on a packed body's boundary: starts for cold queries, its box, a check of convexity; and
+rectangles inside its faces."""
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,9 +13,15 @@ from standoff.bodies.packing import Assembled, Chart, Ints, Sample
 from standoff.bodies.topology import Edge
 from standoff.errors import BodyError
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
-from standoff.geometry.hulls import tight_box
 from standoff.geometry.validation import Array
-from standoff.kernels.entries.queries import chart_normal, on_face, planar_edge_normal
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import (
+    chart_normal,
+    inner_box,
+    on_face,
+    planar_edge_normal,
+)
+from standoff.kernels.tolerances import RECHART
 
 # About how many samples a body gets: a cold start compares all pairs of two bodies' samples.
 FACE_BUDGET = 120
@@ -124,6 +133,8 @@ def boundary_samples(body: Assembled, ints: Ints, reals: Array) -> list[Sample]:
 def curve_box(edge: Edge) -> tuple[Array, Array]:
     """(low, high) of a box around an edge: exact for lines and conic arcs, else a bound; estimated
     from samples for a curve whose kind does not provide a box."""
+    from standoff.geometry.hulls import tight_box
+
     c = edge.curve
     if isinstance(c, RationalBezier):
         return tight_box(c.data[1:].reshape(-1, 4).T[None, ..., None])
@@ -215,4 +226,21 @@ def check_convex(samples: Sequence[Sample], size: float, allowed: float) -> floa
     return worst
 
 
-__all__ = ["body_box", "boundary_samples", "check_convex"]
+def inner_boxes(body: Assembled, ints: Ints, reals: Array) -> list[tuple[float, ...]]:
+    """Rectangles (u0, u1, v0, v1) of parameters where a frame need not check the boundary: one of
+    each chart, u0 > u1 where none was found.
+
+    In a chart of an atlas, only as far as a witness point stays in that chart. None is sought in a
+    face with holes, because it could contain a hole.
+    """
+    faces = [chart.face for chart in body.charts]
+    shared = {face for face, n in Counter(faces).items() if n > 1}
+    return [
+        L.NO_INNER
+        if body.charts[k].holed
+        else inner_box(ints, reals, k, RECHART if face in shared else math.inf)
+        for k, face in enumerate(faces)
+    ]
+
+
+__all__ = ["body_box", "boundary_samples", "check_convex", "inner_boxes"]

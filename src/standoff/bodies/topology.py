@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,9 +13,11 @@ from standoff.checks.numbers import is_whole
 from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve, Line
-from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
+
+if TYPE_CHECKING:
+    from standoff.geometry.pcurves import Pcurve
 
 SIDES = ("v0", "v1", "u0", "u1")
 """Sides of a patch, in the order of the kernels' SIDE_ numbers."""

@@ -9,14 +9,14 @@ from typing import BinaryIO
 
 import numpy as np
 
-from standoff.bodies.addresses import formulas_of
 from standoff.bodies.body import Body
+from standoff.bodies.packed_parts import formulas_of
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.compiler.machine import source_digest
-from standoff.tracking.address_table import packed
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.options import with_frames
+from standoff.tracking.reached import packed
 from standoff.tracking.specialised import COMPILED_AHEAD, smooth_frame_of
 from standoff.tracking.tracker import Tracker
 from standoff.whole_files import file_name, write_whole

@@ -11,7 +11,6 @@ from standoff.checks.arrays import finite
 from standoff.checks.numbers import number
 from standoff.checks.real_numbers import shape_of
 from standoff.errors import StandoffError
-from standoff.geometry.intervals import Interval, cos, interval, sin
 from standoff.geometry.tolerances import PARALLEL_AXES, WHOLE_CONIC
 from standoff.geometry.validation import Array, affine_map, check_alike, vector3
 from standoff.kernels.body import layout as L
@@ -20,6 +19,7 @@ from standoff.read_only import KeepsReadOnly
 
 if TYPE_CHECKING:
     from standoff.geometry.formulas.compiled import Formula
+    from standoff.geometry.intervals import Interval
     from standoff.geometry.net_bounds import CutNets
     from standoff.geometry.pcurves import Pcurve
     from standoff.geometry.surfaces import Surface
@@ -93,6 +93,7 @@ class Curve(KeepsReadOnly):
         """(m, n) bounds of direction . x over such ranges, by a second-order Taylor expansion;
         directions (m, 3, n)."""
         from standoff.geometry.interval_vectors import mapped
+        from standoff.geometry.intervals import interval
 
         middle = interval(t.middle)
         with np.errstate(all="ignore"):
@@ -147,6 +148,7 @@ class Line(Curve):
 
     def jets_over(self, t: Interval) -> Interval:
         from standoff.geometry.interval_vectors import mapped, stacked
+        from standoff.geometry.intervals import interval
 
         one, zero = interval(np.ones_like(t.lo)), interval(np.zeros_like(t.lo))
         rows = [[t, one, zero], [one, zero, zero]]
@@ -183,6 +185,7 @@ class ConicArc(Curve):
 
     def jets_over(self, t: Interval) -> Interval:
         from standoff.geometry.interval_vectors import mapped, stacked
+        from standoff.geometry.intervals import cos, interval, sin
 
         c, s = cos(t), sin(t)
         one, zero = interval(np.ones_like(t.lo)), interval(np.zeros_like(t.lo))
@@ -192,6 +195,7 @@ class ConicArc(Curve):
     def heights_over(self, directions: Interval, t: Interval) -> Interval:
         """Exact up to rounding."""
         from standoff.geometry.interval_vectors import mapped, wave
+        from standoff.geometry.intervals import interval
 
         a, b, c = (mapped(directions, interval(col[:, None])) for col in self.basis().T)
         return wave(a, b, t) + c

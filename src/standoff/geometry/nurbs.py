@@ -17,7 +17,6 @@ import numpy as np
 from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
 from standoff.geometry.bernstein import segment
-from standoff.geometry.domains import Domain, checked_domain, inside
 from standoff.geometry.hulls import tight_box
 from standoff.geometry.knot_removal import essential_net
 from standoff.geometry.knots import (
@@ -29,7 +28,14 @@ from standoff.geometry.knots import (
     refine,
 )
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, affine_map, check_alike
+from standoff.geometry.validation import (
+    Array,
+    Domain,
+    affine_map,
+    check_alike,
+    checked_domain,
+    inside,
+)
 from standoff.kernels.body import layout as L
 
 if TYPE_CHECKING:

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from standoff.errors import StandoffError
-from standoff.geometry.interval_vectors import stacked
-from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.rotational import Rotational
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array, matrix3, vector3
@@ -17,6 +15,7 @@ from standoff.kernels.body import layout as L
 
 if TYPE_CHECKING:
     from standoff.geometry.boxes import Boxes
+    from standoff.geometry.intervals import Interval
     from standoff.geometry.patch_bounds import PatchBounds
     from standoff.geometry.series import Series
 
@@ -205,6 +204,9 @@ class Cylinder(Rotational):
         return None
 
     def meridian(self, v: Interval) -> Interval:
+        from standoff.geometry.interval_vectors import stacked
+        from standoff.geometry.intervals import interval
+
         one, zero = interval(np.ones_like(v.lo)), interval(np.zeros_like(v.lo))
         return stacked([stacked([one, zero, zero]), stacked([v, one, zero])])
 
@@ -212,6 +214,9 @@ class Cylinder(Rotational):
         return rho + z * v
 
     def meridian_normals(self, v: Interval) -> list[Interval]:
+        from standoff.geometry.interval_vectors import stacked
+        from standoff.geometry.intervals import interval
+
         return [stacked([interval(np.ones_like(v.lo)), interval(np.zeros_like(v.lo))])]
 
 
@@ -250,6 +255,9 @@ class Cone(Rotational):
         return None
 
     def meridian(self, v: Interval) -> Interval:
+        from standoff.geometry.interval_vectors import stacked
+        from standoff.geometry.intervals import interval
+
         one, zero = interval(np.ones_like(v.lo)), interval(np.zeros_like(v.lo))
         return stacked([stacked([v, one, zero]), stacked([v, one, zero])])
 
@@ -257,6 +265,9 @@ class Cone(Rotational):
         return (rho + z) * v
 
     def meridian_normals(self, v: Interval) -> list[Interval]:
+        from standoff.geometry.interval_vectors import stacked
+        from standoff.geometry.intervals import interval
+
         one = interval(np.ones_like(v.lo))
         return [stacked([one, -one])]
 

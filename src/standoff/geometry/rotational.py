@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from standoff.geometry.interval_vectors import mapped, stacked, wave
-from standoff.geometry.intervals import Interval, cos, interval, sin
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.boxes import Boxes
+    from standoff.geometry.intervals import Interval
     from standoff.geometry.patch_bounds import PatchBounds
 
 
@@ -44,6 +43,9 @@ class Rotational(Surface):
         return r1**2 + z1**2, z1 * r2 - r1 * z2
 
     def jets_over(self, boxes: Boxes) -> Interval:
+        from standoff.geometry.interval_vectors import stacked
+        from standoff.geometry.intervals import cos, interval, sin
+
         u, v = boxes.sides
         (r, r1, r2), (z, z1, z2) = ([self.meridian(v)[k, n] for n in range(3)] for k in (0, 1))
         c, s, none = cos(u), sin(u), interval(np.zeros(len(boxes)))
@@ -59,6 +61,9 @@ class Rotational(Surface):
 
     def extents_over(self, boxes: Boxes, directions: Array) -> Interval:
         """Exact up to rounding if the meridian's heights are."""
+        from standoff.geometry.interval_vectors import mapped, wave
+        from standoff.geometry.intervals import Interval, interval
+
         u, v = boxes.sides
         with np.errstate(all="ignore"):
             a, b, c = (mapped(directions, interval(col[:, None])) for col in self.linear.T)

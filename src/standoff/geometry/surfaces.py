@@ -14,9 +14,16 @@ import numpy as np
 
 from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
-from standoff.geometry.domains import UNBOUNDED, Domain, checked_domain
 from standoff.geometry.tolerances import DEPENDENT_COLUMNS
-from standoff.geometry.validation import Array, affine_map, matrix3, vector3
+from standoff.geometry.validation import (
+    UNBOUNDED,
+    Array,
+    Domain,
+    affine_map,
+    checked_domain,
+    matrix3,
+    vector3,
+)
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import surface_jet
 from standoff.read_only import KeepsReadOnly

@@ -12,14 +12,13 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.geometry.curve_bounds import box_of, curve_breaks, curve_reach
 from standoff.geometry.curves import FULL_TURN, Curve
-from standoff.geometry.domains import Domain, inside
 from standoff.geometry.interval_vectors import by_generator, mapped, stacked
 from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.rotational import Rotational
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import ALONG_PROFILE, PROFILE_ROUNDOFF, ROUND_POLE
 from standoff.geometry.torus import checked_turn, full_turn
-from standoff.geometry.validation import Array, affine_map, vector3
+from standoff.geometry.validation import Array, Domain, affine_map, inside, vector3
 from standoff.kernels.body import layout as L
 
 if TYPE_CHECKING:

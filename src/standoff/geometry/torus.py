@@ -9,12 +9,11 @@ import numpy as np
 from standoff.checks.numbers import magnitude, number
 from standoff.errors import StandoffError
 from standoff.geometry.curves import FULL_TURN
-from standoff.geometry.domains import Domain
 from standoff.geometry.interval_vectors import stacked, wave
 from standoff.geometry.intervals import Interval, cos, interval, near, sin
 from standoff.geometry.rotational import Rotational
 from standoff.geometry.tolerances import ANGLE_ROUNDOFF
-from standoff.geometry.validation import Array, affine_map
+from standoff.geometry.validation import Array, Domain, affine_map
 from standoff.kernels.body import layout as L
 
 

@@ -1,4 +1,4 @@
-"""Checks of vectors, maps and weights of shapes."""
+"""Checks of vectors, maps, weights and domains of shapes."""
 
 from __future__ import annotations
 
@@ -8,9 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.checks.arrays import finite
+from standoff.checks.real_numbers import real_array, shape_of, shown
 from standoff.errors import StandoffError
 
 Array = NDArray[np.float64]
+
+Domain = tuple[float, float, float, float]
+"""Of a surface: the ranges (u0, u1, v0, v1) of its parameters."""
+
+UNBOUNDED: Domain = (-np.inf, np.inf, -np.inf, np.inf)
 
 WEIGHT_RATIO = 1e12
 """Greatest ratio of weights. The tangent at an end of least weight is this many times the curve's
@@ -40,3 +46,29 @@ def check_alike(weights: Array) -> None:
             "weights",
             weights,
         )
+
+
+def checked_domain(domain: Any, name: str) -> Domain:
+    """(u0, u1, v0, v1) as floats; raises ValueError if it is empty or not numeric."""
+    if shape_of(domain) != (4,):
+        raise StandoffError(
+            f"{name}.domain = {shown(domain)}: give (u0, u1, v0, v1).", "domain", domain
+        )
+    try:
+        u0, u1, v0, v1 = (float(x) for x in real_array(domain))
+    except (TypeError, ValueError) as error:
+        raise StandoffError(
+            f"{name}.domain = {shown(domain)} is not numeric: {error}.", "domain", domain
+        ) from error
+    if not (u0 < u1 and v0 < v1):
+        raise StandoffError(
+            f"{name}.domain = {(u0, u1, v0, v1)} is empty: give u0 < u1, v0 < v1.",
+            "domain",
+            domain,
+        )
+    return u0, u1, v0, v1
+
+
+def inside(values: Array, low: float, high: float) -> Array:
+    """The values strictly between two ends."""
+    return values[(low < values) & (values < high)]

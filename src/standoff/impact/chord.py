@@ -26,7 +26,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.impact.moment import Box, Moment
-from standoff.motion.bounds import MotionBounds, bounds_of, cross, length
+from standoff.motion.bounds import MotionBounds, bounds_of
+from standoff.motion.vectors import cross, length
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,8 @@ from standoff.bodies.planes import outer_plane
 from standoff.impact.tolerances import POSE_ROUNDINGS, TIME_ROUNDINGS
 from standoff.kernels.body import layout as L
 from standoff.motion import Pose
-from standoff.motion.bounds import bounds_of, cross, length
+from standoff.motion.bounds import bounds_of
+from standoff.motion.vectors import cross, length
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.state import TrackerState

@@ -17,13 +17,12 @@ from standoff.motion.bounds import (
     MotionBounds,
     bounds_of,
     breaks_of,
-    cross,
-    length,
     turning,
 )
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.pose_function import path_of
 from standoff.motion.twist import Twist, TwistLike
+from standoff.motion.vectors import cross, length
 from standoff.read_only import KeepsReadOnly
 
 

@@ -15,7 +15,7 @@ from standoff.checks.real_numbers import as_given, shape_of, shown
 from standoff.errors import StandoffError
 from standoff.motion.rotations import as_rotation, nearest_rotation
 from standoff.motion.tolerances import ORTHONORMALITY, QUATERNION_ROUNDING, UNIT_QUATERNION
-from standoff.motion.written import written
+from standoff.motion.vectors import written
 from standoff.read_only import KeepsReadOnly
 
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)

@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from standoff.checks.arrays import FloatArray, finite
 from standoff.checks.numbers import GREATEST, number
 from standoff.errors import StandoffError
-from standoff.motion.bounds import MotionBounds, cross, length, turning
+from standoff.motion.bounds import MotionBounds, turning
 from standoff.motion.pose import HasMatrix, Pose, PoseLike
 from standoff.motion.poses import Poses
 from standoff.motion.tolerances import HALF_TURN_ANGLE, NEAR_HALF_TURN
 from standoff.motion.twist import Twist, screws
+from standoff.motion.vectors import cross, length
 from standoff.read_only import KeepsReadOnly
 
 FASTER = 10.0

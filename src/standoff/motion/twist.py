@@ -16,7 +16,7 @@ from standoff.checks.numbers import number, positive
 from standoff.checks.real_numbers import as_given, shown
 from standoff.errors import StandoffError
 from standoff.motion.pose import Pose, PoseLike
-from standoff.motion.written import written
+from standoff.motion.vectors import written
 from standoff.read_only import KeepsReadOnly
 
 Frame: TypeAlias = Literal["world", "body"]

@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike
 from standoff.checks.arrays import FloatArray, direction, finite
 from standoff.checks.names import choice
 from standoff.checks.numbers import not_negative, number, positive
-from standoff.motion.bounds import MotionBounds, length
+from standoff.motion.bounds import MotionBounds
 from standoff.motion.pose import Pose
 from standoff.motion.twist import Twist
+from standoff.motion.vectors import length
 from standoff.read_only import KeepsReadOnly
 
 Orientation: TypeAlias = Literal["fixed", "turning"]

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
-from standoff.tracking.address_table import AddressTable
 from standoff.tracking.block import Block
 from standoff.tracking.inputs import ABSENT
+from standoff.tracking.reached import AddressTable
 from standoff.tracking.rows import NO_TWIST, AnswerRows, StateRow, motion_row, poses_of, twists_of
 
 Array = NDArray[np.float64]

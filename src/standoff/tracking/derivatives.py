@@ -15,10 +15,10 @@ from standoff.kernels.entries import derivatives as kernels
 from standoff.kernels.pair import derivatives as D
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import SQUARE_AXIS
-from standoff.ordered import Ordered
-from standoff.tracking.address_table import packed
 from standoff.tracking.contact.witness_set import poses_of, serving_pairs
+from standoff.tracking.reached import packed
 from standoff.tracking.rows import Answer
+from standoff.tracking.status import Ordered
 from standoff.tracking.threads import in_parts
 
 Array = NDArray[np.float64]

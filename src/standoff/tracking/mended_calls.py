@@ -11,10 +11,10 @@ from standoff.kernels.compiler.entry import WrongKind
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.entries.tracker import query_anywhere
 from standoff.kernels.state import arrays as K
-from standoff.tracking.address_table import AddressTable
 from standoff.tracking.block import Block
 from standoff.tracking.inputs import mend, motion_of, plain
 from standoff.tracking.proximity import Proximity
+from standoff.tracking.reached import AddressTable
 from standoff.tracking.rows import StateRow
 
 Given = tuple[Any, Any, Any, Any]

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from standoff.kernels.pair.events import NO_LIMIT
 from standoff.kernels.state import arrays as K
-from standoff.tracking.feedback import Linear
 from standoff.tracking.law_options import Law, OfFeedback, options_of
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw
 
@@ -37,6 +36,8 @@ def pack_options(law: Law) -> NDArray[np.float64]:
             slot = getattr(K, f"O_{name.upper()}")
             options[slot] = NUMBERS[name] if value is None else each.kind.number(value)
     if isinstance(law, PaperLaw):
+        from standoff.tracking.feedback import Linear
+
         loop = Linear(law.gain or np.nan) if law.feedback is None else law.feedback
         _pack_feedback(loop, options)
     options.flags.writeable = False

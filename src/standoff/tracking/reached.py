@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.bodies.packing import Ints
 from standoff.kernels.entries import laws
-from standoff.tracking.address_table import AddressTable, packed
 from standoff.tracking.inputs import check_pair
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, PredictorCorrector
@@ -19,12 +19,45 @@ from standoff.tracking.options import resolved_options, with_frames
 from standoff.tracking.specialised import address_of, smooth_frame_of
 
 Array = NDArray[np.float64]
+Pair = tuple[Ints, NDArray[np.float64], Ints, NDArray[np.float64]]
 
 ANY_TIME = 1.0
 """A frame time [s]: the default law does not depend on it."""
 
 PAIRS = 64
 """Number of pairs kept at hand, with their bodies: the ones used last."""
+
+
+def packed(a: Body, b: Body) -> Pair:
+    """What the kernels read from two bodies."""
+    return a.ints, a.reals, b.ints, b.reals
+
+
+class AddressTable:
+    """Addresses and lengths of a pair's arrays and its options; it keeps them alive.
+
+    One integer is read by a compiled function much faster than nine arrays.
+
+    Parameters
+    ----------
+    arrays : tuple of arrays
+        In the order of ``TABLE_...`` in ``standoff.kernels.entries.blocks``.
+
+    Attributes
+    ----------
+    arrays : tuple of arrays
+        As given.
+    address : int
+        Of the table.
+    """
+
+    __slots__ = ("_table", "address", "arrays")
+
+    def __init__(self, arrays: tuple[NDArray[Any], ...]) -> None:
+        self.arrays = arrays
+        rows = [(x.ctypes.data, len(x)) for x in arrays]
+        self._table = np.array(rows, dtype=np.int64)
+        self.address: int = self._table.ctypes.data
 
 
 class Reached:

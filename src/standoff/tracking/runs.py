@@ -14,12 +14,12 @@ from standoff.kernels.pair import events as N
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
 from standoff.motion import Pose, Twist
-from standoff.tracking.address_table import AddressTable
 from standoff.tracking.answers import Answers
 from standoff.tracking.block import Block, with_polytope
 from standoff.tracking.inputs import ABSENT, flat_twist
 from standoff.tracking.pose_arrays import another_order, mended, numbers, read_poses
 from standoff.tracking.proximity import Proximity
+from standoff.tracking.reached import AddressTable
 from standoff.tracking.state import TrackerState
 
 Array = NDArray[np.float64]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,23 +14,23 @@ from standoff.kernels.compiler.entry import WrongKind
 from standoff.kernels.entries.preparing import prepare
 from standoff.kernels.entries.tracker import moved, moved_by_poses, value, value_by_poses
 from standoff.kernels.state import arrays as K
-from standoff.motion import PoseLike, PosesLike, TwistLike
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
-from standoff.tracking.address_table import AddressTable
-from standoff.tracking.answers import Answers
-from standoff.tracking.frame_buffer import FrameBuffer
 from standoff.tracking.inputs import check_pair, plain, same_body
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, checked_law
 from standoff.tracking.mended_calls import Given, found_anywhere, started, stepped
-from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.proximity import Proximity
-from standoff.tracking.reached import reach
+from standoff.tracking.reached import AddressTable, reach
 from standoff.tracking.rows import StateRow
-from standoff.tracking.runs import Frames, run, steps_of
 from standoff.tracking.specialised import checked_choice
 from standoff.tracking.state import TrackerState
+
+if TYPE_CHECKING:
+    from standoff.motion import PoseLike, PosesLike, TwistLike
+    from standoff.tracking.answers import Answers
+    from standoff.tracking.frame_buffer import FrameBuffer
+    from standoff.tracking.places import PlaceLike
 
 Array = NDArray[np.float64]
 # of every step: a name less to look up
@@ -177,6 +177,8 @@ class Tracker(KeepsReadOnly):
         ValueError
             As ``start``; no place, no such feature, or parameters outside it.
         """
+        from standoff.tracking.places import put
+
         state = StateRow()
         put(state, 0, self.a, place_a)
         put(state, 1, self.b, place_b)
@@ -285,6 +287,8 @@ class Tracker(KeepsReadOnly):
         TypeError, ValueError
             As ``step``, with the number of the frame; nothing is answered then.
         """
+        from standoff.tracking.runs import Frames, run, steps_of
+
         self.check_state(state)
         steps = steps_of(dt, self.dt, self.check_frame_time)
         given = Frames.of(poses_a, poses_b, (twists_a, twists_b), steps)
@@ -351,6 +355,8 @@ class Tracker(KeepsReadOnly):
 
     def buffer(self, state: TrackerState) -> FrameBuffer:
         """Arrays for ``step_into`` that begin at a state."""
+        from standoff.tracking.frame_buffer import FrameBuffer
+
         self.check_state(state)
         return FrameBuffer(self.reached, state)
 

@@ -5,22 +5,38 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from standoff.bodies.proofs import bernstein, interval
-from standoff.bodies.proofs.profiles import prove_swept
-from standoff.bodies.proofs.proof import PatchProof
-from standoff.bodies.proofs.theorems import prove_by_kind
+from standoff.bodies.proofs.proof import PatchProof, prove_by_kind
 from standoff.errors import StandoffTypeError
 from standoff.geometry.surfaces import Surface
 
 __all__ = ["PROOFS", "PatchProof", "prove_patch"]
 
+
+def _by_bernstein(surface: Any, outward: int | None) -> PatchProof:
+    from standoff.bodies.proofs import bernstein
+
+    return bernstein.prove(surface, outward)
+
+
+def _by_interval(surface: Any, outward: int | None) -> PatchProof:
+    from standoff.bodies.proofs import interval
+
+    return interval.prove(surface, outward)
+
+
+def _swept(surface: Any, outward: int | None) -> PatchProof:
+    from standoff.bodies.proofs.profiles import prove_swept
+
+    return prove_swept(surface, outward)
+
+
 PROOFS: dict[str, Callable[[Any, int | None], PatchProof]] = {
     "theorem": prove_by_kind,
-    "bernstein": bernstein.prove,
-    "interval": interval.prove,
-    "swept": prove_swept,
+    "bernstein": _by_bernstein,
+    "interval": _by_interval,
+    "swept": _swept,
 }
-"""By the kind of proof that a surface's class declares."""
+"""By the kind of proof that a surface's class declares; each loads its modules at its first use."""
 
 
 def prove_patch(surface: Surface, outward: int | None = None) -> PatchProof:

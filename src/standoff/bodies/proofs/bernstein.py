@@ -35,9 +35,8 @@ from standoff.bodies.proofs.tolerances import (
 )
 from standoff.errors import StandoffError
 from standoff.geometry import bernstein
-from standoff.geometry.domains import Domain
 from standoff.geometry.nurbs import NurbsSurface
-from standoff.geometry.validation import Array
+from standoff.geometry.validation import Array, Domain
 
 Box = tuple[Cell, CurvatureBound]
 

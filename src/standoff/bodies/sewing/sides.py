@@ -8,9 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from standoff.bodies.tolerances import PROJECTION_STEP
-from standoff.geometry.domains import inside
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
+from standoff.geometry.validation import Array, inside
 
 # Counterclockwise in (u, v), and for each, +1 if its free parameter increases in that direction.
 SIDE_NAMES = ("v0", "u1", "v1", "u0")

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.kernels.entries import derivatives as kernels
 from standoff.motion import Pose
-from standoff.tracking.address_table import packed
 from standoff.tracking.inputs import flat_pose
+from standoff.tracking.reached import packed
 from standoff.tracking.rows import motion_row
 
 Array = NDArray[np.float64]
