@@ -190,9 +190,9 @@ class RecordedFrames(KeepsReadOnly):
         """Return the visited modes in order of time.
 
         A stay ends at the instant of the switch that ends it. Where an overlap has no depth, and
-        beyond the horizon, there is no mode: the stay before ends at the last frame with one, the next one begins at the
-        first frame that has one again. Of several switches at one instant, only the last mode is
-        visited.
+        beyond the horizon, there is no mode: the stay before ends at the last frame with one, the
+        next one begins at the first frame that has one again. Of several switches at one instant,
+        only the last mode is visited.
         """
         visits: list[Visit] = []
         events = list(self.events)

@@ -48,6 +48,8 @@ def verdict(answer: Shown, unit: str, size: float) -> str:
         Of the bodies, in that unit.
     """
     distance, bound, status = answer.distance, answer.lower_bound, answer.status
+    if status is Status.FAR:
+        return f"at least {length(bound, unit, SHORT)} apart, beyond the horizon"
     if status is Status.OVERLAPPING or not np.isfinite(distance):
         return "overlap, depth not known" if status.penetrating else "distance not known"
     proven = status.certified or status.penetrating
