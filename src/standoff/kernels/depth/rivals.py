@@ -156,7 +156,7 @@ def alone_in(pair, pose, hull, best, work):
         other = norm(sub(ended.normal, best.normal)) > AROUND
         if ended.found and other and abs(ended.distance - best.distance) <= same:
             return NOT_ALONE
-        if apart and grown == BROKEN:
+        if not ended.found or (apart and grown == BROKEN):
             return NOT_KNOWN
         close_facet(hull, at)
     return NOT_KNOWN
