@@ -30,8 +30,10 @@ from standoff.geometry.ellipsoid_patches import ellipsoid_octants
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_jet, chart_normal
 from standoff.kernels.frame import smooth
+from standoff.kernels.frame.record import Called
 from standoff.kernels.frame.smooth import (
-    inside_faces,
+    FACES,
+    inside_features,
     may_be_smooth,
     seen_as,
     seen_as_nurbs,
@@ -85,10 +87,10 @@ def test_a_chart_of_its_kind_is_seen_as_it_is():
         seen = seen_as(L.SPHERE, *packed(EGG), 2, u, v)
         assert seen.fits
         assert seen.jet == chart_jet(*packed(EGG), 2, u, v)
-        assert seen.normal == pytest.approx(chart_normal(*packed(EGG), 2, u, v), abs=1e-15)
-        assert seen.noise == 0.0
+        assert seen.cone.first == pytest.approx(chart_normal(*packed(EGG), 2, u, v), abs=1e-15)
+        assert seen.cone.noise == 0.0
         gradient = np.array(seen.jet[0]) / np.array([1.0, 0.64, 0.36])
-        assert seen.normal == pytest.approx(unit(*gradient), abs=1e-14)
+        assert seen.cone.first == pytest.approx(unit(*gradient), abs=1e-14)
     assert not seen_as(L.PLANE, *packed(EGG), 2, 0.0, 0.0).fits
     assert not seen_as(L.SPHERE, *packed(so.shapes.box(1.0, 1.0, 1.0)), 2, 0.0, 0.0).fits
 
@@ -120,8 +122,8 @@ def test_a_nurbs_fits_its_own_degree_alone(degree):
     for mine, general in zip(seen.jet, chart_jet(*packed(body), 0, 0.4, 0.3), strict=True):
         assert mine == pytest.approx(general, abs=1e-13)
     gradient = np.array(seen.jet[0]) / np.array([1.0, 0.64, 0.36])
-    assert seen.normal == pytest.approx(unit(*gradient), abs=1e-12)
-    assert 0.0 < seen.noise < 1e-13
+    assert seen.cone.first == pytest.approx(unit(*gradient), abs=1e-12)
+    assert 0.0 < seen.cone.noise < 1e-13
     mixed = so.Body.from_patches([patch.elevated(3, 4) for patch in patches])
     assert not any(seen_as_nurbs(d, *packed(mixed), 0, 0.4, 0.3).fits for d in (3, 4))
     assert not seen_as_nurbs(2, *packed(EGG), 0, 0.4, 0.3).fits
@@ -144,34 +146,34 @@ def before_of(case, **known):
 
 def test_points_are_inside_where_both_are_central():
     place = BALLS.place((0.0, 0.0, 1.0), (0.0, 0.0, -0.7))
-    assert inside_faces(BALLS.pair, place)
-    assert not inside_faces(BALLS.pair, place._replace(u=1.3))
-    assert not inside_faces(BALLS.pair, place._replace(s=-1.3))
+    assert inside_features(FACES, BALLS.pair, place)
+    assert not inside_features(FACES, BALLS.pair, place._replace(u=1.3))
+    assert not inside_features(FACES, BALLS.pair, place._replace(s=-1.3))
     cube = Placed(box(1.0, 1.0, 1.0), ball(0.7), (0.0, 0.0, 2.0))
     top = cube.place((0.2, 0.1, 1.0), (0.0, 0.0, -0.7))
-    assert inside_faces(cube.pair, top)
-    assert not inside_faces(cube.pair, top._replace(u=1.001))
+    assert inside_features(FACES, cube.pair, top)
+    assert not inside_features(FACES, cube.pair, top._replace(u=1.001))
 
 
 def test_only_a_frame_on_faces_and_apart_may_be_smooth():
     near = SHIFTED_GAP * 2.0 * 1.7 * math.sqrt(3.0)
     allowed = before_of(BALLS, distance=1.001 * near)
-    assert may_be_smooth(BALLS.pair, allowed)
+    assert may_be_smooth(FACES, BALLS.pair, allowed)
     for known in ({"distance": 0.999 * near}, {"lost": True}, {"inside": True}, {"cut": 1}):
-        assert not may_be_smooth(BALLS.pair, allowed._replace(**known)), known
+        assert not may_be_smooth(FACES, BALLS.pair, allowed._replace(**known)), known
     cube = Placed(box(1.0, 1.0, 1.0), ball(0.7), (0.0, 0.0, 3.0))
     corner = cube.place((1.0, 1.0, 1.0), (0.0, 0.0, -0.7))
-    assert not may_be_smooth(cube.pair, state_at(corner, distance=1.0))
+    assert not may_be_smooth(FACES, cube.pair, state_at(corner, distance=1.0))
     swapped = Placed(cube.b, cube.a, (0.0, 0.0, 3.0))
     corner = swapped.place((0.0, 0.0, 0.7), (1.0, 1.0, -1.0))
-    assert not may_be_smooth(swapped.pair, state_at(corner, distance=1.0))
+    assert not may_be_smooth(FACES, swapped.pair, state_at(corner, distance=1.0))
 
 
 def descended(
     case, place, most=SMOOTH_CORRECTIONS, tolerance=1e-10, looks=(look_sphere, look_sphere)
 ):
     motion = motion_of(case.pose)
-    return smooth.descended(*looks, case.pair, motion, place, tolerance, most)
+    return smooth.descended(*looks, FACES, case.pair, motion, place, tolerance, most)
 
 
 def test_it_descends_to_the_nearest_points():
@@ -218,7 +220,8 @@ def framed(case, before, told=True, law=None, rate=0.2):
     )
     law = law or options()
     looks = look_sphere, look_sphere
-    answered = smooth.smooth_frame(*looks, case.pair, given, H, law, state, out)
+    call = Called(case.pair, given, law, state, out, None)
+    answered = smooth.smooth_frame(*looks, FACES, call, H)
     return answered, state, out
 
 

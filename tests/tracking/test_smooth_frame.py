@@ -10,6 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from draws import draws
 from standoff.geometry.ellipsoid_patches import ellipsoid_octants, ellipsoid_patches
 from standoff.kernels.compiler.calls import CAN_CALL
 from standoff.kernels.state import arrays as K
@@ -116,6 +117,38 @@ def test_it_answers_as_the_general_frame(
                 smooth += 1
                 agree(one, other, size)
     assert smooth > 30
+
+
+EDGED = {
+    "box, ellipsoid": (BOX, TOOL),
+    "ellipsoid, box": (TOOL, BOX),
+    "ellipsoid, wedge": (TOOL, so.shapes.polytope(np.vstack([np.eye(3), np.zeros((1, 3))]))),
+    "box, cylinder": (BOX, CYLINDER),
+}
+
+
+@pytest.mark.parametrize("pair", EDGED)
+def test_it_answers_on_straight_edges_too(pair: str, rng: np.random.Generator) -> None:
+    """From one face over an edge to the next, past its ends and back."""
+    a, b = EDGED[pair]
+    quick = so.Tracker(a, b, 1e-3, specialise=True)
+    general = so.Tracker(a, b, 1e-3, specialise=False)
+    size, on_edges = a.size + b.size, 0
+    for run in range(40):
+        if run >= draws(8) and on_edges > 60:
+            break
+        state = None
+        for pose, twist in motion(rng, size, 60):
+            given = twist if run % 2 else None
+            if state is None:
+                state = general.start(REST, pose, None, given)
+                continue
+            _, one = quick.step(state, REST, pose, None, given)
+            state, other = general.step(state, REST, pose, None, given)
+            if not one.counts.general_frames:
+                agree(one, other, size)
+                on_edges += "edge" in (one.feature_a.kind, one.feature_b.kind)
+    assert on_edges > 60
 
 
 @pytest.mark.parametrize("pair", AHEAD)
