@@ -172,12 +172,13 @@ def test_a_body_without_faces_has_none() -> None:
 
 
 def test_general_frames_are_counted_and_nothing_is_written_before_them() -> None:
-    """A box's edge is not a face: the state and the answer are those of the general frame alone."""
+    """On a box's vertex the state and the answer are those of the general frame alone."""
     tracker = so.Tracker(BOX, TOOL, 1e-3)
     pose = np.eye(4)
-    pose[:3, 3] = 0.8, 0.6, 0.0
+    pose[:3, 3] = 0.8, 0.6, 0.5
     state = tracker.start(REST, pose)
     after, answer = tracker.step(state, REST, pose)
+    assert answer.feature_a.kind == "vertex"
     assert answer.counts.general_frames == 1
     other, _ = so.Tracker(BOX, TOOL, 1e-3, specialise=False).step(state, REST, pose)
     np.testing.assert_array_equal(after.data, other.data)
