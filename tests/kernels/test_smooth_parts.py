@@ -13,6 +13,7 @@ from hand_made_frames import flat, inputs, motion_of, options, state_at
 from hand_made_pairs import (
     IDENTITY,
     Placed,
+    X,
     Z,
     ball,
     box,
@@ -28,16 +29,18 @@ from numba.core.dispatcher import Dispatcher
 import standoff as so
 from standoff.geometry.ellipsoid_patches import ellipsoid_octants
 from standoff.kernels.body import layout as L
-from standoff.kernels.body.features import chart_jet, chart_normal
+from standoff.kernels.body.features import chart_jet, chart_normal, edge_jet
 from standoff.kernels.frame import smooth
 from standoff.kernels.frame.record import Called
 from standoff.kernels.frame.smooth import (
+    EDGE_AND_FACE,
     FACES,
     inside_features,
     may_be_smooth,
     seen_as,
     seen_as_nurbs,
     seen_by,
+    seen_on_line,
 )
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, N_COUNTS
 from standoff.kernels.state.arrays import (
@@ -57,6 +60,7 @@ from standoff.kernels.state.arrays import (
 )
 from standoff.kernels.state.state import read_state, write_state
 from standoff.kernels.tolerances import POLISHED, SHIFTED_GAP, SMOOTH_CORRECTIONS
+from standoff.kernels.values import NO_CHART
 
 H = 0.01
 EGG = so.shapes.ellipsoid(1.0, 0.8, 0.6)
@@ -297,3 +301,57 @@ def test_the_certificate_is_that_of_both_normals():
     assert looked.cones.y_b == pytest.approx((0.0, 0.0, -0.7), abs=1e-15)
     assert not smooth.look(look_sphere, look_sphere, cube.pair, cube.pose, place).fits
     assert not smooth.look(look_plane, look_plane, cube.pair, cube.pose, place).fits
+
+
+BRICK = Placed(box(1.0, 1.0, 1.0), ball(0.7), (2.0, 0.0, 2.0))
+"""The ball is nearest to the edge x = z = 1, and no farther from one of its faces."""
+
+
+def edge_of(ints, reals):
+    """The edge along y at x = z = 1."""
+    for edge in range(ints[L.N_FACES], ints[L.N_FACES] + ints[L.N_EDGES]):
+        x, t, _ = edge_jet(ints, reals, edge, 0.5)
+        if x[0] == x[2] == 1.0 and t[0] == t[2] == 0.0:
+            return edge
+    raise LookupError
+
+
+def on_edge(case):
+    ints, reals = case.pair.ints_a, case.pair.reals_a
+    towards = unit(1.0 - case.p[0], -0.1, 1.0 - case.p[2])
+    place = case.place((1.0, 0.0, 1.0), tuple(0.7 * np.array(towards)))
+    return place._replace(feature_a=edge_of(ints, reals), chart_a=NO_CHART, u=0.4, v=0.0)
+
+
+def test_a_straight_edge_is_seen_with_the_normals_of_its_faces():
+    ints, reals = BRICK.pair.ints_a, BRICK.pair.reals_a
+    edge = edge_of(ints, reals)
+    seen = seen_on_line(ints, reals, edge, 0.4, 0.0)
+    assert seen.fits
+    assert seen.jet[:2] == edge_jet(ints, reals, edge, 0.4)[:2]
+    assert {seen.cone.first, seen.cone.last} == {X, Z}
+    inward = {tuple(-np.array(n)) for n in (X, Z)}
+    assert {tuple(np.array(way) + 0.0) for way in seen.ways} == inward
+    rim = so.shapes.cylinder(0.4, 0.9)
+    arc = next(k for k in range(rim.n_faces, rim.n_faces + rim.n_edges))
+    assert not seen_on_line(*packed(rim), arc, 0.3, 0.0).fits
+
+
+def test_an_edge_is_held_where_neither_face_falls():
+    """Beside the edge's wedge the frame leaves the faces to the general one."""
+    looks = seen_on_line, look_sphere
+
+    def ended(case):
+        motion, start = motion_of(case.pose), on_edge(case)
+        return smooth.descended(*looks, EDGE_AND_FACE, case.pair, motion, start, 1e-10, 9)
+
+    done, _, place, looked, _ = ended(BRICK)
+    assert done
+    gap = BRICK.gap(place)
+    assert np.linalg.norm(gap) == pytest.approx(math.sqrt(2.0) - 0.7, abs=1e-12)
+    assert looked.cones.x_a == pytest.approx((1.0, 0.0, 1.0), abs=1e-9)
+    assert ended(BRICK.at(1.001, 0.0, 2.0))[0]
+    assert ended(BRICK.at(2.0, 0.0, 1.001))[0]
+    assert not ended(BRICK.at(0.999, 0.0, 2.0))[0]
+    assert not ended(BRICK.at(2.0, 0.0, 0.999))[0]
+    assert not ended(BRICK.at(2.0, 1.001, 2.0))[0]  # beyond its end
