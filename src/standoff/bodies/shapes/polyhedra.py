@@ -1,4 +1,4 @@
-"""Bodies of planes, sharp or swept by a ball."""
+"""Bodies with plane faces, sharp or swept by a ball."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ from standoff.geometry.validation import Array
 # A face's vertices, counterclockwise seen from outside, and its outward normal.
 Loop = tuple[list[int], Array]
 
-# The corners and outward normals of a box. Its vertices, edges and faces are numbered by them, and
-# its digest holds the signs of the zeros.
+# The corners and outward normals of a box. Its vertices, edges and faces are numbered after them,
+# and its digest depends on the signs of the zeros.
 CORNERS = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
 NORMALS = np.array(
     [
@@ -53,9 +53,10 @@ def box(size: Any, rounding: float = ...) -> Body: ...
 
 
 def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
-    """A box about the origin, its edges along x, y, z, sharp or rounded.
+    """A box about the origin, with edges along x, y, z, sharp or rounded.
 
-    It keeps its size when it is rounded: the core, less by 2 rounding each way, is swept by a ball.
+    It keeps its size when it is rounded: its core, smaller by 2 rounding along each axis, is swept
+    by a ball.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
     size : (3,) array_like
         Outer lengths along x, y, z, positive.
     rounding : float
-        Radius of its edges and corners, length, zero or above; below half of the least length.
+        Radius of its edges and corners, length, zero or above and below half of the least length.
 
     Returns
     -------
@@ -107,14 +108,14 @@ def polytope(vertices: Any, *, rounding: float = 0.0) -> Body:
 
     With a rounding it grows; ``rounded_polytope`` rounds it within its planes.
 
-    Vertices may lie far from the origin, as a mesh in a map's coordinates does: the hull is then
-    taken about their middle, which ``body.check().notes`` tells, and answers are as good as the
-    vertices' own digits.
+    Vertices may lie far from the origin, like those of a mesh in map coordinates. The hull is then
+    computed relative to their middle, as ``body.check().notes`` says, and answers are as accurate
+    as the vertices' own digits.
 
     Parameters
     ----------
     vertices : (n, 3) array_like
-        At least four points that are not in one plane, length. Those inside the hull are left out.
+        At least four points that are not in one plane, length. Those inside the hull are dropped.
     rounding : float
         Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
@@ -135,11 +136,11 @@ def polytope(vertices: Any, *, rounding: float = 0.0) -> Body:
 
 
 def rounded_polytope(vertices: Any, rounding: float) -> Body:
-    """The opening of a polytope by a ball: its edges and corners, and what is narrower, rounded.
+    """The opening of a polytope by a ball: edges, corners and anything narrower become round.
 
-    Every point of it lies in a ball of radius `rounding` within the convex hull of the points.
-    The core, the polytope with all its planes moved inwards by `rounding`, is swept by the ball,
-    so that the blends are exact cylinders and spheres. The planes stay where they were.
+    It is the union of all balls of radius `rounding` inside the convex hull of the points. The
+    core, the polytope with all its planes moved inwards by `rounding`, is swept by the ball, so
+    that the blends are exact cylinders and spheres. The planes stay where they were.
 
     Parameters
     ----------
@@ -177,16 +178,16 @@ def rounded_polytope(vertices: Any, rounding: float) -> Body:
 
 
 def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float) -> Array:
-    """The vertices of normals @ x <= offsets - rounding, (n, 3); all in parts of `unit`.
+    """The vertices of normals @ x <= offsets - rounding, (n, 3); all lengths in `unit`.
 
     Raises
     ------
     BodyError
-        The rounding leaves none.
+        The rounding leaves no core.
     QhullError
-        They are lost in roundoff.
+        The vertices are lost in roundoff.
     """
-    # the inscribed ball: greatest r with normals @ x + r <= offsets
+    # the inscribed ball: the greatest r with normals @ x + r <= offsets
     columns = np.column_stack([normals, np.ones(len(normals))])
     bounds = [(None, None)] * 3 + [(0.0, None)]
     ball = scipy.optimize.linprog([0.0, 0.0, 0.0, -1.0], columns, offsets, bounds=bounds).x
@@ -205,7 +206,7 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
     size = float(np.ptp(meeting.intersections, axis=0).max())
     vertices: list[Array] = []
     for spot, meet in zip(meeting.intersections, meeting.dual_facets, strict=True):
-        # Qhull works in the dual; solving for the planes that meet gives the last digits
+        # Qhull computes in the dual space; solving for the planes that meet gives the last digits
         heights = normals[meet] @ spot - (offsets[meet] - rounding)
         vertex = spot - np.linalg.lstsq(normals[meet], heights, rcond=None)[0]
         if all(np.linalg.norm(vertex - known) > SAME_VERTEX * size for known in vertices):
@@ -214,11 +215,11 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
 
 
 def _polyhedron(given: Array, points: Array, middle: Array, radius: float, name: str) -> Body:
-    """The hull of points, taken about their middle; messages and notes are of those given."""
+    """The hull of points relative to a middle; messages and notes are about the given points."""
     try:
         body = _solid(points, _facets(points - middle), radius, name)
     except BodyError as error:
-        # Points that Qhull finds in one plane are told as such.
+        # Points that Qhull finds in one plane are reported as such.
         flat = points is given and isinstance(
             error.__cause__, scipy.spatial.QhullError | ValueError
         )
@@ -229,12 +230,12 @@ def _polyhedron(given: Array, points: Array, middle: Array, radius: float, name:
     if not middle.any():
         return body
     away = float(np.abs(given).max()) / float(np.ptp(given, axis=0).max())
-    note = f"recentred: the hull is taken about {middle}, as the origin is {away:.3g} extents away"
+    note = f"recentred: the hull is computed about {middle}: the origin is {away:.3g} extents away"
     return replace(body, report=replace(body.report, notes=(note, *body.report.notes)))
 
 
 def _middle(points: Array) -> Array:
-    """About which the hull is taken: the middle of points that are far off, else the origin."""
+    """The point about which the hull is computed: the middle of distant points, else the origin."""
     extent = float(np.ptp(points, axis=0).max(initial=0.0)) if len(points) else 0.0
     if extent == 0.0 or float(np.abs(points).max()) <= FAR_OFF * extent:
         return np.zeros(3)
@@ -242,20 +243,20 @@ def _middle(points: Array) -> Array:
 
 
 def _thin(points: Array) -> BodyError | None:
-    """What to say of a polytope that cannot be built, if it is because it is thin."""
+    """The error for a polytope that cannot be built, if the reason is that it is thin."""
     axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
     extent, thickness = (float(np.ptp(points @ axis)) for axis in (axes[0], axes[-1]))
     if thickness >= THIN * extent:
         return None
     return BodyError(
         f"The {len(points)} vertices are too nearly in one plane: {thickness:.3g} thick on an "
-        f"extent of {extent:.3g}, so that its facets are not told apart. Make it thicker than "
-        f"{THIN * extent:.1g}, or take a flat body, so.shapes.planar_loop."
+        f"extent of {extent:.3g}, so that its facets cannot be distinguished. Make it thicker than "
+        f"{THIN * extent:.1g}, or use a flat body, so.shapes.polygon."
     )
 
 
 def _line(error: Exception) -> str:
-    """The first line of Qhull's message, which goes on with tables."""
+    """The first line of Qhull's message, without the tables that follow."""
     return str(error).strip().splitlines()[0]
 
 
@@ -282,9 +283,9 @@ def _solid(points: Array, loops: list[Loop], radius: float, name: str) -> Body:
 
 
 def _unit(points: Array) -> float:
-    """The power of two next to the points' extent: Qhull's and linprog's tolerances are absolute.
+    """A power of two near the points' extent, since Qhull's and linprog's tolerances are absolute.
 
-    Division by it changes no digit.
+    Division by it does not change any digit.
     """
     extent = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
     if 0.0 < extent < LEAST:
@@ -306,7 +307,7 @@ def _hull(points: Array) -> Any:
 
 
 def _facets(points: Array) -> list[Loop]:
-    """The faces of the points' hull; facets of one plane are one."""
+    """The faces of the points' hull; facets in one plane become one face."""
     hull = _hull(points)
     group = -np.ones(len(hull.simplices), dtype=int)
     planes: list[tuple[Array, set[int]]] = []
@@ -317,7 +318,7 @@ def _facets(points: Array) -> list[Loop]:
         members: set[int] = set()
         front = [seed]
         group[seed] = len(planes)
-        while front:  # spread over neighbours in the seed's plane
+        while front:  # spread to neighbours in the seed's plane
             k = front.pop()
             members.update(int(v) for v in hull.simplices[k])
             for m in hull.neighbors[k]:
@@ -329,7 +330,7 @@ def _facets(points: Array) -> list[Loop]:
 
 
 def _loops(points: Array, planes: list[tuple[Array, set[int]]]) -> list[Loop]:
-    """Loops round the vertices of planes, each given by its outward normal and its vertices."""
+    """Loops around the vertices of planes, each given by its outward normal and its vertices."""
     loops = []
     for normal, members in planes:
         corner = sorted(members)

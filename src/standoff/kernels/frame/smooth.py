@@ -1,9 +1,9 @@
 """A frame whose witness points stay well inside faces of kinds that are known when it is compiled,
 or one of them on a straight edge between planes.
 
-It is the general frame of the predictor-corrector without what such a frame never meets: no
-boundary, no other chart, no switch, no flat direction, no contact. The same functions in the same
-order, of fewer cases. It is tried first and writes nothing unless it answers.
+It is the general frame of the predictor-corrector without anything that such a frame never meets:
+no boundary, no other chart, no switch, no flat direction, no contact. It calls the same functions
+in the same order, with fewer cases. It is tried first and writes nothing unless it answers.
 """
 
 from typing import Any, NamedTuple
@@ -77,7 +77,7 @@ FACES, EDGE_AND_FACE, FACE_AND_EDGE = (2, 2), (1, 2), (2, 1)
 class Seen(NamedTuple):
     """A chart or an edge at its parameters, in its body's frame."""
 
-    fits: bool  # is it of the kind, and are its tangents there?
+    fits: bool  # is it of the kind, with its tangents nonzero?
     jet: Any
     cone: NormalCone
     ways: tuple[Vector, Vector]  # off an edge: unit conormals of its faces
@@ -88,7 +88,7 @@ class Looked(NamedTuple):
 
     fits: bool
     jets: Any  # in A's frame
-    cones: Any  # what the certificate asks
+    cones: Any  # input of the certificate
     ways: Any  # of both, in their bodies' frames
 
 
@@ -97,7 +97,7 @@ NOT_SEEN = Seen(False, NO_JET, NO_CONE, (ORIGIN, ORIGIN))
 
 @small
 def seen_as(kind, ints, reals, chart, u, v):
-    """A chart taken for one of a kind, any but a NURBS."""
+    """A chart, assumed to be of a kind, any except a NURBS."""
     c = chart_record(ints, chart)
     o = ints[c + L.CHART_REALS]
     if ints[c + L.CHART_KIND] != kind:
@@ -107,7 +107,7 @@ def seen_as(kind, ints, reals, chart, u, v):
 
 @small
 def seen_by(kind, reals, o, jet):
-    """What is seen of a chart whose reals begin at o, by its jet."""
+    """A chart whose reals begin at o, from its jet."""
     normal, noise = normal_of_kind(kind, reals, o, jet)
     collapsed = has_collapsed(reals, jet[1]) or has_collapsed(reals, jet[2])
     cone = NormalCone(SINGLE, normal, normal, ORIGIN, noise)
@@ -140,7 +140,7 @@ def on_plane(ints, coedge):
 
 @small
 def seen_as_nurbs(degree, ints, reals, chart, u, v):
-    """A chart taken for a NURBS of one degree along u and v."""
+    """A chart, assumed to be a NURBS of the same degree along u and v."""
     c = chart_record(ints, chart)
     o = ints[c + L.CHART_REALS]
     data = o + L.SURFACE_DATA
