@@ -99,6 +99,7 @@ def count() -> Cost:
     from standoff.kernels.entries.smooth import on_sphere
     from standoff.kernels.frame import smooth
     from standoff.kernels.frame.inputs import N_CHANGE, Inputs
+    from standoff.kernels.frame.record import Called
     from standoff.kernels.state import arrays as K
     from standoff.kernels.state.options import read_options
     from standoff.kernels.values import Pair
@@ -127,9 +128,8 @@ def count() -> Cost:
     options, kept = read_options(_numbers(tracker.options)), _numbers(buffer.state.copy())
     out = _numbers(np.zeros(K.N_OUT))
     done.clear()
-    answered = smooth.smooth_frame(
-        on_sphere, on_sphere, pair, inputs, Counted(tracker.dt), options, kept, out
-    )
+    call = Called(pair, inputs, options, kept, out, None)
+    answered = smooth.smooth_frame(on_sphere, on_sphere, smooth.FACES, call, Counted(tracker.dt))
     if answered != 1:
         raise RuntimeError("the smooth frame did not answer")
     return Cost(

@@ -6,6 +6,7 @@ import numpy as np
 from hand_made import new_work
 from hand_made_pairs import Placed, Z, ball, box, ellipsoid, pair_of, turn, unit
 from hull_making import hull_of
+from pointed import pointed
 
 import standoff as so
 from standoff.geometry import Line
@@ -13,7 +14,9 @@ from standoff.kernels.depth.descent import descend
 from standoff.kernels.depth.difference_hull import POINT_REALS
 from standoff.kernels.depth.penetration import begin_along, contact_scale
 from standoff.kernels.depth.search import seed_hull
-from standoff.kernels.values import Depth, Pose
+from standoff.kernels.pair.events import KEEPING
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE
+from standoff.kernels.values import Depth, Pose, Work
 
 TOLERANCE = 1e-10
 P = (0.4, 0.3, 1.2)
@@ -76,3 +79,10 @@ def drawn(rng, lift):
     sideways = np.cross(n, rng.normal(size=3)) * 0.1
     p = sideways + (here.depth(n) + lift) * np.array(n)
     return here.at(*p), n
+
+
+def keeping_work(last):
+    """Of a frame that may keep its polytope, and has one kept."""
+    work = new_work()
+    work.counts[KEEPING] = 1
+    return Work(work.counts, work.events, *map(pointed, (last, np.zeros(N_POLYTOPE))))

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from depth_cases import keeping_work
 from hand_made import new_work
 from hand_made_pairs import (
     Placed,
@@ -35,8 +36,10 @@ from standoff.kernels.depth.rivals import (
     least_below,
     start_direction,
 )
-from standoff.kernels.pair.events import LIMIT
-from standoff.kernels.tolerances import AROUND, SAME_WIDTH
+from standoff.kernels.depth.search import search
+from standoff.kernels.pair.events import EVALUATIONS, LIMIT
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
+from standoff.kernels.tolerances import AROUND, DEPTH_PROOF, MAX_RIVALS, SAME_WIDTH
 from standoff.kernels.values import Depth, Pose
 
 TURN = turn((1, 2, 3), 0.9)
@@ -148,6 +151,60 @@ def test_in_the_middle_it_is_not_alone():
     assert told(boxes, Z) == NOT_ALONE
     # a corner that is as far from two sides
     assert told(Placed(box(1.0, 1.0, 1.0), box(0.3, 0.3, 0.3), (0.9, 0.9, 0.0)), X) == NOT_ALONE
+
+
+def kept_of(case, n):
+    """The polytope that a frame keeps whose minimum is below n."""
+    work = keeping_work(np.zeros(N_POLYTOPE))
+    search(*case.both, minimum(case, n), 1e-10, DEPTH_PROOF, MAX_RIVALS, work)
+    assert work.polytope[N_VERTICES] > 0.0
+    return np.array(work.polytope)
+
+
+@pytest.mark.parametrize(("shift", "rivals"), [(1e-6, ALONE), (1e-12, NOT_ALONE), (0.0, NOT_ALONE)])
+@pytest.mark.parametrize("case", [SLAB, CUBES], ids=["slab", "cube"])
+def test_a_kept_polytope_tells_the_same(case, shift, rivals):
+    n = Z if case is SLAB else X
+    case = case.at(*(shift * np.array(n)))
+    work = keeping_work(kept_of(case, n))
+    at = minimum(case, n)
+    assert alone(*case.both, at, work) == alone(*case.both, at, new_work()) == rivals
+
+
+def test_a_kept_polytope_that_leaves_nothing_open_costs_no_evaluation():
+    """It has a facet each way where the frame has looked."""
+    case = SLAB.at(0.05, -0.1, 0.1)
+    kept = kept_of(case, Z)
+    moved = SLAB.at(0.051, -0.1, 0.1)
+    at = minimum(moved, Z)
+    work = keeping_work(kept)
+    assert alone(*moved.both, at, work) == ALONE
+    assert work.counts[EVALUATIONS] == 0
+    anew = new_work()
+    assert alone(*moved.both, at, anew) == ALONE
+    assert anew.counts[EVALUATIONS] > 0
+
+
+def test_a_kept_polytope_that_proves_nothing_is_made_anew():
+    case = SLAB.at(0.05, -0.1, 0.1)
+    away = SLAB.at(0.05, -0.1, -0.4)  # on the other side: the origin is outside the polytope
+    kept = kept_of(case, Z)
+    at = minimum(away, (0.0, 0.0, -1.0))
+    for last in (-kept, np.full_like(kept, np.nan), kept):
+        assert alone(*away.both, at, keeping_work(last)) == ALONE
+
+
+def test_a_rival_that_no_descent_finds_is_not_taken_for_none():
+    """Level faces of two slabs in one place: descents of their depth end uncertified at times."""
+    slab, rng = box(1.0, 1.0, 0.2), np.random.default_rng(7)
+    told_of = set()
+    for _ in range(200):
+        way = tuple(1e-16 * rng.integers(-9, 10, size=3))
+        case = Placed(slab, slab, way, turn(tuple(rng.normal(size=3)), 1e-15 * rng.random()))
+        n = (0.0, 0.0, rng.choice([-1.0, 1.0]))
+        at = Depth(True, -0.4, n, begin_along(*case.both, n))
+        told_of.add(alone(*case.both, at, new_work()))
+    assert ALONE not in told_of
 
 
 def test_of_what_has_no_inside_it_is_not_known():

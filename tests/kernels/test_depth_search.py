@@ -17,6 +17,7 @@ from depth_cases import (
     WAY,
     begun,
     drawn,
+    keeping_work,
     minimum_below,
     planar,
     seeded_hull,
@@ -24,7 +25,6 @@ from depth_cases import (
 )
 from hand_made import new_work
 from hand_made_pairs import Placed, X, Y, Z, ball, box, point, segment, unit, vector
-from pointed import pointed
 
 from draws import draws
 from standoff.kernels.depth.difference_hull import nearest_facet
@@ -40,10 +40,10 @@ from standoff.kernels.depth.search import (
     search_flat,
     settles,
 )
-from standoff.kernels.pair.events import EVALUATIONS, KEEPING, KEPT, LIMIT, SEARCHES
+from standoff.kernels.pair.events import EVALUATIONS, KEPT, LIMIT, SEARCHES
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
 from standoff.kernels.tolerances import DEPTH_PROOF, MAX_RIVALS
-from standoff.kernels.values import Depth, Work
+from standoff.kernels.values import Depth
 
 HOW = (TOLERANCE, DEPTH_PROOF, MAX_RIVALS)
 
@@ -200,13 +200,6 @@ def test_a_kept_polytope_takes_in_the_witness_points_own_difference():
     added = vertices(hull)[before:, :3]
     assert np.abs(added - (0.8, 0.0, 0.0)).sum(axis=1).min() < 1e-9
     assert bound <= least <= 0.8
-
-
-def keeping_work(last):
-    """Of a frame that may keep its polytope, and has one kept."""
-    work = new_work()
-    work.counts[KEEPING] = 1
-    return Work(work.counts, work.events, *map(pointed, (last, np.zeros(N_POLYTOPE))))
 
 
 @pytest.mark.parametrize("case", CASES)

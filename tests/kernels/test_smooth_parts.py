@@ -13,6 +13,7 @@ from hand_made_frames import flat, inputs, motion_of, options, state_at
 from hand_made_pairs import (
     IDENTITY,
     Placed,
+    X,
     Z,
     ball,
     box,
@@ -28,14 +29,18 @@ from numba.core.dispatcher import Dispatcher
 import standoff as so
 from standoff.geometry.ellipsoid_patches import ellipsoid_octants
 from standoff.kernels.body import layout as L
-from standoff.kernels.body.features import chart_jet, chart_normal
+from standoff.kernels.body.features import chart_jet, chart_normal, edge_jet
 from standoff.kernels.frame import smooth
+from standoff.kernels.frame.record import Called
 from standoff.kernels.frame.smooth import (
-    inside_faces,
+    EDGE_AND_FACE,
+    FACES,
+    inside_features,
     may_be_smooth,
     seen_as,
     seen_as_nurbs,
     seen_by,
+    seen_on_line,
 )
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, N_COUNTS
 from standoff.kernels.state.arrays import (
@@ -55,6 +60,7 @@ from standoff.kernels.state.arrays import (
 )
 from standoff.kernels.state.state import read_state, write_state
 from standoff.kernels.tolerances import POLISHED, SHIFTED_GAP, SMOOTH_CORRECTIONS
+from standoff.kernels.values import NO_CHART
 
 H = 0.01
 EGG = so.shapes.ellipsoid(1.0, 0.8, 0.6)
@@ -85,10 +91,10 @@ def test_a_chart_of_its_kind_is_seen_as_it_is():
         seen = seen_as(L.SPHERE, *packed(EGG), 2, u, v)
         assert seen.fits
         assert seen.jet == chart_jet(*packed(EGG), 2, u, v)
-        assert seen.normal == pytest.approx(chart_normal(*packed(EGG), 2, u, v), abs=1e-15)
-        assert seen.noise == 0.0
+        assert seen.cone.first == pytest.approx(chart_normal(*packed(EGG), 2, u, v), abs=1e-15)
+        assert seen.cone.noise == 0.0
         gradient = np.array(seen.jet[0]) / np.array([1.0, 0.64, 0.36])
-        assert seen.normal == pytest.approx(unit(*gradient), abs=1e-14)
+        assert seen.cone.first == pytest.approx(unit(*gradient), abs=1e-14)
     assert not seen_as(L.PLANE, *packed(EGG), 2, 0.0, 0.0).fits
     assert not seen_as(L.SPHERE, *packed(so.shapes.box(1.0, 1.0, 1.0)), 2, 0.0, 0.0).fits
 
@@ -120,8 +126,8 @@ def test_a_nurbs_fits_its_own_degree_alone(degree):
     for mine, general in zip(seen.jet, chart_jet(*packed(body), 0, 0.4, 0.3), strict=True):
         assert mine == pytest.approx(general, abs=1e-13)
     gradient = np.array(seen.jet[0]) / np.array([1.0, 0.64, 0.36])
-    assert seen.normal == pytest.approx(unit(*gradient), abs=1e-12)
-    assert 0.0 < seen.noise < 1e-13
+    assert seen.cone.first == pytest.approx(unit(*gradient), abs=1e-12)
+    assert 0.0 < seen.cone.noise < 1e-13
     mixed = so.Body.from_patches([patch.elevated(3, 4) for patch in patches])
     assert not any(seen_as_nurbs(d, *packed(mixed), 0, 0.4, 0.3).fits for d in (3, 4))
     assert not seen_as_nurbs(2, *packed(EGG), 0, 0.4, 0.3).fits
@@ -144,34 +150,34 @@ def before_of(case, **known):
 
 def test_points_are_inside_where_both_are_central():
     place = BALLS.place((0.0, 0.0, 1.0), (0.0, 0.0, -0.7))
-    assert inside_faces(BALLS.pair, place)
-    assert not inside_faces(BALLS.pair, place._replace(u=1.3))
-    assert not inside_faces(BALLS.pair, place._replace(s=-1.3))
+    assert inside_features(FACES, BALLS.pair, place)
+    assert not inside_features(FACES, BALLS.pair, place._replace(u=1.3))
+    assert not inside_features(FACES, BALLS.pair, place._replace(s=-1.3))
     cube = Placed(box(1.0, 1.0, 1.0), ball(0.7), (0.0, 0.0, 2.0))
     top = cube.place((0.2, 0.1, 1.0), (0.0, 0.0, -0.7))
-    assert inside_faces(cube.pair, top)
-    assert not inside_faces(cube.pair, top._replace(u=1.001))
+    assert inside_features(FACES, cube.pair, top)
+    assert not inside_features(FACES, cube.pair, top._replace(u=1.001))
 
 
 def test_only_a_frame_on_faces_and_apart_may_be_smooth():
     near = SHIFTED_GAP * 2.0 * 1.7 * math.sqrt(3.0)
     allowed = before_of(BALLS, distance=1.001 * near)
-    assert may_be_smooth(BALLS.pair, allowed)
+    assert may_be_smooth(FACES, BALLS.pair, allowed)
     for known in ({"distance": 0.999 * near}, {"lost": True}, {"inside": True}, {"cut": 1}):
-        assert not may_be_smooth(BALLS.pair, allowed._replace(**known)), known
+        assert not may_be_smooth(FACES, BALLS.pair, allowed._replace(**known)), known
     cube = Placed(box(1.0, 1.0, 1.0), ball(0.7), (0.0, 0.0, 3.0))
     corner = cube.place((1.0, 1.0, 1.0), (0.0, 0.0, -0.7))
-    assert not may_be_smooth(cube.pair, state_at(corner, distance=1.0))
+    assert not may_be_smooth(FACES, cube.pair, state_at(corner, distance=1.0))
     swapped = Placed(cube.b, cube.a, (0.0, 0.0, 3.0))
     corner = swapped.place((0.0, 0.0, 0.7), (1.0, 1.0, -1.0))
-    assert not may_be_smooth(swapped.pair, state_at(corner, distance=1.0))
+    assert not may_be_smooth(FACES, swapped.pair, state_at(corner, distance=1.0))
 
 
 def descended(
     case, place, most=SMOOTH_CORRECTIONS, tolerance=1e-10, looks=(look_sphere, look_sphere)
 ):
     motion = motion_of(case.pose)
-    return smooth.descended(*looks, case.pair, motion, place, tolerance, most)
+    return smooth.descended(*looks, FACES, case.pair, motion, place, tolerance, most)
 
 
 def test_it_descends_to_the_nearest_points():
@@ -218,7 +224,8 @@ def framed(case, before, told=True, law=None, rate=0.2):
     )
     law = law or options()
     looks = look_sphere, look_sphere
-    answered = smooth.smooth_frame(*looks, case.pair, given, H, law, state, out)
+    call = Called(case.pair, given, law, state, out, None)
+    answered = smooth.smooth_frame(*looks, FACES, call, H)
     return answered, state, out
 
 
@@ -294,3 +301,57 @@ def test_the_certificate_is_that_of_both_normals():
     assert looked.cones.y_b == pytest.approx((0.0, 0.0, -0.7), abs=1e-15)
     assert not smooth.look(look_sphere, look_sphere, cube.pair, cube.pose, place).fits
     assert not smooth.look(look_plane, look_plane, cube.pair, cube.pose, place).fits
+
+
+BRICK = Placed(box(1.0, 1.0, 1.0), ball(0.7), (2.0, 0.0, 2.0))
+"""The ball is nearest to the edge x = z = 1, and no farther from one of its faces."""
+
+
+def edge_of(ints, reals):
+    """The edge along y at x = z = 1."""
+    for edge in range(ints[L.N_FACES], ints[L.N_FACES] + ints[L.N_EDGES]):
+        x, t, _ = edge_jet(ints, reals, edge, 0.5)
+        if x[0] == x[2] == 1.0 and t[0] == t[2] == 0.0:
+            return edge
+    raise LookupError
+
+
+def on_edge(case):
+    ints, reals = case.pair.ints_a, case.pair.reals_a
+    towards = unit(1.0 - case.p[0], -0.1, 1.0 - case.p[2])
+    place = case.place((1.0, 0.0, 1.0), tuple(0.7 * np.array(towards)))
+    return place._replace(feature_a=edge_of(ints, reals), chart_a=NO_CHART, u=0.4, v=0.0)
+
+
+def test_a_straight_edge_is_seen_with_the_normals_of_its_faces():
+    ints, reals = BRICK.pair.ints_a, BRICK.pair.reals_a
+    edge = edge_of(ints, reals)
+    seen = seen_on_line(ints, reals, edge, 0.4, 0.0)
+    assert seen.fits
+    assert seen.jet[:2] == edge_jet(ints, reals, edge, 0.4)[:2]
+    assert {seen.cone.first, seen.cone.last} == {X, Z}
+    inward = {tuple(-np.array(n)) for n in (X, Z)}
+    assert {tuple(np.array(way) + 0.0) for way in seen.ways} == inward
+    rim = so.shapes.cylinder(0.4, 0.9)
+    arc = next(k for k in range(rim.n_faces, rim.n_faces + rim.n_edges))
+    assert not seen_on_line(*packed(rim), arc, 0.3, 0.0).fits
+
+
+def test_an_edge_is_held_where_neither_face_falls():
+    """Beside the edge's wedge the frame leaves the faces to the general one."""
+    looks = seen_on_line, look_sphere
+
+    def ended(case):
+        motion, start = motion_of(case.pose), on_edge(case)
+        return smooth.descended(*looks, EDGE_AND_FACE, case.pair, motion, start, 1e-10, 9)
+
+    done, _, place, looked, _ = ended(BRICK)
+    assert done
+    gap = BRICK.gap(place)
+    assert np.linalg.norm(gap) == pytest.approx(math.sqrt(2.0) - 0.7, abs=1e-12)
+    assert looked.cones.x_a == pytest.approx((1.0, 0.0, 1.0), abs=1e-9)
+    assert ended(BRICK.at(1.001, 0.0, 2.0))[0]
+    assert ended(BRICK.at(2.0, 0.0, 1.001))[0]
+    assert not ended(BRICK.at(0.999, 0.0, 2.0))[0]
+    assert not ended(BRICK.at(2.0, 0.0, 0.999))[0]
+    assert not ended(BRICK.at(2.0, 1.001, 2.0))[0]  # beyond its end

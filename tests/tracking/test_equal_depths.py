@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 import standoff as so
+from draws import draws
 from standoff.geometry import ConicArc
+from standoff.kernels.pair.polytope_layout import N_VERTICES
+from standoff.kernels.state import arrays as K
+from standoff.tracking.block import Block
+from standoff.tracking.derivatives import Smoothness
 from tracking.made_answers import random_pose
 
 s = so.shapes
@@ -99,3 +104,39 @@ def test_apart_there_is_one():
     )
     assert answer.unique
     assert np.array_equal(answer.witness_set().normals, [answer.normal])
+
+
+TIES = {
+    "slabs": (s.box(1, 1, 0.2), s.box(1, 1, 0.2), 1),
+    "slab in cube": (s.box(1, 1, 1), s.box(1, 1, 0.2), 1),
+    "ball in cube": (s.box(1, 1, 1), s.ellipsoid(0.4, 0.4, 0.4), 0),
+    "eggs": (s.ellipsoid(1, 2, 3), s.ellipsoid(0.5, 0.6, 0.7), 0),
+}
+
+
+def derived_after_a_frame(tie, shift, rng):
+    """Of the last of some frames with a tie at their end, and of the same without a polytope."""
+    a, b, axis = TIES[tie]
+    world = random_pose(rng, 2.0)
+    step = rng.uniform(-1e-3, 1e-3, size=(2, 3))
+    tracker = so.Tracker(a, b, 1e-3)
+    ways = [so.Pose.exp(*(k * step)) @ so.Pose.exp([0, 0, 0], shift * EYE[axis]) for k in range(4)]
+    state = tracker.start(world, world @ ways[-1])
+    for way in ways[-2::-1]:
+        state, answer = tracker.step(state, world, world @ way)
+    block = Block(answer._out)
+    assert block.polytope[N_VERTICES] > 0.0
+    bare = block.data[: int(block.data[K.BLOCK_POLYTOPE])].copy()
+    bare[K.BLOCK_POLYTOPE] = 0.0
+    return answer.derivatives(), so.Proximity(a, b, bare).derivatives()
+
+
+@pytest.mark.parametrize("tie", TIES)
+def test_derivatives_tell_ties_with_the_polytope_of_their_frame_and_without(tie, rng):
+    for shift in (0.0, 1e-13, 1e-12, 1e-8, 1e-6, 1e-4):
+        for _ in range(draws(3)):
+            by_kept, anew = derived_after_a_frame(tie, shift, rng)
+            assert by_kept.smoothness is anew.smoothness
+            np.testing.assert_array_equal(by_kept.gradient, anew.gradient)
+            if shift <= 1e-12:
+                assert by_kept.smoothness is Smoothness.UNDEFINED

@@ -10,6 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from draws import draws
 from standoff.geometry.ellipsoid_patches import ellipsoid_octants, ellipsoid_patches
 from standoff.kernels.compiler.calls import CAN_CALL
 from standoff.kernels.state import arrays as K
@@ -118,6 +119,38 @@ def test_it_answers_as_the_general_frame(
     assert smooth > 30
 
 
+EDGED = {
+    "box, ellipsoid": (BOX, TOOL),
+    "ellipsoid, box": (TOOL, BOX),
+    "ellipsoid, wedge": (TOOL, so.shapes.polytope(np.vstack([np.eye(3), np.zeros((1, 3))]))),
+    "box, cylinder": (BOX, CYLINDER),
+}
+
+
+@pytest.mark.parametrize("pair", EDGED)
+def test_it_answers_on_straight_edges_too(pair: str, rng: np.random.Generator) -> None:
+    """From one face over an edge to the next, past its ends and back."""
+    a, b = EDGED[pair]
+    quick = so.Tracker(a, b, 1e-3, specialise=True)
+    general = so.Tracker(a, b, 1e-3, specialise=False)
+    size, on_edges = a.size + b.size, 0
+    for run in range(40):
+        if run >= draws(8) and on_edges > 60:
+            break
+        state = None
+        for pose, twist in motion(rng, size, 60):
+            given = twist if run % 2 else None
+            if state is None:
+                state = general.start(REST, pose, None, given)
+                continue
+            _, one = quick.step(state, REST, pose, None, given)
+            state, other = general.step(state, REST, pose, None, given)
+            if not one.counts.general_frames:
+                agree(one, other, size)
+                on_edges += "edge" in (one.feature_a.kind, one.feature_b.kind)
+    assert on_edges > 60
+
+
 @pytest.mark.parametrize("pair", AHEAD)
 def test_a_pair_of_the_list_has_it_without_asking(pair: str) -> None:
     a, b = AHEAD[pair]
@@ -139,12 +172,13 @@ def test_a_body_without_faces_has_none() -> None:
 
 
 def test_general_frames_are_counted_and_nothing_is_written_before_them() -> None:
-    """A box's edge is not a face: the state and the answer are those of the general frame alone."""
+    """On a box's vertex the state and the answer are those of the general frame alone."""
     tracker = so.Tracker(BOX, TOOL, 1e-3)
     pose = np.eye(4)
-    pose[:3, 3] = 0.8, 0.6, 0.0
+    pose[:3, 3] = 0.8, 0.6, 0.5
     state = tracker.start(REST, pose)
     after, answer = tracker.step(state, REST, pose)
+    assert answer.feature_a.kind == "vertex"
     assert answer.counts.general_frames == 1
     other, _ = so.Tracker(BOX, TOOL, 1e-3, specialise=False).step(state, REST, pose)
     np.testing.assert_array_equal(after.data, other.data)

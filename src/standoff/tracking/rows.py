@@ -78,7 +78,7 @@ class Counts(NamedTuple):
         the paper prints it.
     general_frames : int
         1 where the frame that is compiled for this pair's kinds of faces was tried and left the
-        answer to the general one: at a boundary, in contact, on an edge or a vertex.
+        answer to the general one: at a boundary, in contact, on a curved edge or a vertex.
     """
 
     evaluations: int

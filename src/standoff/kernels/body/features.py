@@ -275,6 +275,23 @@ def best_chart(ints, reals, chart, x):
     return best, best_u, best_v
 
 
+@small
+def conormal_along(ints, reals, coedge, o, tangent, normal):
+    """The inward unit conormal at a coedge of a chart whose reals begin at o, by its normal."""
+    # left in (u, v) is left on the surface where f_u x f_v points outward
+    side = ints[coedge_record(ints, coedge) + L.COEDGE_SIDE] * reals[o + L.OUTWARD]
+    return scale(side, cross(normal, tangent))
+
+
+@small
+def plane_conormal(ints, reals, coedge, tangent):
+    """(conormal, normal) of a plane at its coedge: one normal everywhere, and no other chart."""
+    c = coedge_record(ints, coedge)
+    o = ints[chart_record(ints, ints[c + L.COEDGE_CHART]) + L.CHART_REALS]
+    normal, _ = normal_of_kind(L.PLANE, reals, o, surface_jet(reals, L.PLANE, o, 0.0, 0.0))
+    return conormal_along(ints, reals, coedge, o, tangent, normal), normal
+
+
 @kernel
 def coedge_conormal(ints, reals, coedge, tangent, t):
     """(conormal, normal, noise) at edge parameter t: the inward unit conormal of the coedge's face,
@@ -282,20 +299,13 @@ def coedge_conormal(ints, reals, coedge, tangent, t):
 
     tangent is the edge's unit tangent, in the body's frame.
     """
-    c = coedge_record(ints, coedge)
-    chart = ints[c + L.COEDGE_CHART]
-    o = ints[chart_record(ints, chart) + L.CHART_REALS]
+    chart = ints[coedge_record(ints, coedge) + L.COEDGE_CHART]
     if ints[chart_record(ints, chart) + L.CHART_KIND] == L.PLANE:
-        # one normal everywhere, and no other chart
-        normal, noise = normal_of_kind(L.PLANE, reals, o, surface_jet(reals, L.PLANE, o, 0.0, 0.0))
-    else:
-        k = best_coedge(ints, reals, coedge, t)
-        c = coedge_record(ints, k)
-        u, v, _, _, _ = coedge_parameters(ints, reals, k, t)
-        chart = ints[c + L.COEDGE_CHART]
-        o = ints[chart_record(ints, chart) + L.CHART_REALS]
-        normal, noise = noisy_normal(ints, reals, chart, chart_jet(ints, reals, chart, u, v))
-    inward = cross(normal, tangent)
-    # left in (u, v) is left on the surface where f_u x f_v points outward
-    side = ints[c + L.COEDGE_SIDE] * reals[o + L.OUTWARD]
-    return scale(side, inward), normal, noise
+        conormal, normal = plane_conormal(ints, reals, coedge, tangent)
+        return conormal, normal, 0.0
+    k = best_coedge(ints, reals, coedge, t)
+    u, v, _, _, _ = coedge_parameters(ints, reals, k, t)
+    chart = ints[coedge_record(ints, k) + L.COEDGE_CHART]
+    o = ints[chart_record(ints, chart) + L.CHART_REALS]
+    normal, noise = noisy_normal(ints, reals, chart, chart_jet(ints, reals, chart, u, v))
+    return conormal_along(ints, reals, k, o, tangent, normal), normal, noise

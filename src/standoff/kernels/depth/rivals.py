@@ -4,7 +4,7 @@ from math import nan
 
 from standoff.kernels.algebra.vectors import norm, rotate, scale, sub, unit
 from standoff.kernels.body import layout as L
-from standoff.kernels.compiler.decorators import ints_on_stack, kernel, reals_on_stack
+from standoff.kernels.compiler.decorators import ints_on_stack, kernel, reals_on_stack, shared
 from standoff.kernels.depth.descent import descend
 from standoff.kernels.depth.difference_hull import (
     ALL_CORNERS,
@@ -21,8 +21,16 @@ from standoff.kernels.depth.difference_hull import (
     grow_difference,
     nearest_facet,
 )
-from standoff.kernels.depth.penetration import begin_along, box_depth, contact_scale, shifted
+from standoff.kernels.depth.kept_polytope import recall
+from standoff.kernels.depth.penetration import (
+    begin_along,
+    box_depth,
+    contact_scale,
+    is_planar,
+    shifted,
+)
 from standoff.kernels.depth.search import difference, seed_hull
+from standoff.kernels.pair.events import KEEPING
 from standoff.kernels.tolerances import (
     AROUND,
     MAX_PROBES,
@@ -102,6 +110,7 @@ def alone(pair, pose, best, work):
 
     A facet that is not, and on whose other side there is nothing of A - B, points along a direction
     that is as little deep. Minima nearer to each other than SAME_MINIMUM are not distinguished.
+    Where the work is KEEPING a polytope, that of the frame that found the depth, it is asked first.
     """
     hull = Hull(
         ints_on_stack(N_SIZES),
@@ -112,10 +121,22 @@ def alone(pair, pose, best, work):
         ints_on_stack(ALL_RIMS),
     )
     size = contact_scale(pair)
-    same = SAME_WIDTH * size
+    keeping = work.counts[KEEPING] != 0
+    if keeping and recall(hull, pose, is_planar(pair), work.last_polytope, size):
+        known = alone_in(pair, pose, hull, best, work)
+        if known != NOT_KNOWN:
+            return known
     if not seed_hull(pair, pose, hull, size)[0]:
         return NOT_KNOWN
     grow_difference(hull, difference(pair, pose, best.place), size)
+    return alone_in(pair, pose, hull, best, work)
+
+
+@shared
+def alone_in(pair, pose, hull, best, work):
+    """`alone` by a polytope about the origin, which grows where it does not tell."""
+    size = contact_scale(pair)
+    same = SAME_WIDTH * size
     for _ in range(MAX_PROBES):
         at, least = nearest_facet(hull, True)
         if at < 0 or least > same - best.distance:
@@ -135,7 +156,7 @@ def alone(pair, pose, best, work):
         other = norm(sub(ended.normal, best.normal)) > AROUND
         if ended.found and other and abs(ended.distance - best.distance) <= same:
             return NOT_ALONE
-        if apart and grown == BROKEN:
+        if not ended.found or (apart and grown == BROKEN):
             return NOT_KNOWN
         close_facet(hull, at)
     return NOT_KNOWN

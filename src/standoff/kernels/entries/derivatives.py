@@ -28,7 +28,7 @@ from standoff.kernels.compiler.entry import (
     WRITE_INTS,
 )
 from standoff.kernels.depth.rivals import N_STARTS, NOT_ALONE, NOT_KNOWN, alone, equally_deep
-from standoff.kernels.entries.blocks import copy_pose
+from standoff.kernels.entries.blocks import copy_pose, where_kept
 from standoff.kernels.entries.frames import clear_counts
 from standoff.kernels.entries.pointers import pair_pointers
 from standoff.kernels.pair.derivatives import (
@@ -37,8 +37,8 @@ from standoff.kernels.pair.derivatives import (
     SINGULAR_BESIDE,
     differentiate,
 )
-from standoff.kernels.pair.events import LIMIT, NO_LIMIT
-from standoff.kernels.pair.polytope_layout import N_POLYTOPE
+from standoff.kernels.pair.events import KEEPING, LIMIT, NO_LIMIT
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
 from standoff.kernels.state.arrays import (
     BLOCK_MOTION,
     DISTANCE,
@@ -73,22 +73,23 @@ def place_of(answer):
 
 @kernel
 def without_limit(work):
-    """Work that begins, and ends when it is done."""
+    """Work that begins, and ends when it is done; with the polytope in it, if there is one."""
     clear_counts(work)
     work.counts[LIMIT] = NO_LIMIT
+    work.counts[KEEPING] = 1 if work.last_polytope[N_VERTICES] > 0.0 else 0
     return work
 
 
 @kernel
-def has_rivals(pair, pose, n, d, place):
-    """Are overlapping cores as deep in each other along another normal?
+def has_rivals(pair, pose, n, d, place, kept):
+    """Are overlapping cores as deep in each other along another normal? `kept` is the polytope of
+    the frame that found n, if it kept one.
 
     Not in a half-space: its plane's normal is the only one along which it can be left.
     """
     if pair.ints_a[L.UNBOUNDED] or pair.ints_b[L.UNBOUNDED]:
         return False
-    none = reals_on_stack(N_POLYTOPE)
-    work = without_limit(Work(stack_counts(), stack_log(), none, none))
+    work = without_limit(Work(stack_counts(), stack_log(), kept, kept))
     known = alone(pair, pose, Depth(True, d, n, place), work)
     if known != NOT_KNOWN:
         return known == NOT_ALONE
@@ -97,8 +98,9 @@ def has_rivals(pair, pose, n, d, place):
 
 
 @kernel
-def derive_at(pair, pose_a, pose_b, answer, everything, to):
-    """Derivatives of an answer at poses (12 numbers) into `to`; what came of it."""
+def derive_at(pair, pose_a, pose_b, answer, kept, everything, to):
+    """Derivatives of an answer at poses (12 numbers) into `to`; what came of it. `kept` is the
+    polytope of its frame, if it kept one."""
     d = answer[DISTANCE] + pair.reals_a[L.RADIUS] + pair.reals_b[L.RADIUS]
     if not abs(d) < inf:
         return NO_DISTANCE
@@ -107,7 +109,7 @@ def derive_at(pair, pose_a, pose_b, answer, everything, to):
     kind = differentiate(pair, Ra, pose, place_of(answer), n, d, everything, to)
     if kind > SINGULAR_BESIDE or d > TOUCHING_CORES * pair_span(pair, pose.p, abs(d)):
         return kind  # nothing is left, or the normal is the only one
-    shared = has_rivals(pair, pose, rotate_back(Ra, n), d, place_of(answer))
+    shared = has_rivals(pair, pose, rotate_back(Ra, n), d, place_of(answer), kept)
     return EQUALLY_DEEP if shared else kind
 
 
@@ -118,7 +120,11 @@ def derive(pair, block, to):
     at = pointer(block, 0)
     motion = ahead(at, BLOCK_MOTION)
     pose_a, pose_b = ahead(motion, POSE_A), ahead(motion, POSE_B)
-    return derive_at(pair_pointers(pair), pose_a, pose_b, at, len(to) > 12, pointer(to, 0))
+    first = where_kept(at, len(block))
+    none = reals_on_stack(N_POLYTOPE)
+    none[N_VERTICES] = 0.0
+    kept = ahead(at, first) if first > 0 else none
+    return derive_at(pair_pointers(pair), pose_a, pose_b, at, kept, len(to) > 12, pointer(to, 0))
 
 
 @entry(
@@ -140,14 +146,14 @@ def derive_many(pair, poses_a, poses_b, first, end, answers, outs, kinds):
     rows, to = answers.reshape(answers.size), outs.reshape(outs.size)
     way_a, way_b, row, out = pointer(at_a, 0), pointer(at_b, 0), pointer(rows, 0), pointer(to, 0)
     one_a, one_b = len(poses_a) == 1, len(poses_b) == 1
-    width = outs.shape[1]
+    width, none = outs.shape[1], reals_on_stack(N_POLYTOPE)
+    none[N_VERTICES] = 0.0
     flat_a, flat_b = reals_on_stack(12), reals_on_stack(12)
     for k in range(first, end):
         copy_pose(ahead(way_a, 0 if one_a else 16 * k), flat_a)
         copy_pose(ahead(way_b, 0 if one_b else 16 * k), flat_b)
-        kinds[k] = derive_at(
-            pointers, flat_a, flat_b, ahead(row, N_OUT * k), width > 12, ahead(out, width * k)
-        )
+        answer, numbers = ahead(row, N_OUT * k), ahead(out, width * k)
+        kinds[k] = derive_at(pointers, flat_a, flat_b, answer, none, width > 12, numbers)
 
 
 @entry(PAIR, WRITE, VECTOR, REAL, ROWS, work="derivatives")
@@ -157,5 +163,6 @@ def equal_depths(pair, motion, n, d, normals):
     given, to = pointer(motion, 0), normals.reshape(normals.size)
     pose = relative_pose(ahead(given, POSE_A), ahead(given, POSE_B))
     none = reals_on_stack(N_POLYTOPE)
+    none[N_VERTICES] = 0.0
     work = without_limit(Work(stack_counts(), stack_log(), none, none))
     return equally_deep(pair_pointers(pair), pose, n, d, pointer(to, 0), work)

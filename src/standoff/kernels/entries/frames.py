@@ -8,7 +8,7 @@ import numpy as np
 
 from standoff.kernels.algebra.rigid import read_rotation, read_vector, relative_pose
 from standoff.kernels.body import layout as L
-from standoff.kernels.body.features import dimension
+from standoff.kernels.body.features import dimension, edge_record
 from standoff.kernels.compiler.calls import CAN_CALL
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.frame.answer import judge
@@ -164,11 +164,24 @@ def forget_polytope(work):
 
 
 @kernel
-def on_faces(pair, state):
-    """Were both witness points on faces? Elsewhere the smooth frame need not be asked."""
+def on_line(ints, feature):
+    """Is a feature a straight edge?"""
+    edge = dimension(ints, feature) == 1
+    return edge and ints[edge_record(ints, feature) + L.EDGE_KIND] == L.LINE
+
+
+@kernel
+def may_be_smooth(pair, state):
+    """Were both witness points on faces, or one on a straight edge? Elsewhere the smooth frame need
+    not be asked."""
     place = read_place(state)
-    a, b = dimension(pair.ints_a, place.feature_a), dimension(pair.ints_b, place.feature_b)
-    return a == 2 and b == 2
+    a = dimension(pair.ints_a, place.feature_a) == 2
+    b = dimension(pair.ints_b, place.feature_b) == 2
+    if a and b:
+        return True
+    if a:
+        return on_line(pair.ints_b, place.feature_b)
+    return b and on_line(pair.ints_a, place.feature_a)
 
 
 if CAN_CALL:
@@ -218,8 +231,8 @@ def far_frame(pair, inputs, h, options, state, out, work):
 def full_frame(pair, inputs, h, options, state, out, work):
     """A frame that is made, h seconds after the last that was."""
     if options.smooth != 0:
-        faces = on_faces(pair, state)
-        if faces and call_at(options.smooth, pair, inputs, h, options, state, out, work) != 0:
+        asked = may_be_smooth(pair, state)
+        if asked and call_at(options.smooth, pair, inputs, h, options, state, out, work) != 0:
             forget_polytope(work)
             return
         work.counts[GENERAL_FRAMES] = 1

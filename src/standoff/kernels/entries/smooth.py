@@ -7,10 +7,20 @@ from functools import lru_cache
 from typing import Any
 
 from standoff.kernels.body import layout as L
+from standoff.kernels.body.features import dimension
 from standoff.kernels.compiler.decorators import entry, kernel, small
 from standoff.kernels.compiler.entry import INT, REAL
 from standoff.kernels.frame.record import read_call
-from standoff.kernels.frame.smooth import seen_as, seen_as_nurbs, smooth_frame
+from standoff.kernels.frame.smooth import (
+    EDGE_AND_FACE,
+    FACE_AND_EDGE,
+    FACES,
+    seen_as,
+    seen_as_nurbs,
+    seen_on_line,
+    smooth_frame,
+)
+from standoff.kernels.state.state import read_place
 
 
 @small
@@ -44,11 +54,38 @@ def on_nurbs_5(ints, reals, chart, u, v):
 
 
 @kernel
-def called(look_a, look_b, record, h):
+def called_on(dims, look_a, look_b, record, h):
     """`smooth_frame` of a record of addresses."""
+    return smooth_frame(look_a, look_b, dims, read_call(record), h)
+
+
+@kernel
+def called(look_a, look_b, record, h):
+    """`called_on` faces."""
+    return called_on(FACES, look_a, look_b, record, h)
+
+
+@kernel
+def called_of_planes_and(look_b, record, h):
+    """`called_on` a polytope A's faces or its edges."""
     call = read_call(record)
-    pair, inputs = call.pair, call.inputs
-    return smooth_frame(look_a, look_b, pair, inputs, h, call.options, call.state, call.out)
+    if on_edge(call.pair.ints_a, read_place(call.state).feature_a):
+        return called_on(EDGE_AND_FACE, seen_on_line, look_b, record, h)
+    return called_on(FACES, on_plane, look_b, record, h)
+
+
+@kernel
+def called_of_and_planes(look_a, record, h):
+    """`called_on` a polytope B's faces or its edges."""
+    call = read_call(record)
+    if on_edge(call.pair.ints_b, read_place(call.state).feature_b):
+        return called_on(FACE_AND_EDGE, look_a, seen_on_line, record, h)
+    return called_on(FACES, look_a, on_plane, record, h)
+
+
+@small
+def on_edge(ints, feature):
+    return dimension(ints, feature) == 1
 
 
 @entry(INT, REAL, work="smooth")
@@ -60,12 +97,12 @@ def sphere_sphere(record, h):
 @entry(INT, REAL, work="smooth")
 def plane_sphere(record, h):
     """A polytope and one of these."""
-    return called(on_plane, on_sphere, record, h)
+    return called_of_planes_and(on_sphere, record, h)
 
 
 @entry(INT, REAL, work="smooth")
 def sphere_plane(record, h):
-    return called(on_sphere, on_plane, record, h)
+    return called_of_and_planes(on_sphere, record, h)
 
 
 @entry(INT, REAL, work="smooth")
@@ -98,7 +135,7 @@ def {name}(ints, reals, chart, u, v):
 """
 FRAME = """
 def {name}(record, h):
-    return called({a}, {b}, record, h)
+    return {how}, record, h)
 """
 
 
@@ -123,4 +160,7 @@ def made_for(kind_a: int, degree_a: int, kind_b: int, degree_b: int) -> Any:
     known = globals() | {name: small(each) for name, each in looks.items()}
     (a, _), (b, _) = _look_at(kind_a, degree_a), _look_at(kind_b, degree_b)
     name = f"smooth_{a}_{b}"
-    return entry(INT, REAL, work="smooth")(_written(FRAME.format(name=name, a=a, b=b), name, known))
+    how = f"called({a}, {b}"
+    if (kind_a == L.PLANE) != (kind_b == L.PLANE):
+        how = f"called_of_planes_and({b}" if kind_a == L.PLANE else f"called_of_and_planes({a}"
+    return entry(INT, REAL, work="smooth")(_written(FRAME.format(name=name, how=how), name, known))

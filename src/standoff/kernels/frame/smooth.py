@@ -1,4 +1,5 @@
-"""A frame whose witness points stay well inside faces of kinds that are known when it is compiled.
+"""A frame whose witness points stay well inside faces of kinds that are known when it is compiled,
+or one of them on a straight edge between planes.
 
 It is the general frame of the predictor-corrector without anything that such a frame never meets:
 no boundary, no other chart, no switch, no flat direction, no contact. It calls the same functions
@@ -7,17 +8,20 @@ in the same order, with fewer cases. It is tried first and writes nothing unless
 
 from typing import Any, NamedTuple
 
-from standoff.kernels.algebra.vectors import norm, sub
+from standoff.kernels.algebra.vectors import dot, norm, rotate_back, scale, sub, unit
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_record,
+    coedge_record,
     dimension,
+    edge_record,
     has_collapsed,
     moved_jet,
     normal_of_kind,
     pair_span,
+    plane_conormal,
 )
-from standoff.kernels.body.jets import mapped_jet, surface_jet
+from standoff.kernels.body.jets import curve_jet, mapped_jet, surface_jet
 from standoff.kernels.body.nurbs import net_at, net_jet_of, unrolled_basis
 from standoff.kernels.body.trimming import well_inside
 from standoff.kernels.compiler.decorators import small
@@ -25,7 +29,7 @@ from standoff.kernels.depth.penetration import contact_scale
 from standoff.kernels.frame.answer import judge, write_answer
 from standoff.kernels.frame.inputs import moving
 from standoff.kernels.frame.prediction import feeds, kept_state, predict
-from standoff.kernels.pair.certificate import SINGLE, Cones, NormalCone, certify_cones
+from standoff.kernels.pair.certificate import ARC, SINGLE, Cones, NormalCone, certify_cones
 from standoff.kernels.pair.certified import CERTIFIED, outcome_of
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, N_COUNTS
 from standoff.kernels.pair.newton import (
@@ -47,29 +51,48 @@ from standoff.kernels.tolerances import (
     EPS,
     POLISHED,
     SHIFTED_GAP,
+    SLOPE,
+    SLOPE_NOISE,
     SMOOTH_CORRECTIONS,
     TOUCHING,
 )
-from standoff.kernels.values import NO_RATES, ORIGIN, STILL, Found, Vector, moved, of_origin
+from standoff.kernels.values import (
+    NO_RATES,
+    ORIGIN,
+    STILL,
+    Found,
+    Vector,
+    moved,
+    of_origin,
+    side_of,
+)
 
 NO_JET = (ORIGIN, ORIGIN, ORIGIN, ORIGIN, ORIGIN, ORIGIN)
+NO_CONE = NormalCone(SINGLE, ORIGIN, ORIGIN, ORIGIN, 0.0)
+
+# What the witness points are on: dimensions of A's feature and of B's.
+FACES, EDGE_AND_FACE, FACE_AND_EDGE = (2, 2), (1, 2), (2, 1)
 
 
 class Seen(NamedTuple):
-    """A chart at its parameters, in its body's frame."""
+    """A chart or an edge at its parameters, in its body's frame."""
 
-    fits: bool  # is it of the kind, with both tangents nonzero?
+    fits: bool  # is it of the kind, with its tangents nonzero?
     jet: Any
-    normal: Vector  # unit, outward
-    noise: float  # bound on how far roundoff turns it (chord)
+    cone: NormalCone
+    ways: tuple[Vector, Vector]  # off an edge: unit conormals of its faces
 
 
 class Looked(NamedTuple):
-    """Both charts at a place."""
+    """Both features at a place."""
 
     fits: bool
     jets: Any  # in A's frame
     cones: Any  # input of the certificate
+    ways: Any  # of both, in their bodies' frames
+
+
+NOT_SEEN = Seen(False, NO_JET, NO_CONE, (ORIGIN, ORIGIN))
 
 
 @small
@@ -78,7 +101,7 @@ def seen_as(kind, ints, reals, chart, u, v):
     c = chart_record(ints, chart)
     o = ints[c + L.CHART_REALS]
     if ints[c + L.CHART_KIND] != kind:
-        return Seen(False, NO_JET, ORIGIN, 0.0)
+        return NOT_SEEN
     return seen_by(kind, reals, o, surface_jet(reals, kind, o, u, v))
 
 
@@ -87,7 +110,32 @@ def seen_by(kind, reals, o, jet):
     """A chart whose reals begin at o, from its jet."""
     normal, noise = normal_of_kind(kind, reals, o, jet)
     collapsed = has_collapsed(reals, jet[1]) or has_collapsed(reals, jet[2])
-    return Seen(not collapsed, jet, normal, noise)
+    cone = NormalCone(SINGLE, normal, normal, ORIGIN, noise)
+    return Seen(not collapsed, jet, cone, (ORIGIN, ORIGIN))
+
+
+@small
+def seen_on_line(ints, reals, edge, t, _):
+    """An edge of a spatial body taken for a straight one between two planes."""
+    e = edge_record(ints, edge)
+    first, second = ints[e + L.EDGE_COEDGE_0], ints[e + L.EDGE_COEDGE_1]
+    if ints[e + L.EDGE_KIND] != L.LINE or min(first, second) < 0:
+        return NOT_SEEN
+    if not (on_plane(ints, first) and on_plane(ints, second)):
+        return NOT_SEEN
+    x, xt, xtt = curve_jet(reals, L.LINE, ints[e + L.EDGE_REALS] + L.CURVE_DATA, t)
+    tangent = unit(xt)
+    way_a, a = plane_conormal(ints, reals, first, tangent)
+    way_b, b = plane_conormal(ints, reals, second, tangent)
+    cone = NormalCone(ARC, a, b, tangent, 0.0)
+    return Seen(True, (x, xt, ORIGIN, xtt, ORIGIN, ORIGIN), cone, (way_a, way_b))
+
+
+@small
+def on_plane(ints, coedge):
+    """Is the face at a coedge a plane?"""
+    c = coedge_record(ints, coedge)
+    return ints[chart_record(ints, ints[c + L.COEDGE_CHART]) + L.CHART_KIND] == L.PLANE
 
 
 @small
@@ -98,7 +146,7 @@ def seen_as_nurbs(degree, ints, reals, chart, u, v):
     data = o + L.SURFACE_DATA
     fits = ints[c + L.CHART_KIND] == L.NURBS
     if not (fits and reals[data] == degree and reals[data + 1] == degree):
-        return Seen(False, NO_JET, ORIGIN, 0.0)
+        return NOT_SEEN
     net, at, rates = net_at(reals, data, u, v)
     jet = net_jet_of(unrolled_basis, reals, net, (degree, degree), at, rates)
     return seen_by(L.NURBS, reals, o, mapped_jet(reals, o, jet))
@@ -106,46 +154,75 @@ def seen_as_nurbs(degree, ints, reals, chart, u, v):
 
 @small
 def look(look_a, look_b, pair, pose, place):
-    """Both charts at a place, by functions for their kinds."""
-    a = look_a(pair.ints_a, pair.reals_a, place.chart_a, place.u, place.v)
-    b = look_b(pair.ints_b, pair.reals_b, place.chart_b, place.r, place.s)
+    """Both features at a place, by the functions that know their kinds."""
+    a = look_a(pair.ints_a, pair.reals_a, number(side_of(place, 0)), place.u, place.v)
+    b = look_b(pair.ints_b, pair.reals_b, number(side_of(place, 1)), place.r, place.s)
     jet_b = moved_jet(pose, b.jet)
-    cones = Cones(
-        NormalCone(SINGLE, a.normal, a.normal, ORIGIN, a.noise),
-        NormalCone(SINGLE, b.normal, b.normal, ORIGIN, b.noise),
-        a.jet[0],
-        b.jet[0],
-        sub(jet_b[0], a.jet[0]),
-    )
-    return Looked(a.fits and b.fits, (a.jet, jet_b), cones)
+    cones = Cones(a.cone, b.cone, a.jet[0], b.jet[0], sub(jet_b[0], a.jet[0]))
+    return Looked(a.fits and b.fits, (a.jet, jet_b), cones, (a.ways, b.ways))
 
 
 @small
-def inside_faces(pair, place):
-    """Are both points well inside their faces, and central in their charts?"""
+def number(side):
+    """Of a face its chart's, of an edge its own."""
+    return side.chart if side.chart >= 0 else side.feature
+
+
+@small
+def inside_feature(dimension, ints, reals, side):
+    """Does a point lie well inside its face, centrally in its chart, or between its edge's ends?"""
+    if dimension == 1:
+        o = ints[edge_record(ints, side.feature) + L.EDGE_REALS]
+        return reals[o + L.EDGE_T0] < side.p < reals[o + L.EDGE_T1]
+    o = ints[chart_record(ints, side.chart) + L.CHART_REALS]
+    return well_inside(reals, o, side.p, side.q)
+
+
+@small
+def inside_features(dims, pair, place):
+    """`inside_feature` of both points."""
     ia, ra, ib, rb = pair
-    o_a = ia[chart_record(ia, place.chart_a) + L.CHART_REALS]
-    o_b = ib[chart_record(ib, place.chart_b) + L.CHART_REALS]
-    return well_inside(ra, o_a, place.u, place.v) and well_inside(rb, o_b, place.r, place.s)
+    a = inside_feature(dims[0], ia, ra, side_of(place, 0))
+    return a and inside_feature(dims[1], ib, rb, side_of(place, 1))
 
 
 @small
-def may_be_smooth(pair, before):
-    """Were both points on faces, and the bodies far enough apart for the law without contact?"""
+def may_be_smooth(dims, pair, before):
+    """Were the points on features of these dimensions, and the bodies far enough apart for the law
+    alone?"""
     place = before.place
     return (
         not before.lost
         and not before.inside
         and before.cut == 0
-        and dimension(pair.ints_a, place.feature_a) == 2
-        and dimension(pair.ints_b, place.feature_b) == 2
+        and dimension(pair.ints_a, place.feature_a) == dims[0]
+        and dimension(pair.ints_b, place.feature_b) == dims[1]
         and before.distance >= SHIFTED_GAP * contact_scale(pair)
     )
 
 
 @small
-def descended(look_a, look_b, pair, motion, place, tolerance, most):
-    """(done, corrections, place, looked, rates): `settle` for a pair away from all boundaries."""
+def held(ways, n, least):
+    """Does the distance fall along neither way off an edge, by a slope of `least`? n is the unit
+    vector towards the other body, in the edge's own frame."""
+    return dot(n, ways[0]) <= least and dot(n, ways[1]) <= least
+
+
+@small
+def both_held(dims, pose, looked, d, span, slope):
+    """Is no feature released, by the switching functions of `settle`?"""
+    if dims[0] == 2 and dims[1] == 2:
+        return True
+    least = max(SLOPE, max(SLOPE_NOISE * EPS * span, slope) / d)
+    n = scale(1.0 / d, looked.cones.gap)
+    if dims[0] == 1:
+        return held(looked.ways[0], n, least)
+    return held(looked.ways[1], scale(-1.0, rotate_back(pose.R, n)), least)
+
+
+@small
+def descended(look_a, look_b, dims, pair, motion, place, tolerance, most):
+    """(done, corrections, place, looked, rates): `settle` of a pair that no boundary concerns."""
     pose, corrections, rates = motion.pose, 0, NO_RATES
     looked = look(look_a, look_b, pair, pose, place)
     done = looked.fits
@@ -157,6 +234,7 @@ def descended(look_a, look_b, pair, motion, place, tolerance, most):
         metrics = pair_metric(jet_a, jet_b)
         slope = metric_norm(metrics, g)
         if corrections > 0 and slope <= max(AT_REST * EPS * span, tolerance * d):
+            done = both_held(dims, pose, looked, d, span, slope)
             break
         H = hessian(jet_a, jet_b)
         factors = ldl(H)
@@ -171,28 +249,30 @@ def descended(look_a, look_b, pair, motion, place, tolerance, most):
         place = moved(place, 1.0, step)
         looked = look(look_a, look_b, pair, pose, place)
         corrections += 1
-        done = looked.fits and inside_faces(pair, place)
+        done = looked.fits and inside_features(dims, pair, place)
         done = done and energy(looked.jets[0], looked.jets[1]) <= enough
     return done, corrections, place, looked, rates
 
 
 @small
-def smooth_frame(look_a, look_b, pair, inputs, h, options, state, out):
-    """Write the answer and the next state of a frame, and return 1; or write nothing and return 0.
+def smooth_frame(look_a, look_b, dims, call, h):
+    """Make the answer and the next state of a frame: 1; or write nothing: 0.
 
-    look_a and look_b evaluate the charts of A and of B, each for one kind.
+    look_a and look_b see A's charts and B's as of one kind, or edges where `dims` says so. `call`
+    is what a frame is called with, its work not asked.
     """
+    pair, inputs, options, state, out, _ = call
     before = read_state(state)
-    if not may_be_smooth(pair, before):
+    if not may_be_smooth(dims, pair, before):
         return 0
     motion = moving(inputs, before, h)
     pose = motion.pose
     place = moved(before.place, 1.0, predict(before, options.predictor, h))
-    if not inside_faces(pair, place):
+    if not inside_features(dims, pair, place):
         return 0
     most = min(options.deadline, SMOOTH_CORRECTIONS)
     done, corrections, place, looked, rates = descended(
-        look_a, look_b, pair, motion, place, options.tolerance, most
+        look_a, look_b, dims, pair, motion, place, options.tolerance, most
     )
     if not done:
         return 0
