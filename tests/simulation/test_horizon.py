@@ -1,10 +1,14 @@
 """Simulated bodies whose far pairs are only bounded move as if every distance were found."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import standoff as so
 import standoff.simulation as sim
+from standoff.scene import SceneError
+from standoff.scene.simulation import load_simulation
 
 PEBBLE = so.shapes.ellipsoid(0.05, 0.05, 0.04)
 
@@ -29,3 +33,35 @@ def test_the_motion_is_the_same_with_a_horizon() -> None:
     assert near.deepest == pytest.approx(every.deepest, rel=1e-9)
     assert np.array(paths[1]) == pytest.approx(np.array(paths[0]), abs=1e-9)
     assert near.uncertified == every.uncertified == 0
+
+
+SCENE = """
+version = 1
+[bodies.floor]
+shape = "halfspace"
+[bodies.ball]
+shape = "sphere"
+radius = 0.1
+[placements.ball]
+position = [0.0, 0.0, 1.0]
+[free.ball]
+mass = 1.0
+[contact]
+stiffness = 1e5
+[simulate]
+step = 1e-3
+duration = 0.1
+within = 0.2
+"""
+
+
+def test_a_scene_has_a_horizon_too(tmp_path: Path) -> None:
+    file = tmp_path / "fall.toml"
+    file.write_text(SCENE)
+    scene = load_simulation(file)
+    assert scene.operator.laws[0].within == 0.2
+    made = scene.operator.run(scene.operator.start(), 50)
+    assert np.isinf(made.distances).all()
+    file.write_text(SCENE + 'tracker = "inside"\n')
+    with pytest.raises(SceneError, match="tracker = 'beside'"):
+        load_simulation(file)
