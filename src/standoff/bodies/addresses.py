@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from standoff.bodies.made_parts import MadeParts
 from standoff.bodies.topology import Edge, Face
 from standoff.geometry.validation import Array
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 def formulas_of(edges: Iterable[Edge], faces: Iterable[Face]) -> list[Formula]:
     """The formulas of a body's parts, in the order of the parts."""
+    if isinstance(edges, MadeParts) and isinstance(faces, MadeParts):
+        return []  # planes and lines, which are not made for this
     found = [f for edge in edges for f in edge.curve.formulas]
     return found + [f for face in faces for chart in face.charts for f in chart.formulas]
 

@@ -14,6 +14,7 @@ from standoff.bodies.boundary import Boundary
 from standoff.bodies.charts import edge_points, loop_pcurve
 from standoff.bodies.convexity import Known
 from standoff.bodies.finishing import Packed, finish
+from standoff.bodies.made_parts import MadeParts
 from standoff.bodies.report import BodyReport
 from standoff.bodies.sewing import sew
 from standoff.bodies.tolerances import MAX_SPREAD, SIMILARITY_TOLERANCE, SINGULAR_MAP
@@ -40,8 +41,8 @@ class Body(Boundary):
     name : str
     vertex_points : (n, 3) array
         Body frame.
-    edge_parts : tuple of Edge
-    face_parts : tuple of Face
+    edge_parts : sequence of Edge
+    face_parts : sequence of Face
     radius : float
         Of the ball swept over the core, length: a sphere's own radius, another shape's rounding.
     dimension : int
@@ -114,7 +115,7 @@ class Body(Boundary):
         if convexity_tolerance is not None:
             convexity_tolerance = magnitude_or_zero(convexity_tolerance, "convexity_tolerance")
         joined = assemble(points, edges, faces, dimension, rough, tolerance)
-        return _body(name, radius, finish(joined, radius, convexity_tolerance))
+        return made_body(name, radius, finish(joined, radius, convexity_tolerance))
 
     @staticmethod
     def from_patches(
@@ -173,7 +174,55 @@ class Body(Boundary):
             tolerance=sewn.tolerance,
         )
         known = Known(sewn.labels, sewn.proofs)
-        return _body(name, radius, finish(joined, radius, convexity_tolerance, known))
+        return made_body(name, radius, finish(joined, radius, convexity_tolerance, known))
+
+    @staticmethod
+    def from_points(
+        points: Any,
+        *,
+        tolerance: float | None = None,
+        rounding: float = 0.0,
+        name: str = "hull",
+    ) -> Body:
+        """The convex hull of points, spatial or planar.
+
+        Facets of one plane are one face. Faces, edges and vertices are numbered the same for the
+        same points: vertices in the points' order, faces by Qhull's order of facets, edges as the
+        faces' outlines come to them.
+
+        Parameters
+        ----------
+        points : (n, 3) or (n, 2) array_like
+            At least four that are not in one plane, length; of a planar body, at least three that
+            are not in one line. Those inside the hull, and all but one of equal ones, are left
+            out. They may lie far from the origin: the hull is then taken about their middle,
+            which ``body.check().notes`` tells.
+        tolerance : float, optional
+            Facets whose corners are within this distance of one plane become one face, length. By
+            default only those of one plane do, up to roundoff. The face lies within the hull, and
+            how far a point is above it goes into the slack, by which lower bounds are less: they
+            are bounds for the hull of the points all the same. ``body.check()`` tells both.
+        rounding : float
+            Radius of a ball (planar: a disc) swept over it, length, zero or above: the body grows
+            by it all round.
+        name : str
+
+        Returns
+        -------
+        Body
+
+        Raises
+        ------
+        BodyError
+            The points span no volume (no area), are too thin for their extent, or extend over less
+            than 1e-50.
+        ValueError
+            A wrong shape, a number that is not finite or beyond 1e50, a tolerance that is not
+            positive, a negative rounding.
+        """
+        from standoff.bodies.hulls.from_points import hull_of
+
+        return made_body(name, *hull_of(points, tolerance, rounding))
 
     def transformed(self, affine: Any) -> Body:
         """The exact image under an affine map: a (3, 3), a (4, 4), or a ((3, 3), (3,)) pair.
@@ -279,13 +328,14 @@ class Body(Boundary):
         return bool(np.abs(np.concatenate(spots)[:, 2]).max() == 0.0)
 
 
-def _body(name: str, radius: float, packed: Packed) -> Body:
+def made_body(name: str, radius: float, packed: Packed) -> Body:
+    """A body of a boundary that is finished."""
     parts, report = packed.parts, packed.report
     return Body(
         name,
         parts.vertices,
-        tuple(parts.edges),
-        tuple(parts.faces),
+        parts.edges if isinstance(parts.edges, MadeParts) else tuple(parts.edges),
+        parts.faces if isinstance(parts.faces, MadeParts) else tuple(parts.faces),
         radius,
         parts.dimension,
         packed.ints,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any
@@ -23,8 +24,8 @@ class PackedParts(KeepsReadOnly):
 
     name: str
     vertex_points: Array
-    edge_parts: tuple[Edge, ...]
-    face_parts: tuple[Face, ...]
+    edge_parts: Sequence[Edge]
+    face_parts: Sequence[Face]
     radius: float
     dimension: int
     ints: Ints

@@ -1,0 +1,227 @@
+"""The hull of points as a packed body."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from standoff.bodies.assembly import roundoff_note
+from standoff.bodies.convexity import Convexity
+from standoff.bodies.finishing import Packed, slack_of
+from standoff.bodies.hulls.heights import greatest_heights
+from standoff.bodies.hulls.joints import edge_turns, vertex_cones, wide_corners, widening
+from standoff.bodies.hulls.merging import merged
+from standoff.bodies.hulls.outlines import Outlines, outlines
+from standoff.bodies.hulls.packed import pack_polyhedron
+from standoff.bodies.hulls.parts import Charts, Edges, Faces, PlaneChecks
+from standoff.bodies.hulls.polyhedron import Polyhedron, polyhedron
+from standoff.bodies.hulls.qhull import Triangles, hull_triangles
+from standoff.bodies.hulls.rectangles import inner_rectangles
+from standoff.bodies.hulls.samples import polyhedron_samples
+from standoff.bodies.packing import Assembled
+from standoff.bodies.report import BodyReport, DihedralAngle
+from standoff.bodies.tolerances import (
+    CONVEXITY_TOLERANCE,
+    FAR_OFF,
+    JOIN_TOLERANCE,
+    NARROW_FACETS,
+    ROUNDOFF,
+    SMOOTH_ANGLE,
+    THIN,
+    coordinate_roundoff,
+)
+from standoff.errors import BodyError
+from standoff.geometry.validation import Array
+
+
+def hull(
+    points: Array, radius: float, tolerance: float | None = None, word: str = "vertices"
+) -> Packed:
+    """The hull of points, (n, 3), swept by a ball.
+
+    Parameters
+    ----------
+    tolerance : facets whose corners are within it of one plane become one face, length; by default
+        only those of one plane do.
+    word : what a message calls the points.
+
+    Raises
+    ------
+    BodyError
+        The points span no volume, are too thin for their extent, or extend over too little.
+    """
+    middle = middle_of(points)
+    try:
+        packed = _built(points, points - middle, radius, tolerance, word)
+    except BodyError as error:
+        # Points that Qhull finds in one plane are told as such.
+        thin = None if error.__cause__ is not None else thin_error(points, word)
+        if thin is None:
+            raise
+        raise thin from error
+    return recentred(packed, points, middle)
+
+
+def _built(
+    points: Array, local: Array, radius: float, tolerance: float | None, word: str
+) -> Packed:
+    """The hull, with facets that are too narrow to have a plane merged into their neighbours."""
+    triangles = hull_triangles(local, word)
+    extent = float(np.ptp(local, axis=0).max())
+    least = max(tolerance or 0.0, coordinate_roundoff(local))
+    wider = [share * extent for share in NARROW_FACETS if share * extent > least]
+    for last, reach in zip([*[False] * len(wider), True], [least, *wider], strict=True):
+        try:
+            return solid_body(points, outlines_within(local, triangles, reach), radius, tolerance)
+        except BodyError:
+            if last:
+                raise
+    raise AssertionError("the last reach raises or returns")
+
+
+def facets(points: Array, word: str = "vertices") -> Outlines:
+    """The outlines of the faces of the points' hull; facets of one plane are one face."""
+    return outlines_within(points, hull_triangles(points, word), coordinate_roundoff(points))
+
+
+def outlines_within(points: Array, triangles: Triangles, reach: float) -> Outlines:
+    """The outlines of faces whose corners are within `reach`, length, of one plane."""
+    return outlines(points, triangles, merged(points, triangles, reach), reach)
+
+
+def solid_body(
+    points: Array, found: Outlines, radius: float, tolerance: float | None = None
+) -> Packed:
+    """The polyhedron of outlines round points, (n, 3), all of them compared with its faces.
+
+    Raises
+    ------
+    BodyError
+        A face further from a plane than the tolerance, or a point above one.
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    size, roundoff = float(np.linalg.norm(high - low)), coordinate_roundoff(points)
+    solid = polyhedron(points, found, max(ROUNDOFF * size, roundoff))
+    allowed = max(JOIN_TOLERANCE * size if tolerance is None else tolerance, roundoff)
+    residual = _residual(solid, found, allowed)
+    share = max(CONVEXITY_TOLERANCE * size, allowed)
+    defect = _defect(points, solid, share)
+    turns, cones, pcurves = edge_turns(solid), vertex_cones(solid), solid.pcurves()
+    smooth = (np.abs(turns) <= SMOOTH_ANGLE) & (np.abs(np.sin(turns)) < SMOOTH_ANGLE)
+    joints = smooth, cones, wide_corners(solid, pcurves)
+    noise = max(ROUNDOFF * size, roundoff)
+    widen = widening(solid, turns, cones) if defect > noise else 1.0
+    slack = slack_of(Convexity((), defect, widen), 0.0, 0.0, noise)
+    edges, faces = Edges(solid), Faces(solid)
+    parts = Assembled(3, solid.vertices, edges, faces, Charts((edges, faces)))
+    inner = inner_rectangles(solid, pcurves)
+    box = low, high
+    samples = polyhedron_samples(solid, pcurves)
+    ints, reals = pack_polyhedron(solid, joints, pcurves, box, inner, radius, slack, samples)
+    report = BodyReport(
+        dimension=3,
+        faces=solid.n_faces,
+        edges=len(edges),
+        vertices=len(solid.vertices),
+        smooth_edges=int(smooth.sum()),
+        charts=solid.n_faces,
+        size=size + 2.0 * radius,
+        convexity_defect=defect,
+        notes=_notes(found, residual, size, roundoff, noise),
+        closed=True,
+        outward=True,
+        patches=PlaneChecks(solid.n_faces),
+        sharpest=_dihedral(solid, turns, int(turns.argmax())),
+        flattest=_dihedral(solid, turns, int(turns.argmin())),
+        convexity_tolerance=share,
+        sewing_residual=residual,
+        sewing_tolerance=allowed,
+        slack=slack,
+        coordinate_roundoff=roundoff,
+    )
+    return Packed(parts, ints, reals, report)
+
+
+def _residual(solid: Polyhedron, found: Outlines, allowed: float) -> float:
+    """How far faces are from their corners, and from those left out on straight sides."""
+    away = solid.vertices[solid.corners] - solid.shifts[solid.owners]
+    off = np.abs(np.einsum("ij,ij->i", away, solid.normals[solid.owners]))
+    worst = int(off.argmax())
+    if off[worst] > allowed:
+        raise BodyError(
+            f"Face {solid.owners[worst]} misses its corner {solid.vertices[solid.corners[worst]]} "
+            f"by {off[worst]:.3g}, more than tolerance={allowed:.3g} allows."
+        )
+    return max(float(off[worst]), found.left_out)
+
+
+def _defect(points: Array, solid: Polyhedron, allowed: float) -> float:
+    """How far a point is above a face at most."""
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    normals = solid.normals
+    offsets = np.einsum("ij,ij->i", normals, solid.shifts - middle)
+    heights = greatest_heights(points - middle, normals, offsets)
+    worst = int(heights.argmax())
+    if not heights[worst] <= allowed:
+        raise BodyError(
+            f"Not convex: a point is {heights[worst]:.3g} above face {worst} at "
+            f"{solid.shifts[worst]}, more than {allowed:.3g}; its corners are too nearly in one "
+            "line. Leave out points that are nearly on it, or give a tolerance."
+        )
+    return float(heights[worst])
+
+
+def _notes(
+    found: Outlines, residual: float, size: float, roundoff: float, noise: float
+) -> tuple[str, ...]:
+    notes = []
+    if residual > noise:
+        notes.append(
+            f"facets nearly in one plane are one face: corners are off theirs by up to "
+            f"{residual:.3g}"
+        )
+    if found.split:
+        notes.append(
+            f"{found.split} groups of facets nearly in one plane have no single outline: their "
+            "facets stay faces of their own"
+        )
+    if roundoff > JOIN_TOLERANCE * size > 0.0:
+        notes.append(roundoff_note(roundoff))
+    return tuple(notes)
+
+
+def _dihedral(solid: Polyhedron, turns: Array, edge: int) -> DihedralAngle:
+    x, y, z = solid.vertices[solid.ends[edge]].mean(axis=0).tolist()
+    return DihedralAngle(np.pi - float(turns[edge]), edge, 0.5, (x, y, z))
+
+
+def middle_of(points: Array) -> Array:
+    """About which the hull is taken: the middle of points that are far off, else the origin."""
+    extent = float(np.ptp(points, axis=0).max(initial=0.0)) if len(points) else 0.0
+    if extent == 0.0 or float(np.abs(points).max()) <= FAR_OFF * extent:
+        return np.zeros(3)
+    return np.asarray(0.5 * (points.min(axis=0) + points.max(axis=0)))
+
+
+def recentred(packed: Packed, given: Array, middle: Array) -> Packed:
+    """A hull that was taken about a middle, with a note of it."""
+    if not middle.any():
+        return packed
+    away = float(np.abs(given).max()) / float(np.ptp(given, axis=0).max())
+    note = f"recentred: the hull is taken about {middle}, as the origin is {away:.3g} extents away"
+    notes = (note, *packed.report.notes)
+    return replace(packed, report=replace(packed.report, notes=notes))
+
+
+def thin_error(points: Array, word: str) -> BodyError | None:
+    """What to say of a polytope that cannot be built, if it is because it is thin."""
+    axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
+    extent, thickness = (float(np.ptp(points @ axis)) for axis in (axes[0], axes[-1]))
+    if thickness >= THIN * extent:
+        return None
+    return BodyError(
+        f"The {len(points)} {word} are too nearly in one plane: {thickness:.3g} thick on an "
+        f"extent of {extent:.3g}, so that its facets are not told apart. Make it thicker than "
+        f"{THIN * extent:.1g}, or take a flat body, so.shapes.planar_loop."
+    )

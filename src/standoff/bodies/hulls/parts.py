@@ -1,0 +1,75 @@
+"""Edges, faces and charts of a polyhedron as objects."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from standoff.bodies.hulls.polyhedron import Polyhedron
+from standoff.bodies.made_parts import MadeParts
+from standoff.bodies.packing import Chart, Coedge
+from standoff.bodies.report import PatchCheck
+from standoff.bodies.topology import Edge, Face
+from standoff.geometry.curves import Line
+from standoff.geometry.exact_pcurves import pcurve_of
+from standoff.geometry.quadrics import Plane
+
+
+class Edges(MadeParts[Edge]):
+    """The edges of a `Polyhedron`."""
+
+    _source: Polyhedron
+
+    def __len__(self) -> int:
+        return len(self._source.ends)
+
+    def make(self, number: int) -> Edge:
+        first, last = self._source.ends[number].tolist()
+        vertices = self._source.vertices
+        return Edge(Line(vertices[first], vertices[last]), first, last)
+
+
+class Faces(MadeParts[Face]):
+    """The faces of a `Polyhedron`."""
+
+    _source: Polyhedron
+
+    def __len__(self) -> int:
+        return self._source.n_faces
+
+    def make(self, number: int) -> Face:
+        solid = self._source
+        own = slice(*solid.starts[number : number + 2])
+        plane = Plane(solid.planes[number], solid.shifts[number])
+        loop = zip(solid.edges[own].tolist(), solid.senses[own].tolist(), strict=True)
+        return Face((plane,), tuple(loop))
+
+
+class Charts(MadeParts[Chart]):
+    """Of every face its one chart."""
+
+    _source: tuple[Edges, Faces]
+
+    def __len__(self) -> int:
+        return len(self._source[1])
+
+    def make(self, number: int) -> Chart:
+        edges, faces = self._source
+        face = faces[number]
+        (plane,) = face.charts
+        coedges = [
+            Coedge(j, pcurve_of(edges[j].curve, plane), 0.0, 1.0, sense, k)
+            for k, (j, sense) in enumerate(face.loop)
+        ]
+        return Chart(plane, number, limit=np.inf, coedges=coedges)
+
+
+class PlaneChecks(MadeParts[PatchCheck]):
+    """Of every face that its plane is convex, by theorem."""
+
+    _source: int
+
+    def __len__(self) -> int:
+        return self._source
+
+    def make(self, number: int) -> PatchCheck:
+        return PatchCheck(number, "Plane", "theorem", True, 0.0, True, (0.0, 0.0))
