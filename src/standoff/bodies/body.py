@@ -224,6 +224,57 @@ class Body(Boundary):
 
         return made_body(name, *hull_of(points, tolerance, rounding))
 
+    @staticmethod
+    def from_mesh(
+        mesh: Any,
+        *,
+        hull: bool = False,
+        tolerance: float | None = None,
+        rounding: float = 0.0,
+        name: str = "mesh",
+    ) -> Body:
+        """A body of a closed convex mesh of triangles, or the hull of one that is not convex.
+
+        Triangles of one plane are one face. What a hull adds to a mesh that is not convex is
+        measured, and told in ``body.check().notes``; ``so.decomposition`` makes convex pieces.
+
+        Parameters
+        ----------
+        mesh : trimesh.Trimesh, path, or (vertices, triangles)
+            Closed, length. A file is read by trimesh, which the extra `meshes` installs. Equal
+            points are made one; a mesh that faces inward is turned, which the notes tell.
+        hull : bool
+            Take the hull where the mesh is not convex.
+        tolerance : float, optional
+            As for ``from_points``; a mesh whose edges are concave by no more counts as convex, by
+            default 1e-6 of the size.
+        rounding : float
+            Radius of a ball swept over it, length, zero or above.
+        name : str
+
+        Returns
+        -------
+        Body
+
+        Raises
+        ------
+        BodyError
+            Holes, more than two triangles at an edge, triangles that face different ways, no
+            volume; or a mesh that is not convex, without ``hull=True``. The message names the
+            place.
+        ModuleNotFoundError
+            A path is given, and trimesh is not installed; the message names the extra.
+        OSError
+            The file cannot be read.
+        TypeError
+            No mesh.
+        ValueError
+            NaN, infinite or wrongly shaped numbers, or corners that do not exist.
+        """
+        from standoff.bodies.meshes.bodies import mesh_body
+
+        return made_body(name, *mesh_body(mesh, hull, tolerance, rounding))
+
     def transformed(self, affine: Any) -> Body:
         """The exact image under an affine map: a (3, 3), a (4, 4), or a ((3, 3), (3,)) pair.
 

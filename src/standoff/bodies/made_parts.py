@@ -6,19 +6,21 @@ from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from typing import Any, TypeVar, overload
 
+from standoff.read_only import KeepsReadOnly
+
 Part = TypeVar("Part")
 
 
-class MadeParts(Sequence[Part]):
+class MadeParts(KeepsReadOnly, Sequence[Part]):
     """A sequence whose items are made from arrays at their first use; each is one object.
 
-    They are planes and lines: none is a compiled formula.
+    They are planes and lines: none is a compiled formula. What has been made is stored with them,
+    so that what was one object stays one.
     """
 
-    __slots__ = ("_made", "_source")
-
     def __init__(self, source: Any) -> None:
-        self._source, self._made = source, {}  # type: ignore[var-annotated]
+        self._source = source
+        self._made: dict[int, Part] = {}
 
     @abstractmethod
     def make(self, number: int) -> Part:
@@ -42,6 +44,3 @@ class MadeParts(Sequence[Part]):
 
     def __iter__(self) -> Iterator[Part]:
         return (self[k] for k in range(len(self)))
-
-    def __reduce__(self) -> Any:
-        return type(self), (self._source,)

@@ -107,11 +107,6 @@ INNER_SHARE: Final = 1.0 - 1e-12
 """Part of the largest rectangle of its proportions that is taken within a face's sides: the rest
 is room for the roundoff of its corners."""
 
-NARROW_FACETS: Final = (1e-12, 1e-9)
-"""Parts of the extent within which, one after the other, facets are merged where those of roundoff
-do not do: facets between points that are nearly the same are too narrow to have a plane. What it
-costs goes into the slack."""
-
 ON_SIDE: Final = 1e-12
 """A sample may be outside a face's side by this part of the area of the face's rectangle: the
 middle of an obtuse triangle's rectangle is on its side, to roundoff."""

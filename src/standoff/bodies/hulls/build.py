@@ -25,7 +25,6 @@ from standoff.bodies.tolerances import (
     CONVEXITY_TOLERANCE,
     FAR_OFF,
     JOIN_TOLERANCE,
-    NARROW_FACETS,
     ROUNDOFF,
     SMOOTH_ANGLE,
     THIN,
@@ -33,6 +32,9 @@ from standoff.bodies.tolerances import (
 )
 from standoff.errors import BodyError
 from standoff.geometry.validation import Array
+
+# A polyhedron has as many faces at least.
+LEAST_FACES = 4
 
 
 def hull(
@@ -53,7 +55,10 @@ def hull(
     """
     middle = middle_of(points)
     try:
-        packed = _built(points, points - middle, radius, tolerance, word)
+        triangles = hull_triangles(points - middle, word)
+        reach = max(tolerance or 0.0, coordinate_roundoff(points - middle))
+        found = outlined(points - middle, triangles, reach, word)
+        packed = solid_body(points, found, radius, tolerance)
     except BodyError as error:
         # Points that Qhull finds in one plane are told as such.
         thin = None if error.__cause__ is not None else thin_error(points, word)
@@ -63,31 +68,22 @@ def hull(
     return recentred(packed, points, middle)
 
 
-def _built(
-    points: Array, local: Array, radius: float, tolerance: float | None, word: str
-) -> Packed:
-    """The hull, with facets that are too narrow to have a plane merged into their neighbours."""
-    triangles = hull_triangles(local, word)
-    extent = float(np.ptp(local, axis=0).max())
-    least = max(tolerance or 0.0, coordinate_roundoff(local))
-    wider = [share * extent for share in NARROW_FACETS if share * extent > least]
-    for last, reach in zip([*[False] * len(wider), True], [least, *wider], strict=True):
-        try:
-            return solid_body(points, outlines_within(local, triangles, reach), radius, tolerance)
-        except BodyError:
-            if last:
-                raise
-    raise AssertionError("the last reach raises or returns")
-
-
 def facets(points: Array, word: str = "vertices") -> Outlines:
     """The outlines of the faces of the points' hull; facets of one plane are one face."""
-    return outlines_within(points, hull_triangles(points, word), coordinate_roundoff(points))
+    return outlined(points, hull_triangles(points, word), coordinate_roundoff(points), word)
 
 
-def outlines_within(points: Array, triangles: Triangles, reach: float) -> Outlines:
+def outlined(points: Array, triangles: Triangles, reach: float, word: str = "vertices") -> Outlines:
     """The outlines of faces whose corners are within `reach`, length, of one plane."""
-    return outlines(points, triangles, merged(points, triangles, reach), reach)
+    found = outlines(points, triangles, merged(points, triangles, reach), reach)
+    if len(found.starts) <= LEAST_FACES:
+        raise thin_error(points, word) or BodyError(
+            f"Within {reach:.3g} of a plane each, the hull has {len(found.starts) - 1} faces: "
+            "give a tolerance below its thickness.",
+            "tolerance",
+            reach,
+        )
+    return found
 
 
 def solid_body(

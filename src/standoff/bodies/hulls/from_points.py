@@ -13,7 +13,7 @@ from standoff.bodies.hulls.build import hull
 from standoff.bodies.hulls.qhull import unit_of
 from standoff.bodies.tolerances import NARROWEST
 from standoff.bodies.topology import Edge
-from standoff.checks.arrays import finite
+from standoff.checks.arrays import finite_rows
 from standoff.checks.numbers import magnitude, magnitude_or_zero
 from standoff.checks.real_numbers import shape_of
 from standoff.errors import BodyError
@@ -25,7 +25,7 @@ def hull_of(points: Any, tolerance: float | None, rounding: float) -> tuple[floa
     """(radius, packed hull) of ``Body.from_points``."""
     shape = shape_of(points)
     planar = shape is not None and len(shape) == 2 and shape[1] == 2
-    given = finite(points, "points", (-1, 2 if planar else 3))
+    given = finite_rows(points, "points", 2 if planar else 3)
     radius = magnitude_or_zero(rounding, "rounding")
     tolerance = None if tolerance is None else magnitude(tolerance, "tolerance")
     if planar:

@@ -1,4 +1,4 @@
-"""How faces of a polyhedron meet: turns of edges, normal cones of vertices, wide corners of faces."""
+"""How faces of a polyhedron meet: turns of edges, cones of vertices, wide corners of faces."""
 
 from __future__ import annotations
 
@@ -70,9 +70,7 @@ def vertex_cones(solid: Polyhedron) -> Cones:
     axes /= np.linalg.norm(axes, axis=1)[:, None]
     x = np.cross(axes, np.eye(3)[np.abs(axes).argmin(axis=1)])
     y = np.cross(axes, x)
-    angle = np.arctan2(
-        np.einsum("ij,ij->i", normals, y[at]), np.einsum("ij,ij->i", normals, x[at])
-    )
+    angle = np.arctan2(np.einsum("ij,ij->i", normals, y[at]), np.einsum("ij,ij->i", normals, x[at]))
     angle[counts[at] < 4] = 0.0
     return Cones(counts, faces[np.lexsort((angle, at))])
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.bodies.hulls.merging import areas, by_first
 from standoff.bodies.hulls.qhull import Ints, Triangles
@@ -140,7 +141,7 @@ def _straightened(points: Array, given: Outlines, tolerance: float) -> Outlines:
     return given._replace(corners=corners[kept], starts=starts, left_out=left_out)
 
 
-def _next_firm(given: Outlines, loose: Array) -> tuple[Ints, Ints]:
+def _next_firm(given: Outlines, loose: NDArray[np.bool_]) -> tuple[Ints, Ints]:
     """(k,) places of the corners before and after that are not loose; -1 where a face has none."""
     following = given.following
     preceding = np.empty_like(following)

@@ -68,9 +68,7 @@ def _put_faces(w: Writer, solid: Polyhedron, pcurves: Array, inner: Array) -> No
     rows = [kind, charts, solid.starts[:-1], np.diff(solid.starts), number, plain]
     w.table(L.CHARTS, np.column_stack(rows))
     line = np.full(corners, L.LINE)
-    w.table(
-        L.COEDGES, np.column_stack([solid.edges, line, coedges, solid.senses, solid.owners])
-    )
+    w.table(L.COEDGES, np.column_stack([solid.edges, line, coedges, solid.senses, solid.owners]))
 
 
 def _put_edges(w: Writer, solid: Polyhedron, smooth: Array) -> None:

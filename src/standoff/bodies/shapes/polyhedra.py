@@ -161,32 +161,26 @@ def rounded_polytope(vertices: Any, rounding: float) -> Body:
     if rounding == 0.0:
         return made_body("rounded polytope", 0.0, hull(points, 0.0))
     middle = middle_of(points)
+    faces = facets(points - middle)
     try:
-        core = middle + _core(points - middle, rounding)
+        core = middle + _core(points - middle, faces, rounding)
         packed = solid_body(core, facets(core - middle), rounding)
-    except (BodyError, scipy.spatial.QhullError) as error:
-        raise _not_rounded(points, error) from error
+    except scipy.spatial.QhullError as error:
+        found = BodyError(f"The core was not found: {_line(error)}")
+        raise thin_error(points, "vertices") or found from error
+    except BodyError as error:
+        raise thin_error(points, "vertices") or error from error
     return made_body("rounded polytope", rounding, recentred(packed, points, middle))
 
 
-def _core(points: Array, rounding: float) -> Array:
+def _core(points: Array, faces: Outlines, rounding: float) -> Array:
     """The vertices of a polytope whose planes are moved inwards, (n, 3)."""
-    unit, faces = unit_of(points, "vertices"), facets(points)
+    unit = unit_of(points, "vertices")
     tops = np.maximum.reduceat(
         np.einsum("ij,ij->i", points[faces.corners], faces.normals[faces.owners]),
         faces.starts[:-1],
     )
     return unit * _inner_vertices(faces.normals, tops / unit, rounding / unit, unit)
-
-
-def _not_rounded(points: Array, error: Exception) -> BodyError:
-    """What to say of points whose opening cannot be built."""
-    if isinstance(error, BodyError):
-        # points that Qhull finds in one plane are told as such
-        flat = isinstance(error.__cause__, scipy.spatial.QhullError | ValueError)
-        return (None if flat else thin_error(points, "vertices")) or error
-    found = BodyError(f"The core was not found: {_line(error)}")
-    return thin_error(points, "vertices") or found
 
 
 def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float) -> Array:
