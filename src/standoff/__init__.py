@@ -12,7 +12,6 @@ from standoff.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from standoff.bodies import Body, shapes
-    from standoff.bodies.meshes.decomposition import decomposition
     from standoff.bodies.voronoi import voronoi_regions
     from standoff.control import min_gain
     from standoff.errors import BodyError, StandoffError
@@ -46,7 +45,6 @@ else:
                 "Body",
                 "shapes",
             ),
-            "standoff.bodies.meshes.decomposition": ("decomposition",),
             "standoff.bodies.voronoi": ("voronoi_regions",),
             "standoff.control": ("min_gain",),
             "standoff.errors": (
@@ -116,7 +114,6 @@ __all__ = [
     "TrackerState",
     "Twist",
     "WitnessSet",
-    "decomposition",
     "distance",
     "distances",
     "feedback",

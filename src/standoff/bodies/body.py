@@ -198,10 +198,10 @@ class Body(Boundary):
             out. They may lie far from the origin: the hull is then taken about their middle,
             which ``body.check().notes`` tells.
         tolerance : float, optional
-            Facets whose corners are within this distance of one plane become one face, length. By
-            default only those of one plane do, up to roundoff. The face lies within the hull, and
-            how far a point is above it goes into the slack, by which lower bounds are less: they
-            are bounds for the hull of the points all the same. ``body.check()`` tells both.
+            Points within this distance of the hull of the others may be left out, length: facets
+            that are nearly in one plane become few. The body then lies within the hull; how far
+            points are above its faces goes into the slack, by which lower bounds are less, so that
+            they are bounds for the hull of all points. ``body.check()`` tells both.
         rounding : float
             Radius of a ball (planar: a disc) swept over it, length, zero or above: the body grows
             by it all round.
@@ -236,7 +236,8 @@ class Body(Boundary):
         """A body of a closed convex mesh of triangles, or the hull of one that is not convex.
 
         Triangles of one plane are one face. What a hull adds to a mesh that is not convex is
-        measured, and told in ``body.check().notes``; ``so.decomposition`` makes convex pieces.
+        measured, and told in ``body.check().notes``; for convex pieces of it there is
+        ``so.bodies.decomposition``.
 
         Parameters
         ----------

@@ -9,14 +9,15 @@ import numpy as np
 from standoff.bodies.assembly import roundoff_note
 from standoff.bodies.convexity import Convexity
 from standoff.bodies.finishing import Packed, slack_of
-from standoff.bodies.hulls.heights import greatest_heights
+from standoff.bodies.hulls.fewer_points import fewer_points
+from standoff.bodies.hulls.heights import highest
 from standoff.bodies.hulls.joints import edge_turns, vertex_cones, wide_corners, widening
 from standoff.bodies.hulls.merging import merged
 from standoff.bodies.hulls.outlines import Outlines, outlines
 from standoff.bodies.hulls.packed import pack_polyhedron
-from standoff.bodies.hulls.parts import Charts, Edges, Faces, PlaneChecks
+from standoff.bodies.hulls.parts import Edges, Faces, PlaneChecks
 from standoff.bodies.hulls.polyhedron import Polyhedron, polyhedron
-from standoff.bodies.hulls.qhull import Triangles, hull_triangles
+from standoff.bodies.hulls.qhull import hull_triangles
 from standoff.bodies.hulls.rectangles import inner_rectangles
 from standoff.bodies.hulls.samples import polyhedron_samples
 from standoff.bodies.packing import Assembled
@@ -44,8 +45,8 @@ def hull(
 
     Parameters
     ----------
-    tolerance : facets whose corners are within it of one plane become one face, length; by default
-        only those of one plane do.
+    tolerance : how far points that are left out may be above the faces, length; by default those
+        alone are left out that are no vertices of the hull.
     word : what a message calls the points.
 
     Raises
@@ -55,10 +56,9 @@ def hull(
     """
     middle = middle_of(points)
     try:
-        triangles = hull_triangles(points - middle, word)
-        reach = max(tolerance or 0.0, coordinate_roundoff(points - middle))
-        found = outlined(points - middle, triangles, reach, word)
-        packed = solid_body(points, found, radius, tolerance)
+        kept = points if tolerance is None else fewer_points(points, tolerance, word)
+        found = facets(kept - middle, word)
+        packed = solid_body(kept, found, radius, points, tolerance)
     except BodyError as error:
         # Points that Qhull finds in one plane are told as such.
         thin = None if error.__cause__ is not None else thin_error(points, word)
@@ -70,47 +70,46 @@ def hull(
 
 def facets(points: Array, word: str = "vertices") -> Outlines:
     """The outlines of the faces of the points' hull; facets of one plane are one face."""
-    return outlined(points, hull_triangles(points, word), coordinate_roundoff(points), word)
-
-
-def outlined(points: Array, triangles: Triangles, reach: float, word: str = "vertices") -> Outlines:
-    """The outlines of faces whose corners are within `reach`, length, of one plane."""
+    triangles, reach = hull_triangles(points, word), coordinate_roundoff(points)
     found = outlines(points, triangles, merged(points, triangles, reach), reach)
     if len(found.starts) <= LEAST_FACES:
-        raise thin_error(points, word) or BodyError(
-            f"Within {reach:.3g} of a plane each, the hull has {len(found.starts) - 1} faces: "
-            "give a tolerance below its thickness.",
-            "tolerance",
-            reach,
-        )
+        raise thin_error(points, word) or BodyError("The hull has no four faces.")
     return found
 
 
 def solid_body(
-    points: Array, found: Outlines, radius: float, tolerance: float | None = None
+    points: Array,
+    found: Outlines,
+    radius: float,
+    given: Array | None = None,
+    tolerance: float | None = None,
 ) -> Packed:
-    """The polyhedron of outlines round points, (n, 3), all of them compared with its faces.
+    """The polyhedron of outlines round points, (n, 3).
+
+    given : all that it is to be the hull of, each compared with each face; the points by default.
+    tolerance : how far they may be above a face, length; 1e-6 of the size by default.
 
     Raises
     ------
     BodyError
-        A face further from a plane than the tolerance, or a point above one.
+        A face whose corners are not in its plane, or a point above one.
     """
+    given = points if given is None else given
     low, high = points.min(axis=0), points.max(axis=0)
     size, roundoff = float(np.linalg.norm(high - low)), coordinate_roundoff(points)
     solid = polyhedron(points, found, max(ROUNDOFF * size, roundoff))
-    allowed = max(JOIN_TOLERANCE * size if tolerance is None else tolerance, roundoff)
+    allowed = max(JOIN_TOLERANCE * size, roundoff)
     residual = _residual(solid, found, allowed)
-    share = max(CONVEXITY_TOLERANCE * size, allowed)
-    defect = _defect(points, solid, share)
+    share = max(CONVEXITY_TOLERANCE * size if tolerance is None else tolerance, allowed)
+    defect = _defect(given, solid, share)
     turns, cones, pcurves = edge_turns(solid), vertex_cones(solid), solid.pcurves()
     smooth = (np.abs(turns) <= SMOOTH_ANGLE) & (np.abs(np.sin(turns)) < SMOOTH_ANGLE)
     joints = smooth, cones, wide_corners(solid, pcurves)
     noise = max(ROUNDOFF * size, roundoff)
-    widen = widening(solid, turns, cones) if defect > noise else 1.0
-    slack = slack_of(Convexity((), defect, widen), 0.0, 0.0, noise)
+    widen = widening(solid, turns, cones) if max(defect, residual) > noise else 1.0
+    slack = slack_of(Convexity((), defect, widen), residual, 0.0, noise)
     edges, faces = Edges(solid), Faces(solid)
-    parts = Assembled(3, solid.vertices, edges, faces, Charts((edges, faces)))
+    parts = Assembled(3, solid.vertices, edges, faces, [])
     inner = inner_rectangles(solid, pcurves)
     box = low, high
     samples = polyhedron_samples(solid, pcurves)
@@ -124,7 +123,7 @@ def solid_body(
         charts=solid.n_faces,
         size=size + 2.0 * radius,
         convexity_defect=defect,
-        notes=_notes(found, residual, size, roundoff, noise),
+        notes=_notes(found, len(given) - len(points), defect, residual, size, roundoff),
         closed=True,
         outward=True,
         patches=PlaneChecks(solid.n_faces),
@@ -157,22 +156,27 @@ def _defect(points: Array, solid: Polyhedron, allowed: float) -> float:
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     normals = solid.normals
     offsets = np.einsum("ij,ij->i", normals, solid.shifts - middle)
-    heights = greatest_heights(points - middle, normals, offsets)
+    heights, numbers = highest(points - middle, normals, offsets)
     worst = int(heights.argmax())
     if not heights[worst] <= allowed:
         raise BodyError(
-            f"Not convex: a point is {heights[worst]:.3g} above face {worst} at "
-            f"{solid.shifts[worst]}, more than {allowed:.3g}; its corners are too nearly in one "
-            "line. Leave out points that are nearly on it, or give a tolerance."
+            f"Not convex: the point {points[numbers[worst]]} is {heights[worst]:.3g} above face "
+            f"{worst} at {solid.shifts[worst]}, more than {allowed:.3g}; its corners are too "
+            "nearly in one line. Leave out points that are nearly on it, or give a tolerance."
         )
     return float(heights[worst])
 
 
 def _notes(
-    found: Outlines, residual: float, size: float, roundoff: float, noise: float
+    found: Outlines, left_out: int, defect: float, residual: float, size: float, roundoff: float
 ) -> tuple[str, ...]:
     notes = []
-    if residual > noise:
+    if left_out:
+        notes.append(
+            f"{left_out} points left out: they are inside the hull of the others, or up to "
+            f"{defect:.3g} above its faces"
+        )
+    if residual > max(ROUNDOFF * size, roundoff):
         notes.append(
             f"facets nearly in one plane are one face: corners are off theirs by up to "
             f"{residual:.3g}"

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from standoff.bodies.packing import Ints
 from standoff.geometry.validation import Array
 
 # Points of one block.
@@ -18,8 +19,8 @@ BLOCK = 128
 AT_ONCE = 4_000_000
 
 
-def greatest_heights(points: Array, normals: Array, offsets: Array) -> Array:
-    """(f,) the greatest of normal . x - offset over the points; 0 where all are below.
+def highest(points: Array, normals: Array, offsets: Array) -> tuple[Array, Ints]:
+    """Of every plane how far the highest point is above it, and which it is.
 
     Parameters
     ----------
@@ -28,14 +29,18 @@ def greatest_heights(points: Array, normals: Array, offsets: Array) -> Array:
 
     Returns
     -------
-    (f,) array, length; a few roundings of the points' size off.
+    heights : (f,) array
+        The greatest of normal . x - offset, length, a few roundings of the points' size off; 0
+        where no point is above.
+    numbers : (f,) array of int
+        The points; -1 where none is above.
     """
     blocks = _blocks(points)
-    middles = np.array([0.5 * (b.min(axis=0) + b.max(axis=0)) for b in blocks])
+    middles = np.array([0.5 * (x.min(axis=0) + x.max(axis=0)) for x in (points[b] for b in blocks)])
     reaches = np.array(
-        [np.linalg.norm(b - m, axis=1).max() for b, m in zip(blocks, middles, strict=True)]
+        [np.linalg.norm(points[b] - m, axis=1).max() for b, m in zip(blocks, middles, strict=True)]
     )
-    greatest = np.zeros(len(normals))
+    greatest, numbers = np.zeros(len(normals)), np.full(len(normals), -1)
     many = max(1, AT_ONCE // len(blocks))
     for start in range(0, len(normals), many):
         part = slice(start, start + many)
@@ -43,21 +48,26 @@ def greatest_heights(points: Array, normals: Array, offsets: Array) -> Array:
         for k, block in enumerate(blocks):
             near = start + np.flatnonzero(over[:, k])
             if len(near):
-                heights = (normals[near] @ block.T).max(axis=1) - offsets[near]
-                greatest[near] = np.maximum(greatest[near], heights)
-    return greatest
+                along = normals[near] @ points[block].T
+                best = along.argmax(axis=1)
+                heights = np.take_along_axis(along, best[:, None], axis=1)[:, 0] - offsets[near]
+                higher = heights > greatest[near]
+                greatest[near[higher]] = heights[higher]
+                numbers[near[higher]] = block[best[higher]]
+    return greatest, numbers
 
 
-def _blocks(points: Array) -> list[Array]:
-    """The points in blocks, by halving them along their longest extent."""
-    waiting, done = [points], []
+def _blocks(points: Array) -> list[Ints]:
+    """The numbers of points in blocks, by halving them along their longest extent."""
+    waiting, done = [np.arange(len(points))], []
     while waiting:
         block = waiting.pop()
         if len(block) <= BLOCK:
             done.append(block)
             continue
-        axis = int(np.ptp(block, axis=0).argmax())
+        own = points[block]
+        axis = int(np.ptp(own, axis=0).argmax())
         half = len(block) // 2
-        order = np.argpartition(block[:, axis], half)
+        order = np.argpartition(own[:, axis], half)
         waiting += [block[order[:half]], block[order[half:]]]
     return done

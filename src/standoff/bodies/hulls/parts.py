@@ -1,16 +1,12 @@
-"""Edges, faces and charts of a polyhedron as objects."""
+"""Edges and faces of a polyhedron as objects."""
 
 from __future__ import annotations
 
-import numpy as np
-
 from standoff.bodies.hulls.polyhedron import Polyhedron
 from standoff.bodies.made_parts import MadeParts
-from standoff.bodies.packing import Chart, Coedge
 from standoff.bodies.report import PatchCheck
 from standoff.bodies.topology import Edge, Face
 from standoff.geometry.curves import Line
-from standoff.geometry.exact_pcurves import pcurve_of
 from standoff.geometry.quadrics import Plane
 
 
@@ -42,25 +38,6 @@ class Faces(MadeParts[Face]):
         plane = Plane(solid.planes[number], solid.shifts[number])
         loop = zip(solid.edges[own].tolist(), solid.senses[own].tolist(), strict=True)
         return Face((plane,), tuple(loop))
-
-
-class Charts(MadeParts[Chart]):
-    """Of every face its one chart."""
-
-    _source: tuple[Edges, Faces]
-
-    def __len__(self) -> int:
-        return len(self._source[1])
-
-    def make(self, number: int) -> Chart:
-        edges, faces = self._source
-        face = faces[number]
-        (plane,) = face.charts
-        coedges = [
-            Coedge(j, pcurve_of(edges[j].curve, plane), 0.0, 1.0, sense, k)
-            for k, (j, sense) in enumerate(face.loop)
-        ]
-        return Chart(plane, number, limit=np.inf, coedges=coedges)
 
 
 class PlaneChecks(MadeParts[PatchCheck]):

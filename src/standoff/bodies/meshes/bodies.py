@@ -75,8 +75,8 @@ def _of_its_hull(mesh: Mesh, dent: tuple[str, int], as_hull: bool) -> str:
     if not as_hull:
         raise BodyError(
             f"The mesh is not convex: {why}. Give hull=True for its hull, which adds "
-            f"{100.0 * added / mesh.volume:.3g} % to its volume, or take so.decomposition for "
-            "convex pieces.",
+            f"{100.0 * added / mesh.volume:.3g} % to its volume, or take "
+            "so.bodies.decomposition for convex pieces.",
             "mesh",
             part=("face", triangle),
         )
