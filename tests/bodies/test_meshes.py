@@ -98,7 +98,7 @@ def test_trimesh_objects_and_files(tmp_path: Path) -> None:
     for given in (file, str(file)):
         assert so.Body.from_mesh(given).n_faces == 6
     file.write_bytes(b"no mesh")
-    with pytest.raises(ValueError, match="was not read as a mesh|no triangles"):
+    with pytest.raises(ValueError, match=r"was not read as a mesh|no triangles"):
         so.Body.from_mesh(file)
     with pytest.raises(FileNotFoundError, match=r"no mesh file .*none\.stl"):
         so.Body.from_mesh(tmp_path / "none.stl")
