@@ -7,7 +7,7 @@ CLI := .venv/.installed-cli
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 DECLARED := pyproject.toml studies/pyproject.toml constraints.txt
 
-.PHONY: venv torch demo paper bench wheel numba-range check test lint types layers docs clean
+.PHONY: venv torch demo paper bench wheel numba-range check test soak lint types layers docs clean
 
 venv: $(ALL)
 
@@ -62,6 +62,11 @@ check: lint types layers
 test: $(ALL)
 	$(BIN)/standoff warmup
 	$(BIN)/python -m pytest -n auto --dist loadfile
+
+# More of the same than `make test` tries (CONTRIBUTING.md).
+soak: $(ALL)
+	$(BIN)/standoff warmup
+	$(BIN)/python -m pytest -n auto --dist loadfile -m soak
 
 lint: $(ALL)
 	$(BIN)/ruff check .

@@ -11,6 +11,7 @@ import os
 import secrets
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 # Before NumPy is loaded, which reads them once: the tests are many processes of small matrices.
 for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -19,9 +20,10 @@ for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 import hypothesis
 import numpy as np
 import pytest
+from xdist.scheduler import LoadFileScheduling
 
 from draws import draws
-from tiers import FAST
+from tiers import FAST, LONG, TOGETHER
 
 FRESH = os.environ.get("STANDOFF_FRESH", "0") not in ("", "0")
 BASE = int(os.environ.get("STANDOFF_SEED") or (secrets.randbelow(1 << 32) if FRESH else 0))
@@ -58,6 +60,8 @@ def rng_of() -> Callable[[str], np.random.Generator]:
 
 TESTS = Path(__file__).parent
 QUICKLY = "not slow"
+SOAK = "soak"
+"""Marks what `make soak` alone runs: `-m` has to name it."""
 
 
 def is_fast(path: Path) -> bool:
@@ -70,7 +74,12 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     return True if config.option.markexpr == QUICKLY and others else None
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if SOAK not in config.option.markexpr:
+        longer = [item for item in items if item.get_closest_marker(SOAK)]
+        config.hook.pytest_deselected(items=longer)
+        items[:] = [item for item in items if not item.get_closest_marker(SOAK)]
+    items.sort(key=lambda item: place(item.nodeid))
     drawn = set()
     for item in items:
         if not is_fast(item.path):
@@ -80,6 +89,30 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if hypothesis.is_hypothesis_test(test) and test not in drawn:
             drawn.add(test)
             hypothesis.seed(BASE)(test)
+
+
+def place(nodeid: str) -> int:
+    """Where a test's file stands among those that take long; behind them all if it is none."""
+    file = nodeid.partition("::")[0].removeprefix(f"{TESTS.name}/")
+    return LONG.index(file) if file in LONG else len(LONG)
+
+
+class ByFile(LoadFileScheduling):  # type: ignore[misc]
+    """A file in one process, as by `--dist loadfile`, and those that share a run, too.
+
+    Where the longest came last, one core would wait for it.
+    """
+
+    def _split_scope(self, nodeid: str) -> str:
+        file = nodeid.partition("::")[0]
+        return TOGETHER[0] if file.removeprefix(f"{TESTS.name}/") in TOGETHER else file
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> ByFile | None:
+    if config.option.dist != "loadfile":
+        return None
+    config.option.loadscopereorder = False  # it puts files of many tests first, not the long ones
+    return ByFile(config, log)
 
 
 @pytest.hookimpl(wrapper=True)

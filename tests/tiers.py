@@ -1,6 +1,8 @@
-"""Which tests `make check` runs: direct ones of every layer, those that take little.
+"""Which tests `make check` runs, which of `make test` begin first, and which run in one process.
 
-All others are marked ``slow``, so a new file belongs to `make test` alone until it is named here.
+`make check`: direct ones of every layer, those that take little. All others are marked ``slow``, so
+a new file belongs to `make test` alone until it is named here. What only draws or breaks more of
+what another test does is marked ``soak`` where it stands: `make soak` runs it.
 """
 
 FAST = (
@@ -54,3 +56,35 @@ FAST = (
     "tracking/test_laws_as_values.py",
     "tracking/test_pair_system.py",
 )
+
+TOGETHER = (
+    "paper/test_broken_on_purpose.py",
+    "paper/test_claims.py",
+    "paper/test_simulation_a.py",
+    "paper/test_simulation_b.py",
+    "paper/test_simulation_c.py",
+    "paper/test_simulation_d.py",
+    "paper/test_simulation_e.py",
+)
+"""Files that look at the same runs of simulations, which take long and are kept in a process."""
+
+LONG = (
+    *TOGETHER,
+    "tracking/test_degenerate.py",
+    "soak/test_soak_command.py",
+    "test_imports.py",
+    "tracking/test_cold_families.py",
+    "tracking/test_mode_sequences.py",
+    "kernels/test_bounds_check.py",
+    "kernels/test_modules.py",
+    "paper/test_control_figures.py",
+    "paper/test_in_the_loop.py",
+    "simulation/test_scripted_contact.py",
+    "bodies/test_bodies.py",
+    "tracking/test_penetration.py",
+    "soak/test_adversary.py",
+    "tracking/test_derivative_precision.py",
+    "tracking/test_invariance.py",
+    "tracking/test_point_tracker.py",
+)
+"""Files that take longest, the longest first."""

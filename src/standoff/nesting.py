@@ -29,8 +29,8 @@ TOML = re.compile(
     re.DOTALL,
 )
 JSON = re.compile(rf'"(?:{ESCAPE}|[^"\\])*"?|(?P<open>[\[{{])|(?P<close>[\]}}])', re.DOTALL)
-"""Texts and comments of the format, in which brackets do not count, and the brackets that do.
-A text without an end goes to the end, so that the time grows with the length alone."""
+"""Strings and comments of the format, in which brackets do not count, and the brackets that do.
+An unterminated string extends to the end, so that the time depends only on the length."""
 
 SHOWN = 20
 """Characters that a message repeats of the place."""

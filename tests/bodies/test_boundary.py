@@ -114,12 +114,13 @@ def normals(boundary: Boundary) -> list[np.ndarray]:
     return spots
 
 
-@pytest.mark.parametrize("name", SOLIDS)
+@pytest.mark.parametrize("name", [name for name in SOLIDS if name != "ring"])
 def test_whichever_side_of_a_surface_is_up(name: str) -> None:
-    """Every chart mirrored in its parameters, so that x_u × x_v turns round."""
+    """Every chart mirrored in its parameters, so that x_u × x_v points the other way.
+
+    The edges of the ring are curves on its own surfaces, which must stay as they are.
+    """
     solid = SOLIDS[name]()
-    if name == "ring":
-        pytest.skip("its edges are curves on its own surfaces")
     mirror = np.diag([1.0, -1.0, 1.0])
     faces = [
         replace(f, charts=tuple(replace(c, linear=c.linear @ mirror) for c in f.charts))
@@ -208,7 +209,7 @@ def test_contains_is_of_solids_without_a_skin() -> None:
         so.shapes.box(1, 1, 1, rounding=0.1),
     )
     for body in others:
-        with pytest.raises(so.StandoffError, match="not a solid"):
+        with pytest.raises(so.StandoffError, match="is not a bounded, unrounded solid"):
             body.contains([[0, 0, 0]])
 
 
@@ -247,10 +248,10 @@ def test_shells_within_shells() -> None:
     np.testing.assert_allclose(other.check().volume, 0.875, rtol=1e-12)
     with pytest.raises(BodyError, match=r"lie inside .* face the same way"):
         Boundary.from_brep(*together(cube(), inner))
-    with pytest.raises(BodyError, match=r"lie outside .* one boundary of each"):
+    with pytest.raises(BodyError, match=r"lie outside .* a boundary of each"):
         Boundary.from_brep(*together(cube(), inverted(cube(0.5, (3, 0, 0)))))
     smallest = cube(0.1, (0.4, 0.4, 0.4))
-    with pytest.raises(BodyError, match=r"inside of the cavity"):
+    with pytest.raises(BodyError, match=r"inside the cavity"):
         Boundary.from_brep(*together(cube(), inverted(inner), inverted(smallest)))
 
 

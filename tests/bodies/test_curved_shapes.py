@@ -1,5 +1,7 @@
 """Spindle, gore, egg, rounded polytope and hull of revolution: their parts, and refusals."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -13,12 +15,17 @@ MAKERS = ("rounded_polytope", "egg", "spindle", "gore", "revolved_hull")
 CUBE = [[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]
 
 
+@cache
+def drawn(maker):
+    """Random twins of one kind; some take a second each to make."""
+    rng = np.random.default_rng(21)
+    return [getattr(curved_shapes, maker)(rng) for _ in range(5)]
+
+
 @pytest.mark.parametrize("maker", MAKERS)
 def test_boundary_lies_on_the_oracle(maker):
     """Samples of the packed body are points of the oracle's boundary with its normals."""
-    rng = np.random.default_rng(21)
-    for _ in range(4):
-        twin = getattr(curved_shapes, maker)(rng)
+    for twin in drawn(maker):
         body = twin.body
         assert body.check().notes == ()
         for number in range(body.n_faces):
@@ -34,9 +41,7 @@ def test_boundary_lies_on_the_oracle(maker):
 
 @pytest.mark.parametrize("maker", MAKERS)
 def test_boxes_hold_the_oracle(maker):
-    rng = np.random.default_rng(22)
-    for _ in range(6):
-        twin = getattr(curved_shapes, maker)(rng)
+    for twin in drawn(maker):
         ends = twin.shape.support_many(np.vstack([np.eye(3), -np.eye(3)]))[0]
         core = np.linalg.norm(ends[:3] + ends[3:] - 2 * twin.body.radius)
         assert twin.body.size - 2 * twin.body.radius >= core * (1 - 1e-12)

@@ -80,7 +80,7 @@ def test_recentring_and_its_roundoff_are_told() -> None:
     assert near.check().notes == ()
     assert near.check().coordinate_roundoff == 8.0 * EPS
     recentred, loose = far.check().notes
-    assert recentred.startswith("recentred: the hull is taken about [ 60000000. -48000000.")
+    assert recentred.startswith("recentred: the hull is computed about [ 60000000. -48000000.")
     assert loose.startswith("far from the origin: parts may miss each other by 2.27e-07")
     assert far.check().coordinate_roundoff == pytest.approx(16.0 * EPS * 0.64e8)
     assert far.check().sewing_tolerance == far.check().coordinate_roundoff

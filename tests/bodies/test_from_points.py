@@ -311,7 +311,7 @@ def test_rounding_grows_the_hull_all_round(rng: np.random.Generator) -> None:
 
 def test_points_far_from_the_origin_are_told(rng: np.random.Generator) -> None:
     body = so.Body.from_points(ball(rng, 60) + np.array([1e7, 0.0, 0.0]))
-    assert body.check().notes[0].startswith("recentred: the hull is taken about")
+    assert body.check().notes[0].startswith("recentred: the hull is computed about")
     assert body.n_faces == 116
 
 

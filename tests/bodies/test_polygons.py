@@ -139,7 +139,7 @@ TIMES = np.linspace(0.0, 1.0, 60)
     ("points", "message"),
     [
         ([[0, 0, 0], [1, 0, 0]], "2 vertices: give at least three"),
-        ([[0, 0, 0], [1, 1, 1], [2, 2, 2]], "in one line"),
+        ([[0, 0, 0], [1, 1, 1], [2, 2, 2]], "on one line"),
         ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1e-3]], "not in one plane: "),
     ],
 )

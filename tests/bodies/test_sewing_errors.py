@@ -132,7 +132,7 @@ def test_a_bar_whose_ends_touch_in_a_point():
         for k in range(3)
     ]
     assert re.search(
-        r"Patches touch only in the point \[3\. 0\. 0\.\]: 2 fans meet there \(patch 15 side",
+        r"Patches touch only at the point \[3\. 0\. 0\.\]: 2 fans meet there \(patch 15 side",
         refusal([*bar(sections), *ends]),
     )
 
@@ -173,8 +173,8 @@ def test_two_neighbouring_sides_collapsed():
     ("patches", "words"),
     [
         ([], "No patches"),
-        ([Plane(IDENTITY, np.zeros(3))], r"patch 0 is a Plane without limits.*\.restricted\(u0"),
-        ([Cylinder(IDENTITY, np.zeros(3))], "patch 0 is a Cylinder without limits"),
+        ([Plane(IDENTITY, np.zeros(3))], r"patch 0 is an unbounded Plane.*\.restricted\(u0"),
+        ([Cylinder(IDENTITY, np.zeros(3))], "patch 0 is an unbounded Cylinder"),
         (["patch"], "patch 0 is 'patch': give a Surface"),
     ],
 )
@@ -191,7 +191,7 @@ def test_bad_numbers(name, value):
 
 def test_a_tolerance_beyond_reason():
     assert re.search(
-        "tolerance = 1 is not a small part of the patches' size",
+        "tolerance = 1 is not small compared to the patches' size",
         refusal(shells.box((1, 1, 1)), tolerance=1),
     )
 
@@ -239,7 +239,7 @@ def test_a_shell_that_winds_twice_round_its_tips():
         for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)
         for tip in tips
     ]
-    assert re.search(r"vertex \d+ .* wind round it 2 times", refusal(triangles))
+    assert re.search(r"vertex \d+ .* wind around it 2 times", refusal(triangles))
 
 
 def test_octants_that_do_not_fit_name_the_octant():

@@ -60,10 +60,10 @@ def test_positions_and_names_make_the_same_body(
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: shapes.box(rounding=0.1), r"misses size: give size=\(1\.0, 1\.0, 1\.0\)"),
+        (lambda: shapes.box(rounding=0.1), r"needs size: give size=\(1\.0, 1\.0, 1\.0\)"),
         (lambda: shapes.box(1, 2, 3, size=(1, 2, 3)), "size by position and by name"),
         (lambda: shapes.ellipsoid(1, 2, 3, 4), "too many numbers"),
-        (lambda: shapes.superellipsoid(1, 2, 3), "misses exponents"),
+        (lambda: shapes.superellipsoid(1, 2, 3), "needs exponents"),
         (lambda: shapes.segment(), "takes length="),
         (lambda: shapes.segment(1.0, start=(0, 0, 0), end=(1, 0, 0)), "takes length="),
         (lambda: shapes.segment(start=(0, 0, 0)), "takes length="),

@@ -57,7 +57,7 @@ def test_what_was_proven(standoff: Standoff, tmp_path: Path) -> None:
     assert f"slack {body.check().slack:.3g} m, taken off" in told
     told = " ".join(standoff("check", 'shape = "halfspace"').out.split())
     assert "size unbounded" in told
-    assert "closed no: it has no end" in told
+    assert "closed no: it is unbounded" in told
     assert "nan" not in told
 
 
@@ -147,7 +147,7 @@ def test_pictures_of_each_body(standoff: Standoff, passing: Path) -> None:
             ["edge 0", "edge 1", "vertex 1", "x (m)", "outward normal"],
         ),
         ('shape = "sphere", radius = 2', ["v0", "skin at radius 2"]),
-        ('shape = "halfspace"', ["face 0", "halfspace, 1 face; it has no end, a part is shown"]),
+        ('shape = "halfspace"', ["face 0", "halfspace, 1 face; unbounded, only a part is shown"]),
         ('shape = "cone", radius = 1, height = 2', ["face 0", "face 1", "e0", "v0"]),
     ],
 )

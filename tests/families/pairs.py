@@ -19,7 +19,7 @@ FEW_CLOSE: dict[Kind, float] = {"exact": 0.45, "feature": 0.3, "free": 0.2, "clo
 PLANAR_SHARES: dict[Kind, float] = {"exact": 0.3, "feature": 0.0, "free": 0.69, "close": 0.01}
 """The same for planar loops, whose support functions are slow."""
 
-FEW = 120
+FEW = 60
 """Poses of the suite for families with slow oracles; the benchmark runs all 3,000."""
 
 
@@ -34,7 +34,7 @@ class Family:
     second: Maker
     shares: dict[Kind, float] | None = None
     tilted: bool = False
-    poses: int = 300
+    poses: int = 180
 
 
 FAMILIES: dict[str, Family] = {

@@ -168,7 +168,10 @@ BAD_SURFACES = {
         {"control_points": NET[..., :2]},
         r"shape \(3, 3, 2\): give an array of n by n by 3 numbers",
     ),
-    "point": ({"control_points": 0 * NET + 4.0}, r"All control points are \[4. 4. 4.\]: spread"),
+    "point": (
+        {"control_points": 0 * NET + 4.0},
+        r"All control points are \[4. 4. 4.\]: give different",
+    ),
     "weight": ({"weights": [[1, 1, 1], [1, 1, -2], [1, 1, 1]]}, r"weights\[\(1, 2\)\] = -2.0"),
     "no weight": ({"weights": np.zeros((3, 3))}, r"weights\[\(0, 0\)\] = 0.0: every weight must"),
     "weights": (
@@ -190,9 +193,9 @@ def test_bad_surfaces_are_refused(change, message):
 def test_too_many_equal_knots_are_refused():
     net = np.zeros((6, 2, 3))
     net[..., 0] = np.arange(6)[:, None]
-    with pytest.raises(ValueError, match=r"knot 1.0 stands 3 times; at most 2 times inside"):
+    with pytest.raises(ValueError, match=r"knot 1.0 occurs 3 times; at most 2 times inside"):
         NurbsSurface(net, [0, 0, 0, 1, 1, 1, 2, 2, 2], [0, 0, 1, 1])
-    with pytest.raises(ValueError, match=r"knot 0.0 stands 4 times; at most 3 times at an end"):
+    with pytest.raises(ValueError, match=r"knot 0.0 occurs 4 times; at most 3 times at an end"):
         NurbsSurface(net, [0, 0, 0, 0, 1, 1.5, 2, 2, 2], [0, 0, 1, 1])
 
 
@@ -223,7 +226,7 @@ def test_bad_bezier_patches_and_changes_are_refused(rng):
         patch.elevated(1, 2)
     with pytest.raises(ValueError, match=r"knots_u: knot 1.5 is not inside the domain"):
         patch.refined([1.5])
-    with pytest.raises(ValueError, match=r"knot 0.5 stands 3 times; at most 2 times inside"):
+    with pytest.raises(ValueError, match=r"knot 0.5 occurs 3 times; at most 2 times inside"):
         patch.refined([0.5, 0.5, 0.5])
 
 

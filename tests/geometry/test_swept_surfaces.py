@@ -147,8 +147,8 @@ def test_knots_of_a_profile_are_breaks():
     ("make", "words"),
     [
         (lambda: Revolution(Line((1, 0, 0), (1, 0.1, 1))), "leaves the plane y = 0 at"),
-        (lambda: Revolution(Line((-1, 0, 0), (1, 0, 1))), "meets or passes the axis at"),
-        (lambda: Revolution(Line((0, 0, 0), (0, 0, 1))), "meets or passes the axis at"),
+        (lambda: Revolution(Line((-1, 0, 0), (1, 0, 1))), "meets or crosses the axis at"),
+        (lambda: Revolution(Line((0, 0, 0), (0, 0, 1))), "meets or crosses the axis at"),
         (lambda: Revolution(ARC, 0, 7), "from angle 0.0 to 7.0: give 0 < last - first <= 2 pi"),
         (lambda: Revolution(ARC, 1, 1), "from angle 1.0 to 1.0: give"),
         (lambda: Revolution(ARC, 0, np.nan), "last = nan"),

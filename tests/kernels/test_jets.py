@@ -204,8 +204,8 @@ def test_a_pcurve_tells_where_its_chart_is_blind():
     ("curve", "surface", "words"),
     [
         (RationalBezier([[1, 0, 0], [1, 1, 0], [0, 1, 0]]), Plane, "no exact pcurve"),
-        (ConicArc([0, 0, 0], [1, 0, 0], [0, 1, 0.5]), Cylinder, "only sections square"),
-        (ConicArc([0.1, 0, 1], [1, 0, 0], [0, 1, 0]), Cone, "only sections square"),
+        (ConicArc([0, 0, 0], [1, 0, 0], [0, 1, 0.5]), Cylinder, "only generators and sections"),
+        (ConicArc([0.1, 0, 1], [1, 0, 0], [0, 1, 0]), Cone, "only generators and sections"),
     ],
 )
 def test_curves_without_an_exact_pcurve_are_refused(curve, surface, words):

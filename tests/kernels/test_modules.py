@@ -38,17 +38,24 @@ from standoff.kernels.entries import queries
 from standoff.kernels.compiler import modules
 data = np.arange(1.0, 40.0)
 data.flags.writeable = False
-jets = queries.curve_jet(data, 0, 0, 0.3), queries.surface_jet(data, 1, 0, 0.3, 0.2)
+jets = [queries.curve_jet(data, 0, 0, 0.3)]
+if {surfaces}:
+    jets.append(queries.surface_jet(data, 1, 0, 0.3, 0.2))
 print(modules.AVAILABLE, *jets)
 """
 
 
-def jets(cache: Path, version: str = numba.__version__, stock: str = "0") -> tuple[str, str]:
-    """(were modules made, two jets) of a process that keeps its code in a folder."""
+def jets(
+    cache: Path, version: str = numba.__version__, stock: str = "0", surfaces: bool = True
+) -> tuple[str, str]:
+    """(were modules made, two jets) of a process that keeps its code in a folder.
+
+    Without surfaces the first jet alone: stock compilation of the other takes ten seconds.
+    """
     cache.chmod(0o700)
     settings = {"NUMBA_CACHE_DIR": str(cache), "STANDOFF_STOCK_COMPILER": stock}
     run = subprocess.run(
-        [sys.executable, "-c", JETS.format(version=version)],
+        [sys.executable, "-c", JETS.format(version=version, surfaces=surfaces)],
         capture_output=True,
         text=True,
         env={**os.environ, **settings},
@@ -81,7 +88,10 @@ def test_stock_compilation_gives_the_same_bits_and_keeps_apart_in_one_cache(
     before = set(copied.rglob("*.nbc"))
     assert jets(copied, stock="1") == ("False", values)
     assert set(copied.rglob("*.nbc")) > before
-    assert jets(copied, version="0.69.0") == ("False", values)
+    made, first = jets(copied, version="0.69.0", surfaces=False)
+    assert made == "False"
+    assert first.strip()
+    assert values.startswith(first.strip())
     assert jets(copied) == ("True", values)
 
 

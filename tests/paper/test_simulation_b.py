@@ -173,13 +173,13 @@ def test_the_medial_axis_tells_the_nearest_curve():
     run = chapter.run()
     rng = np.random.default_rng(4)
     tried = 0
-    for x in rng.uniform(-0.9, 1.0, (400, 2)):
+    for x in rng.uniform(-0.9, 1.0, (120, 2)):
         away = sorted((point_curve(x, curve)[0], k) for k, curve in enumerate(CURVES))
         if not run.printed.boundary.inside(x) or away[1][0] - away[0][0] < 1e-6:
             continue
         assert run.printed.medial.nearest_curve(x) == away[0][1]
         tried += 1
-    assert tried > 150
+    assert tried > 40
 
 
 def test_nothing_is_injected():

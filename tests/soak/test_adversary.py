@@ -118,13 +118,13 @@ def test_no_direction_separates_by_more_than_the_distance(rng):
 
 def test_the_certificate_stands_what_no_search_would_bring():
     """Any places and directions, all kinds; and trackers led astray."""
-    for number in range(draws(40)):
+    for number in range(draws(12)):
         _, breaches = run_round(SEED, number, cases=500)
         assert not breaches, json.dumps(breach_facts(breaches[0]))
 
 
 def test_wild_runs():
-    for number in range(draws(15)):
+    for number in range(draws(8)):
         rng = np.random.default_rng([SEED, number])
         run = wild_runs.run(rng, draw_walk(rng, SEED, 0, 20))
         assert not list(wild_runs.misses(run)), (number, run.law)

@@ -49,7 +49,7 @@ def test_aligned_poses_end_at_no_middle_of_a_seam(rng):
         1.9189609042844045 * np.array([1.0, 1.0, 0.0]),
     )
     ways = [w for w in product((-1, 0, 1), repeat=3) if any(w)]
-    for _ in range(draws(15)):
+    for _ in range(draws(6)):
         turns = [ALIGNED[rng.integers(len(ALIGNED))] for _ in "ab"]
         way = rng.uniform(1.3, 3) * np.array(ways[rng.integers(len(ways))], dtype=float)
         check(drawn(rng, 0.2, 1.8), drawn(rng, 0.2, 1.8), *turns, 2.0 * way)
@@ -58,7 +58,7 @@ def test_aligned_poses_end_at_no_middle_of_a_seam(rng):
 @pytest.mark.parametrize("aligned", [True, False])
 def test_exponents_up_to_the_greatest(aligned, rng):
     # tips so sharp that the parameter falls by decades a step while E is noise
-    for _ in range(draws(15)):
+    for _ in range(draws(6)):
         if aligned:
             turns = [ALIGNED[rng.integers(len(ALIGNED))] for _ in "ab"]
         else:

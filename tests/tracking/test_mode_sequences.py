@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import pytest
@@ -26,6 +27,7 @@ def stride(frame_time):
     return round(frame_time / FINE)
 
 
+@cache
 def track(name, frame_time, predictor="feedforward-2"):
     scene = SCENES[name]
     tracker = so.Tracker(

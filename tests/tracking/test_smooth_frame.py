@@ -97,7 +97,7 @@ def test_it_answers_as_the_general_frame(
     general = so.Tracker(a, b, 1e-3, law, specialise=False)
     size, smooth = a.size + b.size, 0
     for run in range(60):
-        if run >= 6 and smooth > 30:
+        if run >= 3 and smooth > 30:
             break
         state = None
         for pose, twist in motion(rng, size, 60):

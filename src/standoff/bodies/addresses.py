@@ -1,8 +1,9 @@
-"""Addresses of compiled formulas in packed bodies: of this process only.
+"""Addresses of compiled formulas in packed bodies, which are valid in this process only.
 
-The kernels reach a formula by its address, which stands in the packed body. A body that goes to
-another process, and a digest that is the same in every one, must tell these numbers from the
-others. Addresses are integers above 2^32, so no length is taken for one in practice.
+The kernels call a formula by its address, which is stored in the packed body. Sending a body to
+another process, or computing a digest that is the same in every process, needs to find these
+numbers among the others. Addresses are integers above 2^32, so in practice no length is mistaken
+for one.
 """
 
 from __future__ import annotations

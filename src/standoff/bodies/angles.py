@@ -1,8 +1,8 @@
-"""Angles of a boundary: dihedral angles along its edges, winding of faces round its vertices.
+"""Angles of a boundary: dihedral angles along its edges, winding of faces around its vertices.
 
 Both are sampled; extremes along edges are refined by minimisation. The *turn* of an edge is the
 angle from one outward normal to the other, positive at a convex edge: the dihedral angle inside
-the body is pi less the turn.
+the body is pi minus the turn.
 """
 
 from __future__ import annotations
@@ -26,11 +26,12 @@ from standoff.geometry.validation import Array
 from standoff.long_loops import told
 from standoff.motion.bounds import cross
 
-# Shares of an edge where its turn is sampled.
+# Fractions of an edge at which its turn is sampled.
 SHARES = np.linspace(0.0, 1.0, 17)
-# The true extreme of a smooth turn is within a few rises between samples of the sampled one.
+# The true extreme of a smooth turn differs from the sampled one by at most a few of the
+# differences between neighbouring samples.
 DOUBT = 4.0
-# Faces wind round a vertex once, 2 pi, or at least twice: the threshold between (radians).
+# Faces wind around a vertex once, 2 pi, or at least twice: the threshold between (radians).
 MOST_WINDING = 3.0 * np.pi
 # Directions sampled along a collapsed side.
 APEX_DIRECTIONS = 33
@@ -38,7 +39,7 @@ APEX_DIRECTIONS = 33
 
 @dataclass(frozen=True)
 class EdgeTurns:
-    """The least and the greatest turn of an edge, radians, and the parameters there.
+    """The least and the greatest turn of an edge, radians, and the parameters where they occur.
 
     doubt : how far either may be from the true extreme between samples, radians.
     """
@@ -53,7 +54,7 @@ class EdgeTurns:
 
 
 def edge_turns(body: Assembled, size: float) -> list[EdgeTurns]:
-    """The turns of every edge between two faces, sampled; `size` is the body's, length."""
+    """The turns of every edge between two faces, sampled; `size` is the size of the body."""
     users: list[list[int]] = [[] for _ in body.edges]
     for i, face in enumerate(body.faces):
         for j, _ in face.loop:
@@ -78,12 +79,12 @@ def _sampled(body: Assembled, size: float, j: int, one: int, other: int) -> Edge
 
 
 def _rise(values: Array, k: int) -> float:
-    """How much a least value differs from its neighbours."""
+    """By how much the least value differs from its neighbours, at most."""
     return float(np.abs(values[max(k - 1, 0) : k + 2] - values[k]).max())
 
 
 def refined(body: Assembled, found: Sequence[EdgeTurns], size: float) -> list[EdgeTurns]:
-    """Extremes minimised where they may be concave, or the least or the greatest of all."""
+    """Extremes refined at edges that may be concave or have the least or greatest turn of all."""
     if not found:
         return []
     least = min(e.least for e in found)
@@ -98,7 +99,7 @@ def refined(body: Assembled, found: Sequence[EdgeTurns], size: float) -> list[Ed
 
 
 def extremes(body: Assembled, size: float, e: EdgeTurns) -> EdgeTurns:
-    """An edge's extreme turns, by minimisation about the sampled ones."""
+    """An edge's extreme turns, by minimisation near the sampled ones."""
     curve = body.edges[e.edge].curve
     width = (curve.last - curve.first) / (len(SHARES) - 1)
 
@@ -120,7 +121,8 @@ def extremes(body: Assembled, size: float, e: EdgeTurns) -> EdgeTurns:
 def _turn(body: Assembled, size: float, j: int, one: int, other: int, t: float) -> float:
     """Angle from face `one`'s outward normal to the other's, positive where the edge is convex.
 
-    A negative one is nearer to zero by what roundoff may turn the normals (`normal_noise`).
+    A negative angle is moved towards zero by as much as roundoff may turn the normals
+    (`normal_noise`).
     """
     tangent = body.edges[j].curve.jet(t)[1]
     length = float(np.linalg.norm(tangent))
@@ -145,9 +147,9 @@ def dihedral(body: Assembled, j: int, turn: float, t: float) -> DihedralAngle:
 
 
 def check_vertices(body: Assembled) -> None:
-    """Raise BodyError where the faces wind round a vertex more than once.
+    """Raise BodyError where the faces wind around a vertex more than once.
 
-    Such a boundary crosses itself somewhere, while all its patches and edges may be convex.
+    Such a boundary crosses itself somewhere, although all its patches and edges may be convex.
     """
     axes = [np.sum(cone, axis=0) if cone else np.zeros(3) for cone in body.cones]
     total = np.zeros(len(body.vertices))
@@ -158,14 +160,14 @@ def check_vertices(body: Assembled) -> None:
             total[apex.vertex] += _swept(_generators(face.charts[0], apex), axes[apex.vertex])
     for k in np.flatnonzero(total > MOST_WINDING):
         raise BodyError(
-            f"The faces around vertex {k} {body.vertices[k]} wind round it "
+            f"The faces around vertex {k} {body.vertices[k]} wind around it "
             f"{total[k] / (2.0 * np.pi):.2g} times: the boundary crosses itself.",
             part=("vertex", int(k)),
         )
 
 
 def _face_directions(body: Assembled, i: int) -> Iterator[tuple[int, list[Array]]]:
-    """(vertex, directions of its two edges) at the corners of a face."""
+    """(vertex, directions of the two edges there) at the corners of a face."""
     ends: dict[int, list[Array]] = {}
     for j, _ in body.faces[i].loop:
         edge = body.edges[j]
@@ -182,7 +184,7 @@ def _face_directions(body: Assembled, i: int) -> Iterator[tuple[int, list[Array]
 
 
 def _generators(surface: Surface, apex: Apex) -> list[Array]:
-    """Directions out of a collapsed side, in order."""
+    """Directions that leave a collapsed side, in order."""
     along_u = apex.side[0] == "v"
     ts = [float(t) for t in np.linspace(apex.lo, apex.hi, APEX_DIRECTIONS)]
     spots = [(t, apex.level) if along_u else (apex.level, t) for t in ts]

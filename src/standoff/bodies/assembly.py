@@ -29,9 +29,9 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.long_loops import told
 
-# Points of an edge's span that are compared with the surface beside it.
+# Points of each span of an edge that are compared with the adjacent surface.
 SPAN_POINTS = 9
-# Generators that a collapsed side gives to its vertex's normal cone.
+# Generators that a collapsed side adds to its vertex's normal cone.
 APEX_NORMALS = 9
 
 
@@ -39,8 +39,8 @@ APEX_NORMALS = 9
 class Joined:
     """An oriented boundary.
 
-    notes : what was turned; residual : the greatest distance of parts that were joined, length;
-    tolerance : what it was allowed to be, length; shells, claims : as ``Oriented``.
+    notes : what was turned; residual : the greatest distance between parts that were joined,
+    length; tolerance : what it was allowed to be, length; shells, claims : as in ``Oriented``.
     """
 
     parts: Assembled
@@ -52,7 +52,7 @@ class Joined:
 
 
 def _check_joins(vertices: Array, edges: Sequence[Edge], size: float, tolerance: float) -> float:
-    """The greatest distance of an edge's end from its vertex."""
+    """The greatest distance between an edge's end and its vertex."""
     worst = 0.0
     for j, edge in enumerate(edges):
         curve = edge.curve
@@ -84,7 +84,7 @@ def _check_joins(vertices: Array, edges: Sequence[Edge], size: float, tolerance:
 def _check_on_surface(
     charts: list[Chart], edges: Sequence[Edge], size: float, tolerance: float
 ) -> float:
-    """The greatest distance of an edge from its trimming curves."""
+    """The greatest distance between an edge and its trimming curves, as points of the surface."""
     worst = 0.0
     for chart in told(charts, "comparing edges with faces"):
         for c in chart.coedges:
@@ -108,7 +108,7 @@ def _check_on_surface(
 
 
 def _stations(curve: Curve, first: float, last: float) -> Array:
-    """Parameters in every span of a curve: what hides between two samples is of another piece."""
+    """Parameters in every span of a curve, so that no analytic piece lies between two samples."""
     inside = curve.spans()
     ends = np.concatenate([[first], inside[(inside > first) & (inside < last)], [last]])
     return np.unique([np.linspace(a, b, SPAN_POINTS) for a, b in pairwise(ends)])
@@ -145,8 +145,8 @@ def _vertex_geometry(
 
 
 def _apex_normals(chart: Chart, apex: Apex) -> list[Array]:
-    """Outward normals along a collapsed side: generators of the vertex's cone, none if it is all
-    of a turn, where the kernels' sector serves alone."""
+    """Outward normals along a collapsed side: generators of the vertex's cone. None on a surface
+    whose u is an angle, where the kernels' sector is enough."""
     if chart.surface.periodic:
         return []
     ts = [float(t) for t in np.linspace(apex.lo, apex.hi, APEX_NORMALS)]
@@ -155,7 +155,7 @@ def _apex_normals(chart: Chart, apex: Apex) -> list[Array]:
 
 
 def _around(cone: list[Array]) -> list[Array]:
-    """A vertex's normals in their order around it: the certificate pairs neighbours."""
+    """A vertex's normals in order around it: the certificate pairs neighbours."""
     if len(cone) < 4:
         return cone
     axis = np.sum(cone, axis=0)
@@ -180,7 +180,7 @@ def _wide_sector(
     normal = np.cross(jet[1], jet[2])
     area = float(np.linalg.norm(normal))
     if area <= SINGULAR_CORNER * float(np.prod(np.linalg.norm(tangents, axis=0))):
-        return None  # no direction of (u, v) leads into the face from such a corner
+        return None  # from such a corner no direction in (u, v) leads into the face
     start = stop = None
     for j, end in ends:
         curve = edges[j].curve
@@ -188,7 +188,7 @@ def _wide_sector(
         out = curve.jet(curve.last if end else curve.first)[1] * (-1.0 if end else 1.0)
         direction = np.linalg.lstsq(tangents, out, rcond=None)[0]
         angle = float(np.arctan2(direction[1], direction[0]))
-        # the face lies to the left of the way out where side and sense agree
+        # the face lies to the left of the outgoing direction where side and sense agree
         if side * (-1 if end else 1) > 0:
             start = angle
         else:
@@ -218,7 +218,7 @@ def assemble(
 ) -> Joined:
     """Orient and check a boundary; its parts may miss each other by `tolerance`, length.
 
-    By the roundoff of their coordinates they always may, whatever the tolerance.
+    Whatever the tolerance, they may miss each other by the roundoff of their coordinates.
 
     senses, trusted : as in ``orient``.
     """
@@ -250,7 +250,7 @@ def roundoff_note(roundoff: float) -> str:
 
 
 def _volume(parts: Assembled) -> Callable[[Sequence[int]], float]:
-    """Of a shell, as the charts face when it is asked."""
+    """The volume that a shell encloses, as its charts face at the time of the call."""
 
     def volume(shell: Sequence[int]) -> float:
         if all_flat(parts, shell):

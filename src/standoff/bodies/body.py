@@ -36,22 +36,18 @@ class Body(Boundary):
     """A convex body in its own frame: a boundary that is proven convex. Make one with
     ``so.shapes``, ``Body.from_patches`` or ``Body.from_brep``.
 
+    Unlike other boundaries it may be rounded, planar, a half-space, a segment or a point. Its
+    attributes are those of `Boundary`, of which these say more:
+
     Attributes
     ----------
-    name : str
-    vertex_points : (n, 3) array
-        Body frame.
-    edge_parts : sequence of Edge
-    face_parts : sequence of Face
     radius : float
         Of the ball swept over the core, length: a sphere's own radius, another shape's rounding.
     dimension : int
         2 for a planar body (a closed loop of curves in z = 0), 3 for a spatial one.
-    ints, reals : array
-        The packed body that the kernels read, as ``standoff.kernels.body.layout`` says.
-    report : BodyReport
     size : float
         Diagonal of the box around the body with its radius, length; inf for a half-space.
+    report : BodyReport
     """
 
     report: BodyReport
@@ -80,21 +76,21 @@ class Body(Boundary):
             Surfaces with loops, counterclockwise seen from outside; a loop given the other way
             round is turned and reported in ``body.check().notes``.
         rounding : float
-            Radius of a ball swept over it, length: the body grows by it all round.
+            Radius of a ball swept over the body, length: it grows by this much on all sides.
         dimension : int
             2 for a closed planar loop of edges in z = 0.
         tolerance : float, optional
             How far curves may be from their vertices and surfaces, length; 1e-9 of the size by
-            default. What is found goes into the certificate's slack.
+            default. The distance found goes into the certificate's slack.
         convexity_tolerance : float, optional
             Greatest convexity defect, length; 1e-6 of the size by default (``BodyReport``).
 
         Raises
         ------
         BodyError
-            Open or doubly used edges, parts that do not meet, a boundary that is not convex.
+            Open edges, edges used too often, parts that do not meet, a boundary that is not convex.
         TypeError
-            Edges or faces that are no list.
+            Edges or faces that are not a list.
         ValueError
             NaN, infinite, negative or wrongly shaped numbers.
         """
@@ -136,26 +132,26 @@ class Body(Boundary):
         ----------
         patches : sequence of Surface
             Each with a finite domain: NURBS, Bezier, revolved, extruded and formula surfaces
-            have one, ``surface.restricted(u0, u1, v0, v1)`` gives one to any.
+            have one, ``surface.restricted(u0, u1, v0, v1)`` gives one to any other.
         tolerance : float, optional
             How far joined sides may be apart, length in the patches' unit; 1e-9 of the size (the
             diagonal of their box) by default: 7e-8 mm for a cube of 40 mm. That is ample for
-            patches of one formula, and small since a gap that is accepted goes into the slack, by
-            which every lower bound is less. Raise it for patches whose sides were computed one by
-            one, as those of a CAD kernel: to its own tolerance, often 1e-7 of its unit. Only the
+            patches of one formula. It is small because an accepted gap goes into the slack, which
+            lowers every lower bound. Raise it for patches whose sides were computed one by one,
+            like those of a CAD kernel: to its own tolerance, often 1e-7 of its unit. Only the
             greatest distance found counts, not the tolerance; corners within it become one.
         convexity_tolerance : float, optional
             Greatest convexity defect, length; 1e-6 of the size by default. The bound proven for
             the patches and sampled for the edges goes into the certificate's slack too.
         rounding : float
-            Radius of a ball swept over it, length: the body grows by it all round.
+            Radius of a ball swept over the body, length: it grows by this much on all sides.
 
         Raises
         ------
         BodyError
-            Sides that match none or several, more than one shell, patches that meet in a point
-            only, no volume, a boundary that is not convex; the message names the place, and for
-            an open shell the gaps and a ``tolerance`` that would close them if there is one.
+            Sides that match none or several, more than one shell, patches that meet only in a
+            point, no volume, a boundary that is not convex; the message names the place, and for
+            an open shell the gaps and, if there is one, a ``tolerance`` that would close them.
         ValueError
             NaN, infinite or negative numbers.
         """
@@ -356,9 +352,9 @@ class Body(Boundary):
         ModuleNotFoundError
             If matplotlib is not installed; the message names the extra.
         TypeError
-            If `path` is neither a text nor a Path.
+            If `path` is neither a string nor a Path.
         ValueError
-            If it is empty, or the file's ending is another.
+            If it is empty or has a different file extension.
         OSError
             If the file cannot be written.
         """
@@ -373,7 +369,7 @@ class Body(Boundary):
 
     @property
     def flat(self) -> bool:
-        """May it meet a planar body: everything in z = 0 and no faces."""
+        """May it be paired with a planar body: does it lie in z = 0 and have no faces?"""
         if self.face_parts:
             return False
         spots = [self.vertex_points] + [edge_points(e) for e in self.edge_parts]
@@ -400,7 +396,8 @@ def made_body(name: str, radius: float, packed: Packed) -> Body:
 def _kept_pcurves(face: Face, edges: Sequence[Edge]) -> tuple[Pcurve | None, ...]:
     """A face's trimming curves, for its image: maps in space leave (u, v) as they are.
 
-    Found anew from the image's inverse they would lose what a flattening map's condition costs.
+    Finding them again from the image's inverse would lose the digits that the condition of a
+    flattening map costs.
     """
     if len(face.charts) > 1:
         return face.pcurves

@@ -29,7 +29,7 @@ class EdgeKind(StrEnum):
     REFLEX = "reflex"
     SMOOTH = "smooth"
     MIXED = "mixed"
-    """Convex somewhere along it and reflex elsewhere."""
+    """Convex in some places along it and reflex in others."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,11 +48,11 @@ class Boundary(PackedParts):
     edge_parts : sequence of Edge
     face_parts : sequence of Face
     radius : float
-        Of the ball swept over the core, length; 0 but for bodies.
+        Of the ball swept over the core, length; 0 unless it is a `Body`.
     dimension : int
-        3; 2 for a planar body.
+        3; 2 for a planar `Body`.
     ints, reals : array
-        Packed, as ``standoff.kernels.body.layout`` says.
+        The packed boundary that the kernels read, laid out as in ``standoff.kernels.body.layout``.
     size : float
         Diagonal of the box around it, length.
     report : BoundaryReport
@@ -72,8 +72,8 @@ class Boundary(PackedParts):
     ) -> Boundary:
         """A boundary from its vertices, edges and faces, whichever way round its loops are given.
 
-        Where a face is follows from its loops: on the inside of the outermost and the outside of
-        the others. Which way out is follows from its neighbours and from the volume enclosed.
+        Its loops determine where a face is: inside the outermost and outside the others. Its
+        neighbours and the enclosed volume determine which side of it is outside.
 
         Parameters
         ----------
@@ -84,9 +84,9 @@ class Boundary(PackedParts):
         faces : sequence of Face
             Surfaces with their loops.
         senses : sequence of +1, -1 or None, optional
-            For every face whether x_u × x_v of its charts points outward. Only a face of several
-            charts with a loop needs it, as both sides of the loop may be meant: by default it is
-            the side where outside is where it bulges.
+            For every face whether x_u × x_v of its charts points outward. It is needed only for a
+            face of several charts with a loop, because either side of the loop may be meant: by
+            default, the side that bulges outward.
         tolerance : float, optional
             How far curves may be from their vertices and surfaces, length; 1e-9 of the size by
             default.
@@ -98,10 +98,10 @@ class Boundary(PackedParts):
         Raises
         ------
         BodyError
-            An open shell, an edge of more than two faces, a surface with one side only, no volume,
+            An open shell, an edge of more than two faces, a surface with only one side, no volume,
             shells beside each other, or one inside another that faces the same way.
         TypeError
-            Edges or faces that are no list.
+            Edges or faces that are not a list.
         ValueError
             NaN, infinite, negative or wrongly shaped numbers.
         """
@@ -113,7 +113,7 @@ class Boundary(PackedParts):
     def from_patches(
         patches: Sequence[Surface], *, tolerance: float | None = None, name: str = "boundary"
     ) -> Boundary:
-        """A boundary from patches that close one shell or several: their sides are sewn together.
+        """A boundary from patches that close one or more shells: their sides are sewn together.
 
         Parameters
         ----------
@@ -129,7 +129,7 @@ class Boundary(PackedParts):
         Raises
         ------
         BodyError
-            As `from_brep`, and as ``Body.from_patches`` where sides match none or several.
+            As for `from_brep`, and sides that match none or several, as in ``Body.from_patches``.
         """
         from standoff.bodies.closing import joined_patches
 
@@ -150,14 +150,14 @@ class Boundary(PackedParts):
         Raises
         ------
         StandoffError
-            A wrong shape, a number that is not finite; a point of which rays do not tell it; a body
-            that is planar, not bounded, without faces, or rounded.
+            A wrong shape, or a number that is not finite; a point for which no ray decides; a body
+            that is planar, unbounded, without faces, or rounded.
         """
         from standoff.bodies.crossings import Crossings
 
         if not (self.face_parts and self.bounded and self.radius == 0.0):
             raise StandoffError(
-                f"{self!r} is not a solid with faces of its own: ask for the distance of a point."
+                f"{self!r} is not a bounded, unrounded solid with faces: use so.points instead."
             )
         given = finite(points, "points", (-1, 3))
         rays = Crossings(self)
@@ -169,7 +169,7 @@ class Boundary(PackedParts):
 
     @property
     def edge_kinds(self) -> tuple[EdgeKind, ...]:
-        """Of every edge, sampled along it."""
+        """The kind of every edge, sampled along it."""
         at = int(self.ints[L.EDGES]) + L.EDGE_FLAGS
         flags = self.ints[at : at + L.EDGE_STRIDE * self.n_edges : L.EDGE_STRIDE]
         return tuple(_kind(int(flag)) for flag in flags)

@@ -1,4 +1,4 @@
-"""The charts of a body's faces with their coedges, from the parts as they were given."""
+"""The charts of a body's faces with their coedges, made from the parts as they were given."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from standoff.kernels.body import layout as L
 from standoff.kernels.tolerances import EPS, NORMAL_NOISE
 from standoff.motion.bounds import cross
 
-# |u|, |v| of an atlas's gnomonic charts: they overlap from RECHART (1.2) to here.
+# Greatest |u| and |v| in an atlas's gnomonic charts: they overlap from RECHART (1.2) to here.
 ATLAS_LIMIT = 2.0
 EDGE_POINTS = np.linspace(0.05, 0.95, 7)
 
 
 def edge_points(edge: Edge) -> Array:
-    """Points inside an edge, (7, 3), body frame."""
+    """Points between the ends of an edge, (7, 3), body frame."""
     c = edge.curve
     return np.array([c.point(c.first + s * (c.last - c.first)) for s in EDGE_POINTS])
 
 
 def loop_pcurve(face: Face, entry: int, edges: Sequence[Edge], surface: Surface) -> Pcurve:
-    """The trimming curve of an entry of a face's loop: as given, or found exactly."""
+    """The trimming curve of one entry of a face's loop: as given, or exact by construction."""
     given = face.pcurves[entry] if face.pcurves else None
     return given or pcurve_of(edges[face.loop[entry][0]].curve, surface)
 
@@ -53,11 +53,11 @@ def surface_normal(surface: Surface, u: float, v: float) -> Array:
 
 
 def normal_noise(surface: Surface, u: float, v: float, size: float) -> float:
-    """How far, radians, roundoff may turn a normal beside a collapsed side; 0 where none is lost.
+    """How far roundoff may turn a normal near a collapsed side, radians; 0 where it does not.
 
-    The same bound as the kernels', which the certificate takes off at such a point: with a turn
-    of no more the surface is within NORMAL_NOISE roundings of one without it. `size` is the
-    body's, length.
+    The same bound as in the kernels, where the certificate subtracts it at such a point: a surface
+    turned by no more is within NORMAL_NOISE roundings of the exact one. `size` is the size of the
+    body, length.
     """
     if not surface.noisy:
         return 0.0
@@ -79,7 +79,7 @@ def _inwards(surface: Surface, u: float, v: float) -> tuple[float, float]:
 
 
 def make_charts(faces: Sequence[Face], edges: Sequence[Edge]) -> list[Chart]:
-    """The charts of all faces with their coedges, whose sides are the loops' senses."""
+    """The charts of all faces with their coedges; a coedge's side is its sense in the loop."""
     charts = []
     for i, face in enumerate(faces):
         for surface in face.charts:
@@ -93,7 +93,7 @@ def make_charts(faces: Sequence[Face], edges: Sequence[Edge]) -> list[Chart]:
                     )
                 curve = edges[j].curve
                 pcurve = loop_pcurve(face, k, edges, surface)
-                # a given pcurve's weight is not a depth, only positive where it is seen
+                # a given pcurve's weight is not a depth: it only has to be positive
                 given = len(face.pcurves) > 0 and face.pcurves[k] is not None
                 rim = 0.0 if given else CHART_RIM
                 spans = visible_spans(pcurve, curve.first, curve.last, rim)
@@ -115,7 +115,7 @@ def make_charts(faces: Sequence[Face], edges: Sequence[Edge]) -> list[Chart]:
 
 
 def _collapsed_side(apex: Apex) -> Coedge:
-    """A coedge whose left is the face: u grows along v0, falls along v1."""
+    """A coedge with the face on its left: u increases along v0 and decreases along v1."""
     along, across = [1.0, 0.0, 0.0], [0.0, 0.0, apex.level]
     rows = [along, across] if apex.side[0] == "v" else [across, along]
     line = Pcurve(L.LINE, np.array([*rows, [0.0, 0.0, 1.0]]))
@@ -152,14 +152,14 @@ def _ends(c: Coedge, edges: Sequence[Edge]) -> dict[int, float]:
 def visible_spans(
     pcurve: Pcurve, first: float, last: float, margin: float = CHART_RIM
 ) -> list[tuple[float, float]]:
-    """The parameter ranges of a pcurve that its chart sees, with a small margin to its rim."""
+    """The parameter ranges of a pcurve that its chart sees, with a small margin at its rim."""
     if pcurve.kind == L.BEZIER:
         return [(first, last)]
     if pcurve.kind == L.LINE:
         return _visible_line(pcurve, first, last, margin)
     a, b, c = pcurve.matrix[2]
     reach = float(np.hypot(a, b))
-    if reach == 0.0 and c == 1.0:  # a plane's parameters, no gnomonic chart's: there is no rim
+    if reach == 0.0 and c == 1.0:  # parameters of a plane, not of a gnomonic chart: no rim
         return [(first, last)]
     rim = margin * float(np.abs(pcurve.matrix).max()) - c
     if reach == 0.0 or abs(rim) >= reach:

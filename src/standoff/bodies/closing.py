@@ -37,7 +37,7 @@ from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
-# Faces of a shell that a message names.
+# Greatest number of a shell's faces that a message names.
 MOST_NAMED = 6
 
 
@@ -95,7 +95,7 @@ def _check_bounded(faces: Sequence[Face]) -> None:
 
 
 def _charts_points(faces: Sequence[Face]) -> Array:
-    """The middles of faces that are whole surfaces."""
+    """The centres of the charts of faces without loops."""
     whole = [chart.jet(0.0, 0.0)[0] for f in faces if not f.loop for chart in f.charts]
     return np.reshape(whole, (-1, 3))
 
@@ -116,7 +116,7 @@ def _checked_senses(
 
 
 def close(joined: Joined) -> tuple[Assembled, Ints, Array, BoundaryReport]:
-    """Check the shells, tell the edges' kinds, and pack."""
+    """Check the shells, find the kinds of the edges, and pack."""
     parts = joined.parts
     rough = packed_parts(parts)
     blind = blind_charts(parts, rough.ints, rough.reals)
@@ -190,14 +190,14 @@ def _cavities(boundary: PackedParts, joined: Joined, shells: Sequence[Enclosed])
     for k in inner:
         if not around.inside(spots[k]):
             raise BodyError(
-                f"Faces {_named(joined.shells[k])} lie outside of the shell of faces "
-                f"{_named(joined.shells[outer])}: make one boundary of each.",
+                f"Faces {_named(joined.shells[k])} lie outside the shell of faces "
+                f"{_named(joined.shells[outer])}: make a boundary of each shell.",
                 part=("face", joined.shells[k][0]),
             )
         claims = joined.claims[outer], joined.claims[k]
         if claims[0] * claims[1] > 0:
             raise BodyError(
-                f"Faces {_named(joined.shells[k])} lie inside of the shell of faces "
+                f"Faces {_named(joined.shells[k])} lie inside the shell of faces "
                 f"{_named(joined.shells[outer])} and face the same way: give the loops of a cavity "
                 "the other way round, or leave the inner solid out.",
                 part=("face", joined.shells[k][0]),
@@ -207,8 +207,8 @@ def _cavities(boundary: PackedParts, joined: Joined, shells: Sequence[Enclosed])
         for m in inner:
             if m != k and within.inside(spots[m]):
                 raise BodyError(
-                    f"Faces {_named(joined.shells[m])} lie inside of the cavity of faces "
-                    f"{_named(joined.shells[k])}: make one boundary of each solid.",
+                    f"Faces {_named(joined.shells[m])} lie inside the cavity of faces "
+                    f"{_named(joined.shells[k])}: make a boundary of each solid.",
                     part=("face", joined.shells[m][0]),
                 )
     return inner
@@ -225,7 +225,7 @@ def _spot(boundary: PackedParts, shell: Sequence[int]) -> Array:
 
 
 def _turn_inward(parts: Assembled, shell: Sequence[int]) -> None:
-    """Of a cavity out is inward."""
+    """Turn a cavity's shell: out of the material is into the cavity."""
     for chart in parts.charts:
         if chart.face in shell:
             chart.outward = -chart.outward
@@ -238,8 +238,8 @@ def _turn_inward(parts: Assembled, shell: Sequence[int]) -> None:
 
 
 def _box(boundary: PackedParts, parts: Assembled) -> tuple[Array, Array]:
-    """(low, high) round a boundary: of plane faces round their edges, of others round rectangles
-    that hold them."""
+    """(low, high) of a box around a boundary: around the edges of plane faces, and around
+    rectangles of parameters that contain the others."""
     curved = [i for i, face in enumerate(parts.faces) if not all(c.flat for c in face.charts)]
     boxes = [curve_box(edge) for edge in parts.edges]
     charts = face_charts(boundary, curved)
@@ -249,7 +249,7 @@ def _box(boundary: PackedParts, parts: Assembled) -> tuple[Array, Array]:
 
 
 def _with_kinds(parts: Assembled, size: float) -> Assembled:
-    """The parts with their edges told smooth, reflex or mixed."""
+    """The parts, with their edges marked as smooth, reflex or mixed."""
     smooth, flags = [False] * len(parts.edges), [0] * len(parts.edges)
     for turns in edge_turns(parts, size):
         found = extremes(parts, size, turns) if _open(turns) else turns
@@ -264,6 +264,6 @@ def _with_kinds(parts: Assembled, size: float) -> Assembled:
 
 
 def _open(turns: EdgeTurns) -> bool:
-    """May an edge be of another kind between its samples?"""
+    """May an edge be of a different kind between its samples?"""
     least, greatest = turns.least - turns.doubt, turns.greatest + turns.doubt
     return (turns.least >= -SMOOTH_ANGLE > least) or (turns.greatest <= SMOOTH_ANGLE < greatest)

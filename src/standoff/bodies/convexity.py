@@ -1,16 +1,16 @@
 """The convexity defect of a whole body, from its patches, edges and vertices.
 
 How far can a point y of a body lie above a tangent plane n at another, x? Take the shortest path
-from x to y inside the body. It is straight but where it bends round a dent: in contact with a
+from x to y inside the body. It is straight except where it bends around a dent: in contact with a
 dented patch its curvature is at most the patch's worst normal curvature, so that it turns there by
 at most the patch's tilt; over a concave edge it turns by at most that edge's angle. It starts
-below the plane, so after turning by T in all, y is at most T times the path's length above it.
-Convex patches and edges turn it by nothing: then the body is convex, which is the theorem of
+below the plane, so after turning by T in total, y is at most T times the path's length above it.
+Convex patches and edges do not turn it: if all are convex, so is the body, which is the theorem of
 Tietze and Nakajima.
 
-Away from faces the certificate uses normals between those of faces. Such a normal n = sum a_i n_i
-exceeds by at most (sum a_i) times the faces' excess, and sum a_i <= 1/h where some unit vector c
-has c.n_i >= h for all of them.
+At edges and vertices the certificate uses normals between those of the faces. For such a normal
+n = sum a_i n_i the height is at most (sum a_i) times that of the faces, and sum a_i <= 1/h if some
+unit vector c has c.n_i >= h for all of them.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from standoff.long_loops import told
 
 @dataclass(frozen=True)
 class Known:
-    """What is known of every face already: its name in messages, and its proof."""
+    """What is already known of every face: its name in messages, and its proof."""
 
     names: Sequence[str]
     proofs: Sequence[PatchProof]
@@ -40,7 +40,7 @@ class Known:
 
 @dataclass(frozen=True)
 class Convexity:
-    """patches : checks of every chart; defect : of the body, length; widen : 1/h, see above."""
+    """patches : the check of every chart; defect : of the body, length; widen : 1/h, see above."""
 
     patches: tuple[PatchCheck, ...]
     defect: float
@@ -56,7 +56,7 @@ def convexity(
 ) -> Convexity:
     """Bound the convexity defect over the whole boundary.
 
-    known : names and proofs of every face, each of one chart, where there are.
+    known : names and proofs of all faces, each of one chart, if they exist already.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def convexity(
                 part=("edge", e.edge),
             )
         total += concave if concave > TURN_ROUNDOFF else 0.0
-    # a path that turns by T in all is longer than its chord by less than a factor 1 + T
+    # a path that turns by T in total is longer than its chord by less than a factor 1 + T
     defect = total * (1.0 + total) * size if total > 0.0 else 0.0  # a half-space has no size
     if defect > tolerance:
         raise BodyError(
@@ -96,10 +96,10 @@ def convexity(
 def _check_patch(
     chart: Chart, face: str, proof: PatchProof, size: float, tolerance: float
 ) -> tuple[PatchCheck, float]:
-    """A chart's check, and the turn that its dents allow, radians."""
+    """A chart's check, and by how much its dents may turn a path, radians."""
     name = type(chart.surface).__name__
     hollow = proof.sense * chart.outward < 0.0
-    if hollow:  # by how much, if it is to face outward all the same
+    if hollow:  # by how much, as it has to face outward
         proof = prove_patch(chart.surface, int(chart.outward))
     if not proof.convex and not max(proof.defect, proof.tilt * size) <= tolerance:
         u, v = proof.place
@@ -126,7 +126,7 @@ def _check_patch(
 
 
 def widening(body: Assembled, turns: Sequence[EdgeTurns]) -> float:
-    """1/h, h the least cosine between normals that meet and the axis of their cone."""
+    """1/h, where h is the least cosine between normals that meet and the axis of their cone."""
     least = min([1.0, *(float(np.cos(0.5 * max(e.greatest, 0.0))) for e in turns)])
     for cone in body.cones:
         if len(cone) > 1:
@@ -135,7 +135,7 @@ def widening(body: Assembled, turns: Sequence[EdgeTurns]) -> float:
 
 
 def _axis_cosine(normals: Array) -> float:
-    """The least cosine between unit normals and an axis amid them, by repeated correction."""
+    """The least cosine between unit normals and a central axis, found by repeated correction."""
     axis = normals.mean(axis=0)
     best = 0.0
     for k in range(32):

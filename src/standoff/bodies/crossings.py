@@ -1,7 +1,7 @@
-"""Is a point inside a boundary: by where rays from it cross the faces.
+"""Whether a point is inside a boundary, by where rays from it cross the faces.
 
-Along a ray crossings alternate, out and in, and the last leads out. Where what was found does not,
-as where the ray runs along an edge or touches a face, another direction is taken.
+Along a ray, crossings alternate between out and in, and the last leads out. If those found do not,
+for instance because the ray runs along an edge or touches a face, another direction is tried.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from standoff.kernels.entries.queries import on_face
 
 # Half the angle of a leaf's cone of normals, radians.
 LEAF_ANGLE = 0.4
-# A ray that makes less than this with a leaf's surface (radians) crosses it surely once at most.
+# A ray at a larger angle than this to all of a leaf's surface (radians) crosses it at most once.
 GRAZING = 0.05
-# Quarterings of a leaf that a ray may graze, before another direction is taken.
+# How often a leaf that a ray may graze is quartered before another direction is tried.
 MOST_QUARTERINGS = 12
-# Newton steps of one crossing: a leaf is nearly plane.
+# Newton steps for one crossing: a leaf is nearly plane.
 MOST_STEPS = 30
-# Directions of rays: none along an axis or a diagonal of what is drawn by hand.
+# Directions of rays, none along an axis or a diagonal, as hand-made shapes have them.
 _SPREAD = np.array(
     [
         (0.5417, 0.3109, 0.7809),
@@ -58,7 +58,7 @@ class Crossings:
         self.near = SAME_CROSSING * (self.size + float(np.abs([low, high]).max()))
 
     def _extents(self, number: int) -> tuple[Array, Array, Array]:
-        """A direction's frame (3, 3), and the leaves' extents along it (3, n), a little more."""
+        """A direction's frame (3, 3), and the leaves' extents in it (3, n), slightly enlarged."""
         if number not in self._known:
             direction = DIRECTIONS[number]
             across = np.cross(direction, np.eye(3)[int(np.abs(direction).argmin())])
@@ -78,7 +78,7 @@ class Crossings:
         Raises
         ------
         BodyError
-            Of no direction the crossings alternate.
+            The crossings alternate along no direction.
         """
         for grazing in (False, True):
             for number in range(len(DIRECTIONS)):
@@ -86,14 +86,14 @@ class Crossings:
                 if told is not None:
                     return told
         raise BodyError(
-            f"Whether {point} is inside cannot be told: along none of {len(DIRECTIONS)} rays do "
-            "the crossings lead out and in by turns. Faces may cross each other, or gape."
+            f"Cannot decide whether {point} is inside: along none of {len(DIRECTIONS)} rays do the "
+            "crossings alternate between out and in. Faces may cross each other or have gaps."
         )
 
     def _along(
         self, point: Array, frame: Array, low: Array, high: Array, grazing: bool
     ) -> bool | None:
-        """By one ray; None where it does not tell, or may graze a face and is not to."""
+        """By one ray; None if it does not decide, or may graze a face and `grazing` is False."""
         at = frame @ point
         hits: list[tuple[float, float]] = []
         met = np.flatnonzero(_meets(at, low, high))
@@ -115,7 +115,7 @@ class Crossings:
     def _crossing(
         self, chart: FaceChart, row: Array, at: Array, frame: Array
     ) -> list[tuple[float, float]]:
-        """(way along the ray, +1 where it leads out) of what one steep rectangle has of a face."""
+        """(distance along the ray, +1 where it leads out) of a crossing in one steep rectangle."""
         root = self._root(chart, row, at, frame)
         packed = self.boundary.ints, self.boundary.reals
         if root is None or not on_face(*packed, chart.number, *root):
@@ -127,7 +127,7 @@ class Crossings:
     def _grazed(
         self, chart: FaceChart, row: Array, at: Array, frame: Array
     ) -> list[tuple[float, float]] | None:
-        """The same of one that a ray may graze; None where it does."""
+        """The same for a rectangle that a ray may graze; None where it does."""
         hits, rows = [], row[None]
         for _ in range(MOST_QUARTERINGS):
             steep = _steep(chart.surface.bounds(rows), frame[0])
@@ -149,7 +149,7 @@ class Crossings:
     def _root(
         self, chart: FaceChart, row: Array, at: Array, frame: Array
     ) -> tuple[float, float] | None:
-        """Where the ray's line meets a leaf, by Newton's method; None where it passes it by."""
+        """Where the ray's line meets a leaf, by Newton's method; None if it misses it."""
         low, high = row[[0, 2]], row[[1, 3]]
         width = high - low
         place = 0.5 * (low + high)
@@ -177,19 +177,19 @@ class Crossings:
 
 
 def _steep(bounds: PatchBounds, direction: Array) -> NDArray[np.bool_]:
-    """(n,) over which the surface surely makes more than GRAZING with a ray."""
+    """(n,) rectangles over which the angle of surface and ray is proven above GRAZING."""
     lean = np.minimum(np.abs(bounds.axis @ direction), 1.0)
     return np.asarray(np.arcsin(lean) - bounds.angle > GRAZING)
 
 
 def _meets(at: Array, low: Array, high: Array) -> NDArray[np.bool_]:
-    """(n,) which extents (3, n) a ray from a point meets, all in its frame."""
+    """(n,) which of the extents (3, n) a ray from a point meets, all in the ray's frame."""
     beside = ((low[1:] <= at[1:, None]) & (at[1:, None] <= high[1:])).all(axis=0)
     return np.asarray(beside & (high[0] >= at[0]))
 
 
 def _parity(hits: list[tuple[float, float]], near: float) -> bool | None:
-    """Is the start inside? None where crossings do not alternate and lead out at last."""
+    """Is the start inside? None unless the crossings alternate and the last leads out."""
     kept: list[tuple[float, float]] = []
     for way, out in sorted(hits):
         if kept and way - kept[-1][0] <= near:

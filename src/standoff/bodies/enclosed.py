@@ -19,17 +19,17 @@ from standoff.geometry.curves import Curve, Line
 from standoff.geometry.validation import Array
 
 EPS = float(np.finfo(float).eps)
-# Gauss points of a span of a curve in a plane face.
+# Gauss points for each span of a curve in a plane face.
 SPAN_POINTS = 16
 NOTHING = np.zeros((0, 3))
-# Points of the boundary that are taken at most, about, for the volume of one shell.
+# About the greatest number of boundary points used for the volume of one shell.
 MOST_NODES = 200_000
 
 
 @dataclass(frozen=True)
 class Enclosed:
-    """What a shell encloses: its signed volume, length cubed, a bound of what that may be off, and
-    its area, length squared."""
+    """What a shell encloses: its signed volume, length cubed, a bound on the error of that, and its
+    area, length squared."""
 
     volume: float
     error: float
@@ -37,12 +37,12 @@ class Enclosed:
 
     @property
     def settled(self) -> float:
-        """The volume; 0 where it is nothing but for its error."""
+        """The volume; 0 where it is within its error of 0."""
         return self.volume if abs(self.volume) > self.error else 0.0
 
 
 def enclosed_by(boundary: PackedParts, shell: Sequence[int], tolerance: float) -> Enclosed:
-    """What the faces of a shell enclose; `tolerance` is relative, where refinement ends."""
+    """What the faces of a shell enclose, refined to the relative `tolerance`."""
     points = _points(boundary.vertex_points, [e.curve for e in boundary.edge_parts])
     charts = [chart for i in shell for chart in boundary.face_parts[i].charts]
     reaches = [chart.farthest() or float(np.linalg.norm(chart.shift)) for chart in charts]
@@ -67,12 +67,12 @@ def enclosed_by(boundary: PackedParts, shell: Sequence[int], tolerance: float) -
 
 
 def all_flat(parts: Assembled, shell: Sequence[int]) -> bool:
-    """Are the faces of a shell planes, by their kind?"""
+    """Are all faces of a shell planes, judged by their kind?"""
     return all(chart.flat for i in shell for chart in parts.faces[i].charts)
 
 
 def enclosed_by_planes(parts: Assembled, shell: Sequence[int]) -> Enclosed:
-    """The same of plane faces, from their edges alone: exact for straight ones but for rounding."""
+    """The same for plane faces, from their edges only: exact up to rounding for straight ones."""
     points = _points(parts.vertices, [e.curve for e in parts.edges])
     centre = points.mean(axis=0)
     within = {c.edge for chart in parts.charts if chart.face in shell for c in chart.coedges}
@@ -91,9 +91,8 @@ def enclosed_by_planes(parts: Assembled, shell: Sequence[int]) -> Enclosed:
 
 
 def outward_right(edges: Sequence[Edge]) -> list[bool]:
-    """For every edge of closed loops in z = 0, each vertex of two, whether out is on its right.
-
-    It is where the loop is run through counterclockwise, which is where it encloses an area.
+    """For every edge of closed loops in z = 0, with two edges at each vertex, whether outside is on
+    its right: where it follows its loop counterclockwise, so that the area is positive.
     """
     right = [False] * len(edges)
     waiting = set(range(len(edges)))
@@ -108,7 +107,7 @@ def outward_right(edges: Sequence[Edge]) -> list[bool]:
 
 
 def _chain(edges: Sequence[Edge], waiting: set[int]) -> list[tuple[int, int]]:
-    """(edge, sense) of a loop among those that are waiting, run through from its first edge."""
+    """(edge, sense) along a loop of the edges that are waiting, from the first of them."""
     chain = [(min(waiting), 1)]
     left = waiting - {chain[0][0]}
     at = edges[chain[0][0]].last
@@ -124,13 +123,13 @@ def _chain(edges: Sequence[Edge], waiting: set[int]) -> list[tuple[int, int]]:
 
 
 def _points(vertices: Array, curves: Sequence[Curve]) -> Array:
-    """Points of a boundary: its vertices, and three of each edge."""
+    """Points of a boundary: its vertices, and three on each edge."""
     spots = [c.point(t) for c in curves for t in np.linspace(c.first, c.last, 4)[:-1]]
     return np.vstack([vertices, np.reshape(spots, (-1, 3))])
 
 
 def _swept(curve: Curve, centre: Array) -> Array:
-    """The vector area that the way from a point to a curve sweeps, ½ ∫ (x - c) × x_t dt."""
+    """The vector area swept by the segment from a point to a curve, ½ ∫ (x - c) × x_t dt."""
     if isinstance(curve, Line):
         first, last = (curve.point(t) - centre for t in (curve.first, curve.last))
         return 0.5 * np.cross(first, last)

@@ -1,4 +1,4 @@
-"""Rectangles of parameters that cover the faces of a boundary, with bounds: the charts' leaves."""
+"""Leaves: rectangles of parameters that cover the faces of a boundary, with bounds."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import on_face
 
-# Parts of a trimming curve, each with a box of its own.
+# Parts of a trimming curve, each with its own box.
 PARTS = 16
-# Quarterings of a chart's rectangle while a box is sought.
+# How often a chart's rectangle is quartered to find a box.
 BOX_QUARTERINGS = 8
-# Quarterings of a chart's rectangle at most: beside a pole the normals never fit a narrow cone.
+# How often it is quartered for leaves: next to a pole the normals never fit a narrow cone.
 MOST_QUARTERINGS = 7
 
 
@@ -35,7 +35,7 @@ class Leaves:
     Attributes
     ----------
     charts : (n,) packed numbers.
-    rectangles : (n, 4) rows (u0, u1, v0, v1); the face may cover a part of one, or nothing.
+    rectangles : (n, 4) rows (u0, u1, v0, v1); the face may cover only part of one, or nothing.
     bounds : of the surface over each.
     """
 
@@ -53,10 +53,10 @@ class FaceChart:
 
     Attributes
     ----------
-    number : packed number; face : of it; surface : what it is a chart of.
+    number : packed number; face : its face; surface : what it is a chart of.
     outward : +1 where x_u × x_v points outward, else -1.
-    rectangle : (4,) what holds the face's part of it.
-    borders : (low, high), each (m, 2), of boxes round parts of its trimming curves.
+    rectangle : (4,) contains the chart's part of the face.
+    borders : (low, high), each (m, 2), of boxes around parts of its trimming curves.
     """
 
     number: int
@@ -68,7 +68,7 @@ class FaceChart:
 
 
 def face_charts(boundary: PackedParts, faces: Sequence[int] | None = None) -> list[FaceChart]:
-    """The charts of some faces, of all by default."""
+    """The charts of the given faces, by default of all."""
     found = []
     for number in range(int(boundary.ints[L.N_CHARTS])):
         row = chart_row(boundary, number)
@@ -84,7 +84,7 @@ def face_charts(boundary: PackedParts, faces: Sequence[int] | None = None) -> li
 
 
 def _rectangle(boundary: PackedParts, number: int, borders: tuple[Array, Array]) -> Array:
-    """Round the trimming curves; of an atlas's chart the square in which it is not another's."""
+    """Around the trimming curves; for a chart of an atlas, its own square of the tiling."""
     row = chart_row(boundary, number)
     if np.isfinite(boundary.reals[int(row[L.CHART_REALS]) + L.LIMIT]):
         return np.array([-TILE, TILE, -TILE, TILE])
@@ -93,7 +93,7 @@ def _rectangle(boundary: PackedParts, number: int, borders: tuple[Array, Array])
 
 
 def _may_be_on(boundary: PackedParts, chart: FaceChart, rows: Array) -> NDArray[np.bool_]:
-    """(n,) which rectangles may hold a point of the face: a trimming curve may cross them, or else
+    """(n,) which rectangles may contain a point of the face: a trimming curve may cross them, or
     their middle is on it."""
     low, high = chart.borders
     packed = boundary.ints, boundary.reals, chart.number
@@ -105,7 +105,7 @@ def _may_be_on(boundary: PackedParts, chart: FaceChart, rows: Array) -> NDArray[
 
 
 def _borders(boundary: PackedParts, number: int) -> tuple[Array, Array]:
-    """(low, high), each (m, 2), of boxes round parts of a chart's trimming curves."""
+    """(low, high), each (m, 2), of boxes around parts of a chart's trimming curves."""
     row = chart_row(boundary, number)
     first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
     boxes = [b for k in range(first, first + count) for b in _coedge_boxes(boundary, k, PARTS)]
@@ -113,7 +113,7 @@ def _borders(boundary: PackedParts, number: int) -> tuple[Array, Array]:
 
 
 def _coedge_boxes(boundary: PackedParts, number: int, parts: int) -> Iterator[tuple[Array, Array]]:
-    """(low, high), each (2,), round parts of a packed trimming curve."""
+    """(low, high), each (2,), around parts of a packed trimming curve."""
     row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * number
     at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
     first, last = boundary.reals[at : at + L.PCURVE_DATA].tolist()
@@ -130,8 +130,8 @@ def _coedge_boxes(boundary: PackedParts, number: int, parts: int) -> Iterator[tu
 
 
 def leaves_of(boundary: PackedParts, faces: Sequence[int] | None, widest: float) -> Leaves:
-    """Rectangles that hold some faces, whose normals fit cones of half the angle `widest`, radians,
-    where they do so at all."""
+    """Rectangles that cover the given faces. Over each the normals fit a cone of half angle
+    `widest`, radians, unless it was quartered MOST_QUARTERINGS times."""
     numbers, rectangles, bounds = [], [], []
     for chart in face_charts(boundary, faces):
         rows = chart.rectangle[None]
@@ -155,9 +155,9 @@ def leaves_of(boundary: PackedParts, faces: Sequence[int] | None, widest: float)
 def grown_box(
     boundary: PackedParts, charts: Sequence[FaceChart], low: Array, high: Array
 ) -> tuple[Array, Array]:
-    """A box (low, high) of points of a boundary, grown to hold charts' parts of its faces.
+    """A box (low, high) of points of a boundary, grown to contain the charts' parts of its faces.
 
-    Rectangles are quartered while they reach past points that are known by more than BOX_REACH.
+    Rectangles are quartered while they reach past the known points by more than BOX_REACH.
     """
     found_low, found_high = low, high
     waiting = [(chart, chart.rectangle[None]) for chart in charts]
@@ -182,7 +182,7 @@ def grown_box(
 
 
 def _middles(boundary: PackedParts, chart: FaceChart, rows: Array) -> Array:
-    """(n, 3) points of the face amid rectangles."""
+    """(n, 3) points of the face at the middles of rectangles."""
     packed = boundary.ints, boundary.reals, chart.number
     middles = 0.5 * (rows[:, [0, 2]] + rows[:, [1, 3]])
     spots = [chart.surface.jet(u, v)[0] for u, v in middles.tolist() if on_face(*packed, u, v)]

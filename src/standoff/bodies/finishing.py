@@ -88,7 +88,7 @@ def finish(
 
 
 def _smooth(parts: Assembled, turns: list[EdgeTurns]) -> list[bool]:
-    """An edge is smooth where its faces share their normals along all of it."""
+    """An edge is smooth if its faces have the same normals all along it."""
     smooth = list(parts.smooth)
     for e in turns:
         smooth[e.edge] = smooth[e.edge] and max(-e.least, e.greatest) <= SMOOTH_ANGLE
@@ -103,7 +103,7 @@ def slack_of(found: Convexity, residual: float, moved: float, roundoff: float) -
     if not np.isfinite(found.widen):
         raise BodyError(
             f"A knife edge (faces back to back) with a defect of {found.defect:.3g} and a sewing "
-            f"residual of {residual:.3g}: no lower bound holds there. Sew it exactly.",
+            f"residual of {residual:.3g}: no lower bound holds there. Make its sides equal.",
             "residual",
             residual,
         )

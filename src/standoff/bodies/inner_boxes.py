@@ -1,4 +1,4 @@
-"""Rectangles of parameters on a body's faces, in which a frame need not ask for the boundary."""
+"""Rectangles of parameters inside a body's faces, where a frame need not check the boundary."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from standoff.kernels.tolerances import RECHART
 def inner_boxes(body: Assembled, ints: Ints, reals: Array) -> list[tuple[float, ...]]:
     """(u0, u1, v0, v1) of each chart, u0 > u1 where none was found.
 
-    Of an atlas's chart only as far as a witness point stays in it; of a face with holes none is
-    sought, as one might hold a hole.
+    In a chart of an atlas, only as far as a witness point stays in that chart. None is sought in a
+    face with holes, because it could contain a hole.
     """
     faces = [chart.face for chart in body.charts]
     shared = {face for face, n in Counter(faces).items() if n > 1}

@@ -1,7 +1,7 @@
-"""Loops of a face in (u, v): which one runs round it, which are holes, and which way each goes.
+"""Loops of a face in (u, v): which is the outer one, which are holes, and which way each runs.
 
-A face of one chart says by its loops alone where it is: on the left of each, seen from x_u × x_v,
-once they all run counterclockwise about it. However they were given, they are turned so.
+For a face of one chart, the loops alone determine where it is: on the left of each, seen from
+x_u × x_v, once they all run counterclockwise around it. They are turned that way if necessary.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from standoff.bodies.topology import Edge, Face
 from standoff.errors import BodyError
 from standoff.geometry.validation import Array
 
-# Points of one coedge.
+# Points on each coedge.
 ALONG = 33
 
 
@@ -27,9 +27,10 @@ class Loop:
     Attributes
     ----------
     entries : numbers in ``Face.loop``.
-    area : in (u, v), that it runs round counterclockwise as it was given, with collapsed sides.
-    turns : how often it goes round a surface whose u is an angle: 0, or 1 or -1.
-    links : (n, 2, 2) pieces of straight lines in (u, v) along it, in no order.
+    area : in (u, v), enclosed together with collapsed sides; positive if it was given
+        counterclockwise.
+    turns : how often it goes around a surface whose u is an angle: 0, 1 or -1.
+    links : (n, 2, 2) straight segments in (u, v) along it, in no particular order.
     """
 
     entries: tuple[int, ...]
@@ -39,7 +40,7 @@ class Loop:
 
 
 def traced(face: Face, edges: Sequence[Edge], number: int) -> list[tuple[int, ...]]:
-    """A face's entries as chains that close, run through as they were given.
+    """A face's entries as closed chains, in the senses in which they were given.
 
     Raises
     ------
@@ -83,7 +84,7 @@ def _open(face: Face, ends: Sequence[tuple[int | None, int | None]], number: int
         if first is not None and starts.count(first) > 1
     ]
     return BodyError(
-        f"Face {number}: its loop runs both ways round (edges {against} leave one vertex).",
+        f"Face {number}: its loop runs both ways round (edges {against} leave the same vertex).",
         part=("face", number),
     )
 
@@ -96,7 +97,7 @@ def turn_loops(chart: Chart, face: Face, edges: Sequence[Edge], number: int) -> 
     Raises
     ------
     BodyError
-        Loops that bound no face: open ones, several side by side, one alone round a surface.
+        Loops that bound no face: open ones, several side by side, a single one around a surface.
     """
     loops = [_loop(chart, entries) for entries in traced(face, edges, number)]
     wrong = _against(loops, chart, number)
@@ -111,7 +112,7 @@ def turn_loops(chart: Chart, face: Face, edges: Sequence[Edge], number: int) -> 
 
 
 def _against(loops: Sequence[Loop], chart: Chart, number: int) -> list[bool]:
-    """Which loops run clockwise about the face as they were given."""
+    """Which loops run clockwise around the face as they were given."""
     round_ = [loop for loop in loops if loop.turns]
     collapsed = [c for c in chart.coedges if c.edge < 0]
     if not round_:
@@ -120,7 +121,7 @@ def _against(loops: Sequence[Loop], chart: Chart, number: int) -> list[bool]:
         for loop in loops:
             if loop is not outer and not _within(loop, np.concatenate([outer.links, *sides])):
                 raise BodyError(
-                    f"Face {number} has loops beside each other: give each part a face of its own.",
+                    f"Face {number} has loops beside each other: make each part a separate face.",
                     part=("face", number),
                 )
         return [(loop.area < 0.0) == (loop is outer) for loop in loops]
@@ -133,8 +134,8 @@ def _against(loops: Sequence[Loop], chart: Chart, number: int) -> list[bool]:
     if len(round_) == 1 and collapsed:
         return [(loop.area < 0.0) if loop is round_[0] else loop.area > 0.0 for loop in loops]
     raise BodyError(
-        f"Face {number}: {len(round_)} of its loops go once round its surface; a face lies between "
-        "two of them, or between one and an apex.",
+        f"Face {number}: {len(round_)} of its loops go once around its surface; a face lies "
+        "between two of them, or between one and an apex.",
         part=("face", number),
     )
 
@@ -153,11 +154,11 @@ def _points(c: Coedge) -> Array:
 
 
 def _encircled(chart: Chart, coedges: Sequence[Coedge], spots: Sequence[Array]) -> float:
-    """Area in (u, v) that coedges run round counterclockwise, by their sides.
+    """Area in (u, v) that coedges enclose, positive if counterclockwise according to their sides.
 
-    The integral of -v du, which also serves a rim that goes once round. Collapsed sides have no
-    edge, so it is taken where they add nothing: of u dv where v is constant along them, and in a
-    band with v counted from theirs.
+    It is the integral of -v du, which also works for a rim that goes once around. Collapsed sides
+    have no edge, so the integral is chosen so that they add nothing: u dv where v is constant
+    along them, and on a periodic surface -v du with v measured from theirs.
     """
     level = None
     for c in chart.coedges:
@@ -175,7 +176,7 @@ def _encircled(chart: Chart, coedges: Sequence[Coedge], spots: Sequence[Array]) 
 
 
 def _within(loop: Loop, links: Array) -> bool:
-    """Do most points of a loop lie within others, by the parity of what a ray crosses?"""
+    """Do most points of a loop lie inside the others, by the parity of a ray's crossings?"""
     u, v = loop.links[:, 0].T
     (a, b), (c, d) = links[:, 0].T, links[:, 1].T
     spans = (b <= v[:, None]) != (d <= v[:, None])

@@ -1,8 +1,8 @@
-"""Senses of faces: which way out is, from their loops, their neighbours and the volume enclosed.
+"""Senses of faces: which side is outside, from their loops, neighbours and the enclosed volume.
 
-The loops of a face of one chart tell where it is, whichever way round they were given. Two faces of
-an edge run against each other along it, so that one of a shell settles all others; the sign of the
-volume that the shell encloses settles that one. No point inside is asked for.
+The loops of a face of one chart determine where it is, whichever way round they were given. The two
+faces of an edge run in opposite directions along it, so one face of a shell determines all others;
+the sign of the volume that the shell encloses determines that one. No interior point is needed.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
 Volume = Callable[[Sequence[int]], float]
-"""Of the faces of a shell, as their charts face now: negative where they face inward, zero where
-it is nothing but for roundoff."""
+"""The volume that the faces of a shell enclose, as their charts face now: negative if they face
+inward, zero if it is only roundoff."""
 
 
 @dataclass
 class Oriented:
-    """What was found of the faces' senses.
+    """What was found about the faces' senses.
 
     Attributes
     ----------
-    smooth : for every edge, whether its faces share their normals at one of its points.
+    smooth : for every edge, whether its faces have the same normal at one of its points.
     shells : the faces of each, ascending.
-    claims : for every shell +1 where all its loops were given counterclockwise seen from outside,
-        -1 where all were given clockwise, 0 where they differ or do not tell.
+    claims : for every shell +1 if all its loops were given counterclockwise seen from outside, -1
+        if all were given clockwise, 0 if they differ or there are none.
     notes : what was turned.
     """
 
@@ -55,18 +55,18 @@ def orient(
     senses: Sequence[int | None] | None = None,
     trusted: bool = False,
 ) -> Oriented:
-    """Make every chart face outward, and its coedges have the face on their left.
+    """Turn every chart outward, and its coedges so that the face is on their left.
 
     Parameters
     ----------
-    senses : for every face +1 where x_u × x_v points outward, -1 where inward, None where its
-        loops tell.
-    trusted : all senses are known, and the loops run counterclockwise seen from outside for sure.
+    senses : for every face +1 if x_u × x_v points outward, -1 if inward, None if its loops decide.
+    trusted : all senses are known, and the loops are known to run counterclockwise seen from
+        outside.
 
     Raises
     ------
     BodyError
-        An edge that does not join two faces; loops that bound no face; a shell with one side.
+        An edge that does not join two faces; loops that bound no face; a one-sided shell.
     """
     users = _edge_users(faces, edges)
     given = senses if senses is not None else [None] * len(faces)
@@ -94,23 +94,23 @@ def orient(
 class _Sheet:
     """A face whose sense is being found.
 
-    A sheet of one chart with loops is turned as a whole: its charts' `outward`. One of an atlas
-    with loops is what lies on their left: where it is, and so which way it faces, follows from the
-    surface, and its loops are turned.
+    A sheet of one chart with loops is turned by the chart's `outward`. A sheet of an atlas with
+    loops is what lies on their left; which way it faces follows from the surface, so its loops are
+    turned instead.
     """
 
     number: int
     face: Face
     charts: Sequence[Chart]
     sense: int | None
-    as_given: int = 1  # -1 where its loops run clockwise seen from x_u × x_v, or were turned
+    as_given: int = 1  # -1 if its loops run clockwise seen from x_u × x_v, or were turned
 
     @property
     def by_loops(self) -> bool:
         return bool(self.face.loop) and len(self.charts) == 1
 
     def settle(self, edges: Sequence[Edge], trusted: bool) -> None:
-        """By its own loops, x_u × x_v outward; an atlas outward where it bulges, if not told."""
+        """Use its own loops, with x_u × x_v outward; without a sense an atlas bulges outward."""
         first = self.charts[0].surface
         outward = self.sense or (1 if self.by_loops else bulging(first))
         for chart in self.charts:
@@ -128,14 +128,14 @@ class _Sheet:
                 c.side = int(c.side * chart.outward) if c.edge >= 0 else c.side
 
     def along(self, entry: int) -> int:
-        """+1 where it runs along the edge of an entry, seen from outside, -1 where against it."""
+        """+1 if its boundary runs along the edge of an entry, seen from outside, -1 if against."""
         if self.by_loops:
             side = next(c.side for c in self.charts[0].coedges if c.entry == entry)
             return int(side * self.charts[0].outward)
         return self.face.loop[entry][1] * self.as_given
 
     def turn(self) -> None:
-        """To the other side: a face of an atlas with loops becomes its complement."""
+        """Turn it to the other side: a face of an atlas with loops becomes its complement."""
         if self.by_loops or not self.face.loop:
             for chart in self.charts:
                 chart.outward = -chart.outward
@@ -147,7 +147,7 @@ class _Sheet:
 
     @property
     def claim(self) -> int:
-        """+1 where its loops were given counterclockwise seen from outside, else -1; 0 without."""
+        """+1 if its loops were given counterclockwise seen from outside, else -1; 0 if none."""
         if not self.face.loop:
             return 0
         outward = int(self.charts[0].outward) if self.by_loops else 1
@@ -155,7 +155,7 @@ class _Sheet:
 
 
 def bulging(surface: Surface) -> int:
-    """+1 where a surface bulges along x_u × x_v, -1 where against it, by theorem; else +1."""
+    """+1 if a surface bulges along x_u × x_v, -1 if against it, by theorem; +1 if not known."""
     side = 1 if np.linalg.det(surface.linear) > 0.0 else -1
     return side * surface.bulge if surface.bulge else 1
 
@@ -167,7 +167,7 @@ def _charts_of(charts: list[Chart], face: int) -> list[Chart]:
 
 
 def _edge_users(faces: Sequence[Face], edges: Sequence[Edge]) -> dict[int, list[tuple[int, int]]]:
-    """For every edge its two (face, entry) pairs; raises where it is open or used too often."""
+    """For every edge its two (face, entry) pairs; raises if it is open or used too often."""
     users: dict[int, list[tuple[int, int]]] = {j: [] for j in range(len(edges))}
     for i, face in enumerate(faces):
         for k, (j, sense) in enumerate(face.loop):
@@ -187,7 +187,7 @@ def _edge_users(faces: Sequence[Face], edges: Sequence[Edge]) -> dict[int, list[
 
 
 def _shells(sheets: Sequence[_Sheet], users: dict[int, list[tuple[int, int]]]) -> list[list[int]]:
-    """The faces that hang together, each turned so that all of a shell face one way."""
+    """Connected faces, turned so that all faces of a shell have the same side outside."""
     neighbours: list[list[tuple[int, int]]] = [[] for _ in sheets]
     for used in users.values():
         if len(used) == 2:
@@ -210,7 +210,7 @@ def _shells(sheets: Sequence[_Sheet], users: dict[int, list[tuple[int, int]]]) -
                     waiting.append(other)
                 elif turned[other] != apart * turned[i]:
                     raise BodyError(
-                        f"The boundary has one side only (as a Moebius strip has): faces {i} and "
+                        f"The boundary has one side only (like a Moebius strip): faces {i} and "
                         f"{other} cannot both face outward.",
                         part=("face", i),
                     )
@@ -222,19 +222,19 @@ def _shells(sheets: Sequence[_Sheet], users: dict[int, list[tuple[int, int]]]) -
 
 
 def _turn_outward(shell: Sequence[_Sheet], volume: Volume) -> None:
-    """By the volume enclosed; where there is none, as most loops were given."""
+    """Turn a shell so that it encloses a positive volume; if 0, as most loops were given."""
     numbers = [sheet.number for sheet in shell]
     if sum(sheet.claim for sheet in shell) < 0:
         _turn(shell)
     if len(shell) == 1 and not shell[0].face.loop:
-        return  # a whole surface faces outward where it bulges, a half-space as it was given
+        return  # a closed surface already bulges outward, a half-space is as it was given
     if volume(numbers) >= 0.0:
         return
     _turn(shell)
     if any(not sheet.by_loops and sheet.face.loop for sheet in shell) and volume(numbers) < 0.0:
         raise BodyError(
-            f"Faces {numbers} enclose no volume whichever way their loops run: give the sense of "
-            "those with several charts (senses).",
+            f"Faces {numbers} enclose no volume whichever way their loops run: give senses= for "
+            "those with several charts.",
             part=("face", numbers[0]),
         )
 
@@ -247,7 +247,7 @@ def _turn(shell: Sequence[_Sheet]) -> None:
 def _smooth_edges(
     charts: list[Chart], users: dict[int, list[tuple[int, int]]], edges: Sequence[Edge]
 ) -> list[bool]:
-    """Which edges' faces share their normal at one point of it."""
+    """Which edges are smooth: their faces have the same normal at one point of the edge."""
     smooth = [False] * len(edges)
     for j, used in users.items():
         if not used:
@@ -258,8 +258,8 @@ def _smooth_edges(
         smooth[j] = angle < SMOOTH_ANGLE
         if edges[j].smooth and not smooth[j]:
             raise BodyError(
-                f"Edge {j} is said to be smooth, but its faces' normals differ by {angle:.3g} "
-                "(sine).",
+                f"Edge {j} is said to be smooth, but the sine of the angle between its faces' "
+                f"normals is {angle:.3g}.",
                 part=("edge", j),
             )
         smooth[j] = smooth[j] and edges[j].smooth is not False

@@ -20,7 +20,7 @@ from standoff.wording import counted, printable
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PackedParts(KeepsReadOnly):
-    """The attributes are those of `Boundary`."""
+    """Packed parts; the attributes are those of `Boundary`."""
 
     name: str
     vertex_points: Array
@@ -81,7 +81,7 @@ class PackedParts(KeepsReadOnly):
 
 
 def packed_parts(parts: Assembled) -> PackedParts:
-    """Parts whose senses, box and edges' kinds need not be known yet: their size is 0."""
+    """Packed parts whose senses, box and kinds of edges need not be known yet; their size is 0."""
     nothing = np.zeros(3)
     ints, reals = pack(parts, [], (nothing, nothing), 0.0, 0.0)
     vertices, edges, faces = parts.vertices, tuple(parts.edges), tuple(parts.faces)

@@ -41,7 +41,7 @@ class Coedge:
 
 @dataclass
 class Chart:
-    """A surface with its trimming loops; `holed` where one may lie within another."""
+    """A surface with its trimming loops; `holed` if one loop may lie inside another."""
 
     surface: Surface
     face: int
@@ -67,8 +67,8 @@ class Sector:
 class Assembled:
     """A body's boundary with orientations, ready to pack.
 
-    What is not known of edges and vertices yet is false or nothing. `reflex` are the layout's flags
-    REFLEX and MIXED of each edge.
+    What is not known yet about edges and vertices is False or empty. `reflex` holds the layout's
+    flags REFLEX and MIXED for each edge.
     """
 
     dimension: int
@@ -92,13 +92,13 @@ class Assembled:
 
     @property
     def moved(self) -> float:
-        """How far the boundary may lie from the one given, for knots that were left out, length."""
+        """How far the boundary may lie from the given one because knots were removed, length."""
         surfaces = [chart.surface.moved for chart in self.charts]
         return max([0.0, *surfaces, *(edge.curve.moved for edge in self.edges)])
 
 
 def without_charts(body: Assembled, dropped: Sequence[int]) -> Assembled:
-    """The body without some charts; the sectors' chart numbers follow."""
+    """The body without some charts; the sectors' chart numbers are adjusted."""
     kept = [k for k in range(len(body.charts)) if k not in dropped]
     number = {old: new for new, old in enumerate(kept)}
     sectors = [[replace(s, chart=number[s.chart]) for s in row] for row in body.sectors]
@@ -129,7 +129,7 @@ class Counts(NamedTuple):
 
 
 class Writer:
-    """Grows the two arrays; every table's offset is known when it is written."""
+    """Appends to the two arrays; every table's offset is known when it is written."""
 
     def __init__(self) -> None:
         self.ints = array("q", [0] * L.INT_HEADER)
@@ -164,8 +164,8 @@ def pack(
     slack: float,
     inner: Sequence[Sequence[float]] | None = None,
 ) -> tuple[Ints, Array]:
-    """The (ints, reals) of a body. `box` is (low, high) of its core, None when unbounded; `inner`
-    are its charts' rectangles of parameters (``inner_boxes``), None while none is known.
+    """The (ints, reals) of a body. `box` is (low, high) of its core, None if it is unbounded;
+    `inner` are its charts' rectangles of parameters (``inner_boxes``), None while not known.
     """
     w = Writer()
     counts = (len(part) for part in (body.faces, body.edges, body.vertices, body.charts, samples))

@@ -1,4 +1,4 @@
-"""Answers as plain data, as JSON, and on one line."""
+"""Answers as plain data and as JSON, and numbers as they are shown."""
 
 from __future__ import annotations
 
@@ -17,31 +17,31 @@ from standoff.wording import printable_json
 
 
 class PlainData:
-    """A base of answers: they travel as dictionaries of plain data, and as JSON."""
+    """A base class of answers, which can be turned into dictionaries of plain data and JSON."""
 
     __slots__ = ()
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the answer as plain data: numbers, texts, lists and dictionaries of these.
+        """Return the answer as plain data: numbers, strings, lists and dictionaries of these.
 
-        Features are texts such as ``"face 2"``, a status its name, arrays lists. The numbers are
-        the same to the last bit, but that no zero has a sign; NaN stays NaN.
+        Features become strings such as ``"face 2"``, a status its name, arrays lists. The numbers
+        are the same to the last bit, except that a zero loses its sign; NaN stays NaN.
         """
         raise NotImplementedError
 
     def to_json(self, indent: int | None = None) -> str:
-        """Return `as_dict` as strict JSON; NaN and the infinities, which JSON lacks, are null.
+        """Return `as_dict` as strict JSON; NaN and infinities, which JSON does not have, are null.
 
         Parameters
         ----------
         indent : int, optional
-            Spaces that a level is indented by; everything on one line if not given.
+            Spaces of indentation per level; everything on one line if not given.
         """
         return json_text(self.as_dict(), indent)
 
 
 def plain(value: Any) -> Any:
-    """Return numbers, texts, lists and dictionaries for what an answer is made of."""
+    """Return the parts of an answer as numbers, strings, lists and dictionaries."""
     if isinstance(value, Enum):
         return value.name
     if isinstance(value, Feature):
@@ -60,7 +60,7 @@ def plain(value: Any) -> Any:
 
 
 def json_text(facts: Mapping[str, Any], indent: int | None = None) -> str:
-    """Return strict JSON; NaN and the infinities are null, control characters escapes."""
+    """Return strict JSON; NaN and infinities become null, control characters escapes."""
     finite = _finite(plain(facts))
     return printable_json(json.dumps(finite, indent=indent, ensure_ascii=False, allow_nan=False))
 
@@ -76,14 +76,14 @@ def _finite(value: Any) -> Any:
 
 
 def without_roundoff(values: ArrayLike, size: float) -> NDArray[np.float64]:
-    """Return numbers as they are shown: those that are roundoff beside a size are zero.
+    """Return numbers as they are shown: those that are roundoff relative to a size are zero.
 
     Parameters
     ----------
     values : array_like
-        Lengths, or parts of a unit vector.
+        Lengths, or components of a unit vector.
     size : float
-        Of what they belong to, in their unit; 1 of a unit vector.
+        Size of what they belong to, in their unit; 1 for a unit vector.
     """
     numbers = np.array(values, dtype=np.float64)
     return np.where(np.abs(numbers) <= SHOWN_ROUNDOFF * size, 0.0, numbers)

@@ -1,7 +1,7 @@
 """The convexity defect of a planar body: its curves, corners and turning number.
 
-A closed planar curve whose curvature never bends inward and which turns by 2 pi in all bounds a
-convex set. Curves are proven as the surfaces that they sweep along z, which have their curvature.
+A closed planar curve that nowhere bends inward and turns by 2 pi in total bounds a convex set.
+Curves are proven as the surfaces that they sweep along z, which have the same curvature.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.swept import Extrusion
 from standoff.geometry.validation import Array
 
-# Points of one span of a curve whose turn is summed up: it turns by less than pi between two.
+# Points of one span of a curve between which turns are summed: each turn is less than pi.
 TURN_POINTS = 65
 # A loop turns by 2 pi, or at least twice as much: the threshold between (radians).
 MOST_TURNING = 3.0 * np.pi
@@ -30,7 +30,7 @@ MOST_TURNING = 3.0 * np.pi
 
 @dataclass(frozen=True)
 class _Run:
-    """A curve run through counterclockwise: its normals at both ends, and how much it turns."""
+    """A curve followed counterclockwise: its normals at both ends, and by how much it turns."""
 
     first: Array
     last: Array
@@ -44,7 +44,7 @@ def planar_convexity(body: Assembled, size: float, tolerance: float) -> Convexit
     ------
     BodyError
         A curve or a corner that is concave by more than the tolerance (length), a curve with a
-        crease inside, a loop that runs round more than once.
+        corner inside, a loop that turns more than once.
     """
     checks, total = [], 0.0
     for j, edge in enumerate(body.edges):
@@ -89,7 +89,7 @@ def planar_convexity(body: Assembled, size: float, tolerance: float) -> Convexit
 
 
 def _proof(curve: Curve, outward: int, number: int) -> PatchProof:
-    """Of a curve whose tangent has the outward side to its right (outward 1) or left (-1)."""
+    """Of a curve with the outside on its right (outward 1) or on its left (-1)."""
     if isinstance(curve, Line):
         return PatchProof(True, 0.0, "theorem", True, (curve.first, 0.0), 0)
     if isinstance(curve, ConicArc):
@@ -119,12 +119,12 @@ def _proof(curve: Curve, outward: int, number: int) -> PatchProof:
 
 
 def _joints(curve: Curve, number: int) -> list[float]:
-    """The ends of a curve and its knots between them where it could have a corner, but has none.
+    """The ends of a curve and those inner knots where it could have a corner but does not.
 
     Raises
     ------
     BodyError
-        It has one.
+        It has a corner.
     """
     if not isinstance(curve, NurbsCurve):
         return [curve.first, curve.last]
@@ -171,7 +171,7 @@ def _corners(body: Assembled, runs: list[_Run]) -> dict[int, float]:
             arriving[ends[1]] = runs[j].last
     if len(arriving) != len(body.vertices) or len(leaving) != len(body.vertices):
         raise BodyError(
-            "Not convex: the loop's curves do not all have the inside on one hand. "
+            "Not convex: the loop's curves do not all have the inside on the same side. "
             "Split the body into convex parts."
         )
     return {vertex: _angle(arriving[vertex], leaving[vertex]) for vertex in arriving}

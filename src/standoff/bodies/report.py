@@ -8,23 +8,23 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class PatchCheck:
-    """Convexity of one chart of a face; of a planar body, of one curve.
+    """Convexity of one chart of a face, or of one curve of a planar body.
 
     Attributes
     ----------
     face : int
-        Number of the face; of a planar body, of the edge.
+        Number of the face, or of the edge of a planar body.
     surface : str
-        Name of its class.
+        Class name of the surface or curve.
     method : str
-        "theorem" (planes and quadrics), "bernstein" or "interval".
+        "theorem" (planes, quadrics, lines and conic arcs), "bernstein" or "interval".
     convex : bool
     defect : float
         How far the patch may dent inward, length, proven over the whole patch.
     hemisphere : bool
-        Its normals fit an open hemisphere.
+        Its normals fit in an open hemisphere.
     place : (float, float)
-        (u, v) of the worst.
+        (u, v) of the worst point.
     """
 
     face: int
@@ -60,22 +60,22 @@ class DihedralAngle:
 
 @dataclass(frozen=True)
 class BoundaryReport:
-    """What construction found of a boundary; ``boundary.check()`` returns it.
+    """What construction found out about a boundary; ``boundary.check()`` returns it.
 
     Attributes
     ----------
     faces, edges, vertices : how many there are.
-    charts : how many surfaces the faces have, those of atlases counted one by one.
+    charts : how many surfaces the faces have, counting each chart of an atlas.
     shells : the faces of each shell.
-    cavities : numbers of the shells that lie inside another one.
+    cavities : numbers of the shells that lie inside the outer one.
     size : diagonal of the box around it, length.
     volume : enclosed, length cubed.
-    volume_error : a bound of what the volume may be off, for want of nodes and by rounding.
+    volume_error : a bound on the error of the volume, from quadrature and from rounding.
     area : of all faces, length squared.
-    sewing_residual : the greatest distance met between parts that were joined, length.
-    sewing_tolerance : within which parts were joined, length.
-    slack : how far the boundary may lie from the one given, length: the residual, and spare knots
-        of a spline that were left out; 0 where that is roundoff.
+    sewing_residual : the greatest distance between parts that were joined, length.
+    sewing_tolerance : the distance within which parts were joined, length.
+    slack : how far the boundary may lie from the given one, length: the residual, and removed
+        knots of splines; 0 if that is roundoff.
     coordinate_roundoff : 16 roundings of the greatest coordinate, length.
     notes : what was turned, split or merged.
     """
@@ -99,30 +99,32 @@ class BoundaryReport:
 
 @dataclass(frozen=True)
 class BodyReport:
-    """What the checks at construction found; ``body.check()`` returns it.
+    """What the checks at construction found out about a body; ``body.check()`` returns it.
 
     Attributes
     ----------
     dimension : 2 for a planar body, 3 for a spatial one.
     faces, edges, vertices : how many there are.
-    smooth_edges : how many edges share the normals of their faces.
-    charts : how many surfaces the faces have, those of atlases counted one by one.
+    smooth_edges : how many edges are smooth: their two faces have the same normals all along.
+    charts : how many surfaces the faces have, counting each chart of an atlas.
     size : diagonal of the box around the body with its radius, length; inf for a half-space.
-    closed : every edge bounds two faces (a planar body: two curves meet at every vertex).
-    outward : all normals point out of the body.
+    closed : False only for a half-space. Of a bounded body, every edge bounds two faces; if
+        planar, two curves meet at every vertex.
+    outward : all normals point out of the body, always True.
     patches : convexity of every chart.
-    sharpest, flattest : the least and the greatest dihedral angle over every edge, sampled along
-        the edges and refined by minimisation, not proven; None for a body without such edges.
-    convexity_defect : how far a point of the core may lie above a tangent plane, length, from
-        the defects of patches and concave edges.
+    sharpest, flattest : the least and the greatest dihedral angle of all edges, sampled along the
+        edges and refined by minimisation, not proven; None for a body without such edges.
+    convexity_defect : how far a point of the core may lie above a tangent plane, length, because
+        of dents in patches and concave edges, or as seen in samples.
     convexity_tolerance : the greatest convexity defect accepted, length.
-    sewing_residual : the greatest distance met between parts that were joined, length.
-    sewing_tolerance : within which parts were joined, length.
-    slack : what the certificate subtracts for both, and for spare knots of a spline that were left
-        out, length; 0 where that is roundoff.
-    coordinate_roundoff : 16 roundings of the greatest coordinate, length: parts may always miss
-        each other by it, and it is in no slack, as the certificate's own allowance covers it. It
-        is below the tolerances but for bodies far from their own origin. 0 for a half-space.
+    sewing_residual : the greatest distance between parts that were joined, length.
+    sewing_tolerance : the distance within which parts were joined, length.
+    slack : what the certificate subtracts for the convexity defect, the sewing residual and removed
+        knots of splines, length; 0 if these are roundoff.
+    coordinate_roundoff : 16 roundings of the greatest coordinate, length. Parts may always miss
+        each other by this much; it is not in the slack, because the certificate's own allowance
+        covers it. It is below the tolerances except for bodies far from their own origin. 0 for a
+        half-space.
     notes : what was turned, split, merged or recentred.
     """
 

@@ -1,4 +1,4 @@
-"""Points of a packed body's boundary: starts for cold queries, its box, a check of convexity."""
+"""Points on a packed body's boundary: starts for cold queries, its box, a check of convexity."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from standoff.geometry.hulls import tight_box
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.queries import chart_normal, on_face, planar_edge_normal
 
-# How many samples a body gets: all pairs of two bodies are compared at a cold start.
+# About how many samples a body gets: a cold start compares all pairs of two bodies' samples.
 FACE_BUDGET = 120
 EDGE_BUDGET = 60
 VERTEX_BUDGET = 120
-# Samples that bound a curve whose kind has no box.
+# Samples that estimate the box of a curve whose kind does not provide one.
 CURVE_SAMPLES = 65
 
 
@@ -37,8 +37,8 @@ def _parameter_box(chart: Chart) -> tuple[float, float, float, float]:
 def blind_charts(body: Assembled, ints: Ints, reals: Array) -> list[int]:
     """Charts of a trimmed face's atlas that see no edge and lie off the face.
 
-    A chart without edges is wholly on the face or off it; a neighbour that sees the point half
-    way between their centres, and an edge, tells which.
+    A chart without edges is entirely on the face or off it. Which it is, is decided at its centre
+    in another chart of the face that sees an edge and that point.
     """
     found = []
     for k, chart in enumerate(body.charts):
@@ -79,7 +79,7 @@ def along_each(edges: int, budget: int = EDGE_BUDGET) -> Array:
 
 
 def face_samples(body: Assembled, ints: Ints, reals: Array, budget: int) -> list[Sample]:
-    """A grid over every chart, kept where it lies on the face."""
+    """Grid points over the charts that lie on their faces."""
     if not body.charts:
         return []
     n = first_grid(len(body.charts), budget)
@@ -131,7 +131,7 @@ def vertex_samples(body: Assembled, budget: int) -> list[Sample]:
 
 
 def boundary_samples(body: Assembled, ints: Ints, reals: Array) -> list[Sample]:
-    """Points on every kind of feature, the budgets shared among the features of a kind."""
+    """Points on every kind of feature; each kind's budget is shared among its features."""
     return (
         face_samples(body, ints, reals, FACE_BUDGET)
         + edge_samples(body, ints, reals, EDGE_BUDGET)
@@ -140,7 +140,8 @@ def boundary_samples(body: Assembled, ints: Ints, reals: Array) -> list[Sample]:
 
 
 def curve_box(edge: Edge) -> tuple[Array, Array]:
-    """(low, high) of a box around an edge: exact for lines and conic arcs, else a bound."""
+    """(low, high) of a box around an edge: exact for lines and conic arcs, else a bound; estimated
+    from samples for a curve whose kind does not provide a box."""
     c = edge.curve
     if isinstance(c, RationalBezier):
         return tight_box(c.data[1:].reshape(-1, 4).T[None, ..., None])
@@ -162,7 +163,7 @@ def curve_box(edge: Edge) -> tuple[Array, Array]:
 
 
 def _sampled_box(curve: Curve) -> tuple[Array, Array]:
-    """Around a curve without bounds of its own: its samples, and how far it can bend between."""
+    """Around the samples of a curve, with a margin for its bend between them."""
     ts = np.linspace(curve.first, curve.last, CURVE_SAMPLES)
     jets = [curve.jet(float(t)) for t in ts]
     points = np.array([jet[0] for jet in jets])
@@ -174,8 +175,8 @@ def _sampled_box(curve: Curve) -> tuple[Array, Array]:
 def body_box(body: Assembled, ints: Ints, reals: Array) -> tuple[Array, Array] | None:
     """(low, high) around the core; None for an unbounded body.
 
-    A function n.x has its greatest value on a convex face either at the surface's support point,
-    if that lies on the face, or on the face's boundary.
+    On a convex face, n.x is greatest at the surface's support point if that lies on the face, or
+    else on the face's boundary.
     """
     lows, highs = [], []
     boxed = {c.edge for chart in body.charts if chart.surface.box() for c in chart.coedges}
@@ -210,7 +211,7 @@ def body_box(body: Assembled, ints: Ints, reals: Array) -> tuple[Array, Array] |
 def check_convex(samples: Sequence[Sample], size: float, allowed: float) -> float:
     """Greatest height of a sample above another's tangent plane; raises above `allowed`, length.
 
-    It sees what no patch, edge or vertex shows by itself.
+    It detects what no single patch, edge or vertex shows.
     """
     points = np.array([s.point for s in samples])
     faces = [s for s in samples if s.normal.any()]

@@ -1,8 +1,8 @@
-"""Where a convex body touches its supporting plane: a point, a straight segment, a flat area.
+"""Where a convex body touches its supporting plane: a point, a straight segment or a flat area.
 
 The extreme points of such a set that do not lie inside a curved face lie on edges and vertices,
 or, where a patch of several spans is straight or flat in some of them, on the lines between the
-spans. So vertices, edges and those lines are all that is asked.
+spans. So only vertices, edges and those lines are examined.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ from standoff.kernels.entries.queries import on_face
 # Samples of a piece of a curve: between two of them an arc of a convex body's boundary rises and
 # falls once.
 SAMPLES = 17
-# A level arc is given by so many points, evenly spread.
+# A level arc is represented by this many points, evenly spaced.
 ARC_POINTS = 129
-# And by more about the point nearest to the witness, at these parts of the arc, so that an overlap
-# as thin as 1e-7 there is not lost between two points.
+# More points are added near the point nearest to the witness, at these fractions of the arc, so
+# that an overlap as thin as 1e-7 there is not lost between two points.
 NEAR_WITNESS = np.logspace(-8.5, -2.0, 27)
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A curve of one analytic piece: t from first to last; `jet` gives (x, x_t).
+    """One analytic piece of a curve: t from first to last; `jet` gives (x, x_t).
 
     Attributes
     ----------
-    basis : (3, 3) array, of a conic arc: x = basis @ (cos t, sin t, 1).
+    basis : (3, 3) array for a conic arc: x = basis @ (cos t, sin t, 1).
     """
 
     jet: Callable[[float], tuple[Array, Array]]
@@ -57,21 +57,21 @@ class Piece:
 
 
 def support_set(body: PackedParts, direction: Array, witness: Array) -> Array:
-    """Points, (n, 3), whose convex hull is where a core touches its plane along a direction.
+    """Points, (n, 3), whose convex hull is where a core touches its supporting plane.
 
     Parameters
     ----------
     body : Body
-        Bounded; its swept radius plays no part.
+        Bounded; its swept radius is ignored.
     direction : (3,) array
-        Unit vector, body frame, good to LEVEL.
+        Outward unit normal of the plane, body frame, accurate to LEVEL.
     witness : (3,) array
         A point of the set, body frame: the only one that lies inside a curved face.
 
     Notes
     -----
     Not found: a face trimmed through a span that is flat while its neighbours are not; a formula
-    that is flat or straight in a part of its domain only.
+    that is flat or straight in only a part of its domain.
     """
     size = float(body.reals[L.SIZE])
     offset = float(np.linalg.norm(body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]))
@@ -92,7 +92,7 @@ def support_set(body: PackedParts, direction: Array, witness: Array) -> Array:
 
 
 def _level(points: Array, top: Array, direction: Array, rounding: float) -> Array:
-    """Which points are level with the highest."""
+    """Which points are level with the highest one."""
     away = points - top
     return np.asarray(-(away @ direction) <= LEVEL * np.linalg.norm(away, axis=1) + rounding)
 
@@ -102,9 +102,9 @@ def _spread(piece: Piece, count: int) -> Array:
 
 
 def _pieces(body: PackedParts, direction: Array, lowest: float) -> Iterator[Piece]:
-    """Curved edges, and lines between the spans of faces, that may rise to a height."""
+    """Curved edges, and lines between the spans of faces, that may reach a height."""
     for edge in body.edge_parts:
-        if not isinstance(edge.curve, Line):  # whose ends are vertices
+        if not isinstance(edge.curve, Line):  # the ends of a line are vertices
             yield from _edge_pieces(edge.curve, direction, lowest)
     for face, part in enumerate(body.face_parts):
         surface = part.charts[0]
@@ -130,7 +130,7 @@ def _edge_pieces(curve: Curve, direction: Array, lowest: float) -> Iterator[Piec
 
 
 def _isoline_of(curve: Curve, first: float, last: float) -> _Isoline | None:
-    """A part of an edge that is an isoline of a surface, as one."""
+    """A part of an edge as an isoline of its surface; None if it is not one."""
     if not isinstance(curve, SurfaceCurve) or curve.pcurve.kind != L.LINE or curve.others:
         return None
     matrix = curve.pcurve.matrix / curve.pcurve.matrix[2, 2]
@@ -192,7 +192,7 @@ def _inner_lines(surface: Surface) -> Iterator[_Isoline]:
 
 
 def _reaches(line: _Isoline, direction: Array, height: float) -> bool:
-    """May a line between two spans of a NURBS rise to a height: do the control points beside it?"""
+    """May a line between two spans of a NURBS reach a height: do the nearby control points?"""
     if not isinstance(line.surface, NurbsSurface):
         return True
     across, along = line.surface.essential_u.breaks, line.surface.essential_v.breaks
@@ -206,7 +206,7 @@ def _reaches(line: _Isoline, direction: Array, height: float) -> bool:
 
 
 def _on_face(body: PackedParts, chart: int, line: _Isoline) -> Iterator[Piece]:
-    """A line between spans, if the trimmed face has it from end to end."""
+    """A line between spans, if the trimmed face contains all of it."""
     inner = np.linspace(line.first, line.last, SAMPLES)[1:-1]
     if all(on_face(body.ints, body.reals, chart, *line.parameters(float(t))) for t in inner):
         yield Piece(line.jet, line.first, line.last)
@@ -228,7 +228,7 @@ def _peaks(piece: Piece, direction: Array) -> Iterator[Array]:
 
 
 def _arc_parameters(piece: Piece, witness: Array) -> Array:
-    """Evenly spread, and closely about the point nearest to the witness."""
+    """Evenly spaced, and denser near the point nearest to the witness."""
 
     def away(t: float) -> float:
         return float(np.sum((piece.jet(t)[0] - witness) ** 2))

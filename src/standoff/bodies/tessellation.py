@@ -1,4 +1,4 @@
-"""Triangles of a body's faces, points along its edges: for pictures, never for distances."""
+"""Triangles of a body's faces and points along its edges: for pictures, never for distances."""
 
 from __future__ import annotations
 
@@ -19,17 +19,18 @@ from standoff.kernels.entries.queries import (
     planar_edge_normal,
 )
 
-# Points along each coedge, and along each edge: a drawn line of a whole turn shows no corners.
+# Points along each coedge, and along each edge: a full circle is drawn without visible corners.
 ALONG = 33
 ALONG_EDGE = 97
-# Grid points along each side of a chart: of a body of few charts, finer, and of one of many.
+# Grid points along each side of a chart: for a body of few charts, a finer grid for it, and for a
+# body of many charts.
 GRID, FINE_GRID, COARSE_GRID = 21, 41, 7
 FEW_CHARTS = 20
-# An unbounded face is shown over this half width, in units of its own parameters.
+# An unbounded face is shown over this half width, in units of its parameters.
 UNBOUNDED_HALF = 1.0
-# Charts of an atlas share a surface; within this square they tile it without overlap.
+# The charts of an atlas, restricted to |u|, |v| up to this, tile their surface without overlap.
 TILE = 1.0
-# Grid points nearer to the boundary than this part of a grid step would make slivers.
+# Grid points nearer to the boundary than this fraction of a grid step would make slivers.
 CLEARANCE = 0.35
 
 
@@ -42,8 +43,8 @@ class FaceMesh:
     face : int
     points : (n, 3) array, body frame.
     normals : (n, 3) array, outward unit normals at the points; zero at a cone's apex.
-    triangles : (m, 3) array of numbers of points.
-    inner : numbers of the points that lie inside the face, not on its boundary.
+    triangles : (m, 3) array of indices of points.
+    inner : indices of the points that lie inside the face, not on its boundary.
     """
 
     face: int
@@ -55,13 +56,13 @@ class FaceMesh:
 
 @dataclass(frozen=True)
 class EdgeLine:
-    """Points along an edge and the outward normals of its faces there.
+    """Points along an edge, with the outward normals of its faces.
 
     Attributes
     ----------
     edge : int
     points : (n, 3) array, body frame.
-    normals : (k, n, 3) array: of its k faces; of a planar body its own, of a segment none (k = 0).
+    normals : (k, n, 3) array, of its k faces; its own in a planar body; none (k = 0) for a segment.
     smooth : bool
     """
 
@@ -72,9 +73,9 @@ class EdgeLine:
 
 
 def face_meshes(body: PackedParts, *, fine: bool = False) -> list[FaceMesh]:
-    """Return the triangles of every chart of every face, as far as the face reaches.
+    """Return the triangles of every chart of every face, within the face.
 
-    `fine` ones serve pictures whose outlines should look smooth.
+    With `fine`, they suit pictures whose outlines should look smooth.
     """
     few = body.ints[L.N_CHARTS] <= FEW_CHARTS
     grid = (FINE_GRID if fine else GRID) if few else COARSE_GRID
@@ -99,13 +100,13 @@ def edge_lines(body: PackedParts) -> list[EdgeLine]:
 
 
 def chart_row(body: PackedParts, chart: int) -> NDArray[np.int64]:
-    """The packed record of a chart, laid out in ``kernels.layout``."""
+    """The packed record of a chart, laid out as in ``kernels.body.layout``."""
     start = int(body.ints[L.CHARTS]) + L.CHART_STRIDE * chart
     return body.ints[start : start + L.CHART_STRIDE]
 
 
 def coedges_of(body: PackedParts) -> list[tuple[int, int, int]]:
-    """(number, chart, edge) of every coedge; a collapsed side has -1 - vertex for its edge."""
+    """(number, chart, edge) of every coedge; the edge of a collapsed side is -1 - vertex."""
     found = []
     for chart in range(int(body.ints[L.N_CHARTS])):
         row = chart_row(body, chart)
@@ -117,7 +118,7 @@ def coedges_of(body: PackedParts) -> list[tuple[int, int, int]]:
 
 
 def surface_of(body: PackedParts, charts: tuple[Surface, ...], chart: int) -> Surface:
-    """The surface of a packed chart: charts that see nothing of their face were left out."""
+    """The surface of a packed chart, found by its data as blind charts are not packed."""
     offset = int(chart_row(body, chart)[L.CHART_REALS])
     packed = body.reals[offset : offset + L.INVERSE]
     misses = [float(np.abs(surface.reals[: L.INVERSE] - packed).max()) for surface in charts]
@@ -174,7 +175,7 @@ def _is_tile(body: PackedParts, chart: int) -> bool:
 
 
 def chart_box(body: PackedParts, chart: int, outline: Array) -> tuple[Array, Array]:
-    """The rectangle of (u, v) that holds a chart's part of its face."""
+    """The rectangle in (u, v) that contains a chart's part of its face."""
     if _is_tile(body, chart):
         return np.full(2, -TILE), np.full(2, TILE)
     if not len(outline):
@@ -195,7 +196,7 @@ def _edge_line(body: PackedParts, edge: int, coedges: list[int]) -> EdgeLine:
         start = int(body.ints[L.COEDGES]) + L.COEDGE_STRIDE * k
         chart = int(body.ints[start + L.COEDGE_CHART])
         spots = [coedge_parameters(body.ints, body.reals, k, float(t)) for t in times]
-        # Where this chart of an atlas does not see the edge, another does; nan leaves it out.
+        # Where this chart of an atlas does not see the edge, another one does: nan here.
         normals.append(
             np.array(
                 [

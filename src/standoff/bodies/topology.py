@@ -23,16 +23,16 @@ SIDES = ("v0", "v1", "u0", "u1")
 
 @dataclass(frozen=True)
 class Edge:
-    """A curve between two vertices; None, None for a closed curve.
+    """A curve between two vertices, or a closed curve without vertices.
 
     Parameters
     ----------
     curve : Curve
     first, last : int or None
-        Numbers of the vertices at its ends.
+        Numbers of the vertices at its ends; None, None for a closed curve.
     smooth : bool or None
-        Both faces share their normal along it (G1). None lets the body find out;
-        False keeps a seam as an edge of its own all the same.
+        Both faces have the same normal along it (G1). None lets the body find out; False treats a
+        smooth seam like a sharp edge.
     creased : bool
         The normals agree along it, but the curvature across it is infinite.
     """
@@ -46,15 +46,15 @@ class Edge:
 
 @dataclass(frozen=True)
 class Apex:
-    """A side of a face that has collapsed to a vertex.
+    """A side of a face that is collapsed to a vertex.
 
     Parameters
     ----------
     vertex : int
     level, lo, hi : float
     side : str
-        "v0": u from lo to hi at v = level, the face at greater v; "v1": at lesser v; "u0" and
-        "u1": the same with u and v exchanged.
+        "v0": u from lo to hi at v = level, with the face at greater v; "v1": with the face at
+        smaller v; "u0" and "u1": the same with u and v exchanged.
     """
 
     vertex: int
@@ -73,13 +73,13 @@ class Face:
     charts : tuple of Surface
         One surface, or the charts of an atlas.
     loop : tuple of pairs
-        (edge, +1 or -1) in any order of loops, counterclockwise seen from outside; -1 where the
+        (edge, +1 or -1), loops in any order, counterclockwise seen from outside; -1 where the
         face's boundary runs against the edge's parameter.
     apexes : tuple of Apex
         Its collapsed sides.
     pcurves : tuple of Pcurve or None
-        For every entry of the loop its trimming curve on the one chart, with the edge's
-        parameter; None (or none at all) where the kinds of curve and surface give it exactly.
+        For every entry of the loop its trimming curve on the only chart, in the edge's parameter;
+        None (or an empty tuple) where the kinds of curve and surface determine it exactly.
     """
 
     charts: tuple[Surface, ...]
@@ -91,7 +91,7 @@ class Face:
 def check_parts(
     vertices: Array, edges: Sequence[Any], faces: Sequence[Any], dimension: int
 ) -> None:
-    """Raise BodyError where parts are of the wrong kind, loose, or bound no convex body."""
+    """Raise BodyError if parts have the wrong type, are loose, or bound nothing."""
     given: Any = dimension
     if not is_whole(given) or dimension not in (2, 3):
         raise BodyError(
@@ -114,7 +114,7 @@ def check_parts(
     used |= {a.vertex for f in faces for a in f.apexes}
     loose = sorted(set(range(len(vertices))) - used)
     if loose and not (len(vertices) == 1 and not edges and not faces):
-        raise BodyError(f"Vertices {loose} belong to no edge: leave them out or join them.")
+        raise BodyError(f"Vertices {loose} belong to no edge: remove them or join them.")
     for k, face in enumerate(faces):
         _check_bounded(k, face, alone=len(faces) == 1)
     if dimension == 2:
@@ -127,8 +127,8 @@ def check_parts(
 
 
 def parts_of(parts: Any, name: str) -> tuple[Any, ...]:
-    """`parts` as a tuple; TypeError where they are no sequence."""
-    no_list = isinstance(parts, np.ndarray) and parts.ndim == 0  # which says it were iterable
+    """`parts` as a tuple; TypeError if they are not a sequence."""
+    no_list = isinstance(parts, np.ndarray) and parts.ndim == 0  # it passes for an Iterable
     if no_list or isinstance(parts, str | bytes | dict) or not isinstance(parts, Iterable):
         raise StandoffTypeError(f"{name} = {shown(parts)}: give a list.", name, parts)
     return tuple(parts)
@@ -180,7 +180,7 @@ def _check_face(k: int, face: Face, vertices: int) -> None:
     if face.pcurves and (len(face.pcurves) != len(face.loop) or len(face.charts) != 1):
         raise BodyError(
             f"Face {k} has {len(face.pcurves)} pcurves, {len(face.loop)} edges and "
-            f"{len(face.charts)} charts: give a pcurve (or None) an edge, and one chart.",
+            f"{len(face.charts)} charts: give one pcurve (or None) per edge, and one chart.",
             part=("face", k),
         )
     for apex in face.apexes:
@@ -188,14 +188,14 @@ def _check_face(k: int, face: Face, vertices: int) -> None:
 
 
 def _check_bounded(k: int, face: Face, alone: bool) -> None:
-    """Only a half-space has a face without end."""
+    """Raise BodyError for an unbounded face, except that of a half-space."""
     closed = len(face.charts) > 1 and all(chart.part_of for chart in face.charts)
     if face.loop or face.apexes or closed:
         return
     if not (alone and len(face.charts) == 1 and face.charts[0].flat):
         raise BodyError(
             f"Face {k}, a {type(face.charts[0]).__name__}, has no loop of edges: give its edges, "
-            "or all charts of a closed surface; only one plane alone is a body, a half-space.",
+            "or all charts of a closed surface; only a single plane is a body, a half-space.",
             part=("face", k),
         )
 

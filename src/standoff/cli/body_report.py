@@ -31,7 +31,7 @@ def report_rows(body: Body, unit: str) -> Rows:
         ("vertices", str(report.vertices)),
         ("size", f"{report.size:.9g} {unit}" if body.bounded else "unbounded"),
         ("radius", skin),
-        ("closed", "yes" if report.closed else "no: it has no end"),
+        ("closed", "yes" if report.closed else "no: it is unbounded"),
         ("normals", "outward" if report.outward else "not all outward"),
         *_patch_rows(report, unit),
         *_angle_rows(report),

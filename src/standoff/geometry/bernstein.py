@@ -2,8 +2,8 @@
 
 A polynomial of degrees (p, q) is an array (..., p + 1, q + 1) of its coefficients: the last two
 axes belong to u and v, those before are components. Its values lie between its least and greatest
-coefficient; products, derivatives, elevation and subdivision keep the form. Products are scaled
-convolutions: no change of basis, so no loss of digits (Farouki and Rajan, CAGD 1988).
+coefficients; products, derivatives, elevation and subdivision keep the form. Products are scaled
+convolutions: the basis is not changed, so no digits are lost (Farouki and Rajan, CAGD 1988).
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ def grid_values(c: Array, u: Array, v: Array) -> Array:
 def segment(degree: int, first: float, last: float) -> Array:
     """The matrix (n, n) that gives the coefficients on [first, last] within [0, 1].
 
-    Row i holds the blossom at (first, ... , last ...): all its weights are positive.
+    Row i is the blossom at (first, ... , last ...): none of its weights is negative.
     """
     matrix: Array = segments(degree, np.array([first]), np.array([last]))[0]
     return matrix

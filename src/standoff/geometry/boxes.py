@@ -34,7 +34,7 @@ class Boxes:
         return [Interval(self.low[:, k], self.high[:, k]) for k in range(self.low.shape[1])]
 
     def halves(self, axis: NDArray[np.int64]) -> Boxes:
-        """Each box cut in two across its `axis` (n,)."""
+        """Each box halved along its `axis` (n,)."""
         rows = np.arange(len(self))
         middle = self.middle[rows, axis]
         left, right = self.high.copy(), self.low.copy()

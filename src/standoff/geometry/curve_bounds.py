@@ -1,4 +1,4 @@
-"""How far curves reach: bounds for the boxes around curves and what they sweep."""
+"""How far curves extend: bounds for boxes around curves and around what they sweep."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from standoff.geometry.validation import Array
 
 
 def curve_reach(curve: Curve, direction: Array, first: float, last: float) -> float:
-    """A bound of direction @ x on a curve from parameter first to last.
+    """An upper bound of direction @ x on a curve from parameter first to last.
 
-    Exact for lines and conic arcs; from the piece's halved control points for rational curves, from
-    the whole curve's box for formulas.
+    It is exact for lines and conic arcs, from the subdivided control points of the piece for
+    rational curves, and from the whole curve's box for formulas.
 
     Raises
     ------
@@ -47,14 +47,14 @@ def curve_reach(curve: Curve, direction: Array, first: float, last: float) -> fl
 
 
 def _reading(direction: Array) -> Array:
-    """(4, 2) from homogeneous points to the height along a direction, homogeneous."""
+    """The matrix (4, 2) from homogeneous points to homogeneous heights along a direction."""
     matrix = np.zeros((4, 2))
     matrix[:3, 0], matrix[3, 1] = direction, 1.0
     return matrix
 
 
 def rational_parts(curve: RationalBezier | NurbsCurve, first: float, last: float) -> list[Array]:
-    """Homogeneous Bezier points (p + 1, 4) of the pieces of a rational curve between two places."""
+    """Homogeneous Bezier points (p + 1, 4) of the pieces of a rational curve from first to last."""
     if isinstance(curve, RationalBezier):
         breaks, blocks = np.array([0.0, 1.0]), curve.data[1:].reshape(1, -1, 4)
     else:

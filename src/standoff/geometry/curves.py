@@ -34,8 +34,7 @@ class Curve(KeepsReadOnly):
     Parameters
     ----------
     data : array
-        What its kernel reads. Make a curve by one of the classes below this one, which check
-        their arguments.
+        What its kernel reads. Make curves with the subclasses, which check their arguments.
     first, last : float
         Range of the parameter t.
     """
@@ -59,13 +58,13 @@ class Curve(KeepsReadOnly):
 
     @property
     def formulas(self) -> tuple[Formula, ...]:
-        """The compiled formulas whose addresses stand in its data or its surface's."""
+        """The compiled formulas whose addresses are in its data or in that of its surface."""
         return ()
 
     @property
     def moved(self) -> float:
-        """How far the curve may lie from the one given, length: 0 but for splines, whose spare
-        knots are left out (``knot_removal``)."""
+        """How far the curve may lie from the given one, length: 0 except for splines, whose
+        redundant knots are removed (``knot_removal``)."""
         return 0.0
 
     def pcurve_on(self, surface: Surface) -> Pcurve | None:
@@ -73,15 +72,15 @@ class Curve(KeepsReadOnly):
         return None
 
     def spans(self) -> Array:
-        """Ends of the stretches, ascending, on which the curve is of one piece."""
+        """Ends of the intervals, ascending, on which the curve is a single smooth piece."""
         return np.array([self.first, self.last])
 
     def box(self) -> tuple[Array, Array] | None:
-        """(low, high), each (3,): surely around the curve; None where its kind gives none."""
+        """(low, high), each (3,), guaranteed to contain the curve; None if its kind has none."""
         return None
 
     def jets_over(self, t: Interval) -> Interval:
-        """(3, 3, n) bounds of (x, x_t, x_tt) over ranges of t that no span's end divides.
+        """(3, 3, n) bounds of (x, x_t, x_tt) over ranges of t, none across the end of a span.
 
         Raises
         ------
@@ -91,7 +90,7 @@ class Curve(KeepsReadOnly):
         raise StandoffError(f"{type(self).__name__} has no bounds: it cannot be a profile.")
 
     def heights_over(self, directions: Interval, t: Interval) -> Interval:
-        """(m, n) bounds of direction . x over such ranges, by Taylor's formula of order two;
+        """(m, n) bounds of direction . x over such ranges, by a second-order Taylor expansion;
         directions (m, 3, n)."""
         from standoff.geometry.interval_vectors import mapped
 
@@ -172,7 +171,7 @@ class ConicArc(Curve):
     centre, a, b : (3,) array_like, or (2,) in the plane z = 0
         Centre and two conjugate semi-axes, not parallel; length.
     first, last : float
-        Eccentric angles, radians; more than nothing and at most 2 pi apart.
+        Eccentric angles, radians, with 0 < last - first <= 2 pi.
 
     Raises
     ------
@@ -191,7 +190,7 @@ class ConicArc(Curve):
         return mapped(self.basis(), stacked([stacked(row) for row in rows]))
 
     def heights_over(self, directions: Interval, t: Interval) -> Interval:
-        """Exact but for rounding."""
+        """Exact up to rounding."""
         from standoff.geometry.interval_vectors import mapped, wave
 
         a, b, c = (mapped(directions, interval(col[:, None])) for col in self.basis().T)
@@ -228,13 +227,13 @@ class RationalBezier(Curve):
     control_points : (n + 1, 3) array_like, or (n + 1, 2) in the plane z = 0
         At least two, length; the first two differ, and the last two.
     weights : (n + 1,) array_like, optional
-        Positive, within a factor of 1e12, dimensionless; ones when left out.
+        Positive, within a factor of 1e12, dimensionless; ones by default.
 
     Raises
     ------
     ValueError
-        A wrong shape, a number that is not finite, a single point, doubled ends, weights that are
-        not positive or too far apart.
+        A wrong shape, a number that is not finite, a single point, repeated end points, weights
+        that are not positive or differ too much.
     """
 
     kind = L.BEZIER
@@ -249,7 +248,7 @@ class RationalBezier(Curve):
         return self.nets_over(t).jets()[:, [0, 1, 3]]
 
     def heights_over(self, directions: Interval, t: Interval) -> Interval:
-        """Of the control points."""
+        """From the control points."""
         return self.nets_over(t).heights(directions)
 
     def __init__(self, control_points: Any, weights: Any = None) -> None:
@@ -269,7 +268,7 @@ class RationalBezier(Curve):
         check_alike(w)
         if np.ptp(points, axis=0).max() == 0.0:
             raise StandoffError(
-                f"Bezier curve of a single point {points[0]}: spread its points.",
+                f"Bezier curve of a single point {points[0]}: give different points.",
                 "control_points",
                 control_points,
             )
@@ -277,7 +276,7 @@ class RationalBezier(Curve):
             if np.array_equal(a, b):
                 raise StandoffError(
                     f"Bezier curve whose {end} two control points are the same, {a}: it has no "
-                    "tangent there; leave one out.",
+                    "tangent there; remove one of them.",
                     "control_points",
                     control_points,
                 )
@@ -297,12 +296,12 @@ class RationalBezier(Curve):
 
 
 def _planar(point: Any) -> Any:
-    """A 2-D point gets z = 0."""
+    """A point with z = 0 added if it is 2-D."""
     return [*point, 0.0] if shape_of(point) == (2,) else point
 
 
 def fill_curve(curve: Curve, data: Array, first: float, last: float) -> None:
-    """Set a curve's fields; its data become read-only."""
+    """Set a curve's fields, and make its data read-only."""
     data.flags.writeable = False
     object.__setattr__(curve, "data", data)
     object.__setattr__(curve, "first", float(first))

@@ -15,7 +15,7 @@ UNBOUNDED: Domain = (-np.inf, np.inf, -np.inf, np.inf)
 
 
 def checked_domain(domain: Any, name: str) -> Domain:
-    """(u0, u1, v0, v1) as floats; raises ValueError where it is empty or not a number."""
+    """(u0, u1, v0, v1) as floats; raises ValueError if it is empty or not numeric."""
     if shape_of(domain) != (4,):
         raise StandoffError(
             f"{name}.domain = {shown(domain)}: give (u0, u1, v0, v1).", "domain", domain
@@ -36,5 +36,5 @@ def checked_domain(domain: Any, name: str) -> Domain:
 
 
 def inside(values: Array, low: float, high: float) -> Array:
-    """Those between two ends, which do not count."""
+    """The values strictly between two ends."""
     return values[(low < values) & (values < high)]

@@ -1,8 +1,8 @@
 """Ellipsoids as rational Bezier patches, exact.
 
 The cube form follows Cobb's tiling of the sphere ("Tiling the sphere with rational Bezier
-patches", 1988): a complex form of degree (2, 2) whose sides are arcs of great circles, carried to
-the sphere by stereographic projection, gives degree (4, 4). The octant form turns a quarter arc
+patches", 1988): a complex form of degree (2, 2) whose sides are arcs of great circles, mapped to
+the sphere by stereographic projection, gives degree (4, 4). The octant form rotates a quarter arc
 about the axis: degree (2, 2), with one side collapsed to the pole.
 """
 
@@ -44,7 +44,7 @@ def ellipsoid_patches(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
 
 
 def ellipsoid_octants(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
-    """Eight rational patches of degree (2, 2), one an octant, each with v = 1 at a pole.
+    """Eight rational patches of degree (2, 2), one per octant, each with v = 1 at a pole.
 
     f_u x f_v points outward; the poles lie on z.
 
@@ -74,7 +74,7 @@ def ellipsoid_octants(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
         points[:, :, 2] = round_[:, 1]
         weights = np.outer(arc, arc)
         patches.append(BezierPatch(points * axes, weights))
-        # the lower octant: mirrored, and u turned so that f_u x f_v stays outward
+        # the lower octant: mirrored, and u reversed so that f_u x f_v stays outward
         patches.append(BezierPatch(points[::-1] * axes * [1.0, 1.0, -1.0], weights))
     return tuple(patches)
 
@@ -98,7 +98,7 @@ def _cube_tile() -> tuple[Array, Array]:
         form[:, i[0], i[1]] = this
         turn = np.exp(2j * half)
         form[:, middle[0], middle[1]] = 0.5 * (this / turn + after * turn)
-    # the middle one: real, so that the centre goes to the pole; its size evens the parameters
+    # the middle one is real, so that the centre maps to the pole; its size makes u and v more even
     form[1, 1, 1] = np.real(form[1, 0, 1])
     return _on_sphere(form)
 

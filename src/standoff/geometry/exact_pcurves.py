@@ -22,7 +22,7 @@ from standoff.kernels.body import layout as L
 def pcurve_of(curve: Curve, surface: Surface) -> Pcurve:
     """The trimming curve of an edge on a surface, exact.
 
-    A curve that was made on the surface brings its own (`Curve.pcurve_on`).
+    A curve that was made on the surface has its own (`Curve.pcurve_on`).
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def pcurve_of(curve: Curve, surface: Surface) -> Pcurve:
     Raises
     ------
     ValueError
-        No curve, no surface, or the kinds do not meet in a line or conic of (u, v).
+        Not a curve, not a surface, or kinds for which the pcurve is not a line or conic in (u, v).
     """
     if not isinstance(curve, Curve):
         raise StandoffError(f"curve is {shown(curve)}: give a Curve.", "curve", curve)
@@ -81,8 +81,8 @@ def _round_pcurve(curve: Curve, surface: Surface, basis: Array) -> Pcurve:
     centred = np.linalg.norm(basis[:2, 2]) <= ROUND_SECTION * radius
     if not (level and round_ and centred):
         raise StandoffError(
-            f"On a {type(surface).__name__} only sections square to its axis and generators have "
-            "a line as pcurve; this conic arc is neither.",
+            f"On a {type(surface).__name__} only generators and sections perpendicular to its axis "
+            "have a line as pcurve; this curve is neither.",
             "curve",
             curve,
         )

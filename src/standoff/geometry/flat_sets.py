@@ -1,4 +1,4 @@
-"""Flat convex sets in a plane: points, segments, polygons, and what two of them share."""
+"""Convex sets in a plane: points, segments, polygons, and what two of them have in common."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class FlatSet:
 
     @staticmethod
     def of(points: Array, least: float) -> FlatSet:
-        """The hull of points (n, 2); extents below `least` [length] do not count."""
+        """The hull of points (n, 2); extents below `least` [length] count as zero."""
         centre = points.mean(axis=0)
         axes = np.linalg.svd(points - centre, full_matrices=False)[2]
         along = (points - centre) @ axes.T
@@ -38,7 +38,7 @@ class FlatSet:
         return FlatSet(2, points[scipy.spatial.ConvexHull(points).vertices])
 
     def half_planes(self, widened: float) -> tuple[Array, Array]:
-        """Normals (k, 2) and offsets (k,): the set widened is {x: normals @ x <= offsets}."""
+        """Normals (k, 2) and offsets (k,): the widened set is {x: normals @ x <= offsets}."""
         c = self.corners
         if self.dimension == 0:
             normals = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
@@ -53,9 +53,9 @@ class FlatSet:
 
 
 def shared(a: FlatSet, b: FlatSet, tolerance: float, least: float) -> FlatSet | None:
-    """What two sets share; None where they are further apart than the tolerance [length].
+    """The intersection of two sets; None if they are further apart than the tolerance [length].
 
-    An extent below `least` [length] does not count. The corners are exact to roundoff.
+    An extent below `least` [length] counts as zero. The corners are exact to roundoff.
     """
     if (a.dimension, -len(a.corners)) > (b.dimension, -len(b.corners)):
         a, b = b, a  # fewer half-planes to cut with
@@ -78,7 +78,7 @@ def shared(a: FlatSet, b: FlatSet, tolerance: float, least: float) -> FlatSet | 
 
 
 def _settled(wide: FlatSet, narrow: FlatSet) -> FlatSet:
-    """Of the lesser dimension if an extent of the wider set goes with the tolerance."""
+    """The set of lower dimension, if an extent of the wider set exists only by the tolerance."""
     kept = [x > KEPT_EXTENT * y for x, y in zip(_extents(narrow), _extents(wide), strict=True)]
     dimension = min(narrow.dimension, wide.dimension, sum(kept))
     if dimension == narrow.dimension:

@@ -30,10 +30,10 @@ def corners(boxes: Boxes) -> list[tuple[Array, Array]]:
 
 
 def ellipsoid_extents(surface: Surface, boxes: Boxes, directions: Array) -> Interval:
-    """(m, n) bounds of direction . x, exact but for rounding.
+    """(m, n) bounds of direction . x, exact up to rounding.
 
-    On the unit sphere the sides of a box are arcs of great circles, along which a height is a wave;
-    within it a height is greatest, or least, where the direction itself meets the sphere.
+    On the unit sphere the sides of a box are arcs of great circles, along which a height is a
+    sinusoid; inside, a height is extreme only where the direction itself meets the sphere.
     """
     a = stacked([mapped(directions, interval(column[:, None])) for column in surface.linear.T])
     held = _along_sides(a[0], a[1], a[2], boxes.sides[0], boxes.sides[1])
@@ -48,7 +48,7 @@ def ellipsoid_extents(surface: Surface, boxes: Boxes, directions: Array) -> Inte
 def _along_sides(
     across: Interval, along: Interval, up: Interval, u: Interval, v: Interval
 ) -> Interval:
-    """Heights on the two sides u = const: (u, 0, 1)/c and (0, 1, 0) span a great circle there."""
+    """Heights on the two sides u = const, where (u, 0, 1)/c and (0, 1, 0) span a great circle."""
     sides = []
     for end in (u.lo, u.hi):
         c = sqrt(interval(end) ** 2 + 1.0)
@@ -58,7 +58,7 @@ def _along_sides(
 
 
 def _meets(a: Interval, boxes: Boxes) -> Array:
-    """May a direction meet the sphere within a box?"""
+    """May a direction meet the sphere inside a box?"""
     seen = a[2].hi > 0.0
     for k in (0, 1):
         low, high = (interval(c[:, k]) for c in (boxes.low, boxes.high))
@@ -69,9 +69,10 @@ def _meets(a: Interval, boxes: Boxes) -> Array:
 def ellipsoid_bounds(surface: Surface, boxes: Boxes) -> PatchBounds:
     """Boxes, cones of normals and curvatures.
 
-    The unit sphere's normals over a box are the positive combinations of its corners'. The normal
-    curvature along the image of a unit tangent t at n is -det(A) / (|C n| |A t|²), C the cofactors
-    of A; both lengths are near those at the middle, and within the singular values.
+    The unit sphere's normals over a box are positive combinations of those at its corners. The
+    normal curvature along the image of a unit tangent t at n is -det(A) / (|C n| |A t|²), where C
+    are the cofactors of A; both lengths are near those at the middle, and within the singular
+    values.
     """
     extents = ellipsoid_extents(surface, boxes, np.eye(3)[..., None])
     one = np.ones(len(boxes))
@@ -94,14 +95,15 @@ def ellipsoid_bounds(surface: Surface, boxes: Boxes) -> PatchBounds:
 
 
 def _near(size: Array, chord: Array, least: float, most: float) -> Interval:
-    """A mapped unit vector's length, of one within a chord of a known one, by singular values."""
+    """Length of the image of a unit vector within a chord of one with a known image, bounded by
+    singular values."""
     spare = LENGTH_ROUNDING * most
     low = np.maximum(size - most * chord, least) - spare
     return Interval(np.maximum(low, 0.0), np.minimum(size + most * chord, most) + spare)
 
 
 def _tangent_lengths(linear: Array, normals: Array) -> tuple[Array, Array]:
-    """Least and greatest length of the image of a unit vector across unit normals (3, n)."""
+    """Least and greatest length of the image of unit vectors perpendicular to normals (3, n)."""
     n = normals.T
     helper = np.eye(3)[np.abs(n).argmin(axis=1)]
     first = np.cross(n, helper)

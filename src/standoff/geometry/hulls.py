@@ -1,8 +1,8 @@
-"""Boxes round rational Bezier points, made tight by halving.
+"""Boxes around rational Bezier curves and patches, made tight by subdivision.
 
 A rational Bezier curve or patch with positive weights lies in the hull of its control points, and
-halving (de Casteljau) brings the points nearer, by a factor 4 a time. Only the pieces that may
-still hold an outermost point are halved.
+halving it (de Casteljau) brings the points nearer, by a factor of 4 each time. Only the pieces that
+may still contain an outermost point are halved.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from standoff.geometry.bernstein import halves
 from standoff.geometry.tolerances import BOX_MARGIN, TIGHT_BOX
 from standoff.geometry.validation import Array
 
-# Halvings at most, and pieces at once.
+# Greatest number of halvings, and of pieces at a time.
 MOST_HALVINGS = 24
 MOST_PIECES = 512
 
 
 def tight_box(h: Array) -> tuple[Array, Array]:
-    """(low, high), each (d,), of a box that surely holds rational Bezier patches or curves.
+    """(low, high), each (d,), of a box guaranteed to contain rational Bezier patches or curves.
 
     Parameters
     ----------
@@ -27,9 +27,9 @@ def tight_box(h: Array) -> tuple[Array, Array]:
 
     Notes
     -----
-    The box is the hull of control points after halving, outward by some units of roundoff where
-    there was any halving. No side is farther from the surface than ``TIGHT_BOX`` of the diagonal,
-    unless there are too many pieces.
+    The box is that of the control points after subdivision, enlarged by a few units of roundoff if
+    there was any. No side is farther from the surface than ``TIGHT_BOX`` of the diagonal, unless
+    there are too many pieces.
     """
     d = h.shape[1] - 1
     points = (h[:, :d] / h[:, d:]).reshape(len(h), d, -1)
@@ -42,7 +42,7 @@ def tight_box(h: Array) -> tuple[Array, Array]:
     settled_low, settled_high = inner_low.copy(), inner_high.copy()
     halved = False
     for _ in range(MOST_HALVINGS):
-        # pieces that reach past what is known by more than the limit, on any side
+        # pieces that extend beyond the known points by more than the limit, on any side
         open_ = (low < inner_low - limit).any(axis=1) | (high > inner_high + limit).any(axis=1)
         settled_low = np.minimum(settled_low, low[~open_].min(axis=0, initial=np.inf))
         settled_high = np.maximum(settled_high, high[~open_].max(axis=0, initial=-np.inf))
@@ -59,19 +59,19 @@ def tight_box(h: Array) -> tuple[Array, Array]:
     high = np.maximum(settled_high, high.max(axis=0, initial=-np.inf))
     if not halved:
         return low, high
-    # halving may gain nothing on a side, and its rounding is not to lose anything
+    # halving may not improve a side, and then its rounding must not make it worse
     return np.maximum(low - margin, outer_low), np.minimum(high + margin, outer_high)
 
 
 def _corners(h: Array) -> tuple[Array, Array]:
-    """The box of the patches' corners: points of the surface."""
+    """The box of the patches' corners, which are points of the surface."""
     c = h[:, :, [0, 0, -1, -1], [0, -1, 0, -1]]
     x = c[:, :-1] / c[:, -1:]
     return x.min(axis=(0, 2)), x.max(axis=(0, 2))
 
 
 def _halved(h: Array) -> Array:
-    """Every patch in two, along the parameter in which its points bend more."""
+    """Every patch halved, along the parameter in which its points bend more."""
     p, q = h.shape[-2] - 1, h.shape[-1] - 1
     if q == 0:
         return np.concatenate([m @ h for m in halves(p)])

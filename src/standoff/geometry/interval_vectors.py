@@ -1,4 +1,4 @@
-"""Vectors and matrices of intervals: the first axis is that of the components."""
+"""Vectors and matrices of intervals; the first axis holds the components."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def mapped(linear: Array | Interval, x: Interval) -> Interval:
 
 
 def stacked(rows: Sequence[Interval]) -> Interval:
-    """Intervals of one shape as the components of one."""
+    """Intervals of the same shape as the components of one interval."""
     return Interval(np.stack([r.lo for r in rows]), np.stack([r.hi for r in rows]))
 
 
@@ -33,18 +33,18 @@ def by_generator(vectors: Sequence[Interval]) -> Interval:
 
 
 def dot(a: Interval, b: Interval) -> Interval:
-    """(...) bounds of a . b, both (3, ...); of a . a where both are the same object."""
+    """(...) bounds of a . b, both (3, ...); of a . a if both are the same object."""
     if a is b:
         return a[0] ** 2 + a[1] ** 2 + a[2] ** 2
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def length(*parts: Interval) -> Interval:
-    """Bounds of the root of a sum of squares."""
+    """Bounds of the square root of a sum of squares."""
     total = interval(0.0)
     for part in parts:
         total = total + part**2
-    # rounded outward, a sum of nothing is below zero
+    # rounded outward, a sum of zeros is below zero
     return sqrt(Interval(np.maximum(total.lo, 0.0), total.hi))
 
 
@@ -66,7 +66,7 @@ def determinant(linear: Array) -> Interval:
 
 
 def wave(a: Interval, b: Interval, t: Interval) -> Interval:
-    """Bounds of a cos t + b sin t, exact but for rounding: t may reach over crests."""
+    """Bounds of a cos t + b sin t, exact up to rounding; t may contain crests."""
     crest = np.arctan2(b.lo + b.hi, a.lo + a.hi)
     c, s = cos(interval(crest)), sin(interval(crest))
     # for any angle, near to the crest or not, and nearly nothing of the second part near to it

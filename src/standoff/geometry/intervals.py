@@ -1,14 +1,14 @@
-"""Interval arithmetic over many boxes at once: what is proven over a patch rests on it.
+"""Interval arithmetic over many boxes at once, the basis of what is proven over a patch.
 
-An `Interval` holds arrays of lower and upper bounds; every result surely holds the values of the
-operation over its operands. +, -, *, / and sqrt are rounded outward by one unit in the last
-place, which IEEE 754 makes sure; NumPy's elementary functions by `LIBRARY_ERROR`. Where an
-operation is undefined somewhere in a box (a division by an interval that holds zero, the root of
-one that reaches below zero) both bounds are NaN, and stay so.
+An `Interval` holds arrays of lower and upper bounds; every result is guaranteed to contain the
+values of the operation over its operands. +, -, *, / and sqrt are rounded outward by one unit in
+the last place, which is enough by IEEE 754; NumPy's elementary functions by `LIBRARY_ERROR`. If an
+operation is undefined somewhere in a box (a division by an interval that contains zero, the root of
+one with negative values), both bounds are NaN, and stay so.
 
-Endpoints, not midpoints with radii as in python-flint's `arb`: its radii of 30 bits reach beyond
-the edge of a domain, where a root or a square then has no bound, and one call a box and operation
-is a hundred times as slow. `arb` is the oracle of the tests.
+Intervals are stored by endpoints, not by midpoints and radii as in python-flint's `arb`: its radii
+of 30 bits extend beyond the edge of a domain, where a root then has no bound, and one call per box
+and operation is a hundred times as slow. `arb` is the oracle of the tests.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from standoff.geometry.tolerances import CREST_ROUNDOFF, LIBRARY_ERROR
 from standoff.geometry.validation import Array
 
 TINY = float(np.finfo(np.float64).tiny)
-# Angles beyond this are not reduced: their quadrant is not known to the last place.
+# Greatest angle that is reduced: for larger ones the quadrant is not known reliably.
 GREATEST_ANGLE = 1e6
 TURN = 2.0 * np.pi
 
 
 class Interval:
-    """Bounds [lo, hi], arrays of one shape; NaN where nothing is known."""
+    """Bounds [lo, hi], arrays of the same shape; NaN where nothing is known."""
 
     __slots__ = ("hi", "lo")
-    __array_ufunc__ = None  # so that array @ interval is refused instead of being looped over
+    __array_ufunc__ = None  # so that array @ interval is rejected instead of looped over
 
     def __init__(self, lo: Array, hi: Array) -> None:
         self.lo = lo
@@ -75,7 +75,7 @@ class Interval:
         return interval(other) * reciprocal(self)
 
     def __pow__(self, exponent: int) -> Interval:
-        """A whole power."""
+        """An integer power."""
         if exponent < 0:
             return reciprocal(self**-exponent)
         low, high = self.lo**exponent, self.hi**exponent
@@ -98,7 +98,7 @@ class Interval:
 
     @property
     def middle(self) -> Array:
-        """A number amid the bounds."""
+        """A number between the bounds."""
         return np.asarray(0.5 * self.lo + 0.5 * self.hi)
 
     @property
@@ -113,7 +113,7 @@ class Interval:
         return np.maximum(np.maximum(self.lo, -self.hi), 0.0)
 
     def within(self, other: Interval) -> Interval:
-        """The common part of two bounds of one value; unknown bounds are passed over."""
+        """The intersection of two bounds of the same value; unknown bounds are ignored."""
         return Interval(np.fmax(self.lo, other.lo), np.fmin(self.hi, other.hi))
 
 
@@ -126,7 +126,7 @@ def interval(value: Interval | float | Array) -> Interval:
 
 
 def near(value: float) -> Interval:
-    """The interval around a real number whose nearest float64 is `value`."""
+    """An interval that contains the real number whose nearest float64 is `value`."""
     exact = np.asarray(value, dtype=np.float64)
     return _rounded(exact, exact)
 
@@ -142,7 +142,7 @@ def _widened(low: Any, high: Any) -> Interval:
 
 
 def _only(inside: NDArray[np.bool_], result: Interval) -> Interval:
-    """`result` where its argument lies inside the function's domain, unknown elsewhere."""
+    """`result` where the argument lies inside the function's domain, NaN elsewhere."""
     return Interval(np.where(inside, result.lo, np.nan), np.where(inside, result.hi, np.nan))
 
 
@@ -172,7 +172,7 @@ def log(a: Interval | float) -> Interval:
 
 
 def power(a: Interval | float, e: Interval | float) -> Interval:
-    """a**e of a >= 0, or > 0 where e may be negative; its extremes are at the corners."""
+    """a**e for a >= 0, or a > 0 if e may be negative; its extremes are at the corners."""
     a, e = interval(a), interval(e)
     inside = (a.lo > 0.0) | ((a.lo >= 0.0) & (e.lo > 0.0))
     inside &= ~np.isnan(e.lo + e.hi)  # IEEE 754 has 1**nan = 1
@@ -197,7 +197,7 @@ def _wave(a: Interval, function: Any, crest: float) -> Interval:
     """A wave of period 2 pi, 1 at `crest`, -1 half a period later."""
     low, high = function(a.lo), function(a.hi)
     ends = _widened(np.minimum(low, high), np.maximum(low, high))
-    # A crest that lies within the roundoff of its place counts as inside.
+    # a crest within roundoff of an end counts as inside
     spare = CREST_ROUNDOFF * (1.0 + a.magnitude)
     first, last = (a.lo - spare - crest) / TURN, (a.hi + spare - crest) / TURN
     top = np.floor(last) >= np.ceil(first)
@@ -269,4 +269,4 @@ FUNCTIONS = {
     "sinh": sinh, "cosh": cosh, "tanh": tanh, "exp": exp, "log": log, "sqrt": sqrt,
     "power": power, "near": near,
 }  # fmt: skip
-"""By the names that formulas are written in."""
+"""By the names that formulas use."""

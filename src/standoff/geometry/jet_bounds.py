@@ -1,8 +1,8 @@
-"""Bounds of sub-patches of any kind, from bounds of its jet over boxes of parameters.
+"""Bounds of sub-patches of any kind, from bounds of their jets over boxes of parameters.
 
-With a jet's bounds over a box and at its middle, x is bounded by Taylor's formula of order two,
-N = x_u × x_v by its value and slopes, and the curvature by II / I in the two tangents: the first
-two sharpen with the square of the box's width, the last with the width.
+From a jet's bounds over a box and at its middle, x is bounded by a second-order Taylor expansion,
+N = x_u × x_v by its value and slopes, and the curvature by II / I in the two tangents. The error of
+the first two decreases with the square of the box's width, that of the last with the width.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from standoff.geometry.tolerances import BOX_MARGIN
 from standoff.geometry.validation import Array
 
 SIGNS = (-1.0, 1.0)
-# Places in a jet, and the factorials of Taylor's coefficients in the order of `Series`.
+# Indices in a jet, and the factorials of Taylor coefficients in the order of `Series`.
 X, XU, XV, XUU, XUV, XVV = range(6)
 FACTORIALS = np.array([1.0, 1.0, 1.0, 2.0, 1.0, 2.0])[:, None]
 
@@ -63,7 +63,7 @@ class JetBounds:
         self.half = np.nextafter(np.maximum(boxes.high - middle, middle - boxes.low), np.inf).T
 
     def extents(self, directions: Array) -> Interval:
-        """(m, n) bounds of direction . x, for directions (m, 3), or (m, 3, n) one a box."""
+        """(m, n) bounds of direction . x, for directions (m, 3), or (m, 3, n) with one per box."""
         with np.errstate(all="ignore"):
             over, at = mapped(directions, self.over), mapped(directions, self.at)
             u, v = (Interval(-h, h) for h in self.half)
@@ -73,7 +73,7 @@ class JetBounds:
         return total.within(over[:, X])
 
     def normals(self) -> tuple[Array, Array]:
-        """(axis, angle) of cones round x_u × x_v."""
+        """(axis, angle) of cones around x_u × x_v."""
         with np.errstate(all="ignore"):
             value, slopes = _normal(self.at)
             steps, off = [], interval(0.0)
@@ -108,13 +108,13 @@ class JetBounds:
             return normal_curvatures(metric, [dot(normal, c) for c in bends], area)
 
     def bounds(self, extents: Interval) -> PatchBounds:
-        """With known extents along the axes."""
+        """All bounds, with known extents along the axes."""
         return PatchBounds(*widened(extents), *self.normals(), *self.curvatures())
 
 
 def widened(extents: Interval, reach: Any = 0.0) -> tuple[Array, Array]:
-    """(low, high), (n, 3), of a box that also holds computed points: see BOX_MARGIN. `reach` is the
-    greatest number that they are computed from, if that is more, length."""
+    """(low, high), (n, 3), of a box that also contains computed points: see BOX_MARGIN. `reach` is
+    the greatest number from which they are computed, if larger than the extents, length."""
     margin = BOX_MARGIN * np.maximum(extents.magnitude.max(axis=0), reach)
     return (extents.lo - margin).T, (extents.hi + margin).T
 
@@ -126,7 +126,7 @@ def _normal(jets: Interval) -> tuple[Interval, tuple[Interval, Interval]]:
 
 
 def box_corners(box: Interval) -> list[Interval]:
-    """Of bounds (3, n): eight of (3, n), without width."""
+    """The eight corners, each (3, n) and without width, of bounds (3, n)."""
     ends = (box.lo, box.hi)
     picks = [(ends[i][0], ends[j][1], ends[k][2]) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
     return [interval(np.stack(pick)) for pick in picks]

@@ -1,10 +1,10 @@
-"""Knots that a spline can do without, found from its control points.
+"""Removal of a spline's redundant knots, found from its control points.
 
-Inserted knots leave a surface as it is, but cut it into spans; over a span of h of the domain,
-control points rounded by eps leave tangents wrong by eps/h and curvatures by eps/h^2. So jets and
-proofs work on the spline with the fewest knots, its *essential* ones. The control points there
-are a least-squares solution, and how far the surface has moved is bounded by inserting the knots
-again: two splines over the same knots are no farther apart than their control points.
+Inserted knots do not change a surface, but cut it into spans. Over a span of h of the domain,
+control points rounded by eps make tangents wrong by eps/h and curvatures by eps/h^2. So jets and
+proofs use the spline with the fewest knots, its *essential* ones. The control points there are a
+least-squares solution, and how far the surface has moved is bounded by inserting the knots again:
+two splines over the same knots are no farther apart than their control points.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from standoff.geometry.validation import Array
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Where homogeneous control points lie: a centre (3,), and the greatest distances of a point
-    from it and from the origin, lengths."""
+    """Where homogeneous control points lie: a centre (3,), and the greatest distances of the points
+    from it and from the origin, length."""
 
     centre: Array
     radius: float
@@ -38,14 +38,14 @@ class Place:
 
     @property
     def limit(self) -> float:
-        """How far a spline may move for a knot left out, length."""
+        """How far a spline may move when a knot is removed, length."""
         return SPARE_KNOT * max(2.0 * self.radius, self.reach)
 
     def moved(self, h: Array, other: Array) -> float:
-        """A bound of the distance between splines of the same knots, at equal parameters.
+        """A bound on the distance between splines with the same knots, at equal parameters.
 
-        With x = sum B h / sum B w, the other's point less x is sum B (dX - x dw) / sum B w', and
-        so no longer than the greatest |dX - x dw| / w'. inf where a weight is not positive.
+        With x = sum B h / sum B w, the other's point minus x is sum B (dX - x dw) / sum B w', and
+        so no longer than the greatest |dX - x dw| / w'. inf if a weight is not positive.
         """
         if float(other[..., 3].min()) <= 0.0:
             return np.inf
@@ -62,7 +62,7 @@ def essential_net(
 
     Returns
     -------
-    (u, v, points, moved) : knot vectors, points (n', m', 4), a bound of how far the surface has
+    (u, v, points, moved) : knot vectors, points (n', m', 4), and a bound on how far the surface has
         moved, length.
     """
     place = Place.of(h)
@@ -70,7 +70,7 @@ def essential_net(
     v_less, net = _along_first(v, net.swapaxes(0, 1), place)
     net = net.swapaxes(0, 1)
     moved = _moved_net(u, v, u_less, v_less, h, net, place)
-    if moved > place.limit:  # each alone stays within the limit, but not both
+    if moved > place.limit:  # each direction stays within the limit, but not both together
         v_less, (u_less, net) = v, _along_first(u, h, place)
         moved = _moved_net(u, v, u_less, v_less, h, net, place)
     if u_less is u and v_less is v:
@@ -79,7 +79,7 @@ def essential_net(
 
 
 def essential_row(vector: KnotVector, h: Array) -> tuple[KnotVector, Array, float]:
-    """A curve's homogeneous control points (n, 4), as `essential_net`."""
+    """As `essential_net`, for a curve's homogeneous control points (n, 4)."""
     place = Place.of(h)
     less, row = _along_first(vector, h[:, None], place)
     if less is vector:
@@ -101,12 +101,12 @@ def _moved_net(
 
 
 def _along_first(vector: KnotVector, h: Array, place: Place) -> tuple[KnotVector, Array]:
-    """(n, m, 4) points without the spare knots along their first axis."""
+    """(n, m, 4) points without the redundant knots along their first axis."""
     left_out: list[float] = []
     found = vector, h
     waiting = [group] if (group := _candidates(vector, h, place)) else []
     while waiting:
-        # all together as a rule; where they move the surface too far, as many as may go
+        # usually all together; if that moves the surface too far, as many as possible
         group = waiting.pop(0)
         trial = _without(vector, [*left_out, *group], h)
         if place.moved(h, _applied(_inserted_again(vector, trial[0]), trial[1])) <= place.limit:
@@ -118,7 +118,7 @@ def _along_first(vector: KnotVector, h: Array, place: Place) -> tuple[KnotVector
 
 
 def _candidates(vector: KnotVector, h: Array, place: Place) -> list[float]:
-    """Inner knots that may be left out one by one, each as often as it may."""
+    """Inner knots that can each be removed alone, each as often as possible."""
     p, t = vector.degree, vector.knots
     found: list[float] = []
     for knot in vector.breaks[1:-1].tolist():
@@ -135,17 +135,17 @@ def _candidates(vector: KnotVector, h: Array, place: Place) -> list[float]:
 
 
 def _without(vector: KnotVector, left_out: Sequence[float], h: Array) -> tuple[KnotVector, Array]:
-    """The spline without some of its knots that is nearest at its control points."""
+    """The spline without some of its knots whose control points fit best."""
     knots = vector.knots.tolist()
     for knot in left_out:
         knots.remove(knot)
     less = KnotVector(np.array(knots), vector.degree)
     matrix = _inserted_again(vector, less)
-    # each point by its own weight, so that light points are as exact as heavy ones
+    # each point scaled by its weight, so that points of small weight are as exact as others
     scale = 1.0 / h[..., 3].mean(axis=1)[:, None]
     matrix, rows = matrix * scale, h.reshape(len(h), -1) * scale
     points = np.empty((less.count, rows.shape[1]))
-    # the ends of clamped knots stay the same points, bit for bit
+    # with clamped knots the end points stay the same, bit for bit
     kept = [k for k, i in ((0, 0), (-1, -1)) if matrix[i, k] == scale[i, 0]]
     inner = slice(1 if 0 in kept else 0, -1 if -1 in kept else None)
     for k in kept:

@@ -1,9 +1,9 @@
 """Knot vectors of B-splines: checks, Bezier spans, insertion, elevation.
 
-All of it rests on the blossom (polar form) of a polynomial piece: its value at p arguments, by de
-Boor's recursion with another argument in every step (Ramshaw 1989). The Bezier points of a span
-are blossoms at its ends, those of an elevated spline at its own knots; single knots are inserted
-by Boehm's rule (1980). `coefficients` have one row a basis function.
+All of it is based on the blossom (polar form) of a polynomial piece: its value at p arguments, by
+de Boor's recursion with a different argument in every step (Ramshaw 1989). The Bezier points of a
+span are blossoms at its ends, the coefficients of an elevated spline at its own knots; single knots
+are inserted by Boehm's rule (1980). `coefficients` have one row per basis function.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 from standoff.read_only import KeepsReadOnly
 
-# The compiled jets hold one row of basis functions of this degree.
+# The compiled jets have room for basis functions up to this degree.
 GREATEST_DEGREE = 9
 
 
@@ -38,7 +38,7 @@ class KnotVector(KeepsReadOnly):
 
     @property
     def domain(self) -> tuple[float, float]:
-        """Where the basis functions sum to one."""
+        """The interval on which the basis functions sum to one."""
         return float(self.knots[self.degree]), float(self.knots[self.count])
 
     @property
@@ -55,7 +55,7 @@ class KnotVector(KeepsReadOnly):
         return tuple(float(t) for t in inside if self.multiplicity(t) > self.degree - 2)
 
     def span_of(self, t: float) -> int:
-        """s with knots[s] <= t < knots[s + 1], kept inside the domain."""
+        """s with knots[s] <= t < knots[s + 1], clamped to the domain."""
         s = int(np.searchsorted(self.knots, t, side="right")) - 1
         s = min(max(s, self.degree), self.count - 1)
         while self.knots[s] == self.knots[s + 1]:
@@ -100,8 +100,8 @@ def knot_vector(knots: Any, count: int, name: str, points: str) -> KnotVector:
         )
     if t[degree] == t[count]:
         raise StandoffError(
-            f"{name} has an empty domain: knots {degree} and {count} are both {t[degree]}; spread "
-            "the knots.",
+            f"{name} has an empty domain: knots {degree} and {count} are both {t[degree]}; give "
+            "different ones.",
             name,
             knots,
         )
@@ -111,7 +111,7 @@ def knot_vector(knots: Any, count: int, name: str, points: str) -> KnotVector:
         if times > most:
             where = "inside the domain (the spline would tear)" if most == degree else "at an end"
             raise StandoffError(
-                f"{name}: knot {knot} stands {times} times; at most {most} times {where} for "
+                f"{name}: knot {knot} occurs {times} times; at most {most} times {where} for "
                 f"degree {degree}.",
                 name,
                 knots,
@@ -134,9 +134,9 @@ def blossom(
 
 
 def bezier_spans(vector: KnotVector) -> list[tuple[int, Array]]:
-    """For every span of the domain its first coefficient and the matrix to its Bezier points.
+    """For every span of the domain, its first coefficient and the matrix to its Bezier points.
 
-    The matrices, (p + 1, p + 1), have no negative entry: nothing is lost to cancellation.
+    The matrices, (p + 1, p + 1), have no negative entries, so there is no cancellation.
     """
     p = vector.degree
     spans = []
@@ -156,7 +156,7 @@ def refine(vector: KnotVector, new: Sequence[float], name: str) -> tuple[KnotVec
     Raises
     ------
     ValueError
-        A knot outside the open domain, or one that would then stand more than p times.
+        A knot outside the open domain, or one that would then occur more than p times.
     """
     extra = finite(list(new), name, (-1,))
     first, last = vector.domain
@@ -173,7 +173,7 @@ def refine(vector: KnotVector, new: Sequence[float], name: str) -> tuple[KnotVec
 
 
 def insertion(vector: KnotVector, new: Sequence[float]) -> tuple[KnotVector, Array]:
-    """As `refine`, of knots that are known to be good."""
+    """As `refine`, for knots that are known to be valid."""
     refined, matrix = vector, np.eye(vector.count)
     for knot in new:
         refined, matrix = _inserted(refined, knot, matrix)
@@ -224,14 +224,14 @@ def _clamped(vector: KnotVector) -> tuple[KnotVector, Array]:
 def _raised(old: KnotVector, new: KnotVector, degree: int) -> Array:
     """The matrix from the coefficients on `old` to those on the elevated `new`.
 
-    A blossom of the raised degree is the mean of the old one over all choices of its arguments.
+    A blossom of raised degree is the mean of the old one over all choices of its arguments.
     """
     unit = np.eye(old.count)
     rows = np.empty((new.count, old.count))
     for i in range(new.count):
         arguments = new.knots[i + 1 : i + 1 + degree]
         span = old.span_of(float(new.knots[i]))
-        # descending: then no step leaves the span it may stand in, and no digits are lost
+        # in descending order no step extrapolates beyond its span, so no digits are lost
         chosen = list(combinations(arguments[::-1], old.degree))
         rows[i] = sum(blossom(old, unit, span, c) for c in chosen) / len(chosen)
     return rows

@@ -1,7 +1,8 @@
 """Bounds of rational Bezier patches and curves over parts of them, from their control nets.
 
-Derivatives are nets too; each is cut to the part, whose values its coefficients hold. Quotients
-are taken about a point of the part, so that the weights' bounds multiply small vectors.
+Derivatives are nets too; each is restricted to the part, whose values its coefficients enclose.
+Quotients are taken relative to a point of the part, so that the weights' bounds multiply small
+vectors.
 """
 
 from __future__ import annotations
@@ -22,18 +23,18 @@ from standoff.geometry.tolerances import NET_ROUNDING, SPAN_ROUNDING
 from standoff.geometry.validation import Array
 
 EPS = float(np.finfo(np.float64).eps)
-# Cones wider than this (radians) are sought anew by the product of the nets.
+# Cones wider than this (radians) are computed again from the product of the nets.
 WIDE_CONE = 0.1
 
 
 class CutNets:
-    """Parts of a grid of rational Bezier patches, over boxes that no break divides.
+    """Parts of a grid of rational Bezier patches, over boxes that no break crosses.
 
     Parameters
     ----------
     blocks : (nu, nv, p + 1, q + 1, 4) homogeneous points; curves have nv = 1, q = 0.
     breaks : (nu + 1,) and (nv + 1,) parameters between the patches.
-    boxes : n of them.
+    boxes : n boxes.
     """
 
     def __init__(self, blocks: Array, breaks: tuple[Array, Array], boxes: Boxes) -> None:
@@ -58,7 +59,7 @@ class CutNets:
             for _ in range(times):
                 degree = h.shape[axis] - 1
                 h = degree * np.diff(h, axis=axis)
-                # of equal points it is exactly nothing
+                # the difference of equal points is exactly zero
                 first, last = (np.delete(off, k, axis) for k in (0, -1))
                 off = degree * (first + last) + 2.0 * EPS * np.abs(h)
                 scale = scale / self.widths[axis - 1]
@@ -72,16 +73,16 @@ class CutNets:
 
     @cached_property
     def points(self) -> Interval:
-        """(3, k, n) control points, whose hull holds each part."""
+        """(3, k, n) control points, whose hull contains each part."""
         h = _flat(self.net(0, 0))
         return h[:3] / h[3]
 
     def normals(self) -> Interval:
         """(3, k, n) coefficients of w^3 x_u × x_v, which span the normals.
 
-        They are those of w X_u × X_v + w_v X × X_u - w_u X × X_v with X about a point of the part.
-        Of a side that is one point, but for rounding, they are nothing: such a row is left out, as
-        the next one is that of the quotient by the distance from the side.
+        They are those of w X_u × X_v + w_v X × X_u - w_u X × X_v with X relative to a point of the
+        part. On a side that is a single point they are zero up to rounding: such a row is dropped,
+        because the next one is that of the quotient by the distance from the side.
         """
         centre = self.points.middle.mean(axis=1)[:, :, None, None]
         h, hu, hv = (self.net(*order) for order in ((0, 0), (1, 0), (0, 1)))
@@ -98,7 +99,7 @@ class CutNets:
         return _flat(plain)
 
     def _collapsed(self, axis: int, end: int) -> NDArray[np.bool_]:
-        """(n,) which parts begin (0) or end (1) along u or v at a side that is one point."""
+        """(n,) which parts begin (0) or end (1) along u or v at a side that is a single point."""
         at_end = self.ends[axis][end] == float(end)
         side = np.take(self.h, -end, axis=1 + axis)
         x = side[..., :3] / side[..., 3:]
@@ -169,13 +170,13 @@ def _crossed(a: Interval, b: Interval) -> Interval:
 
 
 def net_bounds(nets_over: Callable[[Boxes], CutNets], boxes: Boxes) -> PatchBounds:
-    """Boxes, cones of normals and curvatures of a NURBS, over boxes that no knot divides."""
+    """Boxes, cones of normals and curvatures of a NURBS, over boxes that no knot crosses."""
     nets = nets_over(boxes)
     jets = JetBounds(boxes, lambda parts: nets_over(parts).jets())
     axis, angle = jets.normals()
     wide = np.flatnonzero(angle > WIDE_CONE)
     if len(wide):
-        # the product of the nets turns out narrower than the mean value, but is dearer
+        # the product of the nets gives narrower bounds than the mean value, at a higher cost
         other, closer = cone_round(nets_over(boxes[wide]).normals())
         axis[wide] = np.where((closer < angle[wide])[:, None], other, axis[wide])
         angle[wide] = np.minimum(closer, angle[wide])
@@ -184,12 +185,12 @@ def net_bounds(nets_over: Callable[[Boxes], CutNets], boxes: Boxes) -> PatchBoun
 
 
 def curve_nets(blocks: Array, breaks: Array, t: Interval) -> CutNets:
-    """Those of a curve's pieces (m, p + 1, 4), over ranges of t."""
+    """The nets of a curve's pieces (m, p + 1, 4), over ranges of t."""
     none, one = np.zeros_like(t.lo), np.ones_like(t.lo)
     boxes = Boxes(np.stack([t.lo, none], 1), np.stack([t.hi, one], 1))
     return CutNets(blocks[:, None, :, None], (breaks, np.array([0.0, 1.0])), boxes)
 
 
 def _held(coefficients: Interval) -> Interval:
-    """Bounds of values from those of coefficients, over the axis before the last."""
+    """Bounds of values from those of the coefficients on the axis before the last."""
     return Interval(coefficients.lo.min(axis=-2), coefficients.hi.max(axis=-2))

@@ -1,8 +1,8 @@
 """NURBS surfaces and rational Bezier patches of degree 1 to 9.
 
-The kernels read a NURBS as its grid of Bezier patches, found once and exactly (to roundoff) by
-knot insertion; in any span the jet is then that of one rational Bezier patch. Knots that the
-surface does not need cut no spans (``knot_removal``).
+The kernels read a NURBS as its grid of Bezier patches, computed once and exactly (to roundoff) by
+knot insertion; in any span the jet is then that of one rational Bezier patch. Redundant knots do
+not make spans (``knot_removal``).
 """
 
 from __future__ import annotations
@@ -61,8 +61,8 @@ class NurbsSurface(Surface):
     control_points : (n, m, 3) array, length, body frame; n along u, m along v.
     knots_u, knots_v : (n + p + 1,), (m + q + 1,) arrays, ascending. The degrees p and q follow
         from the counts. The domain runs from knot p to knot n (q to m); inside it a knot may
-        stand p times at most.
-    weights : (n, m) positive array; ones when left out.
+        occur at most p (q) times.
+    weights : (n, m) positive array; ones by default.
 
     Raises
     ------
@@ -72,7 +72,7 @@ class NurbsSurface(Surface):
 
     Notes
     -----
-    A knot that the surface can do without (inserted, say) cuts no span: `essential_u` and
+    A redundant knot (for instance, an inserted one) does not make a span: `essential_u` and
     `essential_v` are the knot vectors without these.
     """
 
@@ -122,7 +122,7 @@ class NurbsSurface(Surface):
             if isinstance(value, np.ndarray) and value.flags.writeable:
                 value.flags.writeable = False
             object.__setattr__(self, name, value)
-        # the affine map stays the identity: maps of the surface go into its control points
+        # the affine map stays the identity: maps are applied to the control points
         super().__init__(np.eye(3), np.zeros(3), domain)
 
     def _data(self) -> Array:
@@ -133,7 +133,7 @@ class NurbsSurface(Surface):
 
     @property
     def moved(self) -> float:
-        """A bound of how far leaving out spare knots moved the surface, length."""
+        """A bound on how far the removal of redundant knots moved the surface, length."""
         return self._moved
 
     @property
@@ -195,9 +195,9 @@ class NurbsSurface(Surface):
         return surface
 
     def spans(self, spare: bool = False) -> list[Span]:
-        """The Bezier patches of the domain, u major, those on its rim cut to it.
+        """The Bezier patches of the domain, u major, cut to it at its rim.
 
-        spare : cut them at knots too that the surface does not need.
+        spare : also cut them at redundant knots.
         """
         u0, u1, v0, v1 = self.domain
         us, vs = self.spare_knots() if spare else (np.zeros(0), np.zeros(0))
@@ -213,15 +213,15 @@ class NurbsSurface(Surface):
         ]
 
     def box(self) -> tuple[Array, Array]:
-        """(low, high) corners of a box that surely holds the surface over its domain, tightly."""
+        """(low, high) corners of a tight box that is guaranteed to contain the surface."""
         return tight_box(np.array([span.points for span in self.spans()]))
 
     def highest(self, direction: Array) -> None:
-        """None: the box serves instead."""
+        """None: its `box` is used instead."""
         return
 
     def nets_over(self, boxes: Boxes) -> CutNets:
-        """Its Bezier patches, cut to boxes that no knot divides."""
+        """Its Bezier patches, cut to boxes that no knot crosses."""
         from standoff.geometry.net_bounds import CutNets
 
         return CutNets(self.blocks, (self.essential_u.breaks, self.essential_v.breaks), boxes)
@@ -230,7 +230,7 @@ class NurbsSurface(Surface):
         return self.nets_over(boxes).jets()
 
     def extents_over(self, boxes: Boxes, directions: Array) -> Interval:
-        """Of the control points."""
+        """From the control points."""
         return self.nets_over(boxes).heights(directions)
 
     def bounds_over(self, boxes: Boxes) -> PatchBounds:
@@ -267,18 +267,18 @@ class NurbsSurface(Surface):
         return _new(h[..., :3] / h[..., 3:], h[..., 3], vector_u, vector_v, self.domain)
 
     def reversed_u(self) -> NurbsSurface:
-        """The same points with -u for u: the normal f_u x f_v turns round."""
+        """The same points with -u for u, which reverses the normal f_u x f_v."""
         u0, u1, v0, v1 = self.domain
         mirrored = KnotVector(_read_only(-self.knots_u[::-1]), self.degrees[0])
         points, w = self.control_points[::-1], self.weights[::-1]
         return _new(points, w, mirrored, self.vector_v, (-u1, -u0, v0, v1))
 
     def reversed_v(self) -> NurbsSurface:
-        """The same points with -v for v: the normal f_u x f_v turns round."""
+        """The same points with -v for v, which reverses the normal f_u x f_v."""
         return self.swapped().reversed_u().swapped()
 
     def swapped(self) -> NurbsSurface:
-        """The same points with u and v exchanged: the normal f_u x f_v turns round."""
+        """The same points with u and v exchanged, which reverses the normal f_u x f_v."""
         u0, u1, v0, v1 = self.domain
         points, w = self.control_points.swapaxes(0, 1), self.weights.T
         return _new(points, w, self.vector_v, self.vector_u, (v0, v1, u0, u1))
@@ -290,12 +290,12 @@ class BezierPatch(NurbsSurface):
     Parameters
     ----------
     control_points : (p + 1, q + 1, 3) array, length, body frame.
-    weights : (p + 1, q + 1) positive array; ones when left out.
+    weights : (p + 1, q + 1) positive array; ones by default.
 
     Raises
     ------
     ValueError
-        As `NurbsSurface`.
+        As for `NurbsSurface`.
     """
 
     def __init__(self, control_points: Any, weights: Any = None) -> None:
@@ -315,14 +315,14 @@ class BezierPatch(NurbsSurface):
 def _new(
     points: Array, w: Array, vector_u: KnotVector, vector_v: KnotVector, domain: Domain
 ) -> NurbsSurface:
-    """A surface of numbers that are known to be good."""
+    """A surface from numbers that are known to be valid."""
     surface = object.__new__(NurbsSurface)
     surface._set(_read_only(points), _read_only(w), vector_u, vector_v, domain)
     return surface
 
 
 def checked_weights(weights: Any, points: Array) -> Array:
-    """Positive weights, one a control point; and the points must have an extent."""
+    """Positive weights, one per control point; raises too if the points have no extent."""
     shape = points.shape[:-1]
     w = finite(np.ones(shape) if weights is None else weights, "weights", shape)
     if (w <= 0.0).any():
@@ -334,8 +334,8 @@ def checked_weights(weights: Any, points: Array) -> Array:
     check_alike(w)
     if np.ptp(points.reshape(-1, points.shape[-1]), axis=0).max() == 0.0:
         raise StandoffError(
-            f"All control points are {points.reshape(-1, points.shape[-1])[0]}: spread them; a "
-            "point has no surface or curve.",
+            f"All control points are {points.reshape(-1, points.shape[-1])[0]}: give different "
+            "ones, for a point is no surface or curve.",
             "control_points",
             points,
         )

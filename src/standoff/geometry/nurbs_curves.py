@@ -30,18 +30,17 @@ class NurbsCurve(Curve):
     ----------
     control_points : (n, 3) array, or (n, 2) in the plane z = 0; length, body frame.
     knots : (n + p + 1,) array, ascending; the degree p follows from the counts. The curve runs
-        from knot p to knot n; inside, a knot may stand p times at most.
-    weights : (n,) positive array; ones when left out.
+        from knot p to knot n; inside, a knot may occur at most p times.
+    weights : (n,) positive array; ones by default.
 
     Raises
     ------
     ValueError
-        As `NurbsSurface`.
+        As for `NurbsSurface`.
 
     Notes
     -----
-    `essential` is the knot vector without knots that the curve can do without, as of
-    `NurbsSurface`.
+    `essential` is the knot vector without redundant knots, as for `NurbsSurface`.
     """
 
     kind = L.NURBS_CURVE
@@ -85,7 +84,7 @@ class NurbsCurve(Curve):
 
     @property
     def moved(self) -> float:
-        """A bound of how far leaving out spare knots moved the curve, length."""
+        """A bound on how far the removal of redundant knots moved the curve, length."""
         return self._moved
 
     @property
@@ -98,7 +97,7 @@ class NurbsCurve(Curve):
 
     @property
     def closed(self) -> bool:
-        """Do its ends meet in a smooth joint."""
+        """Do its ends meet smoothly?"""
         start, stop = self.blocks[0], self.blocks[-1]
         a, b = start[:, :3] / start[:, 3:], stop[:, :3] / stop[:, 3:]
         extent = float(np.ptp(self.control_points, axis=0).max())
@@ -110,11 +109,11 @@ class NurbsCurve(Curve):
         return bool(out @ back > 0.0) and turn <= SMOOTH_JOINT * size
 
     def box(self) -> tuple[Array, Array]:
-        """(low, high) corners of a box that surely holds the curve, tightly."""
+        """(low, high) corners of a tight box that is guaranteed to contain the curve."""
         return tight_box(self.blocks.swapaxes(1, 2)[..., None])
 
     def nets_over(self, t: Interval) -> CutNets:
-        """Its Bezier pieces, cut to ranges of t that no knot divides."""
+        """Its Bezier pieces, cut to ranges of t that no knot crosses."""
         from standoff.geometry.net_bounds import curve_nets
 
         return curve_nets(self.blocks, self.essential.breaks, t)
@@ -123,7 +122,7 @@ class NurbsCurve(Curve):
         return self.nets_over(t).jets()[:, [0, 1, 3]]
 
     def heights_over(self, directions: Interval, t: Interval) -> Interval:
-        """Of the control points."""
+        """From the control points."""
         return self.nets_over(t).heights(directions)
 
     def breaks(self) -> tuple[float, ...]:
@@ -135,7 +134,7 @@ class NurbsCurve(Curve):
         return np.setdiff1d(self.vector.breaks, self.essential.breaks)
 
     def spans(self) -> Array:
-        """Its different essential knots: one polynomial piece between two of them."""
+        """Its distinct essential knots: one polynomial piece between each two."""
         return self.essential.breaks
 
     def transformed(self, linear: Array, shift: Array) -> NurbsCurve:
@@ -154,7 +153,7 @@ class NurbsCurve(Curve):
         return self._mapped(matrix, vector)
 
     def reversed(self) -> NurbsCurve:
-        """The same points run through backwards: t becomes -t."""
+        """The same points in reverse: t becomes -t."""
         knots = -self.knots[::-1]
         knots.flags.writeable = False
         return self._new(

@@ -21,12 +21,12 @@ from standoff.kernels.entries.queries import pcurve_jet
 # A piece of a NURBS pcurve turns by less than this (radians): 180 degrees with a margin.
 MOST_TURN = 0.9 * np.pi
 TURN_POINTS = 65
-# A piece is halved until it turns little; one that turns back at a point never would.
+# Greatest number of halvings until a piece turns little; one with a cusp never would.
 PIECE_HALVINGS = 20
 
 
 class BezierPcurve(Pcurve):
-    """A rational Bezier curve of (u, v) over [first, last]: points (n + 1, 3), (w u, w v, w)."""
+    """A rational Bezier curve in (u, v) over [first, last]: points (n + 1, 3), (w u, w v, w)."""
 
     first: float
     last: float
@@ -48,18 +48,18 @@ class BezierPcurve(Pcurve):
 
 
 class NurbsPcurve(Pcurve):
-    """A NURBS of (u, v) whose parameter is its edge's.
+    """A NURBS curve in (u, v) with its edge's parameter.
 
     Parameters
     ----------
     control_points : (n, 2) array, surface parameters
-    knots : (n + degree + 1,) array, edge parameter; clamped or not, uneven allowed
-    weights : (n,) array, positive; default 1
+    knots : (n + degree + 1,) array, edge parameter; clamped or not, uniform or not
+    weights : (n,) array, positive; ones by default
 
     Raises
     ------
     ValueError
-        As `NurbsSurface`.
+        As for `NurbsSurface`.
     """
 
     spans: list[BezierPcurve]
@@ -147,7 +147,7 @@ def _halved(piece: BezierPcurve, halvings: int = 0) -> list[BezierPcurve]:
     if halvings == PIECE_HALVINGS:
         raise StandoffError(
             f"The trimming curve turns back on itself at its parameter {middle:.9g}: give one "
-            "that runs on."
+            "without a cusp."
         )
     halves = (_part(piece, first, middle), _part(piece, middle, last))
     return [q for half in halves for q in _halved(half, halvings + 1)]

@@ -1,7 +1,7 @@
 """Bounds of sub-patches: boxes, cones of normals and curvatures over rectangles of parameters.
 
-Every bound encloses: of the surface as its float64 numbers define it, rounding of the bounds' own
-arithmetic included. Boxes hold the points that the kernels compute too, which are rounded.
+Every bound is guaranteed, for the surface as its float64 numbers define it and including the
+rounding of its own arithmetic. Boxes also contain the rounded points that the kernels compute.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ UP = np.array([0.0, 0.0, 1.0])[:, None, None]
 
 @dataclass(frozen=True, eq=False)
 class PatchBounds:
-    """What surely holds a surface over each of n rectangles of parameters.
+    """What is guaranteed to enclose a surface over each of n rectangles of parameters.
 
     Attributes
     ----------
     low, high : (n, 3) arrays
-        Corners of a box round the points, body frame, length.
+        Corners of a box around the points, body frame, length.
     axis : (n, 3) array
-        Of a cone round the normals x_u × x_v, unit vectors, body frame.
+        Axis of a cone around the normals x_u × x_v, unit vectors, body frame.
     angle : (n,) array
-        Half of the cone's opening, radians, below pi/2; pi where no cone is known to hold them.
+        Half angle of the cone, radians, below pi/2; pi if no cone is known to contain them.
     least, greatest : (n,) arrays
-        No normal curvature is below the one or above the other, 1/length, positive where the
-        surface bends towards x_u × x_v (a sphere's with x_u × x_v outward is -1/r); -inf and inf
-        where none is known, as at a pole or an apex.
+        Bounds of the normal curvature, 1/length, positive where the surface bends towards
+        x_u × x_v (that of a sphere with x_u × x_v outward is -1/r); -inf and inf if none is known,
+        as at a pole or an apex.
     """
 
     low: Array
@@ -60,12 +60,12 @@ class PatchBounds:
 
     @staticmethod
     def joined(parts: Sequence[PatchBounds]) -> PatchBounds:
-        """All of some in one."""
+        """Several bounds concatenated."""
         names = PatchBounds.__dataclass_fields__
         return PatchBounds(*(np.concatenate([getattr(p, n) for p in parts]) for n in names))
 
     def merged(self, owners: NDArray[np.int64], count: int) -> PatchBounds:
-        """Bounds of `count` rectangles from those of their parts: `owners` (n,) says whose."""
+        """Bounds of `count` rectangles from those of their parts, which belong to `owners` (n,)."""
         low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
         np.minimum.at(low, owners, self.low)
         np.maximum.at(high, owners, self.high)
@@ -86,7 +86,7 @@ class PatchBounds:
 
 
 def between(a: Array, b: Array) -> Array:
-    """Angles, radians, between vectors (3, ...), to an absolute roundoff of some eps."""
+    """Angles, radians, between vectors (3, ...), to an absolute roundoff of a few eps."""
     across = np.linalg.norm(np.cross(a, b, axis=0), axis=0)
     return np.asarray(np.arctan2(across, (a * b).sum(axis=0)))
 
@@ -96,9 +96,9 @@ def _known(angle: Array) -> Array:
 
 
 def cone_round(vectors: Interval) -> tuple[Array, Array]:
-    """(axis (n, 3), angle (n,)) of cones round all positive combinations of vectors (3, k, n).
+    """(axis (n, 3), angle (n,)) of cones around all positive combinations of vectors (3, k, n).
 
-    A circular cone of less than a right angle is convex, so it holds what its generators span.
+    A circular cone of less than a right angle is convex, so it contains what its generators span.
     """
     middle = vectors.middle
     with np.errstate(all="ignore"):
@@ -106,7 +106,7 @@ def cone_round(vectors: Interval) -> tuple[Array, Array]:
         size = np.linalg.norm(middle, axis=0)
         units = middle / size
         lost = ~(size > off) | ~np.isfinite(units).all(axis=0)
-    # what is exactly nothing adds nothing: another one in its place
+    # a vector that is exactly zero adds nothing and is replaced by another one
     none = (size == 0.0) & (off <= VANISHED)
     lost &= ~none
     first = np.take_along_axis(units, (none | lost).argmin(axis=0)[None, None], axis=1)
@@ -120,7 +120,7 @@ def cone_round(vectors: Interval) -> tuple[Array, Array]:
 
 
 def _amid(units: Array) -> Array:
-    """(3, n) axes of nearly the least cones round unit vectors (3, k, n) (Badoiu and Clarkson)."""
+    """(3, n) axes of nearly smallest cones around unit vectors (3, k, n) (Badoiu and Clarkson)."""
     axis = units.sum(axis=1)
     best, most = axis, np.full(units.shape[2], -np.inf)
     columns = np.arange(units.shape[2])
@@ -145,7 +145,7 @@ def normal_curvatures(
     Parameters
     ----------
     first : (E, F, G), of any two tangents.
-    second : (x_uu . N, x_uv . N, x_vv . N) with N the tangents' cross product.
+    second : (x_uu . N, x_uv . N, x_vv . N), where N is the tangents' cross product.
     area : |N|.
     """
     e, f, g = first
@@ -153,13 +153,13 @@ def normal_curvatures(
         u, v = 1.0 / sqrt(e), 1.0 / sqrt(g)
         skew = f * u * v
         matrix = [c * a * b / area for c, a, b in zip(second, (u, u, v), (u, v, v), strict=True)]
-        # of the tangents of unit length: eigenvalues of the middle, then what the bounds are wide
+        # in unit tangents: eigenvalues at the middle, then the width of the bounds
         uu, uv, vv = (c.middle for c in matrix)
         wide = [interval(c.radius) for c in matrix]
         off = length(*wide, wide[1]).hi
         mean, half = interval(uu) * 0.5 + interval(vv) * 0.5, _half_gap(uu, uv, vv)
         low, high = (mean - half - interval(off)).lo, (mean + half + interval(off)).hi
-        # t . I t of a unit t lies within 1 - |skew| and 1 + |skew|
+        # t . I t for a unit t lies between 1 - |skew| and 1 + |skew|
         lean = skew.magnitude
         unit = Interval((1.0 - interval(lean)).lo, (1.0 + interval(lean)).hi)
         least, greatest = interval(low) / unit, interval(high) / unit
@@ -168,7 +168,7 @@ def normal_curvatures(
 
 
 def framed(first: Sequence[Interval], second: Sequence[Interval]) -> list[list[Interval]]:
-    """Both forms in tangents that are orthonormal at the middle of the first, nearly."""
+    """Both forms in tangents that are nearly orthonormal at the middle of the first form."""
     with np.errstate(all="ignore"):
         a, b, d = (interval(c) for c in orthonormal(*(c.middle for c in first)))
         return [
@@ -178,7 +178,7 @@ def framed(first: Sequence[Interval], second: Sequence[Interval]) -> list[list[I
 
 
 def orthonormal(e: Array, f: Array, g: Array) -> tuple[Array, Array, Array]:
-    """(a, b, d): a t_1 and b t_1 + d t_2 are orthonormal, of tangents with these products."""
+    """(a, b, d) with which a t_1 and b t_1 + d t_2 are orthonormal, from the tangents' products."""
     a = 1.0 / np.sqrt(e)
     along = f * a * a
     d = 1.0 / np.sqrt(g - along * f)
@@ -186,12 +186,12 @@ def orthonormal(e: Array, f: Array, g: Array) -> tuple[Array, Array, Array]:
 
 
 def _half_gap(uu: Array, uv: Array, vv: Array) -> Interval:
-    """Half of the distance of the eigenvalues of symmetric matrices."""
+    """Half of the difference between the eigenvalues of symmetric 2 x 2 matrices."""
     return length((interval(uu) - interval(vv)) * 0.5, interval(uv))
 
 
 def area_of(tangents: tuple[Interval, Interval]) -> tuple[Interval, Interval]:
-    """(N, |N|) of two tangents, each (3, n)."""
+    """(N, |N|) for two tangents, each (3, n)."""
     normal = cross(*tangents)
     return normal, length(*(normal[k] for k in range(3)))
 
@@ -216,7 +216,7 @@ def checked_rectangles(rectangles: Any) -> Boxes:
 
 
 def cut(boxes: Boxes, breaks: Sequence[Array]) -> tuple[Boxes, NDArray[np.int64]]:
-    """Boxes cut at parameters (us, vs), and which one each part is of."""
+    """Boxes cut at parameters (us, vs), and the box to which each part belongs."""
     owners = np.arange(len(boxes))
     for axis, levels in enumerate(breaks):
         for level in levels:

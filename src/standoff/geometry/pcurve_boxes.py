@@ -1,4 +1,4 @@
-"""Boxes in (u, v) round trimming curves."""
+"""Boxes in (u, v) around trimming curves."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from standoff.geometry.tolerances import BOX_MARGIN
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
-# Parts of a conic whose weight varies, each bounded by itself.
+# Parts of a conic with varying weight, each bounded separately.
 CONIC_PARTS = 8
 
 
 def pcurve_box(kind: int, matrix: Array, first: float, last: float) -> tuple[Array, Array]:
-    """(low, high), each (2,), round a LINE or CONIC of ``Pcurve`` where its weight is positive."""
+    """(low, high), each (2,), around a LINE or CONIC of ``Pcurve`` where its weight is positive."""
     steps = np.linspace(first, last, 2 if kind == L.LINE else CONIC_PARTS + 1)
     t = Interval(steps[:-1], steps[1:])
     if kind == L.LINE:
@@ -30,7 +30,7 @@ def pcurve_box(kind: int, matrix: Array, first: float, last: float) -> tuple[Arr
 
 
 def bezier_box(points: Array) -> tuple[Array, Array]:
-    """The same of a rational Bezier curve's points (n, 3), homogeneous (w u, w v, w)."""
+    """The same for a rational Bezier curve's points (n, 3), homogeneous (w u, w v, w)."""
     places = points[:, :2] / points[:, 2:]
     margin = BOX_MARGIN * np.abs(places).max(axis=0)
     return places.min(axis=0) - margin, places.max(axis=0) + margin

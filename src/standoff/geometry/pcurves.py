@@ -22,10 +22,10 @@ class Pcurve(KeepsReadOnly):
     Parameters
     ----------
     kind : int
-        LINE or CONIC of `standoff.kernels.body.layout`; take those of `pcurve_of`, or a
-        `NurbsPcurve`.
+        LINE or CONIC of `standoff.kernels.body.layout`. Usually `pcurve_of` makes pcurves; for
+        others use `NurbsPcurve`.
     matrix : (3, 3) array_like
-        P of P (t, 0, 1) for a line, of P (cos t, sin t, 1) for a conic, t in radians.
+        P in P (t, 0, 1) for a line, or in P (cos t, sin t, 1) for a conic, t in radians.
 
     Raises
     ------
@@ -69,7 +69,7 @@ class Pcurve(KeepsReadOnly):
         return np.array(h), np.array(ht), np.array(htt)
 
     def point(self, t: float) -> tuple[float, float, float]:
-        """(u, v, depth): depth > 0 where the chart sees the point, else u and v are nan."""
+        """(u, v, depth): depth > 0 if the chart sees the point; otherwise u and v are nan."""
         h = self.homogeneous(t)[0]
         if h[2] <= 0.0:
             return np.nan, np.nan, float(h[2])

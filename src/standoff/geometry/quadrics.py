@@ -40,12 +40,12 @@ class Plane(Surface):
     Parameters
     ----------
     linear : (3, 3) array_like, regular
-        Its first two columns are the changes with u and v, length; the third, across, plays no
-        part.
+        Its first two columns are the derivatives by u and v, length; the third, out of the plane,
+        has no effect on the surface.
     shift : (3,) array_like
         The point of u = v = 0, length.
     domain : (u0, u1, v0, v1)
-        Ranges of the parameters, dimensionless; all of the surface by default.
+        Ranges of the parameters, dimensionless; the whole surface by default.
 
     Raises
     ------
@@ -88,7 +88,7 @@ class Plane(Surface):
         length = np.linalg.norm(normal)
         if length == 0.0:
             raise StandoffError(f"along_u {along_u} and along_v {along_v} are parallel: no plane.")
-        # the third column plays no part in the jet; unit size keeps the inverse well scaled
+        # the third column has no effect on the jet; unit length keeps the inverse well scaled
         third = normal / length * np.sqrt(length)
         return Plane(np.column_stack([along_u, along_v, third]), vector3(origin, "origin"))
 
@@ -109,13 +109,13 @@ class Sphere(Surface):
     Parameters
     ----------
     linear : (3, 3) array_like, regular
-        Its columns are the ellipsoid's semi-axes, length; any orthogonal matrix on its right gives
-        another chart of the same ellipsoid.
+        Its columns are the ellipsoid's semi-axes, length; multiplied by any orthogonal matrix on
+        its right it gives another chart of the same ellipsoid.
     shift : (3,) array_like
         The ellipsoid's centre, length.
     domain : (u0, u1, v0, v1)
-        Ranges of the parameters, tangents of angles from the centre of the chart; all of the
-        surface by default.
+        Ranges of the parameters, tangents of angles from the centre of the chart; the whole chart
+        by default.
 
     Raises
     ------
@@ -132,7 +132,7 @@ class Sphere(Surface):
     bulge = 1
 
     def within_hemisphere(self) -> bool:
-        """A gnomonic chart shows less than half a sphere."""
+        """A gnomonic chart covers less than half a sphere."""
         return True
 
     def least_curvature(self) -> float:
@@ -158,13 +158,13 @@ class Sphere(Surface):
         return series_jets(boxes, form)
 
     def extents_over(self, boxes: Boxes, directions: Array) -> Interval:
-        """Exact but for rounding."""
+        """Exact up to rounding."""
         from standoff.geometry.gnomonic import ellipsoid_extents
 
         return ellipsoid_extents(self, boxes, directions)
 
     def bounds_over(self, boxes: Boxes) -> PatchBounds:
-        """Boxes are exact but for rounding, and of a sphere the curvatures."""
+        """Boxes are exact up to rounding, and so are the curvatures of a sphere."""
         from standoff.geometry.gnomonic import ellipsoid_bounds
 
         return ellipsoid_bounds(self, boxes)
@@ -176,7 +176,8 @@ class Cylinder(Rotational):
     Parameters
     ----------
     linear : (3, 3) array_like, regular
-        Its first two columns are the semi-axes of the section, the third the change with v; length.
+        Its first two columns are the semi-axes of the section, the third the derivative by v;
+        length.
     shift : (3,) array_like
         The point of the axis at v = 0, length.
     domain : (u0, u1, v0, v1)
@@ -197,7 +198,7 @@ class Cylinder(Rotational):
     bulge = 1
 
     def within_hemisphere(self) -> bool:
-        """Less than half of it."""
+        """If it is less than half of the cylinder."""
         return bool(self.domain[1] - self.domain[0] < np.pi)
 
     def highest(self, direction: Array) -> None:
@@ -220,8 +221,8 @@ class Cone(Rotational):
     Parameters
     ----------
     linear : (3, 3) array_like, regular
-        Its first two columns are the semi-axes of the section at v = 1, the third leads there from
-        the apex; length.
+        Its first two columns are the semi-axes of the section at v = 1, the third leads from the
+        apex to that section's centre; length.
     shift : (3,) array_like
         The apex, length.
     domain : (u0, u1, v0, v1)

@@ -1,4 +1,4 @@
-"""Surfaces that a meridian sweeps about an axis, behind an affine map."""
+"""Surfaces of revolution of a meridian, followed by an affine map."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Rotational(Surface):
-    """A surface whose canonical form is a meridian turned about the axis z."""
+    """A surface whose canonical form is a meridian rotated about the axis z."""
 
     @abstractmethod
     def meridian(self, v: Interval) -> Interval:
@@ -31,10 +31,10 @@ class Rotational(Surface):
 
     @abstractmethod
     def meridian_normals(self, v: Interval) -> Sequence[Interval]:
-        """(2, n) each: vectors in (e_r, e_z) whose positive combinations hold (z', -rho')."""
+        """(2, n) each: vectors in (e_r, e_z) whose positive combinations include (z', -rho')."""
 
     def over_radius(self, v: Interval) -> Interval:
-        """(n,) bounds of z' / rho: unknown at an apex."""
+        """(n,) bounds of z' / rho, unknown at an apex."""
         meridian = self.meridian(v)
         return meridian[1, 1] / meridian[0, 0]
 
@@ -58,7 +58,7 @@ class Rotational(Surface):
         return stacked([stacked([row[k] for row in rows]) for k in range(3)])
 
     def extents_over(self, boxes: Boxes, directions: Array) -> Interval:
-        """Exact but for rounding if the meridian's heights are."""
+        """Exact up to rounding if the meridian's heights are."""
         u, v = boxes.sides
         with np.errstate(all="ignore"):
             a, b, c = (mapped(directions, interval(col[:, None])) for col in self.linear.T)

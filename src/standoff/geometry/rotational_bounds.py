@@ -1,9 +1,9 @@
-"""Bounds of sub-patches of surfaces of revolution behind an affine map.
+"""Bounds of sub-patches of surfaces of revolution followed by an affine map.
 
-In canonical coordinates x = rho(v) e_r(u) + z(v) e_z. Heights are linear in the wave a . e_r(u), so
-extreme at its ends; normals are those of the meridian turned; products of tangents behind the map
-are waves in u and 2 u, constant where the map keeps the surface round. So nothing is lost by a wide
-range of u.
+In canonical coordinates x = rho(v) e_r(u) + z(v) e_z. Heights are linear in the sinusoid
+a . e_r(u), so extreme where it is; normals are the rotated normals of the meridian; products of
+mapped tangents are sinusoids in u and 2 u, constant if the map keeps the surface round. So a wide
+range of u does not make the bounds wide.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from standoff.geometry.intervals import Interval, cos, interval, sin, sqrt
 from standoff.geometry.patch_bounds import cone_round, framed, normal_curvatures
 from standoff.geometry.validation import Array
 
-# An arc of less than this part of half a turn is held by the triangle of its ends and tangents.
+# An arc of less than this part of half a turn lies in the triangle of its chord and end tangents.
 WIDEST_ARC = 0.95
 
 
 def turned_normals(linear: Array, u: Interval, normals: Sequence[Interval]) -> tuple[Array, Array]:
-    """(axis, angle) of cones round the normals, from ones (2, n) that span the meridian's."""
+    """(axis, angle) of cones around the normals, from vectors (2, n) that span the meridian's."""
     middle = interval(u.middle)
     half = u.radius
     # an arc lies between its chord and its end tangents, which meet over its middle
@@ -43,7 +43,7 @@ def turned_normals(linear: Array, u: Interval, normals: Sequence[Interval]) -> t
 
 @dataclass(frozen=True)
 class Bends:
-    """(n,) bounds of what the curvatures follow from.
+    """(n,) bounds of the quantities from which the curvatures are computed.
 
     slopes : (2, n), rho' and z'; speed, bend : rho'² + z'² and z' rho'' - rho' z''; over_radius :
     z' / rho.
@@ -58,7 +58,8 @@ class Bends:
 def turned_curvatures(linear: Array, u: Interval, of: Bends) -> tuple[Array, Array]:
     """(least, greatest), in the tangents e_t = x_u / rho and x_v.
 
-    With N = e_t × x_v, II = det (-z'/rho, 0, z' rho'' - rho' z'') / |C N|, C the map's cofactors.
+    With N = e_t × x_v, II = det (-z'/rho, 0, z' rho'' - rho' z'') / |C N|, where C are the map's
+    cofactors.
     """
     r1, z1 = of.slopes[0], of.slopes[1]
     gram = mapped(linear.T, interval(linear))

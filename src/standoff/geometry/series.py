@@ -2,7 +2,7 @@
 
 Evaluating a formula on the series of u and v over a box bounds all its Taylor coefficients
 (derivatives over factorials) at every point of the box at once. Unlike bounds of differentiated
-expressions these do not widen with the length of what differentiation writes.
+expressions, these do not widen with the length of the derivatives' expressions.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ EPS = float(np.finfo(np.float64).eps)
 
 
 def place(k: int, m: int) -> int:
-    """Row of the coefficient of u^k v^m: by total degree, so that a prefix is a lower order."""
+    """Row of the coefficient of u^k v^m, by total degree, so that a prefix is a lower order."""
     return (k + m) * (k + m + 1) // 2 + m
 
 
@@ -36,7 +36,7 @@ def powers(order: int) -> list[tuple[int, int]]:
 
 @lru_cache(maxsize=32)
 def _pairs(order: int) -> tuple[Any, Any, Any]:
-    """Rows of both factors of each product, by the row they add to, and where each row begins."""
+    """Rows of both factors of each product, by the row that they add to, and where rows begin."""
     found = []
     for k, m in powers(order):
         found.append(
@@ -50,7 +50,8 @@ def _pairs(order: int) -> tuple[Any, Any, Any]:
 class Series(Interval):
     """Coefficients (rows(order), n), intervals; a number counts as a constant series.
 
-    A subclass, so that Python asks it first where a number that is an interval stands on the left.
+    It is a subclass of `Interval`, so that Python calls its operators even if the left operand is
+    an interval.
     """
 
     __slots__ = ("order",)
@@ -85,7 +86,7 @@ class Series(Interval):
         return Series(self.lo[:, which], self.hi[:, which], self.order)
 
     def derivative(self, axis: int) -> Series:
-        """Along u (0) or v (1), of one order less."""
+        """The derivative by u (0) or v (1), of one order less."""
         source, factor = [], []
         for k, m in powers(self.order - 1):
             source.append(place(k + 1, m) if axis == 0 else place(k, m + 1))
@@ -95,10 +96,11 @@ class Series(Interval):
         return Series(scaled.lo, scaled.hi, self.order - 1)
 
     def divided(self, axis: int) -> Series:
-        """Over u (0) or v (1) less the value where the series vanishes exactly.
+        """Divided by u (0) or v (1) minus the value where the series vanishes exactly.
 
-        With f(w) = w g(w), w the distance from there, g's coefficients are the means of f's next
-        higher ones over the way from there: of bounds over boxes that reach there, the same.
+        With f(w) = w g(w), where w is the distance from there, g's coefficients are means of f's
+        next higher ones over the interval from there: bounds over boxes that contain it are the
+        same.
         """
         source = [
             place(k + 1, m) if axis == 0 else place(k, m + 1) for k, m in powers(self.order - 1)
@@ -137,7 +139,7 @@ class Series(Interval):
         low = np.minimum(np.minimum(p, q), np.minimum(r, s))
         high = np.maximum(np.maximum(p, q), np.maximum(r, s))
         size = np.add.reduceat(np.maximum(np.abs(low), np.abs(high)), starts, axis=0)
-        # each row adds rows(order) products at most, each rounded once
+        # each row is the sum of at most rows(order) products, each rounded once
         spare = size * (EPS * (rows(order) + 2)) + TINY
         low = np.add.reduceat(low, starts, axis=0) - spare
         return Series(low, np.add.reduceat(high, starts, axis=0) + spare, order)
@@ -154,7 +156,7 @@ class Series(Interval):
         return found
 
     def __pow__(self, exponent: int) -> Series:
-        """A whole power; its constant by itself, as a square is never negative."""
+        """An integer power; its constant separately, because a square is never negative."""
         if exponent < 0:
             over: Series = power(self, float(exponent))
             return over
@@ -179,7 +181,7 @@ def composed(outer: Sequence[Interval], inner: Series) -> Series:
 
 
 def power(base: Any, exponent: Any) -> Any:
-    """base**exponent of a positive base; whole exponents of a base that does not hold zero."""
+    """base**exponent for a positive base, or with an integer exponent for a nonzero base."""
     if isinstance(exponent, Series):
         return exp(exponent * log(base))
     if not isinstance(base, Series):
@@ -230,7 +232,7 @@ def _over_factorials(derivatives: Sequence[Interval]) -> list[Interval]:
 
 
 def _cycle(names: Sequence[str], signs: Sequence[float]) -> Callable[[Any], Any]:
-    """A function whose derivatives come round: sin, cos, -sin, -cos."""
+    """A function whose derivatives repeat, such as sin, cos, -sin, -cos."""
 
     def function(a: Any) -> Any:
         if not isinstance(a, Series):
@@ -315,4 +317,4 @@ SERIES_FUNCTIONS: dict[str, Any] = {
     "atan2": atan2, "exp": exp, "log": log, "sqrt": sqrt, "power": power,
     "near": PLAIN["near"],
 }  # fmt: skip
-"""By the names that formulas are written in."""
+"""By the names that formulas use."""

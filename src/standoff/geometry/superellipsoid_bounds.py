@@ -1,9 +1,9 @@
 """Bounds of sub-patches of superellipsoids, whose gnomonic charts are cut at the coordinate planes.
 
-In a chart's coordinates (a, b, c) = (u, v, 1) s the gauge is (|a|^m2 + |b|^m2)^(m1/m2) + |c|^m1 of
-the chart about the axis, and (|c|^m2 + |a|^m2)^(m1/m2) + |b|^m1 of that about the equator. Beside a
-coordinate plane its second derivatives may be infinite, so points and normals have bounds of their
-own: by convexity, and as the gauge's gradient is monotone in |u| and |v|.
+In a chart's coordinates (a, b, c) = (u, v, 1) s the gauge is (|a|^m2 + |b|^m2)^(m1/m2) + |c|^m1 for
+the chart about the axis, and (|c|^m2 + |a|^m2)^(m1/m2) + |b|^m1 for the one about a point of the
+equator. Near a coordinate plane its second derivatives may be infinite, so points and normals have
+separate bounds: by convexity, and because the gauge's gradient is monotone in |u| and |v|.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from standoff.kernels.body import layout as L
 
 
 def _signs(side: Interval) -> Array:
-    """Of a parameter, which no box takes through zero."""
+    """Signs of a parameter, which does not change sign within a box."""
     return np.where(side.lo + side.hi < 0.0, -1.0, 1.0)
 
 
@@ -36,7 +36,7 @@ def _size(side: Interval) -> Interval:
 
 
 def _not_negative(total: Interval) -> Interval:
-    """A sum of numbers that are not, whose bound was rounded below zero."""
+    """A sum of non-negative numbers, whose lower bound may have been rounded below zero."""
     return Interval(np.maximum(total.lo, 0.0), total.hi)
 
 
@@ -45,7 +45,7 @@ def _is_pole(surface: Surface) -> bool:
 
 
 def superellipsoid_jets(surface: Surface, boxes: Boxes) -> Interval:
-    """(3, 6, n) bounds of the canonical jet; unknown beside a plane where a power is not whole."""
+    """(3, 6, n) bounds of the canonical jet; unknown next to a plane if a power is not integer."""
     m1, m2 = (float(m) for m in surface.data[:2])
     su, sv = (_signs(side) for side in boxes.sides)
 
@@ -77,14 +77,14 @@ def _points(surface: Surface, u: Interval, v: Interval) -> Interval:
 
 
 def _normals(surface: Surface, boxes: Boxes) -> Interval:
-    """(3, n) bounds of the gauge's gradient, but for its length."""
+    """(3, n) bounds of the gauge's gradient up to its length."""
     m1, m2 = surface.data[:2]
     su, sv = (_signs(side) for side in boxes.sides)
     a, b = (_size(side) for side in boxes.sides)
     if not _is_pole(surface):
         common = power(power(a, m2) + 1.0, m1 / m2 - 1.0)
         return stacked([common * power(a, m2 - 1.0) * su, power(b, m1 - 1.0) * sv, common])
-    # scaled by the greater of |u| and |v|, so that nothing is 0 / 0 at the centre
+    # scaled by the greater of |u| and |v| to avoid 0 / 0 at the centre
     size = Interval(np.maximum(a.lo, b.lo), np.maximum(a.hi, b.hi))
     first, second = _share(a, b), _share(b, a)
     total = (power(first, m2) + power(second, m2)).within(Interval(np.array(1.0), np.array(2.0)))
@@ -96,7 +96,7 @@ def _normals(surface: Surface, boxes: Boxes) -> Interval:
 
 
 def _share(a: Interval, b: Interval) -> Interval:
-    """a / max(a, b) of numbers that are not negative; in [0, 1] where both may be 0."""
+    """a / max(a, b) for non-negative numbers; [0, 1] where both may be 0."""
     with np.errstate(all="ignore"):
         low = np.nextafter(a.lo / np.maximum(a.lo, b.hi), -np.inf)
         high = np.nextafter(a.hi / np.maximum(a.hi, b.lo), np.inf)
@@ -104,7 +104,7 @@ def _share(a: Interval, b: Interval) -> Interval:
 
 
 def _support(surface: Surface, n: Interval) -> Interval:
-    """The greatest n . x of the whole canonical body: the gauge's dual."""
+    """The greatest n . x over the whole canonical body, the dual of the gauge."""
     q1, q2 = (m / (m - 1.0) for m in surface.data[:2])
     a, b, c = (power(_size(n[k]), q) for k, q in enumerate((q2, q2, q1)))
     if not _is_pole(surface):
@@ -116,7 +116,8 @@ def _support(surface: Surface, n: Interval) -> Interval:
 def superellipsoid_extents(surface: Surface, boxes: Boxes, directions: Array) -> Interval:
     """(m, n) bounds of direction . x.
 
-    A point beyond the corners' hull is a point of it moved out, at most to a supporting plane.
+    A point outside the corners' hull is a point of the hull moved outward, at most to a supporting
+    plane.
     """
     middle = boxes.middle
     n = interval(_normals(surface, Boxes(middle, middle)).middle)

@@ -18,20 +18,20 @@ if TYPE_CHECKING:
     from standoff.geometry.intervals import Interval
     from standoff.geometry.patch_bounds import PatchBounds
 
-# Exponents that random poses found sound: beyond them roundings are edges to float64 (a box, an
-# octahedron), and descents near 2 end uncertified in some of a thousand poses.
+# Range of exponents that passed tests with random poses. Beyond it the round parts are edges in
+# float64 (a box, an octahedron), and near 2 a few descents in a thousand end uncertified.
 LEAST_EXPONENT = 0.1
 GREATEST_EXPONENT = 1.8
 
 
 def checked_exponent(value: object, name: str) -> float:
-    """A convex superellipsoid's exponent; raises ValueError with the range."""
+    """A convex superellipsoid's exponent; raises ValueError if it is out of range."""
     e = number(value, name)
     if not LEAST_EXPONENT <= e <= GREATEST_EXPONENT:
         raise StandoffError(
             f"{name} = {e}: a superellipsoid's exponents must be from {LEAST_EXPONENT} to "
-            f"{GREATEST_EXPONENT}; towards 0 it is a box or a cylinder, at 2 an octahedron, above "
-            "2 not convex.",
+            f"{GREATEST_EXPONENT}; near 0 it is a box or a cylinder, at 2 an octahedron, above 2 "
+            "not convex.",
             name,
             value,
         )
@@ -79,7 +79,7 @@ class SuperellipsoidPole(Surface):
         return np.array([2.0 / self.e1, 2.0 / self.e2])
 
     def within_hemisphere(self) -> bool:
-        """By symmetry its normals lean to the side of the middle plane they are on."""
+        """By symmetry, if it lies on one side of a plane of symmetry, its normals do too."""
         return True
 
     def analytic_breaks(self) -> tuple[Array, Array]:
@@ -98,7 +98,7 @@ class SuperellipsoidPole(Surface):
         return superellipsoid_extents(self, boxes, directions)
 
     def bounds_over(self, boxes: Boxes) -> PatchBounds:
-        """Curvatures are unknown beside the coordinate planes, where they may be infinite."""
+        """Curvatures are unknown next to the coordinate planes, where they may be infinite."""
         from standoff.geometry.superellipsoid_bounds import superellipsoid_bounds
 
         return superellipsoid_bounds(self, boxes)
@@ -107,13 +107,13 @@ class SuperellipsoidPole(Surface):
         return None
 
     def box(self) -> tuple[Array, Array]:
-        """Of the whole superellipsoid."""
+        """The box of the whole superellipsoid."""
         reach = np.abs(self.linear).sum(axis=1)
         return self.shift - reach, self.shift + reach
 
 
 class SuperellipsoidSide(SuperellipsoidPole):
-    """The same about a point of the equator: u runs along it, v along the axis.
+    """The same about a point of the equator, with u along the equator and v along the axis.
 
     Parameters
     ----------

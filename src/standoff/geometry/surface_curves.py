@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class SurfaceCurve(Curve):
-    """The image of a pcurve on a surface, t from first to last: exact on every kind of surface.
+    """The image of a pcurve on a surface, for t from first to last: exact on any kind of surface.
 
     Its packed edge has no data: kernels evaluate the pcurve on the chart of the edge's first
     coedge, so one of the edge's two faces must have this surface as a chart.
@@ -36,13 +36,13 @@ class SurfaceCurve(Curve):
     first, last : float
         Range of the pcurve's parameter t.
     others : sequence of pairs (Surface, Pcurve)
-        The same curve in other charts. A point is taken from the chart that sees it most
-        centrally.
+        The same curve in other charts. A point is evaluated in the chart in which it is most
+        central.
 
     Raises
     ------
     ValueError
-        Something else than a surface or a pcurve, a number that is not finite, an empty range.
+        Something other than a surface or a pcurve, a number that is not finite, an empty range.
     """
 
     kind = L.ON_SURFACE
@@ -92,7 +92,8 @@ class SurfaceCurve(Curve):
         Raises
         ------
         ValueError
-            No surface, both parameters or none, a number that is not finite, an endless domain.
+            Not a surface, both parameters or neither, a number that is not finite, an infinite
+            domain.
         """
         if not isinstance(surface, Surface):
             raise StandoffError(f"surface is {shown(surface)}: give a Surface.", "surface", surface)
@@ -122,14 +123,14 @@ class SurfaceCurve(Curve):
 
     @property
     def closed(self) -> bool:
-        """Once round a surface whose u is an angle."""
+        """Does it go once around a surface whose u is an angle?"""
         if not self.surface.periodic:
             return False
         turn = abs(self.pcurve.point(self.last)[0] - self.pcurve.point(self.first)[0])
         return bool(abs(turn - 2.0 * np.pi) <= WHOLE_TURN * turn)
 
     def _central(self, t: float) -> tuple[Surface, tuple[Array, Array, Array]]:
-        """The surface that sees the point at t most centrally, and the pcurve there."""
+        """The surface in which the point at t is most central, and the pcurve there."""
         seen = [(s, p.homogeneous(t)) for s, p in ((self.surface, self.pcurve), *self.others)]
         if len(seen) == 1:
             return seen[0]
@@ -138,8 +139,8 @@ class SurfaceCurve(Curve):
     def pcurve_on(self, surface: Surface) -> Pcurve | None:
         """The trimming curve on a surface that the curve was made on, else None.
 
-        Of two parts of one surface the one with the same domain comes first: on a torus, say, both
-        may hold the curve at parameters a turn apart.
+        Of two parts of the same surface, the one with the same domain comes first: on a torus, for
+        example, both may contain the curve, at parameters a full turn apart.
         """
         alike = [
             (s, p)
@@ -160,7 +161,7 @@ class SurfaceCurve(Curve):
 
 
 def _check_chart(one: Any, name: str) -> None:
-    """Raise ValueError where something given is not a pair of a surface and a pcurve."""
+    """Raise ValueError unless something given is a pair of a surface and a pcurve."""
     surface, pcurve = one if isinstance(one, tuple | list) and len(one) == 2 else (one, None)
     if not isinstance(surface, Surface):
         raise StandoffError(

@@ -1,7 +1,7 @@
-"""Surfaces: a canonical form behind an affine map x = A y + shift.
+"""Surfaces: a canonical form y followed by an affine map x = A y + shift.
 
-Every kind is one jet function in ``standoff.kernels.body.jets`` and one validated, immutable class
-here. Lengths in the body's frame.
+Every kind has a jet function in ``standoff.kernels.body.jets`` and a validated, immutable class in
+this package. Lengths are in the body's frame.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 class Surface(KeepsReadOnly, ABC):
     """A parametric surface, x(u, v) = linear @ canonical(u, v) + shift.
 
-    What a kind of surface is, is said by its class: by the attributes below, which every class
-    sets, and by its methods. No other module asks for the class itself.
+    Everything about a kind of surface is in its class: in the attributes below, which every class
+    sets, and in its methods. Other modules do not test for the class itself.
 
     Parameters
     ----------
@@ -56,27 +56,27 @@ class Surface(KeepsReadOnly, ABC):
     kind: ClassVar[int]
     """Its number in ``standoff.kernels.body.layout``, which also says whether it is `noisy`."""
     periodic: ClassVar[bool]
-    """Is u an angle that comes round? Some kinds say it anew of each surface, by its domain."""
+    """Is u a periodic angle? For some kinds it depends on the domain, and is set per surface."""
     projection: ClassVar[Literal["parallel", "central", "axial"] | None]
-    """How lines and conic arcs of the surface are seen in (u, v): "parallel" where u and v are two
-    of the canonical coordinates, "central" from the origin, "axial" about the axis z, where u is
-    the angle and v the height; None where they have no exact trimming curve."""
+    """How lines and conic arcs of the surface are projected to (u, v): "parallel" if u and v are
+    two of the canonical coordinates, "central" from the origin, "axial" about the axis z, if u is
+    the angle and v the height; None if they have no exact trimming curve."""
     part_of: ClassVar[Literal["ellipsoid", "superellipsoid"] | None]
     """The closed surface about `shift` of which it is a gnomonic chart; several make an atlas."""
     ruled: ClassVar[bool]
-    """Does a straight line of the surface run through every point?"""
+    """Does a straight line in the surface run through every point?"""
     proof: ClassVar[Literal["theorem", "bernstein", "interval", "swept"]]
     """How a patch is proven convex (``standoff.bodies.proofs``)."""
     bulge: ClassVar[int | None]
     """By theorem: 0 flat, +1 convex and bulging along x_u × x_v of the canonical form, -1 against
-    it; None where a patch must be proven convex."""
+    it; None if a patch must be proven convex."""
     reals: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "domain", checked_domain(self.domain, type(self).__name__))
         linear = matrix3(self.linear, f"{type(self).__name__}.linear")
         shift = vector3(self.shift, f"{type(self).__name__}.shift")
-        # by columns, which may have different units: a cylinder's are its radius and a length
+        # by columns, which may differ in scale: a cylinder's are its radii and a length
         lengths = np.abs(linear).max(axis=0)
         if lengths.min() == 0.0 or abs(np.linalg.det(linear / lengths)) < DEPENDENT_COLUMNS:
             raise StandoffError(
@@ -100,7 +100,7 @@ class Surface(KeepsReadOnly, ABC):
         object.__setattr__(self, "reals", reals)
 
     def _data(self) -> Array:
-        """What the kind's kernel reads behind the affine map."""
+        """What the kind's kernel reads after the affine map."""
         return np.zeros(0)
 
     def __setstate__(self, stored: Any) -> None:
@@ -113,7 +113,7 @@ class Surface(KeepsReadOnly, ABC):
 
     @property
     def data(self) -> Array:
-        """What the kind's kernel reads behind the affine map (see ``kernels.body.layout``)."""
+        """What the kind's kernel reads after the affine map (see ``kernels.body.layout``)."""
         return self.reals[L.SURFACE_DATA :]
 
     def jet(self, u: float, v: float) -> tuple[Array, ...]:
@@ -136,7 +136,7 @@ class Surface(KeepsReadOnly, ABC):
         return replace(self, domain=self.smaller_domain(u0, u1, v0, v1))
 
     def smaller_domain(self, u0: float, u1: float, v0: float, v1: float) -> Domain:
-        """The four numbers as a domain; ValueError where it is empty or leaves the present one."""
+        """The four numbers as a domain; ValueError if it is empty or leaves the present one."""
         smaller = checked_domain((u0, u1, v0, v1), type(self).__name__)
         a, b, c, d = self.domain
         if not (a <= smaller[0] and smaller[1] <= b and c <= smaller[2] and smaller[3] <= d):
@@ -150,12 +150,12 @@ class Surface(KeepsReadOnly, ABC):
 
     @property
     def noisy(self) -> bool:
-        """May roundoff turn its normal beside a collapsed side?"""
+        """May roundoff turn its normal near a collapsed side?"""
         return bool(L.noisy(self.kind))
 
     @property
     def formulas(self) -> tuple[Formula, ...]:
-        """The compiled formulas whose addresses stand in `reals`."""
+        """The compiled formulas whose addresses are in `reals`."""
         return ()
 
     def breaks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -172,54 +172,54 @@ class Surface(KeepsReadOnly, ABC):
         return self.pieces()
 
     def within_hemisphere(self) -> bool | None:
-        """Do all normals make less than 90 degrees with one axis? None where no theorem says it."""
+        """Do all normals make less than 90 degrees with one axis? None if no theorem says so."""
         return None
 
     def least_curvature(self) -> float | None:
-        """The least normal curvature, 1/length, of any convex patch of the surface; None where no
-        theorem says it."""
+        """The least normal curvature, 1/length, of any convex patch of the surface; None if no
+        theorem gives it."""
         return 0.0 if self.ruled else None
 
     def farthest(self) -> float | None:
-        """A bound, length, of the distance from the body's origin to the closed surface of which
-        this is a part; None where it is part of none, or has no bound but its box."""
+        """A bound on the distance from the body's origin to the closed surface of which this is a
+        part, length; None if it is not part of one, or has no bound other than its box."""
         return None
 
     def box(self) -> tuple[Array, Array] | None:
-        """(low, high), each (3,), body frame: surely around the surface over its domain.
+        """(low, high), each (3,), body frame, guaranteed to contain the surface over its domain.
 
-        None where `highest` serves instead.
+        None if `highest` is used instead.
         """
         return None
 
     @property
     def moved(self) -> float:
-        """How far the surface may lie from the one given, length: 0 but for splines, whose spare
-        knots are left out (``knot_removal``)."""
+        """How far the surface may lie from the given one, length: 0 except for splines, whose
+        redundant knots are removed (``knot_removal``)."""
         return 0.0
 
     @abstractmethod
     def highest(self, direction: Array) -> tuple[float, float] | None:
         """(u, v) where direction @ x is greatest on the whole surface; direction (3,), body frame.
 
-        None where it has no greatest value inside: a face is then highest on its boundary. The
-        body's box, so the certificate, rests on it.
+        None if it has no greatest value inside: a face is then highest on its boundary. The body's
+        box, and so the certificate, depends on it.
         """
 
     def extents(self, rectangles: Any, directions: Any) -> tuple[Array, Array]:
-        """How far the surface reaches along directions, over rectangles of parameters.
+        """How far the surface extends along directions, over rectangles of parameters.
 
         Parameters
         ----------
         rectangles : (n, 4) array_like
             Rows (u0, u1, v0, v1) within the domain; a side may have no width.
         directions : (m, 3) or (m, 3, n) array_like
-            Body frame; the same for all rectangles, or one set each.
+            Body frame; the same for all rectangles, or one set for each.
 
         Returns
         -------
         low, high : (m, n) arrays
-            Bounds of direction . x, in the unit of both.
+            Bounds of direction . x, in the unit of the product.
 
         Raises
         ------
@@ -244,8 +244,9 @@ class Surface(KeepsReadOnly, ABC):
     def bounds(self, rectangles: Any) -> PatchBounds:
         """Boxes, cones of normals and curvatures over rectangles of parameters.
 
-        They enclose, and sharpen as rectangles shrink: boxes with the square of the width, cones
-        and curvatures with the width. Beside a crease they are of the rectangle's own side.
+        They are guaranteed, and become sharper as rectangles shrink: boxes with the square of the
+        width, cones and curvatures with the width. Next to a crease they are those of the
+        rectangle's own side.
 
         Parameters
         ----------
@@ -270,7 +271,7 @@ class Surface(KeepsReadOnly, ABC):
 
     @abstractmethod
     def jets_over(self, boxes: Boxes) -> Interval:
-        """(3, 6, n) bounds of the canonical jet over boxes that no analytic break divides."""
+        """(3, 6, n) bounds of the canonical jet over boxes that no analytic break crosses."""
 
     def body_jets(self, boxes: Boxes) -> Interval:
         """The same in the body's frame."""
@@ -292,5 +293,5 @@ class Surface(KeepsReadOnly, ABC):
         return jets.bounds(jets.extents(np.eye(3)[..., None]))
 
     def canonical(self, points: Array) -> Array:
-        """Body points, (..., 3), in the canonical frame."""
+        """Points of the body frame, (..., 3), in the canonical frame."""
         return (np.asarray(points) - self.shift) @ np.linalg.inv(self.linear).T

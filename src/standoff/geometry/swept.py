@@ -1,4 +1,4 @@
-"""Surfaces that a profile curve sweeps: about an axis, and along a direction."""
+"""Surfaces swept by a profile curve: about an axis, or along a direction."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from standoff.geometry.formulas.compiled import Formula
     from standoff.geometry.patch_bounds import PatchBounds
 
-# Points of a profile that are looked at.
+# Points of a profile that are examined.
 PROFILE_SAMPLES = 65
 
 
 class Swept(Surface):
-    """What both kinds have: a profile, whose sweep is kept in its own frame by an affine map."""
+    """What both kinds have in common: a profile, swept in its own frame, and an affine map."""
 
     projection = None
     part_of = None
@@ -47,7 +47,7 @@ class Swept(Surface):
 
     @abstractmethod
     def _with(self, domain: Domain, linear: Array, shift: Array) -> Self:
-        """The same sweep over another domain, mapped by linear x + shift."""
+        """The same sweep over another domain, mapped by x -> linear x + shift."""
 
     @abstractmethod
     def _reach(self, direction: Array) -> float:
@@ -64,25 +64,25 @@ class Swept(Surface):
 
     @property
     def moved(self) -> float:
-        """How far the spare knots of the profile, left out, may have moved the surface, length."""
+        """How far removing redundant knots of the profile may have moved the surface, length."""
         return float(np.linalg.norm(self.linear, 2)) * self.profile.moved
 
     def box(self) -> tuple[Array, Array]:
-        """(low, high), each (3,), body frame: surely around the surface over its domain."""
+        """(low, high), each (3,), body frame, guaranteed to contain the surface over its domain."""
         return box_of(self._reach)
 
     def highest(self, direction: Array) -> None:
-        """None: `box` serves."""
+        """None: its `box` is used instead."""
         return
 
 
 class Revolution(Swept, Rotational):
-    """(r(v) cos u, r(v) sin u, z(v)): a profile (r, 0, z) turned about the axis z.
+    """(r(v) cos u, r(v) sin u, z(v)): a profile (r, 0, z) rotated about the axis z.
 
     Parameters
     ----------
     profile : Curve in the half-plane y = 0, x >= 0: x is the radius, z the height, lengths.
-        It may touch the axis at its ends only: poles, where a side has collapsed.
+        It may touch the axis only at its ends: poles, where a side is collapsed.
     first, last : angles, radians; a full turn, the default, is periodic in u.
 
     Raises
@@ -115,7 +115,7 @@ class Revolution(Swept, Rotational):
         inner = 1 + int(points[1:-1, 0].argmin())
         if min(points[0, 0], points[-1, 0]) < -PROFILE_ROUNDOFF * size or points[inner, 0] <= 0.0:
             raise StandoffError(
-                f"Revolution: the profile meets or passes the axis at {points[inner]}; only its "
+                f"Revolution: the profile meets or crosses the axis at {points[inner]}; only its "
                 "ends may touch the axis: keep x > 0 between them.",
                 "profile",
                 profile,
@@ -153,7 +153,7 @@ class Revolution(Swept, Rotational):
         return self.profile.heights_over(directions, v)
 
     def meridian_normals(self, v: Interval) -> list[Interval]:
-        """(z', -rho') at the middle, and how far it turns from there."""
+        """(z', -rho') at the middle, and its change from there."""
         middle = interval(v.middle)
         away, half = v - middle, interval(v.radius)
         over, at = self.meridian(v), self.meridian(middle)
@@ -163,7 +163,7 @@ class Revolution(Swept, Rotational):
         return [value + amid * half, value - amid * half]
 
     def over_radius(self, v: Interval) -> Interval:
-        """At a round pole, where both vanish, z'' / rho' bounds it (Cauchy's mean value)."""
+        """At a round pole, where both are 0, z'' / rho' bounds it (Cauchy's mean-value theorem)."""
         meridian = self.meridian(v)
         with np.errstate(all="ignore"):
             found = meridian[1, 1] / meridian[0, 0]
@@ -177,7 +177,7 @@ class Revolution(Swept, Rotational):
         )
 
     def _round_pole(self, end: float) -> bool:
-        """Does the profile meet the axis squarely there, but for roundoff?"""
+        """Does the profile meet the axis at a right angle there, up to roundoff?"""
         x, slope, _ = self.profile.jet(end)
         size = float(np.linalg.norm(slope)) * (self.profile.last - self.profile.first)
         square = abs(float(slope[2])) <= ROUND_POLE * abs(float(slope[0]))
@@ -200,7 +200,7 @@ class Extrusion(Swept):
     Parameters
     ----------
     profile : Curve.
-    direction : (3,) array, not zero: v = 1 is the whole of it, length.
+    direction : (3,) array, not zero, length: the displacement at v = 1.
     first, last : range of v (dimensionless).
 
     Raises
@@ -227,7 +227,7 @@ class Extrusion(Swept):
         length = float(np.linalg.norm(direction))
         if length == 0.0:
             raise StandoffError(
-                "Extrusion along the direction (0, 0, 0): give a vector of length.",
+                "Extrusion along the direction (0, 0, 0): give a vector that is not zero.",
                 "direction",
                 direction,
             )
@@ -278,7 +278,7 @@ class Extrusion(Swept):
         return by_generator([x + along * v, xu, along + none, xuu, none, none])
 
     def extents_over(self, boxes: Boxes, directions: Array) -> Interval:
-        """Exact but for rounding if the profile's are."""
+        """Exact up to rounding if the profile's are."""
         u, v = boxes.sides
         every = interval(np.broadcast_to(directions, (*directions.shape[:2], len(boxes))))
         y = by_generator([mapped(every, interval(column[:, None])) for column in self.linear.T])

@@ -1,4 +1,4 @@
-"""A torus: what a rolling ball leaves between a plane and a cylinder."""
+"""A torus, such as the blend that a rolling ball makes between a plane and a cylinder."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from standoff.kernels.body import layout as L
 
 
 def full_turn(first: float, last: float) -> bool:
-    """Do angles run once round."""
+    """Do angles make a full turn?"""
     return last - first >= FULL_TURN * (1.0 - ANGLE_ROUNDOFF)
 
 
 def checked_turn(first: Any, last: Any, name: str) -> tuple[float, float]:
-    """Two finite angles, radians, less than or just a turn apart."""
+    """Two finite angles, radians, at most a full turn apart."""
     a, b = number(first, "first"), number(last, "last")
     if not 0.0 < b - a <= FULL_TURN * (1.0 + ANGLE_ROUNDOFF):
         raise StandoffError(
@@ -34,7 +34,7 @@ def checked_turn(first: Any, last: Any, name: str) -> tuple[float, float]:
 
 
 def _outside(v0: float, v1: float, inside: bool = False) -> bool:
-    """Is cos v nowhere negative; nowhere zero either, `inside`?"""
+    """Is cos v nowhere negative (and with `inside`, nowhere zero)?"""
     middle = 0.5 * (v0 + v1)
     away = abs(middle - FULL_TURN * round(middle / FULL_TURN)) + 0.5 * (v1 - v0)
     return away < 0.5 * np.pi if inside else away <= 0.5 * np.pi + ANGLE_ROUNDOFF
@@ -51,7 +51,8 @@ class Torus(Rotational):
 
     Parameters
     ----------
-    major, minor : R > 0 and r > 0, length: the circle's distance from the axis z, its radius.
+    major, minor : R > 0 and r > 0, length: distance of the circle's centre from the axis z, and
+        radius of the circle.
     u0, u1 : angles about the axis, radians; a full turn, the default, is periodic.
     v0, v1 : angles of the circle, radians, at most a turn apart; its convex part by default.
 
@@ -82,7 +83,7 @@ class Torus(Rotational):
         v1: Any = 0.5 * np.pi,
     ) -> None:
         u0, u1 = checked_turn(u0, u1, "Torus")
-        v0, v1 = checked_turn(v0, v1, "Torus, round its circle,")
+        v0, v1 = checked_turn(v0, v1, "Torus, around its circle,")
         major, minor = magnitude(major, "major"), magnitude(minor, "minor")
         if minor >= major and _inmost(v0, v1) * minor + major <= 0.0:
             raise StandoffError(
@@ -118,8 +119,8 @@ class Torus(Rotational):
         return surface
 
     def within_hemisphere(self) -> bool:
-        """A part above or below its middle plane, or less than half of the outer or inner half both
-        ways."""
+        """If it lies above or below the middle plane, or is less than half of the outer or inner
+        half in both directions."""
         u0, u1, v0, v1 = self.domain
         half = _outside(v0, v1) or _outside(v0 - np.pi, v1 - np.pi)
         level = _outside(v0 - 0.5 * np.pi, v1 - 0.5 * np.pi, inside=True)
@@ -132,7 +133,7 @@ class Torus(Rotational):
         return stacked([stacked([rho + self.major, -z, -rho]), stacked([z, rho, -z])])
 
     def over_radius(self, v: Interval) -> Interval:
-        """cos v / (R / r + cos v) grows with cos v on either side of the axis."""
+        """cos v / (R / r + cos v) increases with cos v on each side of the axis."""
         c = cos(v)
         ratio = interval(np.array(self.major)) / self.minor
         ends = [x / (ratio + x) for x in (interval(c.lo), interval(c.hi))]
@@ -148,7 +149,7 @@ class Torus(Rotational):
         return rho * self.major + wave(rho * self.minor, z * self.minor, v)
 
     def meridian_normals(self, v: Interval) -> list[Interval]:
-        """At both ends, and where they are along the axis, if that lies between."""
+        """At both ends, and where they are parallel to the axis if that is between them."""
         spots = [stacked([cos(t), sin(t)]) for t in (interval(v.lo), interval(v.hi))]
         zero = np.zeros_like(v.lo)
         for crest, up in ((0.5 * np.pi, 1.0), (1.5 * np.pi, -1.0)):

@@ -1,4 +1,4 @@
-"""Vectors, maps and weights of shapes, checked."""
+"""Checks of vectors, maps and weights of shapes."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from standoff.errors import StandoffError
 Array = NDArray[np.float64]
 
 WEIGHT_RATIO = 1e12
-"""Greatest ratio of weights. A tangent at the lightest end is so many times the curve's size, and
-products of two such still have digits."""
+"""Greatest ratio of weights. The tangent at an end of least weight is this many times the curve's
+size, and products of two such tangents still have correct digits."""
 
 
 def vector3(value: Any, name: str) -> Array:
@@ -31,12 +31,12 @@ def affine_map(linear: Any, shift: Any) -> tuple[Array, Array]:
 
 
 def check_alike(weights: Array) -> None:
-    """Raise ValueError where positive weights differ by more than `WEIGHT_RATIO`."""
+    """Raise ValueError if positive weights differ by more than `WEIGHT_RATIO`."""
     least, most = float(weights.min()), float(weights.max())
     if most > WEIGHT_RATIO * least:
         raise StandoffError(
-            f"weights from {least:g} to {most:g}: the lighter points are lost in roundoff; give "
-            f"weights within a factor of {WEIGHT_RATIO:g}.",
+            f"weights from {least:g} to {most:g}: points of small weight are lost in roundoff; "
+            f"give weights within a factor of {WEIGHT_RATIO:g}.",
             "weights",
             weights,
         )

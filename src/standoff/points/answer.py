@@ -86,7 +86,7 @@ class PointCounts(NamedTuple):
     switches : int
         Events of the frame.
     born, ended : int
-        Minima that are tracked from this frame on, and that are tracked no more; the answer's
+        Minima that are tracked from this frame on, and that are no longer tracked; the answer's
         ``changes`` have the reasons.
     restarts : int
         Nearer points that the proof met inside, or global starts of the tracker outside.
@@ -175,7 +175,7 @@ class PointProximity(KeepsReadOnly, PlainData):
         return self.inside, self.feature, self.active if self.inside else -1
 
     def of_curve(self, index: int) -> Minimum:
-        """The nearest minimum of one curve of a planar body."""
+        """The nearest of the minima that are followed on one curve of a planar body."""
         own = [m for m in self.minima if m.feature == Feature("edge", index)]
         return min(own, key=lambda m: m.distance)
 

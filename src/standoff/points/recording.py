@@ -66,8 +66,10 @@ class PointRecording(KeepsReadOnly):
     parameters : ndarray, shape (n, 3)
         Of the active feature, nan where there is none: t of a curve, u, v and chart of a face.
     curve_parameter, curve_distance, curve_residual : ndarray, shape (n, curves)
-        Of each curve's nearest minimum, as they are tracked in parallel; distances without sign.
-        For a spatial body there are none.
+        Of a local minimum of the distance to each curve: the nearest of those that are followed on
+        it. On the active curve it is the curve's nearest point. Another curve may have a nearer
+        minimum that is not followed, because it is not the answer. Distances have no sign. For a
+        spatial body there are none.
     answers : tuple of PointProximity
     events : tuple of PointEvent
         In order of time.

@@ -87,7 +87,7 @@ class Found(NamedTuple):
     pair : TrackerState or None
         As in `PointState`.
     told : tuple of Leg
-        Changes of feature that the tracker outside tells of this step.
+        Changes of feature that the tracker outside reports for this step.
     restarts, samples : int
         As in `PointCounts`.
     """

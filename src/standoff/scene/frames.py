@@ -52,7 +52,7 @@ def check_instant(time: float, settings: TrackSettings, motions: Iterable[Motion
     """Return `time` [s] if it lies within the scene's times.
 
     They go from the start to the end of the duration, or of the pose samples. A scene that has
-    neither has no end.
+    neither has no end time.
 
     Raises
     ------

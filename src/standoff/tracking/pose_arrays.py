@@ -159,7 +159,7 @@ def _item(given: Any, name: str) -> PoseArray:
     elif shape_of(given) == (4, 4):
         return _unmarked(numbers(given, name, FORMS)[None])
     Pose.of(given)  # says that it is none
-    raise StandoffError(f"{shown(given)} is no pose: give {FORMS}.", name, given)
+    raise StandoffError(f"{shown(given)} is not a pose: give {FORMS}.", name, given)
 
 
 class Mended(NamedTuple):

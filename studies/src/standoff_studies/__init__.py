@@ -1,5 +1,5 @@
 """Studies made with Standoff: the paper's figures, the soak, and the accuracy by pair of shapes.
 
-They stand on the library, which never imports them. Their commands, ``standoff paper``,
+They use the library, which never imports them. Their commands, ``standoff paper``,
 ``standoff soak`` and ``standoff accuracy``, are entry points of the group ``standoff.commands``.
 """

@@ -1,4 +1,4 @@
-"""Kinds of bodies, each twice: as the library's body, and as the support function that judges."""
+"""Kinds of bodies, each twice: as the library's body, and as the support function to check it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from standoff_studies import oracles
 
 
 class Twin(NamedTuple):
-    """What makes a kind's body, and its support function, of the same numbers in one order."""
+    """Functions that make a kind's body and its support function from the same arguments."""
 
     body: Callable[..., Body]
     support: Callable[..., oracles.Shape]
@@ -26,13 +26,13 @@ def nurbs_ellipsoid(a: float, b: float, c: float) -> Body:
 
 
 def stretched(body: Callable[[], Body]) -> Callable[..., Body]:
-    """Return what stretches a body, which is made once, along x, y and z."""
+    """Return a function that stretches a body, made only once, along x, y and z."""
     once = lru_cache(maxsize=1)(body)
     return lambda *axes: once().transformed(np.diag(axes))
 
 
 def _power_ball() -> Body:
-    """|x|^4 + |y|^4 + |z|^4 <= 1, six patches by formulas."""
+    """|x|^4 + |y|^4 + |z|^4 <= 1, from six patches given by formulas."""
     cube = [np.roll([f"{sign}1", "u", "v"], k) for k in range(3) for sign in ("", "-")]
     patches = []
     for side in cube:
@@ -42,7 +42,7 @@ def _power_ball() -> Body:
 
 
 def _dome() -> Body:
-    """A paraboloid on a disc, six patches by formulas."""
+    """A paraboloid on a disc, from six patches given by formulas."""
     sectors = [(2 * np.pi * j / 3, 2 * np.pi * (j + 1) / 3, 0, 1) for j in range(3)]
     return Body.from_patches(
         [

@@ -1,1 +1,1 @@
-"""Pictures of bodies by Matplotlib: one with all its features, or two with their witness points."""
+"""Matplotlib pictures of a body with all its features, or of two with their witness points."""

@@ -42,13 +42,13 @@ def draw_body(body: PackedParts, report: BodyReport, name: str, unit: str) -> Fi
     report : BodyReport
         What its construction found.
     name : str
-        What it is called.
+        The name by which it is known in the title.
     unit : str
-        Label of lengths; empty for none.
+        Unit of length for labels; empty for none.
     """
     parts = Parts(body, face_meshes(body), edge_lines(body))
     planar = body.dimension == 2
-    # Not through pyplot, which would ask for a display and keep the figure alive.
+    # Not through pyplot, which would need a display and keep the figure alive.
     views = [] if planar else [view for view in VIEWS if shows(parts, direction_to_viewer(view))]
     figure = Figure(figsize=(7.5, 7.0) if planar else (6.0 * len(views), 6.4), dpi=150)
     FigureCanvasAgg(figure)
@@ -76,7 +76,7 @@ def _title(body: PackedParts, report: BodyReport, name: str) -> str:
     if report.smooth_edges:
         told[1] += f" ({report.smooth_edges} smooth)"
     known = name if name == body.name else f"{name}: {body.name}"
-    part = "" if body.bounded else "; it has no end, a part is shown"
+    part = "" if body.bounded else "; unbounded, only a part is shown"
     return f"{known}, {', '.join(told)}{part}"
 
 

@@ -1,4 +1,4 @@
-"""A body in space, seen from one side: what faces the viewer, as nothing else of it can be seen."""
+"""A body in space, seen from one side: only what faces the viewer, as nothing else is visible."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ try:
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
-Space: TypeAlias = Any  # Axes3D, whose stubs lack half of what it has
+Space: TypeAlias = Any  # Axes3D, whose type stubs are incomplete
 
-# Okabe and Ito's colours, lightened: faces side by side are told apart by any eye, and black
-# lines and names stand out from all of them.
+# Okabe and Ito's colours, lightened: adjacent faces can be distinguished with any colour vision,
+# and black lines and names stand out on all of them.
 FACE_COLOURS = (
     "#9FD3F2",
     "#F7D08A",
@@ -48,37 +48,38 @@ LIGHT = np.array([-0.35, 0.8, 0.5]) / np.linalg.norm([-0.35, 0.8, 0.5])
 """Where the light comes from, in the viewer's axes: right, towards the viewer, up."""
 
 DARKEST = 0.7
-"""Brightness of a face seen against the light, as a part of its colour."""
+"""Brightness of a face seen against the light, as a fraction of its colour."""
 
 NORMAL_LENGTH = 0.09
-"""Length of a drawn normal, over the body's size."""
+"""Length of a drawn normal, as a fraction of the body's size."""
 
 NORMAL_SPACING = 0.11
-"""Least distance between two drawn normals, over the body's size: more of them hide the body."""
+"""Least distance between two drawn normals, as a fraction of the body's size: more of them would
+hide the body."""
 
 MOST_NAMED = {"face": 40, "edge": 18, "vertex": 18}
-"""Most features of a kind that are named; the names of more cover each other."""
+"""The greatest number of features of a kind that are named; more names would cover each other."""
 
 LEAST_NAMED = 0.015
-"""Least part of the seen area that a face must have to be named: there is room for the name."""
+"""Least fraction of the visible area that a face must have to be named, so that the name fits."""
 
 ZOOM = 1.5
-"""Of a 3-D panel: a body's bounding ball then fills it."""
+"""Of a 3-D panel: with it, a body's bounding ball fills the panel."""
 
 SHORT_AXIS = 0.6
-"""An axis of which the viewer sees less than this part is not named: the name would cover
-another's."""
+"""An axis of which the viewer sees less than this fraction is not named: its name would cover
+another."""
 
 NAME_LIFT = 0.035
-"""How far a feature's name stands off it along the normal, over the body's size."""
+"""Offset of a feature's name towards the viewer, as a fraction of the body's size."""
 
 SKIN_POINTS = 400
-"""Directions of the ball that is swept over the core to draw its skin."""
+"""Directions of the ball that is swept over the core to draw its outer surface."""
 
 
 @dataclass
 class Parts:
-    """What is drawn of a body."""
+    """The parts of a body that are drawn."""
 
     body: PackedParts
     meshes: list[FaceMesh]
@@ -104,7 +105,7 @@ def direction_to_viewer(view: tuple[float, float]) -> Array:
 
 
 def shows(parts: Parts, towards: Array) -> bool:
-    """Does a view show anything; from below a half-space does not."""
+    """Does a view show anything? A half-space seen from below does not."""
     faces = [mesh.normals @ towards for mesh in parts.meshes]
     return not faces or bool(np.concatenate(faces).max() > 0.0)
 
@@ -128,7 +129,7 @@ def draw_view(axes: Space, parts: Parts, view: tuple[float, float], unit: str) -
 
 
 def _draw_face(axes: Space, mesh: FaceMesh, towards: Array) -> None:
-    """The triangles that face the viewer: of a convex body these are the ones that are seen."""
+    """Draw the triangles that face the viewer: for a convex body these are the visible ones."""
     normals = mesh.normals[mesh.triangles].mean(axis=1)
     seen = normals @ towards > 0.0
     if not seen.any():
@@ -142,7 +143,7 @@ def _draw_face(axes: Space, mesh: FaceMesh, towards: Array) -> None:
         Poly3DCollection(
             mesh.points[mesh.triangles[seen]],
             facecolors=shaded,
-            edgecolors=shaded,  # without, hairlines show between the triangles
+            edgecolors=shaded,  # without them, hairlines show between the triangles
             linewidths=0.3,
             zorder=1,
         )
@@ -150,14 +151,14 @@ def _draw_face(axes: Space, mesh: FaceMesh, towards: Array) -> None:
 
 
 def across(towards: Array) -> tuple[Array, Array]:
-    """The viewer's right and up."""
+    """The viewer's right and up directions."""
     right = np.cross([0.0, 0.0, 1.0], towards)
     right /= np.linalg.norm(right)
     return right, np.cross(towards, right)
 
 
 def seen_points(normals: Array, towards: Array) -> NDArray[np.bool_]:
-    """Of each point, whether any of its faces faces the viewer; (k, n, 3) to (n,)."""
+    """For each point, whether any of its faces faces the viewer; (k, n, 3) to (n,)."""
     if not len(normals):
         return np.ones(normals.shape[1], dtype=bool)
     return np.asarray((np.nan_to_num(normals) @ towards > 0.0).any(axis=0))
@@ -219,7 +220,7 @@ def _draw_normals(axes: Space, parts: Parts, towards: Array) -> None:
 
 
 def _apart(points: Array, spacing: float) -> list[int]:
-    """Numbers of points no two of which are nearer than a spacing."""
+    """Indices of points no two of which are nearer to each other than a spacing."""
     kept: list[int] = []
     for k in np.random.default_rng(0).permutation(len(points)).tolist():
         if not kept or np.linalg.norm(points[kept] - points[k], axis=1).min() >= spacing:
@@ -228,7 +229,7 @@ def _apart(points: Array, spacing: float) -> list[int]:
 
 
 def _draw_skin(axes: Space, parts: Parts, towards: Array) -> None:
-    """The core swept by its ball: the hull of balls at points of the core."""
+    """Draw the core swept by its ball: the hull of balls at points of the core."""
     body = parts.body
     spots = parts.cloud
     if len(spots) > 4 and np.linalg.matrix_rank(spots - spots[0], tol=FLAT_CLOUD * parts.size) == 3:
@@ -236,7 +237,7 @@ def _draw_skin(axes: Space, parts: Parts, towards: Array) -> None:
     points = (spots[:, None] + body.radius * _ball()).reshape(-1, 3)
     try:
         hull = scipy.spatial.ConvexHull(points)
-    except scipy.spatial.QhullError:  # a radius at roundoff of the core has no skin to be seen
+    except scipy.spatial.QhullError:  # a radius that is roundoff of the core shows no skin
         return
     seen = hull.equations[:, :3] @ towards > 0.0
     axes.add_collection3d(
@@ -251,7 +252,7 @@ def _draw_skin(axes: Space, parts: Parts, towards: Array) -> None:
 
 
 def _ball() -> Array:
-    """Unit vectors, evenly spread (a Fibonacci lattice), (n, 3)."""
+    """Unit vectors, evenly distributed (a Fibonacci lattice), (n, 3)."""
     k = np.arange(SKIN_POINTS) + 0.5
     height, turn = 1.0 - 2.0 * k / SKIN_POINTS, np.pi * (1.0 + np.sqrt(5.0)) * k
     across = np.sqrt(1.0 - height**2)
@@ -281,7 +282,7 @@ def _name_features(axes: Space, parts: Parts, towards: Array) -> None:
 
 
 def _middle_of_face(meshes: Sequence[FaceMesh], face: int, towards: Array) -> Array | None:
-    """The point of a face amid what is seen of it; None where that is too little to be named."""
+    """A central point of the visible part of a face; None if that is too small to be named."""
     areas = dict.fromkeys((mesh.face for mesh in meshes), 0.0)
     middles = []
     for mesh in meshes:
@@ -312,7 +313,7 @@ def _name(axes: Space, spot: Array, text: str, *, framed: bool) -> None:
 
 
 def frame(axes: Space, cloud: Array, margin: float, towards: Array, unit: str) -> None:
-    """Equal scales around points, (n, 3), and a margin; the axes and a scale in a corner."""
+    """Set equal scales around points, (n, 3), with a margin; draw axes and a scale in a corner."""
     middle = 0.5 * (cloud.min(axis=0) + cloud.max(axis=0))
     half = (float(np.linalg.norm(cloud - middle, axis=1).max()) + margin) or 1.0
     for k, axis in enumerate("xyz"):
@@ -337,6 +338,6 @@ def frame(axes: Space, cloud: Array, margin: float, towards: Array, unit: str) -
 
 
 def _round_length(half: float) -> float:
-    """1, 2 or 5 times a power of ten, about a third of a length."""
+    """1, 2 or 5 times a power of ten, about a third of the given length."""
     power = 10.0 ** np.floor(np.log10(half / 3.0))
     return float(max(m * power for m in (1.0, 2.0, 5.0) if m * power <= half / 3.0))

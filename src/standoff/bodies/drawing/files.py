@@ -1,4 +1,4 @@
-"""Pictures in files: the endings that are known, written whole or not at all."""
+"""Pictures in files of known formats, written whole or not at all."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ FORMATS = ("png", "svg", "pdf")
 
 
 def checked_file(path: object) -> Path:
-    """Return the file of a picture.
+    """Return the path of a picture's file.
 
     Raises
     ------
     TypeError
-        If it is neither a text nor a Path.
+        If it is neither a string nor a Path.
     ValueError
-        If it is empty, or its ending is not one of `FORMATS`.
+        If it is empty, or its extension is not one of `FORMATS`.
     """
     target = file_name(path)
     if _ending(target) not in FORMATS:

@@ -24,35 +24,35 @@ try:
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
-# Light and strong, after Okabe and Ito's blue and vermilion: told apart by any eye.
+# Light and strong shades of Okabe and Ito's blue and vermilion, distinct with any colour vision.
 COLOURS = (("#BBDFF5", "#4FA8DC"), ("#F8D2AE", "#EE8A3C"))
 WITNESS_COLOUR = "black"
 
 USUAL_VIEW = (25.0, -50.0)
-"""Elevation and azimuth [degrees] that a view across the normal is turned from."""
+"""Elevation and azimuth [degrees] from which a view across the normal is derived."""
 
 LEVEL_ENOUGH = 0.35
-"""Least length of the usual view's part across the normal; where it is shorter, the view from a
-quarter turn about z is turned instead."""
+"""Least length of the usual view's component perpendicular to the normal; if it is shorter, the
+view a quarter turn further about z is used instead."""
 
 MARGIN = 0.03
-"""Around what is drawn in a plane, over its extent."""
+"""Margin around a planar picture, as a fraction of its extent."""
 
 SURROUND = 0.12
-"""Around what is drawn in space, over the half width: there the axes and the scale stand."""
+"""Margin around a picture in space, as a fraction of its half width: for the axes and the scale."""
 
 ACROSS = 0.15
-"""Greatest part of the normal that may point at the viewer where nothing hides the witness line."""
+"""Greatest component of the normal towards the viewer with which nothing hides the witness line."""
 
 BETWEEN = 2.5
-"""Order in which the witness line is drawn: after the body behind, before the one in front."""
+"""Drawing order of the witness line: after the body behind, before the one in front."""
 
 THROUGH = 0.55
 """Opacity of bodies that overlap."""
 
 
 class Shown(NamedTuple):
-    """An answer as it is drawn: flat poses (12,), world vectors (3,), signed distance."""
+    """An answer to be drawn: flat poses (12,), world vectors (3,), signed distance."""
 
     poses: tuple[Array, Array]
     points: tuple[Array, Array]
@@ -63,7 +63,7 @@ class Shown(NamedTuple):
 
 
 def new_figure() -> Figure:
-    # Not through pyplot, which would ask for a display and keep the figure alive.
+    # Not through pyplot, which would need a display and keep the figure alive.
     figure = Figure(figsize=(6.4, 6.0), dpi=120)
     FigureCanvasAgg(figure)
     return figure
@@ -99,7 +99,7 @@ def cloud_of(solids: tuple[Solid, Solid], shown: Shown) -> Array:
 
 
 def seen_from(cloud: Array, towards: Array) -> Array:
-    """Two points, (2, 3), whose ball a viewer sees around all points of a cloud, (n, 3)."""
+    """Two points, (2, 3), whose ball, for the viewer, surrounds all points of a cloud, (n, 3)."""
     axes = np.stack([*across(towards), towards])
     seen = cloud @ axes.T
     middle = 0.5 * (seen.min(axis=0) + seen.max(axis=0))
@@ -123,7 +123,7 @@ def draw_pair(
     axes.view_init(*view)
     axes.set_proj_type("ortho")
     towards = direction_to_viewer(view)
-    # A plane along the normal parts two bodies, so one of them is in front of all of the other.
+    # A plane separates the two bodies, so one of them is entirely in front of the other.
     b_in_front = not shown.normal @ towards < 0.0
     orders = (1, 3) if b_in_front else (3, 1)
     opacity = THROUGH if shown.distance < 0.0 else 1.0
@@ -135,7 +135,7 @@ def draw_pair(
 
 
 def _draw_witnesses(axes: Space, shown: Shown, *, hidden: bool) -> None:
-    """The witness line, on top; the part that the body in front hides is dashed."""
+    """Draw the witness line on top; the part that the body in front hides is dashed."""
     ends = np.array(shown.points).T
     look = {"color": WITNESS_COLOUR, "marker": "o", "markersize": 4.5}
     if not hidden or shown.distance < 0.0:

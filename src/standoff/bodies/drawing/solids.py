@@ -1,4 +1,4 @@
-"""A body as a shaded solid at a pose: what faces the viewer, as it is convex."""
+"""A body as a shaded solid at a pose: only what faces the viewer, which is enough if convex."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ except ModuleNotFoundError as error:
     raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 DIRECTIONS = 1500
-"""Directions in which a swept body's skin is drawn."""
+"""Number of directions in which a swept body's surface is drawn."""
 
 DARKEST = 0.55
-"""Brightness of what is seen against the light, as a part of its colour."""
+"""Brightness of what is seen against the light, as a fraction of its colour."""
 
 NO_FACE = -1
-"""Number of the face that a skin's triangles belong to."""
+"""Face number of the triangles of a swept surface."""
 
 
 @dataclass(frozen=True)
@@ -41,12 +41,12 @@ class Solid:
     ----------
     body : Body
     points, normals : (n, 3) arrays
-        Of the surface, swept radius included, and the outward unit normals there.
+        Points of the surface, including the swept radius, and the outward unit normals there.
     triangles : (m, 3) array of int
     faces : (m,) array of int
-        The face that a triangle is of.
+        The face to which each triangle belongs.
     lines : sequence of EdgeLine
-        Of a body without a radius.
+        The edges of a body without a radius.
     """
 
     body: Body
@@ -58,7 +58,7 @@ class Solid:
 
 
 class Look(NamedTuple):
-    """How a solid is drawn: two colours, the second of its active feature; order and opacity."""
+    """How a solid is drawn: two colours, the second for its active feature; order and opacity."""
 
     colour: str
     active_colour: str
@@ -67,7 +67,7 @@ class Look(NamedTuple):
 
 
 def solid_of(body: Body) -> Solid:
-    """Return a body's surface: of its faces, or of the ball that is swept over its core."""
+    """Return a body's surface: its faces, or the envelope of the ball swept over its core."""
     meshes, lines = face_meshes(body, fine=True), edge_lines(body)
     cloud = [body.vertex_points, *(line.points for line in lines), *(m.points for m in meshes)]
     if body.radius and body.dimension == 3:
@@ -75,7 +75,7 @@ def solid_of(body: Body) -> Solid:
     if not meshes:
         none = np.zeros((0, 3))
         empty = np.zeros((0, 3), dtype=np.int64)
-        # The outline of a planar body, or a core that is a point or a segment.
+        # the outline of a planar body, or a core that is a point or a segment
         return Solid(body, np.concatenate([none, *cloud]), none, empty, empty[:, 0], lines)
     first = np.cumsum([0, *(len(mesh.points) for mesh in meshes[:-1])])
     return Solid(
@@ -148,7 +148,7 @@ def _draw_skin(
     rotation, shift = pose
     points, normals = solid.points @ rotation.T + shift, solid.normals @ rotation.T
     corners, upright = points[solid.triangles], normals[solid.triangles].mean(axis=1)
-    # Also those that the outline passes through: without them it would be jagged.
+    # Also the triangles that the outline crosses: without them it would be jagged.
     seen = (normals @ towards > 0.0)[solid.triangles].any(axis=1)
     right, up = across(towards)
     lamp = LIGHT @ np.array([right, towards, up])
@@ -162,7 +162,7 @@ def _draw_skin(
         Poly3DCollection(
             corners[seen],
             facecolors=shaded,
-            # without, hairlines show between the triangles; where they are thin, twice the paint
+            # without them, hairlines show between the triangles; with opacity they would show twice
             edgecolors=shaded if look.opacity == 1.0 else "none",
             linewidths=0.3,
             alpha=look.opacity,

@@ -209,7 +209,7 @@ def recentred(packed: Packed, given: Array, middle: Array) -> Packed:
     if not middle.any():
         return packed
     away = float(np.abs(given).max()) / float(np.ptp(given, axis=0).max())
-    note = f"recentred: the hull is taken about {middle}, as the origin is {away:.3g} extents away"
+    note = f"recentred: the hull is computed about {middle}: the origin is {away:.3g} extents away"
     notes = (note, *packed.report.notes)
     return replace(packed, report=replace(packed.report, notes=notes))
 
@@ -222,6 +222,6 @@ def thin_error(points: Array, word: str) -> BodyError | None:
         return None
     return BodyError(
         f"The {len(points)} {word} are too nearly in one plane: {thickness:.3g} thick on an "
-        f"extent of {extent:.3g}, so that its facets are not told apart. Make it thicker than "
-        f"{THIN * extent:.1g}, or take a flat body, so.shapes.planar_loop."
+        f"extent of {extent:.3g}, so that its facets cannot be distinguished. Make it thicker than "
+        f"{THIN * extent:.1g}, or use a flat body, so.shapes.polygon."
     )

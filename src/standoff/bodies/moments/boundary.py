@@ -1,4 +1,4 @@
-"""The moments of a body: its boundary cut into cells, integrated, and what they may be off."""
+"""The moments of a body, by integrals over cells of its boundary, and bounds on their errors."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ from standoff.geometry.curves import Curve
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
-# Points on the boundary are off their places by so many roundings (eps of the frame's reach, and of
-# how far the surfaces' own origins are): affine maps, jets and sums.
+# Computed points of the boundary have this many roundings (eps of the frame's reach, and of the
+# distance of the surfaces' own origins) from affine maps, jets and sums.
 POINT_ROUNDINGS = 32.0
-# Points of the boundary that are taken at most, about.
+# About the greatest number of boundary points that are used.
 MOST_NODES = 400_000
-# Samples of an edge whose chords give its length, and how much longer it may be.
+# Samples of an edge whose chords estimate its length, and by which factor it may be longer.
 CHORDS, LONGER = 65, 1.01
 
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """Integrals over a body's inside about a point, and bounds of their errors.
+    """Integrals over a body's interior, relative to a point, and bounds on their errors.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Moments:
     volume : float
         Length cubed.
     first : (3,) array
-        ∫ x dV, from the point, length⁴.
+        ∫ x dV, with x measured from the point, length⁴.
     second : (3, 3) array
         ∫ x xᵀ dV, length⁵.
     area : float
@@ -55,7 +55,7 @@ class Moments:
     volume_error, first_error, second_error
         Bounds, of the same shapes and units.
     nodes : int
-        Points of the boundary that were taken.
+        How many points of the boundary were used.
     """
 
     about: Array
@@ -76,7 +76,8 @@ def moments_of(body: Boundary, tolerance: float) -> Moments:
     ----------
     body : Boundary
     tolerance : float
-        At which refinement ends, relative to the volume, its reach and its reach squared.
+        Where refinement ends, relative to the volume, and to its products with the reach and the
+        reach squared.
     """
     frame = _frame(body)
     cells = [cell for face in range(body.n_faces) for cell in face_cells(body, face, frame)]
@@ -101,8 +102,8 @@ def moments_of(body: Boundary, tolerance: float) -> Moments:
 
 
 def _scale(values: Array) -> Array:
-    """What the differences of the columns count by: the moments by the volume; what only tells
-    whether the boundary is closed needs no digits of its own."""
+    """The scale of each column's error: the volume for the moments; infinite for the columns that
+    only check whether the boundary is closed."""
     sizes = np.full(COLUMNS, np.inf)
     least = np.finfo(float).eps * float(values[AREA])
     sizes[FIRST] = sizes[SECOND] = sizes[VOLUME] = max(abs(float(values[VOLUME])), least)
@@ -115,7 +116,7 @@ def _symmetric(six: Array) -> Array:
 
 
 def _frame(body: Boundary) -> Frame:
-    """About a point inside, as far as the body goes."""
+    """Centred at a point inside, with the reach of the body."""
     centre = _amid(body.vertex_points, body.edge_parts, body.face_parts)
     box = body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
     half = body.reals[L.BOX_HALF : L.BOX_HALF + 3]
@@ -132,7 +133,7 @@ def _amid(vertices: Array, edges: Sequence[Edge], faces: Sequence[Face]) -> Arra
 
 
 def _amid_face(face: Face, edges: Sequence[Edge]) -> Array:
-    """Points of a face's surface amid its loop, (n, 3). An atlas's first chart is centred on it."""
+    """Points of a face's surface inside its loop, (n, 3); its first chart is centred on it."""
     if not face.loop:
         return np.array([chart.jet(0.0, 0.0)[0] for chart in face.charts])
     surface = face.charts[0]
@@ -151,11 +152,11 @@ def _amid_face(face: Face, edges: Sequence[Edge]) -> Array:
 
 
 def _displaced(body: Boundary, frame: Frame, area: float) -> float:
-    """A bound of the moments of the layer, as thick as points of the boundary may be off, and of
-    the gaps along edges, in the frame's unit.
+    """A bound on the moments of a layer as thick as the error of boundary points, and of the gaps
+    along edges, in the frame's unit.
 
-    Points are off by roundoff, of coordinates that go as far as the surfaces' own points, and by
-    the body's slack.
+    The error of points is roundoff, of coordinates as large as those of the surfaces' own points,
+    plus the body's slack.
     """
     origins = [
         surface.farthest() or float(np.linalg.norm(surface.shift))
@@ -175,7 +176,7 @@ def _length(curve: Curve) -> float:
 
 
 def _unclosed(values: Array, volume: float) -> float:
-    """How far the boundary is from closed and counted once: ∮ x nᵀ dA from the volume, ∮ n dA from
-    nothing."""
+    """By how much the boundary fails to be closed and counted once: ∮ x nᵀ dA should be the volume
+    times the identity, ∮ n dA zero."""
     tensor = values[TENSOR].reshape(3, 3) - volume * np.eye(3)
     return float(max(np.abs(tensor).max(), np.abs(values[VECTOR_AREA]).max()))

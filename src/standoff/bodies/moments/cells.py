@@ -1,8 +1,8 @@
-"""Integrals of many functions at once over rectangles, refined until they agree with themselves.
+"""Integrals of several functions at once over rectangles, refined until successive rules agree.
 
-Fejér's second rule with 2^k - 1 nodes: open, so that no collapsed side is met, with positive
-weights, and every other node is a node of the rule before, so that the difference of the two costs
-nothing (J. Waldvogel, BIT Numerical Mathematics 46, 2006, 195-202).
+Fejér's second rule with 2^k - 1 nodes. It is open, so that no collapsed side is evaluated, has
+positive weights, and every other node is a node of the previous rule, so that the difference of the
+two costs nothing (J. Waldvogel, BIT Numerical Mathematics 46, 2006, 195-202).
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ import numpy as np
 from standoff.bodies.moments.tolerances import LEAST_SHARE
 from standoff.geometry.validation import Array
 
-# Orders of the rules along either parameter: 2^k - 1 nodes. Past the last a cell is halved.
+# Levels of the rules along each parameter: 2^k - 1 nodes. After the last one a cell is halved.
 FIRST_LEVEL, LAST_LEVEL = 3, 6
-# Values a rule is made of carry so many roundings (eps of the sum of their magnitudes): less than
-# this is not a difference between two rules.
+# The sum of a rule has this many roundings (eps of the sum of its terms' magnitudes): a smaller
+# difference between two rules means nothing.
 ROUNDINGS = 16.0
-# A remainder is this many times what the last two differences foretell.
+# A remainder is this many times the value predicted from the last two differences.
 SAFETY = 8.0
-# A cell this narrow (of the rectangle it began as) is refined no more.
+# A cell this narrow, as a fraction of its original rectangle, is not refined further.
 NARROWEST_CELL = 2.0**-40
 
 Integrand = Callable[[Array, Array], Array]
@@ -40,7 +40,7 @@ class Cell:
     low, high : pairs of float
         Its corners.
     levels : pair of int
-        2^level - 1 nodes along either parameter.
+        2^level - 1 nodes along each parameter.
     """
 
     function: Integrand
@@ -56,7 +56,7 @@ class Sums:
     Attributes
     ----------
     values : by the rule.
-    first, second : what it may be off along either parameter, from the rules of a half and a
+    first, second : their errors along each parameter, estimated from the rules with half and a
         quarter of the nodes.
     magnitude : integrals of the absolute values.
     """
@@ -73,17 +73,17 @@ class Sums:
 
 @dataclass(frozen=True)
 class Total:
-    """Integrals over all cells, (columns,), and what they may be off.
+    """Integrals over all cells, (columns,), and estimates of their errors.
 
     Attributes
     ----------
     values : array
     remainder : array
-        What they may be off because of too few nodes.
+        Errors from the finite number of nodes.
     magnitude : array
         Integrals of absolute values.
     nodes : int
-        How many points were taken.
+        How many points were used.
     """
 
     values: Array
@@ -94,7 +94,7 @@ class Total:
 
 @cache
 def rule(level: int) -> tuple[Array, Array]:
-    """(nodes (n,) on [0, 1], weights (3, n) of this rule and of the two before at its nodes)."""
+    """(nodes (n,) on [0, 1], weights (3, n) at them of this rule and of the two previous ones)."""
     n = 2**level - 1
     angles = np.pi * np.arange(1, n + 1) / (n + 1)
     weights = np.zeros((3, n))
@@ -111,7 +111,7 @@ def _weights(angles: Array) -> Array:
 
 
 def evaluated(cell: Cell) -> Sums:
-    """A cell's integrals by its rule, and what they may be off along either parameter."""
+    """A cell's integrals by its rule, and their estimated errors along each parameter."""
     spans = [b - a for a, b in zip(cell.low, cell.high, strict=True)]
     rules = [rule(level) for level in cell.levels]
     t, s = (a + span * r[0] for a, span, r in zip(cell.low, spans, rules, strict=True))
@@ -124,11 +124,11 @@ def evaluated(cell: Cell) -> Sums:
 
 
 def _remainder(sums: Array) -> Array:
-    """What the finest of three rules, (3, columns), leaves out.
+    """The estimated error of the finest of three rules, (3, columns).
 
-    The difference to the rule before, times how much smaller it is than the one before that, SAFETY
-    times, is more than all that follow, if differences keep falling as they do; a chance agreement
-    is trusted for LEAST_SHARE of it only.
+    It is the last difference, times its ratio to the previous difference, times SAFETY: more than
+    all later differences together if they keep decreasing at this rate. The ratio counts as at
+    least LEAST_SHARE, in case two rules agree by chance.
     """
     last, before = np.abs(sums[0] - sums[1]), np.abs(sums[1] - sums[2])
     size, previous = float(np.linalg.norm(last)), float(np.linalg.norm(before))
@@ -139,19 +139,19 @@ def _remainder(sums: Array) -> Array:
 def integrate(
     cells: list[Cell], scale: Callable[[Array], Array], tolerance: float, most: int
 ) -> Total:
-    """Refine cells until the sum of their remainders is within a tolerance.
+    """Refine cells until the sum of their error estimates is within a tolerance.
 
     Parameters
     ----------
     cells : list of Cell
     scale : callable
-        From the integrals (columns,) the sizes that their remainders count by; inf for columns
-        that need no digits.
+        From the integrals (columns,) the scales of their errors; inf for columns that need not be
+        accurate.
     tolerance : float
-        Relative to them.
+        Relative to these scales.
     most : int
-        Points to take at most, about: what is reached by then is the answer, and its remainder says
-        how good it is.
+        About the greatest number of points to use. What is reached by then is the answer, and its
+        remainder says how accurate it is.
     """
     found = [(cell, evaluated(cell)) for cell in cells]
     nodes = sum(_count(cell) for cell in cells)
@@ -178,7 +178,7 @@ def _count(cell: Cell) -> int:
 
 
 def _excess(cell: Cell, sums: Sums, unit: Array) -> float:
-    """The greatest remainder of a cell, relative; 0 where it is roundoff or cannot be halved."""
+    """The greatest relative error of a cell; 0 if it is roundoff or the cell cannot be halved."""
     spans = [b - a for a, b in zip(cell.low, cell.high, strict=True)]
     if min(spans) < NARROWEST_CELL:
         return 0.0
@@ -187,9 +187,9 @@ def _excess(cell: Cell, sums: Sums, unit: Array) -> float:
 
 
 def _refined(cell: Cell, sums: Sums, unit: Array) -> list[Cell]:
-    """More nodes along the parameter that needs them; past the last rule two halves."""
+    """More nodes along the parameter that needs them; after the last rule, two halves."""
     needs = [float((one * unit).max()) for one in (sums.first, sums.second)]
-    # both, where neither is much better than the other
+    # both, if neither is much better than the other
     axes = [k for k in (0, 1) if needs[k] >= 0.1 * max(needs)]
     low, high, levels = cell.low, cell.high, list(cell.levels)
     full = [k for k in axes if levels[k] == LAST_LEVEL]

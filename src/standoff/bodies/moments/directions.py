@@ -1,9 +1,9 @@
 """Cells over parts of the unit sphere: ellipsoidal faces by directions, normals at a vertex.
 
 A part of the sphere is given by its boundary. Every piece of it gives a rectangle: the piece's own
-parameter, and the great arc from a fixed direction, the start, to it; their areas have signs. Only
-the point opposite to the start must not be on the boundary. Where it lies in the part, the whole
-sphere is to be added: the signed areas fall short by 4 pi.
+parameter, and the great arc to it from a fixed direction, the start; their areas have signs. The
+point opposite to the start must not be on the boundary. If it lies inside the part, the whole
+sphere must be added: the signed areas are too small by 4 pi.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ BoundaryPiece = Callable[[Array], tuple[Array, Array]]
 
 # Samples of a piece of a boundary.
 SAMPLES = 33
-# Directions from which the one farthest from a boundary is chosen.
+# Directions among which the one farthest from a boundary is chosen.
 _EVENLY_AROUND = np.array([d for d in product((-1.0, 0.0, 1.0), repeat=3) if any(d)])
 EVENLY_AROUND = _EVENLY_AROUND / np.linalg.norm(_EVENLY_AROUND, axis=1)[:, None]
 
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """A piece of a boundary, parameter from first to last; sign -1 where the part is on its right,
+    """A piece of a boundary, parameter from first to last; sign -1 if the part is on its right,
     seen from outside the sphere."""
 
     piece: BoundaryPiece
@@ -68,12 +68,12 @@ def _square(chart: Surface, values: OverSphere) -> Integrand:
 
 
 def part_cells(arcs: Sequence[Arc], start: Array, values: OverSphere) -> list[Cell]:
-    """The part within arcs; less the whole sphere, if it holds the point opposite to the start."""
+    """The part inside arcs; minus the whole sphere if it contains the point opposite the start."""
     return [Cell(_sector(arc, start, values), (arc.first, 0.0), (arc.last, 1.0)) for arc in arcs]
 
 
 def _sector(arc: Arc, start: Array, values: OverSphere) -> Integrand:
-    """Over a signed triangle of the start and an arc: the way to the arc times its length."""
+    """Over a signed triangle between the start and an arc, parametrised along and towards it."""
 
     def integrand(t: Array, s: Array) -> Array:
         y, dy = arc.piece(t)
@@ -103,7 +103,7 @@ def farthest_start(arcs: Sequence[Arc]) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Ellipsoid:
-    """An ellipsoidal surface, linear @ (unit sphere) + shift, and where integrals are taken."""
+    """An ellipsoidal surface, linear @ (unit sphere) + shift, and the frame of integration."""
 
     linear: Array
     shift: Array
@@ -142,5 +142,5 @@ class Ellipsoid:
 
     @property
     def sense(self) -> int:
-        """-1 where the map mirrors: what is left on the ellipsoid is right on the sphere."""
+        """-1 if the map mirrors: left on the ellipsoid is then right on the sphere."""
         return 1 if np.linalg.det(self.linear) > 0.0 else -1

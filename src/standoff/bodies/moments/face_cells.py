@@ -1,4 +1,4 @@
-"""The cells of one face, of whatever kind its surface is."""
+"""The cells of one face, for any kind of surface."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
-# What of the integrand turns round with the normal: all but the area.
+# Signs of the integrand's columns when the normal is reversed: all but the area change.
 FLIPPED = np.where(np.arange(COLUMNS) == AREA, 1.0, -1.0)
-# Most nodes of the area of an ellipsoidal face's directions.
+# Greatest number of nodes for the solid angle of an ellipsoidal face.
 ANGLE_NODES = 20_000
 
 
@@ -45,7 +45,7 @@ def face_cells(body: PackedParts, face: int, frame: Frame) -> list[Cell]:
 def _ellipsoid_cells(body: PackedParts, surface: Surface, charts: list[Chart]) -> list[Cell]:
     """A face of an ellipsoid: its edges, on the unit sphere, bound its directions."""
     ellipsoid = Ellipsoid(surface.linear, surface.shift, charts[0].frame)
-    # a gnomonic chart's x_u × x_v points out of the unit sphere; out of a pit's material is inward
+    # a gnomonic chart's x_u × x_v points out of the unit sphere; for a pit, outward is inwards
     bulges = charts[0].outward * ellipsoid.sense > 0.0
 
     def values(y: Array) -> Array:

@@ -1,8 +1,8 @@
 """Cells of a trimmed face with one chart: Green's theorem along its trimming curves.
 
 ∬ F du dv over the inside of a loop is ∮ -Q du with Q(u, v) = ∫ F(u, s) ds from a fixed v0 to v. Q
-is an integral too, so a trimming curve gives a rectangle: its own parameter, and the way from v0 to
-it. Lines of constant u, as the seams of a band that goes once round, give nothing.
+is an integral too, so a trimming curve gives a rectangle: its own parameter, and v from v0 to the
+curve. Lines of constant u, like the seams of a band that goes once around, give nothing.
 """
 
 from __future__ import annotations
@@ -25,24 +25,24 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters, surface_jet
 
-# Points of a trimming curve between which it crosses a line of (u, v) at most once.
+# Points of a trimming curve between which it crosses a line of constant u or v at most once.
 SAMPLES = 65
-# Beside a coordinate plane a superellipsoid goes by powers of a parameter. Where they are not even
-# whole numbers the parameter is itself taken by a power, that makes them this at least: few nodes
-# then do.
+# Near a coordinate plane a superellipsoid varies as powers of a parameter. Where these are not even
+# integers, the parameter is replaced by a power that makes them at least this, so that few nodes
+# suffice.
 SMOOTH_POWER = 6.0
 
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """A chart of a body and where its integrals are taken."""
+    """A chart of a body and the frame of integration."""
 
     body: PackedParts
     number: int
     frame: Frame
 
     def flux(self, u: Array, v: Array) -> Array:
-        """The integrand of `flux` times du dv: (..., columns) for u and v of one shape (...)."""
+        """The integrand of `flux` times du dv: (..., columns) for u and v of the same shape."""
         reals, row = self.body.reals, chart_row(self.body, self.number)
         kind, at = int(row[L.CHART_KIND]), int(row[L.CHART_REALS])
         spots = zip(u.ravel().tolist(), v.ravel().tolist(), strict=True)
@@ -61,7 +61,7 @@ class Chart:
 
     @property
     def outward(self) -> float:
-        """+1 where x_u × x_v points outward, else -1."""
+        """+1 if x_u × x_v points outward, else -1."""
         row = chart_row(self.body, self.number)
         return float(self.body.reals[int(row[L.CHART_REALS]) + L.OUTWARD])
 
@@ -79,8 +79,8 @@ class Chart:
 
 @dataclass(frozen=True, eq=False)
 class TrimmingCurve:
-    """A coedge: (u, v) by its edge's parameter, from first to last; the face is on its left where
-    side is 1, on its right where it is -1."""
+    """A coedge: (u, v) as functions of its edge's parameter, from first to last; the face is on its
+    left if side is 1, on its right if it is -1."""
 
     body: PackedParts
     coedge: int
@@ -101,7 +101,7 @@ class TrimmingCurve:
 
     @property
     def edge(self) -> int:
-        """Its number; -1 - vertex for a collapsed side."""
+        """Number of the edge; -1 - vertex for a collapsed side."""
         return int(self.body.ints[self.row + L.COEDGE_EDGE])
 
     def parameters(self, t: Array) -> Array:
@@ -114,7 +114,7 @@ class TrimmingCurve:
 
 
 def chart_cells(chart: Chart) -> list[Cell]:
-    """The cells of a face that one chart sees."""
+    """The cells of a face with a single chart."""
     curves = [TrimmingCurve(chart.body, k) for k in chart.coedges]
     samples = [curve.samples() for curve in curves]
     start = _start(samples)
@@ -132,14 +132,14 @@ def chart_cells(chart: Chart) -> list[Cell]:
 
 
 def _start(samples: list[Array]) -> float:
-    """v0: that of a level trimming curve, which then gives nothing, else the middle."""
+    """v0: that of a trimming curve of constant v, which then gives nothing, else the middle."""
     level = [v[0] for _, v, du, _ in samples if np.ptp(v) == 0.0 and np.abs(du).max() > 0.0]
     every = np.concatenate([v for _, v, _, _ in samples])
     return float(min(level)) if level else float(0.5 * (every.min() + every.max()))
 
 
 def _cuts(curve: TrimmingCurve, u: Array, v: Array, breaks: tuple[Array, Array]) -> list[float]:
-    """Ends of the pieces of a trimming curve that cross no break."""
+    """Ends of the pieces of a trimming curve that do not cross a break."""
     first, last = curve.ends
     times = np.linspace(first, last, SAMPLES)
     cuts = [first, last]
@@ -157,8 +157,8 @@ def _cuts(curve: TrimmingCurve, u: Array, v: Array, breaks: tuple[Array, Array])
 
 
 def _layers(start: float, level: float, breaks: Array) -> Iterator[tuple[float, float | None]]:
-    """The way in v from the start to a trimming curve near a level, cut at breaks: (from, to), to
-    None for the curve itself."""
+    """The range of v from the start to a trimming curve near a level, cut at breaks: (from, to),
+    where to is None for the curve itself."""
     between = breaks[(breaks > min(start, level)) & (breaks < max(start, level))]
     stops = [start, *(between if level > start else between[::-1])]
     yield from ((float(a), float(b)) for a, b in pairwise(stops))
@@ -179,21 +179,21 @@ def superellipsoid_cells(charts: list[Chart], loop: bool) -> list[Cell]:
     """The cells of a superellipsoid's face that has several charts: all of it, or an octant.
 
     The charts' squares |u|, |v| <= 1 tile it. They are cut along the coordinate planes, where the
-    surface goes by powers of u and v, and into triangles at their centres, where it goes by the
+    surface varies as powers of u and v, and into triangles at their centres, where it varies as
     powers of both.
 
     Raises
     ------
     StandoffError
-        A face with other edges than an octant's.
+        A face with edges other than those of an octant.
     """
     signs: tuple[float, ...] = (1.0, -1.0)
     if loop:
         if not all(_is_octant(chart) for chart in charts):
             raise StandoffError(
-                "A face of a superellipsoid with several charts, trimmed other than to an "
-                "octant, cannot be integrated: give each part one chart, or give mass, centre "
-                "and inertia yourself (so.simulation.MassProperties.of).",
+                "A face of a superellipsoid with several charts, unless it is whole or an octant, "
+                "cannot be integrated: give each part one chart, or give mass, centre and inertia "
+                "yourself (so.simulation.MassProperties.of).",
                 "body",
                 charts[0].body,
             )
@@ -208,7 +208,7 @@ def superellipsoid_cells(charts: list[Chart], loop: bool) -> list[Cell]:
 
 
 def _is_octant(chart: Chart) -> bool:
-    """Do a chart's trimming curves run along u = 0 and v = 0, the others' sides at or above 0."""
+    """Do a chart's trimming curves run along u = 0 and v = 0, with the face at u, v >= 0?"""
     for k in chart.coedges:
         u, v = TrimmingCurve(chart.body, k).samples()[:2]
         if (
@@ -220,7 +220,7 @@ def _is_octant(chart: Chart) -> bool:
 
 
 def _triangle(chart: Chart, su: float, sv: float, swap: bool) -> Integrand:
-    """Half of the square [0, su] x [0, sv], by (r, w): (r, r w), or (r w, r)."""
+    """Half of the square [0, su] x [0, sv], in parameters (r, w): (r, r w), or (r w, r)."""
 
     powers = [m for m in chart.surface.data[:2] if m % 2.0 != 0.0]
     p = max(float(np.ceil(SMOOTH_POWER / (1.0 + min(powers, default=SMOOTH_POWER)))), 1.0)

@@ -1,9 +1,9 @@
-"""What is integrated over the boundary: by the divergence theorem the moments of the inside.
+"""What is integrated over the boundary: by the divergence theorem, the moments of the interior.
 
 For a function q homogeneous of degree k about a point, ∫ q dV = 1/(3 + k) ∮ q (x · n) dA. So all
-moments come from one weight, x · n dA, positive where the point is inside: nothing cancels. Beside
-them stand ∮ n dA, which is zero, and ∮ x nᵀ dA, which is the volume times the identity: where they
-are not, the boundary is not closed, or not counted once.
+moments have the same weight, x · n dA, which is positive on a convex body around the point: nothing
+cancels. Added are ∮ n dA, which must be zero, and ∮ x nᵀ dA, which must be the volume times the
+identity: otherwise the boundary is not closed, or not counted once.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ROWS, COLS = [0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """Where and in what unit the integrals are taken: x -> (x - centre) / reach.
+    """The frame and unit of the integrals: x -> (x - centre) / reach.
 
     Attributes
     ----------

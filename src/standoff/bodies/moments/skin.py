@@ -1,8 +1,8 @@
 """Cells of what a swept ball adds: canals along a core's edges, parts of spheres at its vertices.
 
-The outward normals of a core at a point of an edge are an arc from one face's to the other's; at a
-vertex they are a part of the unit sphere whose boundary is made of the arcs of its edges and of the
-normals along its collapsed sides.
+The outward normals of a core at a point of an edge form an arc from one face's normal to the
+other's; at a vertex they form a part of the unit sphere whose boundary consists of the arcs of its
+edges and of the normals along its collapsed sides.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_conormal
 
-# A normal shorter than this is none: its chart has collapsed there.
+# A normal shorter than this is not a unit vector: its chart has collapsed there.
 HALF = 0.5
-# Degrees of the polynomials that the normals along a collapsed side are followed by.
+# Degrees of the polynomials that interpolate the normals along a collapsed side.
 DEGREES = (8, 16, 32, 64, 128)
 
 
 @dataclass(frozen=True, eq=False)
 class Fan:
-    """The normals along an edge: first (n, 3), turned about the tangents (n, 3) by turns (n,),
-    radians, from the face on the left to the one on the right."""
+    """The normals along an edge: first (n, 3), rotated about the tangents (n, 3) by turns (n,),
+    radians, from the face on the left to the face on the right."""
 
     first: Array
     tangents: Array
     turns: Array
 
     def at(self, shares: Array) -> Array:
-        """(n, k, 3): the normals at shares (k,) of the turns."""
+        """(n, k, 3): the normals at fractions (k,) of the turns."""
         angles = np.outer(self.turns, shares)[..., None]
         aside = np.cross(self.tangents, self.first)
         return np.asarray(np.cos(angles) * self.first[:, None] + np.sin(angles) * aside[:, None])
@@ -65,7 +65,7 @@ def _edge_row(body: PackedParts, edge: int) -> int:
 
 
 def _sides(body: PackedParts, edge: int) -> tuple[int, int] | None:
-    """The coedges left and right of an edge, seen from outside; None without faces."""
+    """The coedges left and right of an edge, seen from outside; None if it has no faces."""
     row = _edge_row(body, edge)
     pair = [int(k) for k in body.ints[row + L.EDGE_COEDGE_0 : row + L.EDGE_COEDGE_1 + 1]]
     if min(pair) < 0:
@@ -80,8 +80,8 @@ def _outward(body: PackedParts, chart: int) -> float:
 
 
 def _has_fan(body: PackedParts, edge: int) -> bool:
-    """Is there an arc of normals along an edge: not where its faces share them, or it is the seam
-    of one face."""
+    """Is there an arc of normals along an edge? Not if its faces have the same normals, or if it is
+    the seam of one face."""
     row = _edge_row(body, edge)
     one, other = (int(body.ints[row + k]) for k in (L.EDGE_COEDGE_0, L.EDGE_COEDGE_1))
     if body.ints[row + L.EDGE_FLAGS] & L.CREASED or (one >= 0 and other < 0):
@@ -95,7 +95,7 @@ def fan(body: PackedParts, edge: int, times: Array) -> tuple[Fan, Array, Array, 
     x, xt, xtt = np.moveaxis(jets, 1, 0)
     tangents = xt / np.linalg.norm(xt, axis=1)[:, None]
     sides = _sides(body, edge)
-    if sides is None:  # a segment: normals all round
+    if sides is None:  # a segment: normals all around
         axis = np.eye(3)[int(np.abs(tangents[0]).argmin())]
         first = np.cross(tangents, axis)
         first = first / np.linalg.norm(first, axis=1)[:, None]
@@ -112,7 +112,7 @@ def fan(body: PackedParts, edge: int, times: Array) -> tuple[Fan, Array, Array, 
 
 
 def _normal(body: PackedParts, coedge: int, tangent: Array, t: float) -> Array:
-    """Outward normal of a coedge's face at its edge's parameter, at a collapsed side its limit."""
+    """Outward normal of a coedge's face at its edge's parameter; its limit at a collapsed side."""
     normal = np.array(coedge_conormal(body.ints, body.reals, coedge, tuple(tangent.tolist()), t)[1])
     if float(np.linalg.norm(normal)) > HALF:
         return normal
@@ -150,8 +150,8 @@ def _ball(frame: Frame, point: Array) -> OverSphere:
 def _vertex_cells(body: PackedParts, vertex: int, frame: Frame) -> list[Cell]:
     """The part of a sphere about a vertex.
 
-    All its normals point away from a point inside the core, or square to that way: the start of
-    the triangles is that way, its opposite no normal.
+    All its normals make at most 90 degrees with the direction from a point inside the core to the
+    vertex. The triangles start at that direction, whose opposite is therefore not a normal.
     """
     point = body.vertex_points[vertex]
     arcs = []
@@ -169,7 +169,7 @@ def _vertex_cells(body: PackedParts, vertex: int, frame: Frame) -> list[Cell]:
 
 
 def _turning(body: PackedParts, edge: int, end: float) -> Callable[[Array], tuple[Array, Array]]:
-    """The arc of normals at an edge's end, by shares of its turn."""
+    """The arc of normals at an edge's end, parametrised by the fraction of its turn."""
     normals = fan(body, edge, np.array([end]))[0]
 
     def piece(s: Array) -> tuple[Array, Array]:
@@ -197,7 +197,7 @@ def _collapsed_arcs(chart: Chart, coedge: int, vertex: int) -> list[Arc]:
 def _followed(
     chart: Chart, curve: TrimmingCurve, first: float, last: float
 ) -> Callable[[Array], tuple[Array, Array]]:
-    """Normals along a collapsed side and their derivatives, by polynomials."""
+    """Normals along a collapsed side and their derivatives, by polynomial interpolation."""
     surface, outward = chart.surface, _outward(chart.body, chart.number)
 
     def normal(t: float) -> Array:
@@ -214,8 +214,8 @@ def _followed(
             break
     else:
         raise StandoffError(
-            f"The normals along the side that has collapsed to vertex {-1 - curve.edge} vary too "
-            f"fast (the last of {degree} terms is {tail:.2g}): no moments of the swept ball there.",
+            f"The normals along the side collapsed to vertex {-1 - curve.edge} vary too fast (the "
+            f"last of {degree} terms is {tail:.2g}) for the moments of the swept ball there.",
             "body",
             chart.body,
         )

@@ -20,17 +20,17 @@ PROOFS: dict[str, Callable[[Any, int | None], PatchProof]] = {
     "interval": interval.prove,
     "swept": prove_swept,
 }
-"""By what a surface's class says of itself."""
+"""By the kind of proof that a surface's class declares."""
 
 
 def prove_patch(surface: Surface, outward: int | None = None) -> PatchProof:
-    """Prove that a patch is convex, or bound how far it is not.
+    """Prove that a patch is convex, or bound by how much it is not.
 
     Parameters
     ----------
     surface : the patch with its domain.
-    outward : +1 where f_u x f_v is to point out of the body, -1 where into it; when left out,
-        the side to which the patch bulges.
+    outward : +1 if f_u x f_v points out of the body, -1 if into it; if not given, the side to which
+        the patch bulges.
 
     Raises
     ------

@@ -1,14 +1,14 @@
 """Convexity of NURBS and rational Bezier patches, by Bernstein bounds with subdivision.
 
 Every span of a NURBS is a rational Bezier patch whose curvature is the quotient of polynomials
-(see ``forms``). Where all coefficients of the 2x2 polynomial P are semidefinite matrices, so is P
-on the whole box; where they are not, the box is halved, the worst first, until each box is proven
-or the least curvature and its places are known well. No sampling decides.
+(see ``forms``). If all coefficients of the 2x2 polynomial P are semidefinite matrices, so is P on
+the whole box; otherwise the box is halved, the worst first, until each box is proven or the least
+curvature and its places are known well. Nothing is decided by sampling.
 
-Where the curvature only touches zero, along a line inside a span, the bound falls with the square
-of the boxes' width and is left at some 1e-5 of the size: not proven, yet not found to bend inward.
-A knot on the line (`refined`) lets it be proven: where a first proof fails, a second one cuts the
-spans at spare knots too.
+Where the curvature only touches zero, along a line inside a span, the bound decreases with the
+square of the boxes' width and ends at some 1e-5 of the size: not proven, yet not found to bend
+inward. A knot on the line (`refined`) makes the proof possible: if a first proof fails, a second
+one cuts the spans at redundant knots too.
 """
 
 from __future__ import annotations
@@ -41,17 +41,17 @@ from standoff.geometry.validation import Array
 
 Box = tuple[Cell, CurvatureBound]
 
-# Boxes halved in one span before what is left counts as a dent of its bound.
+# Boxes halved in one span before the rest counts as dents as deep as their bounds.
 MOST_SPLITS = 1000
-# Enough of them to show the size of the dents of a patch that is not convex.
+# The same for a patch that is not convex: enough to show the size of its dents.
 FINE_SPLITS = 150
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A span with its homogeneous points and forms, scaled to the size one of its surface.
+    """A span with its homogeneous points and forms, scaled so that the surface has size one.
 
-    `moved` is the length by which points of a pole were brought together.
+    `moved` is the length by which the points of a pole were moved together.
     """
 
     domain: tuple[float, float, float, float]
@@ -68,7 +68,7 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class SpanBound:
-    """What the search found in one span: dents, the least curvature found and its box."""
+    """What the search found in one span: dents, the least curvature and its box."""
 
     dents: list[Dent]
     convex: bool
@@ -77,18 +77,18 @@ class SpanBound:
 
 
 def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
-    """Prove that a NURBS or rational Bezier patch is convex, or bound how far it is not.
+    """Prove that a NURBS or rational Bezier patch is convex, or bound by how much it is not.
 
     Parameters
     ----------
-    surface : of any degree; C1 at least inside its domain.
-    outward : +1 where f_u x f_v is to point outward, -1 where inward; when left out, the side
-        to which the patch bulges more.
+    surface : of any degree, and at least C1 inside its domain.
+    outward : +1 if f_u x f_v points outward, -1 if inward; if not given, the side to which the
+        patch bulges more.
 
     Raises
     ------
     ValueError
-        A knot where the surface may be creased: a proof needs each smooth part by itself.
+        A knot where the surface may be creased: a proof needs each smooth part separately.
     """
     _refuse_creases(surface)
     proof, bent = _proven(surface, outward, spare=False)
@@ -99,7 +99,7 @@ def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
 
 
 def _proven(surface: NurbsSurface, outward: int | None, spare: bool) -> tuple[PatchProof, bool]:
-    """As `prove`, by spans that end at spare knots too, or not; was an inward bend found."""
+    """As `prove`, with spans that also end at redundant knots if `spare`; was it found concave?"""
     grid, size, reach = _grid(surface, spare)
     pieces = _pieces(grid, reach)
     every = [piece.forms for piece in pieces]
@@ -153,7 +153,7 @@ def _refuse_creases(surface: NurbsSurface) -> None:
 
 
 def _grid(surface: NurbsSurface, spare: bool) -> tuple[Grid, float, float]:
-    """The spans of a surface about its centre, scaled to the size one.
+    """The spans of a surface relative to its centre, scaled to size one.
 
     Also the size, length, and how many sizes away from the origin the control points lie.
     """
@@ -185,7 +185,7 @@ def _piece(domain: Domain, points: Array, reach: float) -> Piece:
 def _straightened(
     grid: Grid, pieces: Sequence[Piece], reach: float
 ) -> tuple[list[Piece], Nearness] | None:
-    """The patch as one ruled by straight lines, if it is so but for rounding; how near it is."""
+    """The patch as one ruled by straight lines, if it is so up to rounding, and how near it is."""
     for along_u in (False, True):
         ruled = ruled_along(grid, along_u, ROUNDED_POINTS * max(reach, 1.0))
         if ruled is None:
@@ -215,12 +215,12 @@ def _bends(forms: Forms) -> Array:
 
 
 def _flat(pieces: Sequence[Piece], sense: int) -> bool:
-    """Is the patch convex to both sides."""
+    """Is the patch convex to both sides?"""
     return all(curvature_bound(piece.forms, ROOT, -sense).convex for piece in pieces)
 
 
 def _search(piece: Piece, sense: int) -> SpanBound:
-    """Halve the box that may dent most, until all are proven or the dents are known well."""
+    """Halve the box that may dent most, until all are proven or the dents are known well enough."""
 
     def part(cell: Cell) -> Part[Box]:
         bound = curvature_bound(piece.forms, cell, sense)
@@ -246,7 +246,7 @@ def _search(piece: Piece, sense: int) -> SpanBound:
 
 
 def _weight(bound: CurvatureBound) -> float:
-    """Minus the turn of normals the wrong way that a box may hide, about."""
+    """About minus the turn of normals the wrong way that a box may contain."""
     by_curvature = -bound.least * bound.width if bound.width > 0.0 else np.inf
     return -min(by_curvature, bound.turn)
 
@@ -259,6 +259,6 @@ def _dent(piece: Piece, cell: Cell, bound: CurvatureBound) -> Dent:
         return Dent(-bound.least, low, high)
     turn = bound.turn
     if bound.convex and bound.tight:
-        # at a sharp apex curvature grows as 1 / distance, and the turn by rounding stays
+        # at a sharp apex the curvature grows as 1 / distance, so the turn by rounding stays
         turn = min(turn, bound.apex)
     return Dent(np.inf, low, high, turn)

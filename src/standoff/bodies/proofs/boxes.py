@@ -1,4 +1,4 @@
-"""One box of a patch's parameters: bounds of its least normal curvature and of its normals."""
+"""One box of a patch's parameters: bounds on its least normal curvature and on its normals."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from standoff.bodies.proofs.tolerances import (
 from standoff.geometry import bernstein
 from standoff.geometry.validation import Array
 
-# Deepest halving of one parameter: beyond it a box is left as a speck, with its size as bound.
-# At a singular corner size and rounding of the normals then weigh the same; at a sharp apex the
-# normals are free of such rounding, and smaller boxes serve.
+# Greatest number of halvings of one parameter; a box that small keeps its size as its bound. At a
+# singular corner, size and rounding of the normals then matter equally; at a sharp apex the normals
+# have no such rounding, and smaller boxes are useful.
 DEEPEST = 26
 DEEPEST_APEX = 44
 
@@ -74,12 +74,12 @@ class CurvatureBound:
     ----------
     least : no normal curvature of the box is below this; -inf where unknown.
     apex : at a sharp apex, no curvature is below -apex over the distance from it.
-    width : of the box's image, about.
-    turn : radians between any two normals of the box at most.
-    convex : no curvature bends inward but for the rounding of the control points.
-    tight : do `least` or `turn` overstate the curvature by little.
-    found : the least curvature at the box's centre, nan where the patch is singular there.
-    along_u : is the box to be halved along u.
+    width : of the box's image, approximately.
+    turn : the greatest angle between two normals of the box, radians.
+    convex : no curvature bends inward, up to the rounding of the control points.
+    tight : are `least` and `turn` close to the actual values?
+    found : the least curvature at the box's centre, nan if the patch is singular there.
+    along_u : should the box be halved along u?
     """
 
     least: float
@@ -93,7 +93,7 @@ class CurvatureBound:
 
 
 def curvature_bound(forms: Forms, cell: Cell, sense: int) -> CurvatureBound:
-    """Bound the least curvature on a box; `sense` is that of PatchProof."""
+    """Bound the least curvature on a box; `sense` as in PatchProof."""
     u, v = cell.centre
     jacobian = bernstein.value(forms.jacobian, u, v)
     frame = _frame(jacobian)
@@ -127,15 +127,15 @@ def curvature_bound(forms: Forms, cell: Cell, sense: int) -> CurvatureBound:
 
 
 def _strays(columns: Array, axis: int) -> float:
-    """How far J strays along one parameter."""
+    """How much J varies along one parameter."""
     return float(np.abs(np.ptp(columns, axis=axis)).max())
 
 
 def _turn(normal: Array, forms: Forms) -> float:
-    """Radians between any two normals of a box at most; pi where no cone holds them."""
+    """The greatest angle between two normals of a box, radians; pi if no cone contains them."""
     vectors = normal.reshape(3, -1)
     lengths = np.linalg.norm(vectors, axis=0)
-    # shorter ones are rounding: the normal is then that of the others
+    # shorter ones are only rounding: the others give the normal
     regular = lengths > NORMAL_ROUNDING * float(np.abs(forms.normal).max())
     if not regular.any():
         return float(np.pi)
@@ -144,7 +144,7 @@ def _turn(normal: Array, forms: Forms) -> float:
     length = float(np.linalg.norm(axis))
     if length == 0.0:
         return float(np.pi)
-    # the sine keeps small angles that a cosine would lose
+    # the sine resolves small angles that a cosine would lose
     if float((axis @ directions).min()) <= 0.0:
         return float(np.pi)
     sine = float(np.linalg.norm(np.cross(directions.T, axis / length), axis=1).max())
@@ -152,7 +152,7 @@ def _turn(normal: Array, forms: Forms) -> float:
 
 
 def deep_enough(forms: Forms, cell: Cell) -> bool:
-    """Has a box been halved as often as it is worth."""
+    """Has a box been halved as often as is useful?"""
     apex = _apex_distance(forms, cell.ends) == 0.0
     return max(cell.u[0], cell.v[0]) >= (DEEPEST_APEX if apex else DEEPEST)
 
@@ -187,7 +187,7 @@ def _least(entries: Array) -> Array:
 
 
 def _apex_distance(forms: Forms, ends: tuple[float, float, float, float]) -> float:
-    """Product of a box's least distances from the sides that are sharp apexes; 1 without any."""
+    """Product of a box's least distances from the sides that are sharp apexes; 1 if none is."""
     u0, u1, v0, v1 = ends
     distance = 1.0
     for side in forms.sharp:
@@ -208,12 +208,12 @@ def _found(forms: Forms, u: float, v: float, frame: Array, sense: int) -> float:
 
 
 def _allowed(forms: Forms, normal: float, frame: Array) -> float:
-    """What rounding of the control points may take from an eigenvalue of P in the frame."""
+    """By how much rounding of the control points may lower an eigenvalue of P in the frame."""
     return (forms.noise[0] * normal + forms.noise[1]) * float(np.linalg.norm(frame, 2)) ** 2
 
 
 def _size(forms: Forms, cell: Cell, normal: Array, columns: Array) -> tuple[float, float]:
-    """A lower bound of |T| I / w^3 over a box, and how far J (its columns in a frame) strays.
+    """A lower bound of |T| I / w^3 over a box, and how much J (its columns in a frame) varies.
 
     P over the first, and over the distance from a sharp apex, bounds the curvature.
     """

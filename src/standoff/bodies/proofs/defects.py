@@ -1,9 +1,9 @@
 """From boxes where a patch may bend inward to the length by which it may dent.
 
 Along a path of the patch that starts in a tangent plane, the height above that plane has the
-second derivative -kappa, at most k where the least curvature is bounded by -k. Inside places no
-wider than w it gains the slope k w, over the patch's size D the height k (w D - w^2 / 2). Places
-of different k add as layers.
+second derivative -kappa, at most k where the least curvature is at least -k. Crossing places of
+total width w it gains the slope k w, and over the patch's size D the height k (w D - w^2 / 2).
+Places of different k add up in layers.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 from standoff.geometry.validation import Array
 
-# Layers of curvature k, k/4, k/16 ... to below 1e-14 k: finer ones gain nothing.
+# Layers of curvature k, k/4, k/16 ... to below 1e-14 k: more would not help.
 LAYERS = 24
 LAYER_RATIO = 4.0
 
@@ -26,9 +26,9 @@ class Dent:
 
     Attributes
     ----------
-    curvature : k >= 0, no curvature is below -k; inf where no bound was found.
-    low, high : (3,) corners of a box that holds the surface there.
-    turn : radians between any two normals there at most; what the box adds where k is inf.
+    curvature : k >= 0, no curvature is below -k; inf if no bound was found.
+    low, high : (3,) corners of a box that contains the surface there.
+    turn : the greatest angle between two normals there, radians; used if k is inf.
     """
 
     curvature: float
@@ -47,7 +47,7 @@ def dents_total(dents: Sequence[Dent]) -> tuple[float, float]:
         if not np.isfinite(dent.curvature):
             rise += float(np.tan(min(dent.turn, 1.5)))
             tilt += dent.turn
-    # nothing rises by more than the patch's own size
+    # nothing rises by more than the size of the patch
     return min(rise, 1.0), min(tilt, float(np.pi))
 
 
@@ -60,7 +60,7 @@ def _layered(dents: Sequence[Dent]) -> tuple[float, float]:
     level = float(k[0])
     for layer in range(LAYERS):
         below = level / LAYER_RATIO if layer < LAYERS - 1 else 0.0
-        # all boxes with a curvature above the layer's floor
+        # all boxes whose curvature is above the bottom of the layer
         last = int(np.searchsorted(-k, -below, side="left")) - 1
         w = float(widths[max(last, 0)])
         rise += (level - below) * (w - 0.5 * w * w)

@@ -5,8 +5,8 @@ are w^3 f_u x f_v), the fundamental forms are quotients of polynomials:
     I = J^T J / w^4,         J = w X_* - w_* X  (two columns, by u and by v)
     II = P / (w |T|),        P = T . (H_uu, H_uv, H_vv),  a 2x2 matrix polynomial,
 and a patch is convex where P is semidefinite. On a collapsed side f_u (or f_v) vanishes, and with
-it T and P; the known powers of the distance to that side are divided out of all three, which is
-the congruence a_u = a'/(1 - v) of the parameters' directions and changes no sign.
+it T and P; the known powers of the distance to that side are divided out of all three. This is the
+congruence a_u = a'/(1 - v) of the parameter directions and does not change any sign.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from standoff.bodies.proofs.tolerances import COLLAPSED_SIDE, SMOOTH_POLE
 from standoff.geometry import bernstein
 from standoff.geometry.validation import Array
 
-# Products are taken in the widest floating point the platform has, so that cancellation costs
-# nothing but the rounding of the control points themselves.
+# Products are computed in the widest floating-point type of the platform, so that cancellation
+# amplifies only the rounding of the control points themselves.
 Wide = NDArray[Any]
 
 
@@ -36,7 +36,8 @@ class Forms:
     normal : (3, ., .) T / the powers divided out, along f_u x f_v.
     jacobian : (2, 3, ., .) the columns of J.
     weight : (., .) w.
-    noise : (2,) what rounding of the control points may do to P: noise[0] |normal| + noise[1].
+    noise : (2,) by how much rounding of the control points may change P: noise[0] |normal| +
+        noise[1].
     poles : collapsed sides (0 u = 0, 1 u = 1, 2 v = 0, 3 v = 1): there f_u (f_v for the first
         two) is the column of J times the distance from that side.
     sharp : those that end in a sharp apex: II = second / (w |normal| distance).
@@ -52,9 +53,9 @@ class Forms:
 
 
 def forms_of(points: Array, reach: float) -> Forms:
-    """The forms of a Bezier patch, (4, p + 1, q + 1) homogeneous points, size about one.
+    """The forms of a Bezier patch, (4, p + 1, q + 1) homogeneous points, of size about one.
 
-    Poles are to be single points (`with_poles`). The control points were rounded at the distance
+    Poles must be single points (`with_poles`). The control points were rounded at the distance
     `reach` from the origin, in units of the size.
     """
     h = points.astype(np.longdouble)
@@ -91,7 +92,7 @@ def _raised(c: Wide, rows: int, columns: int) -> Wide:
 
 
 def _polynomial(h: Wide) -> tuple[list[Wide], Wide, list[Wide]]:
-    """J, T and P where all weights are equal: of lower degrees than the rational ones."""
+    """J, T and P if all weights are equal: of lower degrees than the rational ones."""
     x = h[:3]
     w = h[3, 0, 0]
     xu, xv = bernstein.along_u(x), bernstein.along_v(x)
@@ -126,7 +127,7 @@ def _rational(h: Wide) -> tuple[list[Wide], Wide, list[Wide]]:
 
 
 def _seconds(h: Wide) -> list[Wide | None]:
-    """H_uu, H_uv, H_vv; None where the degree is too low for one."""
+    """H_uu, H_uv, H_vv; None for one for which the degree is too low."""
     hu, hv = bernstein.along_u(h), bernstein.along_v(h)
     return [
         bernstein.along_u(hu) if hu.shape[-2] > 1 else None,
@@ -143,7 +144,7 @@ def _cross(a: Wide, b: Wide) -> Wide:
 
 
 def _dot(a: Wide, b: Wide | None) -> Wide:
-    """Dot product of a scaled with a plain vector polynomial, plain; zero for None."""
+    """Plain dot product of a scaled and a plain vector polynomial; zero for None."""
     if b is None:
         return np.zeros((1, 1), dtype=a.dtype)
     dotted: Wide = bernstein.unscaled(bernstein.convolve(a, bernstein.scaled(b)).sum(axis=0))
@@ -151,7 +152,7 @@ def _dot(a: Wide, b: Wide | None) -> Wide:
 
 
 def _noise(points: Array, reach: float) -> tuple[float, float]:
-    """What half a unit of roundoff in every control point does to P, as Forms.noise."""
+    """The effect on P of half a unit of roundoff in every control point, as in Forms.noise."""
     eps = 0.5 * float(np.finfo(np.float64).eps) * max(reach, 1.0)
     p, q = points.shape[1] - 1, points.shape[2] - 1
     hu, hv = bernstein.along_u(points), bernstein.along_v(points)
@@ -164,7 +165,7 @@ def _noise(points: Array, reach: float) -> tuple[float, float]:
 
 
 def with_poles(points: Array) -> tuple[Array, float]:
-    """The points with every collapsed side made one point, and the length they moved by."""
+    """The points with every collapsed side made a single point, and how far they moved, length."""
     points, moved = points.copy(), 0.0
     for side in range(4):
         width = _width(points, side)
@@ -189,19 +190,20 @@ def _freed(
     side: int,
     noise: tuple[float, float],
 ) -> tuple[list[Wide], Wide, list[Wide], bool]:
-    """J, T and P without the powers of the distance to a collapsed side; is it smooth."""
+    """J, T and P without the powers of the distance to a collapsed side, and whether it is
+    smooth."""
     across = 0 if side >= 2 else 1  # the column of J that vanishes there
     jacobian = list(jacobian)
     jacobian[across] = _divided(jacobian[across], side, 1)
     uu, uv, vv = second
-    # P's vanishing direction twice, its mixed entry once, for the congruence
+    # for the congruence: P's entry of the vanishing direction twice, its mixed entry once
     first, mixed, other = (uu, uv, vv) if across == 0 else (vv, uv, uu)
     first, mixed = _divided(first, side, 2), _divided(mixed, side, 1)
     normal = _divided(normal, side, 1)
     limit = SMOOTH_POLE * (noise[0] * float(np.abs(_edge(normal, side)).max()) + noise[1])
     smooth = float(np.abs(_edge(first, side)).max()) <= limit
     if smooth:
-        # and one power more of all, for that of T
+        # and one more power from all entries, for that of T
         first, mixed, other = (_divided(c, side, 1) for c in (first, mixed, other))
     order = (first, mixed, other) if across == 0 else (other, mixed, first)
     return jacobian, normal, list(order), smooth
@@ -213,7 +215,7 @@ def _edge(c: Wide, side: int) -> Wide:
 
 
 def _divided(c: Wide, side: int, times: int) -> Wide:
-    """c over a power of the distance to a side on which it vanishes that often."""
+    """c divided by a power of the distance to a side, where it vanishes to that order."""
     for _ in range(times):
         axis = -2 if side < 2 else -1
         n = c.shape[axis] - 1

@@ -1,12 +1,12 @@
-"""Convexity of a patch given by a formula, proven over the whole patch by intervals.
+"""Convexity of a patch given by a formula, proven over the whole patch by interval arithmetic.
 
-With N = x_u x x_v, II = N . (x_uu, x_uv, x_vv) / |N| and I the metric, a patch is convex where
-Gaussian curvature K = det II / det I is nowhere negative and mean curvature H keeps one sign.
-Their numerators are factored exactly (``formulas.forms``); first the sign of each factor is proven,
-and a patch whose factors all keep theirs is convex without a doubt. Else the least curvature
+With N = x_u x x_v, II = N . (x_uu, x_uv, x_vv) / |N| and I the metric, a patch is convex if its
+Gaussian curvature K = det II / det I is nowhere negative and its mean curvature H keeps one sign.
+Their numerators are factored exactly (``formulas.forms``); first the sign of each factor is proven.
+If all factors keep their signs as required, the patch is convex. Otherwise the least curvature
     k = H - sqrt(H^2 - K)
-is bounded from below by halving the box where its bound is worst, until the bound is within a
-twentieth of a value seen, or enough boxes have been tried.
+is bounded from below by halving the box with the worst bound, until the bound is within a twentieth
+of a computed value, or enough boxes have been tried.
 """
 
 from __future__ import annotations
@@ -37,27 +37,27 @@ from standoff.geometry.formulas.expressions import sympy_module
 from standoff.geometry.intervals import TINY, Interval
 from standoff.geometry.validation import Array
 
-# The bound of the least curvature is this near to a value seen when the search may end.
+# The search may end when the bound of the least curvature is within this factor of a value seen.
 NEARNESS = 1.05
 # Boxes of one search, each 10 to 20 microseconds for 2000 characters of program: 1 to 2 seconds.
 MOST_BOXES = 100_000
 WORST = 512
-# A box costs more by Taylor series: their logarithm of the width must be less by this.
+# A box costs more with Taylor series: the logarithm of their width must be smaller by this.
 SERIES_GAIN = 3.0
-# Logarithm of a width that stands for bounds that are not known in all boxes.
+# Logarithm of a width that represents bounds that are not known in all boxes.
 UNKNOWN = 1e6
-# A dent whose normals lean more than this cosine from the axis has no bound as a graph.
+# A dent with normals whose cosine to the axis is below this has no bound as a graph.
 STEEPEST = 0.05
 
 
 def prove(surface: FormulaSurface, outward: int | None = None) -> PatchProof:
-    """Prove that a patch is convex over its domain, or bound how far it is not.
+    """Prove that a patch is convex over its domain, or bound by how much it is not.
 
     Parameters
     ----------
     surface : FormulaSurface
-    outward : +1 where f_u x f_v is to point out of the body, -1 where into it; when left out,
-        the side to which the patch bulges.
+    outward : +1 if f_u x f_v points out of the body, -1 if into it; if not given, the side to which
+        the patch bulges.
 
     Returns
     -------
@@ -92,11 +92,11 @@ class Bent:
 
     Attributes
     ----------
-    convex : proven, but for roundoff
-    least : a lower bound, 1/length; 0 where no curvature bends inward
-    place : (u, v) of the least curvature seen
+    convex : proven, up to roundoff
+    least : a lower bound, 1/length; 0 if no curvature bends inward
+    place : (u, v) of the least computed curvature
     sense : as in PatchProof
-    dents : boxes that may bend inward, and each one's bound
+    dents : boxes that may bend inward, and the bound of each
     """
 
     convex: bool
@@ -115,7 +115,7 @@ NO_DENTS = Boxes(np.zeros((0, 2)), np.zeros((0, 2)))
 
 @lru_cache(maxsize=256)
 def _bent(formula: Formula, domain: tuple[float, ...], sense: int) -> Bent:
-    """With `sense` 0 the side to which the patch bulges counts as outward."""
+    """If `sense` is 0, the side to which the patch bulges counts as outward."""
     forms = curvature_forms(formula)
     middle = (0.5 * (domain[0] + domain[1]), 0.5 * (domain[2] + domain[3]))
     gauss = mean = 0
@@ -125,7 +125,7 @@ def _bent(formula: Formula, domain: tuple[float, ...], sense: int) -> Bent:
         mean = sign_of_product(forms.mean_signs, formula.variables, domain)
     if (gauss > 0 or forms.gauss == 0) and (mean != 0 or forms.mean_square == 0):
         hollow = mean != 0 and sense == mean
-        least = -np.inf if hollow else 0.0  # no bound is sought: no part of a convex body
+        least = -np.inf if hollow else 0.0  # no bound needed: it is no part of a convex body
         return Bent(not hollow, least, middle, sense or -mean, NO_DENTS, np.zeros(0))
     not_saddled = gauss > 0 or forms.gauss == 0
     return _Search(formula, forms, domain, not_saddled, mean, sense or -mean).run()
@@ -158,8 +158,8 @@ class _Search:
     def parts(self, boxes: Boxes, wholes: Array | float = -np.inf) -> list[Part[Box]]:
         """Boxes with lower bounds of k, and its values at their middles.
 
-        `wholes` are the bounds (n,) of the boxes that they are parts of: a part's bound is never
-        worse than that of its whole.
+        `wholes` are the bounds (n,) of the boxes that these are parts of: the bound of a part is
+        never worse than that of its whole.
         """
         value, middle, slopes = self.bounds(boxes)
         at_middle = self.curvature(middle)
@@ -180,9 +180,9 @@ class _Search:
         return self.parts(boxes.halves(axis), np.concatenate([bound, bound]))
 
     def curvature(self, value: Interval) -> Array:
-        """Lower bounds of k = H - sqrt(H^2 - K), from those of K, H^2 and what has H's sign.
+        """Lower bounds of k = H - sqrt(H^2 - K), from those of K, H^2 and a form of H's sign.
 
-        H counts as positive where the patch bulges outward. Where K < 0, k rises with H and K.
+        H counts as positive where the patch bulges outward. Where K < 0, k increases with H and K.
         """
         with np.errstate(invalid="ignore", divide="ignore"):
             dip = 0.0 * value.lo[0] if self.not_saddled else np.maximum(-value.lo[0], 0.0)
@@ -193,7 +193,7 @@ class _Search:
             least = np.maximum(value.lo[0], 0.0) if self.not_saddled else value.lo[0]
             inward = -(high + np.sqrt(np.maximum(high * high - least, 0.0)))
             bound = np.where(self.one_sided | (side >= 0.0), outward, inward)
-        # roundoff of these few operations
+        # the roundoff of these few operations
         return np.asarray(bound * (1.0 + FEW_OPERATIONS))
 
     def run(self) -> Bent:
@@ -209,7 +209,7 @@ class _Search:
         )
         parts = searched.open + searched.closed
         place = searched.place
-        if place is None:  # nothing is known: where the bound is worst
+        if place is None:  # no value was computed: take the place of the worst bound
             place = min(parts, key=lambda part: part.bound).body
         u, v = Boxes(*np.array([place[:2]]).swapaxes(0, 1)).middle[0].tolist()
         least = min(0.0, searched.least)
@@ -219,7 +219,7 @@ class _Search:
 
 
 def _boxes(parts: list[Part[Box]]) -> tuple[Boxes, Any]:
-    """The boxes (n,) of parts, and the axis to halve each."""
+    """The boxes (n,) of parts, and the axis along which to halve each."""
     low = np.reshape([part.body[0] for part in parts], (-1, 2))
     high = np.reshape([part.body[1] for part in parts], (-1, 2))
     return Boxes(low, high), np.array([part.body[2] for part in parts], dtype=np.int64)
@@ -228,10 +228,10 @@ def _boxes(parts: list[Part[Box]]) -> tuple[Boxes, Any]:
 def _sharper(
     formula: Formula, forms: CurvatureForms, domain: tuple[float, ...]
 ) -> Bounds | TaylorBounds:
-    """Bounds of K, H^2 and the sign of H: by the exact forms, as written, or by Taylor series.
+    """Bounds of K, H^2 and the sign of H: from the exact forms, as written, or by Taylor series.
 
-    Multiplied out, a formula about a distant centre loses digits to cancellation; a long one has
-    wide bounds, but where its derivatives grow with their order no Taylor series has good ones.
+    Multiplied out, a formula around a distant centre loses digits to cancellation. A long formula
+    has wide bounds; Taylor series are narrower unless its derivatives grow with their order.
     """
     boxes = grid(domain, 2 * FIRST_GRID)
 
@@ -239,7 +239,7 @@ def _sharper(
         value = bounds(boxes)[0]
         with np.errstate(invalid="ignore"):
             by_box = (value.hi - value.lo)[:2].max(axis=0)
-        # at a pointed apex curvature is infinite: its least value is a bound all the same
+        # at a pointed apex the curvature is infinite: its least value is a bound nevertheless
         unknown = ~np.isfinite(value.lo[:2]).all(axis=0)
         if unknown.any():
             return UNKNOWN * float(unknown.mean())
@@ -253,13 +253,13 @@ def _sharper(
     taylor = TaylorBounds(formula, domain, curvature)
     least = width(taylor)
     if not forms.exact:
-        # differentiating a long formula is slow too: only where there are no series
+        # differentiating a long formula is slow too: only if there are no series
         if least < UNKNOWN / len(boxes):
             return taylor
         written = by_expressions(forms)
         return written if width(written) < least else taylor
     exact, written = by_expressions(forms), by_expressions(forms_as_written(formula))
-    # all else being equal the exact forms: their factors have sure signs
+    # all else being equal, take the exact forms: the signs of their factors can be proven
     widths = [width(exact), width(written), least + SERIES_GAIN]
     return (exact, written, taylor)[int(np.argmin(widths))]
 
@@ -267,11 +267,11 @@ def _sharper(
 def _rise(
     surface: FormulaSurface, found: Bent, least: float, axis: tuple[float, ...] | None
 ) -> tuple[float, float]:
-    """(defect, tilt): how far the patch may rise above its own tangent planes, and turn wrongly.
+    """(defect, tilt): how far the patch may rise above its own tangent planes, and turn back.
 
-    Seen along `axis` the patch is a graph f, and f'' <= |k| / c^3 along any straight path of the
-    graph's domain, with c the cosine of a normal to the axis: the dents' curvatures for
-    ``defects``.
+    Seen along `axis` the patch is a graph f, and f'' <= |k| / c^3 along any straight path in the
+    graph's domain, where c is the cosine between normal and axis: these are the dents' curvatures
+    for ``defects``.
     """
     if not np.isfinite(found.least) and not len(found.dents):
         return np.inf, np.pi

@@ -1,4 +1,4 @@
-"""Normals of a patch: are they within an open hemisphere."""
+"""Whether the normals of a patch are within an open hemisphere."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from standoff.bodies.proofs.tolerances import HEIGHT_ROUNDING
 from standoff.geometry import bernstein
 from standoff.geometry.validation import Array
 
-# Boxes looked at in one span before its normals count as not proven.
+# Boxes examined in one span before its normals count as not proven.
 MOST_BOXES = 600
-# Steps towards the axis of the least cone round the sampled normals: within 1/steps of it.
+# Steps towards the axis of the smallest cone around the sampled normals: within 1/steps of it.
 AXIS_STEPS = 200
 
 
 def in_hemisphere(pieces: Sequence[Forms]) -> bool:
-    """Do all normals make less than 90 degrees with one axis, proven by Bernstein bounds."""
+    """Do all normals make less than 90 degrees with one axis, proven by Bernstein bounds?"""
     axis = _axis(pieces)
     return axis is not None and all(_above(forms, axis) for forms in pieces)
 
 
 def _axis(pieces: Sequence[Forms]) -> Array | None:
-    """The axis of nearly the least cone round the normals at some points (Badoiu, Clarkson)."""
+    """The axis of a nearly smallest cone around the normals at some points (Badoiu, Clarkson)."""
     t = np.linspace(0.0, 1.0, 5)
     normals = [bernstein.grid_values(f.normal, t, t).reshape(3, -1).T for f in pieces]
     cloud = np.concatenate(normals)
@@ -43,7 +43,7 @@ def _axis(pieces: Sequence[Forms]) -> Array | None:
 
 
 def _above(forms: Forms, axis: Array) -> bool:
-    """Is axis @ normal positive over the patch, its singular corners aside."""
+    """Is axis @ normal positive over the patch, apart from its singular corners?"""
     heights = np.tensordot(axis, forms.normal, 1)
     floor = -HEIGHT_ROUNDING * float(np.abs(forms.normal).max())
     cells: list[Cell] = [ROOT]

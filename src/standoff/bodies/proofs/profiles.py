@@ -1,7 +1,7 @@
-"""Convexity of surfaces that a profile curve sweeps, from the proofs of the patches they are.
+"""Convexity of surfaces swept by a profile curve, from the proofs of the patches that they equal.
 
-A rational profile turned by a quarter at most, or moved along a direction, is a rational Bezier
-patch; a profile given by a formula is swept by a formula.
+A rational profile rotated by at most a quarter turn, or moved along a direction, is a rational
+Bezier patch; a surface swept by a profile given by a formula is given by a formula too.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.validation import Array
 
-# An arc of one rational quadratic: its weights stay well above zero.
+# Longest arc of one rational quadratic (radians): its weights stay well above zero.
 LONGEST_ARC = 0.5 * np.pi
-# Parts of the domain's sides where it is seen to which side a surface bulges.
+# Fractions of the domain's sides where the side to which a surface bulges is evaluated.
 INNER = (0.125, 0.375, 0.625, 0.875)
 
 
 def prove_swept(surface: Revolution | Extrusion, outward: int | None = None) -> PatchProof:
-    """Prove that a swept surface is convex, or bound how far it is not.
+    """Prove that a swept surface is convex, or bound by how much it is not.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def _has_spare_knots(profile: Curve) -> bool:
 
 
 def _proven(surface: Revolution | Extrusion, outward: int | None, spare: bool) -> PatchProof:
-    """As `prove_swept`, of pieces of the profile that end at its spare knots too, or not."""
+    """As `prove_swept`, with pieces of the profile that also end at redundant knots if `spare`."""
     parts = _patches(surface, spare)
     patches = [patch for _, patch in parts]
     if outward is None:
@@ -71,7 +71,7 @@ def _proven(surface: Revolution | Extrusion, outward: int | None, spare: bool) -
     worst = int(np.argmin([p.curvature for p in proofs]))
     low, high = surface.box()
     size = float(np.linalg.norm(high - low))
-    # a path through several patches may turn wrongly in each, and goes on from there
+    # a path through several patches may turn back in each of them
     single = len(proofs) == 1
     defect = sum(p.defect + (0.0 if single else p.tilt * size) for p in proofs)
     return PatchProof(
@@ -89,7 +89,7 @@ def _proven(surface: Revolution | Extrusion, outward: int | None, spare: bool) -
 def _bulging(surface: Revolution | Extrusion) -> int:
     """+1 or -1 as in ``PatchProof.sense``, the side to which the surface bulges more; 0 if flat.
 
-    A choice, no proof: the sign of the mean curvature, summed over some points.
+    This is a choice, not a proof: the sign of the mean curvature, summed over some points.
     """
     u0, u1, v0, v1 = surface.domain
     total = most = 0.0
@@ -128,7 +128,7 @@ Domain = tuple[float, float, float, float]
 
 
 def _patches(surface: Revolution | Extrusion, spare: bool) -> list[tuple[Domain, BezierPatch]]:
-    """Rational Bezier patches that tile the surface, each with its part of the domain."""
+    """Rational Bezier patches that together are the surface, each with its part of the domain."""
     u0, u1, v0, v1 = surface.domain
     found = []
     if isinstance(surface, Revolution):
@@ -157,7 +157,7 @@ def rational_pieces(
 ) -> list[tuple[float, float, Array]]:
     """(first, last, homogeneous Bezier points (p + 1, 4)) of the smooth pieces of a curve.
 
-    spare : cut them at knots too that a spline does not need.
+    spare : also cut at redundant knots of a spline.
 
     Raises
     ------
@@ -215,7 +215,7 @@ def _arc_points(first: float, last: float) -> tuple[Array, Array]:
 
 
 def _place(domain: Domain, at: tuple[float, float]) -> tuple[float, float]:
-    """A patch's place in [0, 1]^2 as parameters of the surface, to the nearness of a search."""
+    """A patch's place in [0, 1]^2 as parameters of the surface, to the accuracy of a search."""
     u0, u1, v0, v1 = domain
     return u0 + at[0] * (u1 - u0), v0 + at[1] * (v1 - v0)
 

@@ -1,11 +1,11 @@
-"""Patches that are planes, or ruled by straight lines, but for the rounding of control points.
+"""Patches that are planes, or ruled by straight lines, up to the rounding of control points.
 
-Elevated, or refined at knots along a straight line, such a patch has control points that are
-rounded off the line, and second differences over narrow spans make curvatures of 1e-9 of that. But
-the patch itself is within the rounding h of an exact plane or ruled surface, and its normals are
-within some h over a span's width of that surface's. Points of the patch then rise above its
-tangent planes by no more than those of the exact surface do, twice the distance, and the turn
-between the normals times the size.
+After degree elevation or knot insertion along a straight line, such a patch has control points that
+are rounded off the line, and second differences over narrow spans turn this into curvatures of
+1e-9. But the patch itself is within the rounding h of an exact plane or ruled surface, and its
+normals are within a few h over a span's width of those of that surface. Points of the patch then
+rise above its tangent planes by at most as much as those of the exact surface, plus twice the
+distance, plus the turn between the normals times the size.
 """
 
 from __future__ import annotations
@@ -21,27 +21,28 @@ from standoff.bodies.proofs.tolerances import NORMAL_ROUNDING
 from standoff.geometry import bernstein
 from standoff.geometry.validation import Array
 
-# Halvings of a span along its curve before normals are compared: there they turn little.
+# Halvings of a span along its curve before normals are compared: on each part they turn little.
 SPAN_HALVINGS = 4
 
 
 @dataclass(frozen=True)
 class Nearness:
-    """To an exact surface: distance, in units of the size, and turn between normals, radians."""
+    """How near a patch is to an exact surface: distance, in units of the size, and greatest turn
+    between their normals, radians."""
 
     distance: float
     turn: float
 
     @property
     def rise(self) -> float:
-        """Above a tangent plane, over the whole size, for want of being that surface."""
+        """The rise above a tangent plane, over the whole size, from not being that surface."""
         return 2.0 * self.distance + self.turn
 
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """The spans of a patch about its centre: `points` (nu, nv, 4, p + 1, q + 1), scaled to size
-    one with one scale of weights, and the ends of spans `us` (nu + 1,), `vs` (nv + 1,).
+    """The spans of a patch relative to its centre: `points` (nu, nv, 4, p + 1, q + 1), scaled to
+    size one with one scale for the weights, and the ends of spans `us` (nu + 1,), `vs` (nv + 1,).
     """
 
     us: Array
@@ -53,7 +54,8 @@ class Grid:
 
 
 def plane_nearness(points: Sequence[Array], forms: Sequence[Forms]) -> Nearness:
-    """How near a patch is to the plane that fits its Bezier points best; turn pi if unknown."""
+    """How near a patch is to the plane that fits its Bezier points best; the turn is pi if not
+    known."""
     cloud = np.concatenate([(h[:3] / h[3]).reshape(3, -1) for h in points], axis=1)
     cloud = cloud - cloud.mean(axis=1, keepdims=True)
     axis = np.linalg.svd(cloud, full_matrices=False)[0][:, 2]
@@ -64,19 +66,19 @@ def plane_nearness(points: Sequence[Array], forms: Sequence[Forms]) -> Nearness:
     heights = axis @ normals
     if not heights.size or (heights.min() <= 0.0 <= heights.max()):
         return Nearness(thickness, float(np.pi))
-    # the sine keeps small angles that a cosine would lose
+    # the sine resolves small angles that a cosine would lose
     sine = float(np.linalg.norm(np.cross(normals.T, axis), axis=1).max())
     return Nearness(thickness, 2.0 * float(np.arcsin(min(sine, 1.0))))
 
 
 @dataclass(frozen=True, eq=False)
 class Ruled:
-    """A ruled surface that a patch is but for `distance`, as part of the size.
+    """A ruled surface within `distance` of a patch, as a fraction of the size.
 
     Attributes
     ----------
-    whole : with one span, of degree 1, along its straight lines.
-    spans : in the spans and degrees of the patch.
+    whole : it with one span, of degree 1, along its straight lines.
+    spans : it in the spans and degrees of the patch.
     """
 
     whole: Grid
@@ -87,7 +89,7 @@ class Ruled:
 def ruled_along(grid: Grid, along_u: bool, limit: float) -> Ruled | None:
     """The patch as straight along u, or v, if its points (w x, w) are so to within `limit`.
 
-    None too where it is one span of degree 1: as straight as it can be.
+    None too if it is one span of degree 1, and so exactly straight already.
     """
     if along_u:
         found = ruled_along(grid.swapped(), False, limit)
@@ -99,17 +101,17 @@ def ruled_along(grid: Grid, along_u: bool, limit: float) -> Ruled | None:
     off = float(np.abs(grid.points - spans).max())
     if off > limit:
         return None
-    # to a change of w x belongs one of x by as much over w, and w brings x times its own
+    # a change of w x changes x by as much divided by w, and one of w by x times it divided by w
     distance = 4.0 * off / float(grid.points[:, :, 3].min())
     whole = Grid(grid.us, grid.vs[[0, -1]], ends[:, None])
     return Ruled(whole, Grid(grid.us, grid.vs, spans), distance)
 
 
 def _elevated(grid: Grid, ends: Array) -> Array:
-    """The straight lines between two rows (nu, 4, p + 1, 2), like the points of the grid."""
+    """The straight lines between two rows (nu, 4, p + 1, 2), arranged like the grid's points."""
     q = grid.points.shape[-1] - 1
     t = (grid.vs - grid.vs[0]) / (grid.vs[-1] - grid.vs[0])
-    # coefficients of a linear function lie on it: (nv, q + 1) places between the rows
+    # coefficients of a linear function are its values: (nv, q + 1) places between the rows
     s = t[:-1, None] + (t[1:] - t[:-1])[:, None] * np.linspace(0.0, 1.0, q + 1)
     first, last = (ends[:, None, ..., k : k + 1] for k in (0, 1))
     s = s[None, :, None, None, :]
@@ -118,9 +120,9 @@ def _elevated(grid: Grid, ends: Array) -> Array:
 
 
 def turn_to(spans: Grid, forms: Sequence[Forms], reach: float, along_u: bool) -> float:
-    """The greatest turn between normals of a patch and of another so near; pi if unknown.
+    """The greatest angle between normals of a patch and of a nearby one; pi if not known.
 
-    forms : of the patch's spans, u major; spans : of the other, of the same degrees, straight
+    forms : of the patch's spans, u major; spans : of the other one, of the same degrees, straight
     along u or v.
     """
     greatest = 0.0
@@ -129,7 +131,7 @@ def turn_to(spans: Grid, forms: Sequence[Forms], reach: float, along_u: bool) ->
         other = forms_of(with_poles(h / h[3].max())[0], reach)
         if own.sharp != other.sharp:
             return float(np.pi)
-        # where weights are equal but for rounding, only one may have been found polynomial
+        # if weights are equal up to rounding, only one may have been found polynomial
         rows, columns = np.maximum(own.normal.shape, other.normal.shape)[1:] - 1
         mine, theirs = (bernstein.elevate(f.normal, rows, columns) for f in (own, other))
         greatest = max(greatest, _turn_between(mine, theirs, along_u))
@@ -137,9 +139,9 @@ def turn_to(spans: Grid, forms: Sequence[Forms], reach: float, along_u: bool) ->
 
 
 def _turn_between(one: Array, other: Array, along_u: bool) -> float:
-    """The greatest angle between two polynomial vectors, radians; pi if unknown.
+    """The greatest angle between two polynomial vectors, radians; pi if not known.
 
-    They turn little along u, or v.
+    They must turn little along u, or v.
     """
     greatest = 0.0
     for k in range(2**SPAN_HALVINGS):

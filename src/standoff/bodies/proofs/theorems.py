@@ -13,10 +13,10 @@ from standoff.geometry.surfaces import Surface
 def prove_by_kind(surface: Surface, outward: int | None = None) -> PatchProof:
     """An affine image of a plane, quadric, torus's outer half or superellipsoid: `Surface.bulge`.
 
-    A torus that goes beyond its outer half has none: it is saddled there.
+    A torus that extends beyond its outer half has no bulge: it is saddle-shaped there.
 
-    They never bend inward: a superellipsoid with exponents up to 2 is the unit ball of a norm, and
-    its charts look at it from its centre.
+    The others never bend inward: a superellipsoid with exponents up to 2 is the unit ball of a
+    norm, and its charts project it from its centre.
     """
     bulge, side = surface.bulge, 1 if np.linalg.det(surface.linear) > 0.0 else -1
     proof = PatchProof(
@@ -28,7 +28,7 @@ def prove_by_kind(surface: Surface, outward: int | None = None) -> PatchProof:
         sense=side if bulge is None else bulge * side,
     )
     if bulge is None or (outward is not None and proof.sense == -outward):
-        # hollow or saddled: no bound is sought, such a face is not a part of a convex body
+        # hollow or saddle-shaped: no bound needed, such a face is no part of a convex body
         sense = outward or proof.sense
         return replace(
             proof, convex=False, defect=np.inf, sense=sense, tilt=np.pi, curvature=-np.inf

@@ -21,7 +21,7 @@ _CORNERS = ((0, 2), (1, 2), (1, 3), (0, 3))
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
-    """A side, or the part of it between two vertices: what is sewn to one other stretch.
+    """A side, or the part of it between two vertices, which is sewn to one other stretch.
 
     patch, side : numbers; first, last : vertices at the ends of its free parameter.
     """
@@ -39,9 +39,9 @@ class Stretch:
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """All vertices, every patch's stretches side by side, and its collapsed sides (side, vertex).
+    """All vertices, every patch's stretches for each side, and its collapsed sides (side, vertex).
 
-    spread : the greatest distance of a corner from its vertex, length.
+    spread : the greatest distance between a corner and its vertex, length.
     """
 
     vertices: Array
@@ -51,7 +51,7 @@ class Outline:
 
 
 def outline(patches: Sequence[Patch], tolerance: float) -> Outline:
-    """Merge corners within the tolerance and cut sides where corners of others lie on them."""
+    """Merge corners within the tolerance and cut sides where corners of other sides lie on them."""
     sides = [[patch.side(name) for name in SIDE_NAMES] for patch in patches]
     flat = [[side.collapsed(tolerance) for side in row] for row in sides]
     corners = np.array([_corner(patch, k) for patch in patches for k in range(4)])
@@ -93,7 +93,7 @@ def _merge(
     sums = np.zeros((count, 3))
     np.add.at(sums, number, corners)
     means = sums / np.bincount(number, minlength=count)[:, None]
-    # a corner itself, the one nearest to the mean: exact patches keep their exact corners
+    # one of the corners, the nearest to their mean: exact patches keep their exact corners
     away = np.linalg.norm(corners - means[number], axis=1)
     order = np.lexsort((away, number))
     chosen = order[np.searchsorted(number[order], np.arange(count))]
@@ -130,7 +130,7 @@ def _cut(
             tolerance,
         )
     centre = side.polyline.mean(axis=0)
-    # a polyline's links bulge less than they are long
+    # the curve is nearer to a link of its polyline than the length of the link
     reach = float(np.linalg.norm(side.polyline - centre, axis=1).max()) + side.length / 16.0
     inside: list[tuple[float, int]] = []
     for k in tree.query_ball_point(centre, reach + tolerance):

@@ -1,9 +1,9 @@
-"""The parameter of one side as a function of the other's: pcurves of sewn edges.
+"""The parameter of one side as a function of that of another: pcurves of sewn edges.
 
 An edge runs along its first stretch and has its parameter. On the second patch the trimming curve
-is an isoline too; where the parameters correspond by s = (a t + b)/(c t + d), which every affine
-correspondence and every rational reparametrisation is, its pcurve is a straight line, else a
-spline through the nearest points.
+is an isoline too. If the parameters are related by s = (a t + b)/(c t + d), like every affine or
+linear rational reparametrisation, its pcurve is a straight line; otherwise it is a spline through
+the nearest points.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
-# Shares of an edge where the correspondence is read, and (between them) where it is checked.
+# Fractions of an edge where the correspondence is computed, and (between them) checked.
 NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 12) / 12)
 CHECKS = (np.arange(17) + 0.5) / 17
-# Halvings of a span of a spline, after which it serves as it is.
+# Halvings of a span of a spline, after which it is accepted as it is.
 MAX_CUTS = 7
-# Highest degree that the kernels take; Chebyshev's points of [-1, 1] with its ends, descending.
+# Highest degree that the kernels accept; Chebyshev points of [-1, 1] with its ends, descending.
 DEGREE = 9
 SPAN_NODES = np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
 SPAN_CHECKS = np.array([0.02, 0.27, 0.46, 0.73, 0.93])
@@ -43,7 +43,7 @@ SPAN_CHECKS = np.array([0.02, 0.27, 0.46, 0.73, 0.93])
 class Correspondence:
     """The pcurve of an edge on its second patch.
 
-    sense : +1 where both free parameters grow together; residual : the greatest distance of
+    sense : +1 if both free parameters increase together; residual : the greatest distance between
     points of the same parameter, length.
     """
 
@@ -53,12 +53,12 @@ class Correspondence:
 
 
 def isoline(side: Side) -> Pcurve:
-    """The pcurve of an edge on its own first side: exact."""
+    """The pcurve of an edge on its first side, which is exact."""
     return _straight(side, np.array([1.0, 0.0]), np.array([0.0, 1.0]))
 
 
 def correspond(one: Stretch, other: Stretch, size: float) -> Correspondence:
-    """The second stretch's parameter along the first.
+    """The second stretch's parameter as a function of the first one's.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def correspond(one: Stretch, other: Stretch, size: float) -> Correspondence:
     nodes = np.array([other.side.nearest(one.side.point(a + x * (b - a))) for x in NODES])
     near = float(nodes[:, 1].max())
     row, scale = _moebius(NODES, nodes[:, 0], *ends)
-    # from shares of [a, b] to the edge's own parameter
+    # from fractions of [a, b] to the edge's own parameter
     width = b - a
     row = np.array([row[0] / width, row[1] - row[0] * a / width])
     scale = np.array([scale[0] / width, scale[1] - scale[0] * a / width])
@@ -101,7 +101,7 @@ def _farthest(side: Side, parameters: Array, points: list[Array]) -> float:
 
 
 def _moebius(x: Array, s: Array, s0: float, s1: float) -> tuple[Array, Array]:
-    """(numerator, denominator) of s(x), with s(0) = s0 and s(1) = s1, nearest to the nodes.
+    """(numerator, denominator) of s(x), with s(0) = s0 and s(1) = s1, that fits the nodes best.
 
     s = (s0 (1 - x) + k s1 x)/(1 - x + k x) for one k > 0; k = 1 is affine.
     """
@@ -122,7 +122,7 @@ def _straight(side: Side, row: Array, scale: Array) -> Pcurve:
 
 
 def _spline(one: Stretch, other: Stretch, sense: int, goal: float) -> Correspondence:
-    """A piecewise polynomial through the nearest points, cut until it is within the goal."""
+    """A piecewise polynomial through the nearest points, subdivided until it is within the goal."""
     a, b = one.side.first, one.side.last
     ends = (other.side.first, other.side.last)[::sense]
     waiting, done = [(a, b, 0)], []
@@ -136,8 +136,8 @@ def _spline(one: Stretch, other: Stretch, sense: int, goal: float) -> Correspond
             values[-1] = ends[1]
         if (np.diff(values) * sense <= 0.0).any():
             raise BodyError(
-                f"{other.label} runs back and forth along {one.label}: their nearest points do "
-                "not follow each other."
+                f"{other.label} runs back and forth along {one.label}: their nearest points are "
+                "not in the same order."
             )
         row = np.linalg.solve(_bernstein(0.5 - 0.5 * SPAN_NODES), values)
         if depth == MAX_CUTS or _misfit(one, other, row, low, high) <= goal:
@@ -147,7 +147,7 @@ def _spline(one: Stretch, other: Stretch, sense: int, goal: float) -> Correspond
             waiting += [(middle, high, depth + 1), (low, middle, depth + 1)]
     knots = np.repeat([d[0] for d in done] + [b], DEGREE)
     knots = np.concatenate([[a], knots, [b]])
-    # neighbours share the point where they meet: the same nearest point, to roundoff
+    # neighbouring spans share the point where they meet: the same nearest point, to roundoff
     moving = np.concatenate([done[0][2][:1], *(d[2][1:] for d in done)])
     moving[0], moving[-1] = ends
     level = np.full(len(moving), other.side.level)
@@ -170,7 +170,7 @@ def _bernstein(x: Array) -> Array:
 
 
 def _misfit(one: Stretch, other: Stretch, row: Array, low: float, high: float) -> float:
-    """How far a span runs from the nearest points between its nodes, length in space."""
+    """How far a span is from the nearest points between its nodes, length in space."""
     fitted = _bernstein(SPAN_CHECKS) @ row
     worst = 0.0
     for x, s in zip(SPAN_CHECKS, fitted, strict=True):

@@ -1,4 +1,4 @@
-"""Which stretch of a side lies along which: every one along exactly one other."""
+"""Which stretches of sides lie along each other: each along exactly one other."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from standoff.bodies.sewing.sides import gap
 from standoff.errors import BodyError
 from standoff.wording import counted
 
-# Gaps that one message names.
+# Greatest number of gaps that a message names.
 MAX_NAMED = 3
 
 
 class Gap(NamedTuple):
-    """Two open sides, each other's nearest or one the other's, and how far apart, length."""
+    """Two open sides, at least one of them nearest to the other, and their distance, length."""
 
     one: str
     other: str
@@ -33,7 +33,7 @@ class OpenShell(Exception):
     ----------
     sides : list of str
     gaps : list of Gap
-        To the nearest open side; none where one side alone is open.
+        From each to the nearest open side; none if only one side is open.
     """
 
     def __init__(self, sides: list[str], gaps: list[Gap]) -> None:
@@ -41,7 +41,7 @@ class OpenShell(Exception):
         self.sides, self.gaps = sides, gaps
 
     def told(self) -> str:
-        """The gaps, in words."""
+        """The gaps in words."""
         named = [f"{g.one} and {g.other} are {g.apart:.2g} apart" for g in self.gaps[:MAX_NAMED]]
         more = len(self.gaps) - len(named)
         named += [f"{counted(more, 'more such gap')}"] if more else []
@@ -54,9 +54,9 @@ def match(stretches: Sequence[Stretch], tolerance: float) -> list[tuple[Stretch,
     Raises
     ------
     OpenShell
-        Stretches along none.
+        Stretches that lie along no other.
     BodyError
-        A stretch along more than one.
+        A stretch that lies along more than one.
     """
     groups: dict[tuple[int, int], list[int]] = {}
     for k, s in enumerate(stretches):
@@ -71,8 +71,8 @@ def match(stretches: Sequence[Stretch], tolerance: float) -> list[tuple[Stretch,
         if len(found) > 1:
             names = ", ".join(stretches[m].label for m in (k, *found))
             raise BodyError(
-                f"{names} lie along one curve: an edge joins two patches. Leave out patches "
-                f"given twice, or give a smaller tolerance than {tolerance:.3g}.",
+                f"{names} lie along one curve: an edge joins two patches. Remove patches given "
+                f"twice, or give a smaller tolerance than {tolerance:.3g}.",
                 "tolerance",
                 tolerance,
             )
@@ -99,7 +99,7 @@ def _candidates(
 
 
 def _open_shell(stretches: Sequence[Stretch], loose: list[int]) -> OpenShell:
-    """Every open side with the open side that is nearest to it, and by how much."""
+    """Every open side with the open side nearest to it, and their distance."""
     open_sides = [stretches[k] for k in loose]
     points = np.concatenate([s.side.polyline for s in open_sides])
     owner = np.repeat(np.arange(len(open_sides)), [len(s.side.polyline) for s in open_sides])
@@ -118,12 +118,12 @@ def _open_shell(stretches: Sequence[Stretch], loose: list[int]) -> OpenShell:
 
 
 def _neighbours(stretch: Stretch, tree: scipy.spatial.KDTree, owner: NDArray[np.intp]) -> set[int]:
-    """Open sides with points among the nearest to a stretch's."""
+    """Open sides with points among the nearest to those of a stretch."""
     count = min(len(owner), 5 * len(stretch.side.polyline))
     return {int(owner[m]) for x in stretch.side.probes for m in tree.query(x, k=count)[1]}
 
 
 def _apart(one: Stretch, other: Stretch) -> float:
-    """How far the points of one stretch are from another at most, its ends too."""
+    """The greatest distance between points of one stretch, including its ends, and another."""
     points = [*one.side.probes, one.side.polyline[0], one.side.polyline[-1]]
     return max(other.side.nearest(x)[1] for x in points)

@@ -1,4 +1,4 @@
-"""Patches made ready for sewing: cut at knots, at seams, and to an open hemisphere of normals."""
+"""Patches prepared for sewing: cut at knots, at seams, and until normals fit a hemisphere."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 
-# Halvings of one patch before it counts as singular: 2^8 pieces on its way round.
+# Halvings of one patch before it counts as singular: into up to 2^8 pieces.
 PATCH_HALVINGS = 8
-# Points along u and v from which a patch's extent is read.
+# Points along u and v from which a patch's extent is computed.
 GRID = 5
 
 
@@ -46,7 +46,7 @@ class Patch:
         return Side.of(self.surface, self.label, name)
 
     def middle(self, along: str) -> float:
-        """Where to halve it: amid its parameter, or where that is uneven amid its longer side."""
+        """Where to halve it: at the middle of its parameter or, if uneven, of its longer side."""
         ends = (("v0", "v1"), ("u0", "u1"))[along == "v"]
         side = max((self.side(name) for name in ends), key=lambda side: side.length)
         return side.middle if side.uneven else 0.5 * (side.first + side.last)
@@ -63,7 +63,7 @@ class Patch:
 
 
 def grid_points(surface: Surface, count: int = GRID) -> Array:
-    """Points of a patch on a regular grid with its boundary, (count, count, 3)."""
+    """Points of a patch on a regular grid that includes its boundary, (count, count, 3)."""
     u0, u1, v0, v1 = surface.domain
     return np.array(
         [
@@ -74,9 +74,9 @@ def grid_points(surface: Surface, count: int = GRID) -> Array:
 
 
 def check_patches(patches: Sequence[Any]) -> None:
-    """Raise BodyError where something given is not a patch."""
+    """Raise BodyError if something given is not a patch."""
     if not len(patches):
-        raise BodyError("No patches: a body needs a closed shell of them.", "patches", patches)
+        raise BodyError("No patches: give patches that close a shell.", "patches", patches)
     for k, surface in enumerate(patches):
         if not isinstance(surface, Surface):
             raise BodyError(
@@ -85,14 +85,14 @@ def check_patches(patches: Sequence[Any]) -> None:
             )
         if not np.isfinite(surface.domain).all():
             raise BodyError(
-                f"patch {k} is a {type(surface).__name__} without limits (domain "
+                f"patch {k} is an unbounded {type(surface).__name__} (domain "
                 f"{surface.domain}): cut a patch from it with .restricted(u0, u1, v0, v1).",
                 part=("patch", k),
             )
 
 
 def cut_patches(patches: Sequence[Surface], tolerance: float) -> tuple[list[Patch], list[str]]:
-    """Patches that are smooth inside, with four open sides, and notes of what was cut."""
+    """Patches that are smooth inside, with four open sides, and notes on what was cut."""
     found: list[Patch] = []
     notes: list[str] = []
     for k, surface in enumerate(patches):
@@ -132,7 +132,7 @@ def _at_breaks(surface: Surface, given: int) -> list[Patch]:
 
 
 def _way_to_halve(patch: Patch, tolerance: float) -> tuple[str, str] | None:
-    """("u" | "v", reason) where a patch must be halved, else None."""
+    """("u" | "v", reason) if a patch must be halved, else None."""
     sides = {name: patch.side(name) for name in SIDE_NAMES}
     _check_extent(patch, sides, tolerance)
     for along, across in (("u", "v"), ("v", "u")):
@@ -166,6 +166,6 @@ def _check_extent(patch: Patch, sides: dict[str, Side], tolerance: float) -> Non
     if len(collapsed) > 2 or (len(collapsed) == 2 and collapsed[0][0] != collapsed[1][0]):
         raise BodyError(
             f"{patch.label}: its sides {', '.join(collapsed)} have collapsed; only one side, or "
-            "two that face each other, may.",
+            "two opposite sides, may.",
             part=("patch", patch.given),
         )

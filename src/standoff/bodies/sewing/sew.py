@@ -25,7 +25,7 @@ from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 
-# A tolerance that is offered is a little more than the gap that was found at samples.
+# A suggested tolerance is this much larger than the gap that was found at samples.
 ROOM = 1.02
 
 
@@ -34,10 +34,10 @@ class Sewn:
     """A body's parts as they were sewn.
 
     size : diagonal of the patches' box, length.
-    tolerance : within which sides and corners were joined, length.
-    residual : the greatest distance of joined points that was met, length.
-    senses, labels, proofs : for every face +1 where x_u cross x_v points outward, else -1; the
-        patch that it is or was cut from; its convexity.
+    tolerance : the distance within which sides and corners were joined, length.
+    residual : the greatest distance between joined points, length.
+    senses, labels, proofs : for every face, +1 if x_u cross x_v points outward, else -1; the patch
+        that it is or was cut from; its convexity.
     """
 
     vertices: Array
@@ -53,13 +53,13 @@ class Sewn:
 
 
 def sew(patches: Sequence[Any], tolerance: float | None = None, *, several: bool = False) -> Sewn:
-    """Join patches along their sides into one closed shell that faces outward.
+    """Join patches along their sides into a closed shell that faces outward.
 
     Parameters
     ----------
     patches : surfaces with a finite domain.
     tolerance : how far joined sides may be apart, length; None: SEWING_TOLERANCE of the size.
-    several : they may close more than one shell, each of which is made to face outward.
+    several : they may close several shells, each of which is made to face outward.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def sew(patches: Sequence[Any], tolerance: float | None = None, *, several: bool
     tolerance = SEWING_TOLERANCE * size if tolerance is None else magnitude(tolerance, "tolerance")
     if tolerance >= 0.1 * size:
         raise BodyError(
-            f"tolerance = {tolerance:.3g} is not a small part of the patches' size {size:.3g}.",
+            f"tolerance = {tolerance:.3g} is not small compared to the patches' size {size:.3g}.",
             "tolerance",
             tolerance,
         )
@@ -126,11 +126,11 @@ def _sewn(
 def _refusal(
     shell: OpenShell, patches: Sequence[Surface], size: float, tolerance: float
 ) -> BodyError:
-    """An open shell in one sentence, with the tolerance that would close it if there is one."""
+    """An open shell in one sentence, with the tolerance that would close it, if any."""
     wide = _closing(shell, patches, size)
     if not shell.gaps:
         return BodyError(
-            f"The shell is open: {shell.sides[0]} alone matches nothing; a patch is missing."
+            f"The shell is open: only {shell.sides[0]} matches no side; a patch is missing."
         )
     cure = (
         ", and a greater one would not help: a patch is missing or out of place"
@@ -145,9 +145,9 @@ def _refusal(
 
 
 def _closing(shell: OpenShell, patches: Sequence[Surface], size: float) -> float | None:
-    """A tolerance with which the patches are sewn, tried; None where there is none to offer."""
+    """A tolerance with which sewing the patches was tried and succeeds; None if none was found."""
     widest = max((gap.apart for gap in shell.gaps), default=np.inf)
-    for times in (1.0, 2.0, 4.0):  # corners may part by more than the sides that end in them
+    for times in (1.0, 2.0, 4.0):  # corners may be further apart than the sides that end in them
         wide = _rounded_up(times * widest)
         if not wide <= WIDEST_SEAM * size:
             return None
@@ -160,7 +160,7 @@ def _closing(shell: OpenShell, patches: Sequence[Surface], size: float) -> float
 
 
 def _rounded_up(length: float) -> float:
-    """A length with two digits, and a little room."""
+    """A length, slightly enlarged and rounded up to two digits."""
     if not np.isfinite(length):
         return length
     unit = 10.0 ** (np.floor(np.log10(ROOM * length)) - 1.0)
@@ -171,7 +171,7 @@ def _joined(one: Stretch, other: Stretch, size: float, tolerance: float) -> Corr
     found = correspond(one, other, size)
     if found.residual > MAX_SPREAD * tolerance:
         raise BodyError(
-            f"{one.label} and {other.label} part by {found.residual:.3g} between their ends, "
+            f"{one.label} and {other.label} are {found.residual:.3g} apart between their ends, "
             f"more than tolerance={tolerance:.3g} allows: make them the same curve, or give "
             f"tolerance={_rounded_up(found.residual):g}.",
             "tolerance",

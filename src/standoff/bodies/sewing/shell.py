@@ -1,4 +1,4 @@
-"""Is what was sewn one closed shell, and which way out is: senses of patches."""
+"""Whether what was sewn is one closed shell, and which side is outside: senses of patches."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 
 Pairs = Sequence[tuple[Stretch, Stretch]]
-# Gauss points along u and v for the volume, of which the sign and the order are wanted.
+# Gauss points along u and v for the volume, of which only sign and order of magnitude are needed.
 VOLUME_POINTS = 6
-# Patches of a shell that one message names.
+# Greatest number of a shell's patches that a message names.
 MOST_NAMED = 6
 
 
 def check_shells(
     patches: Sequence[Patch], shape: Outline, pairs: Pairs, several: bool
 ) -> list[list[int]]:
-    """The patches of each shell. Raises BodyError for two of them, unless there may be `several`,
-    and for a vertex where patches touch only."""
+    """The patches of each shell. Raises BodyError for more than one shell unless `several`, and for
+    patches that only touch at a vertex."""
     rows = np.array([(a.patch, b.patch) for a, b in pairs], dtype=np.intp).reshape(-1, 2)
     n = len(patches)
     graph = scipy.sparse.coo_matrix((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(n, n))
@@ -35,7 +35,7 @@ def check_shells(
     if count > 1 and not several:
         names = [_names(patches, numbers) for numbers in shells]
         raise BodyError(
-            f"{count} shells that share no side: {' | '.join(names[:3])}. Make one body of each."
+            f"{count} shells that share no side: {' | '.join(names[:3])}. Make a body of each."
         )
     _check_fans(patches, shape, pairs)
     return shells
@@ -48,7 +48,7 @@ def _names(patches: Sequence[Patch], numbers: Sequence[int]) -> str:
 
 
 def _check_fans(patches: Sequence[Patch], shape: Outline, pairs: Pairs) -> None:
-    """The patches around a vertex follow each other in one ring."""
+    """Check that the patches around every vertex form a single ring."""
     edge = {id(s): j for j, pair in enumerate(pairs) for s in pair}
     links: list[tuple[int, int]] = []
     place: dict[tuple[int, int], int] = {}  # (edge, vertex at its end) -> node
@@ -72,7 +72,7 @@ def _check_fans(patches: Sequence[Patch], shape: Outline, pairs: Pairs) -> None:
                 {s.label for row in shape.stretches for s in row if vertex in (s.first, s.last)}
             )
             raise BodyError(
-                f"Patches touch only in the point {shape.vertices[vertex]}: {len(found)} fans "
+                f"Patches touch only at the point {shape.vertices[vertex]}: {len(found)} fans "
                 f"meet there ({', '.join(names)})."
             )
 
@@ -94,13 +94,13 @@ def outward_senses(
     shells: Sequence[Sequence[int]],
     tolerance: float,
 ) -> tuple[list[int], list[str]]:
-    """+1 where x_u cross x_v of a patch points outward, else -1; and notes of those turned.
+    """+1 if x_u cross x_v of a patch points outward, else -1; and notes on those turned.
 
-    senses : for every pair +1 where the free parameters grow together.
+    senses : for every pair, +1 if the free parameters increase together.
     """
     neighbours: list[list[tuple[int, int]]] = [[] for _ in patches]
     for (a, b), along in zip(pairs, senses, strict=True):
-        # counterclockwise patches run against each other along their edge
+        # the boundaries of two counterclockwise patches run in opposite directions along an edge
         relation = -SENSES[a.side.name] * SENSES[b.side.name] * along
         neighbours[a.patch].append((b.patch, relation))
         neighbours[b.patch].append((a.patch, relation))
@@ -118,7 +118,7 @@ def _turn_shell(
     sign: list[int],
     tolerance: float,
 ) -> None:
-    """Set the signs of one shell's patches."""
+    """Set the signs of a shell's patches."""
     sign[shell[0]], waiting = 1, [shell[0]]
     while waiting:
         p = waiting.pop()
@@ -128,7 +128,7 @@ def _turn_shell(
                 waiting.append(q)
             elif sign[q] != relation * sign[p]:
                 raise BodyError(
-                    f"The shell has one side only (as a Moebius strip has): {patches[p].label} "
+                    f"The shell has one side only (like a Moebius strip): {patches[p].label} "
                     f"and {patches[q].label} cannot both face outward."
                 )
     volume, area = _volume([patches[p] for p in shell], [sign[p] for p in shell])

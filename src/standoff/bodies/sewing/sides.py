@@ -1,4 +1,4 @@
-"""The sides of patches: isolines in space, with projection on them."""
+"""The sides of patches: isolines in space, with projection onto them."""
 
 from __future__ import annotations
 
@@ -12,21 +12,22 @@ from standoff.geometry.domains import inside
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 
-# Counterclockwise in (u, v), each with the sense in which its free parameter runs that way.
+# Counterclockwise in (u, v), and for each, +1 if its free parameter increases in that direction.
 SIDE_NAMES = ("v0", "u1", "v1", "u0")
 SENSES = {"v0": 1, "u1": 1, "v1": -1, "u0": -1}
-# Points of the polyline that starts a projection.
+# Points of the polyline from which a projection starts.
 POLYLINE_POINTS = 17
-# A link of it that is a greater part of its length is halved, at most so often: where a parameter
-# runs unevenly, as weights of a ratio of 1e6 make it, even parameters lie in one place.
+# A link that is a larger fraction of the polyline's length is halved, at most this often: with a
+# very uneven parametrisation, as from weights of a ratio of 1e6, uniform parameters are all close
+# together in space.
 LONGEST_LINK = 0.25
 LINK_HALVINGS = 40
-# Newton steps of one projection: it starts within a link of the polyline, and halves the range
-# where it would leave it.
+# Newton steps of one projection: it starts within a link of the polyline, and bisects the range
+# where a step would leave it.
 PROJECTION_STEPS = 60
-# Shares of a side where it is compared with another: none symmetric, none at an end.
+# Fractions of a side where it is compared with another: not symmetric, and none at an end.
 PROBES = np.array([0.03, 0.17, 0.31, 0.48, 0.64, 0.81, 0.96])
-# The same for every span between knots: a bulge of a spline fills at least one.
+# The same for every span between knots: a bulge of a spline covers at least one span.
 SPAN_PROBES = np.array([0.12, 0.38, 0.61, 0.9])
 
 
@@ -68,14 +69,14 @@ class Side:
 
     @cached_property
     def breaks(self) -> Array:
-        """Knots of the side's curve between its ends, and the ends; one span without knots."""
+        """The side's ends and the knots of its curve between them; only the ends if none."""
         knots = self.surface.pieces()[0 if self.name[0] == "v" else 1]
         return np.concatenate([[self.first], inside(knots, self.first, self.last), [self.last]])
 
     @cached_property
     def knots(self) -> Array:
-        """Parameters of the polyline, ascending: POLYLINE_POINTS even ones, the curve's knots, and
-        more where its links would be long."""
+        """Parameters of the polyline, ascending: POLYLINE_POINTS uniform ones, the curve's knots,
+        and more where its links would be long."""
         return self._halved(self._even)
 
     @cached_property
@@ -98,7 +99,7 @@ class Side:
 
     @cached_property
     def middle(self) -> float:
-        """The parameter that halves the side's length, about: that of a point of its polyline."""
+        """About the parameter that halves the side's length, that of a point of its polyline."""
         links = np.linalg.norm(np.diff(self.polyline, axis=0), axis=1)
         way = np.concatenate([[0.0], np.cumsum(links)])
         inner = np.abs(way[1:-1] - 0.5 * way[-1])
@@ -125,7 +126,7 @@ class Side:
 
     @property
     def uneven(self) -> bool:
-        """Do even parameters lie too far apart in space to show the side."""
+        """Are points at uniform parameters too far apart in space to represent the side?"""
         return len(self.knots) > len(self._even)
 
     def collapsed(self, tolerance: float) -> bool:
@@ -134,7 +135,7 @@ class Side:
         return float(np.linalg.norm(points - points.mean(axis=0), axis=1).max()) <= tolerance
 
     def closed(self, tolerance: float) -> bool:
-        """Does a side that has not collapsed end where it begins?"""
+        """Does the side end where it begins, without having collapsed?"""
         ends = float(np.linalg.norm(self.polyline[-1] - self.polyline[0]))
         return ends <= tolerance and not self.collapsed(tolerance)
 
@@ -144,7 +145,7 @@ class Side:
         low = float(self.knots[max(k - 1, 0)])
         high = float(self.knots[min(k + 1, len(self.knots) - 1)])
         t = float(self.knots[k])
-        met_low = met_high = False  # has the projection been at that end, and turned back
+        met_low = met_high = False  # has the projection been at that end and turned back?
         for _ in range(PROJECTION_STEPS):
             y, yt, ytt = self.jet(t)
             away = y - x
@@ -177,6 +178,6 @@ def in_spans(breaks: Array) -> Array:
 
 
 def gap(one: Side, other: Side) -> float:
-    """The greatest distance of points inside one side from the other, both ways."""
+    """The greatest distance from points inside one side to the other side, in both directions."""
     forth = max(other.nearest(x)[1] for x in one.probes)
     return max(forth, max(one.nearest(x)[1] for x in other.probes))

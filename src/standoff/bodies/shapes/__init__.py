@@ -1,9 +1,9 @@
-"""Ready-made shapes, all from the same parts: ``so.shapes``.
+"""Ready-made shapes: ``so.shapes``.
 
-Semi-axes for ellipsoids; full lengths for box, cylinder, capsule (its cylindrical part) and
-cone; all centred, axis z. A cone's apex is at +height/2, its base at -height/2. `rounding` is the
-radius of a ball that is swept over a shape, which grows by it; only `box` and `rounded_polytope`
-keep their size.
+Ellipsoids are given by semi-axes; box, cylinder, capsule (its cylindrical part) and cone by full
+lengths. All are centred, with the axis z. A cone's apex is at +height/2, its base at -height/2.
+`rounding` is the radius of a ball swept over a shape, which makes it larger; only `box` and
+`rounded_polytope` keep their size.
 """
 
 from typing import TYPE_CHECKING

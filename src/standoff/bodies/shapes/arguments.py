@@ -1,4 +1,4 @@
-"""Numbers of a shape: one by one, several in a list, or by name."""
+"""Numbers that define a shape: one by one, several in a list, or by name."""
 
 from __future__ import annotations
 
@@ -22,17 +22,18 @@ def by_position(
     shape : str
         Its name, for messages.
     given : tuple
-        What came by position: ``(a, b, c)`` for one argument of three numbers, or ``([a, b, c],)``.
+        The positional arguments: ``(a, b, c)`` for one argument of three numbers, or
+        ``([a, b, c],)``.
     counts : mapping
-        By name, in the order of positions, how many numbers an argument has; 0 for one that is
-        given whole.
+        For every name, in the order of positions, how many numbers the argument has; 0 for one
+        that is given as a whole.
     named : mapping
-        What came by name; None stands for nothing.
+        The keyword arguments; None if one is not given.
 
     Raises
     ------
     StandoffTypeError
-        An argument that is missing or given twice, or too many by position.
+        An argument that is missing or given twice, or too many positional arguments.
     """
     found = {name: value for name, value in named.items() if value is not None}
     rest = list(given)
@@ -52,7 +53,7 @@ def by_position(
         if name not in found and count:
             numbers = ", ".join(["1.0"] * count)
             raise StandoffTypeError(
-                f"so.shapes.{shape} misses {name}: give {name}=({numbers}).", name
+                f"so.shapes.{shape} needs {name}: give {name}=({numbers}).", name
             )
     return found
 

@@ -21,15 +21,15 @@ from standoff.geometry.validation import Array
 
 # Fewer patches than this would not keep their normals within a hemisphere.
 LEAST_PATCHES = 3
-# Each is proven by itself, in some 10 ms.
+# Each is proven separately, in some 10 ms.
 MOST_PATCHES = 1000
-# Below this share of half the length the bulge is lost to the rounding of the arc's far centre: a
-# rational arc has none.
+# If the bulge is below this fraction of half the length, it would be lost in the rounding of the
+# arc's distant centre: a rational arc, which has no centre, is used instead.
 SLENDER = 0.1
 
 
 def spindle(radius: float, length: float, patches: int = 3, *, rounding: float = 0.0) -> Body:
-    """A circular arc turned about its chord: smooth but for its two pointed poles.
+    """A circular arc rotated about its chord: smooth except for its two pointed poles.
 
     Parameters
     ----------
@@ -70,10 +70,10 @@ def spindle(radius: float, length: float, patches: int = 3, *, rounding: float =
 
 
 def gore(radius: float, height: float, patches: int = 4, *, rounding: float = 0.0) -> Body:
-    """A cloister vault and its mirror image: at every height a regular polygon.
+    """A cloister vault and its mirror image: every horizontal section is a regular polygon.
 
-    Its sharp edges are circular arcs from pole to pole, and between them lie cylindrical patches
-    whose rulings are horizontal. The first edge is in the half-plane y = 0, x >= 0.
+    Its sharp edges are circular arcs from pole to pole. Between them are cylindrical patches with
+    horizontal rulings. The first edge is in the half-plane y = 0, x >= 0.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def gore(radius: float, height: float, patches: int = 4, *, rounding: float = 0.
 
 
 def _gore_face(surface: Any, j: int, n: int) -> Face:
-    """Face j between the edges j (u least) and j + 1 (u greatest), poles at the ends of v."""
+    """Face j between the edges j (least u) and j + 1 (greatest u), with poles at the ends of v."""
     u0, u1, v0, v1 = surface.domain
     return Face(
         (surface,),
@@ -125,7 +125,7 @@ def _gore_face(surface: Any, j: int, n: int) -> Face:
 
 
 def _meridian(bulge: float, half: float, out: Array) -> Curve:
-    """The circular arc from pole to pole through bulge out, `out` a unit vector."""
+    """The circular arc from pole to pole through bulge * out, where `out` is a unit vector."""
     if bulge < SLENDER * half:
         return RationalBezier(*_rational_arc(bulge, half, out))
     radius = 0.5 * (half * half + bulge * bulge) / bulge
@@ -135,7 +135,7 @@ def _meridian(bulge: float, half: float, out: Array) -> Curve:
 
 
 def _rational_arc(bulge: float, half: float, out: Array) -> tuple[Array, Array]:
-    """Control points and weights of the arc from pole to pole through bulge out.
+    """Control points and weights of the arc from pole to pole through bulge * out.
 
     It turns by 2 alpha: its middle control point is where the tangents at the poles meet, its
     middle weight is cos alpha.
@@ -154,7 +154,7 @@ def _bulge(radius: float, length: float, name: str) -> tuple[float, float]:
     if bulge >= half:
         raise BodyError(
             f"{name}: radius = {bulge} is not below half of the length {2.0 * half}: the arc would "
-            "be a semicircle or more. Make it longer, or map it: body.transformed."
+            "be a semicircle or more. Make it longer, or scale it with body.transformed."
         )
     return bulge, half
 

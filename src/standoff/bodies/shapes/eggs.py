@@ -17,28 +17,28 @@ from standoff.geometry.swept import Revolution
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
-# Greatest |taper|: at sqrt(1/2) an egg's flank is straight, beyond it is hollow.
+# Greatest |taper|: from sqrt(1/2) on an egg is hollow near its pointed end.
 GREATEST_TAPER = 0.7
-# A polar cap reaches to this stereographic radius, tan(30°), 60° from its pole, and less at the
-# blunt end, where the perspective spreads it: so its weights stay positive.
+# A polar cap extends to this stereographic radius, tan(30°), 60° from its pole, and less at the
+# blunt end, where the perspective enlarges it, so that its weights stay positive.
 CAP_REACH = float(np.sqrt(1.0 / 3.0))
-# Their square patches reach a little farther, so that the rim is well inside.
+# The square patches of the caps extend a little farther, so that the rim is well inside.
 CAP_MARGIN = 1.1
 
 
 def egg(radius: float, length: float, taper: float = 0.4, *, rounding: float = 0.0) -> Body:
     """An egg about the axis z, pointed towards +z for taper > 0; exact, smooth everywhere.
 
-    A projective image of a sphere in space is a quadric again, so an ellipsoid. An egg is the
-    image under a *partial* perspective, in which only the sections square to the axis shrink:
-    (x, y, z) -> (b x / (1 + k z), b y / (1 + k z), c z) of the unit sphere, k the taper, c half
-    the length. It is a surface of degree 4, and rational: two polar caps of degree (4, 4) and a
+    A projective image of a sphere is again a quadric, and so an ellipsoid. An egg is the image of
+    the unit sphere under a *partial* perspective, in which only the sections perpendicular to the
+    axis shrink: (x, y, z) -> (b x / (1 + k z), b y / (1 + k z), c z), where k is the taper and c
+    half the length. It is a rational surface of degree 4: two polar caps of degree (4, 4) and a
     revolved curve of degree 4 between them.
 
     Parameters
     ----------
     radius : float
-        The greatest, at z = -taper length / 2; length, positive.
+        The greatest radius, at z = -taper length / 2; length, positive.
     length : float
         From pole to pole, centred; length, positive.
     taper : float
@@ -67,7 +67,7 @@ def egg(radius: float, length: float, taper: float = 0.4, *, rounding: float = 0
     if abs(k) > GREATEST_TAPER:
         raise BodyError(
             f"egg with taper = {k}: give -{GREATEST_TAPER} to {GREATEST_TAPER}; from sqrt(1/2) on "
-            "it is not convex."
+            "an egg is not convex."
         )
     scale = np.array([radius * np.sqrt(1.0 - k * k)] * 2 + [half])
     low, high = _cap_reach(k, -1.0), _cap_reach(k, 1.0)
@@ -95,7 +95,7 @@ def _parallel(scale: Array, k: float, z: float) -> ConicArc:
 
 
 def _meridian(scale: Array, k: float, t0: float, t1: float) -> RationalBezier:
-    """The circle (2 t, 1 - t²)/(1 + t²) under the map, from t0 (v = 0) to t1."""
+    """The image of the circle (2 t, 1 - t²)/(1 + t²), from t0 (v = 0) to t1."""
     t = np.array([t0, t1])  # the Bernstein coefficients of t, degree 1
     one = np.array([1.0, 1.0])
     sphere_w = _product(one, one) + _product(t, t)
@@ -130,7 +130,7 @@ def _cap(scale: Array, k: float, side: float) -> BezierPatch:
 
 
 def _rim() -> Pcurve:
-    """A cap's rim in its unit square: the angle is the parameter."""
+    """A cap's rim in its unit square, parametrised by the angle."""
     h = 0.5 / CAP_MARGIN
     return Pcurve(L.CONIC, np.array([[h, 0.0, 0.5], [0.0, h, 0.5], [0.0, 0.0, 1.0]]))
 

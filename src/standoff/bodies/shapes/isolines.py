@@ -1,4 +1,4 @@
-"""Trimming curves that run along a patch's parameters."""
+"""Trimming curves along which one of a patch's parameters is constant."""
 
 from __future__ import annotations
 

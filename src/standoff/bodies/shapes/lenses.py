@@ -26,8 +26,8 @@ def lens(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
     radius : float
         Of the balls, length, positive.
     offset : float
-        Of their centres, length, positive and below `radius`; offset / radius from 1e-9 to
-        1 - 1e-9.
+        Of their centres from the origin, length, positive and below `radius`; offset / radius
+        from 1e-9 to 1 - 1e-9.
     rounding : float
         Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
@@ -38,8 +38,8 @@ def lens(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
     Raises
     ------
     ValueError
-        A number that is not finite or not positive; an offset that leaves nothing, or a body too
-        near to a ball or too thin; a rounding that is negative.
+        A number that is not finite or not positive; an offset with which the lens is empty, too
+        thin or too close to a ball; a rounding that is negative.
     """
     r, c = magnitude(radius, "radius"), magnitude(offset, "offset")
     rounding = magnitude_or_zero(rounding, "rounding")
@@ -65,8 +65,8 @@ def _edges(r: float, centres: list[Array], height: float) -> list[Edge]:
     """Where balls i and i + 1 meet: arcs from the lower vertex to the upper one, at `height`."""
     edges = []
     for i in range(3):
-        # opposite to ball i + 2's centre, a circle about the midpoint of their centres, in the
-        # plane that bisects them
+        # on the side opposite the centre of ball i + 2: a circle around the midpoint of the two
+        # centres, in their perpendicular bisecting plane
         a, b = centres[i], centres[(i + 1) % 3]
         middle = 0.5 * (a + b)
         out = -middle / np.linalg.norm(middle)
@@ -78,7 +78,7 @@ def _edges(r: float, centres: list[Array], height: float) -> list[Edge]:
 
 
 def _faces(r: float, centres: list[Array], c: float, height: float) -> list[Face]:
-    """The three spherical faces; one that is steep gets an atlas instead of a chart."""
+    """The three spherical faces; a large one gets an atlas instead of a single chart."""
     faces = []
     for i in range(3):
         z = -centres[i] / c
@@ -87,6 +87,6 @@ def _faces(r: float, centres: list[Array], c: float, height: float) -> list[Face
         charts: tuple[Sphere, ...] = (Sphere(frame, centres[i]),)
         if height / c > SINGLE_CHART_REACH:
             charts = sphere_atlas(frame, centres[i])
-        # seen from outside, edge i lies at greater angle about z, edge i - 1 at lesser
+        # seen from outside, edge i is at the larger angle about z, edge i - 1 at the smaller
         faces.append(Face(charts, ((i, 1), ((i + 2) % 3, -1))))
     return faces

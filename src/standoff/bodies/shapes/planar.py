@@ -14,17 +14,17 @@ from standoff.geometry.curves import Curve
 
 
 def planar_loop(curves: Sequence[Curve], rounding: float = 0.0) -> Body:
-    """A planar convex body: curves in z = 0, each beginning where the one before ends.
+    """A planar convex body: curves in z = 0, each beginning where the previous one ends.
 
-    One closed conic (an ellipse) is a loop by itself.
+    A single closed conic (an ellipse) is a loop too.
 
     Parameters
     ----------
     curves : sequence of Curve
         Counterclockwise or clockwise, lengths. Ends may miss each other by 1e-9 of the size.
     rounding : float
-        Radius of a disc swept over it, length, zero or above: the loop grows by it all around, its
-        corners rounded.
+        Radius of a disc swept over it, length, zero or above: the loop grows by this much on all
+        sides, and its corners become round.
 
     Returns
     -------
@@ -37,7 +37,7 @@ def planar_loop(curves: Sequence[Curve], rounding: float = 0.0) -> Body:
         Fewer than two open curves, ends that do not meet, a loop that leaves z = 0 or is not
         convex.
     TypeError
-        No sequence, or something in it that is no `Curve`.
+        Not a sequence, or something in it is not a `Curve`.
     ValueError
         A rounding that is negative or not finite.
     """

@@ -1,4 +1,4 @@
-"""Points and segments, and the bodies that a ball sweeps over them."""
+"""Points and segments, and the bodies that a ball swept over them makes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from standoff.geometry.validation import Array, vector3
 
 
 def point(*, rounding: float = 0.0) -> Body:
-    """The origin, a body of one vertex.
+    """The origin, as a body of one vertex.
 
     Parameters
     ----------
@@ -57,8 +57,8 @@ def segment(
     length : float
         From end to end, length, zero or above; 0 is a point.
     start, end : (3,) array_like
-        Its ends, body frame, lengths; given together, by name or as ``segment(start, end)``, in
-        place of `length`.
+        Its ends, body frame, length; given together, by name or as ``segment(start, end)``, instead
+        of `length`.
     rounding : float
         Radius of a ball swept over it, length, zero or above: a capsule.
 
@@ -120,7 +120,7 @@ def capsule(radius: float, length: float, *, rounding: float = 0.0) -> Body:
     radius : float
         Length, zero or above; 0 is a segment.
     length : float
-        Of the segment, so of the cylindrical part, length, zero or above; 0 is a sphere.
+        Of the segment, and so of the cylindrical part, length, zero or above; 0 is a sphere.
     rounding : float
         Radius of a ball swept over it, length, zero or above: it adds to the radius.
 
@@ -142,10 +142,10 @@ def _upright(length: float) -> Array:
 
 
 def _swept(ends: Array, radius: float, name: str) -> Body:
-    """The segment between two ends, a point where they are one."""
+    """The segment between two ends, or a point if they are equal."""
     if np.array_equal(ends[0], ends[1]):
         name = "sphere" if radius else "point"
-        # no zero keeps a minus: the digest is that of a point
+        # removes the sign of zeros, so that the digest is that of a point
         return Body.from_brep(ends[:1] + 0.0, rounding=radius, name=name)
     edge = Edge(Line(ends[0], ends[1]), 0, 1)
     return Body.from_brep(ends, [edge], rounding=radius, name=name)

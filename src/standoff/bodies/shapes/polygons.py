@@ -22,17 +22,17 @@ from standoff.geometry.validation import Array
 def polygon(vertices: Any, *, rounding: float = 0.0) -> Body:
     """The convex hull of points in one plane, such as a triangle: flat, without volume.
 
-    Face 0 is the side from which the vertices run counterclockwise, face 1 the other; n faces
-    without width are the rim, whose edges are there twice, as the border of either side.
+    Face 0 is the side from which the vertices run counterclockwise, face 1 the other. The rim is
+    n faces without width; its edges exist twice, once for each side.
 
     Parameters
     ----------
     vertices : (n, 3) array_like
-        At least three points of one plane, of any orientation, not in one line, length. Those
-        inside the hull are left out; points off the plane by up to 1e-9 of the extent are moved
-        into it, which ``body.check().notes`` tells, with how far.
+        At least three points of a plane of any orientation, not on one line, length. Those inside
+        the hull are dropped. Points off the plane by up to 1e-9 of the extent are moved into it;
+        ``body.check().notes`` says so, and how far.
     rounding : float
-        Radius of a ball swept over it, length, zero or above: a plate with round edges.
+        Radius of a ball swept over it, length, zero or above: it becomes a plate with round edges.
 
     Returns
     -------
@@ -41,7 +41,7 @@ def polygon(vertices: Any, *, rounding: float = 0.0) -> Body:
     Raises
     ------
     BodyError
-        The points are in one line, or not in one plane.
+        The points are on one line, or not in one plane.
     ValueError
         A wrong shape, a number that is not finite or beyond 1e50, a negative rounding.
     """
@@ -72,13 +72,13 @@ def polygon(vertices: Any, *, rounding: float = 0.0) -> Body:
 
 
 def _beside(corner: Array, side: Array, normal: Array) -> Plane:
-    """The plane of a side that is square to the polygon's."""
+    """The plane through a side that is perpendicular to the polygon."""
     return Plane.through(corner, side / np.linalg.norm(side), normal)
 
 
 def _outline(points: Array) -> tuple[Array, list[int], Array]:
-    """Points in one plane, the extreme ones in order, and the normal about which they run
-    counterclockwise."""
+    """The points moved into their plane, the indices of the extreme ones in order, and the normal
+    around which these run counterclockwise."""
     if len(points) < 3:
         raise BodyError(
             f"A polygon of {len(points)} vertices: give at least three, or take so.shapes.segment.",
@@ -94,7 +94,7 @@ def _outline(points: Array) -> tuple[Array, list[int], Array]:
     eps = float(np.finfo(np.float64).eps)
     if width <= NARROWEST * length + PLANE_ROUNDINGS * eps * greatest:
         raise BodyError(
-            f"The {len(points)} vertices of a polygon are in one line ({width:.3g} wide, "
+            f"The {len(points)} vertices of a polygon are on one line ({width:.3g} wide, "
             f"{length:.3g} long): take so.shapes.segment(start=..., end=...).",
             "vertices",
             points,
@@ -102,8 +102,8 @@ def _outline(points: Array) -> tuple[Array, list[int], Array]:
     rounding = PLANE_ROUNDINGS * eps * greatest
     if thickness > OFF_PLANE * length + rounding:
         raise BodyError(
-            f"The {len(points)} vertices of a polygon are not in one plane: {thickness:.3g} apart "
-            f"across it, on an extent of {length:.3g}. Take so.shapes.polytope, or triangles.",
+            f"The {len(points)} vertices of a polygon are not in one plane: {thickness:.3g} thick "
+            f"on an extent of {length:.3g}. Use so.shapes.polytope, or triangles.",
             "vertices",
             points,
         )
@@ -112,11 +112,11 @@ def _outline(points: Array) -> tuple[Array, list[int], Array]:
     flat = away @ axes[:2].T / length
     loop = [int(k) for k in scipy.spatial.ConvexHull(flat).vertices]
     normal = axes[2]
-    # from the first vertex on, in the order that was given where it is one round
+    # starting at the first vertex, in the given direction if that goes around once
     loop = loop[(at := loop.index(min(loop))) :] + loop[:at]
     if loop[1] > loop[-1]:
         loop, normal = [loop[0], *reversed(loop[1:])], -normal
-    if len(loop) == 3:  # exactly their own plane's
+    if len(loop) == 3:  # exactly that of their own plane
         normal = np.cross(points[loop[1]] - points[loop[0]], points[loop[2]] - points[loop[0]])
         normal = normal / np.linalg.norm(normal)
     return points, loop, normal

@@ -1,4 +1,4 @@
-"""Bodies of planes, sharp or swept by a ball."""
+"""Bodies with plane faces, sharp or swept by a ball."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ from standoff.checks.numbers import magnitude_or_zero
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.validation import Array
 
-# The corners, faces and outward normals of a box, numbered as Qhull numbers them for its hull.
+# The corners, faces and outward normals of a box, numbered as those of its hull. Its vertices,
+# edges and faces are numbered after them, and its digest depends on the signs of the zeros.
 CORNERS = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
 NORMALS = np.array(
     [
@@ -50,9 +51,10 @@ def box(size: Any, rounding: float = ...) -> Body: ...
 
 
 def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
-    """A box about the origin, its edges along x, y, z, sharp or rounded.
+    """A box about the origin, with edges along x, y, z, sharp or rounded.
 
-    It keeps its size when it is rounded: the core, less by 2 rounding each way, is swept by a ball.
+    It keeps its size when it is rounded: its core, smaller by 2 rounding along each axis, is swept
+    by a ball.
 
     Parameters
     ----------
@@ -61,7 +63,7 @@ def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
     size : (3,) array_like
         Outer lengths along x, y, z, positive.
     rounding : float
-        Radius of its edges and corners, length, zero or above; below half of the least length.
+        Radius of its edges and corners, length, zero or above and below half of the least length.
 
     Returns
     -------
@@ -102,16 +104,16 @@ def polytope(vertices: Any, *, rounding: float = 0.0) -> Body:
     """The convex hull of points.
 
     With a rounding it grows; ``rounded_polytope`` rounds it within its planes. It is
-    ``Body.from_points``, which can also merge facets that are nearly in one plane.
+    ``Body.from_points``, which can also leave out points to have fewer facets.
 
-    Vertices may lie far from the origin, as a mesh in a map's coordinates does: the hull is then
-    taken about their middle, which ``body.check().notes`` tells, and answers are as good as the
-    vertices' own digits.
+    Vertices may lie far from the origin, like those of a mesh in map coordinates. The hull is then
+    computed relative to their middle, as ``body.check().notes`` says, and answers are as accurate
+    as the vertices' own digits.
 
     Parameters
     ----------
     vertices : (n, 3) array_like
-        At least four points that are not in one plane, length. Those inside the hull are left out.
+        At least four points that are not in one plane, length. Those inside the hull are dropped.
     rounding : float
         Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
@@ -132,11 +134,11 @@ def polytope(vertices: Any, *, rounding: float = 0.0) -> Body:
 
 
 def rounded_polytope(vertices: Any, rounding: float) -> Body:
-    """The opening of a polytope by a ball: its edges and corners, and what is narrower, rounded.
+    """The opening of a polytope by a ball: edges, corners and anything narrower become round.
 
-    Every point of it lies in a ball of radius `rounding` within the convex hull of the points.
-    The core, the polytope with all its planes moved inwards by `rounding`, is swept by the ball,
-    so that the blends are exact cylinders and spheres. The planes stay where they were.
+    It is the union of all balls of radius `rounding` inside the convex hull of the points. The
+    core, the polytope with all its planes moved inwards by `rounding`, is swept by the ball, so
+    that the blends are exact cylinders and spheres. The planes stay where they were.
 
     Parameters
     ----------
@@ -184,16 +186,16 @@ def _core(points: Array, faces: Outlines, rounding: float) -> Array:
 
 
 def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float) -> Array:
-    """The vertices of normals @ x <= offsets - rounding, (n, 3); all in parts of `unit`.
+    """The vertices of normals @ x <= offsets - rounding, (n, 3); all lengths in `unit`.
 
     Raises
     ------
     BodyError
-        The rounding leaves none.
+        The rounding leaves no core.
     QhullError
-        They are lost in roundoff.
+        The vertices are lost in roundoff.
     """
-    # the inscribed ball: greatest r with normals @ x + r <= offsets
+    # the inscribed ball: the greatest r with normals @ x + r <= offsets
     columns = np.column_stack([normals, np.ones(len(normals))])
     bounds = [(None, None)] * 3 + [(0.0, None)]
     ball = scipy.optimize.linprog([0.0, 0.0, 0.0, -1.0], columns, offsets, bounds=bounds).x
@@ -212,7 +214,7 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
     size = float(np.ptp(meeting.intersections, axis=0).max())
     vertices: list[Array] = []
     for spot, meet in zip(meeting.intersections, meeting.dual_facets, strict=True):
-        # Qhull works in the dual; solving for the planes that meet gives the last digits
+        # Qhull computes in the dual space; solving for the planes that meet gives the last digits
         heights = normals[meet] @ spot - (offsets[meet] - rounding)
         vertex = spot - np.linalg.lstsq(normals[meet], heights, rcond=None)[0]
         if all(np.linalg.norm(vertex - known) > SAME_VERTEX * size for known in vertices):
@@ -221,5 +223,5 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
 
 
 def _line(error: Exception) -> str:
-    """The first line of Qhull's message, which goes on with tables."""
+    """The first line of Qhull's message, without the tables that follow."""
     return str(error).strip().splitlines()[0]

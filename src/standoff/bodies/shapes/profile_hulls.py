@@ -1,7 +1,7 @@
 """The convex hull of a planar curve (r, z), r >= 0, and its mirror image about the axis r = 0.
 
 Its right side, from the lowest point up, is a chain of arcs of the curve and of straight pieces
-that touch it (bitangents), found from samples and then to roundoff.
+that touch it (bitangents), found from samples and then refined to roundoff.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from standoff.errors import BodyError
 from standoff.geometry.curves import ConicArc, Curve
 from standoff.geometry.validation import Array
 
-# Samples of the curve: what is hollow over less than a sample is taken as convex.
+# Samples of the curve: a concavity narrower than a sample interval counts as convex.
 SAMPLES = 2048
-# Newton steps to a bitangent from samples: it converges quadratically.
+# Newton steps from samples to a bitangent; convergence is quadratic.
 TANGENT_STEPS = 40
-# A tangent point may move this many samples from the hull's own.
+# A tangent point may move this many samples from the sample on the hull.
 TANGENT_REACH = 3.0
 
 
 @dataclass(frozen=True)
 class Arc:
-    """The curve from parameter `low` (the lower end) to `high`; low > high where it runs down."""
+    """The curve from parameter `low` (the lower end) to `high`; low > high if it runs downwards."""
 
     low: float
     high: float
@@ -43,7 +43,7 @@ class Arc:
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """The hull's right side: rings (r, z) from the lowest to the highest, and what joins them.
+    """The hull's right side: rings (r, z) from the lowest to the highest, and pieces between them.
 
     pieces[k] joins rings k and k + 1: an Arc, or None for a straight piece.
     """
@@ -54,7 +54,7 @@ class Chain:
 
 @dataclass
 class _Run:
-    """Neighbouring samples on the hull, from the lower to the upper end."""
+    """Consecutive samples on the hull, from the lower to the upper end."""
 
     first: float
     last: float
@@ -97,7 +97,7 @@ def _runs(curve: Curve, t: Array, points: Array) -> list[_Run]:
         hull = scipy.spatial.ConvexHull(np.concatenate([points, mirrored]))
     except (scipy.spatial.QhullError, ValueError) as error:
         raise BodyError(
-            "The revolved curve spans no volume: it lies on the axis or in one plane square to it."
+            "The revolved curve spans no volume: it lies on the axis or in a plane normal to it."
         ) from error
     n = len(points)
     order = hull.vertices  # counterclockwise: from the lowest up on the right
@@ -114,7 +114,7 @@ def _runs(curve: Curve, t: Array, points: Array) -> list[_Run]:
         if curve.closed and abs(jump) > n // 2:
             jump -= int(np.sign(jump)) * n
         if abs(jump) == 1 and sense in (0, jump):
-            # a closed curve's parameter runs on over its seam
+            # a closed curve's parameter continues across its seam
             turns = round((runs[-1].last + jump * step - float(t[k])) / (n * step))
             runs[-1].last = float(t[k]) + turns * n * step
             sense = jump
@@ -143,7 +143,7 @@ def _root(
     if not curve.closed:
         low, high = max(low, curve.first), min(high, curve.last)
     at_low, at_high = sign * slope(low), sign * slope(high)
-    if at_low <= 0.0 or at_high >= 0.0:  # no inner maximum: an end of the curve, or flat
+    if at_low <= 0.0 or at_high >= 0.0:  # no interior maximum: an end of the curve, or flat
         ends = [low] if at_low <= 0.0 else [high]
         return ends[0] if ends[0] in (curve.first, curve.last) and not curve.closed else t
     widths = {"xtol": NO_ABSOLUTE_WIDTH, "rtol": ROOT_WIDTH}
@@ -161,8 +161,8 @@ def _touching(curve: Curve, a: float, b: float, step: float) -> tuple[float, flo
     for _ in range(TANGENT_STEPS):
         jet_a, jet_b = (np.array(curve.jet(t))[:, [0, 2]] for t in (a, b))
         chord = jet_b[0] - jet_a[0]
-        # outward is on the right of the way up; an end of the curve is held where the curve
-        # would go further out beyond it
+        # outward is to the right when going up; an end of the curve is held if the curve would
+        # go further out beyond it
         slopes = np.array([_cross(chord, jet_a[1]), _cross(chord, jet_b[1])])
         held = [
             t in ends and slope * (1.0 if t == curve.first else -1.0) >= 0.0
@@ -178,7 +178,7 @@ def _touching(curve: Curve, a: float, b: float, step: float) -> tuple[float, flo
             if held[k]:
                 matrix[k], slopes[k] = np.eye(2)[k], 0.0
         change = np.linalg.lstsq(matrix, -slopes, rcond=HELD_ENDS_RANK)[0]
-        change[held] = 0.0  # not roundoff either: an end stays an end
+        change[held] = 0.0  # not even by roundoff: an end stays an end
         new_a, new_b = a + change[0], b + change[1]
         if ends:
             new_a, new_b = (min(max(float(t), ends[0]), ends[1]) for t in (new_a, new_b))

@@ -15,9 +15,9 @@ from standoff.geometry.curves import ConicArc
 from standoff.geometry.quadrics import Cone, Cylinder, Plane, Sphere, sphere_atlas
 from standoff.geometry.validation import Array, vector3
 
-# Cosine up to which an axis is square enough to a normal for a plane's first direction.
+# Cosine up to which an axis is perpendicular enough to a normal for a plane's first direction.
 SQUARE_ENOUGH = 0.8
-# A gnomonic chart alone serves a face up to this tangent of the angle from its centre.
+# A single gnomonic chart is enough for a face up to this tangent of the angle from its centre.
 SINGLE_CHART_REACH = 3.0
 
 
@@ -65,7 +65,7 @@ def ellipsoid(*axes: Any, semi_axes: Any = None, rounding: float = 0.0) -> Body:
 def cylinder(radius: float, height: float, *, rounding: float = 0.0) -> Body:
     """A cylinder about the axis z, centred.
 
-    Two discs and a side without a seam; the rims are closed edges.
+    It has two discs and a side without a seam; the rims are closed edges.
 
     Parameters
     ----------
@@ -158,14 +158,14 @@ def cap(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
     ------
     ValueError
         A number that is not finite, a radius that is not positive, an offset that leaves nothing
-        or the whole ball, a rounding that is negative.
+        or the whole ball; a rounding that is negative.
     """
     r = magnitude(radius, "radius")
     rounding = magnitude_or_zero(rounding, "rounding")
     h = number(offset, "offset")
     if not -r < h < r:
         raise StandoffError(
-            f"Cap with offset = {h} outside (-{r}, {r}): nothing or a ball is left.", "offset", h
+            f"Cap with offset = {h} outside (-{r}, {r}): it is empty, or a ball.", "offset", h
         )
     rim = float(np.sqrt((r - h) * (r + h)))
     x, y = np.array([rim, 0.0, 0.0]), np.array([0.0, rim, 0.0])
@@ -186,14 +186,14 @@ def cap(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
 
 
 def halfspace(normal: Any = (0.0, 0.0, 1.0), offset: float = 0.0, *, rounding: float = 0.0) -> Body:
-    """The half-space normal · x <= offset, z <= 0 if nothing is said: one plane without a boundary.
+    """The half-space normal · x <= offset, by default z <= 0: one plane without a boundary.
 
     Parameters
     ----------
     normal : (3,) array_like
-        Outward, of any length but zero: only its direction counts.
+        Outward, of any length except zero: only its direction counts.
     offset : float
-        Of the plane from the origin along the unit normal, length; negative on the other side.
+        Of the plane from the origin along the unit normal, length; may be negative.
     rounding : float
         Radius of a ball swept over it, length, zero or above: the plane moves out by it.
 
@@ -205,7 +205,7 @@ def halfspace(normal: Any = (0.0, 0.0, 1.0), offset: float = 0.0, *, rounding: f
     Raises
     ------
     ValueError
-        A normal of no length; a number that is not finite; a rounding that is negative.
+        A normal of length zero; a number that is not finite; a rounding that is negative.
     """
     axes, shift = _plane_of(vector3(normal, "normal"), number(offset, "offset"))
     plane = Plane.through(shift, axes[0], axes[1])
@@ -217,8 +217,8 @@ def halfspace(normal: Any = (0.0, 0.0, 1.0), offset: float = 0.0, *, rounding: f
 
 
 def _plane_of(normal: Array, offset: float) -> tuple[Array, Array]:
-    """Two unit vectors square to a normal, right-handed with it, and the plane's point nearest to
-    the origin."""
+    """Two unit vectors perpendicular to a normal, right-handed with it, and the plane's point
+    nearest to the origin."""
     largest = float(np.abs(normal).max())
     if largest == 0.0:
         raise StandoffError(

@@ -17,16 +17,16 @@ from standoff.geometry.validation import Array
 
 
 def hull_of_revolution(curve: Curve, *, rounding: float = 0.0) -> Body:
-    """The convex hull of a planar curve turned about the axis z.
+    """The convex hull of a planar curve rotated about the axis z.
 
-    Arcs of the curve that are on the hull stay exact, what they hollow out is bridged by cones and
-    cylinders that touch them, and ends off the axis are closed by discs.
+    Arcs of the curve that are on the hull stay exact. Concave parts are bridged by cones and
+    cylinders that touch the arcs, and ends off the axis are closed by discs.
 
     Parameters
     ----------
     curve : Curve
         In the half-plane y = 0, x >= 0: x is the radius, z the height, lengths; open, or a closed
-        `ConicArc`. It may touch the axis at its ends only.
+        `ConicArc`. It may touch the axis only at its ends.
     rounding : float
         Radius of a ball swept over it, length, zero or above: the body grows by it all round.
 
@@ -37,17 +37,17 @@ def hull_of_revolution(curve: Curve, *, rounding: float = 0.0) -> Body:
     Raises
     ------
     BodyError
-        The curve spans no volume; its hull is finer than 2048 samples; a closed curve of another
-        kind.
+        The curve spans no volume; its hull is finer than 2048 samples; it is a closed curve of
+        another kind.
     ValueError
-        It is no `Curve`, leaves the plane y = 0 or passes the axis; a negative rounding.
+        It is not a `Curve`, leaves the plane y = 0 or crosses the axis; a negative rounding.
     """
     rounding = magnitude_or_zero(rounding, "rounding")
     whole = Revolution(curve)
     chain = hull_chain(curve)
     vertices: list[Array] = []
     edges: list[Edge] = []
-    ring: list[int] = []  # number of the edge; of the vertex where the ring is a point
+    ring: list[int] = []  # number of the edge, or of the vertex if the ring is a point
     for r, z in chain.rings:
         if r == 0.0:
             ring.append(len(vertices))
@@ -84,7 +84,7 @@ def _piece(whole: Revolution, chain: Chain, ring: list[int], k: int) -> Face:
 
 
 def _part(whole: Revolution, v0: float, v1: float) -> Revolution:
-    """The part of a revolved curve; that of a closed conic may pass the ends of its period."""
+    """A part of a revolved curve; that of a closed conic may pass the ends of its period."""
     profile = whole.profile
     if not profile.closed:
         return whole.restricted(0.0, FULL_TURN, v0, v1)
@@ -111,7 +111,7 @@ def _band(
 
 
 def _cone(low: Array, high: Array, ring: list[int], k: int) -> Face:
-    """A cone whose apex is the ring on the axis."""
+    """A cone whose apex is the ring that lies on the axis."""
     above = high[0] == 0.0
     (r, z), apex = (low, high[1]) if above else (high, low[1])
     side = Cone(np.diag([r, r, z - apex]), np.array([0.0, 0.0, apex]))

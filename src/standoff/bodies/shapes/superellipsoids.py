@@ -40,10 +40,10 @@ def superellipsoid(
 ) -> Body:
     """A superellipsoid about the origin, with exponents e1 (along z) and e2 (about z).
 
-    ``(|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) = 1``: an ellipsoid at e1 = e2 = 1,
-    towards 0 a box (e1, e2) or a cylinder (e1 alone), towards 2 an octahedron. Up to 1 the surface
-    is one smooth face. Above 1 its curvature is infinite on coordinate planes: it is kept as eight
-    octants, whose seams are edges, each of two halves.
+    ``(|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) = 1``: an ellipsoid for e1 = e2 = 1,
+    towards 0 a box (e1 and e2) or a cylinder (only e1), towards 2 an octahedron. With exponents up
+    to 1 the surface is one smooth face. Above 1 its curvature is infinite on coordinate planes, and
+    it is made of eight octants, whose seams are edges of two halves each.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ _COORDINATES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))
 
 
 def _charts(axes: Array, signs: Signs, e1: float, e2: float) -> tuple[SuperellipsoidPole, ...]:
-    """The charts about the three half-axes of an octant."""
+    """The charts centred on the three half-axes of an octant."""
     scaled = np.diag(axes * signs)
     kinds = (SuperellipsoidPole, SuperellipsoidSide, SuperellipsoidSide)
     return tuple(
@@ -128,9 +128,9 @@ def _charts(axes: Array, signs: Signs, e1: float, e2: float) -> tuple[Superellip
 
 
 def _pcurve(chart: int, start: int, end: int) -> Pcurve:
-    """Half a seam, of directions e_start + t e_end up to their signs: straight in every chart.
+    """Half a seam, with directions e_start + t e_end up to their signs: straight in every chart.
 
-    It begins at the tip, where t tells orders of magnitude apart.
+    It begins at the tip, where t can resolve orders of magnitude.
     """
     matrix = np.zeros((3, 3))
     for row, axis in enumerate(_COORDINATES[chart]):

@@ -1,4 +1,4 @@
-"""Voronoi regions: which feature of a body is nearest where, drawn before any motion."""
+"""Voronoi regions: which feature of a body is nearest where, computed before any motion."""
 
 from standoff.bodies.voronoi.compute import voronoi_regions
 from standoff.bodies.voronoi.regions import (

@@ -1,4 +1,4 @@
-"""Checks of a medial axis by brute force: it is right, and nothing of it is missing."""
+"""Checks of a medial axis by brute force: that it is correct and complete."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from standoff.bodies.voronoi.tolerances import CHECK_SAMPLES, SAME_DEPTH
 from standoff.errors import VoronoiError
 from standoff.geometry.validation import Array
 
-# The drawn axis may miss the true one by its tolerance between two points, which is judged at
-# one point between them: this many times more is surely wrong.
+# The polyline may miss the true axis by its tolerance between two points, but this was checked at
+# only one point between them: this many times more is certainly wrong.
 DOUBT = 8.0
 
 
 def check_axis(outline: Outline, branches: Sequence[MedialBranch], tolerance: float) -> None:
-    """Raise VoronoiError where a branch has not its edges nearest, or where a branch is missing."""
+    """Raise VoronoiError if the edges of a branch are not nearest, or if a branch is missing."""
     for branch in branches:
         _check_nearest(outline, branch)
     _check_complete(outline, branches, DOUBT * tolerance)
@@ -41,7 +41,7 @@ def _check_nearest(outline: Outline, branch: MedialBranch) -> None:
 
 
 def _check_complete(outline: Outline, branches: Sequence[MedialBranch], allowed: float) -> None:
-    """The greatest disc at every boundary point has its centre on the axis."""
+    """Check that the largest disc at every boundary point has its centre on the axis."""
     starts = np.vstack([b.points[: max(len(b.points) - 1, 1), :2] for b in branches])
     stops = np.vstack([b.points[min(len(b.points) - 1, 1) :, :2] for b in branches])
     count = len(outline.arcs)
@@ -55,8 +55,8 @@ def _check_complete(outline: Outline, branches: Sequence[MedialBranch], allowed:
             miss = _to_segments(foot.x - radius * foot.n, starts, stops)
             if not miss <= allowed:
                 raise VoronoiError(
-                    f"A branch of the medial axis is missing: the greatest disc inside at "
-                    f"{foot.x} (edge {arc.edge}) has its centre {miss:.3g} off the axis found."
+                    f"A branch of the medial axis is missing: the largest disc inside at {foot.x} "
+                    f"(edge {arc.edge}) has its centre {miss:.3g} off the axis found."
                 )
 
 

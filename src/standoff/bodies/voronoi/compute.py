@@ -1,4 +1,4 @@
-"""The public function."""
+"""The public function `voronoi_regions`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from standoff.checks.numbers import magnitude
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 
-# Of a point and a half-space, where no other is given, length.
+# Default reach for a point and a half-space, length.
 REACH_WITHOUT_SIZE = 1.0
 
 
@@ -20,15 +20,15 @@ def voronoi_regions(
     """Compute what separates the Voronoi regions of a body's features, for pictures and checks.
 
     Outside a convex body, regions are separated by the outward normals at edges and vertices:
-    rays of a planar body, ruled surfaces and plane sectors of a spatial one. Inside a planar body
-    they are separated by its medial axis. The trackers need none of this. Vertices and edges where
-    the normal turns by less than 1e-5 rad count as smooth.
+    rays for a planar body, ruled surfaces and plane sectors for a spatial one. Inside a planar body
+    they are separated by its medial axis. The trackers do not need any of this. Vertices and edges
+    where the normal turns by less than 1e-5 rad count as smooth.
 
     Parameters
     ----------
     body : Body
     reach : float, optional
-        How far the external boundaries are to be drawn, length; the body's size by default.
+        How far to draw the external boundaries, length; the body's size by default.
     tolerance : float, optional
         How far the medial axis's polylines may be from it, length; 1e-4 of the size by default.
 
@@ -49,9 +49,9 @@ def voronoi_regions(
     -----
     Where a disc inside a planar body touches its curves at x_i with the outward normals n_i, its
     centre is c = x_i - r n_i for all of them. The axis is traced from one of its ends to all
-    others; junctions, with three such points, are solved to roundoff. Every point is checked at
-    last against the distances to all edges, and the greatest disc at points all along the boundary
-    must have its centre on the axis.
+    others; junctions, with three such points, are solved to roundoff. Finally every point is
+    checked against the distances to all edges, and the largest disc at points all along the
+    boundary must have its centre on the axis.
     """
     if not isinstance(body, Body):
         raise StandoffTypeError(f"body = {shown(body)}: give a standoff.Body.", "body", body)

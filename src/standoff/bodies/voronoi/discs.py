@@ -1,4 +1,4 @@
-"""Discs inside a planar body that touch its boundary: at one point, at two, at three."""
+"""Discs inside a planar body that touch its boundary at one, two or three points."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from standoff.bodies.voronoi.tolerances import (
 from standoff.geometry.validation import Array
 from standoff.kernels.tolerances import EPS
 
-# Radii between two samples are not lower than these by such a factor.
+# Radii between two samples are not smaller than theirs by more than this factor.
 FAR_ABOVE = 4.0
-# Minima refined on one arc, the lowest first: on a circle every other sample is one by roundoff.
+# Minima refined on one arc, the lowest first: on a circle every other sample is one, by roundoff.
 MOST_ROOTS = 4
-# Samplings of an arc, each between neighbours of the lowest sample before.
+# How often an arc is sampled, each time between the neighbours of the previous lowest sample.
 ZOOMS = 4
 
 
@@ -46,12 +46,12 @@ class Junction(NamedTuple):
 def greatest_disc(
     outline: Outline, foot: Foot, start: Place, stop: Place, graded: bool = True
 ) -> Touch:
-    """The greatest disc inside that touches the boundary at a foot, and where it touches the way
-    from start to stop, which does not hold the foot itself. `graded`: the way's ends may be as
-    near to the foot as they like, but are not the foot.
+    """The largest disc inside that touches the boundary at a foot, and where it touches the part of
+    the boundary from start to stop, which does not contain the foot. `graded`: the ends of that
+    part may be arbitrarily near to the foot, but are not the foot.
 
-    A disc at x with the normal n has the boundary point y on its rim where its radius is
-    |x - y|²/(2 n·(x - y)): the greatest empty one has the least of these radii.
+    A disc that touches at x with the normal n has the boundary point y on its rim if its radius is
+    |x - y|²/(2 n·(x - y)): the largest empty one has the least of these radii.
     """
     best = Touch(start, np.inf)
     stretches = outline.stretches(start, stop)
@@ -96,17 +96,17 @@ def _least_radius(
 
 
 def _graded(lo: float, hi: float, first: bool, last: bool) -> Array:
-    """Samples from lo to hi, ever denser towards the ends of the whole way: there it may come as
-    near to the foot as it likes, as on the two sides of a corner."""
+    """Samples from lo to hi, ever denser towards the ends of the whole part: there it may come
+    arbitrarily near to the foot, as on the two sides of a corner."""
     fine: Array = (hi - lo) / (PART_SAMPLES - 1) * np.float64(0.5) ** np.arange(1, GRADES)
     ends = [lo + fine] * first + [hi - fine] * last
     return np.unique(np.concatenate([np.linspace(lo, hi, PART_SAMPLES), *ends]))
 
 
 def _root(function: Callable[[float], float], us: Array, i: int) -> float:
-    """The root between samples i and i + 1, where the function rises through zero."""
+    """The root between samples i and i + 1, where the function increases through zero."""
     a, b = float(us[i]), float(us[i + 1])
-    if function(a) >= 0.0 or function(b) <= 0.0:  # zero but for the samples' roundoff
+    if function(a) >= 0.0 or function(b) <= 0.0:  # zero up to the samples' roundoff
         return a if abs(function(a)) <= abs(function(b)) else b
     return float(scipy.optimize.brentq(function, a, b, xtol=EPS, rtol=4.0 * EPS))
 
@@ -136,8 +136,8 @@ def _slope(foot: Foot, arc: Arc, u: float) -> float:
 def junction(outline: Outline, places: tuple[Place, Place, Place]) -> Junction | None:
     """The disc that touches the boundary near three places, by Newton's method to roundoff.
 
-    Unknown are centre c, radius r and the three feet: c + r n_i - x_i = 0. None where the steps
-    do not come to rest.
+    The unknowns are centre c, radius r and the three feet: c + r n_i - x_i = 0. None if it does not
+    converge.
     """
     feet = [outline.foot(p) for p in places]
     start = np.vstack([np.column_stack([np.eye(2), f.n]) for f in feet])
@@ -161,7 +161,7 @@ def junction(outline: Outline, places: tuple[Place, Place, Place]) -> Junction |
         ]
         feet = [outline.foot(p) for p in now]
         length = float(np.abs(step).max())
-        # where two feet are close the steps never get small: they end as roundoff of the equations
+        # if two feet are close, steps never get small: the end is roundoff of the equations
         solved = float(np.abs(miss).max()) <= SOLVED * outline.size
         if length <= EPS * outline.size or (solved and length >= 0.5 * last):
             return Junction(y[:2], float(y[2]), (now[0], now[1], now[2]))
@@ -172,7 +172,7 @@ def junction(outline: Outline, places: tuple[Place, Place, Place]) -> Junction |
 
 
 def _moved(outline: Outline, place: Place, du: float) -> Place:
-    """A place moved by du, over a smooth joint where it meets one; held at a corner."""
+    """A place moved by du, across a smooth joint if it meets one; it stops at a corner."""
     n, u = place
     arc = outline.arc(n)
     u += du
@@ -197,7 +197,8 @@ def _speeds(arc: Arc, u: float, other: Arc, v: float) -> float:
 def nearest_on_arc(arc: Arc, point: Array) -> tuple[float, float]:
     """(distance, u) of the arc's point nearest to a point (2,).
 
-    Between samples the nearest point is sought where they are nearest, and nearer ones there.
+    The nearest point is sought between the samples nearest to the point, and then between finer
+    samples there.
     """
     us, (x, xu, _) = arc.us, arc.samples
     best, at = np.inf, float(us[0])
@@ -229,7 +230,7 @@ def _rise(arc: Arc, point: Array, u: float) -> float:
 def edge_distances(outline: Outline, point: Array) -> dict[int, tuple[float, Place]]:
     """The nearest place of every edge to a point (2,) and its distance, length.
 
-    Of edges that are surely farther off than the nearest one it is that of the nearest sample.
+    For edges that are certainly farther away than the nearest one, the nearest sample is used.
     """
     squares = [((arc.samples[0] - point) ** 2).sum(axis=1) for arc in outline.arcs]
     rough = [(float(np.sqrt(square.min())), n) for n, square in enumerate(squares)]

@@ -1,7 +1,7 @@
-"""Where the medial axis of a planar body ends: at its corners, and at focal points of the maxima
-of its curvature whose discs lie inside.
+"""The leaves of a planar body's medial axis, where it ends: at corners, and at the focal points of
+those maxima of curvature whose discs lie inside.
 
-Every gap between two touching points of a disc holds at least one leaf, and the axis enters it
+Every gap between two touching points of a disc contains at least one leaf, and the axis enters it
 in one branch.
 """
 
@@ -27,7 +27,8 @@ class Leaf(NamedTuple):
     ----------
     kind : "corner" or "focal"
     lo, hi : Place
-        The boundary that belongs to it: one point (a joint has two places), or a circular arc.
+        The part of the boundary that belongs to it: one point (a joint has two places), or a
+        circular arc.
     point : (2,) array
     depth : float
         0 at a corner.
@@ -59,7 +60,7 @@ def leaves_of(outline: Outline) -> list[Leaf]:
 
 
 def _crests(outline: Outline) -> list[tuple[Place, Place]]:
-    """Ways over which the sampled curvature is constant and higher than on both sides."""
+    """Parts on which the sampled curvature is constant and higher than on both sides."""
     count = len(outline.arcs)
     first = next((n for n in range(count) if outline.corner(n)), 0)
     found: list[tuple[Place, Place]] = []
@@ -73,7 +74,7 @@ def _crests(outline: Outline) -> list[tuple[Place, Place]]:
 
 
 def _crests_of(outline: Outline, chain: list[int], closed: bool) -> list[tuple[Place, Place]]:
-    """Crests of a smooth run of arcs; one that reaches a corner belongs to the corner."""
+    """Crests of a smooth chain of arcs; one that reaches a corner belongs to the corner."""
     places: list[Place] = []
     for n in chain:
         places += [(n, float(u)) for u in outline.arc(n).us]
@@ -102,7 +103,7 @@ def _crests_of(outline: Outline, chain: list[int], closed: bool) -> list[tuple[P
 
 
 def _bracket(places: list[Place], a: int, b: int, outline: Outline) -> tuple[Place, Place]:
-    """A crest's own way where it is a circular arc, else the single highest place."""
+    """The whole crest if it is a circular arc, else the single highest place."""
     first, last = places[a], places[b - 1]
     us = {u for n, u in places[a:b] if n == first[0]}
     if b - a > 2 and len(us | {u for n, u in places[a:b] if n == last[0]}) > 2:
@@ -129,7 +130,7 @@ def _bracket(places: list[Place], a: int, b: int, outline: Outline) -> tuple[Pla
 
 
 def _focal(outline: Outline, lo: Place, hi: Place) -> Leaf | None:
-    """The leaf of a crest, if the disc of its curvature lies inside the body."""
+    """The leaf of a crest, if its osculating disc lies inside the body."""
     foot = max((outline.foot(p) for p in (lo, hi)), key=lambda f: f.curvature)
     radius = 1.0 / foot.curvature
     if radius > outline.size:

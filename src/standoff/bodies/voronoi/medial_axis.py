@@ -1,9 +1,9 @@
 """The medial axis of a planar convex body, traced branch by branch from one leaf to all others.
 
 A disc that touches the boundary at two feet leaves two gaps. As the feet move towards each other
-within a gap, the disc's centre runs along a branch; where the disc meets the boundary within the
-gap too, the branch ends at a junction and the gap falls into two, each with at least one leaf. A
-gap with one leaf ends there.
+within a gap, the disc's centre moves along a branch. Where the disc also meets the boundary within
+the gap, the branch ends at a junction and the gap is split into two, each with at least one leaf.
+In a gap with one leaf the branch ends at the leaf.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ from standoff.bodies.voronoi.tolerances import (
 from standoff.errors import VoronoiError
 from standoff.geometry.validation import Array
 
-# Bisections of a branch that are always made, so that symmetry hides no bend; and the most.
+# Least and greatest number of bisections of a branch: the least so that symmetry hides no bend.
 LEAST_DEPTH, MOST_DEPTH = 3, 14
 
 
 @dataclass(eq=False)
 class Node:
-    """A point where branches end; kind "corner", "focal", "junction", or "passage" where a
+    """A point where branches end. Its kind is "corner", "focal", "junction", or "passage" where a
     foot passes a smooth vertex."""
 
     kind: str
@@ -46,7 +46,7 @@ class Node:
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """A branch between two nodes: the two edges that it separates; feet, centres (n, 2) and
+    """A branch between two nodes: the two edges that it separates, and its feet, centres (n, 2) and
     radii (n,) in order."""
 
     nodes: tuple[Node, Node]
@@ -58,7 +58,7 @@ class Trace:
 
 @dataclass(frozen=True)
 class Gap:
-    """The boundary between two feet of a node's disc, and its leaves."""
+    """The part of the boundary between two feet of a node's disc, and its leaves."""
 
     node: Node
     start: Place
@@ -68,7 +68,7 @@ class Gap:
 
 @dataclass(frozen=True)
 class Way:
-    """A way along the boundary as one parameter w: stretch k of it for w from k to k + 1."""
+    """A path along the boundary with a single parameter w: stretch k for w from k to k + 1."""
 
     stretches: tuple[tuple[int, float, float], ...]
 
@@ -90,7 +90,7 @@ class Way:
 
 
 def trace_axis(outline: Outline, tolerance: float) -> tuple[list[Trace], list[Node]]:
-    """All branches and nodes; no branch and one node for a disc.
+    """All branches and nodes; for a disc, no branch and one node.
 
     Raises
     ------
@@ -150,10 +150,10 @@ def _leaves_before(leaves: Sequence[Leaf], place: Place) -> int:
 
 
 def _find_junction(outline: Outline, gap: Gap) -> Junction:
-    """The first disc of a gap of several leaves that touches the boundary between them.
+    """The first disc in a gap with several leaves that touches the boundary between them.
 
-    The foot at the gap's start is bisected: before the junction its disc touches beyond all the
-    leaves, after it between them.
+    The foot at the gap's start is found by bisection: before the junction its disc touches beyond
+    all leaves, after it between them.
     """
     leaves = gap.leaves
     way = Way(tuple(outline.stretches(gap.start, leaves[0].lo)))
@@ -181,7 +181,7 @@ def _find_junction(outline: Outline, gap: Gap) -> Junction:
     raise VoronoiError(
         f"No junction found between edges {outline.arc(gap.start[0]).edge} and "
         f"{outline.arc(gap.stop[0]).edge}, near the centre {gap.node.point}: some of the curves "
-        "between them may be smaller than roundoff can tell apart."
+        "between them may be too small to be resolved in roundoff."
     )
 
 
@@ -198,7 +198,7 @@ def _in_order(gap: Gap, found: Junction) -> bool:
 
 
 class Point(NamedTuple):
-    """A disc of a branch: the first foot's parameter w on its way, the other foot, the disc."""
+    """A disc of a branch: the first foot's parameter w on its path, the other foot, the disc."""
 
     w: float
     touch: Place
@@ -209,10 +209,10 @@ class Point(NamedTuple):
 def _traced(
     outline: Outline, gap: Gap, end: Node, ends: tuple[Place, Place], tolerance: float
 ) -> list[Trace]:
-    """A branch as polylines, cut where a foot passes from one edge to another."""
+    """A branch as polylines, split where a foot passes from one edge to another."""
     way = Way(tuple(outline.stretches(gap.start, ends[0])))
     if not way.stretches:
-        raise VoronoiError(f"A branch from {gap.node.point} to {end.point} has no foot's way.")
+        raise VoronoiError(f"No foot can move along the branch {gap.node.point} to {end.point}.")
     branch = _Branch(outline, way, (ends[1], gap.stop), tolerance)
     first = Point(0.0, gap.stop, gap.node.point, gap.node.depth)
     last = Point(way.length, ends[1], end.point, end.depth)
@@ -242,7 +242,7 @@ def _traced(
 
 @dataclass(frozen=True)
 class _Branch:
-    """One foot runs along `way`; the other backwards within `span`."""
+    """One foot moves along `way`, the other one backwards within `span`."""
 
     outline: Outline
     way: Way
@@ -275,7 +275,7 @@ class _Branch:
         return self.outline.arc(n - 1).edge != self.outline.arc(n).edge
 
     def between(self, a: Point, b: Point, depth: int = 0) -> list[Point]:
-        """Points of the branch between two, so dense that its chords keep to it."""
+        """Points of the branch between two others, so dense that its chords stay close to it."""
         middle = self.point(0.5 * (a.w + b.w))
         chord = b.centre - a.centre
         length = float(np.linalg.norm(chord))

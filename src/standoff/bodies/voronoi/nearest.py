@@ -1,4 +1,4 @@
-"""The feature that is nearest to a point, by search over the whole boundary."""
+"""The feature nearest to a point, by a search over the whole boundary."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from standoff.checks.real_numbers import shape_of
 from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 
-# Bodies whose sampled boundaries are kept.
+# Number of bodies whose sampled boundaries are cached.
 KEPT = 16
 
 

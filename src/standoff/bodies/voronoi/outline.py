@@ -1,7 +1,7 @@
-"""A planar body's boundary as one counterclockwise run of smooth arcs.
+"""A planar body's boundary as one counterclockwise sequence of smooth arcs.
 
-A *place* on it is (n, u): arc n, counted on beyond the last one where a way leads round, and the
-arc's own parameter u, which grows counterclockwise.
+A *place* on it is (n, u): arc n, where counting continues after the last arc on a path that passes
+it, and the arc's own parameter u, which increases counterclockwise.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from standoff.read_only import KeepsReadOnly
 
 Place: TypeAlias = tuple[int, float]
 
-# A closed curve of one piece is taken in this many, so that no arc meets itself.
+# A closed curve is split into this many pieces, so that no arc meets itself.
 PIECES_OF_CLOSED = 4
 
 
@@ -52,7 +52,7 @@ class Arc(KeepsReadOnly):
     def jet(self, u: float) -> tuple[Array, Array, Array]:
         """(x, x_u, x_uu), each (2,)."""
         t = self.sign * u
-        # a kernel takes a knot to the span after it; this arc's derivatives are those before it
+        # at a knot, a kernel evaluates the span after it; this arc needs the span before it
         last = max(self.sign * self.lo, self.sign * self.hi)
         if t >= last and last < self.curve.last:
             t = np.nextafter(last, -np.inf)
@@ -90,7 +90,7 @@ class Arc(KeepsReadOnly):
 
 @dataclass(frozen=True)
 class Outline(KeepsReadOnly):
-    """arcs counterclockwise; joints[n]: the vertex before arc n (-1 for none); turns[n] of the
+    """arcs, counterclockwise; joints[n], the vertex before arc n (-1 for none); turns[n] of the
     normal there, radians; size of the body, length."""
 
     arcs: tuple[Arc, ...]
@@ -109,7 +109,7 @@ class Outline(KeepsReadOnly):
         return self.turns[n % len(self.arcs)] > CORNER_TURN
 
     def stretches(self, start: Place, stop: Place) -> list[tuple[int, float, float]]:
-        """(arc, first u, last u) of the pieces of the way from start to stop."""
+        """(arc, first u, last u) of the pieces of the path from start to stop."""
         found = []
         for n in range(start[0], stop[0] + 1):
             lo = start[1] if n == start[0] else self.arc(n).lo
@@ -129,7 +129,7 @@ def outline_of(body: Body) -> Outline:
     """
     if body.dimension != 2:
         raise BodyError(
-            f"{body!r} is not planar: an outline is of one with dimension 2.", "body", body
+            f"{body!r} is not planar: only a body with dimension 2 has an outline.", "body", body
         )
     runs = [_arcs_of(body, j) for j in range(body.n_edges)]
     order, joints = _in_order(body, [run[0].sign > 0.0 for run in runs])

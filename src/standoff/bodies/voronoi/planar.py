@@ -99,7 +99,7 @@ def _parameter(outline: Outline, place: Place, edge: int) -> float:
     """The curve's own parameter at a place of an edge, or at its end next to the place."""
     n, u = place
     arc = outline.arc(n)
-    if arc.edge != edge:  # the same joint, told from its other side
+    if arc.edge != edge:  # the same joint, from its other side
         other = outline.arc(n + 1) if u >= arc.hi else outline.arc(n - 1)
         u = other.lo if u >= arc.hi else other.hi
         arc = other

@@ -1,4 +1,4 @@
-"""Voronoi regions of a body's features, as what is between them."""
+"""Voronoi regions of a body's features, given by what separates them."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ class RegionBoundary(NamedTuple):
     Attributes
     ----------
     features : (Feature, Feature)
-        In a planar body an edge and a vertex, or two edges that meet smoothly. In a spatial one a
-        face and an edge, an edge and a vertex, or a face and the vertex to which a side of it has
-        collapsed.
+        In a planar body, an edge and a vertex, or two edges that meet smoothly. In a spatial one, a
+        face and an edge, an edge and a vertex, or a face and the vertex to which one of its sides
+        is collapsed.
     origins : (n, 3) array
-        Where the rays start on the body's core, body frame. n is 1 in a planar body; n points
-        along the edge in the first case of a spatial one, n times the vertex in the others.
+        Where the rays start on the body's core, body frame. For a planar body n = 1. For a spatial
+        one they are n points along the edge in the first case, and n times the vertex in the
+        others.
     directions : (n, 3) array
         Their unit directions, body frame.
     """
@@ -48,8 +49,8 @@ class NormalCone(NamedTuple):
     vertex : Feature
     point : (3,) array, body frame.
     normals : (k, 3) array
-        Unit vectors that span the cone, in their order around it: those of the adjacent faces
-        (samples of them along a collapsed side), in a planar body of the two edges.
+        Unit vectors that span the cone, in order around it: normals of the adjacent faces (samples
+        along a collapsed side), or of the two edges in a planar body.
     """
 
     vertex: Feature
@@ -64,9 +65,9 @@ class BranchEnd(NamedTuple):
     ----------
     kind : str
         "corner": a convex vertex, where the depth is 0. "junction": a disc touches three edges,
-        or two and a circular arc. "focal": the centre of an edge's greatest curvature, where both
-        touching points meet. "passage": a touching point goes on from one edge to the next where
-        they meet smoothly, and another branch continues.
+        or two and a circular arc. "focal": the centre of curvature at a maximum of an edge's
+        curvature, where both touching points meet. "passage": a touching point passes from one edge
+        to the next where they meet smoothly, and another branch continues.
     features : tuple of Feature
         The vertex of a corner, the vertices of a passage; the edges that a disc touches at a
         junction; the edge or edges of a focal point.
@@ -77,13 +78,12 @@ class BranchEnd(NamedTuple):
 
 
 class MedialBranch(NamedTuple):
-    """Points of a planar body's inside with two nearest boundary points.
+    """Points inside a planar body that have two nearest boundary points.
 
     Attributes
     ----------
     features : (Feature, Feature)
-        The edges on which these two lie; the same one twice where an edge is nearest at two
-        places.
+        The edges on which these two lie; the same one twice if an edge is nearest at two places.
     ends : (BranchEnd, BranchEnd)
         At the first and the last point.
     points : (n, 3) array
@@ -91,8 +91,8 @@ class MedialBranch(NamedTuple):
     depth : (n,) array
         Distance to the core's boundary, length: the radius of the disc inside that touches both.
     parameters : (n, 2) array
-        Where it touches: the curves' own parameters on the two edges. At a focal point that has a
-        whole circular arc, its ends.
+        Where it touches: the curves' own parameters on the two edges. At a focal point that belongs
+        to a whole circular arc, the ends of that arc.
     """
 
     features: tuple[Feature, Feature]
@@ -106,14 +106,14 @@ class MedialBranch(NamedTuple):
 class VoronoiRegions(KeepsReadOnly):
     """What separates the Voronoi regions of a body's features. Made by ``so.voronoi_regions``.
 
-    A feature's region is the set of points that have their nearest point of the boundary on it;
-    that of the core, where the body has a swept radius.
+    A feature's region is the set of points whose nearest point of the boundary is on it; if the
+    body has a swept radius, of the boundary of its core.
 
     Attributes
     ----------
     body : Body
     reach : float
-        How far the external boundaries are to be drawn, length.
+        How far to draw the external boundaries, length.
     external : tuple of RegionBoundary
         Outside the body.
     medial_axis : tuple of MedialBranch
@@ -139,11 +139,11 @@ class VoronoiRegions(KeepsReadOnly):
         Returns
         -------
         Feature
-            On a boundary between regions any of those that meet there.
+            On a boundary between regions, any of those that meet there.
 
         Raises
         ------
         ValueError
-            No point, a point off a planar body's plane, or inside a spatial one.
+            Not a point, a point off a planar body's plane, or inside a spatial body.
         """
         return nearest_feature(self.body, point)

@@ -22,7 +22,7 @@ from standoff.read_only import KeepsReadOnly
 
 # Samples along an edge, and along each side of a chart.
 ALONG, GRID, COARSE_GRID, FEW_CHARTS = 65, 13, 5, 24
-# Starts of a descent on one chart, its steps, and how often one is halved.
+# Starts of a descent on one chart, its steps, and how often a step is halved.
 STARTS, STEPS, HALVINGS = 2, 30, 12
 
 
@@ -36,7 +36,7 @@ class Candidate(NamedTuple):
 
 class _Samples(NamedTuple):
     """Points (n, 3) of one chart and their parameters (n, 2), the first `outer` on its outline;
-    the box (2, 2) of low and high parameters that a descent keeps to."""
+    the box (2, 2) of low and high parameters within which a descent stays."""
 
     points: Array
     parameters: Array
@@ -44,8 +44,8 @@ class _Samples(NamedTuple):
     box: Array
 
     def starts(self, x: Array) -> list[Array]:
-        """Parameters of the points nearest to x, on the outline and within: on a collapsed side
-        all are equally near, and most lead nowhere."""
+        """Parameters of the points nearest to x, on the outline and inside it: on a collapsed side
+        all are equally near, and most do not lead to a minimum."""
         squares = ((self.points - x) ** 2).sum(axis=1)
         rim = np.argsort(squares[: self.outer])[:STARTS]
         within = self.outer + np.argsort(squares[self.outer :])[:STARTS]
@@ -74,7 +74,7 @@ class Boundary(KeepsReadOnly):
         if best.inside and best.distance > EPS * self.scale:
             raise StandoffError(
                 f"point = {x} lies {best.distance:.6g} inside {self.body!r}: regions of a spatial "
-                "body are found outside.",
+                "body are only defined outside.",
                 "point",
                 x,
             )
@@ -107,10 +107,10 @@ class Boundary(KeepsReadOnly):
         return found
 
     def _descend(self, chart: int, face: int, q: Array, box: Array, x: Array) -> tuple[float, bool]:
-        """(distance, is x inside) of a stationary point on the face; inf where there is none.
+        """(distance, is x inside) of a stationary point on the face; inf if there is none.
 
-        Newton's method on |x - f(u, v)|²/2, shifted to be positive definite, halved until it
-        falls within the box: beyond an apex there is a second nappe.
+        Newton's method on |x - f(u, v)|²/2, with a Hessian shifted to be positive definite and
+        steps halved until it decreases within the box: beyond an apex there is a second nappe.
         """
         ints, reals = self.body.ints, self.body.reals
         jet = np.array(feature_jet(ints, reals, face, chart, q[0], q[1]))
@@ -169,7 +169,7 @@ def _newton(jet: Array, x: Array) -> Array:
     metric = jet[1:3] @ jet[1:3].T
     second = np.array([[jet[3] @ d, jet[4] @ d], [jet[4] @ d, jet[5] @ d]])
     values, vectors = np.linalg.eigh(metric + second)
-    # a direction in which the distance falls off both ways is taken as it would be on a plane
+    # a direction in which the distance decreases both ways is treated as on a plane
     least = np.maximum(np.abs(values), EPS * float(np.abs(values).max(initial=0.0)))
     along = vectors.T @ gradient
     return np.asarray(-vectors @ np.where(least > 0.0, along / np.where(least > 0, least, 1.0), 0))

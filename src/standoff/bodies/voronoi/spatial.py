@@ -20,14 +20,14 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters
 
-# Rays along an edge and in a fan: a drawn surface shows no corners.
+# Rays along an edge and in a fan: enough that a drawn surface shows no corners.
 ALONG_EDGE = 49
-# Radians between two rays of a sector at a vertex, at most.
+# Greatest angle between two rays of a sector at a vertex, radians.
 SECTOR_STEP = np.pi / 48.0
 
 
 class _Side(NamedTuple):
-    """A face beside an edge: its number, and its outward normals (n, 3) along the edge."""
+    """A face of an edge: its number, and its outward normals (n, 3) along the edge."""
 
     face: int
     normals: Array
@@ -65,7 +65,7 @@ def _of_edge(body: Body, j: int) -> list[RegionBoundary]:
     if len(sides) == 1:  # a seam of one face with itself
         return []
     turns = [_turn(sides[0].normals[k], sides[1].normals[k]) for k in range(count)]
-    if max(turns) <= CORNER_TURN:  # a crease, or a smooth edge kept: its region has no inside
+    if max(turns) <= CORNER_TURN:  # a crease, or a kept smooth edge: its region has no interior
         return []
     edge = Feature("edge", j)
     found = [
@@ -84,7 +84,7 @@ def _is_flat(body: Body, faces: Sequence[int]) -> bool:
 
 
 class _Coedge(NamedTuple):
-    """A packed coedge: number, chart, and the first and last parameter that it is for."""
+    """A packed coedge: number, chart, and the first and last parameter that it covers."""
 
     number: int
     chart: int
@@ -93,7 +93,7 @@ class _Coedge(NamedTuple):
 
 
 def _coedges_by_face(body: Body, j: int) -> dict[int, list[_Coedge]]:
-    """The coedges of an edge, by its faces: one, or one a chart that sees it, or one a piece."""
+    """The coedges of an edge by face: one, or one per chart that sees it, or one per piece."""
     found: dict[int, list[_Coedge]] = {}
     for number, chart, edge in coedges_of(body):
         if edge == j:
@@ -143,7 +143,7 @@ def _sector(a: Array, b: Array, turn: float) -> Array:
 
 
 def _of_apex(body: Body, face: int, apex: Apex) -> list[RegionBoundary]:
-    """The fan between a face and the vertex to which its side has collapsed."""
+    """The fan between a face and the vertex to which its side is collapsed."""
     first = int(body.ints[int(body.ints[L.FACES]) + L.FACE_STRIDE * face])
     ts = np.linspace(apex.lo, apex.hi, 2 * ALONG_EDGE - 1)
     spots = [(t, apex.level) if apex.side[0] == "v" else (apex.level, t) for t in ts.tolist()]
@@ -156,7 +156,7 @@ def _of_apex(body: Body, face: int, apex: Apex) -> list[RegionBoundary]:
 
 
 def _of_segment(body: Body) -> list[RegionBoundary]:
-    """The discs square to a segment at its two ends."""
+    """The discs perpendicular to a segment at its two ends."""
     curve = body.edge_parts[0].curve
     tangent = curve.jet(curve.first)[1]
     tangent = tangent / np.linalg.norm(tangent)
@@ -177,7 +177,7 @@ def _of_segment(body: Body) -> list[RegionBoundary]:
 
 
 def _cones(body: Body, external: list[RegionBoundary]) -> tuple[NormalCone, ...]:
-    """The packed normals at every vertex; the fan where a whole cone has collapsed to it."""
+    """The packed normals at every vertex; the fan if a whole collapsed side of a cone is there."""
     cones = []
     for k, point in enumerate(body.vertex_points):
         vertex = Feature("vertex", k)

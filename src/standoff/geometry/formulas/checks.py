@@ -1,4 +1,4 @@
-"""What a formula must fulfil before it becomes a surface or a curve."""
+"""Conditions that a formula must satisfy to become a surface or a curve."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ from standoff.geometry.validation import Array
 
 SURFACE_VARIABLES = ("u", "v")
 CURVE_VARIABLES = ("t",)
-# A side of a patch may have collapsed: within this part of the domain's side from its border a
+# A side of a patch may be collapsed: within this fraction of the domain from its border, a
 # vanishing normal is left to the convexity proof.
 RIM = 1.0 / 32.0
-# Halvings of a box while no normal is proven in it, and boxes looked at in one patch.
+# Halvings of a box while no normal is proven in it, and boxes examined in one patch.
 DEEPEST = 60
 MOST_BOXES = 8_000
 
@@ -71,7 +71,8 @@ def read_formula(
     Raises
     ------
     FormulaError
-        They cannot be read, or leave one of the variables out: a point, or a curve for a patch.
+        They cannot be read, or do not contain one of the variables: a point, or a curve instead of
+        a patch.
     """
     values = parameter_values(parameters, variables)
     expressions = tuple(
@@ -94,7 +95,7 @@ def named(variables: tuple[str, ...], at: Sequence[float] | Array) -> str:
 
 
 def check_finite(formula: Formula, domain: Sequence[float]) -> None:
-    """Raise FormulaError unless the jet is proven finite all over the domain."""
+    """Raise FormulaError unless the jet is proven finite on the whole domain."""
     place = without_bounds(Enclosure(formula.jet, formula.variables), domain)
     if place is None:
         _check_range(formula, domain)
@@ -105,7 +106,7 @@ def check_finite(formula: Formula, domain: Sequence[float]) -> None:
     what = (
         "has a pole, or is not real,"
         if not np.isfinite(rows[0]).all()
-        else ("has no bounded second derivatives, so a pole, a kink or an undefined value,")
+        else ("has unbounded second derivatives: a pole, a kink or an undefined value,")
     )
     raise FormulaError(
         f"x = {x}, y = {y}, z = {z} {what} at about {named(formula.variables, place)}, inside "
@@ -114,7 +115,7 @@ def check_finite(formula: Formula, domain: Sequence[float]) -> None:
 
 
 def _check_range(formula: Formula, domain: Sequence[float]) -> None:
-    """Raise FormulaError where lengths or their derivatives leave the range of the library."""
+    """Raise FormulaError if lengths or their derivatives leave the range of the library."""
     ends = np.array(domain).reshape(-1, 2)
     for shares in product(np.linspace(0.0, 1.0, 5), repeat=len(ends)):
         place = ends[:, 0] + np.array(shares) * (ends[:, 1] - ends[:, 0])
@@ -128,7 +129,7 @@ def _check_range(formula: Formula, domain: Sequence[float]) -> None:
 
 
 def check_normal(formula: Formula, domain: Sequence[float]) -> None:
-    """Raise FormulaError where the normal of a surface vanishes, except at its very sides."""
+    """Raise FormulaError if the normal of a surface vanishes, except on its sides."""
     corners = np.array(domain).reshape(2, 2)
     at = np.linspace(0.0, 1.0, 9)
     spots = [corners[:, 0] + np.array([a, b]) * np.diff(corners)[:, 0] for a in at for b in at]
@@ -140,18 +141,18 @@ def check_normal(formula: Formula, domain: Sequence[float]) -> None:
     if place is not None:
         raise FormulaError(
             f"x_u x x_v vanishes at about {named(formula.variables, place)}: the patch has no "
-            "normal there. Only a whole side of the domain may collapse to a point; give other "
-            "parameters or a smaller domain."
+            "normal there. Only a whole side of the domain may collapse to a point; use another "
+            "parametrisation or a smaller domain."
         )
 
 
 def check_tangent(formula: Formula, domain: Sequence[float]) -> None:
-    """Raise FormulaError where the tangent of a curve vanishes."""
+    """Raise FormulaError if the tangent of a curve vanishes."""
     place = _without_direction(formula, domain, 0.0)
     if place is not None:
         raise FormulaError(
-            f"The tangent vanishes at about {named(formula.variables, place)}: give other "
-            "parameters or a smaller range."
+            f"The tangent vanishes at about {named(formula.variables, place)}: use another "
+            "parametrisation or a smaller range."
         )
 
 
@@ -174,7 +175,7 @@ def direction_bounds(bounds: Interval, surface: bool) -> Interval:
 def _without_direction(formula: Formula, domain: Sequence[float], least: float) -> Array | None:
     """A place where the normal, or the tangent, may vanish after all halvings; None if nowhere.
 
-    least : a normal as short as this, seen there, is a vanishing one
+    least : a computed normal as short as this counts as zero
     """
     surface = len(formula.variables) == 2
     bounds = Enclosure(formula.jet[: 9 if surface else 6], formula.variables)
@@ -207,6 +208,6 @@ def _without_direction(formula: Formula, domain: Sequence[float], least: float) 
 
 
 def _inner(boxes: Boxes, ends: Array, rim: Array) -> Boxes:
-    """Those that are not wholly within the rim of the domain."""
+    """The boxes that are not entirely within the rim of the domain."""
     at_rim = (boxes.high <= ends[:, 0] + rim) | (boxes.low >= ends[:, 1] - rim)
     return boxes[~at_rim.any(axis=1)]

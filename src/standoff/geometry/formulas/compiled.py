@@ -1,4 +1,4 @@
-"""Compiled jets of formulas: C functions that the kernels reach by their address."""
+"""Compiled jets of formulas: C functions that the kernels call by their address."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from standoff.geometry.formulas.programs import Writer, jet_expressions
 from standoff.geometry.validation import Array
 
 VARIABLES = {2: ("u", "v"), 1: ("t",)}
-"""Of a surface, of a curve."""
-# What the compiled text may name.
+"""For a surface and for a curve."""
+# Names that the compiled text may use.
 MATH = {
     "sin": math.sin, "cos": math.cos, "tan": math.tan,
     "asin": math.asin, "acos": math.acos, "atan": math.atan, "atan2": math.atan2,
@@ -42,7 +42,7 @@ class Formula:
 
     @property
     def address(self) -> float:
-        """Where the function is: below 2^53, so exact in float64."""
+        """The function's address: below 2^53, so exact in float64."""
         return float(self.function.address)
 
     def values(self, *at: float) -> Array:
@@ -52,14 +52,14 @@ class Formula:
         return out.reshape(-1, 3)
 
 
-# A kernel reads an address out of a packed body, and a packed array keeps nothing alive: compiled
+# A kernel reads an address from a packed body, and a packed array keeps nothing alive: so compiled
 # formulas are kept until the process ends (about 0.1 MB each).
 _compiled: dict[tuple[str, ...], Formula] = {}
 _lock = threading.Lock()
 
 
 def compiled(expressions: tuple[Any, ...], variables: tuple[str, ...]) -> Formula:
-    """The formula's compiled jet, compiled at most once a process."""
+    """The formula's compiled jet, compiled at most once per process."""
     key = (*variables, *(str(e) for e in expressions))
     with _lock:
         if key not in _compiled:
@@ -78,6 +78,6 @@ def _compile(key: tuple[str, ...], expressions: tuple[Any, ...], variables: tupl
     exec("\n    ".join(lines), namespace)
     doubles = [types.float64] * len(variables)
     signature = types.void(*doubles, types.CPointer(types.float64))
-    # A division by zero gives inf instead of an exception that no C function can hand on.
+    # a division by zero gives inf instead of an exception, which a C function cannot pass on
     function = cfunc(signature, error_model="numpy")(namespace["jet"])
     return Formula(key, variables, expressions, tuple(jet), function)

@@ -23,7 +23,7 @@ from standoff.geometry.tolerances import CLOSED_CURVE
 from standoff.geometry.validation import Array, affine_map
 from standoff.kernels.body import layout as L
 
-# Boxes whose hull is the box of a curve: its excess falls with the square.
+# Number of boxes whose hull is the box of a curve: its excess decreases with the square.
 BOX_GRID = 256
 
 
@@ -41,7 +41,7 @@ class FormulaCurve(Curve):
     Raises
     ------
     FormulaError
-        As `FormulaSurface`; a tangent that vanishes.
+        As for `FormulaSurface`; a tangent that vanishes.
     ImportError
         SymPy is not installed: it comes with the extra `formulas`.
 
@@ -82,7 +82,7 @@ class FormulaCurve(Curve):
 
     @property
     def closed(self) -> bool:
-        """Whether both ends and their tangents are the same, to roundoff."""
+        """Whether both ends and their tangents are the same to roundoff."""
         (a, at, _), (b, bt, _) = self.jet(self.first), self.jet(self.last)
         low, high = self.box()
         ends = np.linalg.norm(a - b) <= CLOSED_CURVE * np.linalg.norm(high - low)
@@ -95,7 +95,7 @@ class FormulaCurve(Curve):
         return _curve(self.formula, (self.first, self.last), *image)
 
     def box(self) -> tuple[Array, Array]:
-        """(low, high), each (3,), body frame: surely around the curve, by interval bounds."""
+        """(low, high), each (3,), body frame, which contain the curve by interval bounds."""
         bounds = Enclosure(self.formula.jet[:6], CURVE_VARIABLES)
         return hull(bounds, grid((self.first, self.last), BOX_GRID), self.linear, self.shift)
 
@@ -104,7 +104,7 @@ class FormulaCurve(Curve):
         from standoff.geometry.interval_vectors import mapped, stacked
 
         rows = series_program(self.formula)(t, order=2)
-        # of u^k alone: places 0, 1 and 3 of the series
+        # only the powers u^k: rows 0, 1 and 3 of the series
         jets = stacked([Interval(c.lo[[0, 1, 3]], c.hi[[0, 1, 3]]) for c in rows])
         jets = mapped(self.linear, jets * np.array([1.0, 1.0, 2.0])[:, None])
         shift = np.zeros((3, 3, 1))

@@ -14,11 +14,11 @@ from standoff.geometry.intervals import FUNCTIONS, Interval, interval
 from standoff.geometry.tolerances import SMALLEST_BOX
 from standoff.geometry.validation import Array
 
-# Boxes a side that a search begins with.
+# Boxes per side with which a search begins.
 FIRST_GRID = 8
 # Boxes evaluated at once, and in one search: a few milliseconds, about a second.
 CHUNK = 256
-# Boxes that are cut on first, so that a place is found before all of a pole's line is covered.
+# Boxes that are halved first, so that a place is found before all of a line of poles is covered.
 DIVE = 16
 MOST_BOXES = 30_000
 
@@ -53,9 +53,9 @@ class Enclosure:
 
 
 def mean_value(value: Interval, middle: Interval, slopes: Sequence[Interval], boxes: Boxes) -> Any:
-    """Bounds by value at the middle + slope over the box * distance from the middle.
+    """Bounds from value at the middle + slope over the box * distance from the middle.
 
-    All (k, n); they sharpen quadratically as boxes shrink.
+    All are (k, n); their excess decreases quadratically as boxes shrink.
     """
     centre = boxes.middle
     with np.errstate(all="ignore"):
@@ -67,7 +67,7 @@ def mean_value(value: Interval, middle: Interval, slopes: Sequence[Interval], bo
 
 
 def without_bounds(enclosure: Enclosure, domain: Sequence[float]) -> Array | None:
-    """A place where the expressions have no finite bound, None where they are finite all over."""
+    """A place where the expressions have no finite bound; None if they are finite everywhere."""
     size = np.diff(np.reshape(domain, (-1, 2)), axis=1).ravel()
     waiting = [grid(domain, FIRST_GRID)]
     evaluated = 0

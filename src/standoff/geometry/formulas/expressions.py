@@ -1,8 +1,8 @@
 """Formulas as text or SymPy expressions, read without evaluating any Python.
 
 Text is parsed to Python's syntax tree, and only numbers, the variables, the parameters, pi, E,
-the functions below, + - * / ** and parentheses are let through; SymPy's own parser would run it.
-Numbers become exact fractions (0.3 is 3/10), parameters too, so that SymPy can simplify.
+the functions below, + - * / ** and parentheses are accepted; SymPy's own parser would run it.
+Numbers and parameters become exact fractions (0.3 is 3/10), so that SymPy can simplify.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ FUNCTIONS = {
     "sinh": "sinh", "cosh": "cosh", "tanh": "tanh",
     "exp": "exp", "log": "log", "sqrt": "sqrt", "abs": "Abs", "Abs": "Abs",
 }  # fmt: skip
-"""Name in a formula: name in SymPy. Only functions that are smooth where they are defined."""
+"""Name in a formula: name in SymPy; only functions that are smooth where they are defined."""
 CONSTANTS = ("pi", "E")
-# Longer text, or more parts of a SymPy expression, is not a formula of a patch but a program's
-# output; differentiating it twice and compiling it could take minutes.
+# Longer text, or a SymPy expression of more parts, is not written by hand; differentiating it twice
+# and compiling it could take minutes.
 LONGEST = 4000
 MOST_PARTS = 2000
-# Powers of numbers beyond the range of float64 (2^1024) are refused before they are computed:
-# 9**9**9 would not end.
+# Powers of numbers beyond the range of float64 (2^1024) are rejected before they are computed:
+# 9**9**9 would take forever.
 GREATEST_POWER = 1000
-# A power with a whole exponent is compiled to products.
+# A power with an integer exponent up to this is compiled to products.
 GREATEST_EXPONENT = 64
 
 
@@ -95,7 +95,7 @@ def parameter_values(
                 parameters,
             )
         try:
-            # SymPy's own numbers are taken too.
+            # SymPy's own numbers are accepted too
             number = float(real_array(float(value) if hasattr(value, "free_symbols") else value))
         except (TypeError, ValueError) as error:
             raise FormulaError(
@@ -154,9 +154,7 @@ def read_expression(
         )
     if not result.is_number and result.free_symbols <= set(symbols.values()):
         if result.has(sympy.zoo, sympy.nan, sympy.oo, sympy.I):
-            raise FormulaError(
-                f"{name} = {given} divides by zero or is not real everywhere.", name, given
-            )
+            raise FormulaError(f"{name} = {given} divides by zero or is not real.", name, given)
         return result
     if result.is_finite is False or result.is_real is False or result is sympy.nan:
         raise FormulaError(f"{name} = {given} is not a finite real number: {result}.", name, given)
@@ -178,7 +176,7 @@ def _unknown(symbol: str, name: str, given: Any, at: str, allowed: Iterable[str]
 
 
 class _Text:
-    """One formula's text on its way to a SymPy expression."""
+    """The text of one formula, to be converted to a SymPy expression."""
 
     def __init__(
         self,
@@ -235,7 +233,7 @@ class _Text:
             return self.build(tree.body)
         except RecursionError as error:
             raise FormulaError(
-                f"{self.name} is nested too deeply: write it flatter.", self.name, None
+                f"{self.name} is nested too deeply: use fewer levels.", self.name, None
             ) from error
 
     def build(self, node: ast.expr) -> Any:
@@ -305,7 +303,7 @@ class _Text:
 
 
 def check_power(base: Any, exponent: Any, error: Any) -> None:
-    """Refuse what would take for ever or leave float64; `error` makes the exception."""
+    """Reject powers that would take forever or leave float64; `error` makes the exception."""
     if exponent.is_Integer and abs(int(exponent)) > GREATEST_EXPONENT and not base.is_number:
         raise error(f"exponent {exponent}: at most {GREATEST_EXPONENT} in size is compiled,")
     if not (base.is_number and exponent.is_number):
@@ -318,7 +316,7 @@ def check_power(base: Any, exponent: Any, error: Any) -> None:
 
 
 def applied(function: str, arguments: list[Any]) -> Any:
-    """A function by its SymPy name; Abs(w) as sqrt(w**2), which SymPy differentiates twice."""
+    """A function by its SymPy name; Abs(w) as sqrt(w**2), which SymPy can differentiate twice."""
     sympy = sympy_module()
     if function == "Abs":
         return sympy.sqrt(arguments[0] ** 2)
@@ -326,7 +324,7 @@ def applied(function: str, arguments: list[Any]) -> Any:
 
 
 def _check_parts(given: Any, name: str) -> None:
-    """Refuse a user's SymPy expression of too many parts."""
+    """Reject a user's SymPy expression of too many parts."""
     every = sympy_module().preorder_traversal(given)
     parts = sum(1 for _, _ in zip(every, range(MOST_PARTS), strict=False))
     if parts >= MOST_PARTS:

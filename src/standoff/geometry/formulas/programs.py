@@ -28,24 +28,24 @@ def jet_expressions(formula: Sequence[Any], variables: tuple[str, ...]) -> list[
 
 
 def shorter(expression: Any) -> Any:
-    """The shorter of an expression and itself with common factors taken out."""
+    """The shorter of an expression and the same with common factors taken out."""
     sympy = sympy_module()
     factored = sympy.factor_terms(expression)
     return factored if factored.count_ops() < expression.count_ops() else expression
 
 
 class Writer:
-    """Python text of expressions over +, -, *, /, ** (whole), power() and named functions.
+    """Python text of expressions with +, -, *, /, ** (integer), power() and named functions.
 
-    near : how a number that float64 cannot hold is written; "{}" for its nearest, "near({})" for
-        intervals, which must hold it.
+    near : how a number that float64 cannot represent is written: "{}" for the nearest one,
+        "near({})" for intervals, which must contain it.
     """
 
     def __init__(self, near: str = "{}") -> None:
         self.near = near
 
     def body(self, expressions: Sequence[Any]) -> tuple[list[str], list[str]]:
-        """(assignments of shared parts, one line each; the expressions in their terms)."""
+        """(assignments of common parts, one line each; the expressions in terms of these)."""
         sympy = sympy_module()
         names = sympy.numbered_symbols(SHARED)
         shared, reduced = sympy.cse(list(expressions), symbols=names, order="none")

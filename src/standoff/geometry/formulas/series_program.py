@@ -26,7 +26,7 @@ class SeriesProgram:
         self.length = sum(map(len, text))
 
     def __call__(self, *sides: Interval, order: int) -> list[Series]:
-        """One series an expression over boxes with these sides (n,)."""
+        """One series per expression over boxes with these sides (n,)."""
         variables = [Series.variable(side, axis, order) for axis, side in enumerate(sides)]
         with np.errstate(all="ignore"):
             found = self._series(*variables)
@@ -35,5 +35,5 @@ class SeriesProgram:
 
 @lru_cache(maxsize=64)
 def series_program(formula: Formula) -> SeriesProgram:
-    """Of a formula's coordinates."""
+    """The series program of a formula's coordinates."""
     return SeriesProgram(formula.expressions, formula.variables)

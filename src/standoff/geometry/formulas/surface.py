@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from standoff.geometry.boxes import Boxes
     from standoff.geometry.intervals import Interval
 
-# Boxes a side whose hull is the box of a patch: its excess falls with the square.
+# Boxes per side whose hull is the box of a patch: its excess decreases with the square.
 BOX_GRID = 24
 ENDS = ("u0", "u1", "v0", "v1")
 
@@ -48,16 +48,17 @@ class FormulaSurface(Surface):
     ------
     FormulaError
         An unknown symbol, bad syntax or anything but arithmetic; an empty domain; a parameter
-        without a value; a pole, or a value that is not real, in the patch (proven over all of it,
-        the place is named); a point or a curve instead of a patch; a normal that vanishes inside.
+        without a value; a pole, or a value that is not real, in the patch (checked by proof over
+        all of it; the place is named); a point or a curve instead of a patch; a normal that
+        vanishes inside.
     ImportError
         SymPy is not installed: it comes with the extra `formulas`.
 
     Notes
     -----
-    Differentiated twice by SymPy, with common parts taken out, and compiled once a process.
-    A formula must be C² with a normal everywhere inside; a side may collapse to a point (a pole)
-    as long as its second derivatives stay finite.
+    It is differentiated twice by SymPy, common parts are computed once, and it is compiled once per
+    process. A formula must be C² with a normal everywhere inside; a side may collapse to a point (a
+    pole) as long as its second derivatives stay finite.
     """
 
     kind = L.FORMULA
@@ -112,7 +113,7 @@ class FormulaSurface(Surface):
         return _surface(self.formula, smaller, self.linear, self.shift)
 
     def box(self) -> tuple[Array, Array]:
-        """(low, high), each (3,), body frame: surely around the patch, by interval bounds."""
+        """(low, high), each (3,), body frame, which contain the patch by interval bounds."""
         bounds = Enclosure(self.formula.jet[:9], SURFACE_VARIABLES)
         return hull(bounds, grid(self.domain, BOX_GRID), self.linear, self.shift)
 
@@ -123,7 +124,7 @@ class FormulaSurface(Surface):
         return derivatives(series_program(self.formula)(*boxes.sides, order=2))
 
     def highest(self, direction: Array) -> None:
-        """None: `box` serves."""
+        """None: its `box` is used instead."""
         return
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -48,7 +48,7 @@ from standoff.kernels.values import ORIGIN
 
 @kernel
 def is_least_depth(pair, p, found):
-    """Do the bounds prove that no depth is less?"""
+    """Do the bounds prove that no other depth is smaller?"""
     radii = pair.reals_a[L.RADIUS] + pair.reals_b[L.RADIUS]
     d, span = found.distance, pair_span(pair, p, abs(found.distance))
     proof = DEPTH_PROOF * (radii - d) + TOUCHING * span + pair_slack(pair)
@@ -57,8 +57,8 @@ def is_least_depth(pair, p, found):
 
 @kernel
 def judge(pair, p, found, lenient, tolerance, cut):
-    """Status of an answer by its bounds. `lenient`: one that still converges is TRACKING. `cut`:
-    the evaluations ran out."""
+    """The status of an answer, from its bounds. `lenient`: it is TRACKING if it still converges.
+    `cut`: the evaluations ran out."""
     if found.outcome == STAYED:
         return NOT_RESTARTED
     outcome, d, lower = found.outcome, found.distance, found.lower
@@ -66,11 +66,11 @@ def judge(pair, p, found, lenient, tolerance, cut):
     goal = START_GAP if tolerance == inf else tolerance
     span = pair_span(pair, p, abs(d))
     near = d - lower <= goal * span + pair_slack(pair)
-    # a tolerance without an end certifies nothing
+    # an infinite tolerance certifies nothing
     certified = near or (outcome == CERTIFIED and tolerance < inf)
     if cut and (outcome == UNCERTIFIED or (outcome == TOUCHING_OR_OVERLAPPING and not near)):
         return DEADLINE
-    # within the tolerance of touching the bound's sign says nothing
+    # within the tolerance of touching, the sign of the bound is not significant
     if d <= radii or outcome == PENETRATING or (near and lower <= radii):
         if certified or outcome == PENETRATING:
             return GLOBAL if is_least_depth(pair, p, found) else LOCAL
@@ -89,7 +89,7 @@ def write_vector(x, to, o):
 
 @kernel
 def write_points(pair, inputs, jets, found, out):
-    """Distance, bounds, witness points on the swept surfaces and normal."""
+    """Write distance, bounds, witness points on the swept surfaces, and normal."""
     jet_a, jet_b = jets
     Ra, origin = read_rotation(inputs.pose_a, 0), read_vector(inputs.pose_a, 9)
     radius_a, radius_b = pair.reals_a[L.RADIUS], pair.reals_b[L.RADIUS]
@@ -105,17 +105,17 @@ def write_points(pair, inputs, jets, found, out):
 
 @kernel
 def normal_rate(turn, found):
-    """The rate of the normal outside contact: that of the direction between the points."""
+    """The rate of the normal outside contact: the rate of the direction between the points."""
     n, d = found.normal, found.distance
     return scale(1.0 / d, axpy(-dot(turn, n), n, turn)) if d > 0.0 else ORIGIN
 
 
 @kernel
 def write_rates(pair, inputs, motion, shown, n_rate, out):
-    """Rate of the distance and velocities of the witness points, from the feedforward.
+    """Write the rate of the distance and the witness points' velocities, from the feedforward.
 
-    V_A is added in world. n_rate is that of n in contact, where it does not follow from the
-    points' rates.
+    V_A is added in world axes. n_rate is the rate of n in contact, where it does not follow from
+    the points' rates.
     """
     jet_a, jet_b = shown.jets
     n, rates = shown.found.normal, shown.rates
@@ -137,7 +137,7 @@ def write_rates(pair, inputs, motion, shown, n_rate, out):
 
 @kernel
 def write_answer(pair, inputs, motion, shown, n_rate, status, out):
-    """The whole answer."""
+    """Write the whole answer."""
     place = shown.found.place
     write_points(pair, inputs, shown.jets, shown.found, out)
     if inputs.has_twist:
@@ -150,7 +150,7 @@ def write_answer(pair, inputs, motion, shown, n_rate, status, out):
     out[OUT_Q], out[OUT_Q + 1] = place.u, place.v
     out[OUT_Q + 2], out[OUT_Q + 3] = place.r, place.s
     if status == OVERLAPPING:
-        # what points of theirs are apart by, and no bound, tells nothing of bodies that overlap
+        # if the bodies overlap, the distance between two of their points says nothing
         out[DISTANCE] = min(out[DISTANCE], 0.0)
         out[UPPER_BOUND] = min(out[UPPER_BOUND], 0.0)
     out[STATUS] = status

@@ -44,9 +44,9 @@ from standoff.kernels.values import NO_RATES, Found
 @kernel
 def follow(pair, motion, before, options, h, work):
     """(followed, apart): predict with the feedforward, then make one Newton correction (the
-    paper's feedback under Euler with K h = 1), more where a mode changes; where the certificate's
-    gap stays above the tolerance correct to roundoff. `apart` tells that the witness points have
-    not passed each other along the last normal.
+    paper's feedback under Euler with K h = 1), or more if a mode changes; if the certificate's gap
+    stays above the tolerance, correct to roundoff. `apart` is False if the witness points have
+    passed each other along the last normal.
     """
     tolerance = options.tolerance
     place = apply_step(pair, before.place, predict(before, options.predictor, h), work)
@@ -88,12 +88,12 @@ def apart(pair, motion, before, options, h, work):
 @kernel
 def contact(pair, pose, before, options, work):
     """(what next, tracked): the local minimum of the depth, from the last frame's."""
-    # where frames are cut off Newton's method and the descent take turns
+    # when frames are cut off, Newton's method and the descent alternate
     newton = before.inside and (before.cut // CUT_TURN) % 2 == 0
     begin = NEAR if newton else WARM
     asked = Asked(options.depth == DEPTH_GLOBAL, not options.restarts)
-    # a frame that is the first in contact has no block to keep a polytope in; one that asks for no
-    # proof would let it go slack
+    # the first frame in contact does not have a block in which to keep a polytope; a frame that
+    # needs no proof would let it become slack
     work.counts[KEEPING] = 1 if before.inside and asked.everywhere else 0
     found = contact_query(
         pair, pose, before.place, before.normal, begin, asked, options.tolerance, work
@@ -105,7 +105,7 @@ def contact(pair, pose, before, options, work):
 
 @kernel
 def stayed(tracked):
-    """The same, where a global start was due."""
+    """The same answer with the outcome STAYED: a global start was due, but is not allowed."""
     shown, kept = tracked
     (_, place, d, lower, upper, n), jets, inside, fresh, rates = shown
     found = Found(STAYED, place, d, lower, upper, n)
@@ -114,7 +114,7 @@ def stayed(tracked):
 
 @kernel
 def may_be_less(pair, pose, found, options):
-    """May another depth be less, where that is asked; or is no overlap shown at all?"""
+    """May another depth be smaller, if that matters, or is no overlap shown at all?"""
     radii = pair.reals_a[L.RADIUS] + pair.reals_b[L.RADIUS]
     asked = options.depth == DEPTH_GLOBAL or found.upper > radii
     return asked and found.outcome == PENETRATING and not is_least_depth(pair, pose.p, found)
@@ -122,8 +122,8 @@ def may_be_less(pair, pose, found, options):
 
 @kernel
 def track_alone(pair, motion, before, options, h, work):
-    """A frame that follows its local minimum and starts nowhere else: outside contact one step of
-    the law, else, or where that certifies nothing, the local minimum of the depth.
+    """A frame that follows its local minimum and makes no global start: outside contact, one step
+    of the law; in contact, or if that certifies nothing, the local minimum of the depth.
     """
     pose = motion.pose
     if before.inside:
@@ -141,10 +141,9 @@ def track_alone(pair, motion, before, options, h, work):
 
 @kernel
 def track_predicted(pair, motion, before, options, h, work):
-    """This frame from the last one: outside contact one step of the law; in contact, where the
-    witness points pass each other, the local minimum of the depth; where neither certifies, a
-    global start, and where that certifies nothing, a proof of overlap. Without restarts
-    `track_alone`.
+    """This frame from the last one: outside contact, one step of the law; in contact, or if the
+    witness points pass each other, the local minimum of the depth; if neither certifies, a global
+    start, and if that certifies nothing, a proof of overlap. Without restarts, `track_alone`.
     """
     pose = motion.pose
     if not options.restarts:

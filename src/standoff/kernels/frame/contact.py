@@ -1,4 +1,4 @@
-"""A query in contact or penetration: follow the local minimum of s(n), and prove it the least."""
+"""A query in contact or penetration: follow the local minimum of s(n), and prove it least."""
 
 from math import inf, nan
 from typing import NamedTuple
@@ -24,16 +24,16 @@ from standoff.kernels.pair.events import EVENTS, exhausted
 from standoff.kernels.tolerances import ALIGNED, BLUR, DEPTH_PROOF, MAX_RIVALS
 from standoff.kernels.values import Depth, Found
 
-# What a query in contact may begin from: nothing; the direction and place of a frame before; those,
-# near enough for Newton's method.
+# What a query in contact may begin from: nothing; the direction and place of an earlier frame; the
+# same, if near enough for Newton's method.
 COLD, WARM, NEAR = np.int64(0), np.int64(1), np.int64(2)
 
 
 class Asked(NamedTuple):
-    """What a query in contact asks of all depths."""
+    """What a query in contact must find out about all depths."""
 
-    everywhere: bool  # prove that none is less; else only whether the bodies overlap
-    stays: bool  # answer with the local minimum that is followed, also where another is less
+    everywhere: bool  # prove that none is smaller; otherwise only whether the bodies overlap
+    stays: bool  # answer with the local minimum that is followed, even if another one is smaller
 
 
 LEAST = Asked(True, False)
@@ -43,8 +43,8 @@ LEAST = Asked(True, False)
 def contact_query(pair, pose, place, normal, begin, asked, tolerance, work):
     """The signed distance of the cores and its bounds.
 
-    `begin` is COLD, WARM or NEAR, of the place and the normal. What `asked` of the other depths
-    shows a lesser one leads there, unless it stays.
+    `begin` is COLD, WARM or NEAR, for the place and the normal. If the search that `asked` requires
+    finds a smaller depth, the answer is there, unless it stays.
     """
     last = some_direction(normal)
     plane, square = plane_normal(pair, pose)
@@ -58,7 +58,7 @@ def contact_query(pair, pose, place, normal, begin, asked, tolerance, work):
     least = -inf
     sought = at.distance <= 0.0 if at.found else not asked.stays
     if sought and not plane:
-        # followed alone, the minimum is still asked whether the bodies overlap at all
+        # if only the minimum is followed, whether the bodies overlap at all must still be shown
         proof, rivals = (DEPTH_PROOF, MAX_RIVALS) if asked.everywhere else (1.0, 0)
         logged = work.counts[EVENTS]
         best, least = search(pair, pose, at, tolerance, proof, rivals, work)
@@ -74,29 +74,29 @@ def contact_query(pair, pose, place, normal, begin, asked, tolerance, work):
 
 @kernel
 def some_direction(n):
-    """n, or another where it is the (0, 0, 0) between points that coincide."""
+    """n, or another direction if n is (0, 0, 0) because two points coincide."""
     return n if dot(n, n) > 0.5 else (1.0, 0.0, 0.0)
 
 
 @kernel
 def bound_along(pair, pose, place, n):
-    """What a plane square to n is known to keep the cores apart by, less than 0 in overlap."""
+    """How far a plane perpendicular to n is known to keep the cores apart, negative in overlap."""
     bound, _ = certify_along(pair, pose, place, pair_jets(pair, pose, place), n)
     return max(bound, -box_depth(pair, pose, n) - pair_slack(pair))
 
 
 @kernel
 def farther_apart(pair, pose, place, n, last):
-    """Of two directions the one that is known to keep the cores farther apart."""
+    """The one of two directions along which the cores are known to be farther apart."""
     better = bound_along(pair, pose, place, last) > bound_along(pair, pose, place, n)
     return last if better else n
 
 
 @kernel
 def conclude(pair, pose, at, least, tolerance, work):
-    """What `contact_query` returns, of a depth.
+    """What `contact_query` returns for a depth.
 
-    `least` bounds every depth from below, -inf where no overlap was shown.
+    `least` is a lower bound of every depth, -inf if no overlap was shown.
     """
     found, _, n, place = at
     jets = pair_jets(pair, pose, place)
@@ -107,12 +107,12 @@ def conclude(pair, pose, at, least, tolerance, work):
     if exhausted(work):
         bound = max(bound, -box_depth(pair, pose, n) - pair_slack(pair))
     if bound <= 0.0 and (pair.ints_a[L.UNBOUNDED] or pair.ints_b[L.UNBOUNDED]):
-        # no point of a body is lower over a half-space than its lowest
+        # no point of a body is lower above a half-space than the lowest one
         upper = min(upper, d)
     span = pair_span(pair, pose.p, abs(d))
     allowed = min(tolerance, BLUR) * span + pair_slack(pair) + min(blur, BLUR * span)
     if d - bound > allowed or norm(axpy(-d, n, gap)) > ALIGNED * span:
-        # not at rest: what is achieved is the bound, or the points' own distance
+        # not at rest: all that is proven is the bound, or the distance between the points
         d = bound if bound <= 0.0 else upper
         found = found and bound <= 0.0 and not exhausted(work)
     if least >= 0.0:
@@ -120,7 +120,7 @@ def conclude(pair, pose, at, least, tolerance, work):
     if upper > 0.0 and d <= 0.0 and exhausted(work):
         found = False  # cut off before any overlap was shown
     if d > 0.0 and bound > 0.0:
-        # apart: the distance is that of the points, which near contact need not be along n
+        # apart: the distance between the points, which near contact need not be along n
         d = norm(gap)
         if found and d - bound <= allowed:
             return Found(CERTIFIED, place, d, bound, d, n)

@@ -1,4 +1,4 @@
-"""The feedforward at the witness points of an answer, by the solve of its law."""
+"""The feedforward at the witness points of an answer, solved as its law does."""
 
 from standoff.kernels.algebra.vectors import norm, sub
 from standoff.kernels.body.features import pair_span
@@ -13,7 +13,7 @@ from standoff.kernels.values import NO_RATES, STILL, of_origin
 
 @kernel
 def solve_plain(jet_a, jet_b, g, H, fed, work):
-    """(p, w_ff) by H as it is."""
+    """(p, w_ff) with H as it is."""
     step, w_ff, solved = plain_law(jet_a, jet_b, g, H, fed)
     work.counts[REGULARISED] += 1 - solved
     return step, w_ff
@@ -21,8 +21,8 @@ def solve_plain(jet_a, jet_b, g, H, fed, work):
 
 @kernel
 def feedforward_now(pair, motion, place, solve, work):
-    """w_ff at witness points, where no evaluation of the frame belongs to them: by H, of which the
-    covariant part differs only away from them."""
+    """w_ff at witness points at which the frame made no evaluation. It uses H, whose covariant part
+    differs from it only away from them."""
     jet_a, jet_b = pair_jets(pair, motion.pose, place)
     H = hessian(jet_a, jet_b)
     fed = gradient(feedforward(jet_a, jet_b, STILL, of_origin(motion)))

@@ -1,4 +1,4 @@
-"""What a frame is given, and B's motion seen from A by it."""
+"""The input of a frame, and the motion of B relative to A that follows from it."""
 
 from __future__ import annotations
 
@@ -10,34 +10,34 @@ from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.state.arrays import POSE_A, POSE_B, TWIST_A, TWIST_B, refusal
 from standoff.kernels.values import Motion
 
-# What the parameters change by over a frame, where the bodies' own method has integrated them: all
-# of it, and what the first stage alone would give.
+# The change of the parameters over a frame, if they were integrated with the bodies: all of it, and
+# that of the first stage alone.
 CHANGE, FIRST_CHANGE = 0, 4
 N_CHANGE = 8
 
 
 class Inputs(NamedTuple):
-    """What a frame is given, in world axes, as pointers."""
+    """The input of a frame, in world axes, as pointers."""
 
     pose_a: Any  # R (9, row-major), p (3)
     pose_b: Any
     twist_a: Any  # 6 numbers
     twist_b: Any
-    change: Any  # of a law that is integrated with the bodies: N_CHANGE numbers; else unused
+    change: Any  # N_CHANGE numbers, for a law that is integrated with the bodies; otherwise unused
     has_twist: bool
 
 
 @kernel
 def twisted(inputs, pose):
-    """B's motion seen from A, by the twists given."""
+    """The motion of B relative to A, from the given twists."""
     v, w = relative_twist(inputs.pose_a, inputs.pose_b, inputs.twist_a, inputs.twist_b)
     return Motion(pose, v, w)
 
 
 @kernel
 def moving(inputs, before, h):
-    """B's motion seen from A: by the twists, or else that which has led here since the frame
-    before."""
+    """The motion of B relative to A: from the twists or, without them, the mean motion since the
+    last frame."""
     pose = relative_pose(inputs.pose_a, inputs.pose_b)
     if inputs.has_twist:
         return twisted(inputs, pose)
@@ -46,27 +46,27 @@ def moving(inputs, before, h):
 
 @kernel
 def inputs_at(motion, has_twist):
-    """Where a frame's poses and twists stand, from the first of them on."""
+    """The poses and twists of a frame, in an array that begins with the first of them."""
     return Inputs(
         ahead(motion, POSE_A),
         ahead(motion, POSE_B),
         ahead(motion, TWIST_A),
         ahead(motion, TWIST_B),
-        motion,  # of no meaning: nothing was integrated
+        motion,  # unused: nothing was integrated
         has_twist,
     )
 
 
 @kernel
 def refused(pair, inputs):
-    """FINE, or what of a frame's poses and twists is refused."""
+    """FINE, or which of a frame's poses and twists is rejected."""
     planar = pair.ints_a[DIMENSION] == 2 or pair.ints_b[DIMENSION] == 2
     return refusal(planar, inputs.pose_a, inputs.pose_b, inputs.twist_a, inputs.twist_b)
 
 
 @kernel
 def with_change(inputs, change):
-    """The same, with what the bodies' own method has changed the parameters by."""
+    """The same, with the change of the parameters by the bodies' integrator."""
     return Inputs(
         inputs.pose_a, inputs.pose_b, inputs.twist_a, inputs.twist_b, change, inputs.has_twist
     )

@@ -1,4 +1,4 @@
-"""The warm start: what a frame keeps for the next one, and the prediction made from it."""
+"""The warm start: what a frame keeps for the next one, and the prediction from it."""
 
 from standoff.kernels.algebra.vectors import axpy, dot, scale
 from standoff.kernels.body import layout as L
@@ -29,7 +29,7 @@ from standoff.kernels.values import (
 
 @kernel
 def predict(before, predictor, h):
-    """h w: feedforward, its two-step Adams-Bashforth blend, or the secant of two frames."""
+    """h w: the feedforward, its two-step Adams-Bashforth blend, or the secant of two frames."""
     if predictor == PREDICT_NONE or before.history == 0:
         return NO_RATES
     ratio = 0.0
@@ -46,7 +46,7 @@ def predict(before, predictor, h):
 
 @kernel
 def apply_step(pair, place, step, work):
-    """Walk a step until a boundary, and hold that boundary."""
+    """Take a step up to the first boundary, and stay on that boundary."""
     body, hit = walk_pair(pair, place, step)
     place = moved(place, hit.s, step)
     if hit.kind != NO_HIT:
@@ -56,7 +56,7 @@ def apply_step(pair, place, step, work):
 
 @kernel
 def in_chart(ints, reals, old, rates, chart):
-    """(seen, side, rates) of one body's last parameters and their rates, in another chart."""
+    """(seen, side, rates): one body's last parameters and their rates in another chart."""
     if old.chart == chart:
         return True, old, rates
     jet = chart_jet(ints, reals, old.chart, old.p, old.q)
@@ -73,8 +73,8 @@ def in_chart(ints, reals, old, rates, chart):
 
 @kernel
 def carry_over(pair, before, place):
-    """(same, place, rates): the last frame's parameters and rates in this frame's charts. Not the
-    same where a feature has changed: then they say nothing of the new one."""
+    """(same, place, rates): the last frame's parameters and rates in this frame's charts. `same` is
+    False if a feature has changed: then they say nothing about the new one."""
     old, w = before.place, before.rates
     if old.feature_a != place.feature_a or old.feature_b != place.feature_b:
         return False, old, w
@@ -86,7 +86,7 @@ def carry_over(pair, before, place):
 
 @kernel
 def secant(old, new, h):
-    """The rates that take one place to another in the time h."""
+    """The rates that lead from one place to another in the time h."""
     return (
         (new.u - old.u) / h,
         (new.v - old.v) / h,
@@ -97,14 +97,14 @@ def secant(old, new, h):
 
 @kernel
 def next_state(pair, before, motion, h, tracked, feed, status):
-    """What is kept of a frame. `feed`: its rates are a feedforward, which predicts the next."""
+    """What is kept of a frame. `feed`: its rates are a feedforward, which predicts the next one."""
     carried = carry_over(pair, before, tracked.shown.found.place)
     return kept_state(carried, before, motion, h, tracked, feed, status)
 
 
 @kernel
 def kept_state(carried, before, motion, h, tracked, feed, status):
-    """`next_state`, with what `carry_over` returns."""
+    """`next_state`, given the result of `carry_over`."""
     shown = tracked.shown
     found = shown.found
     same, old, old_rates = carried
@@ -113,7 +113,7 @@ def kept_state(carried, before, motion, h, tracked, feed, status):
         two = same and before.history >= 1 and before.fed
         rates, last_rates, history = shown.rates, old_rates, 2 if two else 1
     elif same and h > 0.0 and status != DEADLINE and status != NOT_RESTARTED:
-        # points cut off or left on their way have no rate
+        # points of a search that was cut off or not restarted do not have rates
         rates, history = secant(old, found.place, h), 1
     return State(
         found.place,

@@ -1,4 +1,4 @@
-"""How a compiled frame calls another by its address: with a record of addresses."""
+"""How a compiled frame calls another one by its address: with a record of addresses."""
 
 from typing import Any, NamedTuple
 
@@ -21,7 +21,7 @@ N_POSE, N_TWIST = 12, 6
 
 
 class Called(NamedTuple):
-    """What a frame is called with."""
+    """The arguments of a frame."""
 
     pair: Any
     inputs: Any
@@ -33,7 +33,7 @@ class Called(NamedTuple):
 
 @kernel
 def call_at(address, pair, inputs, h, options, state, out, work):
-    """What the frame at an address returns."""
+    """Call the frame at an address, and return its result."""
     call = ints_on_stack(N_CALL)
     call[CALL_INTS_A], call[CALL_REALS_A] = address_of(pair.ints_a), address_of(pair.reals_a)
     call[CALL_INTS_B], call[CALL_REALS_B] = address_of(pair.ints_b), address_of(pair.reals_b)
@@ -51,7 +51,8 @@ def call_at(address, pair, inputs, h, options, state, out, work):
 
 @kernel
 def read_call(record):
-    """What stands in the record at an address. Bodies' lengths are not known here, nor asked."""
+    """The arguments in the record at an address. The lengths of bodies' arrays are not known here,
+    and not needed."""
     call = ints_at(record, N_CALL)
     return Called(
         Pair(

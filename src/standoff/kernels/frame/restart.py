@@ -1,4 +1,4 @@
-"""A global start: of a first frame, and of one that the last frame does not lead to."""
+"""A global start: for a first frame, and for a frame to which the last one does not lead."""
 
 from standoff.kernels.algebra.vectors import dot, sub
 from standoff.kernels.body.features import pair_span
@@ -25,7 +25,7 @@ from standoff.kernels.values import Depth, Found
 
 @shared
 def polish_along(pair, pose, found, tolerance, work):
-    """What `polished` returns of a pair within its reach."""
+    """What `polished` returns for a pair in need of it."""
     start = Depth(False, found.lower, found.normal, found.place)
     kind, ended, _ = minimum_along(pair, pose, start, tolerance, work)
     if kind == NOTHING:
@@ -37,14 +37,15 @@ def polish_along(pair, pose, found, tolerance, work):
 
 @kernel
 def in_need_of_polish(pair, found, work):
-    """Is a certified pair so near contact that the direction between its witness points has lost
-    its digits?"""
+    """Is a certified pair so near contact that the direction between its witness points has few
+    correct digits?"""
     return found.distance <= POLISHED * contact_scale(pair) and not exhausted(work)
 
 
 @kernel
 def polished(pair, pose, found, tolerance, work):
-    """A certified pair, very near contact after Newton's method in the contact-regular form."""
+    """A certified pair, refined by Newton's method in the contact-regular form if very near
+    contact."""
     if in_need_of_polish(pair, found, work):
         return polish_along(pair, pose, found, tolerance, work)
     return found
@@ -52,7 +53,7 @@ def polished(pair, pose, found, tolerance, work):
 
 @kernel
 def anywhere_apart(pair, pose, tolerance, work):
-    """(found, inside) of a cold query where the bodies are apart; else the outcome is NOT_APART,
+    """(found, inside) of a cold query if the bodies are apart; otherwise the outcome is NOT_APART,
     and `anywhere` finds the answer.
     """
     found = global_query(pair, pose, FIRST, tolerance, work)
@@ -66,7 +67,7 @@ def anywhere_apart(pair, pose, tolerance, work):
 
 @kernel
 def anywhere_from(pair, pose, first, tolerance, work):
-    """(found, inside) of a cold query, apart or not; `first` is the start that is tried first."""
+    """(found, inside) of a cold query, apart or not; `first` is the start to try first."""
     found = global_query(pair, pose, first, tolerance, work)
     if found.outcome == CERTIFIED:
         return polished(pair, pose, found, tolerance, work), False
@@ -78,15 +79,15 @@ def anywhere_from(pair, pose, first, tolerance, work):
 
 @kernel
 def anywhere(pair, pose, tolerance, work):
-    """`anywhere_from` the first start, with a proof of overlap where it finds no depth."""
+    """`anywhere_from` the first start, with a proof of overlap if it finds no depth."""
     found, inside = anywhere_from(pair, pose, FIRST, tolerance, work)
     return with_overlap(pair, pose, found, work), inside
 
 
 @kernel
 def start_due(before, work):
-    """(is a global start due, which): after frames in a row that were cut off and have spent
-    PATIENCE evaluations between them, what they went on from leads nowhere.
+    """(is a global start due, which): after consecutive frames that were cut off and together used
+    PATIENCE evaluations, continuing from the last one does not lead to an answer.
     """
     if before.cut == 0:
         return False, FIRST
@@ -104,9 +105,10 @@ def height_along(pair, pose, place, n):
 
 @kernel
 def cut_off_above(pair, pose, found, n):
-    """`cut_off` over a half-space, whose normal n from A to B is the only one that parts them.
+    """`cut_off` with a half-space, whose normal n from A to B is the only one that can separate
+    them.
 
-    Any point of the other body below the plane shows that they overlap, and by how much at least.
+    Any point of the other body below the plane shows that they overlap, and at least by how much.
     """
     place = begin_along(pair, pose, n)
     height, last = height_along(pair, pose, place, n), height_along(pair, pose, found.place, n)
@@ -124,10 +126,10 @@ def cut_off_above(pair, pose, found, n):
 def cut_off(pair, pose, found):
     """(found, inside) of a frame that ran out of evaluations outside contact.
 
-    Where samples alone show that the bodies overlap, the next frame follows the depth from their
-    least direction, and this one answers with what that parts them by. So it does from the last
-    direction where both witness points have come to lie on one another: such a pair is no distance
-    apart, and a distance of 0 would tell nothing of its depth.
+    If samples alone show that the bodies overlap, the next frame follows the depth from their least
+    direction, and this one answers with the bound along it. The same is done with the last
+    direction if both witness points coincide: the bodies are not apart, and a distance of 0 would
+    say nothing about the depth.
     """
     plane, square = plane_normal(pair, pose)
     if plane:
@@ -147,9 +149,9 @@ def cut_off(pair, pose, found):
 
 @kernel
 def restart(pair, pose, first, tolerance, integrated, work):
-    """A frame by a global start."""
+    """A frame from a global start."""
     work.counts[RESTARTS] += 1
-    work.counts[KEEPING] = 0  # what the frame before knew has led nowhere
+    work.counts[KEEPING] = 0  # what the last frame knew did not help
     found, inside = anywhere_from(pair, pose, first, tolerance, work)
     if exhausted(work) and found.outcome != CERTIFIED and not inside:
         found, inside = cut_off(pair, pose, found)

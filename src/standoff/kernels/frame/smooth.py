@@ -1,8 +1,8 @@
 """A frame whose witness points stay well inside faces of kinds that are known when it is compiled.
 
-It is the general frame of the predictor-corrector without what such a frame never meets: no
-boundary, no other chart, no switch, no flat direction, no contact. The same functions in the same
-order, of fewer cases. It is tried first and writes nothing unless it answers.
+It is the general frame of the predictor-corrector without anything that such a frame never meets:
+no boundary, no other chart, no switch, no flat direction, no contact. It calls the same functions
+in the same order, with fewer cases. It is tried first and writes nothing unless it answers.
 """
 
 from typing import Any, NamedTuple
@@ -58,10 +58,10 @@ NO_JET = (ORIGIN, ORIGIN, ORIGIN, ORIGIN, ORIGIN, ORIGIN)
 class Seen(NamedTuple):
     """A chart at its parameters, in its body's frame."""
 
-    fits: bool  # is it of the kind, and are both tangents there?
+    fits: bool  # is it of the kind, with both tangents nonzero?
     jet: Any
     normal: Vector  # unit, outward
-    noise: float  # bound on what roundoff turns it by
+    noise: float  # bound on how far roundoff turns it (chord)
 
 
 class Looked(NamedTuple):
@@ -69,12 +69,12 @@ class Looked(NamedTuple):
 
     fits: bool
     jets: Any  # in A's frame
-    cones: Any  # what the certificate asks
+    cones: Any  # input of the certificate
 
 
 @small
 def seen_as(kind, ints, reals, chart, u, v):
-    """A chart taken for one of a kind, any but a NURBS."""
+    """A chart, assumed to be of a kind, any except a NURBS."""
     c = chart_record(ints, chart)
     o = ints[c + L.CHART_REALS]
     if ints[c + L.CHART_KIND] != kind:
@@ -84,7 +84,7 @@ def seen_as(kind, ints, reals, chart, u, v):
 
 @small
 def seen_by(kind, reals, o, jet):
-    """What is seen of a chart whose reals begin at o, by its jet."""
+    """A chart whose reals begin at o, from its jet."""
     normal, noise = normal_of_kind(kind, reals, o, jet)
     collapsed = has_collapsed(reals, jet[1]) or has_collapsed(reals, jet[2])
     return Seen(not collapsed, jet, normal, noise)
@@ -92,7 +92,7 @@ def seen_by(kind, reals, o, jet):
 
 @small
 def seen_as_nurbs(degree, ints, reals, chart, u, v):
-    """A chart taken for a NURBS of one degree along u and v."""
+    """A chart, assumed to be a NURBS of the same degree along u and v."""
     c = chart_record(ints, chart)
     o = ints[c + L.CHART_REALS]
     data = o + L.SURFACE_DATA
@@ -106,7 +106,7 @@ def seen_as_nurbs(degree, ints, reals, chart, u, v):
 
 @small
 def look(look_a, look_b, pair, pose, place):
-    """Both charts at a place, by the functions that know their kinds."""
+    """Both charts at a place, by functions for their kinds."""
     a = look_a(pair.ints_a, pair.reals_a, place.chart_a, place.u, place.v)
     b = look_b(pair.ints_b, pair.reals_b, place.chart_b, place.r, place.s)
     jet_b = moved_jet(pose, b.jet)
@@ -122,7 +122,7 @@ def look(look_a, look_b, pair, pose, place):
 
 @small
 def inside_faces(pair, place):
-    """Do both points lie well inside their faces, and centrally in their charts?"""
+    """Are both points well inside their faces, and central in their charts?"""
     ia, ra, ib, rb = pair
     o_a = ia[chart_record(ia, place.chart_a) + L.CHART_REALS]
     o_b = ib[chart_record(ib, place.chart_b) + L.CHART_REALS]
@@ -131,7 +131,7 @@ def inside_faces(pair, place):
 
 @small
 def may_be_smooth(pair, before):
-    """Were both points on faces, and the bodies far enough apart for the law alone?"""
+    """Were both points on faces, and the bodies far enough apart for the law without contact?"""
     place = before.place
     return (
         not before.lost
@@ -145,7 +145,7 @@ def may_be_smooth(pair, before):
 
 @small
 def descended(look_a, look_b, pair, motion, place, tolerance, most):
-    """(done, corrections, place, looked, rates): `settle` of a pair that no boundary concerns."""
+    """(done, corrections, place, looked, rates): `settle` for a pair away from all boundaries."""
     pose, corrections, rates = motion.pose, 0, NO_RATES
     looked = look(look_a, look_b, pair, pose, place)
     done = looked.fits
@@ -178,9 +178,9 @@ def descended(look_a, look_b, pair, motion, place, tolerance, most):
 
 @small
 def smooth_frame(look_a, look_b, pair, inputs, h, options, state, out):
-    """Make the answer and the next state of a frame: 1; or write nothing: 0.
+    """Write the answer and the next state of a frame, and return 1; or write nothing and return 0.
 
-    look_a and look_b see A's charts and B's as of one kind.
+    look_a and look_b evaluate the charts of A and of B, each for one kind.
     """
     before = read_state(state)
     if not may_be_smooth(pair, before):

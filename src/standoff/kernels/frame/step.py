@@ -1,4 +1,4 @@
-"""What every law's frame has in common: its motion, its status, its answer and the next state."""
+"""What the frames of all laws have in common: motion, status, answer and the next state."""
 
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.frame.answer import judge, write_answer
@@ -15,8 +15,8 @@ from standoff.kernels.values import ORIGIN
 
 @shared
 def answer_frame(pair, inputs, motion, shown, solve, status, out, work):
-    """Write the answer of a frame. Returns the rates of its parameters, which are found here where
-    no evaluation of the frame belongs to its witness points.
+    """Write the answer of a frame. Return the rates of its parameters, which are computed here if
+    the frame made no evaluation at its witness points.
     """
     found, jets, rates = shown.found, shown.jets, shown.rates
     n_rate = ORIGIN
@@ -38,9 +38,9 @@ def copy_counts(work, out):
 
 @kernel
 def step_frame(track, pair, inputs, steps, options, state, out, work):
-    """A frame of the law that is given: the state is changed in place, the answer written. `steps`
-    are the time h, and what `track` goes by: h, or a change of the parameters over it. The counts
-    are 0 before it.
+    """A frame of the given law: change the state in place and write the answer. `steps` are the
+    time h, and the argument of `track`: h, or a change of the parameters over it. The counts must
+    be 0 before.
     """
     h, step = steps
     before = read_state(state)

@@ -1,5 +1,4 @@
-"""Errors of distance, witness points and normal against pairs exact by construction.
+"""Errors of distance, witness points and normal for pairs that are exact by construction.
 
-The truth comes from support functions
-(`standoff_studies.oracles`), from no kernel and no surface.
+The truth comes from support functions (`standoff_studies.oracles`), not from any kernel or surface.
 """

@@ -14,12 +14,12 @@ class AccuracyCommand(AccuracyOptions):
     The pairs are exact by construction, at gaps of 1e-6, 1e-3 and 1 and depths of 1e-6, 1e-3 and
     1e-1 of their size.
 
-    Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 finished, but an answer is
+    Exit codes: 0 done; 1 files could not be written; 2 bad input; 3 finished, but an answer is
     wrong or missing.
     """
 
     def run(self) -> int:
-        """Do it; see `standoff_studies.accuracy.command.run_accuracy`."""
+        """Run it; see `standoff_studies.accuracy.command.run_accuracy`."""
         from standoff_studies.accuracy.command import run_accuracy
 
         return run_accuracy(self)

@@ -19,13 +19,13 @@ DEPTHS = (1e-6, 1e-3, 1e-1)
 LEVELS = (*GAPS, *(-depth for depth in DEPTHS))
 """Signed distances of the cases, over the pair's size."""
 SOLIDS = 4
-"""Solids of each kind: with them the pair's lengths vary."""
+"""Solids of each kind, so that the lengths of a pair vary."""
 DRAWS = 60
-"""Draws of a case before it is given up: some have no unique witnesses, others no minimum."""
+"""Draws before a case is given up: some have no unique witnesses, others no minimum."""
 RANGE = 1.0
 """Coordinates of A's origin, drawn within plus and minus this, over the size."""
 SLACK = 1e-9
-"""Depths less than the constructed one by this, over the size, are another minimum's."""
+"""A depth below the constructed one by more than this, over the size, is another minimum."""
 
 
 @dataclass(frozen=True)
@@ -35,10 +35,10 @@ class Case:
     Attributes
     ----------
     kinds : names of the pair's shapes, in the order of the catalogue; A and B may be swapped.
-    level : signed distance over the size, as it was asked for.
-    size : the greater of both bodies' sizes, length; that of the bounded one beside a half-space.
-    least : the least depth, length: the constructed one if no direction has a lesser; NaN for a
-        gap.
+    level : requested signed distance over the size.
+    size : the greater of both bodies' sizes, length; with a half-space, that of the bounded one.
+    least : the least depth, length: the constructed one if no direction has a smaller one; NaN for
+        a gap.
     """
 
     kinds: tuple[str, str]
@@ -52,18 +52,18 @@ class Case:
 
     @property
     def constructed(self) -> bool:
-        """Is the constructed answer the one to compare with, and no other minimum's?"""
+        """Is the constructed answer the one to compare with, not that of another minimum?"""
         return self.level > 0 or self.least >= -self.truth.distance
 
 
 def pairs(kinds: Sequence[Kind]) -> list[tuple[Kind, Kind]]:
-    """Return all pairs but that of two half-spaces."""
+    """Return all pairs except that of two half-spaces."""
     both = combinations_with_replacement(kinds, 2)
     return [pair for pair in both if {kind.name for kind in pair} != {"halfspace"}]
 
 
 def catalogue(kinds: Sequence[Kind], seed: int) -> dict[str, tuple[Solid, ...]]:
-    """Return the solids of every kind; a kind's are the same whichever others there are."""
+    """Return the solids of every kind; they do not depend on which other kinds there are."""
     return {kind.name: draw_solids(kind, SOLIDS, _generator(seed, kind.name)) for kind in kinds}
 
 
@@ -72,7 +72,7 @@ def _generator(seed: int, *words: str) -> np.random.Generator:
 
 
 def pair_size(a: Solid, b: Solid) -> float:
-    """Return the greater size of both bodies, of those that have one; 1 for two points."""
+    """Return the greater of both bodies' sizes, of those that have one; 1 for two points."""
     sizes = [solid.body.size for solid in (a, b) if solid.bounded]
     return max(sizes) or 1.0
 
@@ -85,7 +85,7 @@ def draw_cases(
 ) -> Iterator[Case]:
     """Draw the cases of one pair, ``count`` at each level.
 
-    A level at which a pair has no cases, as two segments have no depth, is left out.
+    A level at which a pair has no cases is omitted: two segments, for example, have no depth.
     """
     names = (pair[0].name, pair[1].name)
     for level in LEVELS:

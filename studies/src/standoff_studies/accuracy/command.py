@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from standoff_studies.accuracy.options import AccuracyOptions
 
 WIDTH = 140
-"""Characters of a table where stdout is not a terminal, such as a file."""
+"""Width of a table in characters if stdout is not a terminal."""
 
 FILES = ("accuracy.parquet", "accuracy.md", "gaps.md", "depths.md", "accuracy.png")
 
@@ -39,7 +39,7 @@ def run_accuracy(command: AccuracyOptions) -> int:
     Raises
     ------
     CommandError
-        If a shape, a number or the folder is not usable, or a library is missing.
+        If a shape, a number or the folder cannot be used, or a library is missing.
     WriteError
         If a file could not be written.
     """
@@ -72,7 +72,7 @@ def run_accuracy(command: AccuracyOptions) -> int:
 
 
 def _text(command: AccuracyOptions) -> str:
-    """The command that makes the same numbers again."""
+    """The command that reproduces the same numbers."""
     words = ["standoff accuracy", *(repr(name) for name in command.shapes)]
     words += [f"--cases {command.cases}", f"--seed {command.seed}"]
     return " ".join([*words, "--peers"] if command.peers else words)

@@ -13,7 +13,7 @@ from standoff_studies.accuracy.report import side
 from standoff_studies.accuracy.summary import QUANTITIES, summarised
 
 FLOOR, CEILING = -17.0, -5.0
-"""Powers of ten of the colours' ends: below is roundoff, above is wrong."""
+"""Powers of ten at the ends of the colour scale: below is roundoff, above is wrong."""
 
 
 def draw(file: BinaryIO, rows: Sequence[Row]) -> None:

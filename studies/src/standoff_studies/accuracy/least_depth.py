@@ -1,10 +1,9 @@
 """The least depth of two overlapping bodies, from support points alone.
 
-The depth is the least of s(n) = h_A(n) + h_B(-n), the support function of the difference A - B,
-which holds the origin. Two independent ways: s over a fixed set of directions, and an inner
-polytope of A - B that is grown where its face is nearest to the origin. No point of A - B is
-left out that the faces' own directions would show, so the least face is a lower bound and the
-least s of the faces' normals an upper one.
+The depth is the least value of s(n) = h_A(n) + h_B(-n), the support function of the difference
+A - B, which contains the origin. It is computed in two independent ways: s over a fixed set of
+directions, and an inner polytope of A - B that is grown at the faces nearest to the origin. The
+least distance of a face is a lower bound, and the least s along the faces' normals an upper bound.
 """
 
 from __future__ import annotations
@@ -17,17 +16,17 @@ from standoff_studies.accuracy.truth import Truth, difference_points, support_su
 from standoff_studies.oracles import Array
 
 RINGS = (1e-4, 1e-3, 1e-2, 0.05, 0.1, 0.2)
-"""Angles (rad) from a normal at which s is looked at: the sampled directions are 0.08 apart."""
+"""Angles (rad) from a normal at which s is evaluated: the sampled directions are 0.08 apart."""
 SPOKES = 24
 RIVAL = 0.05
-"""Margin, over the size, within which a sampled direction may be beside another minimum that is
-less than the constructed one: the slope of s (at most the size) over half the spacing."""
+"""Margin, over the size, within which a sampled direction may be near another minimum that is below
+the constructed one: the slope of s (at most the size) times half the spacing."""
 ROUNDS = 40
 """Rounds of growing the polytope, each by the points of the nearest faces."""
 GROWN = 24
-"""Faces a round."""
+"""Faces per round."""
 SETTLED = 1e-8
-"""Gap of the bounds, over the size, that ends the growth."""
+"""Gap between the bounds, over the size, at which growing ends."""
 
 
 def sampled(a: Solid, b: Solid, truth: Truth) -> tuple[Array, Array]:
@@ -53,10 +52,10 @@ def ring_least(a: Solid, b: Solid, truth: Truth) -> float:
 def least_bounds(
     a: Solid, b: Solid, truth: Truth, size: float, slack: float
 ) -> tuple[float, float]:
-    """Return bounds (length) of the least depth: the constructed one twice if none is less.
+    """Return bounds (length) of the least depth: the constructed one twice if none is smaller.
 
-    A half-space has one direction only. Elsewhere the polytope is grown if a direction is
-    shallower by more than ``slack``, or if one far from the normal is nearly as shallow.
+    With a half-space only one direction is possible. Otherwise the polytope is grown if a direction
+    is shallower by more than ``slack``, or if one far from the normal is nearly as shallow.
     """
     depth = -truth.distance
     if not (a.bounded and b.bounded):
@@ -88,6 +87,6 @@ def least_depth(a: Solid, b: Solid, truth: Truth, size: float) -> tuple[float, f
                 break
             hull.add_points(difference_points(a, b, truth, normals))
     except QhullError:
-        # a difference without volume, or points too close together: what is known so far
+        # a difference without volume, or points too close together: return what is known so far
         pass
     return lower, upper

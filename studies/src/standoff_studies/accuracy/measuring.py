@@ -1,4 +1,4 @@
-"""One answer against the truth."""
+"""Comparison of one answer with the truth."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ from standoff_studies.accuracy.truth import support_sum
 from standoff_studies.oracles import Array
 
 WRONG = 1e-6
-"""An answer whose distance is off by more, over the size, counts as wrong."""
+"""An answer whose error of distance is greater, over the size, counts as wrong."""
 ELSEWHERE = 0.05
-"""Angle (rad) from the true normal beyond which a depth is another minimum's."""
+"""Angle (rad) from the true normal beyond which a depth is that of another minimum."""
 BOUND_SLACK = 1e-12
-"""What a lower bound may be above the truth, over the size: roundoff."""
+"""By how much a lower bound may be above the truth, over the size: roundoff."""
 SEARCHED_SLACK = 1e-7
-"""The same where the truth is a searched depth, known to 1e-8."""
+"""The same if the truth is a depth found by search, known to 1e-8."""
 SHALLOWER = 1e-11
-"""Depths less than the constructed one by this, over the size, are no roundoff."""
+"""A depth below the constructed one by more than this, over the size, is not roundoff."""
 PROVEN = 1e-3
 """What GLOBAL promises: no depth is less than (1 - this) of the reported one."""
 OURS = "Standoff"
 
 
 class Verdict(StrEnum):
-    """What an answer is worth."""
+    """How good an answer is."""
 
     RIGHT = "right"
     OTHER = "other minimum"  # right, at another minimum, no deeper than the constructed one
-    DEEPER = "not least"  # a true depth along its normal, where a lesser one exists
+    DEEPER = "not least"  # a true depth along its normal, although a smaller one exists
     WRONG = "wrong"
     NOTHING = "no answer"
 
@@ -49,8 +49,8 @@ class Row:
 
     ``pose_a`` and ``pose_b`` are 12 numbers each, R row-major and p; ``body_a`` and ``body_b``
     the Python expressions that build the bodies after ``import standoff as so``. ``constructed``
-    tells whether the constructed answer is the least depth. Points and normals are in world axes.
-    Errors are NaN where the answer is another minimum's. docs/accuracy.md tells each column.
+    says whether the constructed answer is the least depth. Points and normals are in world axes.
+    Errors are NaN if the answer is that of another minimum. docs/accuracy.md explains each column.
     """
 
     engine: str
@@ -116,17 +116,17 @@ def errors(case: Case, answer: PeerAnswer) -> tuple[float, float, float]:
         float(np.linalg.norm(answer.point_a - truth.point_a)),
         float(np.linalg.norm(answer.point_b - truth.point_b)),
     )
-    # by the chord: the arc cosine of a product knows no angle below 1e-8
+    # by the chord: the arc cosine of a product cannot resolve angles below 1e-8
     chord = float(np.linalg.norm(answer.normal - truth.normal))
     turn = 2 * float(np.arcsin(min(1.0, chord / 2))) if isfinite(chord) else nan
     return abs(answer.distance - truth.distance) / case.size, witness / case.size, turn
 
 
 def judge(case: Case, answer: PeerAnswer) -> Verdict:
-    """Judge one answer by its distance, and by its normal where that is another minimum's.
+    """Judge one answer by its distance, and by its normal if it is that of another minimum.
 
-    Ours is wrong also by a lower bound above the truth, or a promise of the least depth, good to
-    `PROVEN`, that it does not keep.
+    Our own answer is also wrong if its lower bound is above the truth, or if it claims the least
+    depth, to within `PROVEN`, and is not.
     """
     if isinstance(answer, OwnAnswer) and not bounded_rightly(case, answer):
         return Verdict.WRONG
@@ -137,7 +137,7 @@ def judge(case: Case, answer: PeerAnswer) -> Verdict:
     close = abs(answer.distance - case.truth.distance) <= slack
     if case.level > 0 or (case.constructed and close):
         return Verdict.RIGHT if close and answer.distance * case.level > 0 else Verdict.WRONG
-    # a reported normal tells which minimum is meant; without one any true depth will do
+    # a reported normal says which minimum is meant; without one any true depth is accepted
     if not close and np.isfinite(answer.normal).all() and not is_elsewhere(case, answer):
         return Verdict.WRONG
     depth, least = -answer.distance, case.least
@@ -152,9 +152,9 @@ def judge(case: Case, answer: PeerAnswer) -> Verdict:
 
 
 def bounded_rightly(case: Case, answer: OwnAnswer) -> bool:
-    """Is the certified lower bound none above the true distance?
+    """Is the certified lower bound not above the true distance?
 
-    The depth along the reported normal is true, so the distance is none below that either.
+    The depth along the reported normal is a true depth, so it must not be below the bound either.
     """
     truth = case.truth.distance if case.constructed else -case.least
     if case.level < 0 and case.a.bounded and case.b.bounded:
@@ -165,10 +165,10 @@ def bounded_rightly(case: Case, answer: OwnAnswer) -> bool:
 
 
 def is_elsewhere(case: Case, answer: PeerAnswer) -> bool:
-    """Is a depth that of another stationary point: its normal another, and its depth true?
+    """Is a depth that of another stationary point, with a different normal and a true depth?
 
     Near the focal depth two minima may be close together; a true depth below the constructed one
-    is another minimum's however close.
+    belongs to another minimum, however close.
     """
     if case.level > 0 or not (case.a.bounded and case.b.bounded):
         return False
@@ -228,12 +228,12 @@ def _row(case: Case, engine: str, answer: PeerAnswer) -> Row:
 
 
 def measure_case(case: Case) -> Row:
-    """Ask Standoff."""
+    """Query Standoff."""
     return _row(case, OURS, own_answer(case))
 
 
 def measure_peer(case: Case, peer: Peer) -> Row | None:
-    """Ask a peer; None where it has no such pair."""
+    """Query a peer; None if it does not support the pair."""
     if case.level < 0 and not peer.overlaps:
         return None
     query = peer.query(case.a, case.b)
@@ -260,7 +260,7 @@ def measure(
 
     Parameters
     ----------
-    tell : is told each pair before it is measured.
+    tell : called with the name of each pair before it is measured.
     """
     solids = catalogue(kinds, seed)
     for pair in pairs(kinds):

@@ -1,4 +1,4 @@
-"""The options of ``standoff accuracy``: data, which the command reads and tyro fills in."""
+"""The options of ``standoff accuracy``: data that tyro fills in and the command reads."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tyro.conf import Positional, arg
 
 @dataclass(frozen=True)
 class AccuracyOptions:
-    """What may be asked of the command: its fields are options, their sentences its help."""
+    """The options of the command: one for each field, with the field's docstring as its help."""
 
     shapes: Annotated[
         Positional[tuple[str, ...]], arg(metavar="[SHAPE ...]", help_behavior_hint="")

@@ -28,7 +28,7 @@ class Run:
 
 
 def number(value: float) -> str:
-    """Return an error with one digit: more would only differ from machine to machine."""
+    """Return an error with one digit: more digits would differ from machine to machine."""
     return NOTHING if isnan(value) else f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e+")
 
 
@@ -39,7 +39,7 @@ def level_name(level: float) -> str:
 
 
 def side(row: Row) -> str:
-    """Return whether a row is of the gaps or of the depths."""
+    """Return whether a row belongs to the gaps or to the depths."""
     return "gaps" if row.level > 0 else "depths"
 
 
@@ -84,7 +84,7 @@ LEVEL_HEADER = ("pair", "distance", "witness points", "normal", "certified", "wr
 
 
 def engine_rows(rows: Sequence[Row], by_level: bool = True) -> list[list[str]]:
-    """Return one row an engine and level (or side): errors median / worst, and counts."""
+    """Return one row per engine and level (or side): errors median / worst, and counts."""
 
     def where(row: Row) -> tuple[str, str]:
         return row.engine, level_name(row.level) if by_level else side(row)
@@ -215,7 +215,7 @@ def page(run: Run) -> str:
 
 
 def levels_page(run: Run, which: str) -> str:
-    """Return our errors of every pair at each of the "gaps" or "depths" as a page of its own."""
+    """Return our errors of every pair at each of the "gaps" or "depths" as a separate page."""
     levels = list(dict.fromkeys(row.level for row in run.rows if side(row) == which))
     one = which.removesuffix("s")
     parts = [
@@ -274,7 +274,7 @@ def write_levels(file: BinaryIO, run: Run, which: str) -> None:
 
 
 def write_parquet(file: BinaryIO, run: Run) -> None:
-    """Write one row a case and engine; the run's numbers are the file's metadata."""
+    """Write one row per case and engine; the run's numbers are the file's metadata."""
     import pyarrow as pa
     from pyarrow import parquet
 

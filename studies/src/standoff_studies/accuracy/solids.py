@@ -16,16 +16,16 @@ from standoff_studies.kinds import TWINS, Twin
 from standoff_studies.oracles import Array
 
 SHORTEST, LONGEST = 0.35, 1.05
-"""Lengths that are drawn, times the solid's scale: ratios of lengths up to 3."""
+"""Range of lengths, as multiples of the solid's scale: ratios of lengths up to 3."""
 SMALLEST, GREATEST = 0.5, 2.0
-"""A solid's scale, drawn between them."""
+"""Range of a solid's scale."""
 
 SAMPLES = 2000
 """Directions of a search of s(n): 4.5 degrees apart."""
 
 
 def _spread(count: int) -> Array:
-    """Return ``count`` unit vectors that cover the sphere evenly: a Fibonacci spiral."""
+    """Return ``count`` unit vectors evenly distributed over the sphere: a Fibonacci spiral."""
     z = 1 - (2 * np.arange(count) + 1) / count
     turn = np.pi * (3 - np.sqrt(5)) * np.arange(count)
     r = np.sqrt(1 - z * z)
@@ -40,17 +40,17 @@ Rng = np.random.Generator
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of shape: how to draw the lengths of its twin, in their order."""
+    """A kind of shape: how to draw the lengths of its twin, in the order of its arguments."""
 
     name: str
     draw: Callable[[Rng], Values]
     flat: bool = False
-    """A point or a segment: two of them enclose no volume and can't penetrate."""
+    """A point or a segment: two of them have no volume and cannot penetrate."""
     call: str = ""
     """How ``import standoff as so`` builds it from its lengths, as a format string; that of
     ``so.shapes`` if empty."""
     judge: Callable[..., oracles.Shape] | None = None
-    """Its support function, if not that of the twin."""
+    """Its support function, if different from that of the twin."""
     own: Twin | None = None
     """Its twin, if it is not among `TWINS`."""
 
@@ -93,7 +93,7 @@ class Solid:
 
     @property
     def lengths(self) -> list[float]:
-        """Those of its values that are numbers."""
+        """Its values that are numbers."""
         return [float(x) for x in self.values.values() if np.ndim(x) == 0]
 
     @property
@@ -159,7 +159,7 @@ def _egg(rng: Rng) -> Values:
 
 def _ring(rng: Rng) -> Values:
     drawn = _lengths("ring", "width", "height")(rng)
-    # the profile stays clear of the axis
+    # the profile does not touch the axis
     return {**drawn, "width": min(drawn["width"], 0.8 * drawn["ring"])}
 
 
@@ -169,7 +169,7 @@ def _polytope(rng: Rng) -> Values:
 
 
 def _tangential(rng: Rng) -> Values:
-    """A polytope whose planes all touch one sphere, so that its core is the same, but smaller."""
+    """A polytope whose planes all touch one sphere, so that its core is a smaller copy of it."""
     while True:
         normals = oracles.unit(rng.normal(size=(int(rng.integers(8, 14)), 3)))
         planes = np.column_stack([normals, -np.ones(len(normals))])
@@ -182,7 +182,7 @@ def _tangential(rng: Rng) -> Values:
 
 
 def _rounded_support(vertices: Array, rounding: float) -> oracles.Shape:
-    """That of `_tangential`: its core is exact, with no vertices to solve for."""
+    """The support function for `_tangential`: its core is exact, without solving for vertices."""
     facets = oracles.Polytope(vertices).facets
     nearest = zip(facets.long_normals, facets.corners, strict=True)
     inscribed = min(float(normal @ vertices[corners[0]]) for normal, corners in nearest)
@@ -221,8 +221,8 @@ KINDS: tuple[Kind, ...] = (
     Kind("rounded polytope", _tangential, judge=_rounded_support),
     Kind("halfspace", lambda rng: {}),
 )
-"""All kinds: those of ``so.shapes``, of superellipsoids two, and an ellipsoid of NURBS patches.
-The planar loop is left out: it meets other planar bodies only."""
+"""All kinds: those of ``so.shapes``, two of superellipsoids, and an ellipsoid of NURBS patches.
+There is no planar loop, because it can only be paired with other planar bodies."""
 
 
 def named(names: Sequence[str]) -> tuple[Kind, ...]:
@@ -241,7 +241,7 @@ def named(names: Sequence[str]) -> tuple[Kind, ...]:
 
 
 def draw_solids(kind: Kind, count: int, rng: Rng) -> tuple[Solid, ...]:
-    """Return ``count`` solids of a kind; one where the kind has no lengths."""
+    """Return ``count`` solids of a kind; only one if the kind has no lengths."""
     if not kind.draw(np.random.default_rng(0)):
         return (Solid(kind, {}),)
     return tuple(Solid(kind, kind.draw(rng)) for _ in range(count))

@@ -14,7 +14,7 @@ Key = TypeVar("Key", bound=Hashable)
 
 QUANTITIES = ("distance", "witness", "normal")
 TARGETS = (1e-12, 1e-9, 1e-9)
-"""What errors of distance and witness points (over the size) and normal (rad) are to stay below."""
+"""Targets below which errors of distance, witness points (over the size) and normal (rad) stay."""
 
 
 @dataclass(frozen=True)
@@ -23,12 +23,12 @@ class Summary:
 
     Attributes
     ----------
-    cases : how many were asked.
-    median, worst : errors in the order of `QUANTITIES`; NaN where nothing could be compared.
-    certified : how many; None for engines that certify nothing.
-    wrong : off by more than 1e-6 of the size, or a false promise.
-    deeper : true depths where a lesser one exists.
-    nothing : no finite answer.
+    cases : how many there were.
+    median, worst : errors in the order of `QUANTITIES`; NaN if nothing could be compared.
+    certified : how many were certified; None for engines that do not certify.
+    wrong : how many were wrong by more than 1e-6 of the size, or made a false claim.
+    deeper : how many were true depths although a smaller one exists.
+    nothing : how many had no finite answer.
     """
 
     cases: int
@@ -54,7 +54,7 @@ def summarised(rows: Iterable[Row], key: Callable[[Row], Key]) -> dict[Key, Summ
 
 
 def summary(rows: list[Row]) -> Summary:
-    """Sum up one group. An error that is NaN, such as a missing normal, is left out."""
+    """Sum up one group. Errors that are NaN, such as that of a missing normal, are omitted."""
     errors = map(three_errors, rows)
     found = [[e for e in each if not isnan(e)] for each in zip(*errors, strict=True)]
     certified = [row.certified for row in rows if row.certified is not None]

@@ -2,10 +2,10 @@
 
 Choose a unit n, rotations and a gap g (negative: a depth), and put x = s_A(n), y = x + g n,
 p_B = y - s_B(-n). The poses are rounded to float64 first, which moves the stationary point of
-s(n) = h_A(n) + h_B(-n) by a rounding; where the bodies have no curvature (two vertices) and the
-gap is 1e-6, that turns the normal by 1e-10. So n is then solved for at the rounded poses, in
-extended precision: two Newton steps from a start that is off by a rounding. The supports of the
-image R X are exact for any matrix R, so the rounding of R does no harm.
+s(n) = h_A(n) + h_B(-n) by a rounding; if the bodies have no curvature (two vertices) and the gap is
+1e-6, that turns the normal by 1e-10. So n is then solved for at the rounded poses, in extended
+precision: NEWTON_STEPS from a start with an error of one rounding. The supports of the image R X
+are exact for any matrix R, so the rounding of R does no harm.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from standoff_studies.oracles import Array, Flat, extended, unit
 Pose = tuple[Array, Array]
 
 STEP = 1e-6
-"""Step of the central differences that give Newton's matrix, rad: its error of 1e-12 of the size
-is little beside the least gap, 1e-6 of it, which alone is on the diagonal where nothing curves."""
+"""Step of the central differences for Newton's matrix, rad: their error of 1e-12 of the size is
+small compared with the least gap, 1e-6 of it, which alone is on the diagonal without curvature."""
 NEWTON_STEPS = 3
 CROSSING = 0.1
 """Least sine between two crossing lines: nearly parallel ones have no well-defined witness."""
 WITHIN = (0.05, 0.95)
-"""Where on a segment or face the witness may lie, as weights of its ends."""
+"""Range of the weights of a segment's or face's ends with which the witness is placed on it."""
 
 
 @dataclass(frozen=True)
 class Truth:
-    """Two placed bodies and what is true of them, in world, float64.
+    """Two placed bodies and their exact answer, in world coordinates, float64.
 
     Attributes
     ----------
     pose_a, pose_b
-        (R, p) as they are handed to the engines.
+        (R, p) as they are given to the engines.
     distance
         Signed: negative is the depth along ``normal``.
     point_a, point_b, normal
@@ -63,7 +63,7 @@ class Truth:
 
 @dataclass(frozen=True)
 class Setting:
-    """A pair at rounded poses, and the flat of each body that is met."""
+    """A pair at rounded poses, and the flat of each body that takes part."""
 
     a: Solid
     b: Solid
@@ -81,7 +81,7 @@ def random_rotation(rng: np.random.Generator) -> Array:
 
 
 def inverse_transposed(matrix: Array) -> Array:
-    """Return R^-T times det R: where R takes a body's points, this takes its normals."""
+    """Return R^-T times det R, which maps normals where R maps points."""
     x, y, z = matrix.T
     return np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
 
@@ -100,7 +100,7 @@ def _frame(flat: Flat, rotation: Array, t: Any) -> tuple[Array, Array]:
 
 
 def _across(normal: Array) -> Array:
-    """Return two unit vectors (2, 3) square to a unit vector."""
+    """Return two unit vectors (2, 3) perpendicular to a unit vector."""
     least = np.zeros(3)
     least[np.abs(normal).argmin()] = 1.0
     first = unit(np.cross(normal, least))
@@ -111,7 +111,7 @@ Residual = Callable[[Array], Array]
 
 
 def _solve(residual: Residual, size: int) -> tuple[Array, Array]:
-    """Newton's method from 0 in ``size`` unknowns; returns the solution and the last matrix."""
+    """Apply Newton's method from 0 in ``size`` unknowns; return solution and last matrix."""
     unknown = extended(np.zeros(size))
     matrix = np.zeros((size, size))
     for _ in range(NEWTON_STEPS):
@@ -119,7 +119,7 @@ def _solve(residual: Residual, size: int) -> tuple[Array, Array]:
         steps = STEP * np.eye(size, dtype=np.longdouble)
         sides = [(residual(unknown + s), residual(unknown - s)) for s in steps]
         matrix = np.stack([(ahead - behind) / (2 * STEP) for ahead, behind in sides], axis=1)
-        # the matrix may be rounded, the residual may not
+        # the matrix may be in float64, but not the residual
         scale = float(np.abs(here).max()) or 1.0
         change = np.linalg.solve(matrix.astype(float), (here / scale).astype(float))
         unknown = unknown - scale * change
@@ -127,7 +127,7 @@ def _solve(residual: Residual, size: int) -> tuple[Array, Array]:
 
 
 def _between_points(s: Setting, normal: Array) -> tuple[Array, Array, Array, float]:
-    """Two single support points: n has two freedoms."""
+    """Two single support points: n has two degrees of freedom."""
     offset = extended(s.pose_b[1]) - s.pose_a[1]
     across = _across(normal)
 
@@ -147,7 +147,7 @@ def _between_points(s: Setting, normal: Array) -> tuple[Array, Array, Array, flo
 
 
 def _at_flat(s: Setting) -> tuple[Array, Array, Array, float]:
-    """A flat of A and a single point of B: n is fixed on a face, turns about a line."""
+    """A flat of A and a single point of B: n is fixed on a face, and turns about a line."""
     assert s.flat_a is not None
     flat = s.flat_a
     offset = extended(s.pose_b[1]) - s.pose_a[1]
@@ -166,7 +166,7 @@ def _at_flat(s: Setting) -> tuple[Array, Array, Array, float]:
         turn, matrix = _solve(sideways, 1)
         moved = _frame(flat, s.pose_a[0], flat.start + turn[0] + STEP)[0]
         n, ends = _frame(flat, s.pose_a[0], flat.start + turn[0])
-        # by the angle of n in place of the parameter, and with the sign of the turning
+        # by the angle of n instead of the parameter, and with the sense of rotation
         beside = unit(np.cross(n, ends[1] - ends[0]))
         least = float(-matrix[0, 0] * STEP / (beside @ (moved - n)))
     n, ends, y = points(turn)
@@ -174,7 +174,7 @@ def _at_flat(s: Setting) -> tuple[Array, Array, Array, float]:
 
 
 def _crossing(s: Setting) -> tuple[Array, Array, Array, float]:
-    """Two lines: n is square to both, wherever the bodies are."""
+    """Two lines: n is perpendicular to both, wherever the bodies are."""
     assert s.flat_a is not None
     assert s.flat_b is not None
     flat_a, flat_b = s.flat_a, s.flat_b
@@ -190,13 +190,13 @@ def _crossing(s: Setting) -> tuple[Array, Array, Array, float]:
     ends_b = ends_b + (extended(s.pose_b[1]) - s.pose_a[1])
     along_a, along_b = ends_a[1] - ends_a[0], ends_b[1] - ends_b[0]
     start = ends_b[0] - ends_a[0]
-    # where the lines pass one another: no part of y - x is along either
+    # where the lines are nearest to each other: y - x has no component along either
     x = ends_a[0] + along_a * (np.cross(start, along_b) @ n) / (np.cross(along_a, along_b) @ n)
     return n, x, x + (n @ start) * n, np.inf
 
 
 def solve_truth(setting: Setting, normal: Array) -> Truth:
-    """Return the truth at rounded poses, near a normal that it was built with."""
+    """Return the truth at rounded poses, near the normal with which they were constructed."""
     flats = (setting.flat_a, setting.flat_b)
     if flats[0] is not None and flats[1] is not None:
         n, x, y, stiffness = _crossing(setting)
@@ -246,7 +246,7 @@ def _weighted(ends: Array, rng: np.random.Generator) -> Array:
 def _choose_flats(
     a: Solid, b: Solid, rng: np.random.Generator
 ) -> tuple[Flat | None, Flat | None] | None:
-    """Draw which flats meet; None if what was drawn has no unique witnesses."""
+    """Draw which flats take part; None if the draw has no unique witnesses."""
     pick: list[Flat | None] = []
     for solid in (a, b):
         flats = solid.support.flats(rng)

@@ -1,8 +1,8 @@
 """Ground truth: support functions of convex shapes in closed form, independent of the library.
 
-Nothing here imports ``standoff``: these shapes judge it. Only NumPy and SciPy are used. The tests,
-the soak and the accuracy by pair of shapes share them. All shapes are centred with axis z, with
-lengths as ``so.shapes`` has them.
+Nothing here imports ``standoff``: these shapes check it. Only NumPy and SciPy are used, and mpmath
+in `optima`. The tests, the soak and the accuracy by pair of shapes use them. All shapes are
+centred, with the axis z, and have the same lengths as in ``so.shapes``.
 """
 
 from standoff_studies.oracles.between_poles import Gore, Spindle

@@ -14,7 +14,7 @@ from standoff_studies.oracles.shape import Region, directions, extended, unit
 Array = NDArray[Any]
 
 INNER = 0.95
-"""Part of the rulings' angles that is drawn from, so that none is at a pole."""
+"""Fraction of the range of rulings' angles from which one is drawn, so that none is at a pole."""
 
 
 class Bow:
@@ -35,7 +35,7 @@ class Bow:
         length = np.sqrt(r * r + z * z)
         safe = np.where(length > 0, length, 1)
         height = radius * z / safe
-        # centre + radius r / length, without the cancellation that slender arcs suffer
+        # centre + radius r / length, without the cancellation of slender arcs
         reach = bulge - radius * (z / safe) * (z / (safe + r))
         beyond = (np.abs(height) >= half) | (reach <= 0)
         end = np.where(z >= 0, half, -half)
@@ -66,17 +66,17 @@ class Spindle(Region):
 
 
 class Gore(Region):
-    """At every height a regular polygon of ``sides`` corners, which lie on circular arcs.
+    """At every height a regular polygon of ``sides`` corners, which are on circular arcs.
 
-    Corner j of every polygon is at the angle 2 pi j / sides; ``radius`` is that of the corners
-    at the equator, ``height`` is from pole to pole.
+    Corner j of every polygon is at the angle 2 pi j / sides; ``radius`` is the distance of the
+    corners from the axis at the equator, ``height`` is from pole to pole.
     """
 
     def __init__(self, radius: float, height: float, sides: int) -> None:
         self.bow = Bow(radius, height / 2)
         self.sides = int(sides)
         self.bounding_radius = height / 2
-        # extended pi, by which the corners are good to the last digit of any precision
+        # pi in extended precision, so that the corners are good to the last digit
         angle = 2 * np.arctan2(extended(0), extended(-1)) * np.arange(sides) / sides
         self.corners: Array = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
         middle = (angle + angle[1] / 2).astype(float)
@@ -93,14 +93,14 @@ class Gore(Region):
         return np.asarray(point)
 
     def outside(self, points: Array) -> Array:
-        """From the nearest patch's cylinder."""
+        """Signed distance to the cylinder of the nearest patch."""
         reach = np.maximum((points @ self.middles.T).max(axis=1) / self.shrink, 0)
         height = self.bow.outside(reach, points[:, 2])
         slope = np.hypot((reach - float(self.bow.centre)) / self.shrink, points[:, 2])
         return np.asarray(height / np.maximum(slope / float(self.bow.radius), 1))
 
     def maximisers(self, normal: ArrayLike, tolerance: float) -> Array:
-        """Both ends of a ruling where two corners are equally far."""
+        """Both ends of a ruling if two corners are equally far."""
         direction = unit(directions(normal))[0]
         corners = self.corners.astype(direction.dtype)
         along = corners @ direction
@@ -117,7 +117,7 @@ class Gore(Region):
         return float(np.arcsin(self.bow.half / self.bow.radius))
 
     def special_normals(self, rng: np.random.Generator) -> Array:
-        """A random normal of every patch: square to one of its rulings."""
+        """A random normal of every patch, perpendicular to one of its rulings."""
         angle = rng.uniform(-0.99 * self._top, 0.99 * self._top, (self.sides, 1))
         flat = np.cos(angle) * self.middles / self.shrink
         return unit(flat + np.sin(angle) * np.array([0.0, 0.0, 1.0]))
@@ -125,7 +125,7 @@ class Gore(Region):
     def flats(self, rng: np.random.Generator) -> list[Flat]:
         number = int(rng.integers(self.sides))
         first, second = self.corners[number], self.corners[(number + 1) % self.sides]
-        # the middle of a side of the unit polygon, over its own square: n.corner = cos(t)
+        # the middle of a side of the unit polygon, divided by its square: n.corner = cos(t)
         outward = (first + second) / (1 + first @ second)
 
         def ruling(t: Any) -> tuple[Array, Array]:

@@ -13,7 +13,7 @@ Array = NDArray[Any]
 
 
 class Ellipsoid(Region):
-    """An ellipsoid of semi-axes ``a, b, c``."""
+    """An ellipsoid with semi-axes ``a, b, c``."""
 
     def __init__(self, a: float, b: float, c: float) -> None:
         self.axes: Array = np.array([a, b, c], dtype=float)
@@ -32,8 +32,8 @@ class Ellipsoid(Region):
 class Superellipsoid(Region):
     """``(|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) <= 1``, 0 < e1, e2 < 2.
 
-    Its gauge is a p-norm within a p-norm, so its support function is the same of the dual
-    exponents 2/(2 - e), and the support point is the gradient of that.
+    Its gauge is a p-norm within a p-norm, so its support function is the same with the dual
+    exponents 2/(2 - e), and the support point is its gradient.
     """
 
     def __init__(self, a: float, b: float, c: float, e1: float, e2: float) -> None:
@@ -58,7 +58,7 @@ def norm_and_slopes(x: Array, y: Array, p: float) -> tuple[Array, Array, Array]:
     """Return ``(|x|^p + |y|^p)^(1/p)`` and its derivatives by x and y, for rows; 0 at (0, 0)."""
     scale = np.maximum(np.abs(x), np.abs(y))
     safe = np.where(scale > 0, scale, 1)
-    # the greater of both is 1 now, so no power underflows
+    # the greater one is 1 now, so no power underflows
     a, b = np.abs(x) / safe, np.abs(y) / safe
     power_a, power_b = a ** (p - 1), b ** (p - 1)
     total = np.maximum(power_a * a + power_b * b, TINY)

@@ -13,7 +13,7 @@ from standoff_studies.oracles.shape import extended, unit
 Array = NDArray[Any]
 
 COPLANAR = 1e-9
-"""Greatest difference of two unit normals, and of offsets over the size, in one plane."""
+"""Greatest difference between unit normals, and between offsets over the size, in one plane."""
 
 
 class Facets:

@@ -1,8 +1,8 @@
-"""Flat faces and straight lines of a body's boundary: where a support set is not one point.
+"""Flat faces and straight lines of a body's boundary, where a support set is more than a point.
 
 Along the normal of a flat face the support set is the face; along any normal of a sharp edge, or
-of a straight ruling of a curved face, it is a segment. A random normal never meets them, so the
-exact pairs choose their normals from here.
+of a straight ruling of a curved face, it is a segment. A random normal never hits these, so the
+exact pairs choose some of their normals from here.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def face_flat(normal: Array, corners: Array) -> Flat:
 
 
 def arc_flat(first: Array, second: Array, ends: Array, start: float) -> Flat:
-    """A straight edge: normals cos(t) first + sin(t) second, both unit and square to it."""
+    """A straight edge: normals cos(t) first + sin(t) second, both unit and perpendicular to it."""
     return Flat(lambda t: (np.cos(t) * first + np.sin(t) * second, ends), start, True)
 
 

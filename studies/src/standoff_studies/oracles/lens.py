@@ -38,7 +38,7 @@ class Lens(Region):
         return np.asarray(np.linalg.norm(steps, axis=2).max(axis=1) - self.radius)
 
     def contains(self, points: Array, skip: tuple[int, ...] = ()) -> Array:
-        """Return (k,) whether the points lie in every ball but those of ``skip``."""
+        """Return (k,) whether the points lie in every ball except those of ``skip``."""
         inside = np.ones(len(points), dtype=bool)
         for index, centre in enumerate(self.centres):
             if index not in skip:
@@ -47,7 +47,7 @@ class Lens(Region):
         return inside
 
     def circle(self, first: int, second: int) -> tuple[Array, Array, float]:
-        """Return centre, unit axis and radius of the circle of two balls' spheres."""
+        """Return centre, unit axis and radius of the circle in which two spheres intersect."""
         start, end = self.centres[first], self.centres[second]
         half = np.linalg.norm(end - start) / 2
         radius = np.sqrt((self.radius - half) * (self.radius + half))
@@ -73,7 +73,7 @@ class Lens(Region):
 
 
 def _best(normals: Array, candidates: Sequence[Array], allowed: Sequence[Array]) -> Array:
-    """For each direction the allowed candidate of greatest ``n.x``."""
+    """For each direction, the allowed candidate with the greatest ``n.x``."""
     values = np.stack(
         [
             np.where(ok, dot(normals, point), -np.inf)

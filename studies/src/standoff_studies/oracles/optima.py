@@ -1,8 +1,8 @@
-"""The optimum of two features and its derivatives in 50 digits, by differences: a second truth.
+"""The optimum of two features and its derivatives to 50 digits, by differences: a second truth.
 
-A feature is a point, a segment, a circle, a plane or an ellipsoid, by a parametrisation of its own.
-The optimum is the root of Lagrange's conditions, found by a Newton method whose Jacobian is that
-of differences; no formula of the library is used.
+A feature is a point, a segment, a circle, a plane or an ellipsoid, with an independent
+parametrisation. The optimum is the root of Lagrange's conditions, found by Newton's method with a
+Jacobian from differences; no formula of the library is used.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 DIGITS = 50
 STEP = mp.mpf(10) ** -15
-"""Of differences, lengths and radians: their error is some 1e-15 of a third derivative."""
+"""Step of differences, in length and radians: their error is some 1e-15 of a third derivative."""
 
 Array = NDArray[np.float64]
 Real = Any  # mpmath's numbers have no types
@@ -25,7 +25,7 @@ Jet = tuple[Vector, list[Vector]]
 
 
 class Feature(NamedTuple):
-    """A point and tangents by `freedom` parameters, in the body's frame, about parameters of 0."""
+    """A point and tangents as functions of `freedom` parameters near 0, in the body's frame."""
 
     freedom: int
     jet: Callable[[Vector], Jet]
@@ -68,7 +68,7 @@ def plane(x: ArrayLike, first: ArrayLike, second: ArrayLike) -> Feature:
 
 
 def circle(radius: float, height: float, angle: float) -> Feature:
-    """About the z axis, from an angle on."""
+    """A circle about the z axis, starting at an angle."""
     r, z, start = exact([radius, height, angle])
 
     def jet(q: Vector) -> Jet:
@@ -79,7 +79,7 @@ def circle(radius: float, height: float, angle: float) -> Feature:
 
 
 def ellipsoid(axes: ArrayLike, normal: ArrayLike) -> Feature:
-    """About the point of a normal; longitude and latitude are turned so that no pole is near."""
+    """Near the point with a normal; longitude and latitude are rotated so that no pole is near."""
     a = exact(axes)
     n = np.asarray(normal, dtype=float)
     middle = n * np.asarray(axes) / np.linalg.norm(n * np.asarray(axes))

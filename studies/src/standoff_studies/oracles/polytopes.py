@@ -1,4 +1,4 @@
-"""Points, segments, boxes, polytopes and the half-space: what flat faces bound."""
+"""Points, segments, boxes, polytopes and the half-space: shapes with only flat faces."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from standoff_studies.oracles.shape import Region, Shape, directions, extended, 
 Array = NDArray[Any]
 
 BETWEEN = (0.05, 0.95)
-"""Where between the normals of its two faces an edge's is drawn, as parts of the angle."""
+"""Range between the normals of its two faces from which an edge's normal is drawn, as parts of the
+angle."""
 
 
 class Vertices(Shape):

@@ -22,17 +22,16 @@ from standoff_studies.oracles.shape import (
 Array = NDArray[Any]
 
 BISECTIONS = 12
-"""Halvings of an egg's polar angle before Newton's steps."""
+"""Bisections of an egg's polar angle before Newton's method."""
 NEWTON_STEPS = 6
-"""Newton's steps of an egg's polar angle: from 1e-3 rad to the last digit, with some to spare."""
+"""Newton steps for an egg's polar angle: from 1e-3 rad to the last digit, with some to spare."""
 
 ACROSS = np.array([1, 1, 0])
 
 
 def turned(normals: Array, r: ArrayLike, z: ArrayLike) -> Array:
-    """Return the points (k, 3) at radius r and height z, each of one or k, on the normals' side.
-
-    A normal along the axis has no side: its point is on the axis.
+    """Return the points (k, 3) at radius r and height z, one or k numbers each, in the normals'
+    azimuth. A normal along the axis has none: its point is on the axis.
     """
     point = np.reshape(np.asarray(r, dtype=normals.dtype), (-1, 1)) * unit(normals * ACROSS)
     point[:, 2] = z
@@ -187,7 +186,7 @@ class Dome(Region):
     def points(self, normals: Array) -> Array:
         across = np.sqrt((normals[:, :2] ** 2).sum(axis=1))
         up = np.maximum(normals[:, 2], 0)
-        # at r = share radius the slope of the dome is that of the normal; at most the rim
+        # at r = share * radius the dome has the normal's slope; r is at most that of the rim
         steep = across * self.radius >= 2 * self.height * up
         share = across * self.radius / np.where(steep, 1, 2 * self.height * up)
         share = np.where(steep, 1, share)
@@ -201,8 +200,8 @@ class Dome(Region):
 
 
 class RingHull(Shape):
-    """The hull of a revolved ellipse (r - ring, z) of half-axes (width, height): a disc of radius
-    ``ring`` plus an ellipsoid of revolution, as Minkowski sums."""
+    """The hull of a revolved ellipse (r - ring, z) with semi-axes (width, height): the Minkowski
+    sum of a disc of radius ``ring`` and an ellipsoid of revolution."""
 
     def __init__(self, ring: float, width: float, height: float) -> None:
         self.ring, self.axes = float(ring), np.array([width, width, height], dtype=float)
@@ -217,7 +216,7 @@ class RingHull(Shape):
 
 
 class Egg(Region):
-    """``r = b sqrt(1 - t²)/(1 + k t)``, ``z = half t``: a circle seen in a partial perspective.
+    """``r = b sqrt(1 - t²)/(1 + k t)``, ``z = half t``: a circle in a partial perspective.
 
     ``radius`` is the greatest r, at t = -k; b = radius sqrt(1 - k²). Convex for |k| <= sqrt(1/2).
     """
@@ -228,7 +227,7 @@ class Egg(Region):
         self.bounding_radius = float(np.hypot(radius, length / 2))
 
     def points(self, normals: Array) -> Array:
-        """Solve for the polar angle at which n.x is greatest: its slope falls through one zero."""
+        """Solve for the polar angle at which n.x is greatest: its derivative has only one zero."""
         kind, k = normals.dtype, self.taper
         width = np.asarray(self.width, dtype=kind)
         across = width * np.sqrt((normals[:, :2] ** 2).sum(axis=1))
@@ -250,7 +249,7 @@ class Egg(Region):
         return turned(normals, width * np.sin(angle) / (1 + k * cos), self.half * cos)
 
     def outside(self, points: Array) -> Array:
-        """From the quartic; beyond the plane where its perspective vanishes, from the height."""
+        """By the quartic; beyond the plane where the perspective is singular, by the height."""
         t, square = points[:, 2] / self.half, float(self.width) ** 2
         wide, r2 = 1 + self.taper * t, (points[:, :2] ** 2).sum(axis=1)
         value = r2 * wide**2 - square * (1 - t) * (1 + t)

@@ -18,11 +18,11 @@ from standoff_studies.oracles.flats import Flat
 Array = NDArray[Any]
 
 TINY = 1e-300
-"""In place of a length that nothing may be divided by; no length of a shape is near it."""
+"""Replaces a zero length in a division; no length of a shape is near it."""
 
 
 def directions(normals: ArrayLike) -> Array:
-    """Return ``normals`` as a (k, 3) floating array; float64 unless already longer."""
+    """Return ``normals`` as a (k, 3) floating-point array; float64 unless already more precise."""
     array = np.atleast_2d(np.asarray(normals))
     if array.dtype != np.longdouble:
         array = array.astype(np.float64)
@@ -32,12 +32,12 @@ def directions(normals: ArrayLike) -> Array:
 
 
 def extended(values: ArrayLike) -> Array:
-    """Return an array in extended precision, where the platform has it."""
+    """Return an array in extended precision, if the platform has it."""
     return np.asarray(values, dtype=np.longdouble)
 
 
 def unit(vectors: Array) -> Array:
-    """Return the rows of ``vectors`` at unit length; a zero row stays zero."""
+    """Return the rows of ``vectors`` scaled to unit length; a zero row stays zero."""
     length = lengths(vectors)[..., None]
     return np.asarray(vectors / np.where(length > 0, length, 1))
 
@@ -58,7 +58,7 @@ class Shape(ABC):
     dimension: int = 3
     bounding_radius: float
     sweep: float = 0.0
-    """Radius of the ball swept over the shape's core (0 where the shape is its own core)."""
+    """Radius of the ball swept over the shape's core (0 if the shape is its own core)."""
 
     @abstractmethod
     def points(self, normals: Array) -> Array:
@@ -82,32 +82,32 @@ class Shape(ABC):
     def maximisers(self, normal: ArrayLike, tolerance: float) -> Array:
         """Return points (m, 3) whose convex hull lies in the support set of ``normal``.
 
-        Flat faces, straight edges and generators give several; ``tolerance`` is the relative
-        loss of support value (times the bounding radius) at which a point still counts.
+        Flat faces, straight edges and generators give several; a point counts if its support value
+        is below the greatest by at most ``tolerance`` times the bounding radius.
         """
         del tolerance
         return self.support(normal)[1][None]
 
     def special_normals(self, rng: np.random.Generator) -> Array:
-        """Return unit normals (m, 3) of the flat or straight features; m = 0 if there are none."""
+        """Return unit normals (m, 3) of flat or straight features; m = 0 if there are none."""
         del rng
         return np.zeros((0, 3))
 
     def flats(self, rng: np.random.Generator) -> list[Flat]:
-        """Return flat faces and straight lines of the boundary, one drawn of each family."""
+        """Return flat faces and straight lines of the boundary, one drawn from each family."""
         del rng
         return []
 
 
 class Region(Shape):
-    """A shape that also tells how far a point is outside of it."""
+    """A shape that also computes how far a point is outside it."""
 
     @abstractmethod
     def outside(self, points: Array) -> Array:
         """Return how far points (k, 3) lie outside, (k,): zero on the boundary, negative inside.
 
-        A length, exact to first order near the boundary. A formula of its own, so that it and
-        `points` judge each other.
+        It is a length, exact to first order near the boundary. It is independent of `points`, so
+        that the two check each other.
         """
 
 

@@ -18,9 +18,9 @@ Array = NDArray[Any]
 FEASIBLE = 1e-11
 """How far a vertex of the core may lie outside its planes, over the size: roundoff of solving."""
 REGULAR = 1e-9
-"""Least determinant of three unit normals that meet in a vertex worth solving for."""
+"""Least determinant of three unit normals for which a vertex is computed."""
 SAME = 1e-9
-"""Distance, over the size, below which two vertices are one: more than three planes meet."""
+"""Distance, over the size, below which two vertices are one, where more than three planes meet."""
 
 
 class Swept(Shape):
@@ -75,7 +75,7 @@ class Box(Swept):
 class RoundedPolytope(Swept, Region):
     """The opening of the hull of ``vertices`` (m, 3) by a ball of radius ``rounding``.
 
-    That is everything that balls inside the polytope can reach.
+    That is the union of all such balls inside the polytope.
     """
 
     core: Polytope
@@ -88,7 +88,7 @@ class RoundedPolytope(Swept, Region):
         super().__init__(Polytope(core), rounding)
 
     def outside(self, points: Array) -> Array:
-        """Signed distance to the surface: exact outside of the core, which is where it counts."""
+        """Signed distance to the surface: exact outside the core, where it matters."""
         return np.array([self._outside(point) for point in points])
 
     def _outside(self, p: Array) -> float:
@@ -106,7 +106,7 @@ class RoundedPolytope(Swept, Region):
 
 
 def inner_vertices(normals: Array, offsets: Array, size: float) -> Array:
-    """Return the vertices (m, 3) of ``normals @ x <= offsets``: all triples of planes, tried."""
+    """Return the vertices (m, 3) of ``normals @ x <= offsets``, by trying all triples of planes."""
     triples = np.array(list(combinations(range(len(normals)), 3)))
     matrices = normals[triples]
     determinants = np.abs(np.linalg.det(matrices))

@@ -11,11 +11,11 @@ from standoff_studies.paper.options import PaperOptions
 class PaperCommand(PaperOptions):
     """Make the paper's figures, their data, and a report.
 
-    Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 finished, but a figure failed.
+    Exit codes: 0 done; 1 files could not be written; 2 bad input; 3 finished, but a figure failed.
     """
 
     def run(self) -> int:
-        """Do it; see `standoff_studies.paper.command.run_paper`."""
+        """Run it; see `standoff_studies.paper.command.run_paper`."""
         from standoff_studies.paper.command import run_paper
 
         return run_paper(self)

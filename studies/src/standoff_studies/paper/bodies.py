@@ -1,4 +1,4 @@
-"""Bodies of the paper's simulations, of curves and four-sided patches with parameters in [0, 1]."""
+"""Bodies of the paper's simulations: curves and four-sided patches with parameters in [0, 1]."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ def leaf() -> Body:
 
 
 def lens_of_patches(radius: float = 1.0, offset: float = 0.45) -> Body:
-    """The lens of Fig. 16: three balls' intersection, each face one biquadratic Bézier patch.
+    """The lens of Fig. 16: the intersection of three balls, each face a biquadratic Bézier patch.
 
-    The body is that of ``so.shapes.lens``; here its faces have parameters as the paper's have.
+    The body is that of ``so.shapes.lens``, but its faces have the parameters of the paper.
     u = 0 and u = 1 are a face's two edges, v = 0 and v = 1 its vertices, at −z and at +z. The
     curves of constant u are circles through both vertices.
 
@@ -85,19 +85,19 @@ def lens_of_patches(radius: float = 1.0, offset: float = 0.45) -> Body:
 def _face_of_ball(offset: float) -> tuple[Array, Array]:
     """Return control points (3, 3, 3) and weights (3, 3) of a face of the unit ball.
 
-    It lies about +x, between the planes at ±60° to it that meet in the line x = offset, y = 0.
+    It is centred on +x, between the planes at ±60° to it that meet in the line x = offset, y = 0.
 
     Notes
     -----
-    From the south pole a sphere is projected on a plane so that the circles through both poles
-    become rays from the origin, and the point at the distance ρ on the ray of azimuth θ is, in
-    homogeneous numbers, (2 ρ cos θ, 2 ρ sin θ, ρ² − 1; ρ² + 1). With ρ = v/(1 − v) and a rational
-    quadratic arc (C, S; w)(u) for θ this is biquadratic. A boost along x, the projective map
+    Stereographic projection from the south pole maps the circles through both poles to rays from
+    the origin. The point at distance ρ on the ray of azimuth θ is, in homogeneous coordinates,
+    (2 ρ cos θ, 2 ρ sin θ, ρ² − 1; ρ² + 1). With ρ = v/(1 − v) and a rational quadratic arc
+    (C, S; w)(u) for θ this is biquadratic. A boost along x, the projective map
 
         (X, Y, Z; W) ↦ (γ(X + βW), Y, Z; γ(W + βX)),  γ = 1/√(1 − β²),
 
-    takes the sphere into itself and the poles to x = β = offset, z = ∓1/γ; planes through the
-    poles at azimuth θ then meet that line at the azimuth atan(γ tan θ), which is to be 60°.
+    maps the sphere to itself and the poles to x = β = offset, z = ∓1/γ; planes through the poles at
+    azimuth θ are then at the azimuth atan(γ tan θ) around that line, which must be 60°.
     """
     gamma = 1.0 / math.sqrt((1.0 - offset) * (1.0 + offset))
     half = math.atan(math.sqrt(3.0) / gamma)

@@ -11,11 +11,11 @@ from standoff_studies.paper.figure import Artwork, Entry
 
 
 def _entry(key: str, title: str, chapter: str, module: str, function: str) -> Entry:
-    """A figure of a module beside this one."""
+    """A figure made by a module of this package."""
     return Entry(key, title, chapter, f"standoff_studies.paper.{module}", function)
 
 
-# One line a figure. Modules are imported when their figure is asked for.
+# One line per figure. Modules are imported when their figure is requested.
 # fmt: off
 CATALOGUE: tuple[Entry, ...] = (
     _entry("1", "A patch and its tangents", "Patches", "patches", "tangents_patch"),
@@ -55,16 +55,16 @@ CATALOGUE: tuple[Entry, ...] = (
 ON_REQUEST: tuple[Entry, ...] = (
     _entry("convergence", "Which starts arrive, run again", "Convergence", "convergence", "anew"),
 )
-"""What takes minutes, and is made only where it is asked for by its own key."""
+"""Figures that take minutes, and are made only if requested by their own key."""
 
 ALL = "all"
-"""The key of every figure."""
+"""The key that stands for all figures."""
 
 RANGE = re.compile(r"(\d+)-(\d+)")
 
 
 class UnknownFigure(ValueError):
-    """A key that no figure has; the message names the nearest one and lists them all."""
+    """A key that no figure has; the message suggests the nearest one and lists all keys."""
 
 
 def make(entry: Entry) -> Artwork:
@@ -76,12 +76,12 @@ def make(entry: Entry) -> Artwork:
 
 
 def chosen(keys: Sequence[str]) -> tuple[Entry, ...]:
-    """Return the figures that some keys name, in the report's order, each once.
+    """Return the figures that the keys name, in the report's order, each once.
 
     Parameters
     ----------
     keys : sequence of str
-        "7", "07", "8-11" (those that there are), a word such as "voronoi", or "all".
+        "7", "07", "8-11" (those that exist), a word such as "voronoi", or "all".
 
     Raises
     ------
@@ -93,7 +93,7 @@ def chosen(keys: Sequence[str]) -> tuple[Entry, ...]:
 
 
 def _named(key: str) -> set[str]:
-    """The keys of the catalogue that one key of the command line stands for."""
+    """The keys of the catalogue for which one key of the command line stands."""
     usual = {entry.key for entry in CATALOGUE}
     if key == ALL:
         return usual

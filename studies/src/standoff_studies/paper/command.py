@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from standoff_studies.paper.options import PaperOptions
 
 JOBS = 2
-"""Processes if no number is given: each takes half a gigabyte, and a laptop has both to spare."""
+"""Default number of processes: each needs half a gigabyte, and a laptop can spare two."""
 
 REPORT = "report.html"
 
@@ -37,7 +37,7 @@ def run_paper(command: PaperOptions) -> int:
     Raises
     ------
     CommandError
-        If a key, the number of processes or the folder is not usable.
+        If a key, the number of processes or the folder cannot be used.
     WriteError
         If the report could not be written.
     """
@@ -83,7 +83,7 @@ def _make_folder(folder: Path) -> None:
 
 
 def _make(entries: Sequence[Entry], command: PaperOptions, jobs: int) -> list[Made] | None:
-    """Make the figures; None if it was interrupted, which is told with what is complete."""
+    """Make the figures; None if it was interrupted, with a message about what is complete."""
     from standoff_studies.paper.processes import Order, make_all
 
     complete: list[str] = []

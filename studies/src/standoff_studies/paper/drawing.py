@@ -1,4 +1,4 @@
-"""Drawing that several figures share: planar bodies with their features, and witness lines."""
+"""Drawing used by several figures: planar bodies with their features, and witness lines."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ Spot = tuple[float, float]
 """A place in a picture."""
 
 CURVE_SAMPLES = 65
-"""Points of a drawn curve: its chords are off by less than a line's width."""
+"""Points of a drawn curve: its chords differ from it by less than a line's width."""
 
 
 def short_name(feature: Feature) -> str:
-    """Return what a feature of a planar body is called in pictures: C0 a curve, V0 a vertex."""
+    """Return the name of a planar body's feature in pictures, such as C0 (curve) or V0 (vertex)."""
     return f"{'V' if feature.kind == 'vertex' else 'C'}{feature.index}"
 
 
@@ -72,10 +72,10 @@ def draw_planar_body(
     axes : matplotlib.axes.Axes
     body : Body
     pose : Pose, optional
-        Where it is in the world; at home by default.
+        Its pose in the world; the identity by default.
     colour : str
     **line
-        What matplotlib's ``Axes.plot`` takes for the outline.
+        Options of matplotlib's ``Axes.plot`` for the outline.
     """
     around = outline(body, pose)
     axes.fill(around[:, 0], around[:, 1], color=colour, alpha=0.12, linewidth=0.0)
@@ -88,7 +88,7 @@ def draw_planar_body(
 def draw_feature(
     axes: Axes, body: Body, feature: Feature, pose: Pose | None = None, *, colour: str
 ) -> None:
-    """Draw an active feature thick: its curve, or a square at its vertex."""
+    """Highlight an active feature: its curve as a thick line, or its vertex as a square."""
     if feature.kind == "vertex":
         corner = placed(np.asarray(body.vertex_points)[feature.index : feature.index + 1], pose)
         axes.plot(corner[:, 0], corner[:, 1], "s", color=colour, markersize=7.0, zorder=4)
@@ -115,13 +115,13 @@ def name_features(
     body : Body
     pose : Pose, optional
     inset : float
-        From the feature to the middle of its name [length]; negative writes it outside.
+        Distance from the feature to the middle of its name [length]; outside if negative.
     prefix : str
         Before each name, such as the body's letter.
     features : sequence of Feature, optional
-        Those to name; all by default.
+        The features to name; all by default.
     **text
-        What matplotlib's ``Axes.text`` takes.
+        Options of matplotlib's ``Axes.text``.
     """
     for feature in planar_features(body) if features is None else features:
         point, inward = _place(body, feature)
@@ -138,13 +138,13 @@ def draw_witness_line(axes: Axes, point_a: Array, point_b: Array, **line: Any) -
 
 
 def show_plane(axes: Axes, half: float) -> None:
-    """Show the square of this half width about the origin [length], without a grid."""
+    """Show the square of this half width around the origin [length], without a grid."""
     axes.grid(visible=False)
     axes.set(xlim=(-half, half), ylim=(-half, half), xlabel="x [length]", ylabel="y [length]")
 
 
 def draw_arrow(axes: Axes, start: Spot, end: Spot, **look: Any) -> None:
-    """Draw an arrow from spot to spot; `look` is what matplotlib's ``FancyArrowPatch`` takes."""
+    """Draw an arrow; `look` are options of matplotlib's ``FancyArrowPatch``."""
     usual: dict[str, Any] = {"arrowstyle": "-|>", "shrinkA": 0.0, "shrinkB": 0.0}
     usual |= {"mutation_scale": 11.0, "zorder": 2}
     axes.add_patch(FancyArrowPatch(start, end, **(usual | look)))
@@ -153,7 +153,7 @@ def draw_arrow(axes: Axes, start: Spot, end: Spot, **look: Any) -> None:
 def draw_box(
     axes: Axes, middle: Spot, half: tuple[float, float], rounding: float, **look: Any
 ) -> None:
-    """Draw a box with round corners; `look` is what matplotlib's ``FancyBboxPatch`` takes."""
+    """Draw a box with round corners; `look` are options of matplotlib's ``FancyBboxPatch``."""
     (x, y), (width, height) = middle, half
     shape = f"round,pad=0,rounding_size={rounding:g}"
     axes.add_patch(
@@ -164,7 +164,7 @@ def draw_box(
 
 
 def _place(body: Body, feature: Feature) -> tuple[Array, Array]:
-    """A point of a feature and the unit normal into the body there; body frame."""
+    """A point of a feature and the inward unit normal there; body frame."""
     if feature.kind == "edge":
         curve = body.edge_parts[feature.index].curve
         point, tangent, _ = curve.jet(0.5 * (curve.first + curve.last))

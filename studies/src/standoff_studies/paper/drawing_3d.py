@@ -1,7 +1,7 @@
 """Drawing in space: surfaces, lines and marks seen from one side, the farther ones drawn first.
 
-Matplotlib's own 3-D axes order whole artists, so a line that winds about a body cannot go behind
-it and come out again. Here everything is cut into small pieces that are painted in one order.
+Matplotlib's own 3-D axes sort whole artists, so a line that winds around a body cannot disappear
+behind it and come out again. Here everything is cut into small pieces that are sorted together.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from standoff.motion import Pose
 from standoff_studies.paper import style
 
 PALE = ("#9FD3F2", "#F7D08A", "#7FD1B9", "#F4B8A0", "#E3B7D0", "#C9C9C9")
-"""Faces side by side are told apart by any eye, and black lines stand out from all of them."""
+"""Adjacent faces can be distinguished with any colour vision, and black lines stand out on all."""
 
 LIGHT = np.array([-0.35, 0.5, 0.8]) / np.linalg.norm([-0.35, 0.5, 0.8])
 """Where the light comes from, in the viewer's axes: right, up, towards the viewer."""
 
 DARKEST = 0.72
-"""Brightness of a surface seen against the light, as a part of its colour."""
+"""Brightness of a surface seen against the light, as a fraction of its colour."""
 
 GRID = 20
-"""Pieces along each side of a drawn patch, unless told."""
+"""Pieces along each side of a drawn patch, by default."""
 
 PIECE = 0.04
-"""Longest piece of a line [length], unless told: shorter than the patches' pieces."""
+"""Longest piece of a line [length], by default: shorter than the patches' pieces."""
 
 LOOKS = {"face": (style.BLUE, "o"), "edge": (style.RED, "s"), "vertex": (style.BLACK, "^")}
 """Colour and mark of a witness point by the kind of its feature."""
@@ -43,10 +43,10 @@ SHAPES = {"o": (24, 0.0), "s": (4, 45.0), "^": (3, 90.0), "D": (4, 0.0)}
 
 
 class Piece(NamedTuple):
-    """What is painted at once: a polygon, or a line of two points, on the paper.
+    """What is painted at once: a polygon, or a line of two points, projected to the picture.
 
-    Lines and marks have a rank above 0: they are painted that many pieces of a surface nearer to
-    the viewer, so that the surface they lie on does not cover them.
+    Lines and marks have a rank above 0: they are moved towards the viewer by that many pieces of a
+    surface, so that the surface on which they lie does not cover them.
     """
 
     corners: Array
@@ -76,11 +76,11 @@ class View:
         self.coarseness = 0.0  # half the longest diagonal of an opaque surface's pieces [length]
 
     def flat(self, points: ArrayLike) -> Array:
-        """Return where points (..., 3) lie on the paper, (..., 2)."""
+        """Return the projections (..., 2) of points (..., 3) to the picture."""
         return np.asarray(np.asarray(points, dtype=float) @ self.across.T)
 
     def faces(self, normal: Array, least: float = 0.0) -> bool:
-        """Does a surface with this outward normal face the viewer, by this cosine at least?"""
+        """Does a surface with this outward normal face the viewer, with at least this cosine?"""
         return bool(normal @ self.towards > least * np.linalg.norm(normal))
 
     def surface(
@@ -121,7 +121,7 @@ class View:
         depths = corners.mean(axis=1) @ self.towards
         for flat, depth, light in zip(self.flat(corners), depths, bright, strict=True):
             shade = (*(rgb * (light if shaded else 1.0)), opacity)
-            # An opaque piece is outlined in its own colour: no hairlines between neighbours.
+            # an opaque piece is outlined in its own colour, so that no hairlines show
             outline = shade if opacity == 1.0 else (*rgb, 0.0)
             self.pieces.append(Piece(flat, float(depth), 0.0, shade, outline, 0.4))
         for k in np.linspace(0, len(points) - 1, lines + 2).round().astype(int)[1:-1]:
@@ -150,11 +150,11 @@ class View:
         Parameters
         ----------
         body : Body
-            Each face one patch with a finite domain.
+            Each face must be one patch with a finite domain.
         pose : Pose, optional
-            At home by default.
+            The identity by default.
         colours : sequence of str
-            One a face, used in turn.
+            One per face, used in turn.
         grid, lines : int
             Pieces and isoparametric lines along each side of a patch.
         width : float
@@ -187,9 +187,9 @@ class View:
         width : float
             Points.
         dashes : (float, float), optional
-            Lengths drawn and left out [length].
+            Lengths of dashes and gaps [length].
         rank : float
-            How far it is painted towards the viewer: see `Piece`.
+            How far it is moved towards the viewer: see `Piece`.
         piece : float
             Longest piece [length].
         """
@@ -207,7 +207,7 @@ class View:
             self.pieces.append(Piece(self.flat(ends), depth, rank, (0.0,) * 4, rgb, width))
 
     def mark(self, point: ArrayLike, colour: str, shape: str = "o", size: float = 0.03) -> None:
-        """Add a mark that looks at the viewer: "o", "s", "^" or "D", with its radius [length]."""
+        """Add a mark that faces the viewer: "o", "s", "^" or "D", with its radius [length]."""
         corners, first = SHAPES[shape]
         angles = np.radians(first) + 2.0 * np.pi * np.arange(corners) / corners
         place = np.asarray(point, dtype=float)
@@ -217,7 +217,7 @@ class View:
         self.pieces.append(Piece(around, depth, 2.0, rgb, (*rgb_of(style.BLACK), 1.0), 0.5))
 
     def paint(self, axes: Axes) -> None:
-        """Paint everything, the farther first, on axes with equal scales and no frame."""
+        """Paint everything, the farther pieces first, on axes with equal scales and no frame."""
         from matplotlib.collections import PolyCollection
 
         order = sorted(self.pieces, key=lambda p: p.depth + p.rank * self.coarseness)
@@ -239,7 +239,7 @@ class View:
         axes.autoscale_view()
 
     def text(self, axes: Axes, point: ArrayLike, words: str, **look: Any) -> None:
-        """Write at a point (3,), above all that was painted, with a white rim."""
+        """Write at a point (3,), above everything painted, with a white rim."""
         from matplotlib.patheffects import withStroke
 
         x, y = self.flat(point).tolist()
@@ -254,7 +254,7 @@ class View:
         ----------
         axes : matplotlib.axes.Axes
         corner : (float, float)
-            Where on the paper they begin, as `flat` has it.
+            Where in the picture they begin, in the coordinates of `flat`.
         length : float
         unit : str
         """
@@ -303,7 +303,7 @@ def posed(points: Array, pose: Pose | None) -> Array:
 def _cuts(
     length: float, piece: float, dashes: tuple[float, float] | None
 ) -> list[tuple[float, float]]:
-    """Ends of a line's pieces along it."""
+    """Start and end of each piece along a line."""
     if dashes is None:
         ends = np.linspace(0.0, length, max(1, int(np.ceil(length / piece))) + 1).tolist()
         return list(pairwise(ends))

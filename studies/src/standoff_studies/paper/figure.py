@@ -1,4 +1,4 @@
-"""What a figure of the paper is made of: its picture, its data, and what it is to show."""
+"""What a figure of the paper consists of: its picture, its data, and what it should show."""
 
 from __future__ import annotations
 
@@ -14,33 +14,32 @@ if TYPE_CHECKING:
 
 
 HYBRID = "Section on the hybrid system"
-"""Of the paper; many statements stand there."""
+"""A section of the paper with many of the statements."""
 
 
 NOTHING = "-"
-"""What the paper states where a measurement stands for itself."""
+"""Replaces the paper's statement if the paper states nothing about a measurement."""
 
 
 class Statement(NamedTuple):
-    """One checkable statement of the paper beside what was measured.
+    """A checkable statement of the paper, and what was measured.
 
     Attributes
     ----------
     source : str
-        Where it stands, or what asks for it: "Fig. 7", "Section II".
+        Where it is, or what it belongs to: "Fig. 7", "Section II".
     stated : str
-        What the paper says, in our words, with its number and unit; "-" where it says nothing and
-        the measurement stands for itself.
+        What the paper says, in our words, with its number and unit; "-" if it says nothing.
     measured : str
         What was measured, with its unit.
     holds : bool or None
-        Does the measurement bear the statement out? None where it is neither right nor wrong.
+        Does the measurement confirm the statement? None if it is neither right nor wrong.
     why : str
-        Where they differ, the reason.
+        The reason if they differ.
     by : str
-        The law that it was measured with, its switching, solve, gain and start.
+        The law with which it was measured, its switching, solve, gain and start.
     constructed : bool
-        It cannot fail: it follows from how the program is made, which `why` says.
+        It cannot fail, because it follows from how the program is made; `why` explains it.
     """
 
     source: str
@@ -53,13 +52,22 @@ class Statement(NamedTuple):
 
 
 def own_statement(source: str, measured: str, why: str = "", by: str = "") -> Statement:
-    """Return a measurement of our own, which stands for itself: the paper states nothing."""
+    """Return a measurement of our own, about which the paper states nothing."""
     return Statement(source, NOTHING, measured, None, why, by)
 
 
 def measured_by(by: str, statements: Iterable[Statement]) -> tuple[Statement, ...]:
-    """Return statements of which those that name no law have been measured with this one."""
+    """Return the statements, with this law for those that do not name one."""
     return tuple(s if s.by else s._replace(by=by) for s in statements)
+
+
+def missing_words(statement: Statement) -> str:
+    """Return what a statement of a report does not say and has to; "" if it says all."""
+    if not statement.measured:
+        return "what was measured"
+    if not statement.by:
+        return "the law that it was measured with"
+    return "why it cannot fail" if statement.constructed and not statement.why else ""
 
 
 @dataclass(frozen=True)
@@ -70,13 +78,13 @@ class Animation:
     ----------
     frames : int
     draw : callable
-        ``draw(figure, k)``: the figure is cleared before.
+        ``draw(figure, k)``: the figure is cleared before each call.
     seconds : float
         Time of a frame on the screen [s].
     size : (float, float)
         Width and height [inches].
     text : str
-        What it shows, for a reader who does not see it.
+        What it shows, for a reader who cannot see it.
     """
 
     frames: int
@@ -88,18 +96,18 @@ class Animation:
 
 @dataclass(frozen=True)
 class Artwork:
-    """One figure, made.
+    """A figure with its data and statements.
 
     Attributes
     ----------
     caption : str
-        A short paragraph: what is drawn, with units, and what to look at.
+        A short paragraph: what is drawn, with units, and what to look for.
     text : str
-        What the picture shows, for a reader who does not see it.
+        What the picture shows, for a reader who cannot see it.
     draw : callable
         Draws the picture on a new figure (``style.new_figure``) and returns it; no pyplot.
     tables : mapping of str to mapping of str to array
-        The figure's data: name of the table, then columns of one length, with units in their
+        The figure's data: name of the table, then columns of equal length, with units in their
         names (``time_s``, ``u``, ``distance``).
     statements : tuple of Statement
     animation : Animation or None
@@ -128,20 +136,20 @@ def shown_tables(artwork: Artwork) -> dict[str, dict[str, list[str]]]:
 
 
 def as_text(value: object) -> str:
-    """Return a table's value as it is printed: numbers with four digits."""
+    """Return a table's value as printed: numbers with four digits."""
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 class Entry(NamedTuple):
-    """A figure in the catalogue: it is made by ``module.function()``, which returns an Artwork.
+    """A figure in the catalogue, made by ``module.function()``, which returns an Artwork.
 
     Attributes
     ----------
     key : str
-        How it is called on the command line: "7", or a word for what the paper has no figure of.
+        Its name on the command line: "7", or a word if it is not a figure of the paper.
     title : str
     chapter : str
-        Heading that it stands under; one chapter's figures share a run and a process.
+        Heading under which it is; the figures of a chapter share a run and a process.
     module, function : str
     """
 

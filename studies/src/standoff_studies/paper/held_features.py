@@ -1,4 +1,4 @@
-"""The distance at a switch, on the features before it and after: the claim that it never grows."""
+"""The distance at a switch, on the features before and after it: the claim that it never grows."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper.patch_places import places_at
 
 STEPS = 12
-"""Newton steps on features held; they begin within a frame's way, and five reach roundoff."""
+"""Newton steps on fixed features; they begin within a frame's motion, and five reach roundoff."""
 
 CONTINUOUS = 1e-13
-"""A distance that changes by less over a switch is continuous [length]: an instant good to 1e-9 s
-makes a difference of its square, and what is left is roundoff."""
+"""A distance that changes by less at a switch is continuous [length]: an instant accurate to 1e-9 s
+changes it by the square of that, and the rest is roundoff."""
 
 SHARED = "the old and the new feature share the point at which the closest points switch"
 """Why the distance of the closest points cannot grow there."""
@@ -29,7 +29,7 @@ def held_distance(
 ) -> float:
     """Return the distance of two features, from places (feature, parameters) on them [length].
 
-    Both are kept: the witness points saturate at their ends.
+    Both features are kept: the witness points stop at their ends.
     """
     law = Tracker(*bodies, law=PaperLaw(integrator="euler", switching="none"))
     state = law.start_from(*poses, place_a, place_b, settle=False)
@@ -45,9 +45,9 @@ def growth(
     event: RecordedEvent,
     offset: float = 0.0,
 ) -> float:
-    """Return the distance of the features after a switch less that of those before it [length].
+    """Return the distance of the features after a switch minus that of those before it [length].
 
-    Both at the instant, or `offset` [s] after it.
+    Both are taken at the instant, or `offset` [s] after it.
     """
     assert recording.pair is not None, "not opened from a file"
     time = event.time + offset

@@ -1,4 +1,4 @@
-"""Every item of the paper: its equations, figures, claims and applications, and what is here."""
+"""Every item of the paper: equations, figures, claims and applications, and what we have of it."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ class Item(NamedTuple):
     state : str
         "done", "partial" or "absent".
     told : str
-        What there is to say of it.
+        A remark.
     pages : str
-        Where it stands in the pages, as Markdown.
+        Where it is in the pages, as Markdown.
     figures : tuple of str
         Keys of the figures that show it.
     """
@@ -28,7 +28,7 @@ class Item(NamedTuple):
     figures: tuple[str, ...]
 
 
-# A few lines an item.
+# A few lines per item.
 # fmt: off
 ITEMS: tuple[Item, ...] = (
     Item("Figs. 1, 2: patches, tangents, ΔR", "done", "",

@@ -1,4 +1,4 @@
-"""Keys of figures: what lines and fills mean, made by themselves and written below."""
+"""Keys of figures: what lines and fills mean, made separately and written below the figure."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 def key_line(
     label: str, colour: str, width: float | None = None, dashes: Any = "-", **look: Any
 ) -> Artist:
-    """Return a line for a key; without a width that of the settings."""
+    """Return a line for a key, by default with the width of the settings."""
     return Line2D([], [], color=colour, linewidth=width, linestyle=dashes, label=label, **look)
 
 
@@ -24,6 +24,6 @@ def key_fill(label: str, colour: str, **look: Any) -> Artist:
 
 
 def key_below(figure: Figure, handles: Iterable[Artist], columns: int, **look: Any) -> None:
-    """Write the key below a figure; `look` is what ``Figure.legend`` takes beside."""
+    """Write the key below a figure; `look` are further options of ``Figure.legend``."""
     where: dict[str, Any] = {"loc": "outside lower center", "ncols": columns, "frameon": False}
     figure.legend(handles=list(handles), **(where | look))

@@ -1,4 +1,4 @@
-"""Accuracy and cost of the laws: two ellipsoids in smooth motion, against cold queries."""
+"""Accuracy and cost of the laws for two ellipsoids in smooth motion, compared with cold queries."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ ORBIT = 2.3
 """Radius of the circle on which B's centre moves, at 1 rad/s; it also rises and falls."""
 
 SETTLED = 0.3
-"""Time, s, after which errors count: the paper's law has then reached its steady lag."""
+"""Time, s, after which errors count: the paper's law then has its steady lag."""
 DURATION = 1.3
-"""End of the motion, s. No witness point changes its chart before."""
+"""End of the motion, s. Until then no witness point changes its chart."""
 LONG = 2 * np.pi
 """End of the long motion, s: whole turns, with changes of chart."""
 CHECKS = 40
@@ -42,7 +42,7 @@ STEPS = (1e-3, 1e-2, 33e-3)
 
 
 class Followed(NamedTuple):
-    """A law, and how many steps a frame it makes, all at the same poses.
+    """A law, and how many steps per frame it makes, all at the same poses.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Followed(NamedTuple):
 
     @property
     def blind(self) -> bool:
-        """Does it go by the secant, without twists?"""
+        """Does it predict by the secant, without twists?"""
         return isinstance(self.law, so.PredictorCorrector) and self.law.predictor == "secant"
 
     def of_gain(self, gain: float) -> Followed:
@@ -66,7 +66,7 @@ class Followed(NamedTuple):
 
 
 def _once(predictor: str) -> so.PredictorCorrector:
-    """One correction a frame, whatever the gap."""
+    """One correction per frame, whatever the gap."""
     return so.PredictorCorrector(predictor=predictor, tolerance=np.inf)
 
 
@@ -87,7 +87,7 @@ LAWS: dict[str, Followed] = {
 
 @dataclass(frozen=True)
 class Accuracy:
-    """A run's greatest witness error (length), second-order evaluations a frame, and tracker."""
+    """A run's greatest witness error (length), second-order evaluations per frame, and tracker."""
 
     error: float
     evaluations: float
@@ -124,16 +124,16 @@ def measure(
     settled: float = SETTLED,
     checks: int = CHECKS,
 ) -> Accuracy:
-    """Track the two ellipsoids over the frames at ``times`` and compare with cold queries.
+    """Track the two ellipsoids in frames at ``times`` and compare with cold queries.
 
     Parameters
     ----------
     times
-        Times (n,) of the frames, s; the first is that of the start.
+        Times (n,) of the frames, s; the first one is the start.
     followed
         The law; ``dt`` is that of each frame.
     twist_error
-        The twists handed to the tracker are too long by this factor.
+        Relative error of the twists given to the tracker: they are multiplied by 1 plus this.
     """
     steps = np.diff(times)
     tracker = so.Tracker(A, B, dt=float(steps.max()), law=followed.law)
@@ -164,9 +164,9 @@ def even(step: float, duration: float = DURATION) -> Array:
 
 
 def frame_time(followed: Followed, step: float, repeats: int = 7) -> float:
-    """Return the least time [s] of a frame of a law in the compiled loop, of several runs.
+    """Return the least time [s] per frame of a law in the compiled loop, over several runs.
 
-    Each frame's answer is certified and has its rates, whatever the law.
+    Whatever the law, each frame's answer is certified and has its rates.
     """
     times = even(step)
     tracker = so.Tracker(A, B, dt=step, law=followed.law)

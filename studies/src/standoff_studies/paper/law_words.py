@@ -1,4 +1,4 @@
-"""The law that a number was measured with, in words, from the record of the trackers that ran."""
+"""The law with which a number was measured, in words, from the record of the trackers."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from standoff.tracking.law_options import Law, options_of
 from standoff.tracking.laws import PaperLaw
 
 Ran = Tracker | PointTracker | Recording | Operator
-"""What keeps a record of its law."""
+"""Objects that keep a record of their law."""
 
 NAMED = "as named"
-"""Of an option whose value the statement tells itself: the trackers differ in it."""
+"""For an option in which the trackers differ, so that the statement itself gives its value."""
 
 WORDS: dict[str, dict[Any, str]] = {
     "solve": {
@@ -35,13 +35,13 @@ WORDS: dict[str, dict[Any, str]] = {
     "feedforward": {True: "", False: "no feedforward"},
     "realisation": {"evaluated": "", "integrated": "Ψ integrated"},
 }
-"""Values of the paper's law, in this order; empty where Eq. (12) and Fig. 4 have it so."""
+"""Values of the paper's law, in this order; empty for those of Eq. (12) and Fig. 4."""
 
 MOST_GAINS = 3
-"""That are told one by one; of more the statement tells its own."""
+"""The greatest number of gains that are listed; with more, the statement gives its own."""
 
 PRINTED = ("saturation", "reset", "restarts")
-"""Options that the name ``as_printed`` tells."""
+"""Options that the name ``as_printed`` implies."""
 
 INTEGRATORS = {"euler": "Euler", "heun": "Heun", "rk4": "RK4"}
 
@@ -49,15 +49,15 @@ INTEGRATORS = {"euler": "Euler", "heun": "Heun", "rk4": "RK4"}
 def law_words(*ran: Ran, told: str = "") -> str:
     """Return which law some trackers followed, with its options.
 
-    Nothing but their record is read: a study whose law is replaced says so. Options whose value
-    differs from tracker to tracker are told to be as the statement names them.
+    Only their record is read, so a study whose law is replaced says so. Options that differ from
+    tracker to tracker are "as named", that is, given by the statement.
 
     Parameters
     ----------
     *ran : Tracker, PointTracker, Recording or Operator
-        One at least.
+        At least one.
     told : str
-        What no record holds, such as the start.
+        What no record contains, such as the start.
     """
     kinds: dict[type[Law], list[Ran]] = {}
     for one in ran:
@@ -81,7 +81,7 @@ def step_of(ran: Ran) -> float:
 
 
 def printed(law: Law) -> bool:
-    """Is a law the system as printed, at some gain by some integrator?"""
+    """Is a law the system as printed, with any gain and integrator?"""
     if not isinstance(law, PaperLaw) or law.gain is None:
         return False
     options = {"integrator": law.integrator, "far_side": law.far_side}
@@ -89,7 +89,7 @@ def printed(law: Law) -> bool:
 
 
 def _of_one_kind(ran: list[Ran]) -> str:
-    """The words of trackers whose laws are of one class."""
+    """The words for trackers whose laws are of the same class."""
     laws, steps = [law_of(one) for one in ran], {step_of(one) for one in ran}
     frame = f"{1e3 * steps.pop():g} ms" if len(steps) == 1 else f"frames {NAMED}"
     facts = [law.facts() for law in laws]
@@ -109,7 +109,7 @@ def _of_one_kind(ran: list[Ran]) -> str:
         frame,
     ]
     if values["switching"] not in ("voronoi", NAMED):
-        del values["reset"], values["far_side"]  # of those tests alone
+        del values["reset"], values["far_side"]  # options of those tests only
     for option in [option for option in WORDS if option in values]:
         value = values.pop(option)
         if not (as_printed and option in PRINTED):
@@ -128,12 +128,12 @@ def _gain(gains: list[float], feedback: Any) -> str:
 
 
 def _option(name: str, value: Any) -> str:
-    """An option in words; a value that these words don't know by its name."""
+    """An option in words; a value without words by name."""
     return f"{name} {NAMED}" if value == NAMED else WORDS[name].get(value, f"{name}={value!r}")
 
 
 def _others(law: Law, values: dict[str, Any]) -> list[str]:
-    """The options that have no words of their own, where they are not the default."""
+    """The options that have no words, if they differ from the default."""
     defaults = {name: each.default for name, each in options_of(law).items()}
     return [
         f"{name} {NAMED}" if value == NAMED else f"{name}={value!r}"

@@ -1,4 +1,4 @@
-"""Figures made one by one: each written by itself, and what became of it."""
+"""Making figures one by one, each written separately, and the results."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ class Made:
     ----------
     entry : Entry
     seconds : float
-        Time that it took, the run of its chapter included if it was the first to ask for it [s].
+        Time that it took, including the run of its chapter if it was the first to need it [s].
     caption, text, animation_text : str
-        As of its Artwork.
+        As in its Artwork.
     statements : tuple of Statement
     shown : mapping of str to mapping of str to list of str
         The tables that are printed in full: name, then heading and column, as text.
     files : tuple of Path
-        What was written.
+        The files written.
     error : str
-        Why it failed; empty where it did not.
+        Why it failed; empty if it did not.
     unwritten : bool
         It failed because its files could not be written.
     """
@@ -48,12 +48,12 @@ class Made:
     unwritten: bool = False
 
     def file(self, ending: str) -> Path | None:
-        """Return the file with an ending that was written, if there is one."""
+        """Return the written file with an extension, if there is one."""
         return next((path for path in self.files if path.suffix == ending), None)
 
 
 def make_and_write(entry: Entry, folder: Path, animations: bool) -> Made:
-    """Make a figure and write its files; what goes wrong is told in the result."""
+    """Make a figure and write its files; the result says if something went wrong."""
     started = time.perf_counter()
     try:
         artwork = make(entry)

@@ -1,4 +1,4 @@
-"""Many wrong starts of one law along one motion, in compiled loops: which of them arrive."""
+"""Many wrong starts of one law along one motion, in compiled loops: which of them converge."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.rows import poses_of, twists_of
 
 AT_SIDE = 1e-9
-"""Parameters that are nearer to 0 or 1 are at a side: the zeroing holds them there exactly."""
+"""Parameters nearer to 0 or 1 than this are at a side: the zeroing holds them there exactly."""
 
 LEFT = 1e-3
-"""Projection errors above this have not decayed [length²]: those that do are far below it."""
+"""Projection errors above this have not decayed [length²]: those that have are far below it."""
 
 INDEFINITE = (
     "on large parts of the right, facing faces M as printed is indefinite: away from the minimum "
@@ -31,17 +31,17 @@ INDEFINITE = (
 
 
 class Ends(NamedTuple):
-    """Where the tried starts have ended.
+    """Where the tried starts ended.
 
     Attributes
     ----------
     arrived, tried : int
     by : str
-        The law that they were tried with.
+        The law with which they were tried.
     placed, pinned : int
-        Of those that have not arrived: how many are on the features of the closest points, and how
-        many are held at a side of a patch with M indefinite and projection errors left. 0 where
-        nobody has looked.
+        Of those that did not arrive: how many are on the features of the closest points, and how
+        many are held at a side of a patch with M indefinite and projection errors left. 0 if this
+        was not examined.
     """
 
     arrived: int
@@ -52,7 +52,7 @@ class Ends(NamedTuple):
 
     @property
     def lost(self) -> int:
-        """How many have not arrived."""
+        """How many did not arrive."""
         return self.tried - self.arrived
 
 
@@ -75,16 +75,16 @@ def is_pinned(bodies: tuple[Body, Body], poses: tuple[Pose, Pose], answer: Proxi
 def begun(
     tracker: Tracker, paths: tuple[Path, Path], place_a: Any, place_b: Any, time: float = 0.0
 ) -> TrackerState:
-    """Return a law's state at a place of each body, whatever these are worth, at a time [s]."""
+    """Return a law's state at any place on each body, at a time [s]."""
     a, b = paths
     poses, twists = (a.pose(time), b.pose(time)), (a.twist(time), b.twist(time))
     return tracker.start_from(*poses, place_a, place_b, *twists, settle=False)
 
 
 def motion_along(path_a: Path, path_b: Path, times: Array) -> Array:
-    """Return two paths' poses and twists at some times but the first, that of the start [s].
+    """Return two paths' poses and twists at times [s], except at the first, that of the start.
 
-    A row a time, as the kernels read them.
+    One row per time, as the kernels read them.
     """
     rows = np.empty((len(times) - 1, K.N_MOTION))
     poses, twists = poses_of(rows), twists_of(rows)
@@ -96,7 +96,7 @@ def motion_along(path_a: Path, path_b: Path, times: Array) -> Array:
 
 
 def stepped(tracker: Tracker, state: TrackerState, rows: Array) -> Iterator[FrameBuffer]:
-    """Yield a tracker's buffer after each row of a motion: one buffer, written anew."""
+    """Yield a tracker's buffer after each row of a motion: always the same buffer, overwritten."""
     poses, twists, buffer = poses_of(rows), twists_of(rows), tracker.buffer(state)
     for k in range(len(rows)):
         buffer.pose_a[:], buffer.pose_b[:] = poses[0][k], poses[1][k]
@@ -114,7 +114,7 @@ def last_answers(
     ----------
     tracker : Tracker
     states : iterable of TrackerState
-        Of the first time.
+        At the first time.
     paths : (Path, Path)
     times : ndarray, shape (n,)
         s

@@ -32,10 +32,10 @@ NAMES = {PAPER: "Eqs. (1)–(4)", NORMALS: "normals, ref. [28]", CONTACT: "conta
 LOOK: dict[str, dict[str, Any]] = {form: style.line(k) for k, form in enumerate(FORMS)}
 
 GAPS = np.logspace(-8, 2, 41)
-"""Distances at which matrices are judged [length]; A's longest semi-axis is 1."""
+"""Distances at which matrices are examined [length]; A's longest semi-axis is 1."""
 
 DEPTHS = np.linspace(-0.7, 0.4, 111)
-"""Signed distances of the second panel [length]: past the focal depth, 0 among them."""
+"""Signed distances in the second panel [length]: beyond the focal depth, and including 0."""
 
 STARTS = 300
 """Starts scattered over both surfaces at each distance."""
@@ -51,7 +51,7 @@ NEAR_ANGLE = 0.3
 """Angle of the starts whose steps are counted [rad]."""
 
 FRAME = 2e-3
-"""Frame time of the motion through contact [s]; a frame stands at contact to 1e-17."""
+"""Frame time of the motion through contact [s]; one frame is at contact to within 1e-17."""
 
 
 LAW = "Newton's iteration on each set of equations by itself: two faces, no tracker and no switch"
@@ -60,12 +60,12 @@ LAW = "Newton's iteration on each set of equations by itself: two faces, no trac
 
 @dataclass(frozen=True)
 class Study:
-    """All that the figure shows.
+    """Everything that the figure shows.
 
     ``conditions[form]``: (n, 2), plain and balanced, at `GAPS`; ``least[form]``: least singular
-    value at `DEPTHS`; ``fates[form, d]`` of the scattered starts; ``shares[form, d]``: part of the
-    starts at `ANGLES` that is found; ``counts[form]``: median steps at `START_DISTANCES`;
-    ``tracks``: by form, and Eqs. (1)-(4) between frames.
+    value at `DEPTHS`; ``fates[form, d]`` of the scattered starts; ``shares[form, d]``: fraction of
+    the starts at `ANGLES` that finds the answer; ``counts[form]``: median steps at
+    `START_DISTANCES`; ``tracks``: by form, and for Eqs. (1)-(4) with contact between frames.
     """
 
     conditions: dict[str, Array]
@@ -122,7 +122,7 @@ def _near(form: str, distance: float, angle: float) -> Fate:
 
 
 def _median_steps(fate: Fate) -> float:
-    """Median over the starts that are found; nan where fewer than half are."""
+    """Median over the starts that find the answer; nan if fewer than half do."""
     return float(np.median(fate.steps[fate.found])) if fate.found.mean() >= 0.5 else np.nan
 
 
@@ -155,7 +155,7 @@ def comparison() -> Artwork:
 
 
 def statements(study: Study) -> tuple[Statement, ...]:
-    """Say what the numbers say."""
+    """Return the statements on these numbers."""
     return (
         _near_contact(study),
         _far(study),

@@ -1,4 +1,4 @@
-"""Two ellipsoids brought through contact, into each other and out again, on the exact answer."""
+"""Two ellipsoids moved through contact, into each other and out again, with a known answer."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from standoff_studies.paper.normals_study import (
 )
 
 DURATION = 1.0
-"""Of the motion through contact [s]."""
+"""Duration of the motion through contact [s]."""
 
 DEEPEST = 0.1
 """Greatest distance and depth of that motion [length]."""

@@ -1,8 +1,8 @@
 """The set of reference [28] and two others on the same pairs: numbers, no pictures.
 
-Two ellipsoids, whose support points are known, are put a known distance apart. Each surface is
-seen through a chart about the point in hand, (u, v) -> D Q (u, v, 1)/sqrt(1 + u² + v²), in
-parameters that measure lengths there: no poles, and no set has better coordinates than another.
+Two ellipsoids, whose support points are known, are placed a known distance apart. Each surface has
+a chart centred on the current point, (u, v) -> D Q (u, v, 1)/sqrt(1 + u² + v²), with parameters
+that measure length there: there are no poles, and no set has better coordinates than another.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ ARRIVED = 1e-9
 """Witness points this near to the exact ones [length] have been found."""
 
 ALIGNED = 1e-8
-"""Sine of the angle of dR with both normals below which two points have a common normal."""
+"""Sine of the angle between dR and both normals below which two points have a common normal."""
 
 SAME = 1e-6
-"""Difference of unit vectors below which two answers are one."""
+"""Difference of unit vectors below which two answers are the same."""
 
 MOST_STEPS = 60
 """Newton steps after which a start is given up: those that converge need fewer than 20."""
 
 
 BALANCING = 30
-"""Rounds of scaling rows and columns of a matrix: each halves, in logarithms, what is off."""
+"""Rounds of scaling rows and columns of a matrix: each halves the remaining error in logarithms."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Ellipsoid:
 
     @property
     def map(self) -> Array:
-        """The linear map of the unit sphere onto the surface about its centre, (3, 3)."""
+        """The linear map from the unit sphere to the centred surface, (3, 3)."""
         return self.rotation * self.axes
 
     def farthest(self, n: Array) -> Array:
@@ -59,7 +59,7 @@ class Ellipsoid:
         return np.asarray(self.map @ pulled / np.linalg.norm(pulled))
 
     def direction(self, point: Array) -> Array:
-        """The point of the unit sphere that the map takes to a point of the centred surface."""
+        """The point of the unit sphere that is mapped to a point of the centred surface."""
         return np.asarray(np.linalg.solve(self.map, point))
 
 
@@ -67,7 +67,7 @@ STILL = np.zeros((6, 3))
 
 
 class Pair(NamedTuple):
-    """Two ellipsoids with known witness points: A about the origin, B about `centre`."""
+    """Two ellipsoids with known witness points: A centred at the origin, B at `centre`."""
 
     a: Ellipsoid
     b: Ellipsoid
@@ -115,7 +115,7 @@ def frames_about(directions: Array) -> Array:
 
 
 class Charts(NamedTuple):
-    """Jets in lengths (n, 6, 3) about the points in hand, and what turns lengths to directions."""
+    """Jets (n, 6, 3) in lengths at the current points, and the maps from lengths to directions."""
 
     jets: Array
     frames: Array
@@ -130,7 +130,7 @@ class Charts(NamedTuple):
 
 
 def charts(linear: Array, centre: Array, directions: Array) -> Charts:
-    """Charts about the points to which a map (3, 3) takes unit vectors (n, 3), about a centre."""
+    """Charts centred on the images of unit vectors (n, 3) under a map (3, 3) and a shift."""
     frames = frames_about(directions)
     columns = linear @ frames
     tangents, out = columns[:, :, :2], columns[:, :, 2]
@@ -147,7 +147,7 @@ def charts(linear: Array, centre: Array, directions: Array) -> Charts:
 
 
 def outward(jets: Array, centre: Array) -> Array:
-    """Outward unit normals (n, 3) of a convex surface about its centre."""
+    """Outward unit normals (n, 3) of a convex surface around its centre."""
     normal = np.cross(jets[:, 1], jets[:, 2])
     inside = ((jets[:, 0] - centre) * normal).sum(axis=1) < 0.0
     return np.asarray(np.where(inside[:, None], -normal, normal))
@@ -165,7 +165,7 @@ class Equations(NamedTuple):
 class Points:
     """n points of both bodies, given by unit vectors, and (normal, depth) of the third form.
 
-    `sound` is False where a step could not be taken: the point stays where it was.
+    `sound` is False if a step could not be taken: the point stays where it was.
     """
 
     a: Array
@@ -225,7 +225,7 @@ def predicted(pair: Pair, form: str, points: Points, dt: float) -> Points:
 
 
 def solution(matrices: Array, right: Array) -> Array:
-    """Solve each system; nan where the matrix is singular to the last digit."""
+    """Solve each system; nan if the matrix is exactly singular."""
     steps = np.full_like(right, np.nan)
     regular = np.linalg.det(matrices) != 0.0
     if regular.any():
@@ -234,7 +234,7 @@ def solution(matrices: Array, right: Array) -> Array:
 
 
 def advanced(at: tuple[Charts, Charts], points: Points, steps: Array) -> Points:
-    """Points after steps (n, 4) or (n, 8) in the charts about them."""
+    """Points after steps (n, 4) or (n, 8) in the charts centred on them."""
     fine = points.sound & np.isfinite(steps).all(axis=1)
     steps = np.where(fine[:, None], steps, 0.0)
     normal, depth = points.normal, points.depth
@@ -253,11 +253,11 @@ def witness_error(pair: Pair, points: Points) -> Array:
 
 
 class Fate(NamedTuple):
-    """Where n starts went, each a bool array (n,), and after how many steps to the exact points.
+    """Where n starts ended, as bool arrays (n,), and after how many steps at the exact points.
 
     `found`: the exact witness points; `other`: another pair of points with a common normal;
-    `meeting`: dR = 0 at points whose normals differ, where the surfaces intersect; `ends`: where
-    each of them stands.
+    `meeting`: dR = 0 at points whose normals differ, where the surfaces intersect; `ends`: the
+    points where each of them ended.
     """
 
     found: NDArray[np.bool_]
@@ -268,7 +268,7 @@ class Fate(NamedTuple):
 
     @property
     def common_normals(self) -> int:
-        """Different pairs of points with a common normal that were found."""
+        """Number of different pairs of points with a common normal that were found."""
         at = np.hstack([self.ends.a, self.ends.b])[self.found | self.other]
         seen: list[Array] = []
         for row in at:
@@ -296,7 +296,7 @@ def newton(pair: Pair, form: str, points: Points) -> Fate:
 
 
 def scattered(count: int, seed: int) -> tuple[Array, Array]:
-    """Directions of A and of B, (count, 3) each, evenly over the spheres."""
+    """Directions of A and of B, (count, 3) each, uniformly distributed over the spheres."""
     drawn = np.random.default_rng(seed).normal(size=(2, count, 3))
     drawn /= np.linalg.norm(drawn, axis=2, keepdims=True)
     return drawn[0], drawn[1]

@@ -1,15 +1,13 @@
 """The equation set of the paper's reference [28], with the tangents of A and the normals of both.
 
-r = (f_u.dR, f_v.dR, f_u.n_h, f_v.n_h): dR is along A's normal, and B's normal is parallel to
-A's. For dR not zero it has the roots of Eqs. (1)-(4); at dR = 0 it still asks for parallel normals,
-which (1)-(4) do not. That the normals be parallel may be written n_f x n_h = 0 as well: along A's
-unit tangents that is the same pair of numbers, turned by a right angle.
+r = (f_u.dR, f_v.dR, f_u.n_h, f_v.n_h): dR is along A's normal, and B's normal is parallel to A's.
+If dR is not zero it has the same roots as Eqs. (1)-(4); at dR = 0 it still requires parallel
+normals, which (1)-(4) do not. Parallel normals could also be written n_f x n_h = 0: along A's unit
+tangents these are the same two numbers, rotated by a right angle.
 
-Two faces only: an edge or a vertex has no normal. Notation and frames as in
+Only for two faces: an edge or a vertex has no normal. Notation and frames as in
 ``standoff.kernels.pair.system``.
 """
-
-from numba import njit
 
 from standoff.kernels.algebra.vectors import add, cross, dot, scale, sub, unit
 from standoff.kernels.compiler.decorators import pointer
@@ -22,21 +20,18 @@ from standoff.kernels.pair.system import (
     point_velocity,
     projection_errors,
 )
-
-compiled = njit(error_model="numpy", fastmath={"contract"})
-"""As the kernels are compiled; it is made once a process, in a few seconds. It cannot be an entry:
-those are kept under a digest of the library's sources, which these lines are not part of."""
+from standoff_studies.own_kernels import own_kernel
 
 
-@compiled
+@own_kernel
 def unit_normal(jet):
-    """h_r x h_s by its length; outward or inward, as the chart has it: r = 0 is the same."""
+    """h_r x h_s, normalised; outward or inward by the chart, which does not change r = 0."""
     return unit(cross(jet[1], jet[2]))
 
 
-@compiled
+@own_kernel
 def normal_partials(jet, n):
-    """(n_r, n_s) by Weingarten's equations: second derivatives of h, no third ones.
+    """(n_r, n_s) by Weingarten's equations, with second but no third derivatives of h.
 
     n_i = -sum_jk h_j (I^-1)_jk (n.h_ik), with I the first fundamental form.
     """
@@ -50,7 +45,7 @@ def normal_partials(jet, n):
     return n_r, n_s
 
 
-@compiled
+@own_kernel
 def normals_residual(jet_a, jet_b):
     """r: two lengths squared per parameter, two lengths per parameter."""
     dR = sub(jet_a[0], jet_b[0])
@@ -58,9 +53,9 @@ def normals_residual(jet_a, jet_b):
     return dot(jet_a[1], dR), dot(jet_a[2], dR), dot(jet_a[1], n), dot(jet_a[2], n)
 
 
-@compiled
+@own_kernel
 def normals_jacobian(jet_a, jet_b, J):
-    """dr/dq into the 4 x 4 array J, q = (u, v, r, s). Not symmetric: r is no gradient."""
+    """dr/dq into the 4 x 4 array J, q = (u, v, r, s). Not symmetric, as r is not a gradient."""
     fu, fv, fuu, fuv, fvv = jet_a[1], jet_a[2], jet_a[3], jet_a[4], jet_a[5]
     dR = sub(jet_a[0], jet_b[0])
     n = unit_normal(jet_b)
@@ -77,21 +72,21 @@ def normals_jacobian(jet_a, jet_b, J):
     J[3, 2], J[3, 3] = dot(fv, n_r), dot(fv, n_s)
 
 
-@compiled
+@own_kernel
 def normals_feedforward(jet_a, jet_b, motion_a, motion_b):
-    """r_t, the rate of r by the bodies' motion: F' dV(x_h), then F' ((w_B - w_A) x n_h)."""
+    """r_t, the rate of r from the bodies' motion: F' dV(x_h), then F' ((w_B - w_A) x n_h)."""
     x_h = jet_b[0]
     slip = sub(point_velocity(x_h, motion_a), point_velocity(x_h, motion_b))
     turn = cross(sub(motion_b[2], motion_a[2]), unit_normal(jet_b))
     return dot(jet_a[1], slip), dot(jet_a[2], slip), dot(jet_a[1], turn), dot(jet_a[2], turn)
 
 
-@compiled
+@own_kernel
 def vector(rows, k):
     return (rows[k, 0], rows[k, 1], rows[k, 2])
 
 
-@compiled
+@own_kernel
 def jet(rows):
     return (
         vector(rows, 0),
@@ -103,7 +98,7 @@ def jet(rows):
     )
 
 
-@compiled
+@own_kernel
 def both_motions(rows):
     """(p, v, w) of A and of B, as feedforward takes them."""
     return (
@@ -112,10 +107,10 @@ def both_motions(rows):
     )
 
 
-# What Python calls, on batches: jets of A and B and the motions are arrays (n, 6, 3).
+# Called from Python, for batches: jets of A and B and the motions are arrays (n, 6, 3).
 
 
-@compiled
+@own_kernel
 def evaluate_normals(jets_a, jets_b, motions, r, J, r_t):
     """Into r (n, 4), J (n, 4, 4) and r_t (n, 4): the set of reference [28]."""
     for k in range(len(jets_a)):
@@ -127,7 +122,7 @@ def evaluate_normals(jets_a, jets_b, motions, r, J, r_t):
             r[k, i], r_t[k, i] = residual[i], rate[i]
 
 
-@compiled
+@own_kernel
 def evaluate_projection_errors(jets_a, jets_b, motions, Psi, M, b):
     """Into Psi (n, 4), M (n, 4, 4) and b (n, 4): Eqs. (1)-(14)."""
     for k in range(len(jets_a)):
@@ -145,7 +140,7 @@ def evaluate_projection_errors(jets_a, jets_b, motions, Psi, M, b):
                 at += 1
 
 
-@compiled
+@own_kernel
 def evaluate_contact(jets_a, jets_b, normals, depths, motions, r, J, r_t):
     """Into r (n, 8), J (n, 8, 8) and r_t (n, 8): the contact-regular form at (q, n, d)."""
     for k in range(len(jets_a)):

@@ -1,4 +1,4 @@
-"""A simulation of two bodies as a value, and its runs: by the printed system and by the library."""
+"""A simulation of two bodies, and its runs: by the printed system and by the library."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ Place = tuple[tuple[str, int], tuple[float, ...]]
 """A feature, kind and number, and parameters on it."""
 
 Start = tuple[Place, Place]
-"""Of A and of B."""
+"""The places on A and on B."""
 
 AT_POINT: Place = ("vertex", 0), ()
-"""Of a body that is a point."""
+"""The place on a body that is a point."""
 
 REST = Fixed(Pose.identity())
 """The path of a body that stays where it is."""
@@ -45,7 +45,7 @@ REST = Fixed(Pose.identity())
 
 @dataclass(frozen=True, eq=False)
 class Simulation:
-    """What a simulation's figures are made from.
+    """The input of a simulation's figures.
 
     Attributes
     ----------
@@ -54,13 +54,13 @@ class Simulation:
     paths : (Path, Path)
         Of A and B.
     duration, step : float
-        Of the motion, and from frame to frame [s].
+        Of the motion, and of a frame [s].
     gain : float
         K of the printed system [1/s].
     starts : tuple of Start
-        Where the printed system is started, whatever that is worth. The figures show the first.
+        Where the printed system starts, right or wrong. The figures show the first.
     entered : float
-        From then on the switches of a wrong start to the true features are over [s].
+        Time after which a wrong start has reached the true features [s].
     """
 
     bodies: Callable[[], tuple[Body, Body]]
@@ -101,12 +101,12 @@ class Simulation:
 
     @property
     def by(self) -> str:
-        """What statements on `printed` were measured with."""
+        """The law with which statements on `printed` were measured."""
         return law_words(*self.printed, told="wrong start")
 
     @property
     def own(self) -> str:
-        """What statements on `exact` were measured with."""
+        """The law with which statements on `exact` were measured."""
         return law_words(self.exact)
 
     @property
@@ -121,14 +121,14 @@ class Simulation:
 
     @property
     def witness_error(self) -> Array:
-        """How far the worse witness point of `paper` is off the exact one [length], (n,)."""
+        """The greater error of the two witness points of `paper` [length], (n,)."""
         off_a = np.linalg.norm(self.paper.point_a - self.exact.point_a, axis=1)
         off_b = np.linalg.norm(self.paper.point_b - self.exact.point_b, axis=1)
         return np.asarray(np.maximum(off_a, off_b))
 
     @property
     def stays(self) -> list[Visit]:
-        """The modes of `paper` once its start has come to the true features."""
+        """The modes of `paper` once its start has reached the true features."""
         return [visit for visit in self.paper.modes() if visit.end > self.entered]
 
     def tracker(self) -> Tracker:
@@ -138,17 +138,17 @@ class Simulation:
     def begin(
         self, law: Tracker, start: Start, paths: tuple[Path, Path] | None = None
     ) -> TrackerState:
-        """Return a law's state at a start, whatever it is worth, at the motion's beginning."""
+        """Return a law's state at any start, at the beginning of the motion."""
         return begun(law, self.paths if paths is None else paths, *start)
 
     def entered_events(self, recording: Recording) -> list[RecordedEvent]:
-        """Return the switches after a wrong start has come to the true features."""
+        """Return the switches after a wrong start has reached the true features."""
         return [event for event in recording.events if event.time > self.entered]
 
     def late(self, recording: Recording | None = None) -> Array:
         """Return how much later the printed system switches than the library's own law [s].
 
-        Infinite where the features differ.
+        Infinite if the features differ.
         """
         own = self.entered_events(self.paper if recording is None else recording)
         due = self.entered_events(self.exact)
@@ -157,7 +157,7 @@ class Simulation:
         return np.array([one.time - other.time for one, other in zip(own, due, strict=True)])
 
     def furthest(self) -> float:
-        """Return how far any switch of the runs is from that of the library's own law [s]."""
+        """Return the greatest time between a switch of the runs and of the library's law [s]."""
         return float(max(np.abs(self.late(one)).max(initial=0.0) for one in self.printed))
 
 
@@ -177,7 +177,7 @@ def printed_runs(simulation: Simulation) -> tuple[Recording, ...]:
 
 
 def random_starts(kind: str, count: int) -> list[Start]:
-    """Draw starts on both bodies, each of three faces or edges with parameters from 0 to 1."""
+    """Draw starts on both bodies, each on one of three faces or edges, parameters from 0 to 1."""
     rng, parameters = np.random.default_rng(1), {"edge": 1, "face": 2}[kind]
     found = []
     for _ in range(count):
@@ -195,20 +195,20 @@ def ends_of(
     told: str,
     paths: tuple[Path, Path] | None = None,
 ) -> Ends:
-    """Try starts with the printed system: where they are after so long.
+    """Try starts with the printed system, and return where they are after some time.
 
     Parameters
     ----------
     simulation : Simulation
     tried : sequence of Start
     patience : float
-        s
+        That time [s].
     arrived : callable
         Has an answer of the last frame arrived? The second argument is that of a global search.
     told : str
-        Of the starts, in the words of the law.
+        About the starts, for the words of the law.
     paths : (Path, Path), optional
-        Other motions than the simulation's.
+        Motions to use instead of the simulation's.
     """
     law, both = simulation.tracker(), simulation.paths if paths is None else paths
     states = (simulation.begin(law, start, both) for start in tried)
@@ -222,7 +222,7 @@ def ends_of(
 
 
 def moves_from(simulation: Simulation, tried: Sequence[Start], until: float) -> list[Move]:
-    """Return what the printed resets do to the witness points, from each start up to a time [s]."""
+    """Return how the printed resets move the witness points, from each start up to a time [s]."""
     law, times = simulation.tracker(), even_times(0.0, until, simulation.step)
     found: list[Move] = []
     for start in tried:
@@ -233,13 +233,13 @@ def moves_from(simulation: Simulation, tried: Sequence[Start], until: float) -> 
 
 
 def never_grows(simulation: Simulation, told: str) -> Statement:
-    """Say whether the distance grows at a switch of the closest points.
+    """Return whether the distance grows at a switch of the closest points.
 
     Parameters
     ----------
     simulation : Simulation
     told : str
-        What is farther away after the switch, with a place for the number.
+        What is farther away after the switch, with a placeholder for the number.
     """
     grows = greatest_growth(simulation.exact, simulation.paths)
     return Statement(
@@ -254,16 +254,16 @@ def never_grows(simulation: Simulation, told: str) -> Statement:
 
 
 def follows(simulation: Simulation, since: str = "", more: str = "") -> Statement:
-    """Say whether the printed system takes the switches of the library's own law, and when.
+    """Return whether the printed system makes the switches of the library's own law, and when.
 
-    With b fed forward the law lags by no time constant, only by what a step leaves: less than a
-    frame. Without b it lags by about 1/K.
+    With the feedforward b the law does not lag by a time constant, only by the error of a step,
+    less than a frame. Without b it lags by about 1/K.
 
     Parameters
     ----------
     simulation : Simulation
     since, more : str
-        Told before and after.
+        Text before and after.
     """
     off = simulation.furthest()
     return Statement(
@@ -279,7 +279,7 @@ def follows(simulation: Simulation, since: str = "", more: str = "") -> Statemen
 
 
 def anywhere(ends: Ends, told: str, why: str = "") -> Statement:
-    """Say whether starts anywhere arrive; `told` is what was tried, and of what became of it."""
+    """Return whether starts anywhere arrive; `told` says what was tried and what happened."""
     return Statement(
         HYBRID,
         "from a start anywhere on tiled convex bodies the errors converge",
@@ -291,7 +291,7 @@ def anywhere(ends: Ends, told: str, why: str = "") -> Statement:
 
 
 def certified(simulation: Simulation, figure: str) -> Statement:
-    """Say how many frames the library's own law certifies, and how closely."""
+    """Return how many frames the library's own law certifies, and how closely."""
     exact = simulation.exact
     return own_statement(
         figure,

@@ -1,4 +1,4 @@
-"""What the figures of parameters against time share: errors, names of stays, keys."""
+"""Parts used by all figures of parameters against time: errors, names of stays, keys."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from standoff_studies.paper.resets import draw_projection_errors
 
 
 def draw_errors(axes: Axes, simulation: Simulation, *, least: float = 0.0, **look: Any) -> None:
-    """Draw how far the witness points are off, their projection errors, and what resets imply.
+    """Draw the errors of the witness points, the projection errors, and what resets imply.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ def draw_errors(axes: Axes, simulation: Simulation, *, least: float = 0.0, **loo
     least : float
         Errors below this are drawn at it [length].
     **look
-        What ``Axes.semilogy`` takes.
+        Options of ``Axes.semilogy``.
     """
     error = np.maximum(simulation.witness_error, least)
     axes.semilogy(simulation.paper.time, error, color=style.GREEN, **look)
@@ -33,7 +33,7 @@ def draw_errors(axes: Axes, simulation: Simulation, *, least: float = 0.0, **loo
 
 
 def tint(axes: Axes, stays: Iterable[tuple[Visit, str | None]]) -> None:
-    """Tint the times of stays, each in its colour if it has one, in place of a grid."""
+    """Tint the times of stays, each in its colour if it has one, instead of a grid."""
     axes.grid(visible=False)
     for stay, colour in stays:
         if colour:

@@ -1,4 +1,4 @@
-"""Features of bodies of patches: what they are called, and where they lie in (u, v)."""
+"""Features of bodies of patches: their names, and where they lie in (u, v)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FeaturePlace = tuple[Feature, Array]
 """A feature, and the parameters of a point on it."""
 
 BothPlaces = tuple[FeaturePlace, FeaturePlace]
-"""Of A and of B."""
+"""Those of A and of B."""
 
 
 class Place(NamedTuple):
@@ -24,7 +24,7 @@ class Place(NamedTuple):
     Attributes
     ----------
     u, v : float
-        Parameters of the face; u is nan at a vertex, where a whole side has collapsed.
+        Parameters of the face; u is nan at a vertex, where a whole side is collapsed.
     """
 
     u: float
@@ -32,7 +32,7 @@ class Place(NamedTuple):
 
 
 def place_on(body: Body, face: int, feature: Feature, parameters: Array) -> Place | None:
-    """Return where an answer lies in the parameters of a face; None where it is not on the face.
+    """Return where an answer lies in the parameters of a face; None if it is not on the face.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def place_on(body: Body, face: int, feature: Feature, parameters: Array) -> Plac
     feature : Feature
         Of the answer.
     parameters : ndarray, shape (3,)
-        As a recording has them.
+        As in a recording.
     """
     part = body.face_parts[face]
     if feature.kind == "face":
@@ -61,7 +61,7 @@ def place_on(body: Body, face: int, feature: Feature, parameters: Array) -> Plac
 
 
 def short(feature: Feature) -> str:
-    """Return what a feature is called in the pictures: F, E or V and its number."""
+    """Return the name of a feature in the pictures: F, E or V and its number."""
     return f"{feature.kind[0].upper()}{feature.index}"
 
 

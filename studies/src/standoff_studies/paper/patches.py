@@ -22,7 +22,7 @@ from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_s
 HALF = (1.0, 0.8)
 """Half the block's extent in x and y [length]."""
 FALL = (0.45, 0.3)
-"""How far the curved face falls from its middle to the ends of u, and of v [length]."""
+"""How far the curved face drops from its middle to the ends of u, and of v [length]."""
 FLOOR = -1.1
 """Height of the block's flat side; the middle of the curved face is at 0 [length]."""
 
@@ -37,21 +37,21 @@ CURVES = np.linspace(0.0, 1.0, 9)
 SAMPLES = np.linspace(0.0, 1.0, 33)
 
 ARROW = 0.35
-"""Part of its length at which a tangent is drawn, so that it stays near its patch."""
+"""Fraction of its length at which a tangent is drawn, so that it stays near its patch."""
 
 SEEN_ABOVE, SEEN_ACROSS = (-62.0, 32.0), (-50.0, 30.0)
 """Azimuth and elevation of the two views [degrees]."""
 
 ROUNDOFF = 1e-12
-"""Most a projection on unit vectors may be off zero and still be called zero: 1e4 roundings."""
+"""Projections on unit vectors below this count as zero: 1e4 roundings."""
 
 
 LAW = "so.distance, a global search: no law"
-"""What the statements say they were measured with."""
+"""The law with which the statements were measured."""
 
 
 def _control_points() -> Array:
-    """Of z = -p (2u - 1)^2 - q (2v - 1)^2 over a rectangle, shape (3, 3, 3)."""
+    """Control points of z = -p (2u - 1)^2 - q (2v - 1)^2 over a rectangle, shape (3, 3, 3)."""
     (a, b), (p, q) = HALF, FALL
     # (2u - 1)^2 has the Bernstein coefficients 1, -1, 1.
     square = np.array([1.0, -1.0, 1.0])
@@ -67,7 +67,7 @@ def curved_face() -> BezierPatch:
 
 @cache
 def block() -> Body:
-    """A block whose face 0 is the curved one, with four upright sides and a flat one."""
+    """A block whose face 0 is curved, with four upright sides and a flat bottom."""
     top = _control_points()
     floor = top * [1.0, 1.0, 0.0] + [0.0, 0.0, FLOOR]
     rims = [(t[0], t[-1], t[:, 0], t[:, -1]) for t in (top, floor)]
@@ -98,7 +98,7 @@ def pair() -> Foot:
 
 
 def pose_b() -> Pose:
-    """Where the upper block of Fig. 2 is."""
+    """The pose of the upper block in Fig. 2."""
     shift, turn = POSE_B
     return Pose.exp(turn, shift)
 
@@ -121,7 +121,7 @@ def tangents_patch() -> Artwork:
             "A convex patch f(u, v) with its isoparametric curves, one each eighth of u and v, and "
             f"the tangents f_u and f_v (drawn at {ARROW:g} of their length) at the foot "
             f"(u, v) = ({u:.3f}, {v:.3f}) of the point above it. The dashed line from the foot to "
-            "the point is the shortest, and stands square on both tangents. Lengths are in the "
+            "the point is the shortest, and is perpendicular to both tangents. Lengths are in the "
             "scene's unit."
         ),
         text=(
@@ -141,7 +141,7 @@ def witness_pair() -> Artwork:
         caption=(
             "Two patches, f(u, v) below and h(r, s) above, with their witness points, the vector "
             f"ΔR between them (dashed, {answer.distance:.6f} long) and the four tangents (drawn at "
-            f"{ARROW:g} of their length). At the closest points ΔR stands square on all four. "
+            f"{ARROW:g} of their length). At the closest points ΔR is perpendicular to all four. "
             "Lengths are in the scene's unit."
         ),
         text=(
@@ -212,7 +212,7 @@ def _curve_table() -> dict[str, Array]:
 
 
 def _system_table(answer: Proximity, system: PairSystem) -> dict[str, list[float] | list[str]]:
-    """A row a tangent: its foot, its components and its projection error."""
+    """One row per tangent: its foot, its components and its projection error."""
     names = ["f_u", "f_v", "h_r", "h_s"][: len(system.Psi)]
     rows = [
         (*point, *tangent)
@@ -282,7 +282,7 @@ def _add_arrows(view: View, foot: Array, tangents: Array, colour: str) -> None:
     for tangent in ARROW * tangents.T:
         tip = foot + tangent
         view.line([foot, tip], colour, 2.6, rank=3.0)
-        # Two barbs in the plane of the paper.
+        # two barbs in the plane of the picture
         back = 0.1 * np.linalg.norm(view.flat(tangent)) * _unit(-tangent)
         side = 0.5 * np.linalg.norm(view.flat(back)) * _unit(np.cross(view.towards, tangent))
         for barb in (back + side, back - side):

@@ -1,4 +1,4 @@
-"""Chapters of figures made side by side, a process each; one that dies spoils only its figure."""
+"""Chapters of figures made in parallel processes; one that dies loses only its figure."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from standoff_studies.paper.figure import Entry
 from standoff_studies.paper.making import Made, make_and_write
 
 Tell = Callable[[Entry, Made | None], None]
-"""Is told that a figure is begun (None) and what became of it."""
+"""Called when a figure is begun (with None) and with its result."""
 
 
 class Needed(NamedTuple):
-    """A worker's word that it needs an entry of the kernels, which is not on disk."""
+    """A worker's message that it needs an entry of the kernels that is not on disk."""
 
     module: str
     name: str
 
 
 class Order(NamedTuple):
-    """Where the files go, and whether moving pictures are drawn."""
+    """Where the files go, and whether animations are drawn."""
 
     folder: Path
     animations: bool
@@ -45,7 +45,7 @@ def make_all(entries: Sequence[Entry], order: Order, jobs: int, tell: Tell) -> l
     entries : sequence of Entry
     order : Order
     jobs : int
-        Most processes at once. Figures of one chapter share one, and with it their run.
+        Greatest number of processes. The figures of a chapter share one, and with it their run.
     tell : callable
 
     Returns
@@ -73,7 +73,7 @@ def make_all(entries: Sequence[Entry], order: Order, jobs: int, tell: Tell) -> l
 def _by_chapter(entries: Sequence[Entry]) -> list[list[Entry]]:
     ordered = sorted(entries, key=lambda entry: entry.chapter)
     chapters = [list(group) for _, group in groupby(ordered, key=lambda entry: entry.chapter)]
-    # The report's order again, which sorting by name has lost.
+    # restore the report's order, which sorting by name has lost
     return sorted(chapters, key=lambda chapter: entries.index(chapter[0]))
 
 
@@ -81,7 +81,7 @@ class _Worker:
     """A process that makes one chapter after another, and the pipe to it."""
 
     def __init__(self, order: Order) -> None:
-        # spawn: a fork would copy the threads' locks of Numba and of the progress bar.
+        # spawn: a fork would copy the locks of the threads of Numba and of the progress bar
         context = multiprocessing.get_context("spawn")
         self.pipe, other = context.Pipe()
         self.process = context.Process(target=_work, args=(other, order), daemon=True)
@@ -90,7 +90,7 @@ class _Worker:
         self.left: list[Entry] = []
 
     def give(self, chapter: list[Entry]) -> None:
-        """Send a chapter; `left` holds what has not come back of it."""
+        """Send a chapter; `left` are its figures without a result."""
         self.left = list(chapter)
         self.pipe.send(self.left)
 
@@ -126,7 +126,7 @@ def _side_by_side(chapters: Sequence[list[Entry]], order: Order, jobs: int, hear
 
 
 def _receive(worker: _Worker, hear: Tell) -> list[Entry] | None:
-    """Take one word from a worker: None while it is at work, else what another is to make."""
+    """Receive one message from a worker: None while it works, else what another must make."""
     try:
         word = worker.pipe.recv()
         if isinstance(word, Needed):
@@ -135,7 +135,7 @@ def _receive(worker: _Worker, hear: Tell) -> list[Entry] | None:
             return None
         entry, result = word
     except (EOFError, OSError):
-        # The process is gone: killed, or out of memory. Its figure fails, the others go on.
+        # the process is gone: killed, or out of memory. Its figure fails, the others continue.
         worker.process.join()
         lost = worker.left.pop(0)
         code = worker.process.exitcode
@@ -148,17 +148,17 @@ def _receive(worker: _Worker, hear: Tell) -> list[Entry] | None:
 
 
 def _compile(needed: Needed) -> None:
-    """Compile once, here, what each worker would compile for itself."""
-    with suppress(Exception):  # the worker meets the same error, and its figure tells it
+    """Compile here, once, what every worker would compile separately."""
+    with suppress(Exception):  # the worker gets the same error, and its figure reports it
         prepare_named(*needed)
 
 
 def asking(pipe: Connection) -> Callable[[Any], None]:
-    """What a worker calls for a function's entry that is not on disk."""
+    """Return what a worker calls for a function's entry that is not on disk."""
 
     def ask(function: Any) -> None:
         pipe.send(Needed(function.__module__, function.__name__))
-        pipe.recv()  # it is there now, if it can be kept
+        pipe.recv()  # it is on disk now, if it can be cached
 
     return ask
 
@@ -166,10 +166,10 @@ def asking(pipe: Connection) -> Callable[[Any], None]:
 def _work(pipe: Connection, order: Order) -> None:
     """Make chapters until the pipe closes."""
     cache.compiled_elsewhere = asking(pipe)
-    os.environ[QUIET] = "1"  # what there is to say of the compiler its parent has said
-    # The parent ends its workers on Ctrl-C; a traceback of each would only hide its message.
+    os.environ[QUIET] = "1"  # the parent has already reported on the compiler
+    # The parent ends its workers on Ctrl-C; their tracebacks would only hide its message.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # Leave by an exception, so that no half-written file stays behind.
+    # Leave by an exception, so that no half-written file is left.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     for chapter in _received(pipe):
         for entry in chapter:

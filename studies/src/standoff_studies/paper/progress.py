@@ -1,4 +1,4 @@
-"""How far ``standoff paper`` has come, shown where somebody can see it."""
+"""Progress of ``standoff paper``, shown if somebody can see it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from standoff.cli.progress import progress_shown
 from standoff_studies.paper.figure import Entry
 
 Tell = Callable[[Entry, object], None]
-"""Is told of a figure that is begun (None) or done."""
+"""Called when a figure is begun (with None) or done."""
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""The report: one HTML file that holds everything and fetches nothing."""
+"""The report: one HTML file that contains everything and loads nothing."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ class Section:
     ----------
     made : Made
     anchor, name : str
-        Where it stands in the page, and what it is called: "Fig. 7", or its title.
+        Its place in the page, and its name: "Fig. 7", or its title.
     picture, animation : str
-        As data URIs; empty where there is none.
+        As data URIs; empty if there is none.
     """
 
     made: Made
@@ -49,7 +49,7 @@ class Section:
 
     @property
     def own(self) -> list[Statement]:
-        """What was measured beside it."""
+        """What was measured in addition."""
         return [s for s in self.made.statements if Verdict.of(s) is Verdict.OWN]
 
     @property
@@ -64,9 +64,9 @@ def report_html(made: Sequence[Made], of: int) -> str:
     Parameters
     ----------
     made : sequence of Made
-        In their order; the files that they name are read.
+        In order; the files that they name are read.
     of : int
-        How many figures there are in all.
+        Total number of figures.
     """
     sections = [_section(one) for one in made]
     chapters = [(name, list(group)) for name, group in groupby(sections, key=_chapter)]
@@ -94,7 +94,7 @@ def report_html(made: Sequence[Made], of: int) -> str:
 
 
 def typeset(text: str) -> Markup:
-    """Return a text as HTML: its indices and powers set lower and higher, all else escaped."""
+    """Return a text as HTML, with indices and powers lowered and raised, and the rest escaped."""
     parts = [
         Markup(f"<{level}>{{}}</{level}>").format(part) if level else escape(part)
         for part, level in pieces(text)
@@ -120,7 +120,7 @@ def _section(made: Made) -> Section:
 
 
 def _data_uri(made: Made, ending: str) -> str:
-    """A figure's file within the page; empty where it has none with this ending."""
+    """A figure's file as part of the page; empty if it has none with this extension."""
     path = made.file(ending)
     if path is None:
         return ""

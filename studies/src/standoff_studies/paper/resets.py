@@ -1,7 +1,7 @@
-"""The projection errors at each switch, beside those that its reset implies.
+"""The projection errors at each switch, compared with those that its reset implies.
 
-What a reset implies is computed here again: the law's last step without any switch, then the reset
-from the new feature's own data. No kernel that switches takes part.
+What a reset implies is computed independently here: the law's last step without any switch, then
+the reset from the new feature's own data. No kernel that switches is used.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ from standoff_studies.paper.figure import HYBRID, Statement, own_statement
 from standoff_studies.paper.patch_places import BothPlaces, FeaturePlace, places_at, short
 
 SAMPLES = 64
-"""Of a pcurve, between which the parameter nearest to a face's own is sought."""
+"""Samples of a pcurve, between which the parameter nearest to a face's own is sought."""
 
 APART = 1e-7
-"""Part of a pcurve's range over which its direction is taken: of a line it is exact."""
+"""Fraction of a pcurve's range over which its direction is computed; exact for a line."""
 
 ROUNDED = 1e-12
 """Projection errors that differ by less are the same [length²]: the kernels and the last step here
 round differently."""
 
 LEAST_DRAWN = 1e-12
-"""Projection errors below this are drawn at it [length²]."""
+"""Projection errors below this are drawn at this value [length²]."""
 
 
 EVERY = 5
-"""Frames from one that is drawn to the next: 5 ms, an eighth of the fastest 1/K here at most."""
+"""Every how many frames one is drawn: 5 ms, at most an eighth of the fastest 1/K here."""
 
 
 class Reset(NamedTuple):
@@ -51,12 +51,12 @@ class Reset(NamedTuple):
     time : float
         Of the frame [s].
     names : str
-        The features that are left and entered, "A F0 → E1".
+        The features left and entered, such as "A F0 → E1".
     before, implied, found : float
         Size of the projection errors [length²]: on the old features at the end of the step, on
         the new ones where the reset puts the witness points, and in the recording.
     off : float
-        Size of the difference of the two last [length²].
+        Size of the difference between the last two [length²].
     """
 
     frame: int
@@ -75,7 +75,7 @@ def resets_of(recording: Recording, paths: tuple[Path, Path], gain: float) -> li
     ----------
     recording : Recording
     paths : (Path, Path)
-        The motions that it was made along.
+        The motions along which it was made.
     gain : float
         K [1/s]
     """
@@ -98,7 +98,7 @@ def resets_of(recording: Recording, paths: tuple[Path, Path], gain: float) -> li
 
 
 class Move(NamedTuple):
-    """What the resets of one frame do to the witness points.
+    """How the resets of one frame move the witness points.
 
     Attributes
     ----------
@@ -113,7 +113,7 @@ class Move(NamedTuple):
 
 
 def moves_of(recording: Recording, paths: tuple[Path, Path], gain: float) -> list[Move]:
-    """Return what the resets of a run of the printed system do, frame by frame.
+    """Return how the resets of a run of the printed system move the witness points, frame by frame.
 
     From the end of the law's step without any switch to the recorded witness points.
     """
@@ -131,7 +131,7 @@ def moves_of(recording: Recording, paths: tuple[Path, Path], gain: float) -> lis
 
 
 def growth_statement(moves: Sequence[Move], starts: int, by: str) -> Statement:
-    """Say what the printed resets do to the distance; the paper's claim is of closest points."""
+    """Return how the printed resets change the distance; the paper's claim is on closest points."""
     moved = [move for move in moves if move.way > ROUNDED]
     grown = [move.growth for move in moved if move.growth > ROUNDED]
     of = f"in {len(moved)} of {len(moves)} frames with switches"
@@ -158,7 +158,7 @@ class Errors(NamedTuple):
 
 
 def projection_errors(recording: Recording, paths: tuple[Path, Path]) -> Errors:
-    """Return the projection errors in one of `EVERY` frames, and at and before each switch."""
+    """Return the projection errors in every `EVERY`-th frame, and at and before each switch."""
     frames = {*range(0, len(recording), EVERY), len(recording) - 1}
     for event in recording.events:
         frames |= {event.frame - 1, event.frame}
@@ -175,15 +175,15 @@ def error_at(recording: Recording, paths: tuple[Path, Path], frame: int) -> floa
 
 
 def reset_place(body: Body, place: FeaturePlace, target: Feature) -> FeaturePlace:
-    """Return where the printed reset puts a witness point, from a feature's parameters alone.
+    """Return where the printed reset puts a witness point, from a feature's parameters only.
 
-    Onto an edge at its pcurve's parameter nearest in (u, v) to the face's own, onto a face at the
-    edge's point of its boundary, onto an edge from a vertex at that end.
+    Onto an edge: at its pcurve's parameter nearest in (u, v) to the face's own. Onto a face: at the
+    edge's point on its boundary. Onto an edge from a vertex: at that end.
 
     Raises
     ------
     ValueError
-        If the features don't meet, or for a face and a vertex, which no run here joins.
+        If the features do not meet, or for a face and a vertex, which does not occur here.
     """
     source, own = place
     kinds = source.kind[0] + target.kind[0]
@@ -210,7 +210,7 @@ def _pcurve(body: Body, face: Feature, edge: Feature) -> Any:
 
 
 def _nearest(body: Body, face: Feature, edge: Feature, own: Array) -> float:
-    """The parameter of an edge at which its pcurve is nearest to a face's own parameters."""
+    """The parameter of an edge at which its pcurve is nearest to given parameters of a face."""
     pcurve, curve = _pcurve(body, face, edge), body.edge_parts[edge.index].curve
     first, last = float(curve.first), float(curve.last)
 
@@ -243,7 +243,7 @@ def _reset(
 
 
 def _without_switches(recording: Recording, gain: float) -> Tracker:
-    """The printed law of a run, kept on its features."""
+    """The printed law of a run, without switching."""
     assert recording.pair is not None, "not opened from a file"
     dt = float(recording.time[1] - recording.time[0])
     law = PaperLaw(gain=gain, switching="none", saturation="zero", solve="plain", restarts=False)
@@ -253,7 +253,7 @@ def _without_switches(recording: Recording, gain: float) -> Tracker:
 def _stepped(
     tracker: Tracker, recording: Recording, paths: tuple[Path, Path], frame: int
 ) -> BothPlaces:
-    """The witness points at a frame's end on the features of the frame before."""
+    """The witness points at the end of a frame on the features of the previous frame."""
     before, now = (_at(recording, paths, k) for k in (frame - 1, frame))
     places = places_at(recording, frame - 1)
     state = tracker.start_from(*before[:2], *places, *before[2:], settle=False)
@@ -272,7 +272,7 @@ def _at(recording: Recording, paths: tuple[Path, Path], frame: int) -> tuple[Any
 
 
 def reset_statement(resets: list[Reset], by: str) -> Statement:
-    """Say whether the projection errors at the switches are those that the resets imply."""
+    """Return whether the projection errors at the switches are those that the resets imply."""
     off = max((reset.off for reset in resets), default=0.0)
     after = [reset.found for reset in resets] or [0.0]
     return Statement(

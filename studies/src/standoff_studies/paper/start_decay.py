@@ -1,4 +1,4 @@
-"""How fast the projection errors of a wrong start fall, beside the gain that a figure names."""
+"""How fast the projection errors of a wrong start decay, compared with the gain of a figure."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from standoff_studies.paper.figure import Statement
 from standoff_studies.paper.resets import error_at
 
 DECAY_PART = 0.01
-"""Part of K by which the rate may differ: Heun's own differs by (K h)²/6, at most 4e-4 here, and
-what is left is the law's error along the motion."""
+"""Fraction of K by which the rate may differ: Heun's method differs by (K h)²/6, at most 4e-4 here,
+and the rest is the law's error along the motion."""
 
 
 def decay_rate(
     recording: Recording, paths: tuple[Path, Path], window: tuple[float, float]
 ) -> float:
-    """Return the rate at which the projection errors fall between two times [1/s]."""
+    """Return the rate at which the projection errors decay between two times [1/s]."""
     frames = [int(np.abs(recording.time - t).argmin()) for t in window]
     sizes = np.array([error_at(recording, paths, frame) for frame in frames])
     with np.errstate(divide="ignore"):  # a mode without parameters has no errors
@@ -32,18 +32,18 @@ def decay_statement(
     gain: float,
     by: str,
 ) -> Statement:
-    """Say whether the errors of a wrong start fall at the gain that the figure names.
+    """Return whether the errors of a wrong start decay at the gain that the figure names.
 
     Parameters
     ----------
     recording : Recording
     paths : (Path, Path)
-        The motions that it was made along.
+        The motions along which it was made.
     window : (float, float)
-        Between which times the decay is measured [s]: within one mode, and before the law's own
-        error along the motion shows.
+        Times between which the decay is measured [s]: within one mode, and before the law's own
+        error along the motion dominates.
     gain : float
-        K, as the figure names it [1/s].
+        K, as named by the figure [1/s].
     by : str
     """
     rate = decay_rate(recording, paths, window)

@@ -1,4 +1,4 @@
-"""How the paper's figures look: colours told apart by all eyes and in grey print, one size."""
+"""The style of the paper's figures: one size, and lines that differ in grey and for any eye."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-# Okabe and Ito's colours. In grey they differ little, so a line's dashes or marker must tell
-# it apart too: colour n goes with DASHES[n] and MARKERS[n].
+# Okabe and Ito's colours. In grey they differ little, so lines also differ by dashes or marker:
+# colour n goes with DASHES[n] and MARKERS[n].
 BLUE, ORANGE, GREEN, PURPLE, RED, SKY, BLACK = (
     "#0072B2",
     "#E69F00",
@@ -24,12 +24,12 @@ COLOURS = (BLUE, RED, GREEN, PURPLE, ORANGE, SKY, BLACK)
 DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (1, 1)))
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 QUIET = "#8A8A8A"
-"""Grey of what stands behind: meshes, Voronoi lines."""
+"""Grey for the background: meshes, Voronoi lines."""
 
 WIDTH = 7.0
-"""Inches of a figure's width: a page's; on a phone a text of FONT points stays readable."""
+"""Width of a figure in inches, that of a page; on a phone, FONT points are still readable."""
 FONT = 10.0
-"""Points of labels and legends."""
+"""Size of labels and legends in points."""
 DPI = 160
 
 SETTINGS: dict[Any, Any] = {
@@ -51,19 +51,19 @@ SETTINGS: dict[Any, Any] = {
 
 
 def line(k: int, **look: Any) -> dict[str, Any]:
-    """Return how line k of several is drawn, its colour and dashes, and what else is given."""
+    """Return colour and dashes of line k of several, with any other options given."""
     return {"color": COLOURS[k], "linestyle": DASHES[k], **look}
 
 
 def marked(k: int, size: float, **look: Any) -> dict[str, Any]:
-    """Return the same with the line's marker, of a size in points."""
+    """Return the same with the line's marker and its size in points."""
     return line(k, marker=MARKERS[k], markersize=size, **look)
 
 
 def new_figure(width: float = WIDTH, height: float = 4.2) -> Figure:
-    """Return an empty figure [inches] with its canvas, laid out so that nothing overlaps.
+    """Return an empty figure [inches] with its canvas, with a layout in which nothing overlaps.
 
-    Axes take the settings of their making: draw within ``with settings():``.
+    Axes use the settings at the time they are made: draw within ``with settings():``.
     """
     figure = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
     FigureCanvasAgg(figure)

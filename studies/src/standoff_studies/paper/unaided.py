@@ -1,4 +1,4 @@
-"""Did anything but the printed law move the witness points? Read from what ran, and counted."""
+"""Whether anything other than the printed law moved the witness points, from the runs' counts."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from standoff_studies.paper.law_words import law_of
 
 
 class Aid(NamedTuple):
-    """What is not the law, counted over some runs: all are 0 in the printed system.
+    """Counts of what is not part of the law, over some runs: all are 0 in the printed system.
 
     Attributes
     ----------
     restarts, searches : int
     solved_parameters : int
-        Parameters that a switch has taken from a solve.
+        Parameters that a switch took from a solve.
     regularised : int
-        Solves that did not take M as it is.
+        Solves that did not use M as it is.
     """
 
     restarts: int
@@ -32,7 +32,7 @@ class Aid(NamedTuple):
 
 
 class Part(NamedTuple):
-    """What one tracker did: the law in its record, its counts in all, and its frames."""
+    """What one tracker did: the law in its record, its total counts, and its frames."""
 
     law: Law
     counts: Counts
@@ -40,7 +40,7 @@ class Part(NamedTuple):
 
     @classmethod
     def of(cls, recording: Recording) -> Part:
-        """Return what a recording tells of its tracker."""
+        """Return what a recording says about its tracker."""
         return cls(law_of(recording), recording.total_counts(), len(recording))
 
 
@@ -50,17 +50,17 @@ def aid_of(parts: Sequence[Part]) -> Aid:
 
 
 def foot_points(parts: Sequence[Part]) -> int:
-    """Return how many foot points the guards have sought, which they do not write."""
+    """Return how many foot points the guards computed, without moving the witness points."""
     return sum(part.counts.foot_points for part in parts)
 
 
 def allowed(law: Law) -> tuple[str, ...]:
-    """Return the options of a law that let something else in, whether or not it came to that.
+    """Return the options of a law that permit something else, whether or not it happened.
 
     Parameters
     ----------
     law : Law
-        As the record of a run has it.
+        As in the record of a run.
     """
     if not isinstance(law, PaperLaw):
         return (f"law={law.name!r}",)
@@ -73,17 +73,16 @@ def allowed(law: Law) -> tuple[str, ...]:
 
 
 def unaided(parts: Sequence[Part], by: str, *, runs: int | None = None) -> Statement:
-    """Say whether nothing but the printed law took part in some runs.
+    """Return whether only the printed law took part in some runs.
 
-    It does not hold if the runs count anything in `Aid`, or if the law in their record is one that
-    may do so.
+    It does not hold if the runs count anything in `Aid`, or if the law in their record permits it.
 
     Parameters
     ----------
     parts : sequence of Part
     by : str
     runs : int, optional
-        That these are parts of; as many as there are if not given.
+        To which these parts belong; as many as there are parts by default.
     """
     aid, feet = aid_of(parts), foot_points(parts)
     options = sorted({option for part in parts for option in allowed(part.law)})

@@ -1,4 +1,4 @@
-"""What one update costs: the law's one time step beside iterations to the same accuracy."""
+"""The cost of an update: the law's single time step compared with iterations of equal accuracy."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ FIRST, UPDATES = 50, 400
 """First frame, and number of updates: simulation E's first stay, face against face, 0 to 1.06 s."""
 
 TARGETS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
-"""Witness errors to which the iterations are taken [length]; the bodies are of size 2."""
+"""Witness errors at which the iterations end [length]; the bodies are of size 2."""
 
 MOST = 2000
-"""Iterations after which one has not come to the accuracy."""
+"""Iterations after which one counts as not having reached the accuracy."""
 
 HALVINGS = 40
-"""Of one step of a line search."""
+"""Greatest number of halvings of a step in a line search."""
 
 ENOUGH = 1e-4
-"""Part of the predicted decrease that a step must bring: Armijo's usual one."""
+"""Fraction of the predicted decrease that a step must achieve: the usual one of Armijo's rule."""
 
 BY = (
     "Eq. (12), Heun and Euler, K = 1000/s, M as it is, exact start; iterations from their last "
     "answer"
 )
-"""What the statements were measured with."""
+"""The law and the setting with which the statements were measured."""
 
 FIRST_ORDER = 0.5
-"""What a first-order evaluation counts in parts of a second-order one: it needs three of a jet's
-six vectors, and no M. It is rather less, since nothing is factored."""
+"""Cost of a first-order evaluation as a fraction of a second-order one: it needs three of a jet's
+six vectors, and no M. In fact it is rather less, since nothing is factored."""
 
 PRICES = {"Newton": 1.0, "quasi-Newton (BFGS)": FIRST_ORDER, "gradient descent": FIRST_ORDER}
-"""Each iteration, and what one of its evaluations counts."""
+"""Each iteration, and the cost of one of its evaluations."""
 
 SPELT = {
     "Newton": "Newton's iteration",
@@ -75,16 +75,16 @@ class Frame(NamedTuple):
 
 
 class Spent(NamedTuple):
-    """What the updates of one method took.
+    """The cost of the updates by one method.
 
     Attributes
     ----------
     evaluations : ndarray of float, shape (UPDATES,)
-        In each update; nan where it did not come to the accuracy.
+        In each update; nan if it did not reach the accuracy.
     error : float
         Greatest witness error after an update [length].
     price : float
-        What an evaluation counts: 1 with M, `FIRST_ORDER` without.
+        Cost of an evaluation: 1 with M, `FIRST_ORDER` without.
     """
 
     evaluations: Array
@@ -93,13 +93,13 @@ class Spent(NamedTuple):
 
     @property
     def cost(self) -> float:
-        """An update's cost in the mean, in second-order evaluations."""
+        """Mean cost of an update, in second-order evaluations."""
         return self.price * float(np.nanmean(self.evaluations))
 
 
 @cache
 def frames() -> tuple[Frame, ...]:
-    """The frames of the updates, and the one before."""
+    """The frames of the updates, and the one before them."""
     exact, numbers = SIMULATION.exact, np.arange(FIRST - 1, FIRST + UPDATES + 1)
     rows = motion_along(*SIMULATION.paths, np.asarray(numbers * SIMULATION.step))
     points = np.stack([exact.point_a, exact.point_b], axis=1)[numbers[1:]]
@@ -121,7 +121,7 @@ def start() -> tuple[PairSystems, Array]:
 
 
 class Problem:
-    """Distance at one frame, with its evaluations counted; ``off`` asks for no evaluation."""
+    """Distance at one frame, with a count of evaluations; ``off`` needs no evaluation."""
 
     def __init__(self, systems: PairSystems, frame: Frame) -> None:
         self.systems, self.frame, self.count = systems, frame, 0
@@ -131,7 +131,7 @@ class Problem:
         return self.systems.at(q, self.frame.flat_a, self.frame.flat_b, *self.frame[2:4])
 
     def off(self, q: Array) -> float:
-        """How far the worse witness point is off the closest one [length]."""
+        """The greater distance of a witness point from the closest point [length]."""
         a, b = pair()
         exact = SIMULATION.exact
         places = (
@@ -224,7 +224,7 @@ def law_spent(integrator: str) -> Spent:
 def spent(method: str, target: float) -> Spent:
     """An iteration's updates, each from the last answer, to a witness error [length].
 
-    When it has come there is told to it: no stopping test could end it sooner.
+    It ends as soon as it has reached that error, so no stopping test could end it earlier.
     """
     systems, q = start()
     memory: dict[str, Any] = {}
@@ -235,7 +235,7 @@ def spent(method: str, target: float) -> Spent:
         try:
             q = METHODS[method](problem, q, target, memory)
         except ArithmeticError:
-            # told as not arrived; the next update begins at this one's exact answer
+            # reported as not arrived; the next update begins at this one's exact answer
             counts.append(np.nan)
             continue
         counts.append(float(problem.count))
@@ -268,7 +268,7 @@ def update_cost() -> Artwork:
 
 
 def table() -> dict[str, list[str]]:
-    """Evaluations in the mean and at most, and what they count, by method and accuracy."""
+    """Mean and greatest number of evaluations, and their cost, by method and accuracy."""
     rows = [
         (LAWS[integrator], f"{law_spent(integrator).error:.1e}", law_spent(integrator))
         for integrator in STAGES
@@ -301,7 +301,7 @@ def same_accuracy() -> float:
 
 
 def statements() -> tuple[Statement, ...]:
-    """The claims on one update, with a verdict."""
+    """The claims about an update, with a verdict."""
     return (_one_step(), *(_cheaper_than(name) for name in PRICES), _where_less_is_asked())
 
 
@@ -327,11 +327,11 @@ WHY = {
     "same, while one of BFGS may take several times its mean",
     "gradient descent": "",
 }
-"""What is to be said of each comparison."""
+"""A remark on each comparison."""
 
 
 def _cheaper_than(name: str) -> Statement:
-    """The law's update beside an iteration's, by both integrators: a verdict if they agree."""
+    """The law's update against an iteration's, by both integrators: a verdict if they agree."""
     error, laws = same_accuracy(), [law_spent(integrator) for integrator in STAGES]
     got = spent(name, error)
     cheaper = [got.cost > law.cost for law in laws]

@@ -1,4 +1,4 @@
-"""The variants that the paper prints, beside the default: saturation, switching, lower gain."""
+"""The variants that the paper prints, compared with the default: saturation, switching, gain."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ RADIUS, HEIGHT = 1.6, 0.4
 """Of the point's circle about the lens's axis [length]."""
 TURN = 2.0 * np.pi
 SLOW_DOWN = 0.8
-"""How far the point's speed swings about its mean, in parts of it: fast three times a turn."""
+"""How much the point's speed varies, as a fraction of its mean: fast three times a turn."""
 SETTLED = 0.05
 """Time [s] after the wrong start from which errors count."""
 WRONG_STARTS = ((0.5, 0.2), (0.9, 0.2), (0.15, 0.8))
-"""Parameters (u, v) on face 0 where the witness point is put at first, far from where it is due."""
+"""Parameters (u, v) on face 0 where the witness point starts, far from where it should be."""
 LOW_GAIN = 4.0
-"""Gain [1/s] at which the wrong starts still show at the first switches."""
+"""Gain [1/s] at which the wrong starts still have an effect at the first switches."""
 WANTED = 5e-3
-"""Projection error [length] that the lower gain computed online is to keep."""
+"""Projection error [length] that the lower gain computed online should keep."""
 
 BEYOND, RAISED = 60, 0.35
-"""The point at rest: frames of the motion after it has passed an edge's plane, and its height over
+"""The point at rest: frames of the motion after it has passed an edge's plane, and its height above
 the circle [length]."""
 
 FULL_SPEED = 2.0
@@ -58,11 +58,11 @@ VARIANTS: dict[str, dict[str, Any]] = {
         "feedback": so.feedback.MotionGain(WANTED, least=1.0),
     },
 }
-"""Name of each: the options of the paper's law in which it differs from the default."""
+"""For each name, the options of the paper's law in which it differs from the default."""
 
 
 TOLD = "from wrong starts on a face"
-"""What the record of the trackers does not hold."""
+"""What the record of the trackers does not contain."""
 
 
 class Run(NamedTuple):
@@ -72,13 +72,13 @@ class Run(NamedTuple):
     ----------
     time : ndarray [s]
     error : ndarray
-        Of the witness point on the lens [length].
+        Error of the witness point on the lens [length].
     feature : list of so.Feature
     switches : list of (time [s], str)
         The feature entered.
     saturations, evaluations : int
     gain : ndarray
-        That the law used [1/s]; 0 at the start.
+        The gain that the law used [1/s]; 0 at the start.
     tracker : so.Tracker
     """
 
@@ -138,7 +138,7 @@ def run(name: str, start: tuple[float, float] = WRONG_STARTS[0], gain: float | N
 
 
 class AtRest(NamedTuple):
-    """Distance after a long time over a point at rest beyond an edge, and the true one [length]."""
+    """Distances after a long time to a point at rest beyond an edge, and the true one [length]."""
 
     saturated: float
     printed: float
@@ -167,21 +167,21 @@ def edge_at_rest() -> AtRest:
 
 
 def wrong_frames(one: Run) -> int:
-    """Frames after the start whose feature is not the true one's."""
+    """Number of frames after the start whose feature is not the true one."""
     first = round(SETTLED / STEP)
     pairs = zip(one.feature[first:], truth()[first:], strict=True)
     return sum(found != exact.feature_a for found, exact in pairs)
 
 
 class Spread(NamedTuple):
-    """How the switches of one feature move with the start, at a low gain.
+    """How the switches depend on the start, at a low gain.
 
     Attributes
     ----------
     same : bool
         Every start has the same switches in the same order.
     entries : list of float
-        Of each feature that all runs enter: how far its first entry moves [s], by frames.
+        For each feature that all runs enter: by how much its first entry varies [s], in frames.
     """
 
     same: bool
@@ -189,7 +189,7 @@ class Spread(NamedTuple):
 
 
 def spread(switching: str) -> Spread:
-    """How the switches move with the start, at a low gain."""
+    """How the switches depend on the start, at a low gain."""
     name = {
         "voronoi": "printed: zero components, Voronoi tests",
         "multipliers": "default: hold the edge, multipliers",
@@ -234,7 +234,7 @@ def variants() -> Artwork:
 
 
 def by() -> str:
-    """Return what the statements were measured with: each variant's own law."""
+    """Return the law with which the statements were measured: that of each variant."""
     return law_words(*(run(name).tracker for name in VARIANTS), told=TOLD)
 
 
@@ -263,7 +263,7 @@ def run_table() -> dict[str, Any]:
 
 
 def statements() -> tuple[Statement, ...]:
-    """What the printed variants are to do, beside what they did."""
+    """What the printed variants should do, and what they did."""
     first = round(SETTLED / STEP)
     default, printed = (run(name) for name in list(VARIANTS)[:2])
     rest = edge_at_rest()
@@ -343,7 +343,7 @@ def _line(axes: Axes, name: str, k: int, values: Callable[[Run], Array]) -> None
 
 
 def _shade_edges(axes: Axes) -> None:
-    """Grey where the closest point is on an edge."""
+    """Shade the times when the closest point is on an edge."""
     on_edge = np.array([x.feature_a.kind == "edge" for x in truth()], dtype=float)
     changes = np.flatnonzero(np.diff(on_edge, prepend=0.0, append=0.0))
     for low, high in changes.reshape(-1, 2):

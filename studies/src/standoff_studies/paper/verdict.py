@@ -19,10 +19,10 @@ CURVE_STEPS = (1e-3, 2e-3, 5e-3, 1e-2, 2e-2, 33e-3)
 """Frame times of the picture [s]."""
 
 WRONG = (-1.0, -0.5, -0.2, -0.05, 0.0, 0.05, 0.2, 0.5, 1.0)
-"""Errors of the twists: -1 takes them for zero, 1 for twice as long."""
+"""Relative errors of the twists: with -1 they are zero, with 1 twice as long."""
 
 TABLED = (-1.0, -0.2, 0.0, 0.2, 1.0)
-"""Those that the table shows."""
+"""The errors that the table shows."""
 
 WRONG_STEP = 1e-2
 """Frame time [s] at which wrong twists are drawn; the table has all three."""
@@ -31,7 +31,7 @@ WITH_TWISTS = ("Heun, K h = 1 (paper)", "RK4, K h = 1", "PC", "PC2")
 """Laws that use the twists."""
 
 FLOOR = 1e-15
-"""Witness error [length] below which the picture does not look: roundoff of bodies of size 2."""
+"""Least witness error [length] in the picture: roundoff of bodies of size 2."""
 
 PAPER = "Heun, K h = 1 (paper)"
 AT = "at 1, 10 and 33 ms"
@@ -44,11 +44,11 @@ FIRST_STYLE = {"Heun": 0, "Euler": 1, "RK4": 2, "one": 3, "two": 4, "secant": 5,
 
 
 TOLD = "two untiled ellipsoids, from the closest points"
-"""What the record of the trackers does not hold."""
+"""What the record of the trackers does not contain."""
 
 
 class Measured(NamedTuple):
-    """One law at one frame time: greatest witness error [length], evaluations a frame, tracker."""
+    """A law at one frame time: greatest witness error [length], evaluations per frame, tracker."""
 
     error: float
     evaluations: float
@@ -59,8 +59,9 @@ class Measured(NamedTuple):
 def accuracies() -> dict[str, dict[float, Measured]]:
     """Each law's accuracy by frame time, with true twists.
 
-    An evaluation is one of the second-order system. The paper's law needs one more to give the
-    witness points' velocities at the answer; it is not counted, as the law itself does not.
+    An evaluation is one of the second-order system. The paper's law needs another one for the
+    witness points' velocities at the answer, which is not counted because the law does not need
+    them.
     """
     found: dict[str, dict[float, Measured]] = {}
     for name, followed in LAWS.items():
@@ -87,7 +88,7 @@ def with_wrong_twists() -> dict[str, dict[tuple[float, float], float]]:
 
 @cache
 def frame_times() -> dict[str, float]:
-    """Time of a frame [s] of each law at 1 ms, in the compiled loop, certificate included."""
+    """Time per frame [s] of each law at 1 ms, in the compiled loop, including the certificate."""
     return {name: frame_time(followed, STEPS[0]) for name, followed in LAWS.items()}
 
 
@@ -123,13 +124,13 @@ def verdict() -> Artwork:
 
 
 def by() -> str:
-    """Return what the statements were measured with: each law, at each frame time."""
+    """Return the laws with which the statements were measured: each law, at each frame time."""
     trackers = [got.tracker for rows in accuracies().values() for got in rows.values()]
     return law_words(*trackers, told=TOLD)
 
 
 def accuracy_table() -> dict[str, list[str]]:
-    """Law, evaluations and time a frame, and errors [length] at 1, 10 and 33 ms."""
+    """Law, evaluations and time per frame, and errors [length] at 1, 10 and 33 ms."""
     times = frame_times()
     rows = accuracies()
     table = {
@@ -168,12 +169,12 @@ def curve_table() -> dict[str, list[str] | list[float]]:
 
 
 def statements() -> tuple[Statement, ...]:
-    """What the paper claims for its law beside what was measured, and what it leaves open."""
+    """What the paper claims about its law, what was measured, and what it leaves open."""
     return (*_claims(), *_own())
 
 
 def _written(name: str) -> str:
-    """A law's name in one line, without an abbreviation."""
+    """A law's name on one line, without abbreviations."""
     return SPELT.get(name, name).replace("\n", " ")
 
 
@@ -183,7 +184,7 @@ def _errors(name: str) -> list[float]:
 
 
 def _times(name: str, other: str) -> list[float]:
-    """How many times as large a law's errors are as another's, at `STEPS`."""
+    """How many times larger a law's errors are than another's, at `STEPS`."""
     return [a / b for a, b in zip(_errors(name), _errors(other), strict=True)]
 
 

@@ -1,5 +1,5 @@
-"""What is said of a statement: it was measured and holds or not, it is true by construction, it is
-our own, or there is no verdict."""
+"""The verdict on a statement: it was measured and holds or not, it is true by construction, it is
+our own, or there is none."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from standoff_studies.paper.figure import NOTHING, Statement
 
 
 class Verdict(Enum):
-    """The kinds of statements, each with a sign and words, so that no colour is needed."""
+    """The verdicts, each with a sign and words, so that no colour is needed."""
 
     HOLDS = "holds", "✓", "holds"
     FAILS = "does_not_hold", "✗", "does not hold"
@@ -25,7 +25,7 @@ class Verdict(Enum):
 
     @classmethod
     def of(cls, statement: Statement) -> Verdict:
-        """Return a statement's verdict; a measurement of our own has none of the paper's."""
+        """Return a statement's verdict; a measurement of our own has a separate one."""
         if statement.stated == NOTHING:
             return cls.OWN
         if statement.constructed and statement.holds:

@@ -15,7 +15,7 @@ from standoff_studies.paper.drawing import placed
 from standoff_studies.paper.drawing_3d import View, posed
 
 PIECES = 8
-"""Pieces of a surface along its rays: painted in order with what stands before and behind."""
+"""Pieces of a surface along its rays, sorted with what is in front and behind when painted."""
 
 
 def draw_planar_regions(
@@ -37,16 +37,16 @@ def draw_planar_regions(
     regions : VoronoiRegions
         Of a planar body.
     pose : Pose, optional
-        Where the body is in the world; at home by default.
+        Pose of the body in the world; the identity by default.
     reach : float, optional
         Length of the rays; the regions' own by default.
     colour : str
     inside : bool
         Draw the medial axis too?
     label : str
-        Before "external lines" and "medial axis" in a legend; none if empty.
+        Before "external lines" and "medial axis" in a legend; no legend if empty.
     **line
-        What matplotlib's ``Axes.plot`` takes, for both.
+        Options of matplotlib's ``Axes.plot``, for both.
     """
     look: dict[str, Any] = {"color": colour, "linewidth": 1.1, "zorder": 1.9} | line
     length = regions.reach if reach is None else reach
@@ -75,7 +75,7 @@ def draw_space_regions(
     colours: tuple[str, str] = (style.ORANGE, style.BLUE),
     opacity: float = 0.35,
 ) -> None:
-    """Add the surfaces between a spatial body's regions, translucent, with a line round each.
+    """Add the surfaces between a spatial body's regions, translucent, with a line around each.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def draw_space_regions(
     regions : VoronoiRegions
         Of a spatial body.
     pose : Pose, optional
-        At home by default.
+        The identity by default.
     reach : float, optional
         Length of the rays; the regions' own by default.
     colours : (str, str)

@@ -1,4 +1,4 @@
-"""Key "voronoi": regions computed before any run, of the planar body and of the lens."""
+"""Key "voronoi": regions of the planar body and of the lens, computed before any run."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ from standoff_studies.paper.voronoi_drawing import draw_planar_regions, draw_spa
 REACH = 0.8
 """Length of the drawn rays [length]."""
 POINTS = 100
-"""Random points around each body where two ways to the nearest feature are compared."""
+"""Random points around each body at which two ways to find the nearest feature are compared."""
 DENSE = 5001
 """Samples of a curve for the distances by brute force."""
 SQUARE = 1e-12
-"""A line this near to its curve's normal is on it [rad]: roundoff."""
+"""A line this near to its curve's normal is along it [rad]: roundoff."""
 SAME = 1e-7
-"""Two distances that differ less are equal, where one is to chords of such samples [length]."""
+"""Two distances that differ by less are equal if one is to chords of such samples [length]."""
 EXACT = 1e-11
 """Largest error against a closed form [length]."""
 
 
 LAW = "so.voronoi_regions and so.distance, before any run: no law"
-"""What the statements say they were measured with."""
+"""The law with which the statements were measured: none."""
 
 
 class Study(NamedTuple):
@@ -53,10 +53,10 @@ class Study(NamedTuple):
         Largest difference between a depth of the axis and the distance to either of its two
         curves, or to the nearest curve, by dense samples [length].
     agreed : (int, int)
-        Of `POINTS` points outside the planar body and the lens, those where ``feature_at`` and
-        ``so.distance`` name the same feature.
+        At how many of `POINTS` points outside the planar body, and outside the lens, ``feature_at``
+        and ``so.distance`` name the same feature.
     ellipse_error, half_disc_error : float
-        Of two medial axes against their closed forms [length].
+        Errors of two medial axes against their closed forms [length].
     """
 
     planar: VoronoiRegions
@@ -69,7 +69,7 @@ class Study(NamedTuple):
 
 @cache
 def study() -> Study:
-    """Compute the regions and what is said of them."""
+    """Compute the regions and the numbers about them."""
     planar = voronoi_regions(planar_body(), reach=REACH)
     lens = voronoi_regions(lens_of_patches(), reach=REACH)
     return Study(
@@ -95,7 +95,7 @@ def _worst_depth(regions: VoronoiRegions) -> float:
 
 
 def _to_chords(point: Array, along: Array) -> float:
-    """Distance of a point (2,) to the chords between samples (n, 2) [length]."""
+    """Distance from a point (2,) to the chords between samples (n, 2) [length]."""
     chords, out = np.diff(along, axis=0), point - along[:-1]
     shares = (out * chords).sum(axis=1) / (chords * chords).sum(axis=1)
     miss = out - np.clip(shares, 0.0, 1.0)[:, None] * chords
@@ -103,7 +103,7 @@ def _to_chords(point: Array, along: Array) -> float:
 
 
 def _agreed(regions: VoronoiRegions) -> int:
-    """At how many of `POINTS` random points outside do both ways name one feature?"""
+    """At how many of `POINTS` random points outside do both ways name the same feature?"""
     body, point, rng = regions.body, shapes.point(), np.random.default_rng(1)
     same = asked = 0
     while asked < POINTS:
@@ -118,7 +118,7 @@ def _agreed(regions: VoronoiRegions) -> int:
 
 
 def _ellipse_error(a: float, b: float) -> float:
-    """Of the axis of an ellipse with semi-axes a > b: ends at ±(a - b²/a), depth b²/a there."""
+    """For the axis of an ellipse with semi-axes a > b: ends at ±(a - b²/a), with depth b²/a."""
     (branch,) = voronoi_regions(shapes.planar_loop([ConicArc((0, 0), (a, 0), (0, b))])).medial_axis
     ends = np.sort(branch.points[[0, -1], 0])
     found = np.concatenate([ends, branch.depth[[0, -1]], branch.points[:, 1]])
@@ -128,7 +128,7 @@ def _ellipse_error(a: float, b: float) -> float:
 
 
 def _half_disc_error() -> float:
-    """Of the axis of half a unit disc: the parabola y = (1 - x²)/2."""
+    """For the axis of half a unit disc: the parabola y = (1 - x²)/2."""
     body = shapes.planar_loop([ConicArc((0, 0), (1, 0), (0, 1), 0.0, np.pi), Line((-1, 0), (1, 0))])
     (branch,) = voronoi_regions(body).medial_axis
     x, y = branch.points[:, 0], branch.points[:, 1]
@@ -143,9 +143,9 @@ def regions() -> Artwork:
             "Above: the planar body with the six lines that separate the regions of its curves "
             "C0 to C2 and vertices V0 to V2 outside (dashed), and its medial axis inside "
             "(dash-dotted); each region bears the name of its feature. Below: the lens with the "
-            "surfaces between its external regions. Over an edge stands a wedge between two "
-            "ruled surfaces (orange), square to the two faces there; over a vertex a cone "
-            "with three plane sides (blue); the rest belongs to the faces. Surfaces are cut off "
+            "surfaces between its external regions. Above an edge is a wedge between two ruled "
+            "surfaces (orange), normal to the two faces there; above a vertex, a cone with three "
+            "plane sides (blue); the rest belongs to the faces. Surfaces are cut off "
             f"{REACH:g} length from the body."
         ),
         text=(
@@ -185,7 +185,7 @@ def _statements(found: Study) -> tuple[Statement, ...]:
         Statement(
             "Fig. 8",
             "six external Voronoi lines, drawn before the run",
-            f"{len(found.planar.external)} lines, square to their curves within "
+            f"{len(found.planar.external)} lines, perpendicular to their curves within "
             f"{max(squareness, 1e-16):.0e} rad",
             len(found.planar.external) == 6 and squareness < SQUARE,
         ),

@@ -23,19 +23,19 @@ ANIMATION = ".webp"
 """Animated WebP: every browser since 2020 shows it, in true colours at a third of a GIF's size."""
 
 MOST_PIXELS = 900
-"""Longest side of an animation's frame: more is not seen in a report, and each frame costs it."""
+"""Longest side of an animation's frame in pixels: more would not be visible in a report."""
 
 ENCODING = 1
-"""Effort of the encoder, 0 to 6: as small as with 4, in two fifths of the time; 0 is four times as
-large."""
+"""Effort of the encoder, 0 to 6: files as small as with 4, in two fifths of the time; with 0 they
+are four times as large."""
 
 METADATA = b"standoff"
-"""Key of a table's metadata under which the JSON text stands."""
+"""Key of a table's metadata that contains the JSON text."""
 FORMAT = "standoff-paper-table"
 
 
 def stem(entry: Entry) -> str:
-    """Return what the names of a figure's files begin with: "figure-07", "voronoi"."""
+    """Return the beginning of the names of a figure's files: "figure-07", "voronoi"."""
     return f"figure-{int(entry.key):02d}" if entry.key.isdecimal() else entry.key
 
 
@@ -45,7 +45,7 @@ def table_bytes(entry: Entry, name: str, columns: Mapping[str, ArrayLike]) -> by
     Raises
     ------
     ValueError
-        If its columns are not of one length, or not flat.
+        If its columns are not of equal length, or not flat.
     """
     arrays = {column: np.asarray(values) for column, values in columns.items()}
     shapes = {column: array.shape for column, array in arrays.items()}
@@ -63,7 +63,7 @@ def table_bytes(entry: Entry, name: str, columns: Mapping[str, ArrayLike]) -> by
 
 
 def picture_bytes(artwork: Artwork) -> dict[str, bytes]:
-    """Draw a figure; returns the file of each ending in `PICTURES`, the same at every run."""
+    """Draw a figure; return the file for each extension in `PICTURES`, the same at every run."""
     software = f"Standoff {__version__}"
     metadata: dict[str, dict[str, str | None]] = {
         ".png": {"Software": software},
@@ -80,12 +80,12 @@ def picture_bytes(artwork: Artwork) -> dict[str, bytes]:
 
 
 def animation_bytes(animation: Animation) -> bytes:
-    """Draw a moving picture, frame by frame.
+    """Draw an animation, frame by frame.
 
     Raises
     ------
     ValueError
-        If it has no frame.
+        If it has no frames.
     """
     if animation.frames < 1:
         raise ValueError(f"an animation needs a frame; this one has {animation.frames}")
@@ -117,7 +117,7 @@ def animation_bytes(animation: Animation) -> bytes:
 def files_of(
     entry: Entry, artwork: Artwork, folder: Path, animations: bool = True
 ) -> dict[Path, Writer]:
-    """Draw a figure; returns what writes its files, to be written whole or not at all.
+    """Draw a figure; return what writes its files, to be written whole or not at all.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def files_of(
     folder : Path
         Where they go.
     animations : bool
-        Draw the moving picture too, where there is one.
+        Also draw the animation, if there is one.
     """
     contents = {f"{stem(entry)}{end}": data for end, data in picture_bytes(artwork).items()}
     for name, columns in artwork.tables.items():

@@ -1,7 +1,7 @@
-"""The adversary, round by round: places and directions that no search would bring, wild trackers.
+"""The adversary, in rounds: places and directions that no search would choose, and wild trackers.
 
-A round is a scene of known distance, about which the certificate alone is asked many times; one
-round in WILD_EVERY also has a tracker led astray. A seed's round of a number is always the same.
+A round is a scene of known distance, for which only the certificate is queried, many times; one
+round in WILD_EVERY also has a tracker led astray. Seed and number determine a round.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from standoff_studies.soak.shapes import Shape
 from standoff_studies.soak.tally import Tally
 
 CASES = 200
-"""Cases of a round beside a pair of the soak."""
+"""Cases of a round that accompanies a pair of the soak."""
 
 WILD_EVERY = 40
 """Rounds from one with a wild run to the next: such a run takes as long as thousands of cases."""
@@ -29,11 +29,11 @@ PER_DRAWER = 64
 """Rounds that share bodies."""
 
 SCENES, WALKS = 4, 5
-"""Streams of a seed's random numbers, beside those of the soak's pairs."""
+"""Streams of a seed's random numbers, different from those of the soak's pairs."""
 
 
 class Breach(NamedTuple):
-    """A check of a round that failed.
+    """A failed check of a round.
 
     Attributes
     ----------

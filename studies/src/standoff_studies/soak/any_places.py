@@ -1,12 +1,10 @@
-"""A compiled loop that asks the certificate at any place and along any direction.
+"""A compiled loop that queries the certificate at any place and along any direction.
 
-The kernels that bound, name and judge are called by themselves: no search has brought the witness
-points there. A row of uniform numbers says which features, where on them, and which direction.
+The kernels that compute bounds and statuses are called directly: no search has brought the witness
+points there. A row of uniform numbers selects the features, places on them, and the direction.
 """
 
 from math import inf
-
-from numba import njit
 
 from standoff.kernels.algebra.rigid import relative_pose
 from standoff.kernels.algebra.vectors import axpy, cross, dot, scale, sub, unit
@@ -26,15 +24,16 @@ from standoff.kernels.pair.certificate import certify, certify_along, cones_at, 
 from standoff.kernels.pair.certified import UNCERTIFIED, on_feature, weigh
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.values import Found, Pair, Side, together
+from standoff_studies.own_kernels import own_kernel
 
 PER_SIDE = 8
-"""Uniform numbers that a side takes."""
+"""Uniform numbers used by a side."""
 
 PER_HINT = 7
-"""Those that a direction takes."""
+"""Uniform numbers used by a direction."""
 
 N_DRAWN = 2 * PER_SIDE + PER_HINT + 5
-"""All of a case."""
+"""Uniform numbers of a case."""
 
 D, LOWER, NORMAL, BLUR, OUTCOME, ON, PLACE, HINT, HOW, STATUS = 0, 1, 2, 5, 6, 7, 8, 16, 19, 20
 TOLERANCE, LENIENT, CUT, SPAN, NEAREST, DIMENSIONS, N_ASKED = 21, 22, 23, 24, 25, 26, 27
@@ -48,17 +47,14 @@ ALONG = 100.0
 """Added to HOW where `certify_along` was asked, not `weigh`, which asks `certify`."""
 
 LEAST_POWER = 16.0
-"""Small angles and parts go down to 1e-16, in equal shares of each order of magnitude."""
+"""Small angles and parts go down to 1e-16, with equal shares of each order of magnitude."""
 
 ULP = 2.220446049250313e-16
 
-loop = njit(error_model="numpy", nogil=True)
-"""As the kernels are compiled; it is made once a process, in some ten seconds."""
 
-
-@loop
+@own_kernel
 def part_of(x):
-    """A part of a range, 0 to 1: often an end, exactly or nearly."""
+    """A fraction of a range, 0 to 1: often an end, exactly or nearly."""
     if x < 0.12:
         return 0.0
     if x < 0.24:
@@ -72,18 +68,18 @@ def part_of(x):
     return (x - 0.6) / 0.4
 
 
-@loop
+@own_kernel
 def beside(w, x):
-    """A part, now and then outside its range by roundoff, as a walk may leave it."""
+    """A fraction, sometimes outside its range by roundoff, as after a step of a search."""
     if x < 0.9:
         return w
     outside = 10.0 ** (-12.0 - 8.0 * (x - 0.9) / 0.1)
     return -outside if w < 0.5 else 1.0 + outside
 
 
-@loop
+@own_kernel
 def on_boundary(ints, reals, chart, x, y):
-    """A point (u, v) of a chart's trimming loop; its middle where there is none."""
+    """A point (u, v) on a chart's trimming loop; the chart's middle if there is none."""
     r = chart_record(ints, chart)
     count = ints[r + L.CHART_N_COEDGES]
     if count == 0:
@@ -96,9 +92,9 @@ def on_boundary(ints, reals, chart, x, y):
     return u, v
 
 
-@loop
+@own_kernel
 def any_side(ints, reals, drawn):
-    """A feature of a body and parameters on it, or, now and then, beside it."""
+    """A feature of a body and parameters on it, or, sometimes, next to it."""
     counts = (ints[L.N_FACES], ints[L.N_EDGES], ints[L.N_VERTICES])
     kinds = (counts[0] > 0) + (counts[1] > 0) + (counts[2] > 0)
     which = min(int(drawn[0] * kinds), kinds - 1)
@@ -130,36 +126,37 @@ def any_side(ints, reals, drawn):
     return Side(index, chart, u + w * (x - u), v + w * (y - v))
 
 
-@loop
+@own_kernel
 def on_sphere(x, y):
-    """The unit vector of two uniform numbers; often an axis."""
+    """The unit vector for two uniform numbers; often an axis."""
     if x < 0.15:
         sign = 1.0 if x < 0.075 else -1.0
         k = min(int(3.0 * y), 2)
         return (sign if k == 0 else 0.0, sign if k == 1 else 0.0, sign if k == 2 else 0.0)
     z = 2.0 * (x - 0.15) / 0.85 - 1.0
     r = max(1.0 - z * z, 0.0) ** 0.5
-    # by the half angle's tangent: no need of cos and sin
+    # by the tangent of the half angle, without cos and sin
     t = 2.0 * y - 1.0
     return unit((r * (1.0 - t * t), r * 2.0 * t, z * (1.0 + t * t)))
 
 
-@loop
+@own_kernel
 def turned(n, towards, angle):
     """A unit vector turned towards another by an angle (its tangent)."""
     aside = unit(axpy(-dot(n, towards), n, towards))
     return unit(axpy(angle, aside, n))
 
 
-@loop
+@own_kernel
 def upright(jet):
     """The normal of a face's jet, an edge's tangent, zero at a vertex."""
     return unit(cross(jet[1], jet[2])) if dot(jet[2], jet[2]) > 0.0 else unit(jet[1])
 
 
-@loop
+@own_kernel
 def made_of(what, jet_a, jet_b, known, x):
-    """What a direction is made of: the points' own, a tangent, a normal, one square to two."""
+    """The vector from which a direction is made: between the points, a tangent, a normal, or one
+    perpendicular to two."""
     gap = unit(sub(jet_b[0], jet_a[0]))
     if what == 1:
         return gap
@@ -174,9 +171,9 @@ def made_of(what, jet_a, jet_b, known, x):
     return unit(cross(gap, jet_b[1] if x < 0.5 else jet_a[1]))
 
 
-@loop
+@own_kernel
 def some_direction(jets, known, drawn):
-    """(what it was made of, a direction): random, or along, square to or near what there is.
+    """(what it was made from, a direction): random, or along, perpendicular to or near the vector.
 
     `known`: the normal by which the pair was built.
     """
@@ -189,23 +186,23 @@ def some_direction(jets, known, drawn):
         n = turned(n, on_sphere(drawn[4], drawn[1]), angle)
     if drawn[5] < 0.3:
         n = scale(-1.0, n)
-    if drawn[6] < 0.25:  # not unit, by roundoff
+    if drawn[6] < 0.25:  # not of unit length, by roundoff
         n = scale(1.0 + (int(drawn[6] * 36.0) - 4) * ULP, n)
     return what, n
 
 
-@loop
+@own_kernel
 def misses_cone(ints, reals, feature, cone, n):
-    """How far the normal that `nearest_normal` gives misses being one: square to the edge."""
+    """How far the result of `nearest_normal` is from perpendicular to the edge."""
     near, _ = nearest_normal(ints, reals, feature, cone, n)
     if dimension(ints, feature) != 1 or dot(near, near) < 0.5:
         return 0.0
     return abs(dot(near, cone.tangent))
 
 
-@loop
+@own_kernel
 def ask(ints_a, reals_a, ints_b, reals_b, motion, known, drawn, asked):
-    """Ask the certificate in every case of `drawn` (n, N_DRAWN), into `asked` (n, N_ASKED).
+    """Query the certificate in every case of `drawn` (n, N_DRAWN), into `asked` (n, N_ASKED).
 
     motion: poses of both as the kernels read them; known (3,): the normal by which the pair was
     built, in world axes.
@@ -228,7 +225,7 @@ def ask(ints_a, reals_a, ints_b, reals_b, motion, known, drawn, asked):
         jets = pair_jets(pair, pose, place)
         rest = row[2 * PER_SIDE + PER_HINT :]
         what, n = some_direction(jets, square_to, row[2 * PER_SIDE :])
-        if planar:  # a planar pair's plane is its world
+        if planar:  # everything of a planar pair is in its plane
             n = unit((n[0], n[1], 0.0)) if n[0] != 0.0 or n[1] != 0.0 else (1.0, 0.0, 0.0)
         how = float(what)
         tolerance = inf if rest[0] < 0.1 else 10.0 ** (-11.0 + 7.0 * rest[1])
@@ -243,7 +240,7 @@ def ask(ints_a, reals_a, ints_b, reals_b, motion, known, drawn, asked):
             if rest[2] < 0.5:
                 n = (0.0, 0.0, 0.0)
             elif rest[2] < 0.55:
-                n = scale(0.5 * 10.0 ** (-300.0 * rest[1]), n)  # none, but not quite 0
+                n = scale(0.5 * 10.0 ** (-300.0 * rest[1]), n)  # no direction, but not quite 0
             _, _, _, blur = certify(pair, pose, place, jets, n)
             outcome, d, lower, normal = weigh(pair, pose, place, jets, n, tolerance)
             found = Found(outcome, place, d, lower, d, normal)

@@ -11,13 +11,13 @@ from standoff_studies.soak.options import SoakOptions
 class SoakCommand(SoakOptions):
     """Track random pairs and check every answer.
 
-    By support functions; it stops at the first failure.
+    The checks use support functions; it stops at the first failure.
 
-    Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 a check failed.
+    Exit codes: 0 done; 1 files could not be written; 2 bad input; 3 a check failed.
     """
 
     def run(self) -> int:
-        """Do it; see `standoff_studies.soak.command.run_soak`."""
+        """Run it; see `standoff_studies.soak.command.run_soak`."""
         from standoff_studies.soak.command import run_soak
 
         return run_soak(self)

@@ -1,4 +1,4 @@
-"""The soak's cases: the pair of a seed and a number, its motion and the tracker's options."""
+"""The soak's cases: the pair for a seed and a number, its motion and the tracker's options."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from standoff_studies.soak.shapes import Made, Shape, draw_shape, made
 Rng = np.random.Generator
 
 DRAWER = 8
-"""Shapes that pairs share: a body takes longer to make than to track for a while."""
+"""Number of shapes that pairs share, since making a body takes longer than tracking it."""
 
 PER_DRAWER = 64
 """Pairs from one drawer."""
@@ -34,7 +34,7 @@ into one another by a fifth of the lesser body at most; around one another's mid
 
 @dataclass(frozen=True)
 class Case:
-    """One pair of the soak; `number` and `seed` tell where it came from.
+    """One pair of the soak, determined by `number` and `seed`.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Case:
     a, b : Shape
     motion : Motion
     options : dict
-        The law's, and its name, where they are not the defaults.
+        The name and the options of the law, if they are not the defaults.
     frames : int
     """
 
@@ -68,12 +68,12 @@ class Case:
 
     @classmethod
     def of(cls, facts: dict[str, Any]) -> Case:
-        """Return the case of plain data.
+        """Return the case from plain data.
 
         Raises
         ------
         KeyError, TypeError
-            It is none.
+            It is not a case.
         """
         parts = {
             "a": Shape(**facts["a"]),
@@ -108,7 +108,7 @@ def drawer_of(seed: int, number: int) -> tuple[Made, ...]:
 
 
 def _draw_options(rng: Rng) -> dict[str, Any]:
-    """Mostly the defaults; now and then others, and the paper's law."""
+    """Mostly the defaults; sometimes other options, and the paper's law."""
     options: dict[str, Any] = {}
     if rng.random() < 0.3:
         names = ["feedforward-2", "feedforward", "secant", "none"]
@@ -171,7 +171,7 @@ def _shown(rng: Rng, motion: Motion, size: float, frames: int) -> Motion:
 def _shift(
     rng: Rng, family: str, a: Made, b: Made, frames: Frames, size: float, least: float
 ) -> Array:
-    """How far B's path is moved, (3,), so that the pair is as its family says."""
+    """The shift of B's path, (3,), that makes the pair belong to its family."""
     u = _approach(rng, a, b, frames)
     rows = np.broadcast_to(u, (len(frames.steps), 3))
     gaps = -(heights(a, frames.poses_a, rows)[0] + heights(b, frames.poses_b, -rows)[0])
@@ -194,13 +194,13 @@ def _shift(
 
 
 def _approach(rng: Rng, a: Made, b: Made, frames: Frames) -> Array:
-    """A direction from A to B; a half-space's own."""
+    """A direction from A to B; with a half-space, its normal."""
     if not a.body.bounded:
         return frames.poses_a[0, [2, 5, 8]]
     if not b.body.bounded:
         return -frames.poses_b[0, [2, 5, 8]]
     if rng.random() < 0.15:
-        # along an axis of one of them: faces, rims and vertices meet head on
+        # along an axis of one of them, so that faces, rims and vertices meet directly
         poses = frames.poses_a if rng.random() < 0.5 else frames.poses_b
         k, axis = int(rng.integers(0, len(poses))), int(rng.integers(0, 3))
         return np.asarray(poses[k, [axis, 3 + axis, 6 + axis]] * float(rng.choice([-1.0, 1.0])))

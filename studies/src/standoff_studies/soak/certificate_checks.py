@@ -1,4 +1,4 @@
-"""What must hold of every answer of the certificate about a pair whose distance is known."""
+"""What must hold for every answer of the certificate for a pair with known distance."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from standoff_studies.soak.tally import Tally
 Rng = np.random.Generator
 
 SQUARE = 1e-9
-"""By which a normal on an edge may miss being square to it (dimensionless): roundoff of the ends of
-an edge that is a millionth of its body's size."""
+"""How far a normal on an edge may be from perpendicular to it (dimensionless): the roundoff of the
+ends of an edge that is a millionth of its body's size."""
 
 UNIT = 1e-14
-"""By which a hint's length may miss 1 and still pass for a unit vector."""
+"""By how much a hint's length may differ from 1 for it to count as a unit vector."""
 
 
 class Miss(NamedTuple):
-    """A check that failed: in which case of a scene, by how much, and what is allowed."""
+    """A failed check: the case of a scene, the value, and what is allowed."""
 
     case: int
     what: str
@@ -40,7 +40,7 @@ class Miss(NamedTuple):
 
 
 def ask_all(scene: Scene, drawn: Array) -> Array:
-    """Ask about a scene in every case of `drawn`, (n, N_DRAWN); rows (n, N_ASKED)."""
+    """Query a scene in every case of `drawn`, (n, N_DRAWN); rows (n, N_ASKED)."""
     asked = np.empty((len(drawn), P.N_ASKED))
     motion = np.zeros(N_MOTION)
     motion[:12], motion[12:24] = scene.pose_a, scene.pose_b
@@ -50,7 +50,7 @@ def ask_all(scene: Scene, drawn: Array) -> Array:
 
 
 def size_of(scene: Scene, asked: Array) -> Array:
-    """Lengths that roundoff is a part of, (n,)."""
+    """Lengths to which roundoff is relative, (n,)."""
     bodies = [one.body for one in (scene.a, scene.b) if one.body.bounded]
     sizes = sum(b.size + b.radius + float(np.linalg.norm(b.reals[BOX_CENTRE])) for b in bodies)
     away = np.linalg.norm(scene.pose_a[9:]) + np.linalg.norm(scene.pose_b[9:])
@@ -58,9 +58,9 @@ def size_of(scene: Scene, asked: Array) -> Array:
 
 
 def separations(scene: Scene, asked: Array) -> Array:
-    """-s(n), (n,), along the normals that the certificate names; inf where it names none.
+    """-s(n), (n,), along the normals that the certificate returns; inf where it returns none.
 
-    A half-space's is finite along its own normal alone: the scene's truth.
+    With a half-space it is finite only along its own normal: it is then the scene's true distance.
     """
     told = asked[:, P.NORMAL : P.NORMAL + 3]
     named = lengths(told) > 0.5
@@ -75,7 +75,7 @@ def separations(scene: Scene, asked: Array) -> Array:
 
 
 def worst(what: str, over: Array, limit: Array | float, where: Any = True) -> Iterator[Miss]:
-    """The case that is farthest above what is allowed of it, or no number; none if all are fine."""
+    """The case that exceeds the allowed value most, or is not a number; empty if all are fine."""
     wrong = ~(over <= limit) & where
     if wrong.any():
         beyond = np.where(wrong, np.nan_to_num(over - limit, nan=np.inf), -np.inf)
@@ -84,7 +84,7 @@ def worst(what: str, over: Array, limit: Array | float, where: Any = True) -> It
 
 
 def misses(scene: Scene, asked: Array) -> Iterator[Miss]:
-    """Check every answer of a scene; the worst case of each check that fails."""
+    """Check every answer of a scene; return the worst case of each failed check."""
     a, b = scene.a.body, scene.b.body
     radii, truth = a.radius + b.radius, scene.truth
     noise = ROUNDOFF * size_of(scene, asked)
@@ -99,9 +99,9 @@ def misses(scene: Scene, asked: Array) -> Iterator[Miss]:
     # a point may be past its face's boundary, as witness points of the soak may
     shares = slack + ON_BODY / ROUNDOFF * noise
 
-    yield from worst("a bound that is no number", np.isnan(lower) * 1.0, 0.0)
+    yield from worst("a bound that is not a number", np.isnan(lower) * 1.0, 0.0)
     yield from worst("a distance that is not finite", 1.0 * ~np.isfinite(d), 0.0)
-    # who asks along a direction has looked where the points are; `weigh` is to look itself
+    # callers of a direction have checked where the points are; `weigh` must do so itself
     asked_of = on | ~along
     yield from worst("the lower bound is above the distance", lower - truth, noise, asked_of)
     yield from worst(
@@ -122,7 +122,7 @@ def misses(scene: Scene, asked: Array) -> Iterator[Miss]:
     yield from worst("GLOBAL at a wrong depth", off, loose, proven)
     yield from worst("a point off its face is certified", 1.0 * certified, 0.0, ~on)
     if not {scene.a.shape.kind, scene.b.shape.kind} & BLURRED:
-        yield from worst("a normal that is not square to its edge", asked[:, P.NEAREST], SQUARE)
+        yield from worst("a normal not perpendicular to its edge", asked[:, P.NEAREST], SQUARE)
 
 
 def count(tally: Tally, scene: Scene, asked: Array) -> None:

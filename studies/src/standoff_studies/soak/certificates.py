@@ -1,4 +1,4 @@
-"""``standoff soak --certificates N``: the adversary alone, which lists every check that fails."""
+"""``standoff soak --certificates N``: only the adversary, which lists every failed check."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from standoff_studies.soak.reading import written
 from standoff_studies.soak.tally import Tally
 
 PER_ROUND = 1000
-"""Cases of a round: more than beside a pair of the soak, as nothing else is done."""
+"""Cases of a round: more than in a soak, because nothing else is done."""
 
 FAILURE = "breach-{}.json"
 """The worst case of each check that failed."""
 
 
 def run_certificates(cases: int, seed: int, folder: Path, as_json: bool) -> int:
-    """Run rounds of the adversary up to so many cases, and print what they found.
+    """Run rounds of the adversary up to a number of cases, and print what they found.
 
     Raises
     ------
     CommandError
-        If the number or the folder is not usable.
+        If the number or the folder cannot be used.
     """
     if cases < 1:
         raise CommandError(f"--certificates {cases}: give 1 or more")
@@ -61,7 +61,7 @@ def run_certificates(cases: int, seed: int, folder: Path, as_json: bool) -> int:
 
 
 def _beyond(breach: Breach) -> float:
-    """How many times more than what is allowed; sizes of bodies differ by 1e12."""
+    """The value as a multiple of what is allowed; sizes of bodies differ by 1e12."""
     _, _, value, allowed = breach.miss
     return value / allowed if value == value and allowed > 0.0 else float("inf")
 

@@ -1,9 +1,8 @@
-"""What is checked of every answer, by support functions alone; no per-frame Python.
+"""Checks of every answer, only by support functions and without per-frame Python.
 
-With n the reported normal, s(n) = h_A(n) + h_B(-n) in world axes (h_B from B's place), -s(n) is
-how far a plane square to n keeps the bodies apart: never more than the true signed distance. Two
-points of the bodies at that distance prove it; in penetration a push of s(n) along n separates
-them.
+With n the reported normal and s(n) = h_A(n) + h_B(-n) in world axes, -s(n) is how far a plane
+perpendicular to n keeps the bodies apart: never more than the true signed distance. Two points of
+the bodies at that distance prove it; in penetration a push of s(n) along n separates them.
 """
 
 from __future__ import annotations
@@ -27,21 +26,21 @@ from standoff_studies.soak.placing import heights, outside
 from standoff_studies.soak.shapes import Made
 
 ROUNDOFF = 1e-13
-"""Part of the pair's size and place by which roundoff may shift a length: some hundred of its
-roundings, as poses, chains of charts and the judge's own formulas each take a few."""
+"""Fraction of the pair's size and distance from the origin by which roundoff may shift a length: a
+few hundred roundings, as poses, chains of charts and the formulas of the checks take a few each."""
 
 LEAST = 1e-100
-"""Least length that others are compared with."""
+"""Least length with which others are compared."""
 
 UNIT = 1e-12
-"""By which a normal's length may miss 1 (dimensionless)."""
+"""By how much a normal's length may differ from 1 (dimensionless)."""
 
 ON_BODY = 1e-11
-"""Part of the size by which a witness point may lie outside its body: the overlap of trimming
+"""Fraction of the size by which a witness point may lie outside its body: the overlap of trimming
 curves (1e-12 of their parameters) and the roundoff of charts."""
 
 PROVEN = 1e-3
-"""GLOBAL says that no depth is less than (1 - PROVEN) of the one that is reported."""
+"""GLOBAL means that no depth is less than (1 - PROVEN) times the reported one."""
 
 BOX_CENTRE = slice(L.BOX_CENTRE, L.BOX_CENTRE + 3)
 
@@ -51,11 +50,11 @@ BLURRED = frozenset(
     {"superellipsoid", "creased superellipsoid", "egg", "spindle", "gore"}
     | {"sewn ellipsoid", "formula power ball", "formula dome"}
 )
-"""Kinds whose normals have roundoff beside collapsed sides: it may take BLUR of the size."""
+"""Kinds whose normals have roundoff near collapsed sides, which may be BLUR of the size."""
 
 
 class Fault(NamedTuple):
-    """A check that failed: at which frame, by how much, and what is allowed."""
+    """A failed check: the frame, the value, and what is allowed."""
 
     frame: int
     what: str
@@ -69,22 +68,22 @@ def apart_of(status: Array) -> NDArray[np.bool_]:
 
 
 def deep_of(status: Array) -> NDArray[np.bool_]:
-    """Return which statuses, (n,), tell a depth."""
+    """Return which statuses, (n,), report a depth."""
     return np.asarray((status == LOCAL) | (status == GLOBAL))
 
 
 class Judged(NamedTuple):
-    """The answers of a pair's frames beside what the judge found.
+    """The answers of a pair's frames, and what the checks found.
 
     Attributes
     ----------
     separation : (n,) array
         -s(n), length.
     size : (n,) array
-        Lengths that roundoff is a part of.
+        Lengths to which roundoff is relative.
     unrest : (n,) array
-        How far a depth is from that along its normal, and its points from the farthest and from
-        one line with it, over what the tolerance allows.
+        How far a depth is from that along its normal, and its points from the farthest points and
+        from a line along the normal, divided by what the tolerance allows.
     faults : list of Fault
         In order of frames.
     """
@@ -105,9 +104,9 @@ def judge(a: Made, b: Made, frames: Frames, rows: Array, tolerance: float, twist
     rows : ndarray, shape (n, N_OUT)
         As ``standoff.kernels.state.arrays`` lays them out.
     tolerance : float
-        The tracker's.
+        That of the tracker.
     twists : bool
-        Was the tracker told those of the frames? Else rates and velocities are nan.
+        Was the tracker given those of the frames? Otherwise rates and velocities are nan.
 
     Returns
     -------
@@ -132,7 +131,7 @@ def judge(a: Made, b: Made, frames: Frames, rows: Array, tolerance: float, twist
 
 
 def _own_normals(a: Made, b: Made, frames: Frames, n: Array) -> Array:
-    """A half-space's own normal, where there is one: its support is finite along that alone."""
+    """A half-space's normal, if there is one: its support is finite only along that."""
     for made, poses, sign in ((a, frames.poses_a, 1.0), (b, frames.poses_b, -1.0)):
         if isinstance(made.support, HalfSpace):
             return sign * poses[:, [2, 5, 8]]
@@ -140,16 +139,16 @@ def _own_normals(a: Made, b: Made, frames: Frames, n: Array) -> Array:
 
 
 def _sizes(a: Made, b: Made, frames: Frames, rows: Array) -> Array:
-    """The tolerance is a part of sizes, distance and how far bodies stand from their origins."""
+    """The tolerance is relative to sizes, distance, and the bodies' offsets from their origins."""
     bodies = [made.body for made in (a, b) if made.body.bounded]
     sizes = sum(body.size + float(np.linalg.norm(body.reals[BOX_CENTRE])) for body in bodies)
     away = lengths(frames.poses_a[:, 9:]) + lengths(frames.poses_b[:, 9:])
-    # a point that touches a half-space at the origin has no size at all
+    # a point that touches a half-space at the origin has size zero
     return np.maximum(sizes + away + np.abs(np.nan_to_num(rows[:, K.DISTANCE])), LEAST)
 
 
 class _Checks:
-    """The checks of one run under way."""
+    """The checks of a run in progress."""
 
     def __init__(
         self, a: Made, b: Made, frames: Frames, rows: Array, separation: Array, size: Array
@@ -171,7 +170,7 @@ class _Checks:
         allowed: Array | float,
         where: NDArray[np.bool_] | bool = True,
     ) -> None:
-        """Note the first frame where a value is above what is allowed, or no number."""
+        """Note the first frame where a value is above what is allowed, or is not a number."""
         wrong = ~(value <= allowed) & where
         if wrong.any():
             k = int(wrong.argmax())
@@ -182,7 +181,7 @@ class _Checks:
         """No nan, no infinite number; a unit normal."""
         told = np.column_stack([self.rows[:, : K.NORMAL + 3], self.rows[:, K.UPPER_BOUND]])
         unknown = (self.status == Status.NOT_CERTIFIED.value) & (self.bound == -np.inf)
-        told[unknown, K.LOWER_BOUND] = 0.0  # beside a half-space: no bound is known, and it says so
+        told[unknown, K.LOWER_BOUND] = 0.0  # with a half-space it may be -inf: no bound is known
         self.expect("a number that is not finite", (~np.isfinite(told)).sum(axis=1), 0.0)
         self.expect("the normal is not a unit vector", np.abs(lengths(n) - 1.0), UNIT)
         known = np.isin(self.status, [s.value for s in Status])
@@ -191,7 +190,7 @@ class _Checks:
         self.expect("a silent zero", np.where(silent, np.abs(self.separation), 0.0), self.noise)
 
     def bounds(self) -> None:
-        """lower_bound <= -s(n) <= true distance <= distance while apart; upper_bound above all."""
+        """lower_bound <= -s(n) <= true distance <= distance while apart; upper_bound above."""
         self.expect(
             "the lower bound is above what the normal separates",
             self.bound - self.separation,
@@ -209,14 +208,14 @@ class _Checks:
         self.expect("the distance is above its upper bound", self.distance - upper, self.noise)
 
     def points(self, n: Array) -> None:
-        """Witness points lie on their bodies, as far apart as the distance says."""
+        """Witness points lie on their bodies, and their distance is the reported one."""
         x_a = self.rows[:, K.POINT_A : K.POINT_A + 3]
         x_b = self.rows[:, K.POINT_B : K.POINT_B + 3]
         allowed = ON_BODY * self.size + self.slack
         self.expect("point_a is off A", outside(self.a, self.frames.poses_a, x_a, n), allowed)
         self.expect("point_b is off B", outside(self.b, self.frames.poses_b, x_b, -n), allowed)
         apart = apart_of(self.status)
-        # the swept balls' points lie along n, which is not quite the cores' direction
+        # points on swept balls are along n, which is not exactly the direction between the cores
         radii = self.a.body.radius + self.b.body.radius
         short = np.abs(self.distance - self.separation) + self.noise
         turned = radii * short / np.maximum(self.distance, TINY)
@@ -232,15 +231,15 @@ class _Checks:
         self.expect("certified apart at no distance", -self.distance, 0.0, apart)
         self.expect("the depth does not part the bodies", short, allowed, deep)
         proven = self.status == GLOBAL
-        # within the tolerance of touching, the sign says nothing
+        # within the tolerance of touching, the sign is not significant
         self.expect("a depth where there is none", self.distance, allowed, proven)
 
     def deepest(self, tolerance: float, n: Array, height_a: Array, height_b: Array) -> None:
-        """In penetration: is the depth that along the normal, and on one line with it the points?
+        """In penetration: is the depth that along the normal, and are the points in line with it?
 
-        A depth is flat in its normal: where it is good to a part of itself, the line is to its
-        root. Beyond what the tolerance allows the answer is not at rest, which is counted; a
-        fault is only what GLOBAL does not allow.
+        A depth is stationary in its normal: if it is accurate to a fraction of itself, the line is
+        accurate to the square root of that. Beyond what the tolerance allows, the answer is not at
+        rest, which is counted; it is a fault only if GLOBAL does not allow it.
         """
         deep, proven = deep_of(self.status), self.status == GLOBAL
         gap = self._gap(tolerance) + ON_BODY * self.size
@@ -269,7 +268,7 @@ class _Checks:
             resting = np.maximum(reach_a, reach_b) <= self.noise
             resting &= apart_of(self.status) | deep_of(self.status)
             radii = self.a.body.radius, self.b.body.radius
-            with np.errstate(invalid="ignore"):  # numbers that are not finite are told above
+            with np.errstate(invalid="ignore"):  # numbers that are not finite are reported above
                 for check in rate_checks(self.frames, self.rows, resting, radii):
                     self.expect(*check)
 
@@ -282,10 +281,10 @@ class _Checks:
 def search(
     a: Made, b: Made, frames: Frames, rows: Array, judged: Judged, numbers: NDArray[np.int64]
 ) -> list[Fault]:
-    """Look for lesser depths than GLOBAL ones, at some frames, along many directions.
+    """Search for depths below GLOBAL ones, in some frames, along many directions.
 
-    Also for planes that part bodies that are said to overlap, and for an upper bound that is
-    below what a direction separates.
+    Also for planes that separate bodies reported as overlapping, and for upper bounds below the
+    separation along a direction.
     """
     if not len(numbers):
         return []
@@ -294,7 +293,7 @@ def search(
     faults = []
     for k, least in zip(numbers.tolist(), found.tolist(), strict=True):
         depth, noise = -rows[k, K.DISTANCE], ROUNDOFF * judged.size[k]
-        # a distance above 0 says no such thing, nor does a depth within the bodies' own slack
+        # neither a distance above 0 nor a depth within the bodies' own slack claims this
         limit = noise + slack + max(-depth, 0.0)
         if -least > limit:
             faults.append(Fault(k, "said to overlap, but a plane separates them", -least, limit))

@@ -22,21 +22,21 @@ if TYPE_CHECKING:
     from standoff_studies.soak.options import SoakOptions
 
 JOBS = 2
-"""Processes if no number is given."""
+"""Default number of processes."""
 
 FAILURE = "failure-{}.json"
 
 SAVE_EVERY = 5.0
-"""Seconds between two writings of the ledger."""
+"""Seconds between two writes of the ledger."""
 
 
 def run_soak(command: SoakOptions) -> int:
-    """Run a soak, or a failure of one again, and print what was counted.
+    """Run a soak, or rerun a failure, and print the counts.
 
     Raises
     ------
     CommandError
-        If a number, the folder or the file is not usable.
+        If a number, the folder or the file cannot be used.
     WriteError
         If the ledger or a failure could not be written.
     """
@@ -99,7 +99,7 @@ def _ledger(command: SoakOptions) -> Ledger:
 
 
 class _Saver:
-    """Writes the ledger now and then, and shows how far the run is."""
+    """Writes the ledger regularly, and shows the progress of the run."""
 
     def __init__(self, ledger: Ledger, folder: Path, show: Tell) -> None:
         self.ledger, self.folder, self.show = ledger, folder, show

@@ -1,4 +1,4 @@
-"""The least depth along many directions: a search that knows nothing of the tracker's."""
+"""The least depth along many directions: a search independent of that of the tracker."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from standoff_studies.soak.placing import heights
 from standoff_studies.soak.shapes import Made
 
 COUNT = 200
-"""Directions of the first look: some 15 degrees from one to the next."""
+"""Directions of the first round: some 15 degrees apart."""
 
 RINGS = 8
-"""Directions about the best one, in each round of the refinement."""
+"""Directions around the best one, in each round of refinement."""
 
 LOOKS = 30
-"""Frames that are looked at to move a body into another."""
+"""Frames that are examined to move a body into another."""
 
 HALVINGS = 30
-"""Of the way that it may be moved."""
+"""Bisections of the distance by which it is moved."""
 
 ROUNDS = 14
 """Rounds; the ring shrinks by SHRINK in each, from FIRST (an angle's tangent) to about 1e-4."""
@@ -29,7 +29,7 @@ FIRST, SHRINK = 0.2, 0.58
 
 
 def spread(count: int) -> Array:
-    """Return unit vectors (count, 3) spread evenly over the sphere: Fibonacci's spiral."""
+    """Return unit vectors (count, 3) evenly distributed over the sphere: Fibonacci's spiral."""
     k = np.arange(count) + 0.5
     z = 1.0 - 2.0 * k / count
     angle = np.pi * (1.0 + np.sqrt(5.0)) * k
@@ -43,7 +43,7 @@ SPHERE = spread(COUNT)
 def least_depths(a: Made, b: Made, frames: Frames, numbers: NDArray[np.int64]) -> Array:
     """Return the least s(n) found, (k,), at frames `numbers` (k,).
 
-    A half-space leaves its own direction alone.
+    With a half-space only its own direction is possible.
     """
     poses_a, poses_b = frames.poses_a[numbers], frames.poses_b[numbers]
     own = _own(a, b, poses_a, poses_b)
@@ -79,9 +79,9 @@ def depths(a: Made, b: Made, poses_a: Array, poses_b: Array, n: Array) -> Array:
 
 
 def shift_into(a: Made, b: Made, frames: Frames, u: Array, depth: float) -> float:
-    """Return how far B is moved along the unit vector u, (3,), to be so deep in A at the deepest.
+    """Return how far to move B along the unit vector u, (3,), for a given greatest depth in A.
 
-    By LOOKS of the frames and COUNT directions: the depth is a little less in truth.
+    It uses LOOKS of the frames and COUNT directions: the true depth is slightly smaller.
     """
     numbers = np.unique(np.linspace(0, len(frames.steps) - 1, LOOKS).astype(np.int64))
     poses_a, poses_b = frames.poses_a[numbers], frames.poses_b[numbers]
@@ -105,7 +105,7 @@ def _own(a: Made, b: Made, poses_a: Array, poses_b: Array) -> Array | None:
 
 
 def _tangents(n: Array) -> tuple[Array, Array]:
-    """Two unit vectors square to each n (k, 3)."""
+    """Two unit vectors perpendicular to each n (k, 3)."""
     axis = np.eye(3)[np.abs(n).argmin(axis=1)]
     x = np.cross(n, axis)
     x /= np.linalg.norm(x, axis=1)[:, None]

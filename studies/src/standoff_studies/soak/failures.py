@@ -1,4 +1,4 @@
-"""Files that reproduce a failure, and what becomes of it now."""
+"""Files that reproduce a failure, and rerunning them."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ KIND = "standoff soak failure"
 
 
 class Replayed(NamedTuple):
-    """What a failure's file shows now.
+    """The result of rerunning a failure's file.
 
     Attributes
     ----------
     failure : Failure or None
-        Of the whole pair, run again from its first frame.
+        Of the whole pair, rerun from its first frame.
     step : Fault or None
-        Of the one step, from the state that the file holds.
+        Of the single step, from the state in the file.
     breach : Breach or None
-        Of the adversary's round, run again.
+        Of the adversary's round, rerun.
     """
 
     failure: Failure | None
@@ -64,7 +64,7 @@ def failure_facts(failure: Failure) -> Facts:
 
 
 def breach_facts(breach: Breach) -> Facts:
-    """Return a failure of the adversary's as plain data."""
+    """Return a failure found by the adversary as plain data."""
     miss = breach.miss
     return _told(miss.what, miss.value, miss.allowed) | {
         "round": {"seed": breach.seed, "number": breach.number, "cases": breach.cases},
@@ -74,7 +74,7 @@ def breach_facts(breach: Breach) -> Facts:
 
 
 def _plain(value: Any) -> Any:
-    """Numbers that are not finite as words, which JSON has none for."""
+    """Numbers that are not finite as words, because JSON has no numbers for them."""
     if isinstance(value, dict):
         return {name: _plain(one) for name, one in value.items()}
     if isinstance(value, list | tuple):
@@ -83,12 +83,12 @@ def _plain(value: Any) -> Any:
 
 
 def exception_facts(seed: int, number: int, frames: int, text: str) -> Facts:
-    """Return an exception, a death or a hang of a pair as plain data: it has no answers."""
+    """Return an exception, a crash or a hang of a pair as plain data, without answers."""
     return _told(text) | {"seed": seed, "number": number, "frames": frames}
 
 
 def _told(what: str, *measured: float) -> Facts:
-    """What every failure tells: what has failed, and, of a check, the value and the allowed one."""
+    """What every failure contains: what failed, and for a check the value and what is allowed."""
     numbers = zip(("value", "allowed"), map(_number, measured), strict=False)
     return {"kind": KIND, "standoff": __version__, "what": what, **dict(numbers)}
 
@@ -126,7 +126,7 @@ def _ready(case: Case) -> tuple[Made, Made, Frames, Tracker]:
 
 
 def _step(tracker: Tracker, one: Frames, has_twist: bool, state: Array, row: Array) -> int:
-    """Answer one frame; FINE, or what was refused."""
+    """Answer one frame; return FINE, or what was rejected."""
     block = Block.empty(state, one.motions[0], float(one.steps[0]), has_twist)
     done = int(kernels.step(tracker.table.address, block.data))
     state[:], row[:] = block.state, block.out
@@ -134,14 +134,14 @@ def _step(tracker: Tracker, one: Frames, has_twist: bool, state: Array, row: Arr
 
 
 def read_failure(file: Path) -> Facts:
-    """Return what a failure's file holds.
+    """Return the contents of a failure's file.
 
     Raises
     ------
     OSError
         It cannot be read.
     ValueError
-        It is no such file, or damaged.
+        It is not such a file, or damaged.
     """
     facts = read_facts(file)
     if facts.get("kind") != KIND:
@@ -183,12 +183,12 @@ def _read_step(step: Facts) -> None:
 
 
 def replay(facts: Facts) -> Replayed:
-    """Run a failure's case again, and its step by itself.
+    """Rerun a failure's case, and its step alone.
 
     Raises
     ------
     ValueError
-        The file's parts do not fit this version.
+        The file does not fit this version.
     """
     if "round" in facts:
         _, breaches = run_round(**{k: facts["round"][k] for k in ("seed", "number", "cases")})
@@ -210,7 +210,7 @@ def replay(facts: Facts) -> Replayed:
         TypeError,
         ValueError,
     ) as error:
-        # whatever a body, a path or a tracker makes of numbers that are not its own
+        # anything that a body, a path or a tracker may raise for damaged numbers
         why = str(error).splitlines()[0] if str(error) else type(error).__name__
         if isinstance(error, KeyError):
             why = f"{why} is missing"

@@ -1,7 +1,7 @@
-"""Pairs whose distance is known without any search, for the certificate to be asked about.
+"""Pairs whose distance is known without any search, for queries of the certificate.
 
-Either the bodies are placed by their support points along a normal, so far apart that the gap
-along it is their distance; or their corners lie on a lattice (`lattice`).
+Either the bodies are placed by their support points along a normal, so that the gap along it is
+their distance; or their corners lie on a lattice (`lattice`).
 """
 
 from __future__ import annotations
@@ -26,22 +26,22 @@ from standoff_studies.soak.shapes import Made, Shape, draw_shape, made
 Rng = np.random.Generator
 
 DRAWER = 8
-"""Bodies that scenes share: they take longer to make than to ask about."""
+"""Number of bodies that scenes share, since making a body takes longer than querying it."""
 
 BUILT, LATTICE = 2, 3
-"""Streams of a seed's random numbers, of the two drawers."""
+"""Streams of a seed's random numbers, for the two drawers."""
 
 LENGTHS = frozenset({"axes", "r", "radius", "length", "height", "offset", "rounding", "vertices"})
 """Parameters that scale with a body."""
 
 LATTICE_SHARE = 0.45
-"""Of the pairs: on a lattice."""
+"""Share of the pairs that are on a lattice."""
 
 SCALED = 0.2
 """Share of the bodies that are far smaller or larger than those of the soak's pairs."""
 
 LEAPS = 0.3
-"""Share of the poses of a walk that have nothing to do with those before."""
+"""Share of the poses of a walk that are unrelated to those before."""
 
 FAR_OUT = 2.0**20
 """Lengths from the origin, of some lattice pairs."""
@@ -57,11 +57,11 @@ class Scene(NamedTuple):
     a, b : Made
     pose_a, pose_b : (12,) arrays
     normal : (3,) array
-        The one by which it was built, from A to B, world axes; for a lattice pair any.
+        The one with which it was constructed, from A to B, world axes; arbitrary on a lattice.
     truth : float
-        The signed distance, with the swept radii.
+        The signed distance, including swept radii.
     where : str
-        How it was built.
+        How it was constructed.
     """
 
     a: Made
@@ -79,7 +79,7 @@ def draw_scene(rng: Rng, seed: int, number: int) -> Scene:
 
 
 def draw_walk(rng: Rng, seed: int, number: int, count: int) -> list[Scene]:
-    """Draw so many poses of one pair: small motions, and leaps between them."""
+    """Draw a number of poses of one pair: small motions, and leaps between them."""
     if rng.random() < LATTICE_SHARE:
         return _lattice_walk(rng, lattice_drawer(seed, number), count)
     return _built_walk(rng, built_drawer(seed, number), count)
@@ -97,7 +97,7 @@ def built_drawer(seed: int, number: int) -> tuple[Made, ...]:
         try:
             one = made(shape)
         except BodyError:
-            continue  # faces of a thin core back to back but for roundoff: told, and no body to ask
+            continue  # faces of a thin core are back to back up to roundoff: the body is rejected
         if one.body.bounded or (len(found) and found[0].body.bounded):
             found.append(one)
     return tuple(found)
@@ -113,7 +113,7 @@ def scaled(shape: Shape, factor: float) -> Shape:
 
 
 class _Setting(NamedTuple):
-    """How a pair is built: where A is and both are turned to, a normal and a gap along it."""
+    """How a pair is constructed: A's position, both rotations, a normal and the gap along it."""
 
     turn_a: Array
     turn_b: Array
@@ -145,7 +145,7 @@ def _draw_setting(rng: Rng, a: Made, b: Made) -> _Setting:
     size = _reach(a, b)
     gap = 0.0 if rng.random() < 0.15 else size * 10.0 ** rng.uniform(-14.0, 0.7)
     if rng.random() < 0.3:
-        # swept radii that overlap, and bodies within a half-space
+        # overlapping swept radii, and bodies inside a half-space
         bounded = a.body.bounded and b.body.bounded
         gap -= rng.random() * (a.body.radius + b.body.radius if bounded else size)
     return _Setting(turn_a, turn_b, place_a, n, float(gap))
@@ -157,7 +157,7 @@ def _reach(a: Made, b: Made) -> float:
 
 
 def _moved(rng: Rng, a: Made, b: Made, at: _Setting) -> _Setting:
-    """A setting a little beside another."""
+    """A setting that differs slightly from another."""
     angle = 10.0 ** rng.uniform(-4.0, -0.5)
     turn_b = _turn(rng, angle) @ at.turn_b
     n = at.normal + angle * rng.random() * random_direction(rng)
@@ -179,7 +179,7 @@ def _turn(rng: Rng, angle: float) -> Array:
 
 
 def _built(a: Made, b: Made, at: _Setting) -> Scene:
-    """Both bodies at their support points along the normal, the gap apart."""
+    """Both bodies placed with their support points along the normal, separated by the gap."""
     n = at.normal
     pose_a = np.concatenate([at.turn_a.ravel(), at.place_a])
     pose_b = np.append(at.turn_b.ravel(), np.zeros(3))
@@ -191,7 +191,7 @@ def _built(a: Made, b: Made, at: _Setting) -> Scene:
 
 
 def _some_normal(rng: Rng, a: Made, b: Made, turn_a: Array, turn_b: Array) -> Array:
-    """A direction from A to B: a half-space's own, random, or of a flat face or an edge."""
+    """A direction from A to B: that of a half-space, random, or of a flat face or an edge."""
     if not a.body.bounded:
         return turn_a[:, 2]
     if not b.body.bounded:
@@ -207,7 +207,7 @@ def _some_normal(rng: Rng, a: Made, b: Made, turn_a: Array, turn_b: Array) -> Ar
 
 
 class Corners(NamedTuple):
-    """A body with its corners, which are exact, and what its name in a report is."""
+    """A body with its exact corners, and its name in a report."""
 
     made: Made
     points: Array
@@ -255,7 +255,7 @@ def _box(rng: Rng) -> Corners:
 
 
 def _polytope(rng: Rng) -> Corners:
-    """A tetrahedron, or one with one or two corners more, all on its hull."""
+    """A tetrahedron, or one with one or two more corners, all on its hull."""
     while True:
         points = QUARTER * rng.integers(-5, 6, (int(rng.integers(4, 7)), 3))
         if abs(np.linalg.det(points[1:4] - points[0])) < QUARTER:
@@ -282,7 +282,7 @@ def _polygon(rng: Rng) -> Corners:
 
 
 def _loop(rng: Rng) -> Corners:
-    """A planar triangle, which lives in z = 0."""
+    """A planar triangle in z = 0."""
     points = _triangle(rng)
     sides = [Line(points[k], points[(k + 1) % 3]) for k in range(3)]
     body = shapes.planar_loop(sides, rounding=_rounding(rng))
@@ -290,12 +290,12 @@ def _loop(rng: Rng) -> Corners:
 
 
 def _lattice_walk(rng: Rng, drawer: tuple[Corners, ...], count: int) -> list[Scene]:
-    """Two lattice bodies, turned by quarters; mostly with corners or edges in common."""
+    """Two lattice bodies, rotated by quarter turns; mostly with corners or edges in common."""
     while True:
         a, b = (drawer[int(k)] for k in rng.integers(0, len(drawer), 2))
         if a.planar == b.planar:
             break
-    # far out a pose still holds the lattice exactly
+    # far from the origin a pose still represents the lattice exactly
     away = np.zeros(3)
     if rng.random() < 0.15:
         away[: 2 if a.planar else 3] = FAR_OUT * rng.integers(-4, 5, 2 if a.planar else 3)
@@ -326,7 +326,7 @@ def _on_lattice(
 
 
 def _quarter_turn(rng: Rng, planar: bool) -> Array:
-    """A rotation that takes the lattice to itself."""
+    """A rotation that maps the lattice to itself."""
     if planar:
         c, s = ((1, 0), (0, 1), (-1, 0), (0, -1))[int(rng.integers(4))]
         return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]], dtype=float)
@@ -336,7 +336,7 @@ def _quarter_turn(rng: Rng, planar: bool) -> Array:
 
 
 def _meeting(rng: Rng, corners_a: Array, corners_b: Array) -> Array:
-    """A shift of B, in steps: a corner or a middle of one on that of the other, or beside it."""
+    """A shift of B, in steps: a corner or midpoint of one on one of the other, or next to it."""
     met = _mark(rng, corners_a) - _mark(rng, corners_b)
     if rng.random() < 0.4:
         met = met + QUARTER * rng.integers(-3, 4, 3) * float(rng.choice([0.5, 1.0, 4.0]))
@@ -344,6 +344,6 @@ def _meeting(rng: Rng, corners_a: Array, corners_b: Array) -> Array:
 
 
 def _mark(rng: Rng, corners: Array) -> Array:
-    """A corner, or the middle of two."""
+    """A corner, or the midpoint of two."""
     i, j = rng.integers(0, len(corners), 2)
     return np.asarray(corners[i] if rng.random() < 0.5 else 0.5 * (corners[i] + corners[j]))

@@ -1,7 +1,7 @@
 """Exact distances and depths of bodies with corners on a lattice, in integers.
 
-Coordinates are whole numbers of quarters: every product below is an integer that int64 holds, so
-that a distance is a quotient of integers and its root, two roundings in all.
+Coordinates are multiples of a lattice step: every product below is an integer that fits in int64,
+so that a distance is the square root of a quotient of integers, two roundings in total.
 """
 
 from __future__ import annotations
@@ -36,14 +36,14 @@ def whole(points: Any) -> Whole:
 
 
 def signed_distance(a: Whole, b: Whole, planar: bool) -> float:
-    """Return the signed distance of the hulls of two sets of lattice points, as a length.
+    """Return the signed distance between the hulls of two sets of lattice points, as a length.
 
-    In overlap it is less than 0: the least push, in the plane of planar bodies, that parts them.
+    In overlap it is negative: minus the least push (in the plane if planar) that separates them.
     """
     apart = _least_square(a, b)
     if apart > 0.0:
         depth = _depth(a, b, planar)
-        # flat hulls in one plane, or hulls without an edge in common: apart all the same
+        # flat hulls in one plane, or hulls without an edge in common: nevertheless apart
         return -depth if depth > 0.0 else float(np.sqrt(apart)) / PER_LENGTH
     return min(-_depth(a, b, planar), 0.0)
 
@@ -51,8 +51,8 @@ def signed_distance(a: Whole, b: Whole, planar: bool) -> float:
 def _least_square(a: Whole, b: Whole) -> float:
     """The least squared distance (steps squared) of corners, chords and triangles of both.
 
-    These are points of the hulls, and hold all their vertices, edges and faces: apart, the least
-    is exact.
+    These are subsets of the hulls and include all their vertices, edges and faces: if the hulls are
+    apart, the least is exact.
     """
     quotients = [_between_points(a, b)]
     for first, second in ((a, b), (b, a)):
@@ -122,7 +122,7 @@ def _points_to_triangles(points: Whole, others: Whole) -> float:
 def _depth(a: Whole, b: Whole, planar: bool) -> float:
     """The least s(n) (length) over all normals that a face of a - b can have.
 
-    Not above 0 where a plane parts them, or where a - b is flat.
+    At most 0 if a plane separates them, or if a - b is flat.
     """
     normals = _normals(a, b, planar)
     if not len(normals):
@@ -132,7 +132,7 @@ def _depth(a: Whole, b: Whole, planar: bool) -> float:
 
 
 def _normals(a: Whole, b: Whole, planar: bool) -> Whole:
-    """Both signs of what is square to two chords."""
+    """Both vectors perpendicular to two chords."""
     along = np.concatenate([_chords(a)[1], _chords(b)[1]])
     if not len(along):
         return np.zeros((0, 3), dtype=np.int64)

@@ -1,4 +1,4 @@
-"""How far a soak has come: a file that is written whole or not at all, and goes on from there."""
+"""The progress of a soak: a file, written whole or not at all, from which it can continue."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Part = tuple[int, int]
 
 @dataclass
 class Ledger:
-    """The pairs that are done, and their counts.
+    """The finished pairs, and their counts.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Ledger:
     tally: Tally = field(default_factory=Tally)
 
     def add(self, part: Part, tally: Tally) -> None:
-        """Note a part that is done."""
+        """Add a finished part."""
         merged: list[Part] = []
         for first, end in sorted([*self.done, part]):
             if merged and first <= merged[-1][1]:
@@ -49,7 +49,7 @@ class Ledger:
         self.tally.add(tally)
 
     def left(self, pairs: int) -> list[Part]:
-        """Return what is left of so many pairs, in parts that share a drawer of shapes."""
+        """Return what is left of a number of pairs, in parts that share a drawer of shapes."""
         parts, at = [], 0
         for first, end in [*self.done, (pairs, pairs)]:
             while at < min(first, pairs):
@@ -60,7 +60,7 @@ class Ledger:
         return parts
 
     def pairs_done(self) -> int:
-        """Return how many pairs are done."""
+        """Return how many pairs are finished."""
         return sum(end - first for first, end in self.done)
 
     def facts(self) -> dict[str, Any]:
@@ -85,7 +85,7 @@ class Ledger:
 
     @classmethod
     def read(cls, folder: Path, seed: int, frames: int) -> Ledger:
-        """Return the ledger of a folder, to go on with.
+        """Return the ledger of a folder, to continue with.
 
         Raises
         ------
@@ -116,7 +116,7 @@ class Ledger:
         return ledger
 
     def inconsistency(self) -> str:
-        """Return which sums contradict the pairs that are done; "" if none does."""
+        """Return which sums contradict the finished pairs; "" if none does."""
         pairs, sums = self.pairs_done(), self.tally.sums
         frames = pairs * self.frames
         wanted = {
@@ -144,7 +144,7 @@ class Ledger:
 
 
 def _parts(facts: Any) -> list[Part]:
-    """The parts of plain data: sorted, and apart from each other."""
+    """The parts from plain data: sorted and disjoint."""
     parts: list[Part] = []
     for first, end in rows(facts, "'done'", 2):
         least = parts[-1][1] + 1 if parts else 0

@@ -1,4 +1,4 @@
-"""What is checked of the numbers beside the distance: features, parameters, residual and rates."""
+"""Checks of the other numbers: features, parameters, residual and rates."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from standoff_studies.soak.shapes import Made
 Where = NDArray[np.bool_]
 
 ROUNDOFF = 1e-12
-"""Part of the speeds of both bodies' points by which roundoff may shift a rate: the most in
-2,500,000 frames was 2e-15 of it for rates, 7e-15 for velocities."""
+"""Fraction of the speeds of both bodies' points by which roundoff may shift a rate: the greatest in
+2,500,000 frames was 2e-15 for rates, 7e-15 for velocities."""
 
 ALONG = 0.1
-"""Part of a witness point's velocity on its body that may be along the normal, where the point is
-the farthest along it to roundoff: none but for the angle that roundoff leaves, the root of that
-over the radius of curvature: 0.1 for radii of 1e-11 of the size."""
+"""Fraction of a witness point's velocity on its body that may be along the normal if the point is
+the farthest along it up to roundoff: the angle that corresponds to roundoff, the root of it divided
+by the radius of curvature: 0.1 for radii of 1e-11 of the size."""
 
 TURNS = 2.0
-"""The residual is four projections of the witness vector: none is longer than it."""
+"""The residual consists of four projections of the witness vector, none of which is longer."""
 
 
 class Check(NamedTuple):
-    """One number a frame, (n,), and what is allowed of it where it counts."""
+    """One number per frame, (n,), and what is allowed where it counts."""
 
     what: str
     value: Array
@@ -40,9 +40,9 @@ class Check(NamedTuple):
 
 
 def number_checks(a: Made, b: Made, rows: Array, twists: bool) -> Iterator[Check]:
-    """Every number is finite, but rates and velocities, which are nan where no twists are given.
+    """Every number is finite, except rates and velocities, which are nan if no twists are given.
 
-    The mode names features of the bodies; on a face a chart of that face.
+    The mode names features of the bodies, and on a face a chart of that face.
     """
     unknown = ~np.isfinite(rows)
     count = unknown[:, K.OUT_MODE : K.OUT_RATE].sum(axis=1) + unknown[:, K.RESIDUAL :].sum(axis=1)
@@ -78,7 +78,7 @@ def _is_mode(made: Made, feature: Array, chart: Array) -> Where:
 
 
 def residual_check(a: Made, b: Made, rows: Array, noise: Array) -> Check:
-    """The residual is made of projections of the cores' witness vector: no longer than those."""
+    """The residual consists of projections of the cores' witness vector, and is no longer."""
     between = rows[:, K.POINT_B : K.POINT_B + 3] - rows[:, K.POINT_A : K.POINT_A + 3]
     radii = a.body.radius + b.body.radius
     longest = lengths(between + radii * rows[:, K.NORMAL : K.NORMAL + 3])
@@ -92,20 +92,20 @@ def residual_check(a: Made, b: Made, rows: Array, noise: Array) -> Check:
 def rate_checks(
     frames: Frames, rows: Array, resting: Where, radii: tuple[float, float]
 ) -> Iterator[Check]:
-    """The rate is n·(V_B - V_A), V the velocity of a body's point by the twists it was told.
+    """The rate is n·(V_B - V_A), where V is the velocity of a body's point by the given twists.
 
-    For a distance or depth is the least or greatest over what its points and normal could be, so
-    none of their own motion counts: this is its derivative exactly, whatever the answer's status,
-    and needs no step. Where the points rest (``resting``), their velocities differ from those of
-    the bodies' points by a slide, and that is along the surface. A swept body's point turns with
-    the direction between the cores, which has the roundoff of their points over their distance.
+    A distance or depth is stationary in its points and normal, so their own motion does not count:
+    this is exactly its derivative, whatever the answer's status, and needs no step. Where the
+    points are at rest (``resting``), their velocities differ from those of the bodies' points by a
+    motion along the surface. A swept body's point turns with the direction between the cores, which
+    has the roundoff of their points divided by their distance.
     """
     n = rows[:, K.NORMAL : K.NORMAL + 3]
     x_a = rows[:, K.POINT_A : K.POINT_A + 3]
     x_b = rows[:, K.POINT_B : K.POINT_B + 3]
     speed = _speed(frames.twists_a, frames.poses_a, x_a, x_b)
     speed += _speed(frames.twists_b, frames.poses_b, x_a, x_b)
-    # V_A is taken at point_b: off rest the points are not on one line along n
+    # V_A is taken at point_b: if not at rest, the points are not on a line along n
     v_a = _velocity(frames.twists_a, frames.poses_a, x_b)
     v_b = _velocity(frames.twists_b, frames.poses_b, x_b)
     off = np.abs(rows[:, K.OUT_RATE] - dot(n, v_b - v_a))
@@ -128,6 +128,6 @@ def _velocity(twists: Array, poses: Array, x: Array) -> Array:
 
 
 def _speed(twists: Array, poses: Array, x_a: Array, x_b: Array) -> Array:
-    """How fast points as far off as all that enters can be, (n,): what roundoff is a part of."""
+    """Speed of points as far away as anything involved, (n,): roundoff is relative to it."""
     reach = lengths(poses[:, 9:]) + lengths(x_a) + lengths(x_b)
     return np.asarray(lengths(twists[:, :3]) + lengths(twists[:, 3:]) * reach)

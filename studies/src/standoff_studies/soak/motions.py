@@ -1,7 +1,7 @@
 """Random smooth motions of two bodies, every frame of them at once, with exact twists.
 
-A path is a moving origin (steady, and waves on it) and two turns one after the other; parameters
-are plain numbers, so that a failure's file keeps the motion itself and no draw of it.
+A path is a moving origin (uniform, plus waves) and two successive rotations; its parameters are
+plain numbers, so that a failure's file contains the motion itself, not a random seed for it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from standoff.geometry.validation import Array
 Rng = np.random.Generator
 
 GOLDEN = 0.6180339887498949
-"""Its multiples' fractions are spread evenly: uneven steps without a random draw."""
+"""The fractional parts of its multiples are evenly distributed: uneven steps without a draw."""
 
 AXES = ((2, 1), (0, 2), (1, 0))
 """Where a cross product's matrix has its entries."""
@@ -34,7 +34,7 @@ class Frames(NamedTuple):
 
     @property
     def motions(self) -> Array:
-        """Poses and twists as the kernels read them, a row a frame."""
+        """Poses and twists as the kernels read them, one row per frame."""
         return np.hstack(self[:4])
 
     def part(self, which: slice | NDArray[np.int64]) -> Frames:
@@ -96,7 +96,7 @@ class Path:
             matrix = _about(axis, angle)
             rotation = matrix @ rotation
             omega = np.einsum("kij,kj->ki", matrix, omega) + rate[:, None] * axis
-        # added last, so that a path moved by a shift is bit for bit the one drawn there
+        # added last, so that a shifted path is bit for bit the one drawn there
         return rotation, position + np.array(self.centre), v, omega
 
 
@@ -115,7 +115,7 @@ def _about(axis: Array, angle: Array) -> Array:
 
 @dataclass(frozen=True)
 class Motion:
-    """Two paths and how they are shown to the tracker.
+    """Two paths, and how they are given to the tracker.
 
     Attributes
     ----------
@@ -123,10 +123,10 @@ class Motion:
     step : float
         Time from frame to frame [s].
     uneven : float
-        Part by which the steps vary, 0 to 1.
+        Fraction by which the steps vary, 0 to 1.
     jumps : list of [frame, seconds]
-        From that frame on the paths' clock is ahead by so much: a teleport, with no word to the
-        tracker.
+        From that frame on the paths' clock is ahead by this time: a teleport of which the tracker
+        is not told.
     twists : bool
         Are twists given?
     twist_factor, twist_error
@@ -157,7 +157,7 @@ class Motion:
         return t, steps
 
     def frames(self, count: int) -> Frames:
-        """Return so many frames."""
+        """Return a number of frames."""
         t, steps = self.times(count)
         parts: list[tuple[Array, Array]] = []
         for path in (self.a, self.b):
@@ -170,7 +170,7 @@ class Motion:
 
 
 def stream(seed: int, which: int, number: int) -> Rng:
-    """Return one of a seed's streams of random numbers, which no other draw changes."""
+    """Return one of a seed's streams of random numbers, independent of other draws."""
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(which, number)))
 
 
@@ -181,7 +181,7 @@ def random_direction(rng: Rng) -> Array:
 
 
 def random_rotation(rng: Rng) -> Array:
-    """Return a rotation matrix, (3, 3); now and then one of axes, exactly."""
+    """Return a rotation matrix, (3, 3); sometimes exactly a permutation of axes."""
     if rng.random() < 0.1:
         signs = np.diag(rng.choice([-1.0, 1.0], 3))
         exact = signs[:, rng.permutation(3)]
@@ -198,15 +198,15 @@ def random_rotation(rng: Rng) -> Array:
 
 
 def draw_path(rng: Rng, size: float, reach: float) -> Path:
-    """Draw a path that keeps within about `reach` sizes of the origin and turns likewise.
+    """Draw a path that stays within about `reach` sizes of the origin, with similar rotations.
 
     Parameters
     ----------
     rng : Generator
     size : float
-        Length of the pair.
+        Size of the pair [length].
     reach : float
-        1 for motions of the size itself, small for small ones; turns go with it up to 1.
+        1 for motions as large as the size; rotations are proportional to it up to 1.
     """
     turns = []
     for _ in range(int(rng.integers(0, 3))):

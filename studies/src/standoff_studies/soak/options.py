@@ -1,4 +1,4 @@
-"""The options of ``standoff soak``: data, which the command reads and tyro fills in."""
+"""The options of ``standoff soak``: data that tyro fills in and the command reads."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tyro.conf import arg
 
 @dataclass(frozen=True)
 class SoakOptions:
-    """What may be asked of the command: its fields are options, their sentences its help."""
+    """The options of the command: one for each field, with the field's docstring as its help."""
 
     pairs: Annotated[int, arg(metavar="N", help_behavior_hint="")] = 1000
     """Pairs in all; 1000 if not given."""

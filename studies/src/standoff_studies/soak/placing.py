@@ -10,7 +10,7 @@ from standoff_studies.soak.shapes import Made
 
 
 def to_body(poses: Array, vectors: Array) -> Array:
-    """Turn world vectors (n, 3) into the axes of bodies at poses (n, 12)."""
+    """Transform world vectors (n, 3) to the axes of bodies at poses (n, 12)."""
     x, y, z = vectors.T
     turned = np.empty_like(vectors)
     for k in range(3):
@@ -19,7 +19,7 @@ def to_body(poses: Array, vectors: Array) -> Array:
 
 
 def to_world(poses: Array, vectors: Array) -> Array:
-    """Turn vectors (n, 3) in body axes into world axes."""
+    """Transform vectors (n, 3) from body axes to world axes."""
     x, y, z = vectors.T
     turned = np.empty_like(vectors)
     for k in range(3):
@@ -30,7 +30,7 @@ def to_world(poses: Array, vectors: Array) -> Array:
 def heights(made: Made, poses: Array, n: Array) -> tuple[Array, Array]:
     """Return support values (n,) and points (n, 3), world, along unit directions (n, 3).
 
-    A half-space's are its plane's: the caller sees to it that the direction is its own.
+    For a half-space they are those of its plane: the direction must be its normal.
     """
     origin = poses[:, 9:]
     if isinstance(made.support, HalfSpace):
@@ -52,7 +52,7 @@ def inside_parts(made: Made) -> tuple[Region, float]:
 def outside(made: Made, poses: Array, points: Array, n: Array) -> Array:
     """Return how far points (n, 3) lie outside; n (n, 3) are outward normals at them, world.
 
-    A swept body's point is taken back to its core along the normal.
+    A swept body's point is moved back to its core along the normal.
     """
     core, radius = inside_parts(made)
     local = to_body(poses, points - radius * n - poses[:, 9:])

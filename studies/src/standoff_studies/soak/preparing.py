@@ -1,4 +1,4 @@
-"""Compiling, or loading, all that the soak's pairs call, before their clock runs."""
+"""Compiling, or loading, everything that the soak's pairs call, before their clock starts."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from standoff_studies.soak.running import run_case
 from standoff_studies.soak.shapes import KINDS, Made, Shape, made
 
 AWAY = 100.0
-"""How far the pair stands apart: lengths are 10 at most."""
+"""Distance between the origins of the pair: lengths are at most 10."""
 
 OWN_MACHINE_CODE = "formula"
-"""Kinds of bodies that bring machine code of their own, a second or two for each process: that is
-no part of the kernels, and counts as the pair's time."""
+"""Kinds of bodies that compile their own machine code, a second or two in each process: that is not
+part of the kernels, and counts as the pair's time."""
 
 
 def compile_kernels() -> None:
-    """Have all kernels ready; make a body of every kind, track and ask a pair, run a round."""
+    """Prepare all kernels: make a body of every kind, track and query a pair, and run a round."""
     prepare_all()
     rng = np.random.default_rng(0)
     bodies = [

@@ -1,4 +1,4 @@
-"""A soak's parts side by side, a process each; the result depends on the seed alone."""
+"""A soak's parts in parallel processes; the result depends only on the seed."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ from standoff_studies.soak.running import run_case
 from standoff_studies.soak.tally import Tally
 
 PATIENCE = 300.0
-"""Seconds that one pair may take and still not hang: thousands of times the usual. Time in which
-this process sleeps, too, as in a suspended computer, does not count."""
+"""Seconds after which a pair counts as hanging: thousands of times the usual. Time in which this
+process does not run either, as in a suspended computer, does not count."""
 
 PREPARATION = 3600.0
-"""Seconds that a process may take to load the kernels, or to compile them where they cannot be
-kept: minutes on a busy machine."""
+"""Seconds that a process may take to load the kernels, or to compile them if they cannot be cached:
+minutes on a busy machine."""
 
 LOOK = 1.0
-"""Seconds between looks for a pair that hangs."""
+"""Seconds between checks for a pair that hangs."""
 
 
 class Done(NamedTuple):
-    """A part, its counts, and the failure of its first pair that failed, as plain data."""
+    """A part, its counts, and the failure of the first pair that failed, as plain data."""
 
     part: Part
     tally: Tally
@@ -50,7 +50,7 @@ class Done(NamedTuple):
 
 
 Tell = Callable[[Done], None]
-"""Is told of every part that is done."""
+"""Called with every finished part."""
 
 
 def run_part(
@@ -63,7 +63,7 @@ def run_part(
     seed, frames : int
     part : (first, end)
     at : callable
-        Told the number of every pair that is begun.
+        Called with the number of every pair that begins.
     """
     tally = Tally()
     for number in range(*part):
@@ -85,10 +85,10 @@ def run_part(
 
 
 def soak(ledger: Ledger, pairs: int, jobs: int, tell: Tell) -> Done | None:
-    """Run what is left of so many pairs; the ledger takes what is done.
+    """Run what is left of a number of pairs; finished parts are added to the ledger.
 
-    With one job in this process, else in `jobs` others, which are watched: one that dies or hangs
-    fails its pair.
+    With one job they run in this process, otherwise in `jobs` others, which are watched: if one
+    dies or hangs, its pair fails.
 
     Returns
     -------
@@ -113,10 +113,10 @@ def soak(ledger: Ledger, pairs: int, jobs: int, tell: Tell) -> Done | None:
 
 
 class _Worker:
-    """A process that runs one part after another, the pipe to it, and the pair it is at."""
+    """A process that runs one part after another, the pipe to it, and its current pair."""
 
     def __init__(self, seed: int, frames: int) -> None:
-        # spawn: a fork would copy the threads' locks of Numba and of the progress bar.
+        # spawn: a fork would copy the locks of the threads of Numba and of the progress bar
         context = multiprocessing.get_context("spawn")
         self.seed, self.frames = seed, frames
         self.pipe, other = context.Pipe()
@@ -130,18 +130,18 @@ class _Worker:
         self.begin()
 
     def begin(self) -> None:
-        """The clock of a part's first pair begins; before it is ready, that of its preparation."""
+        """Start the clock of a part's first pair, or of preparation if the process is not ready."""
         self.seen, self.waited, self.looked = self.part[0], 0.0, time.monotonic()
 
     def give(self, part: Part) -> None:
-        """Send a part, to be begun when the process is ready."""
+        """Send a part, to begin when the process is ready."""
         self.part = part
         self.place.value = part[0]
         self.begin()
         self.pipe.send(part)
 
     def hear(self) -> Done | None:
-        """Return a part that is done; None of a process that tells that it is ready.
+        """Return a finished part, or None if the process reports that it is ready.
 
         Raises
         ------
@@ -161,7 +161,7 @@ class _Worker:
         return Done(self.part, Tally(), number, facts)
 
     def hangs(self) -> bool:
-        """Look at the clock: has the pair, or the preparation, been at work for too long?"""
+        """Has the pair, or the preparation, been running for too long?"""
         now, number = time.monotonic(), int(self.place.value)
         passed = min(now - self.looked, 2.0 * LOOK)
         self.waited = self.waited + passed if number == self.seen else 0.0
@@ -175,9 +175,9 @@ class _Worker:
 
 
 def _side_by_side(ledger: Ledger, parts: list[Part], jobs: int, hear: Tell) -> Done | None:
-    """Hand out the parts in order; after a failure only what lies before it is waited for."""
+    """Hand out the parts in order; after a failure, wait only for parts before it."""
     if parts:
-        prepare_all()  # once, here, and not side by side in each worker
+        prepare_all()  # once, here, not in every worker in parallel
     waiting = list(parts)
     workers: list[_Worker] = []
     first: Done | None = None
@@ -206,7 +206,7 @@ def _side_by_side(ledger: Ledger, parts: list[Part], jobs: int, hear: Tell) -> D
 
 
 def _heard(workers: list[_Worker]) -> Iterator[tuple[_Worker, Done]]:
-    """Wait a moment for words of the workers, and look for those that hang."""
+    """Wait briefly for messages from the workers, and check for those that hang."""
     ready = wait([worker.pipe for worker in workers], timeout=LOOK)
     for worker in list(workers):
         if worker.pipe in ready:
@@ -229,8 +229,8 @@ def _heard(workers: list[_Worker]) -> Iterator[tuple[_Worker, Done]]:
 
 def _work(pipe: Connection, seed: int, frames: int, place: Any) -> None:
     """Load the kernels, say so, and run parts until the pipe closes or the parent is gone."""
-    os.environ[QUIET] = "1"  # what there is to say of the compiler its parent has said
-    # The parent ends its workers on Ctrl-C; a traceback of each would only hide its message.
+    os.environ[QUIET] = "1"  # the parent has already reported on the compiler
+    # The parent ends its workers on Ctrl-C; their tracebacks would only hide its message.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     threading.Thread(target=_end_with_parent, daemon=True).start()
@@ -248,7 +248,7 @@ def _work(pipe: Connection, seed: int, frames: int, place: Any) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process as soon as the one that started it has ended, however that was."""
+    """End this process as soon as the one that started it has ended, for whatever reason."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

@@ -1,4 +1,4 @@
-"""Plain data of the soak's files: written, and checked before anything is made of it."""
+"""Plain data of the soak's files: written, and checked before use."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ Facts = dict[str, Any]
 
 
 def read_facts(file: Path) -> Facts:
-    """Return the object that a JSON file holds.
+    """Return the object in a JSON file.
 
     Raises
     ------
     OSError
         It cannot be read.
     ValueError
-        It is no JSON, or no object, is nested too deeply, or has numbers that are not finite.
+        It is not JSON, not an object, nested too deeply, or has numbers that are not finite.
     """
     content = file.read_text(encoding="utf-8")
     problem = text_problem(content, JSON)
@@ -32,7 +32,7 @@ def read_facts(file: Path) -> Facts:
 
 
 def written(facts: Facts) -> Writer:
-    """Return what writes such an object to a file."""
+    """Return a function that writes such an object to a file."""
     content = json.dumps(facts, indent=1, allow_nan=False).encode()
     return lambda file: file.write(content)
 
@@ -47,14 +47,14 @@ def _finite(text: str) -> float:
 
 
 def entry(facts: Facts, name: str) -> Any:
-    """Return an entry; a ValueError where there is none."""
+    """Return an entry; raise ValueError if there is none."""
     if name not in facts:
         raise ValueError(f"'{name}' is missing")
     return facts[name]
 
 
 def number(value: Any, what: str) -> float:
-    """Return a number, also "inf" or "nan" by name; a ValueError where it is none."""
+    """Return a number, also "inf" or "nan" by name; raise ValueError if it is not one."""
     known = isinstance(value, int | float) and not isinstance(value, bool)
     if not known and value not in ("inf", "-inf", "nan"):
         raise ValueError(f"{what} is {shown(value)}, not a number")
@@ -62,28 +62,28 @@ def number(value: Any, what: str) -> float:
 
 
 def numbers(values: Any, what: str, count: int | None = None) -> list[float]:
-    """Return so many numbers; a ValueError where they are none."""
+    """Return a given count of numbers; raise ValueError if they are not numbers."""
     if not isinstance(values, list) or (count is not None and len(values) != count):
         raise ValueError(f"{what} is not a list of {'' if count is None else f'{count} '}numbers")
     return [number(value, what) for value in values]
 
 
 def text(value: Any, what: str) -> str:
-    """Return a text with something in it; a ValueError where it is none."""
+    """Return a string that is not empty; raise ValueError if it is not one."""
     if not isinstance(value, str) or not value.strip():
         raise ValueError(f"{what} is {shown(value)}, not a text")
     return value
 
 
 def mapping(value: Any, what: str) -> Facts:
-    """Return an object; a ValueError where it is none."""
+    """Return an object; raise ValueError if it is not one."""
     if not isinstance(value, dict):
         raise ValueError(f"{what} is {shown(value)}, not an object")
     return value
 
 
 def rows(value: Any, what: str, length: int) -> list[list[Any]]:
-    """Return a list of lists of one length; a ValueError where it is none."""
+    """Return a list of lists of equal length; raise ValueError if it is not one."""
     if not isinstance(value, list):
         raise ValueError(f"{what} is {shown(value)}, not a list")
     for row in value:

@@ -1,4 +1,4 @@
-"""One pair of the soak: all frames in a compiled loop, then the judge, and cold queries between."""
+"""One pair of the soak: all frames in a compiled loop, then the checks, and some cold queries."""
 
 from __future__ import annotations
 
@@ -36,21 +36,21 @@ from standoff_studies.soak.tally import Tally
 Numbers = NDArray[np.int64]
 
 COLD_EVERY = 100
-"""Frames from one that is also asked cold to the next: a cold query takes as long as dozens."""
+"""Every how many frames a cold query is made too: it takes as long as dozens of frames."""
 
 SEARCH_EVERY = 40
-"""Frames in penetration from one whose depth is searched for to the next."""
+"""Every how many frames in penetration the depth is searched for."""
 
 COUNTED = {
     "evaluations": N.EVALUATIONS,
     "corrections": N.CORRECTIONS,
     "switches": N.EVENTS,
 }
-"""Counts of a step whose worst is kept."""
+"""Counts of a step of which the greatest is kept."""
 
 
 class Failure(NamedTuple):
-    """A check that failed, and what led there.
+    """A failed check, and its context.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class Failure(NamedTuple):
     fault : Fault
         ``frame`` is the frame's number.
     cold : bool
-        Was it a cold query's answer?
+        Was it the answer of a cold query?
     """
 
     case: Case
@@ -67,7 +67,7 @@ class Failure(NamedTuple):
 
 
 class Answers(NamedTuple):
-    """What the tracker said: one row a frame, and the frame that it refused (-1: none)."""
+    """The tracker's answers: one row per frame, and the frame that it rejected (-1: none)."""
 
     rows: Array
     refused: int
@@ -114,7 +114,8 @@ def track(tracker: Tracker, frames: Frames, has_twist: bool) -> Answers:
 def start(
     tracker: Tracker, frames: Frames, k: int, has_twist: bool, state: Array, row: Array
 ) -> int:
-    """Answer frame k from a global start, into `state` and `row`; FINE, or what was refused."""
+    """Answer frame k from a global start, into `state` and `row`; return FINE, or what was
+    rejected."""
     block = Block.empty(state, frames.part(slice(k, k + 1)).motions[0], 0.0, has_twist)
     done = int(kernels.start(tracker.table.address, block.data, K.START_ANYWHERE))
     state[:], row[:] = block.state, block.out
@@ -173,7 +174,7 @@ def compare(
     judged: Judged,
     numbers: Numbers,
 ) -> list[Fault]:
-    """Ask some frames cold; those answers pass the same checks and agree with the tracked ones."""
+    """Query some frames cold; the answers must pass the same checks and agree with tracked ones."""
     cold = np.empty((len(numbers), K.N_OUT))
     cold_tracker = Tracker(tracker.a, tracker.b) if isinstance(tracker.law, PaperLaw) else tracker
     for row, k in zip(cold, numbers.tolist(), strict=True):
@@ -186,7 +187,7 @@ def compare(
     tally.count("cold queries", len(numbers))
     tally.count("cold certified", (apart_of(status) | (status == GLOBAL)).sum())
     tally.note("evaluations in a cold query", cold[:, K.OUT_COUNTS + N.EVALUATIONS].max(initial=0))
-    # that of the tracked answers too: the paper's law is asked cold by another tracker
+    # the same for the tracked answers: for the paper's law another tracker makes cold queries
     either = max(tolerance, tracker.law.tolerance)
     faults = alone.faults + _differing(tally, rows[numbers], cold, alone, either)
     return [fault._replace(frame=int(numbers[fault.frame])) for fault in faults]

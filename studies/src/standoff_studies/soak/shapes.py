@@ -1,4 +1,4 @@
-"""Random shapes: plain parameters, from which come the body that is tested and its judge."""
+"""Random shapes: plain parameters, from which the tested body and its support function are made."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ ASPECT = 30.0
 """Greatest ratio of two lengths of one body."""
 
 SIZES = 0.1, 10.0
-"""Greatest length of a body: between these."""
+"""Range of the greatest length of a body."""
 
 FORMULA_LIBRARIES = "sympy", "flint"
-"""What bodies by formulas need."""
+"""Libraries that bodies given by formulas need."""
 
 CREASED = 1.8
 """Greatest exponent of a superellipsoid."""
 
 
 class Shape(NamedTuple):
-    """A kind and its parameters, as a failure's file keeps them."""
+    """A kind and its parameters, as in a failure's file."""
 
     kind: str
     numbers: Numbers
@@ -50,7 +50,7 @@ def made(shape: Shape) -> Made:
     Raises
     ------
     ValueError
-        No such kind, or what the body's constructor refuses.
+        No such kind, or parameters that the body's constructor rejects.
     """
     if shape.kind not in KINDS:
         raise ValueError(f"{shape.kind!r} is not a kind of shape; there are {', '.join(KINDS)}.")
@@ -73,7 +73,7 @@ def draw_shape(rng: Rng) -> Shape:
 
 
 def missing_library() -> str:
-    """Return the library that formula bodies need and that is not installed; "" if none."""
+    """Return a library that formula bodies need and that is not installed; "" if none."""
     try:
         for name in FORMULA_LIBRARIES:
             import_module(name)
@@ -168,7 +168,7 @@ def _gore(rng: Rng) -> Numbers:
 
 
 class Kind(NamedTuple):
-    """How often a kind comes, and how its parameters are drawn, in the order of its `Twin`."""
+    """How often a kind is drawn, and how its parameters are, in the order of its `Twin`."""
 
     weight: float
     draw: Callable[[Rng], Numbers]

@@ -1,4 +1,4 @@
-"""What a soak counts: sums and extremes, which may be gathered in any order."""
+"""What a soak counts: sums and extremes, which may be merged in any order."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from standoff.checks.numbers import whole_number
 from standoff_studies.soak.reading import entry, mapping, number, rows, text
 
 EXAMPLES = 40
-"""Frames without a certificate that are kept as examples: those of the lowest pairs."""
+"""Frames without a certificate that are kept as examples: those of the first pairs."""
 
 
 @dataclass
@@ -31,7 +31,7 @@ class Tally:
     examples: list[list[Any]] = field(default_factory=list)
 
     def count(self, name: str, number: int) -> None:
-        """Add to a sum; nothing is left of it where nothing was counted."""
+        """Add to a sum; a sum of zero is not stored."""
         if number:
             self.sums[name] += int(number)
 
@@ -40,14 +40,14 @@ class Tally:
         self.worst[name] = max(float(value), self.worst.get(name, float(value)))
 
     def add(self, other: Tally) -> None:
-        """Take in another's."""
+        """Merge another tally."""
         self.sums.update(other.sums)
         for name, value in other.worst.items():
             self.note(name, value)
         self.examples = sorted(self.examples + other.examples, key=lambda e: e[:2])[:EXAMPLES]
 
     def facts(self) -> dict[str, Any]:
-        """Return plain data, in an order that does not depend on the gathering."""
+        """Return plain data, in an order that does not depend on the merging."""
         return {
             "sums": dict(sorted(self.sums.items())),
             "worst": dict(sorted(self.worst.items())),
@@ -55,7 +55,7 @@ class Tally:
         }
 
     def lines(self) -> Iterator[str]:
-        """Yield the sums, but that of the pairs, and the worst numbers as they are printed."""
+        """Yield the sums, except that of the pairs, and the worst numbers as they are printed."""
         for name, count in sorted(self.sums.items()):
             if name != "pairs":
                 yield f"{count:>13,}  {name}"
@@ -64,12 +64,12 @@ class Tally:
 
     @classmethod
     def of(cls, facts: dict[str, Any]) -> Tally:
-        """Return the tally of plain data.
+        """Return the tally from plain data.
 
         Raises
         ------
         ValueError
-            It is none.
+            It is not a tally.
         """
         sums = mapping(entry(facts, "sums"), "'sums'")
         worst = mapping(entry(facts, "worst"), "'worst'")

@@ -1,7 +1,7 @@
-"""Trackers that are led astray: begun at any place, moved in leaps, told any twist, under any law.
+"""Trackers that are led astray: started at any place, moved in leaps, given any twist, by any law.
 
-Every pose is one of known distance (`known_gaps`), so that bounds, statuses and numbers are judged
-without a search, whatever the law makes of it.
+Every pose has a known distance (`known_gaps`), so that bounds, statuses and numbers are checked
+without a search, whatever the law does.
 """
 
 from __future__ import annotations
@@ -41,28 +41,28 @@ WILDEST = 90.0
 """Twists are up to 10 to this power."""
 
 TOLD = 0.85
-"""Share of the runs that are told twists."""
+"""Share of the runs that are given twists."""
 
 PLACES = 12
-"""Places that are drawn for one that lies on its features."""
+"""Places that are drawn to find one that lies on its features."""
 
 FINITE = slice(K.POINT_A, K.OUT_MODE)
 """Columns of points and normal."""
 
 
 class Run(NamedTuple):
-    """A tracker's frames and answers, and how it was begun.
+    """A tracker's frames and answers, and how it was started.
 
     Attributes
     ----------
     scenes : list of Scene
-        Of one pair, a frame each.
+        Of one pair, one for each frame.
     law : Law
     frames : Frames
     twists : bool
-        Was it told those of the frames?
+        Was it given those of the frames?
     given, place : int, list
-        How it was begun, and at which features, charts (2 + 2 numbers) and parameters.
+        How it was started, and at which features, charts (2 + 2 numbers) and parameters.
     rows : (n, N_OUT) array
     """
 
@@ -120,7 +120,7 @@ def _options(rng: Rng) -> dict[str, Any]:
 
 
 def draw_frames(rng: Rng, scenes: list[Scene]) -> tuple[Frames, bool]:
-    """The scenes' poses with twists of any size; whether twists are given."""
+    """The scenes' poses with twists of any size, and whether twists are given."""
     count = len(scenes)
     twists = rng.normal(size=(2, count, 6))
     draw = rng.random()
@@ -162,8 +162,8 @@ def run(rng: Rng, scenes: list[Scene]) -> Run:
 
 
 def misses(one: Run) -> Iterator[Miss]:
-    """Check every answer of a run; the worst frame of each check that fails."""
-    with np.errstate(all="ignore"):  # numbers that are not finite are told, and fail other checks
+    """Check every answer of a run; return the worst frame of each failed check."""
+    with np.errstate(all="ignore"):  # numbers that are not finite are reported
         yield from _bounds(one)
         yield from _along_normals(one)
         yield from _points(one)
@@ -177,7 +177,7 @@ def _bounds(one: Run) -> Iterator[Miss]:
     told = np.column_stack([distance, upper, rows[:, FINITE]])
     yield from worst("a number that is not finite", (~np.isfinite(told)).sum(axis=1) * 1.0, 0.0)
     no_bound = np.isnan(lower) | (lower == np.inf)
-    yield from worst("a lower bound that is no number", no_bound * 1.0, 0.0)
+    yield from worst("a lower bound that is not a number", no_bound * 1.0, 0.0)
     yield from worst("the lower bound is above the distance", lower - truth, noise)
     yield from worst("the upper bound is below the distance", truth - upper, noise + slack)
     yield from worst("the distance is above its upper bound", distance - upper, noise)
@@ -188,7 +188,8 @@ def _bounds(one: Run) -> Iterator[Miss]:
 
 
 def _along_normals(one: Run) -> Iterator[Miss]:
-    """A plane square to the normal separates by the lower bound; a depth parts the bodies."""
+    """A plane perpendicular to the normal separates by the lower bound; a depth separates the
+    bodies."""
     a, b, rows = one.scenes[0].a, one.scenes[0].b, one.rows
     if isinstance(a.support, HalfSpace) or isinstance(b.support, HalfSpace):
         return
@@ -203,14 +204,14 @@ def _along_normals(one: Run) -> Iterator[Miss]:
 
 
 def _normals(one: Run) -> tuple[Array, NDArray[np.bool_]]:
-    """The normals (n, 3), the scenes' own where none is named, and where one is."""
+    """The normals (n, 3), those of the scenes where none is reported, and where one is."""
     told = one.rows[:, K.NORMAL : K.NORMAL + 3]
     named = np.isfinite(told).all(axis=1) & (lengths(np.nan_to_num(told)) > 0.5)
     return np.where(named[:, None], told, [scene.normal for scene in one.scenes]), named
 
 
 def _points(one: Run) -> Iterator[Miss]:
-    """The witness points lie on their bodies, where a body can tell."""
+    """The witness points lie on their bodies, for bodies that can check it."""
     _, noise, slack, _ = _allowed(one)
     n, named = _normals(one)
     sides = (
@@ -226,7 +227,7 @@ def _points(one: Run) -> Iterator[Miss]:
 
 
 def _allowed(one: Run) -> tuple[Array, Array, float, Array]:
-    """The true distances, roundoff, slack, and how far a certified distance may be off."""
+    """The true distances, roundoff, slack, and the allowed error of a certified distance."""
     a, b = one.scenes[0].a, one.scenes[0].b
     truth = np.array([scene.truth for scene in one.scenes])
     sizes = sum(
@@ -235,7 +236,7 @@ def _allowed(one: Run) -> tuple[Array, Array, float, Array]:
         if body.bounded
     )
     away = lengths(one.frames.poses_a[:, 9:]) + lengths(one.frames.poses_b[:, 9:])
-    # a point far out on a half-space's plane has the roundoff of its own coordinates
+    # a point far away on a half-space's plane has the roundoff of its own coordinates
     points = one.rows[:, K.POINT_A : K.POINT_A + 6]
     far = np.abs(np.where(np.isfinite(points), points, 0.0)).max(axis=1)
     size = np.maximum(sizes + away + far + np.abs(truth), LEAST)

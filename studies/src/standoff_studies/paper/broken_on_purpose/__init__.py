@@ -1,4 +1,4 @@
-"""The law broken on purpose, and which statements of Figs. 6 to 20 notice: what the audit is worth.
+"""The law broken on purpose, and which statements of Figs. 6 to 20 detect it: a test of the audit.
 
 ``python -m standoff_studies.paper.broken_on_purpose`` prints the table.
 """

@@ -8,7 +8,7 @@ from standoff_studies.paper.broken_on_purpose.matrix import markdown, matrix
 
 
 def main() -> None:
-    """Break the law in every way, some minutes, and print what notices."""
+    """Break the law in every way, which takes some minutes, and print what detects it."""
     parser = argparse.ArgumentParser(
         prog="python -m standoff_studies.paper.broken_on_purpose",
         description="Break the law of simulations A to E on purpose, one way after the other, and "

@@ -1,7 +1,7 @@
 """What can be broken: every tracker of simulations A to E that follows the paper's law.
 
-Only what ran is broken. What the statements judge it by stays: the library's own law, the resets
-that are computed again, the global searches.
+Only these runs are broken. What the statements compare them with stays: the library's own law, the
+resets that are computed independently, the global searches.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from standoff.tracking.laws import PaperLaw
 PAPER = "standoff_studies.paper"
 
 STILL_STABLE = 0.9995
-"""Part of the greatest gain that a broken gain is kept below: a tracker takes no more."""
+"""Fraction of the greatest gain below which a broken gain is kept: a tracker accepts no more."""
 
 TRACKERS = (
     "simulation_a.run",
@@ -72,7 +72,7 @@ class Break:
     backwards : bool
         The law is given the twists with the other sign, and so b.
     claims : tuple of (str, str)
-        Figures and words of their statements on what it breaks: each must fail.
+        Figures, and words of their statements about what it breaks: each must fail.
     """
 
     key: str
@@ -88,7 +88,7 @@ class Break:
 
 
 def times(part: float) -> Callable[[PaperLaw, float], PaperLaw]:
-    """Return what multiplies the gain, as far as it stays stable."""
+    """Return a change that multiplies the gain, as far as it stays stable."""
 
     def law(law: PaperLaw, dt: float) -> PaperLaw:
         most = STILL_STABLE * max_gain(law.integrator, dt)
@@ -178,8 +178,8 @@ def broken(one: Break, *, trials: bool = True) -> Iterator[None]:
     ----------
     one : Break
     trials : bool
-        Also what is counted over many starts and gains; else that stays as it was, and simulation B
-        has one start.
+        Also rerun what is counted over many starts and gains; otherwise that stays as it was, and
+        simulation B has one start.
     """
 
     def tracker(a: Any, b: Any, dt: float = 1e-3, **options: Any) -> Tracker:
@@ -209,7 +209,7 @@ def _module(name: str) -> Any:
 
 
 def _forget(kept: dict[str, tuple[str, ...]], stack: ExitStack) -> None:
-    """Replace functions that keep what they return, wherever they were imported, by new ones."""
+    """Replace functions with cached results, wherever they were imported, by new ones."""
     for module, names in kept.items():
         for name in names:
             known = getattr(_module(module), name)
@@ -220,7 +220,7 @@ def _forget(kept: dict[str, tuple[str, ...]], stack: ExitStack) -> None:
 
 
 class _Backwards(Tracker):
-    """Is told twists of the other sign wherever it is stepped in place."""
+    """A tracker that gets twists of the opposite sign wherever it is stepped in place."""
 
     def start_from(self, pose_a: Any, pose_b: Any, *rest: Any, **options: Any) -> TrackerState:
         places, twists = rest[:2], rest[2:]
@@ -240,7 +240,7 @@ def _turned(twist: Any) -> Twist:
 
 
 class _Told:
-    """A path as a law is told it: each pose and twist computed once, twists turned if wanted."""
+    """A path as given to a law: each pose and twist computed once, twists reversed if wanted."""
 
     def __init__(self, path: Any, backwards: bool) -> None:
         self.path, self.backwards = path, backwards
@@ -262,7 +262,7 @@ _PATHS: dict[int, tuple[Callable[[float], Pose], Callable[[float], Twist]]] = {}
 
 
 def _known(path: Any) -> tuple[Callable[[float], Pose], Callable[[float], Twist]]:
-    """A path's pose and twist, kept by time: most of a run's time goes into them."""
+    """A path's pose and twist, cached by time: they take most of the time of a run."""
     if id(path) not in _PATHS:
         _PATHS[id(path)] = cache(path.pose), cache(path.twist)
     return _PATHS[id(path)]

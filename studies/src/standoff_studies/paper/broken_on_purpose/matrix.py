@@ -1,4 +1,4 @@
-"""Which statements of which figure notice a break, beside how they stand without it."""
+"""Which statements of which figure detect a break, compared with those without it."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ from standoff_studies.paper.figure import NOTHING, Statement
 from standoff_studies.paper.verdicts import Verdict
 
 FIGURES = tuple(entry.key for entry in chosen(["6-7", "9-11", "13-20"]))
-"""Those that a tracker of the paper's law ran for; Figs. 8 and 12 are of the bodies alone."""
+"""The figures for which the paper's law ran; Figs. 8 and 12 show only the bodies."""
 
 GOOD = (Verdict.HOLDS, Verdict.CONSTRUCTED)
 
 
 class Noticed(NamedTuple):
-    """What becomes of one figure under a break.
+    """The effect of a break on one figure.
 
     Attributes
     ----------
     key : str
     failed : tuple of str
-        What its statements say that held and fail.
+        Its statements that held and now fail.
     open : tuple of str
-        That held and can no longer be judged.
+        Those that held and can no longer be judged.
     mended : tuple of str
-        That failed and hold.
+        Those that failed and now hold.
     words : bool
-        The words of the law that ran are others.
+        The words for the law that ran are different.
     error : str
         Why it could not be made; empty if it could.
     """
@@ -58,7 +58,7 @@ def statements_of(key: str) -> tuple[Statement, ...]:
 def noticed(
     one: Break, figures: Sequence[str] = FIGURES, *, trials: bool = True
 ) -> tuple[Noticed, ...]:
-    """Return what becomes of some figures under a break.
+    """Return the effect of a break on some figures.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def noticed(
     figures : sequence of str
         Their keys.
     trials : bool
-        As of `broken`.
+        As in `broken`.
     """
     before = {key: sound(key) for key in figures}
     with broken(one, trials=trials):
@@ -93,7 +93,7 @@ Matrix = dict[str, tuple[Noticed, ...]]
 
 
 def matrix(breaks: Iterable[Break] = BREAKS) -> Matrix:
-    """Return what every figure makes of every break, by the break's key."""
+    """Return the effect of every break on every figure, by the break's key."""
     return {one.key: noticed(one) for one in breaks}
 
 

@@ -1,4 +1,4 @@
-"""Figure "basin": from which starts the raw law, Newton's and the safeguarded one succeed."""
+"""Figure "basin": starts from which the raw law, Newton and the safeguarded law succeed."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ COLUMNS, ROWS = 90, 45
 PAIRS = 1000
 """Random starts on two ellipsoids."""
 GAIN = 100.0
-"""K of the raw law [1/s]: K h = 0.1, near enough to continuous time but for single starts."""
+"""K of the raw law [1/s]: K h = 0.1, close enough to continuous time except for single starts."""
 GENTLER = 50
-"""Part of `GAIN` at which those are tried again: K h = 0.002."""
+"""Fraction of `GAIN` at which those are tried again: K h = 0.002."""
 
 LAWS: dict[str, tuple[so.PaperLaw | so.PredictorCorrector, int]] = {
     "raw law": (so.PaperLaw(gain=GAIN, solve="plain"), 250),
@@ -55,7 +55,7 @@ LAW = (
 
 
 def place_of(direction: Array) -> PlaceLike:
-    """Where a full ellipsoid's atlas has the image of a unit vector: its most central chart."""
+    """The place of a unit vector's image in a full ellipsoid's atlas, in its most central chart."""
     k = int(np.abs(direction).argmax())
     # charts come in the order +z, -z, +x, -x, +y, -y
     chart = 2 * ((k + 1) % 3) + int(direction[k] < 0.0)
@@ -95,7 +95,7 @@ def of_two(law: str) -> Basin:
 
 
 def weighted(found: np.ndarray) -> float:
-    """Share of the map's starts, each with its cell's part of the unit sphere."""
+    """Share of the map's starts, weighted by their cells' areas on the unit sphere."""
     weight = np.repeat(np.cos(np.radians(directions()[1])), COLUMNS)
     return float((weight * found).sum() / weight.sum())
 
@@ -103,10 +103,10 @@ def weighted(found: np.ndarray) -> float:
 def joined(found: np.ndarray) -> NDArray[np.int64]:
     """Number the connected parts of a basin on the map from 1, shape (ROWS, COLUMNS); 0 is outside.
 
-    Cells join by their sides, over the seam of the longitudes, and all of them at a pole.
+    Cells are connected by their sides, across the seam of the longitudes, and all at a pole.
     """
     cells = found.reshape(ROWS, COLUMNS)
-    # One more row at each pole and one more column on the right join what meets there.
+    # an additional row at each pole and a column on the right connect what meets there
     around = np.pad(np.hstack([cells, cells[:, :1]]), ((1, 1), (0, 0)))
     around[0], around[-1] = cells[0].any(), cells[-1].any()
     names, _ = label(around)
@@ -133,7 +133,7 @@ def stray(found: np.ndarray) -> list[int]:
 
 @cache
 def strays_in_small_steps() -> int:
-    """How many of the raw law's stray starts find the minimum at a gain `GENTLER` times as low."""
+    """How many of the raw law's stray starts find the minimum at `GENTLER` times the gain."""
     _, steps = LAWS["raw law"]
     law = so.PaperLaw(gain=GAIN / GENTLER, solve="plain")
     tracker = so.Tracker(ellipsoids()[0], so.shapes.point(), dt=STEP, law=law)

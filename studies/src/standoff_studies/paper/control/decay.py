@@ -19,17 +19,17 @@ from standoff.tracking import feedback
 STEP = 1e-3
 """Frame time [s]."""
 OFFSET = 1e-5
-"""Parameters off the minimum at the start. Each start is mirrored and both results are taken
-together, so that what the law's curvature adds is of this to the third power, 1e-15."""
+"""Error of the parameters at the start. Each start is mirrored and both results are combined, so
+that the law's curvature only contributes the third power of this, 1e-15."""
 DIRECTION = np.array([1.0, -0.7, 0.5, 0.8])
-"""In which the start is off, in parameters (u, v) of A and (r, s) of B."""
+"""Direction of the error at the start, in parameters (u, v) of A and (r, s) of B."""
 POINTS = 12
-"""Gains measured per integrator, evenly over the stable range."""
+"""Gains measured per integrator, evenly spaced over the stable range."""
 PROPORTIONAL = 0.2
 """K h of the PI law that is measured: stable for each integrator at each damping below."""
 DAMPINGS = (1.4, 0.7, 0.5, 0.25)
 """Damping ratios zeta of the PI loop: K_i = (K / (2 zeta))². Above 1 both roots are real; at 1
-they meet, and no measurement tells them apart."""
+they coincide, and no measurement can distinguish them."""
 
 REST = Pose.identity(), Pose.exp([0.4, -0.1, 0.2], [2.5, 0.3, 0.2])
 """Where the two ellipsoids are, at rest."""
@@ -44,7 +44,7 @@ class Decay(NamedTuple):
     z : (n,) array
         K h.
     measured, predicted : (n,) arrays
-        Signed: Psi after a step in parts of Psi before, and R(-K h).
+        Signed: the ratio of Psi after and before a step, and R(-K h).
     trackers : tuple of so.Tracker
     """
 
@@ -73,9 +73,9 @@ def tracker(**options: Any) -> so.Tracker:
 
 
 def errors_after(steps: int, offset: Array, **options: Any) -> Array:
-    """Psi (steps + 1, 4) of the paper's law at rest, from parameters `offset` off the minimum.
+    """Psi (steps + 1, 4) of the paper's law at rest, from parameters `offset` from the minimum.
 
-    Odd part in the offset: (result of offset - result of -offset) / 2.
+    It is the odd part in the offset: (result for offset - result for -offset) / 2.
     """
     return 0.5 * (_errors(steps, offset, options) - _errors(steps, -offset, options))
 
@@ -156,12 +156,12 @@ def loops() -> tuple[Loop, ...]:
 
 
 class Arrival(NamedTuple):
-    """The finite-time law's errors by step, and what its equation gives.
+    """The finite-time law's errors by step, measured and according to its equation.
 
     Attributes
     ----------
     measured, predicted : (n, 4) arrays
-        Psi in parts of its reference.
+        Psi divided by its reference.
     """
 
     measured: Array
@@ -170,9 +170,9 @@ class Arrival(NamedTuple):
 
 @cache
 def arrival() -> Arrival:
-    """dPsi/dt = -K |Psi / r|^(p - 1) Psi has |Psi / r|^(1 - p) fall at the constant rate K (1 - p).
+    """If dPsi/dt = -K |Psi / r|^(p - 1) Psi, |Psi / r|^(1 - p) falls at the rate K (1 - p).
 
-    Measured with RK4 as far as the law is not yet linear.
+    Measured with RK4 until the law becomes linear.
     """
     law = feedback.FiniteTime(40.0, 0.5, OFFSET)
     psi = errors_after(12, OFFSET * DIRECTION, integrator="rk4", feedback=law) / law.reference

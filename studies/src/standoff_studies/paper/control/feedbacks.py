@@ -23,23 +23,23 @@ STEP = 1e-3
 FRAMES = 300
 """Frames of the run."""
 WRONG_FROM = 120
-"""Frame from which the twists that the law is told are wrong."""
+"""Frame from which the twists given to the law are wrong."""
 LAST = 60
 """Frames at the end over which the steady error is taken."""
 CHATTER = slice(20, 100)
-"""Frames in which chatter is looked for: the twists are right."""
+"""Frames in which chatter is counted: the twists are right there."""
 GAIN = 200.0
 """K of the linear law [1/s]."""
 FALLEN = 1e-3
-"""Part of the first error that counts as gone."""
+"""Fraction of the first error below which it counts as gone."""
 BIAS = np.array([0.08, -0.05, 0.06])
-"""Velocity that is added to B's true one: a sensor with a bias [length/s]."""
+"""Velocity added to B's true one, as by a sensor with a bias [length/s]."""
 DRIFT = (np.array([0.05, 0.03, 0.04]), np.array([0.02, 0.03, -0.02]))
 """B's true twist, in world axes: velocity [length/s] and angular velocity [rad/s]."""
 POSE_B = ([2.9, 0.3, 0.2], [0.45, 0.3, 1.9])
 """Where B starts: rotation vector [rad] and position [length]."""
 OFFSET = np.array([0.25, -0.2, 0.15, 0.2])
-"""Parameters off the minimum at the start."""
+"""Error of the parameters at the start."""
 
 LAWS: dict[str, feedback.Feedback] = {
     "linear": feedback.Linear(GAIN),
@@ -52,7 +52,7 @@ LAWS: dict[str, feedback.Feedback] = {
 
 
 class Run(NamedTuple):
-    """What a feedback did.
+    """The result of a feedback.
 
     Attributes
     ----------

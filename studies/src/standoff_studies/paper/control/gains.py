@@ -17,10 +17,10 @@ from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_s
 from standoff_studies.paper.law_words import law_words
 
 CASES = 480
-"""Random pairs that the lag is measured on."""
+"""Random pairs on which the lag is measured."""
 AGREE = 1e-7
-"""Most a measured growth factor may be off its prediction: what Psi's roundoff, 1e-16 of 1e-5,
-and the chart's curvature leave, with room."""
+"""Greatest deviation of a measured growth factor from its prediction: that of Psi's roundoff, 1e-16
+of 1e-5, and of the chart's curvature, with a margin."""
 NAMED = {"euler": "Euler", "heun": "Heun", "midpoint": "midpoint", "rk4": "RK4"}
 
 
@@ -46,7 +46,7 @@ def worst_arrival() -> float:
 
 
 def by() -> str:
-    """Return what the statements were measured with."""
+    """Return the law with which the statements were measured."""
     growing = law_words(*(one for made in decays().values() for one in made.trackers))
     looped = law_words(*(loop.tracker for loop in loops()))
     lagging = law_words(*(lag.tracker for lag in lags()))

@@ -1,4 +1,4 @@
-"""Lag of the paper's law without feedforward, measured on random pairs, beside its bound."""
+"""Lag of the paper's law without feedforward, measured on random pairs, and its bound."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ DT = 1e-3
 FRAMES = 40
 """Frames of a case: at K h = 0.5 the start's error is 1e-12 of itself at their end."""
 LAG = 1e-3
-"""Error that the gain is asked to keep, in parts of the smaller body's size."""
+"""Error that the gain should keep, as a fraction of the smaller body's size."""
 LEAST_STEP, MOST_STEP = 0.02, 1.0
-"""Range of K h: below it a case has no time to settle, above it the error may overshoot."""
+"""Range of K h: below it a case does not have time to settle, above it the error may overshoot."""
 
 
 class Case(NamedTuple):
@@ -44,7 +44,7 @@ class Case(NamedTuple):
 
 
 class Lag(NamedTuple):
-    """What was measured on a case.
+    """The measurements on a case.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Lag(NamedTuple):
 
     @property
     def part(self) -> float:
-        """The error in parts of its bound."""
+        """The error divided by its bound."""
         return self.error / self.bound
 
 
@@ -84,7 +84,7 @@ PAIRS: dict[str, Callable[[np.random.Generator], tuple[Body, Body]]] = {
 
 
 def random_case(kind: str, random: np.random.Generator) -> Case:
-    """B at a random pose some way off, moving sideways, turning, or both."""
+    """B at a random pose some distance away, moving sideways, rotating, or both."""
     a, b = PAIRS[kind](random)
     direction = random.normal(size=3)
     direction /= np.linalg.norm(direction)
@@ -97,7 +97,7 @@ def random_case(kind: str, random: np.random.Generator) -> Case:
 
 
 def measured_lag(case: Case) -> Lag | None:
-    """Run a case with the gain that `so.min_gain` asks for; None where that gain leaves the range.
+    """Run a case with the gain from `so.min_gain`; None if that gain is out of range.
 
     The truth is the certified distance at the same poses.
     """
@@ -111,7 +111,7 @@ def measured_lag(case: Case) -> Lag | None:
     gain = float(np.clip(least, LEAST_STEP / DT, MOST_STEP / DT))
     bound = wanted * least / gain
     if not 0.0 < bound <= 10.0 * wanted:
-        return None  # too fast for this step: its error would not be small
+        return None  # too fast for this step: the error would not be small
     law = so.Tracker(
         case.a, case.b, DT, law=so.PaperLaw(integrator="euler", gain=gain, feedforward=False)
     )
@@ -128,7 +128,7 @@ def core_points(case: Case, made: Recording) -> Array:
 
 
 def measured_lags(count: int, seed: int = 4) -> list[Lag]:
-    """Cases of each kind in turn, `count` in all, those left out that `measured_lag` refuses."""
+    """Cases of each kind in turn, `count` in total, without those that `measured_lag` rejects."""
     random = np.random.default_rng(seed)
     kinds = list(PAIRS)
     lags = []

@@ -1,4 +1,4 @@
-"""Figure "lyapunov": functions of the parameter error that fall, and how far they may be used."""
+"""Figure "lyapunov": decreasing functions of the parameter error, and where they are valid."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ FRAMES = 250
 WATCHED, WATCHED_FRAMES, WATCHED_GAIN = 60, 40, 50.0
 """Runs whose functions are evaluated at each frame, their frames and gain [1/s]: K h = 0.05."""
 CLEAR = 0.9
-"""Part of the levels from within which those runs start: beside a singular H a single step is not
-what the law in continuous time does."""
+"""Fraction of the levels within which those runs start: near a singular H a single step differs
+from the law in continuous time."""
 ROUNDOFF = 1e-14
-"""Rise of E that is roundoff [length²]: some units in the last place of E itself, about 1."""
+"""Rise of E that is roundoff [length²]: a few units in the last place of E itself, about 1."""
 PART = 0.999
-"""Starts are taken up to this part of the level."""
+"""Starts are within this fraction of the level."""
 
 POINT_AT = (0.75, 0.45, 1.0)
 """The point above the cap [length]."""
 POSE_B = ([2.9, 0.3, 0.2], [0.7, 0.4, 1.9])
 """The second cap: rotation vector [rad] and position [length]."""
 GRID = 71
-"""Points a side at which the functions are evaluated for the picture."""
+"""Points per side at which the functions are evaluated for the picture."""
 
 
 TOLD = "where dV/dt is watched the second; bodies at rest, starts within the level"
-"""What the record of the trackers does not hold."""
+"""What the record of the trackers does not contain."""
 
 
 @cache
@@ -76,21 +76,21 @@ def case(bodies: str) -> Case:
 
 @cache
 def tracker(bodies: str) -> so.Tracker:
-    """Return that of the raw law."""
+    """Return the tracker of the raw law."""
     made = case(bodies)
     return so.Tracker(made.a, made.b, STEP, law=so.PaperLaw(gain=GAIN, solve="plain"))
 
 
 @cache
 def watched_tracker(bodies: str) -> so.Tracker:
-    """Return that whose V and E are watched: it stays on its features."""
+    """Return the tracker whose V and E are recorded: it stays on its features."""
     made = case(bodies)
     law = so.PaperLaw(integrator="rk4", gain=WATCHED_GAIN, solve="plain", switching="none")
     return so.Tracker(made.a, made.b, STEP, law=law)
 
 
 def by() -> str:
-    """Return what the statements were measured with."""
+    """Return the laws with which the statements were measured."""
     both = (law_words(*map(made, ("point", "faces"))) for made in (tracker, watched_tracker))
     return "; ".join([*both, TOLD])
 
@@ -111,12 +111,12 @@ def places(made: Case, q: Array) -> tuple[tuple[so.Feature, Array], tuple[so.Fea
 
 
 class Watched(NamedTuple):
-    """What V and E did, frame by frame.
+    """V and E, frame by frame.
 
     Attributes
     ----------
     v, e : (m, WATCHED_FRAMES + 1) arrays
-        V and E - E* by run and frame, in parts of those at its start.
+        V and E - E* by run and frame, relative to those at its start.
     rate : float
         Greatest deviation of -ln(V / V before) / (2 K h) from 1.
     rises : int
@@ -255,7 +255,7 @@ def definiteness() -> tuple[Array, Array, Array]:
 
 
 def outline(values: Array, level: float) -> Array:
-    """The closed curve of a level, (., 2), from where each trajectory meets it."""
+    """The closed curve of a level, (., 2), from the points where trajectories cross it."""
     levels = case("point").levels
     angle = np.arctan2(levels.directions[:, 1], levels.directions[:, 0])
     order = np.argsort(angle)

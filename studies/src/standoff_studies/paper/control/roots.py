@@ -27,7 +27,7 @@ MARKED = {
     "heun": ((1.0, 0.5), (2.0, 1.0)),
     "rk4": ((1.6, 0.2704), (2.785, 1.0)),
 }
-"""K h that are named on the real root of proportional feedback, and where it then is."""
+"""K h that are marked on the real root of proportional feedback, and the root there."""
 METHODS = ("euler", "heun", "rk4")
 TITLES = {"euler": "Euler", "heun": "Heun and midpoint", "rk4": "RK4"}
 
@@ -56,7 +56,7 @@ class Locus(NamedTuple):
 
 @cache
 def loci() -> tuple[Locus, ...]:
-    """Loci of each integrator: proportional feedback and PI of three dampings."""
+    """Loci of each integrator: proportional feedback and PI with three dampings."""
     return tuple(_locus(name, zeta) for name in METHODS for zeta in (np.inf, *DAMPING))
 
 
@@ -101,7 +101,7 @@ def stability() -> Artwork:
 
 
 def by() -> str:
-    """Return what the statements were measured with."""
+    """Return the law with which the statements were measured."""
     ran = law_words(*(loop.tracker for loop in loops()), told="from 1e-5 off the minimum")
     return f"so.control, linear theory: no tracker; measured roots by {ran}"
 

@@ -1,4 +1,4 @@
-"""Which starts arrive on tiled bodies: laws, switchings, solves and gains side by side."""
+"""Which starts arrive on tiled bodies: a comparison of laws, switchings, solves and gains."""
 
 from standoff_studies.paper.convergence.figures import anew, as_committed
 

@@ -1,4 +1,4 @@
-"""Run the study anew: ``python -m ...convergence cells.jsonl > summary.json``."""
+"""Rerun the study: ``python -m ...convergence cells.jsonl > summary.json``."""
 
 import argparse
 from pathlib import Path

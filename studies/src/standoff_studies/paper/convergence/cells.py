@@ -33,7 +33,7 @@ CONFIDENCE = 1.96
 """Half width of a 95 % interval of a normal variable, in standard deviations."""
 
 MOTIONS = {"rest": "at rest", "moving": "moving"}
-"""What the bodies do."""
+"""The motions of the bodies."""
 
 
 class LawOf(NamedTuple):
@@ -43,9 +43,9 @@ class LawOf(NamedTuple):
     ----------
     name : str
     starts : int
-        How many a cell has.
+        How many starts a cell has.
     options : dict
-        Of `PaperLaw`, with the gain and without restarts.
+        Options of `PaperLaw`, in addition to the gain and no restarts.
     """
 
     name: str
@@ -71,16 +71,16 @@ LAWS = {
 """The laws by key, with the starts of a cell."""
 
 FEWER = {("printed", "drawn"): 100, ("covariant-hold", "lens"): 300}
-"""Starts where a law has fewer on some pairs: on each drawn pair, and where the bodies are D's, E's
-and C's, on which every start arrives without holding boundaries."""
+"""Starts of laws that have fewer on some pairs: on each drawn pair, and on the bodies of D, E and
+C, where every start arrives without holding boundaries."""
 
 Options = tuple[str, str, str, float]
-"""Of a cell: the pair, the motion, the law, the gain."""
+"""The key of a cell: the pair, the motion, the law, the gain."""
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One pair, motion, law and gain, and what became of its starts.
+    """One pair, motion, law and gain, and the results of its starts.
 
     Attributes
     ----------
@@ -90,17 +90,17 @@ class Cell:
         1/s
     tried, arrived : int
     median, slowest : float or None
-        Time to arrive of those that do: the middle one and that of 99 of 100 [s]; None if none do.
+        Time to arrive of those that do: the median and the 99th percentile [s]; None if none do.
     right, settled : int
         On the features of the closest points after the first frame, and at the end.
     definite, definite_arrived : int
-        Of the `right` ones: with the printed M definite after the first frame, and those of them
-        that arrive.
+        Of the `right` ones, those with the printed M definite after the first frame, and how many
+        of these arrive.
     right_arrived : int
-        Of the `right` ones: those that arrive.
+        How many of the `right` ones arrive.
     causes : dict
-        Of those that do not arrive: how many by cause. A cause with "elsewhere" is on other
-        features than those of the closest points.
+        How many of those that do not arrive, by cause. A cause with "elsewhere" is on features
+        other than those of the closest points.
     """
 
     pair: str
@@ -120,22 +120,22 @@ class Cell:
 
     @property
     def part(self) -> float:
-        """Part of the starts that arrive."""
+        """Fraction of the starts that arrive."""
         return self.arrived / self.tried
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Wilson's 95 % interval of that part."""
+        """Wilson's 95 % interval of that fraction."""
         return wilson(self.arrived, self.tried)
 
     @property
     def options(self) -> Options:
-        """What names the cell."""
+        """The key of the cell."""
         return self.pair, self.motion, self.law, self.gain
 
 
 def wilson(arrived: int, tried: int) -> tuple[float, float]:
-    """Return Wilson's 95 % interval of a part."""
+    """Return Wilson's 95 % interval of a fraction."""
     n, p, z = tried, arrived / tried, CONFIDENCE
     middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n)
     half = z / (1.0 + z * z / n) * math.sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n))
@@ -157,7 +157,7 @@ def starts_of(options: Options) -> int:
 
 
 def made(options: Options, starts: int | None = None) -> tuple[Cell, list[dict[str, Any]]]:
-    """Run one cell; also the traces of the starts that do not arrive."""
+    """Run one cell; return also the traces of the starts that do not arrive."""
     name, motion, law, gain = options
     subject = pair(name)
     tried = trial(subject, motion, law_of(law, gain))
@@ -199,7 +199,7 @@ def every_cell() -> Iterator[Options]:
 
 
 def study(kept: Path, processes: int = 2, starts: int | None = None) -> None:
-    """Run all cells that a file does not have yet; it is written anew, whole, as each ends."""
+    """Run all cells that are not in a file yet; the whole file is written again after each."""
     lines = kept.read_text("utf-8").splitlines() if kept.exists() else []
     have = {cell.options for cell, _ in read(lines)}
     waiting = [options for options in every_cell() if options not in have]
@@ -220,7 +220,7 @@ def line(cell: Cell, traces: list[dict[str, Any]]) -> str:
 
 
 def read(lines: Iterable[str]) -> list[tuple[Cell, list[dict[str, Any]]]]:
-    """Return cells and traces of such lines."""
+    """Return cells and traces from such lines."""
     rows = [json.loads(text) for text in lines if text.strip()]
     return [(Cell(**row["cell"]), row["traces"]) for row in rows]
 
@@ -232,7 +232,7 @@ def committed() -> tuple[Cell, ...]:
 
 
 def summary(run: Iterable[tuple[Cell, list[dict[str, Any]]]]) -> str:
-    """Return the text of a summary: every cell a line, in the order of `every_cell`."""
+    """Return the text of a summary: one line per cell, in the order of `every_cell`."""
     found = {cell.options: cell for cell, _ in run}
     ordered = [found[options] for options in every_cell() if options in found]
     rows = ",\n  ".join(json.dumps(asdict(cell)) for cell in ordered)

@@ -62,16 +62,16 @@ REVIEWED = {
     ("E gnomonic", "printed"): "7 %",
     ("E patches", "covariant"): "200 of 200, 1000 of 1000",
 }
-"""What an independent program in plain NumPy has counted (E: 200 to 1000 starts)."""
+"""The counts of an independent program in plain NumPy (E: 200 to 1000 starts)."""
 
 
 def as_committed() -> Artwork:
-    """The study as it was last run and written down."""
+    """The study as last run and stored."""
     return _artwork(committed())
 
 
 def anew() -> Artwork:
-    """The study run again: two hours of processor time."""
+    """The study rerun: two hours of processor time."""
     with tempfile.TemporaryDirectory() as folder:
         kept = Path(folder) / "cells.jsonl"
         study(kept)
@@ -148,7 +148,7 @@ def _shares(cells: tuple[Cell, ...]) -> dict[str, Any]:
 
 
 def _reviewed(cells: tuple[Cell, ...]) -> dict[str, Any]:
-    """D from its grid and E, at rest at K = 25, beside an independent program."""
+    """D from its grid and E, at rest at K = 25, compared with an independent program."""
     rows = [*GRIDS, *(name for name in LENSES if name.startswith("E"))]
     low = [cell for cell in cells if cell.motion == "rest" and cell.gain == GAINS[0]]
     found: dict[str, Any] = {"bodies": rows}
@@ -197,7 +197,7 @@ def _times(cell: Cell, time: float | None) -> str:
 
 
 def _words(law: str) -> str:
-    """What a statement says it was measured with."""
+    """The law with which a statement was measured."""
     facts = {key: value for key, value in law_of(law, 1.0).facts().items() if key in SHOWN}
     return ", ".join(f"{key}={value}" for key, value in facts.items())
 
@@ -208,11 +208,11 @@ SHOWN = ("saturation", "switching", "solve", "reset", "far_side", "restarts")
 SPATIAL = (*LENSES, "A point", "A vaults", *DRAWN_PAIRS)
 
 MOST = 0.99
-"""Part of the starts above which a statement about all of them is called right."""
+"""Fraction of the starts above which a statement about all of them counts as right."""
 
 
 def _part(cells: Iterable[Cell], name: str) -> str:
-    """A count's part of the starts that were tried."""
+    """A count as a fraction of the starts tried."""
     found = list(cells)
     return f"{_sum(found, name) / _sum(found, 'tried'):.1%}"
 

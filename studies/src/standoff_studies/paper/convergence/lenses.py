@@ -17,14 +17,14 @@ from standoff.geometry.validation import Array
 from standoff_studies.paper.bodies import lens_of_patches
 
 RADIUS, OFFSET = 1.0, 0.45
-"""Of the lens's balls, and of their centres from its middle [length]: those of D and E."""
+"""Radius of the lens's balls, and offset of their centres [length]: those of D and E."""
 
 PARAMETRISATIONS = {
     "patches": "biquadratic Bézier patches",
     "gnomonic": "gnomonic charts, trimmed",
     "stereographic": "stereographic patches, trimmed",
 }
-"""By key: what each is called."""
+"""The name of each, by key."""
 
 REACH = 0.7
 """Half the width of a stereographic patch: tan(θ/2) at the angle θ from its middle. The vertices
@@ -33,7 +33,7 @@ are at 63°, where it is 0.62."""
 
 @dataclass(frozen=True, eq=False)
 class Lens:
-    """The lens of one parametrisation under a linear map.
+    """The lens in one parametrisation under a linear map.
 
     Attributes
     ----------
@@ -85,9 +85,9 @@ def lens(parametrisation: str, linear: Array | None = None) -> Lens:
 
 
 def _stereographic(face: Face) -> BezierPatch:
-    """The part about the middle of a gnomonic face's ball, projected from the far pole.
+    """The part of a gnomonic face's ball around its middle, projected from the opposite pole.
 
-    In homogeneous numbers (2x, 2y, 1 − x² − y²; 1 + x² + y²), with x and y from −REACH to REACH.
+    In homogeneous coordinates (2x, 2y, 1 − x² − y²; 1 + x² + y²), for x and y from −REACH to REACH.
     """
     one, line, square = (
         np.array(row) for row in ([1.0, 1.0, 1.0], [-1.0, 0.0, 1.0], [1.0, -1.0, 1.0])

@@ -34,25 +34,25 @@ GAPS = (0.4, 1.0)
 """Range of a drawn pair's distance [length]: the lenses are about as large."""
 
 SPEED, SPIN = 0.2, 0.3
-"""Of a body without a motion of its own: along the gap's tangent plane [length/s], and about a
+"""Motion of a body for which none is given: along the gap's tangent plane [length/s], and about a
 random axis [rad/s]. In the longest run, 0.62 s, it moves by at most 0.4, less than the gap."""
 
 OUTSIDE = 2.5
-"""Time at which simulation B's spiral is begun: its point is outside then [s]."""
+"""Time at which simulation B's spiral starts here: its point is outside then [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """Two bodies, A at rest at home, and how starts are drawn.
+    """Two bodies, A at rest at the identity pose, and how starts are drawn.
 
     Attributes
     ----------
     name : str
     a, b : Body
     path : Path
-        Of B; ``motion="rest"`` takes its first pose.
+        Of B; ``motion="rest"`` uses its first pose.
     draw : callable
-        Takes a random generator, and gives a place on A and one on B.
+        Takes a random generator, and returns a place on A and one on B.
     grid : tuple
         The places of a pair whose starts are not drawn.
     """
@@ -118,7 +118,7 @@ def _two_lenses(parametrisation: str) -> Pair:
     assert (PATH_A.pose(0.0).translation == 0.0).all(), "A is at home"
 
     def draw(rng: np.random.Generator) -> Start:
-        # as the study has always drawn: both faces, then both places
+        # the order in which the study has always drawn: both faces, then both places
         (k, m), (at, at_b) = rng.integers(3, size=2).tolist(), rng.uniform(size=(2, 2)).tolist()
         return (
             on_a_lens(one, home, ("face", k), tuple(at)),
@@ -130,10 +130,10 @@ def _two_lenses(parametrisation: str) -> Pair:
 
 
 def _apart(a: Body, b: Body, turn: Array, way: Array, gap: float, rng: np.random.Generator) -> Path:
-    """Put B beside A at a distance, and let it drift along the gap and turn.
+    """Place B at a distance from A, and let it drift along the gap and rotate.
 
-    B begins far out along `way`, and comes back along the normal: the planes that separate them
-    keep their witness points, so that the gap is exact.
+    B is first placed far away along `way`, and then moved back along the normal: the supporting
+    planes keep their witness points, so that the gap is exact.
     """
     far = Pose(turn, 6.0 * way / np.linalg.norm(way))
     found = distance(a, b, Pose.identity(), far)

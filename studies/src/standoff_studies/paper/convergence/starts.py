@@ -1,4 +1,4 @@
-"""One start after another by one law: whether each arrives, and what became of one that did not."""
+"""One start after another by one law: whether each arrives, and the cause if it does not."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ STEP = 1e-3
 """Sample time [s]: the paper's 1 kHz."""
 
 PATIENCE = 15.0
-"""Times 1/K after which a start has arrived or counts as one that has not: exp(-15) is 3e-7."""
+"""Time in units of 1/K after which a start counts as not having arrived: exp(-15) is 3e-7."""
 
 LEAST_FRAMES = 20
-"""Added to it: a start may have to walk over several features, one a frame."""
+"""Frames added to it: a start may have to cross several features, one per frame."""
 
 STAYED = 2.0
-"""Times 1/K, and `LEAST_FRAMES` more, that it must stay at the true distance."""
+"""Time in units of 1/K, plus `LEAST_FRAMES`, for which it must stay at the true distance."""
 
 ARRIVED = 1e-4
-"""Greatest error of the distance of a start that has arrived [length]; the bodies are of size 2."""
+"""Greatest error of the distance of a start that arrived [length]; the bodies are of size 2."""
 
 MORE = 4
-"""Patiences that a start which is still moving gets on top, with the bodies at rest: is it late?"""
+"""Extra time, as a multiple of the patience, for a start that still moves, with bodies at rest."""
 
 STILL = 5
 """Frames in which nothing changes, after which nothing ever will while the bodies are at rest."""
@@ -50,11 +50,11 @@ CAUSES = {
     "stationary": "errors gone, but not at the closest points",
     "other": "errors left, at no side",
 }
-"""Why a start has not arrived."""
+"""Why a start did not arrive."""
 
 
 class End(NamedTuple):
-    """Where a start that has not arrived has ended.
+    """Where a start that did not arrive ended.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class End(NamedTuple):
     least : float
         The least eigenvalue of the printed H; nan on two vertices.
     zeroed : int
-        Components that the last frame has zeroed.
+        Components that the last frame zeroed.
     """
 
     cause: str
@@ -86,12 +86,12 @@ class End(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What became of one start.
+    """The result of one start.
 
     Attributes
     ----------
     time : float
-        When it has arrived for good [s]; nan if it has not.
+        When it arrived for good [s]; nan if it did not.
     right : bool
         On the features of the closest points after the first frame?
     settled : bool
@@ -99,7 +99,7 @@ class Outcome(NamedTuple):
     definite : bool
         On the right features after the first frame, with the printed H definite there?
     end : End or None
-        Of a start that has not arrived.
+        Of a start that did not arrive.
     """
 
     time: float
@@ -180,7 +180,7 @@ def outcome(tried: Trial, place_a: Any, place_b: Any) -> Outcome:
 
 
 def _run(tried: Trial, rows: Array, state: Array) -> Array:
-    """Follow some rows of motion; a frame that the law refuses is nan, with all after."""
+    """Follow some rows of motion; a frame that the law rejects is nan, and all after it."""
     return run(tried.tracker.table, rows, True, np.full(len(rows), STEP), state).rows
 
 
@@ -241,7 +241,7 @@ def _system(tried: Trial, answer: Array, row: Array) -> tuple[float, float]:
 
 
 def _end(tried: Trial, state: Array, answers: Array, settled: bool) -> End:
-    """Trace a start that has not arrived."""
+    """Trace a start that did not arrive."""
     last = answers[-1]
     row = tried.motion[len(answers) - 1]
     if not np.isfinite(last[K.DISTANCE]):

@@ -21,7 +21,7 @@ SMALL = 8.0
 
 
 def draw_loop(axes: Axes) -> None:
-    """Draw Fig. 5: what the paper puts into one integration stands in the dashed frame."""
+    """Draw Fig. 5: the dashed frame contains what the paper integrates together."""
     axes.set(xlim=(-0.1, 15.3), ylim=(0.1, 5.4))
     axes.set_aspect("equal")
     axes.axis("off")
@@ -63,7 +63,7 @@ def _hand_and_device(axes: Axes) -> None:
 
 
 def _dynamics(axes: Axes) -> None:
-    """The tool's forward dynamics, twice integrated."""
+    """The tool's forward dynamics, integrated twice."""
     box(axes, (8.3, TOP), "forward dynamics\nθ'' = M⁻¹(F − C − N)", 1.95, height=TALL)
     box(axes, (11.4, TOP), "∫ dt", 0.5, STATE)
     box(axes, (13.3, TOP), "∫ dt", 0.5, STATE)
@@ -77,7 +77,7 @@ def _dynamics(axes: Axes) -> None:
 
 
 def _tracker(axes: Axes) -> None:
-    """The paper's law, at the poses that nobody knew before."""
+    """The paper's law, at poses that are not known in advance."""
     law = "tracker\nw = M⁻¹(u − b),  u = −KΨ"
     box(axes, (8.9, MIDDLE), law, 2.3, height=TALL)
     box(axes, (12.6, MIDDLE), "∫ dt", 0.5, STATE)

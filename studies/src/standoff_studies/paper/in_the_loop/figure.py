@@ -41,7 +41,7 @@ MM = 1e3
 
 
 def figure_5() -> Artwork:
-    """Draw the diagram and the run beside it."""
+    """Draw the diagram and the run."""
     runs = run()
     return Artwork(
         caption=(
@@ -81,7 +81,7 @@ def stays(runs: Runs) -> list[tuple[float, float, Feature]]:
 
 
 def parameters(runs: Runs) -> Array:
-    """Return face, u and v of each record, (n, 3); on an edge those of a face beside it."""
+    """Return face, u and v of each record, (n, 3); on an edge, those of an adjacent face."""
     face, rows = 0, []
     for feature, q in zip(features(runs), runs.answers.q, strict=True):
         face = feature.index if feature.kind == "face" else face
@@ -213,7 +213,7 @@ def _draw_distance(axes: Axes, runs: Runs) -> None:
 
 
 def _draw_paths(axes: Axes, runs: Runs) -> None:
-    """How far tool, device and hand are off where the ball would just touch."""
+    """Distances of tool, device and hand from where the ball would just touch."""
     times = runs.inside.times
     tool = runs.inside.positions(1)
     out = tool - runs.answers.point_a

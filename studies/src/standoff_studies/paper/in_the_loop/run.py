@@ -1,4 +1,4 @@
-"""The run beside Fig. 5: a scripted hand drags a ball over the lens through device and coupler."""
+"""The run for Fig. 5: a scripted hand drags a ball over the lens through device and coupler."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from standoff.tracking.rows import AnswerRows
 from standoff_studies.paper.bodies import lens_of_patches
 
 RADIUS, OFFSET = 0.05, 0.0225
-"""Of the lens's balls, and of their centres from its middle [m]: simulation D's, to be held."""
+"""Radius of the lens's balls, and offset of their centres [m]: simulation D's, to be held."""
 
 BALL = 0.01
 """Radius of the ball that the hand drags: the tool [m]."""
 
 MASS = 0.2
-"""Of the tool [kg]."""
+"""Mass of the tool [kg]."""
 
 PERIOD = 1e-3
-"""Of device, coupler and operator [s]: the paper's 1 kHz."""
+"""Step of device, coupler and operator [s]: the paper's 1 kHz."""
 
 DURATION = 5.0
-"""Time of the run [s]."""
+"""Duration of the run [s]."""
 
 GAIN = 100.0
 """K of the law inside [1/s]."""
@@ -42,30 +42,30 @@ METHOD = "heun"
 """Advances bodies and parameters together; the order of the paper's own integrator."""
 
 CONTACT = sim.HuntCrossley(stiffness=2e5, damping=20.0, friction=0.1, slip_speed=0.05, depth=6e-4)
-"""Of tool and lens [N/m^1.5, s/m, m/s, m]."""
+"""Contact of tool and lens [N/m^1.5, s/m, m/s, m]."""
 
 DEVICE = sim.Mechanism(mass=0.1, damping=1.2, rotational_damping=2e-3)
 COUNT = 1e-5
 """One count of the device's encoders [m]."""
 
 PRESS, LIFT = 4e-3, 8e-3
-"""How far inside of where the tool may be the hand means to be, and how far off at the ends [m]."""
+"""How deep the hand aims inside the surface, and how far away it is at both ends [m]."""
 
 WAY = ((5.0, 25.0), (35.0, 25.0), (75.0, 28.0), (95.0, 45.0), (118.0, 88.0), (300.0, 65.0))
 WAY_DOWN = ((300.0, 40.0), (300.0, 20.0))
-"""Azimuth and elevation [degrees] of the hand's way about the lens: over face 0, across an edge to
-face 1, up to the vertex, and down along the edge beyond it."""
+"""Azimuth and elevation [degrees] of the hand's path around the lens: over face 0, across an edge
+to face 1, up to the vertex, and down along the edge beyond it."""
 
 OUTSIDE = 3.0
-"""Radii from the middle at which the way is laid; the hand's is next to the lens below it."""
+"""Distance of the path from the middle [radii]; the hand's path is next to the lens below it."""
 
 FINE = 1500
-"""Points of the way, of which the hand's is made."""
+"""Points of that path from which the hand's path is made."""
 
 
 @dataclass(frozen=True, eq=False)
 class Runs:
-    """What the figure shows.
+    """The data of the figure.
 
     Attributes
     ----------
@@ -75,9 +75,9 @@ class Runs:
     inside : SystemRun
         With the law inside the operator, at `GAIN`.
     beside : SystemRun
-        The same scene with a certified tracker beside it.
+        The same scene with a separate, certified tracker.
     microseconds : dict of str to float
-        Of a tick without Python, by where the tracker is.
+        Time per tick without Python, by where the tracker is.
     exact : ndarray, shape (n,)
         Certified distances at the poses of `inside` [m].
     """
@@ -110,7 +110,7 @@ def lens() -> Body:
 
 @cache
 def hand_way() -> CubicSpline:
-    """Return where the hand means to be, (3,) [m] by time [s]."""
+    """Return the intended position of the hand, (3,) [m] by time [s]."""
     corners = np.radians(np.array([*WAY, *WAY_DOWN]))
     ends = np.array([[np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)] for a, e in corners])
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(ends, axis=0), axis=1))])
@@ -123,7 +123,7 @@ def hand_way() -> CubicSpline:
         normal = (off - foot) / np.linalg.norm(off - foot)
         places.append(foot + (BALL + _height(k / (FINE - 1))) * normal)
     way = np.array(places)
-    # even steps on the way, begun and ended at rest
+    # uniform steps on the path, with rest at both ends
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1))])
     part = np.linspace(0.0, 1.0, FINE)
     at = np.array([np.interp(_eased(s) * arc[-1], arc, x) for s in part for x in way.T])
@@ -131,7 +131,7 @@ def hand_way() -> CubicSpline:
 
 
 def _height(s: float) -> float:
-    """How far off the lens the hand means to be, by the part of its way [m]."""
+    """Intended distance of the hand from the lens, by the fraction of its path [m]."""
     into = min(1.0, s / 0.12, (1.0 - s) / 0.12)
     return LIFT - (LIFT + PRESS) * _smooth(into)
 
@@ -141,7 +141,7 @@ def _smooth(s: float) -> float:
 
 
 def _eased(s: float) -> float:
-    """From 0 to 1 at an even speed but for the ends, a tenth of the time each."""
+    """From 0 to 1 at constant speed, except for a tenth of the time at each end."""
     ramp = 0.1
     ends = ramp * _half(min(s, 1.0 - s) / ramp) if min(s, 1.0 - s) < ramp else None
     whole = 1.0 - ramp
@@ -151,17 +151,17 @@ def _eased(s: float) -> float:
 
 
 def _half(x: float) -> float:
-    """The way of a speed that rises smoothly from 0 to 1."""
+    """The distance covered with a speed that rises smoothly from 0 to 1."""
     return x * x * x - 0.5 * x**4
 
 
 def hand_pose(t: float) -> Pose:
-    """Return the pose that the hand means to have."""
+    """Return the intended pose of the hand."""
     return Pose(np.eye(3), hand_way()(np.clip(t, 0.0, DURATION)))
 
 
 def device() -> sim.SimulatedDevice:
-    """Return the device in a tensed hand, at rest at the start of its way."""
+    """Return the device in a tensed hand, at rest at the start of its path."""
     hand = sim.ScriptedHand(path=hand_pose, arm=sim.HumanArm.tensed())
     return sim.SimulatedDevice(
         DEVICE, hand, period=PERIOD, encoder=sim.Encoder(position_step=COUNT)
@@ -197,7 +197,7 @@ def dragged(one: sim.Operator) -> sim.SystemRun:
 
 @cache
 def run() -> Runs:
-    """Run the scene with the law inside, and with a tracker beside."""
+    """Run the scene with the law inside, and with a separate tracker."""
     inside, beside = operator(), operator("beside")
     made = dragged(inside)
     return Runs(
@@ -218,7 +218,7 @@ def exact_distances(made: sim.SystemRun) -> Array:
 
 
 def _microseconds(one: sim.Operator) -> float:
-    """Time of a tick by readings that were written down, without Python."""
+    """Time per tick with recorded readings, without Python."""
     given = sim.DeviceReadings.along(hand_pose, round(DURATION / PERIOD), PERIOD)
     state = one.start().engage()
     began = time.perf_counter()

@@ -1,4 +1,4 @@
-"""What Fig. 5 says, and what the run beside it measures."""
+"""What Fig. 5 says, and what the run measures."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ CLOSE = 1e-6
 """Greatest error of the law's distance that counts as tracked [m]: a thousandth of the depth."""
 
 ROUND = 1e-3
-"""Part by which a step of force may pass what explains it: a chord is shorter than its curve."""
+"""Fraction by which a step of force may exceed what explains it: chords are shorter than curves."""
 
 
 class Steps(NamedTuple):
-    """Steps of the contact's force from record to record, and the most that explains each [N]."""
+    """Steps of the contact's force from record to record, and an upper bound for each [N]."""
 
     taken: Array
     explained: Array
@@ -52,13 +52,13 @@ def kinds_touched(runs: Runs) -> list[str]:
 
 
 def force_steps(runs: Runs) -> Steps:
-    """Return steps of the contact's force, and what stiffness, damping and motion explain.
+    """Return steps of the contact's force, and what explains them: stiffness, damping and motion.
 
-    A ball's force k d^1.5 (1 + 1.5 c d') along its normal, with friction: along the normal it
-    changes by its slope by the depth times the change of the certified depth, and by its slope by
-    the rate times the change of the rate; across it, by the force over the radius that is left,
-    times the way, since so fast the normal turns where that is fastest, at edges and vertices.
-    Friction follows the force, and turns with the slip.
+    A ball's force is k d^1.5 (1 + 1.5 c d') along its normal, with friction. Along the normal it
+    changes by its derivative by depth times the change of the certified depth, plus its derivative
+    by the rate times the change of the rate; across it, by the force over the remaining radius,
+    times the displacement, since this is how fast the normal turns at edges and vertices, where it
+    turns fastest. Friction follows the force, and turns with the slip.
     """
     run = runs.inside
     v, depth = run.velocities(1), np.maximum(0.0, -runs.exact)
@@ -78,8 +78,8 @@ def force_steps(runs: Runs) -> Steps:
 
 
 def grown(run: sim.SystemRun) -> float:
-    """Return the most by which what is held or was lost in contact passes what came in, as a part
-    of the hand's greatest work. A spring that is held over a tick gives K/2 |Δx|² beside it.
+    """Return the greatest excess of stored and dissipated contact energy over the energy put in, as
+    a fraction of the hand's greatest work. A spring held over a tick adds K/2 |Δx|².
     """
     coupler, system = run.coupler, run.system
     assert coupler is not None

@@ -1,4 +1,4 @@
-"""How far the two realisations are apart: by step, by gain, in time, and with wrong twists."""
+"""How much the two realisations differ: by step, by gain, in time, and with wrong twists."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ LONG_STEP, LONG_FRAMES = 1e-2, 2000
 """Step [s] and frames of the long runs: 20 s, five turns of B."""
 
 BIASES = (0.0, 0.01, 0.02)
-"""What a sensor on A adds to B's velocity along its x axis [length/s]."""
+"""Bias that a sensor on A adds to B's velocity along its x axis [length/s]."""
 
 SHORT_STEP, SHORT_FRAMES = 5e-3, 240
 """Step [s] and frames of the run of Fig. 3: 1.2 s."""
@@ -65,7 +65,7 @@ class Decay(NamedTuple):
     Attributes
     ----------
     believed : ndarray
-        The integrated errors, which the law of Fig. 3 acts on.
+        The integrated errors, on which the law of Fig. 3 acts.
     integrated, evaluated : ndarray
         The true errors, Eqs. (1)-(4), of the two realisations.
     """
@@ -76,7 +76,7 @@ class Decay(NamedTuple):
 
 
 def difference(integrator: str, gain: float) -> Difference:
-    """Compare the realisations, both begun at the same wrong parameters."""
+    """Compare the realisations, both started at the same wrong parameters."""
     apart = []
     for frames in FRAMES:
         runs = [trace(name, integrator, gain, SPAN / frames, frames, MISS) for name in REALISATIONS]
@@ -85,7 +85,7 @@ def difference(integrator: str, gain: float) -> Difference:
 
 
 def trackers() -> tuple[Tracker, ...]:
-    """Return what was compared: both realisations, in time, by each integrator and at each gain."""
+    """Return the comparisons: both realisations, in time, by each integrator and at each gain."""
     step = SPAN / FRAMES[0]
     made = [
         one
@@ -140,7 +140,7 @@ def long_time() -> Array:
 def rate_of(errors: Array) -> tuple[float, float]:
     """Slope [length/s] of the straight line through 0 that fits a long run, and its misfit.
 
-    The misfit is the greatest distance from the line in parts of the greatest error.
+    The misfit is the greatest distance from the line divided by the greatest error.
     """
     time = long_time()
     slope = float(time @ errors / (time @ time))
@@ -148,7 +148,7 @@ def rate_of(errors: Array) -> tuple[float, float]:
 
 
 def level_of(errors: Array) -> tuple[float, float]:
-    """Greatest error [length] of a long run's first and of its second half."""
+    """Greatest error [length] in the first and in the second half of a long run."""
     half = len(errors) // 2
     return float(errors[:half].max()), float(errors[half:].max())
 

@@ -55,7 +55,7 @@ def draw_evaluated(axes: Axes) -> None:
 
 
 def _draw_law(axes: Axes) -> None:
-    """What both share: w = M⁻¹(-K Psi - b)."""
+    """The common part: w = M⁻¹(-K Psi - b)."""
     box(axes, (1.0, 3.0), "−K", 0.4)
     _sum(axes, (2.3, 3.0))
     box(axes, (3.7, 3.0), "M⁻¹", 0.45)

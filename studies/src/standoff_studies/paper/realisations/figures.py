@@ -1,4 +1,4 @@
-"""Figs. 3 and 4: both block diagrams, and what tells the two realisations apart."""
+"""Figs. 3 and 4: both block diagrams, and how the two realisations differ."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from standoff_studies.paper.realisations.diagrams import draw_evaluated, draw_in
 from standoff_studies.paper.realisations.statements import of_evaluated, of_integrated
 
 TOLD = "two bodies, face against face, the start as told"
-"""What the record of the trackers does not hold."""
+"""What the record of the trackers does not contain."""
 
 EVERY = 20
-"""Frames of the long runs from one drawn point to the next: their errors ripple slowly."""
+"""Every how many frames of the long runs a point is drawn: their errors vary slowly."""
 
 NAMES = {"euler": "Euler", "heun": "Heun", "rk4": "RK4"}
 
@@ -164,7 +164,7 @@ def _draw_apart(axes: Axes, lines: dict[str, c.Difference], title: str) -> None:
 
 
 def _draw_drift(axes: Axes, runs: list[tuple[str, float, str]], title: str) -> None:
-    """Integrated solid, evaluated dashed; one colour and marker a pair."""
+    """Integrated solid, evaluated dashed; one colour and marker per pair."""
     time = c.long_time()[EVERY::EVERY]
     for n, (method, bias, label) in enumerate(runs):
         for name, dashes in zip(c.REALISATIONS, ("-", "--"), strict=True):

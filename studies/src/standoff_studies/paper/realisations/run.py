@@ -18,7 +18,7 @@ from standoff_studies.paper.many_starts import motion_along, stepped
 from standoff_studies.paper.simulation_a.setting import vault
 
 FACE = Feature("face", 0)
-"""The curved patch of either body: the runs stay on it."""
+"""The curved patch of each body, on which the runs stay."""
 
 PATH_A = Screw(Pose.identity(), axis=(0.0, 0.0, 1.0), angular_rate=-0.5)
 """The lower vault turns about its upright axis, -0.5 rad/s."""
@@ -31,7 +31,7 @@ PATH_B = Screw(
 """The upper vault hangs upside down, tilted, and turns at 1.5 rad/s about an axis beside it."""
 
 MISS = (0.08, -0.06, 0.05, 0.07)
-"""How far the parameters are off at the start, where a run begins wrong."""
+"""Error of the parameters at the start of a run that begins wrong."""
 
 RIGHT = (0.0, 0.0, 0.0, 0.0)
 """The start at the closest points."""
@@ -50,7 +50,7 @@ class Trace:
     q : ndarray, shape (n, 4)
         Parameters (u, v, r, s).
     believed : ndarray, shape (n, 4)
-        The errors that the law acts on [length²]: the integrated ones, or nan where they are
+        The errors on which the law acts [length²]: the integrated ones, or nan if they are
         evaluated.
     tracker : Tracker
     """
@@ -105,8 +105,8 @@ def trace(
     miss : 4 floats
         Added to the parameters of the closest points at the start.
     bias : float
-        Added to B's velocity as the tracker is told it, along A's x axis [length/s]: what a
-        sensor on A would do.
+        Added to the velocity of B given to the tracker, along A's x axis [length/s], as a sensor
+        on A would do.
 
     Raises
     ------
@@ -166,7 +166,7 @@ def _points(rows: Array) -> Array:
 
 
 def true_errors(made: Trace, every: int = 1) -> Array:
-    """Psi of Eqs. (1)-(4) at every so manieth frame of a run [length²], shape (m, 4)."""
+    """Psi of Eqs. (1)-(4) at regularly spaced frames of a run [length²], shape (m, 4)."""
     return np.array(
         [
             pair_system(

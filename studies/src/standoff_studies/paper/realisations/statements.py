@@ -9,7 +9,7 @@ from standoff_studies.paper.figure import Statement, own_statement
 from standoff_studies.paper.realisations import comparison as c
 
 ORDER_SLACK = 0.15
-"""By which a measured order may miss the integrator's own between the two smallest steps."""
+"""How much a measured order may differ from the integrator's between the two smallest steps."""
 
 
 def of_integrated() -> tuple[Statement, ...]:

@@ -1,4 +1,4 @@
-"""Fig. 7: normalised projection errors by step, and what the gain does to their decay."""
+"""Fig. 7: normalised projection errors by step, and the effect of the gain on their decay."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SHOWN = {100.0: 100, 1000.0: 20}
 
 @cache
 def shown(gain: float) -> Run:
-    """The run of a panel, twice as long as it shows, so that what settles is seen to stay."""
+    """The run of a panel, twice as long as shown, to check that what has settled stays."""
     return run(gain, 2 * SHOWN[gain])
 
 

@@ -1,4 +1,4 @@
-"""Which gains serve: measured on simulation A, and by linear theory."""
+"""Which gains can be used: measured on simulation A, and by linear theory."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ GAINS = (
 """Gains at which the steps to settle are counted [1/s]: the paper's range, and beyond both ends."""
 
 SLACK_OF_STEPS = 1.2
-"""A run may take so many times the steps of linear theory before it counts as not settled."""
+"""A run counts as not settled after this multiple of the steps of linear theory."""
 
 TRIED_GAINS = (*range(1000, 1950, 50), 1950, 1980)
 """Gains that are tried from every start [1/s]."""
@@ -47,26 +47,26 @@ TRIED_FRAMES = 600
 """Steps of a trial: at K = 1980 linear theory takes 345."""
 
 GRID = 15
-"""Starts along u and along v, 0.02 to 0.98: 225 of them, half of the patch's width apart at most
-from the closest point."""
+"""Starts along u and along v, 0.02 to 0.98: 225 of them, at most half of the patch's width from the
+closest point."""
 
 NEAR = (1995.0, 1999.0)
-"""Gains from whose growth the limit for small errors is told [1/s]; ``so.Tracker`` refuses any
-from 2000 on."""
+"""Gains from whose growth factors the limit for small errors is extrapolated [1/s]; ``so.Tracker``
+rejects any from 2000 on."""
 
 SMALL = 1e-4
 """A small error of the parameters: its nonlinear part is below a thousandth of it."""
 
 SMALL_FRAMES = 400
-"""Steps in which a small error visibly decays, 1 1/s below the limit: by 1e-3 each, in all by a
-third; and the second order of `SMALL` stays far below that."""
+"""Steps in which a small error visibly decays, 1 1/s below the limit: by 1e-3 each, by a third in
+total; the second order of `SMALL` stays far below that."""
 
 TURN = 3142
-"""Steps in which the point goes once round."""
+"""Steps in which the point goes around once."""
 
 STRIDE = 8
-"""Steps from one steady error that is looked at to the next: a 400th of the turn, over which it
-changes by a part of some 1e-4 where it is greatest."""
+"""Every how many steps the steady error is evaluated: a 400th of the turn, over which it changes by
+a relative 1e-4 where it is greatest."""
 
 STEADY_GAINS = (
     *(0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0),
@@ -93,7 +93,7 @@ class Steady(NamedTuple):
 
 
 def growth(gain: Array | float) -> Array:
-    """What a step of Heun's method multiplies the errors by, in linear theory."""
+    """The factor by which a step of Heun's method multiplies the errors, in linear theory."""
     return np.asarray(growth_factor("heun", -STEP * np.asarray(gain, dtype=float)))
 
 
@@ -128,7 +128,7 @@ def trials() -> Trials:
 
 
 def settled_share(gain: float) -> float:
-    """The part of all starts that settles at one of `TRIED_GAINS` [1/s]."""
+    """The fraction of all starts that settles at one of `TRIED_GAINS` [1/s]."""
     return float((trials().steps[TRIED_GAINS.index(int(gain))] >= 0).mean())
 
 
@@ -140,9 +140,9 @@ def greatest_for_all() -> float:
 
 @cache
 def rescued() -> tuple[int, int]:
-    """How many of the failed trials `so.Tracker` brings home at the same gain, and of how many.
+    """In how many of the failed trials `so.Tracker` succeeds at the same gain, and of how many.
 
-    It holds the rims and takes an indefinite H by the magnitudes of its eigenvalues.
+    It holds the rims, and for an indefinite H it uses the magnitudes of its eigenvalues.
     """
     failed = np.argwhere(trials().steps < 0)
     home = 0
@@ -160,8 +160,8 @@ def rescued() -> tuple[int, int]:
 def small_error_limit() -> float:
     """The gain [1/s] at which a small error would begin to grow, the point at rest.
 
-    The straight line through the growth measured at the gains `NEAR` is led on to 1; nan where it
-    does not rise, which no law does that runs at those gains.
+    The straight line through the growth factors at the gains `NEAR` is extrapolated to 1; nan if it
+    does not rise, which cannot happen with a law that runs at those gains.
     """
     u, v = closest_start()
     measured = [growth_of_small_errors(k, (u + SMALL, v + SMALL), SMALL_FRAMES) for k in NEAR]
@@ -180,7 +180,7 @@ def closest_start() -> tuple[float, float]:
 
 @cache
 def held(gain: float, feedforward: bool) -> Run | None:
-    """Two turns from the closest point; None where the witness point leaves the patch."""
+    """Two turns from the closest point; None if the witness point leaves the patch."""
     try:
         return run(gain, 2 * TURN, closest_start(), feedforward)
     except RuntimeError:

@@ -28,12 +28,12 @@ from standoff_studies.paper.simulation_a.setting import FACE, PATH, STEP, VERTEX
 
 
 class Trials(NamedTuple):
-    """What became of each start at each gain, arrays of shape (gains, starts).
+    """The result of each start at each gain, arrays of shape (gains, starts).
 
     Attributes
     ----------
     steps : ndarray of int
-        Steps until every error is below `SETTLED` of the initial errors' norm, -1 where that was
+        Steps until every error is below `SETTLED` times the initial errors' norm; -1 if that was
         not reached.
     monotone : ndarray of bool
         No error grew in a step until then.
@@ -47,7 +47,7 @@ class Trials(NamedTuple):
 
 
 class Trial(NamedTuple):
-    """One run: its parameters (n, 2) until it settled, left the patch or was given up."""
+    """One run: its parameters (n, 2) until it settled, left the patch or was stopped."""
 
     q: Array
     settled: bool
@@ -57,8 +57,8 @@ class Trial(NamedTuple):
 def try_all(starts: Array, gains: Array, frames: int) -> Trials:
     """Run the law with Heun's method from every start (n, 2) at every gain (m,) [1/s].
 
-    A run ends settled, or fails as soon as a step leads out of the patch, or when `frames` are
-    over.
+    A run ends when it has settled, and fails as soon as a step leads out of the patch, or after
+    `frames`.
     """
     moving = motion_along(REST, PATH, times_of(frames))
     shape = len(gains), len(starts)
@@ -106,7 +106,7 @@ def indefinite(q: Array, gain: float) -> bool:
 
 @cache
 def growth_of_small_errors(gain: float, start: tuple[float, float], frames: int) -> float:
-    """What a step multiplies a small error by, measured with the point at rest."""
+    """The factor by which a step multiplies a small error, measured with the point at rest."""
     made = track(raw_tracker(gain), frames, start, Fixed(PATH.pose(0.0)))
     first, last = (system_at(q, 0.0).Psi for q in made.parameters_a[[0, -1], :2])
     return float((np.linalg.norm(last) / np.linalg.norm(first)) ** (1.0 / frames))

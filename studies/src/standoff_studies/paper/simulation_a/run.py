@@ -29,10 +29,10 @@ from standoff_studies.paper.simulation_a.setting import (
 )
 
 FLAT_HOME = flat_pose(REST.pose(0.0))
-"""The vault's pose as the kernels read it: it stands still."""
+"""The vault's constant pose, as the kernels read it."""
 
 SETTLED = 1e-3
-"""Part of its initial value to which an error must fall to count as settled: below what can be
+"""Fraction of its initial value to which an error must fall to count as settled: below what can be
 seen in the paper's Fig. 7."""
 
 SATURATIONS = Counts._fields.index("saturations")
@@ -40,7 +40,7 @@ SATURATIONS = Counts._fields.index("saturations")
 
 
 def times_of(frames: int) -> Array:
-    """The times of a run's start and of so many frames after it [s], (frames + 1,)."""
+    """The times of a run's start and of the frames after it [s], (frames + 1,)."""
     return np.asarray(STEP * np.arange(frames + 1))
 
 
@@ -101,13 +101,13 @@ class Run:
 
     @property
     def normalised(self) -> Array:
-        """Each error's magnitude in parts of its first, shape (n, 2)."""
+        """Each error's magnitude divided by its first one, shape (n, 2)."""
         return np.asarray(np.abs(self.psi) / np.abs(self.psi[0]))
 
     @cached_property
     def cosines(self) -> Array:
-        """Each error's magnitude over the lengths of ΔR and of its tangent, as the paper normalises
-        it: the cosine of the angle between them, shape (n, 2)."""
+        """Each error's magnitude divided by the lengths of ΔR and of its tangent, the paper's
+        normalisation: the cosine of the angle between them, shape (n, 2)."""
         (patch,) = vault().face_parts[FACE.index].charts
         tangents = np.array([patch.jet(u, v)[1:3] for u, v in self.q.tolist()])
         lengths = np.linalg.norm(tangents, axis=2)
@@ -126,8 +126,8 @@ class Run:
         return int(below[0]) if len(below) else None
 
     def levels_between(self, least: int, most: int) -> tuple[float, float]:
-        """The levels below which both cosines stay after `least` to `most` steps, neither fewer
-        nor more: above the first number, up to the second."""
+        """The levels below which both cosines stay after `least` to `most` steps, not fewer and not
+        more: above the first number, up to the second."""
         return float(self.cosines_left[most]), float(self.cosines_left[least - 1])
 
     @property
@@ -138,7 +138,7 @@ class Run:
 
     @property
     def monotone(self) -> bool:
-        """Does no error grow in any step until all are settled?"""
+        """Does no error grow in any step until all have settled?"""
         end = len(self.q) if self.steps is None else self.steps + 1
         return bool((np.diff(self.normalised[:end], axis=0) <= 0.0).all())
 
@@ -162,12 +162,12 @@ def run(
     start : (float, float)
         (u, v).
     feedforward, integrator
-        As `PaperLaw` takes them.
+        As for `PaperLaw`.
 
     Raises
     ------
     RuntimeError
-        If the witness point leaves the patch: a step had a component that leads out of it.
+        If the witness point leaves the patch.
     """
     tracker = raw_tracker(gain, feedforward, integrator)
     recording = track(tracker, frames, start)
@@ -181,7 +181,7 @@ def run(
 
 
 def raw_tracker(gain: float, feedforward: bool = True, integrator: str = "heun") -> Tracker:
-    """The law as it is: H is not made definite, and no feature is left for another."""
+    """The law as it is: H is not made definite, and there is no switching."""
     law = PaperLaw(
         integrator=integrator,
         gain=gain,
@@ -197,6 +197,6 @@ def raw_tracker(gain: float, feedforward: bool = True, integrator: str = "heun")
 def track(
     tracker: Tracker, frames: int, start: tuple[float, float], path: Path = PATH
 ) -> Recording:
-    """Track the point from parameters (u, v) for so many steps of `STEP`."""
+    """Track the point from parameters (u, v) for a number of steps of `STEP`."""
     state = begun(tracker, (REST, path), (FACE, start), (VERTEX, ()))
     return track_along(tracker, REST, path, times_of(frames), state=state)

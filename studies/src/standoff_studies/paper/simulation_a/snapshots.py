@@ -31,32 +31,32 @@ EACH = 300
 """Steps from snapshot to snapshot along the path."""
 
 ANIMATED = (*range(0, 76, 3), *range(100, TURN, 90))
-"""Steps of the animation's frames: slow at first, then faster."""
+"""Steps between the animation's frames: few at first, then more."""
 
 LEAST_MISS = 0.1
-"""A start is far off where its line is longer than the distance by this part at least."""
+"""A start is far off if its line is longer than the distance by at least this fraction."""
 
 KEPT = 1e-6
 """A line that is longer than the distance by less [length] counts as the shortest one: with K = 100
-1/s a thousandth of the first errors is left at step 75, and the length is off by its square."""
+1/s a thousandth of the first errors is left at step 75, and the length's error is its square."""
 
 AZIMUTH, ELEVATION = 68.0, 30.0
 """Where the viewer stands [degrees]."""
 
 ACROSS, UP = (-1.35, 1.35), (-1.15, 1.6)
-"""What is shown [length on the paper]: the patch, and the point at all times."""
+"""The area shown [length in the picture]: the patch, and the point at all times."""
 
 TRIAD = (0.8, 1.0)
-"""Where the world's axes are drawn [length on the paper]."""
+"""Where the world's axes are drawn [length in the picture]."""
 
 IN_FRONT = 100.0
-"""Rank of the witness lines: the first ones go through the body, and are seen all the way."""
+"""Rank of the witness lines: the first ones go through the body, but are visible throughout."""
 
 DASHES = (0.07, 0.05)
-"""Of the point's way: drawn and left out [length]."""
+"""Dashes and gaps of the point's path [length]."""
 
 BEYOND = 0.16
-"""From a line's foot to its number [length], on along the line."""
+"""From a line's foot to its number [length], along the extended line."""
 
 GRID = 32
 """Pieces along each side of the drawn patch."""
@@ -114,7 +114,7 @@ def lengths(made: Run) -> Array:
 
 
 def exact(made: Run, frames: Sequence[int]) -> Array:
-    """Certified distances at some frames [length], by a search that knows no start."""
+    """Certified distances at some frames [length], by a search without a start."""
     poses = (PATH.pose(frame * STEP) for frame in frames)
     found = [distance(vault(), point(), REST.pose(0.0), pose).distance for pose in poses]
     return np.array(found)
@@ -190,6 +190,6 @@ def _add_line(view: View, made: Run, frame: int, colour: str, width: float) -> N
 
 
 def _paint(axes: Axes, view: View) -> None:
-    """The whole patch and the point's way, in the same place in every frame."""
+    """The whole patch and the point's path, in the same place in every frame."""
     view.paint(axes)
     axes.set(xlim=ACROSS, ylim=UP)

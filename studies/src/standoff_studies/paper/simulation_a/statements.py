@@ -1,4 +1,4 @@
-"""What Fig. 7 states, beside what was measured."""
+"""What Fig. 7 states, and what was measured."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ STATED = (75, 10)
 """The paper's steps to the steady state at K = 100 and 1000 1/s."""
 
 LEVELS = (1e-2, 3e-3, 2e-3, 1.2e-3, 1e-3)
-"""Cosines below which the steps are counted: within the levels that fit, and beside them."""
+"""Cosines below which the steps are counted: within the levels that fit, and next to them."""
 
 TOLD = "from Fig. 6's wrong start if not told otherwise"
-"""What the record of the trackers does not hold."""
+"""What the record of the trackers does not contain."""
 
 ABOUT = 0.15
-"""Part by which a number may differ from the paper's "about 75" or "about 10" steps."""
+"""Fraction by which a number may differ from the paper's "about 75" or "about 10" steps."""
 
 
 def statements(slow: Run, fast: Run) -> tuple[Statement, ...]:
@@ -59,7 +59,7 @@ def _steps(made: Run, stated: int) -> Statement:
 
 def fitting_levels(slow: Run, fast: Run) -> tuple[float, float]:
     """The levels of the cosines at which both counts are `ABOUT` the paper's: above the first
-    number, up to the second; none if the first is the greater one."""
+    number, up to the second; there are none if the first is greater."""
     ends = [
         made.levels_between(math.ceil((1.0 - ABOUT) * of), math.floor((1.0 + ABOUT) * of))
         for made, of in zip((slow, fast), STATED, strict=True)

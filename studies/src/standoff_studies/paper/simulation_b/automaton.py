@@ -1,4 +1,4 @@
-"""Fig. 9: the automaton of body and point, its modes inside and outside, and the motion's way."""
+"""Fig. 9: the automaton of body and point, its modes inside and outside, and the motion's path."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Mode = tuple[bool, Feature]
 OUTER, INNER = 3.0, 1.25
 """Radii of the rings of modes in the picture [inches]."""
 BEND = 0.13
-"""Of the arrows, so that both ways of a switch can be seen."""
+"""Bend of the arrows, so that both directions of a switch are visible."""
 KINDS = {
     "medial": ("medial-axis jump, inside", "--", style.RED),
     "crossing": ("through the boundary", ":", style.BLACK),
@@ -120,7 +120,7 @@ def _switches(simulation: Run) -> dict[str, ArrayLike]:
 
 
 def _places(simulation: Run) -> dict[Mode, tuple[float, float]]:
-    """Where modes stand: two rings, turned as the body's features are."""
+    """The places of the modes: two rings, at the angles of the body's features."""
     ring = planar_features(simulation.body)
     places = {}
     for k, feature in enumerate(ring):
@@ -178,7 +178,7 @@ def _draw_switch(axes: Axes, switch: Switch, places: dict[Mode, tuple[float, flo
     _, dashes, colour = KINDS[switch.kind]
     taken = bool(switch.times)
     start, end = places[switch.source], places[switch.target]
-    # The line and its head apart: dashes would break the head, too.
+    # the line and its head separately: dashes would break the head too
     look: dict[str, Any] = {"connectionstyle": f"arc3,rad={BEND}", "shrinkA": 27.0, "shrinkB": 27.0}
     look |= (
         {"color": colour, "mutation_scale": 18.0, "zorder": 3} if taken else {"color": style.QUIET}
@@ -197,7 +197,7 @@ def _write_times(
     end: tuple[float, float],
     colour: str,
 ) -> None:
-    """Beside the middle of an arrow, on the side to which it bends."""
+    """Next to the middle of an arrow, on the side to which it bends."""
     along = np.subtract(end, start)
     aside = np.array([along[1], -along[0]]) / np.linalg.norm(along)
     middle = 0.5 * np.add(start, end) + (0.5 * BEND * np.linalg.norm(along) + 0.3) * aside

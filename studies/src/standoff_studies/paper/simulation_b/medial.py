@@ -1,4 +1,4 @@
-"""Which curve is nearest to a point inside, read off the medial axis alone."""
+"""Which curve is nearest to a point inside, determined only by the medial axis."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from standoff.geometry.validation import Array
 from standoff_studies.paper.drawing import curve_points
 
 PIECES = 2000
-"""Chords of a branch's spline: they leave it by less than the spline leaves the axis, 1e-7."""
+"""Chords of a branch's spline: they differ from it by less than the spline from the axis, 1e-7."""
 
 ALONG = 400
-"""Chords of a curve, which only close a region: a point inside is never beyond them for long."""
+"""Chords of a curve, which only close a region: a point inside is rarely beyond them."""
 
 HALVINGS = 60
 """Of the step in which a crossing lies: then times are equal to a rounding."""
 
 
 class Offset(NamedTuple):
-    """How a point lies to a branch of the axis: its distance with a sign [length], and its rate."""
+    """A point relative to a branch of the axis: its signed distance [length] and its rate."""
 
     value: float
     slope: float
@@ -71,7 +71,7 @@ class MedialRegions:
         return bool(np.count_nonzero(at > x[0]) % 2)
 
     def offset(self, source: int, target: int, x: Array, v: Array) -> Offset:
-        """Return how a point, (2,), with a velocity lies to the branch between two curves.
+        """Return signed distance and rate of a moving point, (2,), to the branch of two curves.
 
         Positive on the source's side.
         """
@@ -89,7 +89,7 @@ class MedialRegions:
 
 
 def first_change(verdict: Callable[[float], int], low: float, high: float) -> float:
-    """Return the time between two [s] from which on a verdict is that of the second."""
+    """Return the time between two [s] from which on a verdict is that at the second."""
     after = verdict(high)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)

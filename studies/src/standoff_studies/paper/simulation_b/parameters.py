@@ -33,7 +33,7 @@ from standoff_studies.paper.simulation_b.run import (
 )
 
 VERTEX_FILL = "#E9A63A"
-"""Behind the time at a vertex."""
+"""Background of the time at a vertex."""
 LEAST_NAMED = 0.12
 """Stays shorter than this [s] are not named in the strip: their names would overlap."""
 
@@ -69,6 +69,12 @@ def figure_11() -> Artwork:
 
 
 def _frames(simulation: Run) -> dict[str, ArrayLike]:
+    """Return the table of the frames.
+
+    `exact_parameter_c0` and so on are those of the library's own law: a local minimum of the
+    distance to that curve, the nearest one that the law follows. It is the curve's nearest point on
+    the active curve; on another one, a nearer minimum may not be followed.
+    """
     paper, exact = simulation.paper, simulation.exact
     table: dict[str, ArrayLike] = {
         "time_s": paper.time,

@@ -1,8 +1,8 @@
 """The printed system along the spiral: parallel trackers inside, one with Voronoi tests outside.
 
-Inside, each curve has a tracker of its own from the start; which of them is the active one is read
-off the medial axis at the point's place. Where the point crosses the boundary the active tracker's
-parameter is handed over as it is. Nothing is searched, added or put right on the way.
+Inside, each curve has its own tracker from the start; the medial axis determines which of them is
+active at the point's place. Where the point crosses the boundary, the active tracker's parameter is
+handed over unchanged. Nothing is searched, added or corrected on the way.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from standoff_studies.paper.simulation_b.medial import MedialRegions, first_chan
 
 @dataclass(frozen=True, eq=False)
 class PrintedRun:
-    """A run by frame; row k of every array belongs to ``time[k]``. Lengths as the body's.
+    """A run by frame; row k of every array belongs to ``time[k]``. Lengths in the body's unit.
 
     Attributes
     ----------
@@ -45,12 +45,13 @@ class PrintedRun:
     parameter : ndarray, shape (n,)
         Of the active curve; nan at a vertex.
     curve_parameter, curve_distance : ndarray, shape (n, curves)
-        Of the parallel trackers, distances without sign; outside those of the active curve alone,
-        else nan.
+        Of the parallel trackers, distances without sign; outside, only of the active curve, else
+        nan. A tracker follows one local minimum of the distance to its curve, not always the
+        nearest.
     events : tuple of PointEvent
         In order of time. The value of a jump inside is the point's distance from the medial axis.
     parts : tuple of Recording
-        Of the parallel trackers, a curve each.
+        Of the parallel trackers, one for each curve.
     body : Body
     outside : Recording
         From the frame on in which the point is outside.
@@ -75,13 +76,13 @@ class PrintedRun:
 
     @property
     def by(self) -> str:
-        """What statements on the run were measured with."""
+        """The law with which statements on the run were measured."""
         inside, outside = law_words(*self.parts), law_words(self.outside)
         within = f"inside, a tracker a curve and the medial axis, {inside}"
         return f"{within}; outside, {outside}; wrong start"
 
     def modes(self) -> list[PointVisit]:
-        """Return the visited modes in order of time; a stay of no length is left out."""
+        """Return the visited modes in order of time, without stays of zero length."""
         inside, feature, start = bool(self.inside[0]), self.feature[0], float(self.time[0])
         visits: list[PointVisit] = []
         for event in self.events:
@@ -131,7 +132,7 @@ class Printed:
         self.nearest[-1] = self.nearest[-2]  # outside: the curve through which it left
 
     def begun(self, law: Tracker, feature: Feature, parameter: float, frame: int) -> TrackerState:
-        """Return a law's state at a parameter of a curve, whatever it is worth."""
+        """Return a law's state at any parameter of a curve."""
         paths, time = (REST, self.path), float(self.times[frame])
         return begun(law, paths, (feature, (parameter,)), AT_POINT, time)
 
@@ -186,7 +187,7 @@ class Printed:
         )
 
     def _jumps(self) -> list[PointEvent]:
-        """The point's crossings of the medial axis: of its path alone."""
+        """The point's crossings of the medial axis, from its path alone."""
         found = []
         for k in np.flatnonzero(np.diff(self.nearest)).tolist():
             time = first_change(self._region, float(self.times[k]), float(self.times[k + 1]))
@@ -205,7 +206,7 @@ class Printed:
         return int(self.boundary.inside(self.path.pose(time).translation[:2]) is False)
 
     def _crossing(self, runs: list[Recording]) -> PointEvent:
-        """Where the point goes through the boundary: of its path alone."""
+        """Where the point goes through the boundary, from its path alone."""
         low, high = self.times[self.leaves - 1 : self.leaves + 1].tolist()
         time, curve = first_change(self._out, low, high), int(self.nearest[-1])
         edge, v = Feature("edge", curve), self.path.twist(time).v[:2]

@@ -90,7 +90,7 @@ def _statements(simulation: Run) -> tuple[Statement, ...]:
             "Fig. 8",
             "six external Voronoi lines",
             f"{len(regions.external)} lines, two from each of {simulation.body.n_vertices} "
-            "vertices, square to its two curves",
+            "vertices, perpendicular to its two curves",
             len(regions.external) == 6,
             "the body is ours, with three vertices, and two lines are drawn from each",
             NO_LAW,

@@ -23,19 +23,19 @@ from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.simulation_b.printed import Printed, PrintedRun
 
 DURATION = 4.0
-"""Of the motion [s]."""
+"""Duration of the motion [s]."""
 FRAME = 1e-3
-"""From frame to frame [s]: the paper's 1 kHz."""
+"""Time from frame to frame [s]: the paper's 1 kHz."""
 SNAPSHOTS = 100
 """Frames of Fig. 10: one every 40 ms."""
 
 RATE = 2.0 * math.pi
-"""Of the point about the origin: a turn a second [rad/s]."""
+"""Angular velocity of the point about the origin: one turn per second [rad/s]."""
 RADIUS = 0.06
-"""Of the spiral at the start [length]: near the middle, where all curves are as far."""
+"""Radius of the spiral at the start [length]: near the middle, equally far from all curves."""
 PAST = 0.002
-"""By which the spiral passes vertex 1 in its third turn [length]: so near that one frame goes
-through the vertex's region."""
+"""Distance at which the spiral passes vertex 1 in its third turn [length]: so small that one frame
+goes through the vertex's region."""
 
 GAIN = 25.0
 """K of the paper's law [1/s]: low, so that the snapshots show the start converge."""
@@ -49,7 +49,7 @@ CONVERGED = 0.6
 NO_LAW = "so.voronoi_regions, before the run: no law"
 
 TRIED = 41
-"""Starts that are tried on each curve, from end to end."""
+"""Number of starts tried on each curve, from end to end."""
 ARRIVED = 1e-3
 """Greatest error of the distance to the curve at `CONVERGED` of one that arrives [length]."""
 
@@ -76,7 +76,7 @@ class Run(NamedTuple):
     exact : PointRecording
         By the library's own law, certified.
     own : str
-        What statements on it were measured with.
+        The law with which statements on it were measured.
     snapshots : ndarray of int, shape (SNAPSHOTS,)
         Frames of Fig. 10.
     """
@@ -115,7 +115,7 @@ def frame_times() -> Array:
 
 @cache
 def exact_run() -> tuple[PointRecording, str]:
-    """Track the point with the library's own law; and the words of that law."""
+    """Track the point with the library's own law; return also the words for that law."""
     body, _ = shape()
     tracker = PointTracker(body, FRAME)
     return record_point(tracker, motion(body), frame_times()), law_words(tracker)
@@ -158,7 +158,7 @@ def late(recording: PointRecording | PrintedRun) -> list[PointEvent]:
 def off_instants(simulation: Run) -> dict[str, float]:
     """Return how far switches are from those of the library's own law, by their kind [s].
 
-    Infinite where the features differ.
+    Infinite if the features differ.
     """
     ours, due = simulation.paper.events, simulation.exact.events
     if [event[1:4] for event in ours] != [event[1:4] for event in due]:

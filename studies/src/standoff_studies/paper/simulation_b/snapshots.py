@@ -31,10 +31,10 @@ from standoff_studies.paper.simulation_b.run import (
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
 
 OFF = 0.01
-"""Snapshots whose witness point is off by more [length], before `CONVERGED`, still come from the
-wrong start: on paper it is half a millimetre."""
+"""Snapshots whose witness point has a greater error [length], before `CONVERGED`, still come from
+the wrong start: on paper it is half a millimetre."""
 SWEEP = ((0.62, 0.9), (1.9, 2.2), (3.42, 3.72))
-"""Times between which arrows show which way the point goes [s]."""
+"""Times between which arrows show in which direction the point moves [s]."""
 WINDOW = (0.02, 0.2)
 """Times between which the decay is measured [s]."""
 SECONDS = 0.08
@@ -56,7 +56,7 @@ def figure_10() -> Artwork:
             "A hundred snapshots, one every 40 ms: the point (dots) and its witness line, by the "
             f"printed system at K = {GAIN:g}/s; thin and grey, the library's own law. The first "
             f"ones (thick, black, off by more than {OFF:g}) still come from the deliberately wrong "
-            "start; then the lines are square to the curve. Arrows show which way the point goes. "
+            "start; then the lines are normal to the curve. Arrows show which way the point goes. "
             "Inside (vermilion, dashed) they jump over the medial axis; outside they end on a "
             "curve (blue), or are anchored at a vertex (green, dash-dotted). The animation also "
             "shows, inside, the two curves that are not nearest."
@@ -90,7 +90,7 @@ def kind_of(simulation: Run, snapshot: int) -> str:
 
 
 def paper_error(simulation: Run, frame: int) -> float:
-    """Return how far the printed system's witness point is off in one frame [length]."""
+    """Return the error of the printed system's witness point in one frame [length]."""
     own, exact = simulation.paper.witness[frame], simulation.exact.witness[frame]
     return float(np.linalg.norm(own - exact))
 
@@ -111,7 +111,7 @@ def _table(simulation: Run) -> dict[str, ArrayLike]:
 
 
 def distance_error(simulation: Run) -> Array:
-    """Return by how much the paper's law's distance is off, by frame [length], shape (n,)."""
+    """Return the error of the distance by the paper's law, by frame [length], shape (n,)."""
     return np.asarray(np.abs(simulation.paper.distance - simulation.exact.distance))
 
 
@@ -185,7 +185,7 @@ def _draw(simulation: Run) -> Figure:
 
 
 def _draw_sweep(axes: Axes, simulation: Run, first: float, last: float) -> None:
-    """An arrow beside a part of the point's way, just outside it."""
+    """An arrow next to a part of the point's path, just outside it."""
     low, high = (int(np.searchsorted(simulation.paper.time, t)) for t in (first, last))
     way = 1.0 * simulation.paper.point[low:high, :2]
     way *= 1.0 + 0.07 / np.linalg.norm(way, axis=1)[:, None]

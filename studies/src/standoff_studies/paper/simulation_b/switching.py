@@ -1,4 +1,4 @@
-"""What Fig. 9 states, beside what was measured."""
+"""What Fig. 9 states, and what was measured."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ KINDS = ("medial", "crossing", "voronoi")
 """Of switches."""
 
 WITHIN = 1e-7
-"""To what the axis, points joined by a smooth line, gives an instant [s]."""
+"""Accuracy of an instant determined from the axis, points joined by a smooth line [s]."""
 INSTANT, SLOPE = 1e-9, 1e-3
-"""To what an instant is located [s], where its switching function has a slope above that [1/s];
-else to the first over the slope."""
+"""Accuracy of a located instant [s] if its switching function has a slope above the second number
+[1/s]; otherwise the first divided by the slope."""
 
 
 def statements(simulation: Run) -> tuple[Statement, ...]:
@@ -116,8 +116,8 @@ def _instants(simulation: Run) -> Statement:
 def growths(simulation: Run) -> dict[str, list[float]]:
     """By how much the feature after a switch is farther from the point than that before [length].
 
-    At the located instants. Over the medial axis that is the switching function itself; at the
-    boundary the feature stays.
+    At the located instants. At the medial axis this is the switching function itself; at the
+    boundary the feature does not change.
     """
     events = simulation.exact.events
     found = {"medial": [e.value for e in events if e.kind == "medial"], "voronoi": []}
@@ -135,7 +135,7 @@ def growths(simulation: Run) -> dict[str, list[float]]:
 
 
 def _held(simulation: Run, time: float, feature: Feature, other: Feature) -> float:
-    """Distance to one feature alone, sought from the vertex that it shares with the other."""
+    """Distance to one feature only, found from the vertex that it shares with the other."""
     parameters: tuple[float, ...] = ()
     if feature.kind == "edge":
         curve = simulation.body.edge_parts[feature.index].curve
@@ -201,7 +201,7 @@ def _starts(simulation: Run) -> tuple[Statement, Statement]:
 
 
 def _as_printed(simulation: Run) -> tuple[Statement, Statement]:
-    """What becomes of starts anywhere, and that nothing beside the law helps."""
+    """What happens from starts anywhere, and that nothing other than the law helps."""
     tried, runs = arrivals(), (simulation.paper, *simulation.others)
     return (
         anywhere(

@@ -1,4 +1,4 @@
-"""Fig. 13: the automaton of the pair, its modes in a grid, with the motion's way through it."""
+"""Fig. 13: the automaton of the pair, its modes in a grid, with the motion's path through it."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ from standoff_studies.paper.unaided import Part, unaided
 
 Mode = tuple[Feature, Feature]
 TAKEN: dict[str, Any] = {"color": style.BLUE, "linewidth": 2.2}
-"""Of the arrow of a switch that was taken."""
+"""Look of the arrow of a switch that was taken."""
 
 HALF_WIDTH, HALF_HEIGHT = 0.29, 0.25
-"""Of a mode's box, in steps of the grid."""
+"""Size of a mode's box, in steps of the grid."""
 STUBS = (0.38, 0.24)
 """Lengths of an arrow that leaves the grid at one side and comes back at the other, in steps:
 along a row, where its times must fit above it, and along a column."""
@@ -102,7 +102,7 @@ def _stays(simulation: Simulation) -> dict[str, ArrayLike]:
 
 
 def _switches(simulation: Simulation) -> dict[str, ArrayLike]:
-    """Of the printed system; nan for what the library's own law has not, the start's switches."""
+    """For the printed system; nan for switches that the library's own law does not have."""
     events = simulation.paper.events
     ours, own = map(simulation.entered_events, (simulation.paper, simulation.exact))
     due = [math.nan] * (len(events) - len(ours))
@@ -172,7 +172,7 @@ def _sequence(simulation: Simulation) -> Statement:
 
 
 def _as_printed(simulation: Simulation, tried: Ends) -> tuple[Statement, Statement]:
-    """What becomes of starts anywhere, and that nothing beside the law helps."""
+    """What happens from starts anywhere, and that nothing other than the law helps."""
     return (
         anywhere(
             tried,
@@ -217,7 +217,7 @@ def _draw(simulation: Simulation) -> Figure:
 
 
 def _draw_lines(axes: Axes, columns: int, rows: int) -> None:
-    """Every switch that the pair allows: along the rows and the columns, and over the sides."""
+    """Every switch that the pair allows: along rows and columns, and across the sides."""
     for row in range(rows):
         axes.plot([-0.5, columns - 0.5], [row, row], color=style.QUIET, linewidth=0.7, zorder=1)
     for column in range(columns):
@@ -257,7 +257,7 @@ def _draw_mode(axes: Axes, simulation: Simulation, mode: Mode, place: Spot) -> N
 
 
 def _draw_way(axes: Axes, source: Spot, target: Spot, times: tuple[float, ...]) -> None:
-    """An arrow between two neighbours; over the side of the grid, the two ends of one."""
+    """An arrow between two neighbours; across the side of the grid, the two ends of one."""
     label = "\n".join(f"{time:.3f}" for time in times)
     along = 0 if source[1] == target[1] else 1
     half = (HALF_WIDTH, HALF_HEIGHT)[along]

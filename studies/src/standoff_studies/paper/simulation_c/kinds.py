@@ -1,4 +1,4 @@
-"""Kinds of modes of two planar bodies: their names, and how they are told apart in pictures."""
+"""Kinds of modes of two planar bodies: their names, and their colours in pictures."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ KINDS = ("vertex–vertex", "vertex–curve", "curve–curve")
 """What a mode may be, by its number of parameters: 0, 1 or 2."""
 
 FILLS = ("#E9A63A", "#FFFFFF", "#D3E8F6")
-"""Behind a mode of each kind: orange, white, pale blue; in grey print middle, white, light."""
+"""Background of each kind of mode: orange, white, pale blue; in grey print medium, white, light."""
 
 
 def kind_of(feature_a: Feature, feature_b: Feature) -> int:
@@ -21,11 +21,11 @@ def kind_of(feature_a: Feature, feature_b: Feature) -> int:
 
 
 def mode_name(feature_a: Feature, feature_b: Feature) -> str:
-    """Return what a mode is called: A's feature, then B's."""
+    """Return the name of a mode: A's feature, then B's."""
     return f"{short_name(feature_a)}–{short_name(feature_b)}"
 
 
 def show_kinds() -> list[Artist]:
-    """Return what tells in a key what the fills mean."""
+    """Return the entries of a key that explain the fills."""
     pairs = zip(KINDS, FILLS, strict=True)
     return [key_fill(kind, fill, edgecolor="black", linewidth=0.8) for kind, fill in pairs]

@@ -29,20 +29,20 @@ from standoff_studies.paper.simulation_c.run import (
 from standoff_studies.paper.start_decay import decay_statement
 
 SPANS = ((0.0, 0.5), (0.0, 6.0), (6.0, 12.0))
-"""The rows: the start by itself, and the motion in two, so that short stays can be seen [s]."""
+"""The rows: the start alone, and the motion in two parts, so that short stays are visible [s]."""
 DECAY = (0.05, 0.25)
-"""Times between which the decay of the start is measured [s]: on one mode, before the law's own
-error shows."""
+"""Times between which the decay of the start is measured [s]: in one mode, before the law's own
+error dominates."""
 LEAST_APART = 0.16
-"""Between two written instants, on the time axis [s]: the height of a line of text."""
+"""Least spacing of written instants on the time axis [s]: the height of a line of text."""
 LEAST_NAMED = 0.02
 """Shortest stay whose instant is written [s]: those of the start follow each other in one frame."""
 SETTLING = 5.0 / SIMULATION.gain
-"""After a switch, before which the errors that it leaves are told apart from the others [s]."""
+"""Time after a switch during which its errors are treated separately [s]."""
 FOOT = -0.3
-"""Where the marks of the snapshots stand, under the parameters."""
+"""Where the marks of the snapshots are, below the parameters."""
 LEAST_ERROR = 1e-10
-"""Errors below this are drawn at it [length]."""
+"""Errors below this are drawn at this value [length]."""
 SLIP = 1e-14
 """A witness point within this of its vertex is at it: roundings of poses [length]."""
 NAMES = {"A": ("u₁", "u₂", "u₃"), "B": ("rₐ", "r_b", "r_c")}
@@ -107,7 +107,7 @@ def _frames(simulation: Simulation) -> dict[str, NDArray[np.generic]]:
 
 
 def after_switches(simulation: Simulation) -> NDArray[np.bool_]:
-    """Return which frames come within `SETTLING` after a switch of either law, shape (n,)."""
+    """Return which frames are within `SETTLING` after a switch of either law, shape (n,)."""
     recording = simulation.exact
     events = (*recording.events, *simulation.paper.events)
     since = recording.time[:, None] - np.array([event.time for event in events])
@@ -225,7 +225,7 @@ def _key() -> list[Artist]:
 
 
 def _write_instants(axes: Axes, simulation: Simulation, span: tuple[float, float]) -> None:
-    """Above a panel: the instants, upright, at their lines or as near as they can be read."""
+    """Above a panel: the instants, upright, as close to their lines as is readable."""
     starts = named_stays(simulation, span)
     places = spread(np.array([stay.start for stay in starts]), LEAST_APART)
     top = axes.get_ylim()[1]
@@ -254,6 +254,6 @@ def named_stays(simulation: Simulation, span: tuple[float, float]) -> list[Visit
 
 
 def spread(wanted: Array, apart: float) -> Array:
-    """Return the places nearest to the wanted ones that keep their order and are so far apart."""
+    """Return the places nearest to the wanted ones that keep order and a least spacing."""
     even = apart * np.arange(len(wanted))
     return np.asarray(isotonic_regression(wanted - even).x + even)

@@ -29,9 +29,9 @@ from standoff_studies.paper.simulation_c.run import (
 from standoff_studies.paper.voronoi_drawing import draw_planar_regions
 
 VIEWS = (((-1.75, 1.95), 0.34), ((-1.45, 1.45), 0.17))
-"""Of A and of B: the range of x [length], and how far inside a curve its inner region is named."""
+"""For A and B: the range of x [length], and how far inside a curve its inner region is named."""
 HEIGHT = (-1.75, 1.85)
-"""The range of y of both, so that both are of one scale [length]."""
+"""The range of y of both, so that both have the same scale [length]."""
 RAY = 4.0
 """Length of the drawn external lines: out of the view [length]."""
 LINES = "#404040"

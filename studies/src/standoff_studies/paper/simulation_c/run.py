@@ -18,11 +18,11 @@ from standoff_studies.paper.many_starts import Ends
 from standoff_studies.paper.pair_simulation import REST, Simulation, ends_of, random_starts
 
 RADIUS, GROWTH = 3.0, -0.13
-"""Of B's centre from A's origin at t = 0 [length], and by the angle turned [length/rad]."""
+"""Distance of B's centre from A at t = 0 [length], and its change by angle [length/rad]."""
 RATE, PHASE = math.pi / 4.0, math.radians(150.0)
-"""Of B's centre around A: one and a half turns [rad/s], and where it begins [rad]."""
+"""Angular velocity of B's centre around A, one and a half turns [rad/s], and its start [rad]."""
 SPIN = -1.5
-"""Of B about its centre [rad/s], against the turn of the spiral."""
+"""Angular velocity of B about its centre [rad/s], opposite to the spiral."""
 
 MOTION: Path = Carried(
     Spiral(RADIUS, GROWTH, RATE, phase=PHASE),
@@ -42,11 +42,11 @@ SIMULATION = Simulation(
 )
 
 LETTERS = "abcdefghijkl"
-"""Of the snapshots of Fig. 14: the middles of as many equal parts of the motion."""
+"""Letters of the snapshots of Fig. 14, at the middles of as many equal parts of the motion."""
 
 TRIED, ARRIVED = 200, 1e-3
-"""Random starts on both bodies, and to which distance [length] they count as arrived, once the
-shown start has converged."""
+"""Number of random starts on both bodies, and the error [length] below which they count as arrived
+when the shown start has converged."""
 
 
 class Snapshot(NamedTuple):
@@ -85,7 +85,7 @@ def arrivals() -> Ends:
 def curve_parameters(body: Body, features: NDArray[np.object_], parameters: Array) -> Array:
     """Return each curve's parameter by frame, (n, curves): nan while the point is not on it.
 
-    At a vertex that of the curve into it is 1, that of the curve out of it 0.
+    At a vertex it is 1 for the curve that ends there, and 0 for the curve that begins there.
     """
     found = np.full((len(features), body.n_edges), np.nan)
     for k, feature in enumerate(features):

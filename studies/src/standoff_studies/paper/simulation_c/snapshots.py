@@ -28,7 +28,7 @@ from standoff_studies.paper.simulation_c.run import (
 
 COLUMNS = 3
 MARGIN = 0.12
-"""Around the bodies in a snapshot [length]."""
+"""Margin around the bodies in a snapshot [length]."""
 RULER = 1.0
 """Length of the drawn scale."""
 

@@ -32,19 +32,19 @@ from standoff_studies.paper.simulation_d.runs import (
 from standoff_studies.paper.unaided import Part, unaided
 
 RING, OUTER = 1.0, 1.62
-"""Radii at which faces and edges stand around the upper vertex, and of the lower one's circle."""
+"""Radii of faces and edges around the upper vertex, and of the circle of the lower vertex."""
 
 FILL = "#D6E9F5"
-"""Behind a visited feature's name."""
+"""Background of a visited feature's name."""
 
 NODE = 0.21
 """Radius around a feature's middle that arrows leave free."""
 
 INSTANT = 1e-9
-"""Instants that differ by less are one [s]: to that they are located."""
+"""Instants that differ by less are the same [s]: the accuracy of their location."""
 
 PROBES = 267
-"""Frames in which the mode is compared with a global search of its own: every 20th."""
+"""Every how many frames the mode is compared with a separate global search."""
 
 
 def figure_17() -> Artwork:
@@ -150,7 +150,7 @@ def _statements(runs: Simulation, automaton: Automaton) -> tuple[Statement, ...]
 
 
 def _as_printed(runs: Simulation) -> tuple[Statement, Statement]:
-    """What becomes of starts anywhere, and that nothing beside the law helps."""
+    """What happens from starts anywhere, and that nothing other than the law helps."""
     tried, still = arrivals(), arrivals(moving=False)
     return (
         anywhere(
@@ -197,7 +197,7 @@ def _draw() -> Figure:
 
 
 def _places(lens: Body) -> dict[Feature, Array]:
-    """Where each feature stands: at its azimuth about z, the upper vertex in the middle."""
+    """The place of each feature: at its azimuth about z, with the upper vertex in the middle."""
     places: dict[Feature, Array] = {}
     for face, part in enumerate(lens.face_parts):
         places[Feature("face", face)] = _around(part.charts[0].jet(0.5, 0.5)[0])
@@ -216,7 +216,7 @@ def _arrow(
     axes: Axes, automaton: Automaton, places: dict[Feature, Array], transition: Transition
 ) -> None:
     """One arrow for one direction: two that join the same features bend away from each other."""
-    # The lower vertex is the outer circle: its end of the arrow is there, beside the other end.
+    # the lower vertex is the outer circle: that end of the arrow is there, next to the other end
     middles = [places.get(feature) for feature in (transition.source, transition.target)]
     start, end = (
         place if place is not None else OUTER / RING * np.asarray(other)

@@ -20,10 +20,10 @@ from standoff_studies.paper.simulation_d.runs import SIMULATION, face_parameters
 from standoff_studies.paper.start_decay import decay_statement
 
 SHADES = {"face": None, "edge": "#FBE3C0", "vertex": "#BDBDBD"}
-"""Behind the stays on each kind of feature."""
+"""Background of the stays on each kind of feature."""
 
 DECAY = (0.05, 0.25)
-"""Times between which the decay of the start is measured [s]: later the law's own error shows."""
+"""Times between which the decay of the start is measured [s]: later the law's error dominates."""
 
 LEAST_NAMED = 0.08
 """Shortest stay that is named [s]: a shorter one has no room for a name."""

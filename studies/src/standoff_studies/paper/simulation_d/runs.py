@@ -26,7 +26,7 @@ from standoff_studies.paper.patch_places import place_on
 from standoff_studies.paper.resets import Move
 
 RADIUS, OFFSET = 1.0, 0.45
-"""Of the lens's balls, and of their centres from its middle [length]."""
+"""Radius of the lens's balls, and offset of their centres from its middle [length]."""
 
 HELIX = Helix(
     radius=1.6,
@@ -53,13 +53,13 @@ SIMULATION = Simulation(
 )
 
 SETTLED = 1e-4
-"""Greatest normalised projection error at which a start is called settled."""
+"""Greatest normalised projection error at which a start counts as settled."""
 
 TRIED = (0.1, 0.3, 0.5, 0.7, 0.9)
 """u and v of the starts that are tried, on each of three faces: 75."""
 
 PATIENCE = 1.0
-"""Time after which a tried start has arrived, or counts as one that has not [s]: 25 over K."""
+"""Time after which a start that has not arrived counts as such [s]: 25 / K."""
 
 ARRIVED = 1e-3
 """Greatest error of a start that has arrived [length]."""
@@ -90,7 +90,7 @@ def tried() -> list[Start]:
 
 @cache
 def moves_by_resets() -> list[Move]:
-    """Return what the printed resets do to the witness points, from every tried start.
+    """Return how the printed resets move the witness points, from every tried start.
 
     By then its switches to the true feature are over.
     """
@@ -100,7 +100,7 @@ def moves_by_resets() -> list[Move]:
 def face_parameters(recording: Recording, face: int) -> Array:
     """Return (u, v) on one face in every frame, (n, 2): nan in frames that are not on it.
 
-    Answers on the face's edges and at its vertices are on it too.
+    Answers on the face's edges and at its vertices are included.
     """
     assert recording.pair is not None, "not opened from a file"
     found = np.full((len(recording), 2), np.nan)

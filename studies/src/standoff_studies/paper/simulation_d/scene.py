@@ -29,19 +29,19 @@ from standoff_studies.paper.simulation_d.runs import (
 from standoff_studies.paper.voronoi_drawing import draw_space_regions
 
 AZIMUTH, ELEVATION = 40.0, 26.0
-"""Where the viewer stands [degrees]: beside the helix's axis, and above the upper vertex."""
+"""Direction of the viewer [degrees]: to the side of the helix's axis, above the upper vertex."""
 
 WITNESS_LINES = 22
-"""Witness lines of Fig. 16, even in time."""
+"""Witness lines of Fig. 16, evenly spaced in time."""
 
 EARLY = 0.03
 """Time between the witness lines of the initial convergence [s]."""
 
 REACH = 0.42
-"""How far the drawn part of a Voronoi surface stands off the lens [length]."""
+"""How far the drawn part of a Voronoi surface extends from the lens [length]."""
 
 SLOW, APART, FRAMES = 14, 15, 80
-"""Pictures of the animation: of its slow beginning, so many samples apart, and in all."""
+"""Pictures of the animation: in its slow beginning, at which spacing in samples, and in total."""
 
 KINDS = ("face", "edge", "vertex")
 

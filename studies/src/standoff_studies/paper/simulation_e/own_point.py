@@ -1,4 +1,4 @@
-"""Do a body's switches ask for its own witness point? The printed tests, tried with wrong ones."""
+"""Do a body's switches depend on its own witness point? The printed tests with wrong ones."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ AROUND = 10
 """Frames before and after a switch at which the test is tried."""
 
 POINTS = 25
-"""Own witness points tried at each, anywhere on the feature before the switch."""
+"""Own witness points tried at each switch, anywhere on the feature before it."""
 
 INSTANT = 1e-9
-"""Length of the step in which the tests are asked [s]: nothing moves in it."""
+"""Length of the step in which the tests are evaluated [s]: nothing moves in it."""
 
 LAWS = {
     "voronoi": PaperLaw.as_printed(gain=100.0),
     "multipliers": PaperLaw(gain=100.0, solve="plain", restarts=False),
 }
-"""The printed tests, and those that ask for the own witness point."""
+"""The printed tests, and those that use the own witness point."""
 
 
 class Decisions(NamedTuple):
@@ -40,7 +40,7 @@ class Decisions(NamedTuple):
 
 @cache
 def decisions(switching: str) -> Decisions:
-    """Ask at each switch of simulation E, before and after it, from random own witness points.
+    """Test each switch of simulation E, before and after it, from random own witness points.
 
     The opposing witness point is the closest one.
     """

@@ -34,16 +34,16 @@ from standoff_studies.paper.start_decay import decay_statement
 from standoff_studies.paper.unaided import Part, unaided
 
 BESIDE = 0.2
-"""By which our instants may be off the paper's [s]."""
+"""By how much our instants may differ from the paper's [s]."""
 
 DECAY = (0.02, 0.2)
-"""Times between which the decay of the start is measured [s]: later the law's own error shows."""
+"""Times between which the decay of the start is measured [s]: later the law's error dominates."""
 
 LEAST_DRAWN = 1e-10
-"""Witness errors below this are drawn at it [length]: those of the other law."""
+"""Witness errors below this are drawn at this value [length]: those of the other law."""
 
 SHADES = ("#FFFFFF", "#ECECEC")
-"""Behind the modes, in turn."""
+"""Backgrounds of the modes, in turn."""
 
 
 def figure_20() -> Artwork:
@@ -135,7 +135,7 @@ def _statements(runs: Simulation) -> tuple[Statement, ...]:
 
 
 def _as_printed(runs: Simulation) -> tuple[Statement, ...]:
-    """The order of the modes, what becomes of starts anywhere, and that nothing helps the law."""
+    """The order of the modes, what happens from starts anywhere, and that nothing helps the law."""
     tried = arrivals()
     printed, own = decisions("voronoi"), decisions("multipliers")
     return (
@@ -163,7 +163,7 @@ def _as_printed(runs: Simulation) -> tuple[Statement, ...]:
 def edge_stay(runs: Simulation) -> tuple[float, float]:
     """Return when A's witness point enters its edge, and when it leaves it [s].
 
-    Both nan where it comes to none.
+    Both are nan if it does not.
     """
     on = [visit for visit in runs.stays if visit.feature_a.kind == "edge"]
     return (on[0].start, on[-1].end) if on else (math.nan, math.nan)

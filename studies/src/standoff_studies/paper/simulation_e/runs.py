@@ -29,7 +29,7 @@ from standoff_studies.paper.patch_places import place_on, short
 from standoff_studies.paper.resets import Move
 
 SEMI_AXES = (0.8, 0.6, 0.7)
-"""Body B is the lens stretched by these along x, y and z."""
+"""Factors by which body B, a lens, is stretched along x, y and z."""
 
 PATH_A = REST
 
@@ -37,17 +37,17 @@ PATH_B = Carried(
     Helix(radius=1.7, pitch=-0.2, rate=0.5, centre=(0.0, 0.0, -0.2), phase=-0.5),
     ConstantTwist(Pose.exp((-0.1, 0.0, 0.3)), Twist((0.0, 0.0, 0.0), (-0.15, -0.4, 0.25))),
 )
-"""B's centre winds about A's axis while B turns [length, rad/s]: chosen so that both bodies pass
-from a face over an edge to the next face."""
+"""B's centre moves on a helix about A's axis while B rotates [length, rad/s], so that the witness
+points of both bodies pass from a face over an edge to the next face."""
 
 CONVERGED = 0.3
 """When the start has converged [s]: exp(-K t) is 3e-7."""
 
 TRIED, PATIENCE, ARRIVED = 30, 0.6, 1e-4
-"""Random starts, after which time [s], and to which distance [length], they count as arrived."""
+"""Number of random starts, and the time [s] and error [length] at which they count as arrived."""
 
 SWITCHED = 0.1
-"""When a tried start has come to the features where it stays [s]: 5 over K."""
+"""When a tried start has reached the features where it stays [s]: 5 / K."""
 
 
 @cache
@@ -88,12 +88,12 @@ def arrivals() -> Ends:
 
 @cache
 def moves_by_resets() -> list[Move]:
-    """Return what the printed resets do to the witness points, from every tried start."""
+    """Return how the printed resets move the witness points, from every tried start."""
     return moves_from(SIMULATION, tried(), SWITCHED)
 
 
 def sequence(visits: Iterable[Visit]) -> tuple[tuple[str, str], ...]:
-    """Return the visited modes in order, as the pictures name them: ("F0", "E2") and so on."""
+    """Return the visited modes in order, as named in the pictures: ("F0", "E2") and so on."""
     return tuple((short(visit.feature_a), short(visit.feature_b)) for visit in visits)
 
 
@@ -107,7 +107,7 @@ def features_of(visits: Iterable[Visit], body: str) -> tuple[str, ...]:
 class FaceParameters:
     """Where one body's witness point lies in the parameters of a face, by frame.
 
-    While it is on an edge these are those of the face that it came from.
+    While it is on an edge, they are those of the face from which it came.
 
     Attributes
     ----------

@@ -29,22 +29,22 @@ from standoff_studies.paper.simulation_e.runs import (
 )
 
 AZIMUTH, ELEVATION = 8.0, 56.0
-"""Where the viewer stands [degrees]: so that both ends of the witness lines are seen."""
+"""Direction of the viewer [degrees], chosen so that both ends of the witness lines are visible."""
 
 COLOURS = {"A": ("#CBE6F6", "#5F9FC8", "#9FD3F2"), "B": ("#F7D08A", "#DDA03F", "#FBE9C6")}
-"""Of each body's three patches: one hue a body, three brightnesses."""
+"""Colours of each body's three patches: one hue per body, three brightnesses."""
 
 HEIGHTS = (1.25, 1.0, 1.0)
-"""Of the rows of panels."""
+"""Heights of the rows of panels."""
 
 FRAMES = 64
 """Pictures of the animation."""
 
 TRIAD = (1.4, -1.4)
-"""Where the world's axes are drawn [length on the paper]."""
+"""Where the world's axes are drawn [length in the picture]."""
 
 ACROSS, UP = (-1.6, 2.3), (-2.5, 1.1)
-"""What the animation shows [length on the paper]: both bodies at all times."""
+"""Area shown by the animation [length in the picture]: both bodies at all times."""
 
 FAN = 0.2
 """Time between the witness lines of the last panel [s]."""
@@ -134,7 +134,7 @@ def _draw() -> Figure:
     for axes, frame in zip(panels, snapshot_frames(runs), strict=False):
         _draw_snapshot(axes, runs, frame, start=axes is panels[0])
     _draw_motion(panels[-1], runs)
-    # One scale in all panels, and each row as high as its two need.
+    # the same scale in all panels, and each row as high as its two need
     across = np.array([axes.get_xlim() for axes in panels])
     for first in range(0, len(panels), 2):
         up = np.array([axes.get_ylim() for axes in panels[first : first + 2]])
@@ -160,14 +160,14 @@ def _draw_snapshot(
             view.line(posed(points, pose), style.RED, 4.0, rank=1.5)
     ends = recording.point_a[frame], recording.point_b[frame]
     view.line(ends, style.BLACK, 1.6)
-    if start:  # where it began, on the bodies as they stand now
+    if start:  # where it began, on the bodies at their present poses
         far = PATH_B.pose(time).apply(PATH_B.pose(0.0).inverse().apply(recording.point_b[0]))
         view.line([recording.point_a[0], far], style.PURPLE, 1.4, dashes=(0.07, 0.05))
     for point, feature in zip(ends, features.values(), strict=True):
         colour, mark = LOOKS[feature.kind]
         view.mark(point, colour, mark, 0.05)
     view.paint(axes)
-    # An end that a body hides is shown hollow, and the line to it dotted.
+    # an end that a body hides is drawn hollow, and the line to it dotted
     flat = view.flat(np.array(ends))
     axes.plot(*flat.T, color=style.BLACK, linestyle=":", linewidth=0.9, zorder=3)
     for point, feature in zip(flat, features.values(), strict=True):
