@@ -266,6 +266,27 @@ def test_a_body_of_fewer_facets_tracks(rng: np.random.Generator) -> None:
         assert answer.distance == pytest.approx(cold.distance, abs=1e-9)
 
 
+@pytest.mark.parametrize("tolerance", [None, 1e-2])
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_images_are_the_hulls_of_the_images(
+    mirrored: bool, tolerance: float | None, rng: np.random.Generator
+) -> None:
+    points = np.concatenate([ball(rng, 300), grid_on_a_cube(5) * 0.7])
+    body = so.Body.from_points(points, tolerance=tolerance)
+    linear, shift = turned(rng) @ np.diag([1.0, 2.0, 0.5]) @ turned(rng), rng.normal(size=3)
+    linear = -linear if mirrored else linear
+    image = body.transformed((linear, shift))
+    cloud = points @ linear.T + shift
+    assert (image.n_faces, image.n_edges) == (body.n_faces, body.n_edges)
+    assert image.vertex_points == pytest.approx(body.vertex_points @ linear.T + shift)
+    normals, offsets = planes(image)
+    heights = (normals @ cloud.T - offsets[:, None]).max()
+    # what was left out is still in the slack
+    assert heights <= image.check().slack + 1e-13
+    again = so.Body.from_brep(image.vertex_points, image.edge_parts, image.face_parts)
+    assert np.array_equal(again.ints, image.ints)
+
+
 def test_the_same_points_give_the_same_body(rng: np.random.Generator) -> None:
     points = ball(rng, 100)
     one, other = so.Body.from_points(points), so.Body.from_points(points.tolist())

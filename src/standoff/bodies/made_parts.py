@@ -19,7 +19,7 @@ class MadeParts(KeepsReadOnly, Sequence[Part]):
     """
 
     def __init__(self, source: Any) -> None:
-        self._source = source
+        self.source = source
         self._made: dict[int, Part] = {}
 
     @abstractmethod

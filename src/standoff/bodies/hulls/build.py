@@ -83,11 +83,16 @@ def solid_body(
     radius: float,
     given: Array | None = None,
     tolerance: float | None = None,
+    above: float = 0.0,
 ) -> Packed:
-    """The polyhedron of outlines round points, (n, 3).
+    """The polyhedron with given outlines, whose corners are among the points, (n, 3).
 
-    given : all that it is to be the hull of, each compared with each face; the points by default.
+    Parameters
+    ----------
+    given : all points that it should be the hull of, each compared with each face; by default
+        those with the corners.
     tolerance : how far they may be above a face, length; 1e-6 of the size by default.
+    above : how far other points, known to be within its hull, are above a face, length.
 
     Raises
     ------
@@ -101,7 +106,7 @@ def solid_body(
     allowed = max(JOIN_TOLERANCE * size, roundoff)
     residual = _residual(solid, found, allowed)
     share = max(CONVEXITY_TOLERANCE * size if tolerance is None else tolerance, allowed)
-    defect = _defect(given, solid, share)
+    defect = max(_defect(given, solid, share), above)
     turns, cones, pcurves = edge_turns(solid), vertex_cones(solid), solid.pcurves()
     smooth = (np.abs(turns) <= SMOOTH_ANGLE) & (np.abs(np.sin(turns)) < SMOOTH_ANGLE)
     joints = smooth, cones, wide_corners(solid, pcurves)
@@ -136,6 +141,22 @@ def solid_body(
         coordinate_roundoff=roundoff,
     )
     return Packed(parts, ints, reals, report)
+
+
+def image_of(solid: Polyhedron, linear: Array, shift: Array, radius: float, above: float) -> Packed:
+    """The image of a polyhedron under an affine map, x -> linear x + shift, swept by a ball.
+
+    above : as for `solid_body`, of the image.
+    """
+    points = solid.vertices @ linear.T + shift
+    corners, starts = solid.corners, solid.starts
+    normals = np.linalg.solve(linear.T, solid.normals.T).T
+    if np.linalg.det(linear) < 0.0:  # a mirror turns the outlines round
+        ends = np.repeat(starts[:-1] + starts[1:] - 1, np.diff(starts))
+        corners = corners[ends - np.arange(len(corners))]
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    found = Outlines(corners, starts, normals)
+    return solid_body(points, found, radius, tolerance=above or None, above=above)
 
 
 def _residual(solid: Polyhedron, found: Outlines, allowed: float) -> float:

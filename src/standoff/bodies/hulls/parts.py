@@ -13,27 +13,27 @@ from standoff.geometry.quadrics import Plane
 class Edges(MadeParts[Edge]):
     """The edges of a `Polyhedron`."""
 
-    _source: Polyhedron
+    source: Polyhedron
 
     def __len__(self) -> int:
-        return len(self._source.ends)
+        return len(self.source.ends)
 
     def make(self, number: int) -> Edge:
-        first, last = self._source.ends[number].tolist()
-        vertices = self._source.vertices
+        first, last = self.source.ends[number].tolist()
+        vertices = self.source.vertices
         return Edge(Line(vertices[first], vertices[last]), first, last)
 
 
 class Faces(MadeParts[Face]):
     """The faces of a `Polyhedron`."""
 
-    _source: Polyhedron
+    source: Polyhedron
 
     def __len__(self) -> int:
-        return self._source.n_faces
+        return self.source.n_faces
 
     def make(self, number: int) -> Face:
-        solid = self._source
+        solid = self.source
         own = slice(*solid.starts[number : number + 2])
         plane = Plane(solid.planes[number], solid.shifts[number])
         loop = zip(solid.edges[own].tolist(), solid.senses[own].tolist(), strict=True)
@@ -43,10 +43,10 @@ class Faces(MadeParts[Face]):
 class PlaneChecks(MadeParts[PatchCheck]):
     """Of every face that its plane is convex, by theorem."""
 
-    _source: int
+    source: int
 
     def __len__(self) -> int:
-        return self._source
+        return self.source
 
     def make(self, number: int) -> PatchCheck:
         return PatchCheck(number, "Plane", "theorem", True, 0.0, True, (0.0, 0.0))
