@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 
@@ -138,7 +139,7 @@ class BodyReport:
     notes: tuple[str, ...]
     closed: bool
     outward: bool
-    patches: tuple[PatchCheck, ...]
+    patches: Sequence[PatchCheck]
     sharpest: DihedralAngle | None
     flattest: DihedralAngle | None
     convexity_tolerance: float
