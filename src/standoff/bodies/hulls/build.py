@@ -150,7 +150,7 @@ def image_of(solid: Polyhedron, linear: Array, shift: Array, radius: float, abov
     """
     points = solid.vertices @ linear.T + shift
     corners, starts = solid.corners, solid.starts
-    normals: Array = np.linalg.solve(linear.T, solid.normals.T).T
+    normals = np.asarray(np.linalg.solve(linear.T, solid.normals.T).T, dtype=np.float64)
     if np.linalg.det(linear) < 0.0:  # a mirror turns the outlines round
         ends = np.repeat(starts[:-1] + starts[1:] - 1, np.diff(starts))
         corners = corners[ends - np.arange(len(corners))]
