@@ -1,8 +1,9 @@
 """``python -m standoff_studies.soak.large_worlds``: a large world against all of its pairs.
 
 Bodies of all kinds drift, turn, jump and pause. In every checked frame all pairs are looked at:
-those whose balls come within the horizon are asked by cold queries, which know nothing of the world.
-No such pair may be missing, no bound too great, and the clearance never above the least distance.
+those whose balls come within the horizon are asked by cold queries, which know nothing of the
+world. No such pair may be missing, no bound too great, and the clearance never above the least
+distance.
 
 Options: --bodies N (1000), --frames M (10000), --every K (1: check every K-th frame), --seed S.
 """
