@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import product
-
 import numpy as np
 import scipy
 
@@ -11,9 +9,17 @@ from standoff.bodies.hulls.heights import highest
 from standoff.bodies.hulls.qhull import unit_of
 from standoff.geometry.validation import Array
 
-# Directions whose extreme points come first: to a cube's faces, edges and corners.
-DIRECTIONS = np.array([d for d in product((-1.0, 0.0, 1.0), repeat=3) if any(d)])
-DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]
+# How many directions there are whose extreme points come first.
+FIRST = 32
+
+
+def directions() -> Array:
+    """(FIRST, 3) unit vectors all round, on a spiral: none is an axis of a part, along which the
+    highest of many points is any of a face."""
+    k = np.arange(FIRST)
+    height, around = 1.0 - (2.0 * k + 1.0) / FIRST, np.pi * (3.0 - np.sqrt(5.0)) * k
+    flat = np.sqrt(1.0 - height**2)
+    return np.column_stack([flat * np.cos(around), flat * np.sin(around), height])
 
 
 def fewer_points(points: Array, tolerance: float, word: str) -> Array:
@@ -25,7 +31,7 @@ def fewer_points(points: Array, tolerance: float, word: str) -> Array:
     """
     unit = unit_of(points, word)
     local = (points - points.mean(axis=0)) / unit
-    chosen = np.unique((local @ DIRECTIONS.T).argmax(axis=0))
+    chosen = np.unique((local @ directions().T).argmax(axis=0))
     while True:
         try:
             planes = scipy.spatial.ConvexHull(local[chosen]).equations
