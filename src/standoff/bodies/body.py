@@ -303,14 +303,14 @@ class Body(Boundary):
             radius *= float(stretch[0])
         if self.dimension == 2 and (np.abs(linear[2, :2]).max() > 0.0 or shift[2] != 0.0):
             raise StandoffError("The map takes a planar body out of z = 0.", "affine", affine)
-        if isinstance(self.face_parts, MadeParts):
+        flip = 1 if np.linalg.det(linear) > 0.0 else -1
+        if isinstance(self.face_parts, MadeParts) and flip > 0:
             from standoff.bodies.hulls.build import image_of
 
             above = float(stretch[0]) * self.report.convexity_defect
             image = image_of(self.face_parts.source, linear, shift, radius, above)
             return made_body(self.name, radius, image)
         edges = [replace(e, curve=e.curve.transformed(linear, shift)) for e in self.edge_parts]
-        flip = 1 if np.linalg.det(linear) > 0.0 else -1
         faces = [
             Face(
                 tuple(s.transformed(linear, shift) for s in f.charts),

@@ -190,7 +190,7 @@ def _operator(system: System, step: float, settings: Table) -> Operator:
                 "tracker = 'beside'",
                 "within",
             )
-        law = replace(BESIDE, within=settings.positive("within", infinite=True))
+        law = replace(BESIDE, within=settings.positive("within"))
     return Operator(system, step, method, tracker, gain, law)
 
 

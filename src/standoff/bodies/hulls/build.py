@@ -84,6 +84,7 @@ def solid_body(
     given: Array | None = None,
     tolerance: float | None = None,
     above: float = 0.0,
+    solid: Polyhedron | None = None,
 ) -> Packed:
     """The polyhedron with given outlines, whose corners are among the points, (n, 3).
 
@@ -93,6 +94,7 @@ def solid_body(
         those with the corners.
     tolerance : how far they may be above a face, length; 1e-6 of the size by default.
     above : how far other points, known to be within its hull, are above a face, length.
+    solid : the polyhedron of these outlines, where it is known.
 
     Raises
     ------
@@ -102,7 +104,8 @@ def solid_body(
     given = points if given is None else given
     low, high = points.min(axis=0), points.max(axis=0)
     size, roundoff = float(np.linalg.norm(high - low)), coordinate_roundoff(points)
-    solid = polyhedron(points, found, max(ROUNDOFF * size, roundoff))
+    if solid is None:
+        solid = polyhedron(points, found, max(ROUNDOFF * size, roundoff))
     allowed = max(JOIN_TOLERANCE * size, roundoff)
     residual = _residual(solid, found, allowed)
     share = max(CONVEXITY_TOLERANCE * size if tolerance is None else tolerance, allowed)
@@ -146,17 +149,19 @@ def solid_body(
 def image_of(solid: Polyhedron, linear: Array, shift: Array, radius: float, above: float) -> Packed:
     """The image of a polyhedron under an affine map, x -> linear x + shift, swept by a ball.
 
+    Its parts have the parameters of the given one's. The map is no mirror.
+
     above : as for `solid_body`, of the image.
     """
     points = solid.vertices @ linear.T + shift
-    corners, starts = solid.corners, solid.starts
-    normals = np.asarray(np.linalg.solve(linear.T, solid.normals.T).T, dtype=np.float64)
-    if np.linalg.det(linear) < 0.0:  # a mirror turns the outlines round
-        ends = np.repeat(starts[:-1] + starts[1:] - 1, np.diff(starts))
-        corners = corners[ends - np.arange(len(corners))]
+    planes, shifts = linear @ solid.planes, solid.shifts @ linear.T + shift
+    normals = np.cross(planes[:, :, 0], planes[:, :, 1])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    found = Outlines(corners, starts, normals)
-    return solid_body(points, found, radius, tolerance=above or None, above=above)
+    for array in (points, planes, shifts, normals):
+        array.flags.writeable = False
+    image = replace(solid, vertices=points, planes=planes, shifts=shifts, normals=normals)
+    found = Outlines(solid.corners, solid.starts, normals)
+    return solid_body(points, found, radius, tolerance=above or None, above=above, solid=image)
 
 
 def _residual(solid: Polyhedron, found: Outlines, allowed: float) -> float:

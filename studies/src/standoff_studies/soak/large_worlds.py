@@ -131,7 +131,7 @@ def true_distances(bodies: list[so.Body], kind: Ints, pairs: Ints, poses: Array)
 
 def check(answer: WorldAnswer, pairs: Ints, true: Array, counts: Counts) -> Counts:
     """Compare a frame with the truth."""
-    n = len(answer.world)
+    n = len(answer.model.listed)
     told = answer.pairs
     keys = told.bodies @ [n, 1]
     order = np.argsort(keys)
@@ -160,7 +160,7 @@ def run(n: int, frames: int, every: int, seed: int) -> Counts:
     kind = np.arange(n) % len(bodies)
     world = World({f"b{k}": bodies[x] for k, x in enumerate(kind)}, within=WITHIN, dt=H)
     radii = np.array([0.5 * body.size for body in bodies])[kind]
-    facts = world.search.pieces.facts
+    facts = world.model.search.pieces.facts
     drift = Drift(n, rng)
     state = world.start(drift.poses)
     counts, told = Counts(0, 0, 0, 0, 0, 0), time.monotonic()
