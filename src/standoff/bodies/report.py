@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 
@@ -139,7 +138,7 @@ class BodyReport:
     notes: tuple[str, ...]
     closed: bool
     outward: bool
-    patches: Sequence[PatchCheck]
+    patches: tuple[PatchCheck, ...]
     sharpest: DihedralAngle | None
     flattest: DihedralAngle | None
     convexity_tolerance: float

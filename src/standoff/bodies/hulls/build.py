@@ -15,7 +15,7 @@ from standoff.bodies.hulls.joints import edge_turns, vertex_cones, wide_corners,
 from standoff.bodies.hulls.merging import merged
 from standoff.bodies.hulls.outlines import Outlines, outlines
 from standoff.bodies.hulls.packed import pack_polyhedron
-from standoff.bodies.hulls.parts import Edges, Faces, PlaneChecks
+from standoff.bodies.hulls.parts import Edges, Faces, plane_checks
 from standoff.bodies.hulls.polyhedron import Polyhedron, polyhedron
 from standoff.bodies.hulls.qhull import hull_triangles
 from standoff.bodies.hulls.rectangles import inner_rectangles
@@ -134,7 +134,7 @@ def solid_body(
         notes=_notes(found, len(given) - len(points), defect, residual, size, roundoff),
         closed=True,
         outward=True,
-        patches=PlaneChecks(solid.n_faces),
+        patches=plane_checks(solid.n_faces),
         sharpest=_dihedral(solid, turns, int(turns.argmax())),
         flattest=_dihedral(solid, turns, int(turns.argmin())),
         convexity_tolerance=share,

@@ -30,6 +30,8 @@ def fewer_points(points: Array, tolerance: float, word: str) -> Array:
     high. All are returned where the extreme ones span no volume.
     """
     unit = unit_of(points, word)
+    if not len(points):
+        return points
     local = (points - points.mean(axis=0)) / unit
     chosen = np.unique((local @ directions().T).argmax(axis=0))
     while True:

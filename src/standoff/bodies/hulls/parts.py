@@ -40,13 +40,8 @@ class Faces(MadeParts[Face]):
         return Face((plane,), tuple(loop))
 
 
-class PlaneChecks(MadeParts[PatchCheck]):
-    """Of every face that its plane is convex, by theorem."""
-
-    source: int
-
-    def __len__(self) -> int:
-        return self.source
-
-    def make(self, number: int) -> PatchCheck:
-        return PatchCheck(number, "Plane", "theorem", True, 0.0, True, (0.0, 0.0))
+def plane_checks(count: int) -> tuple[PatchCheck, ...]:
+    """Of so many plane faces that each is convex, by theorem."""
+    return tuple(
+        PatchCheck(k, "Plane", "theorem", True, 0.0, True, (0.0, 0.0)) for k in range(count)
+    )

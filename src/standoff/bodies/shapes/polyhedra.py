@@ -16,7 +16,7 @@ from standoff.bodies.hulls.build import (
     solid_body,
     thin_error,
 )
-from standoff.bodies.hulls.outlines import Outlines, begun
+from standoff.bodies.hulls.outlines import Outlines
 from standoff.bodies.hulls.qhull import unit_of
 from standoff.bodies.shapes.arguments import by_position, positive_numbers
 from standoff.bodies.tolerances import FLATTEST, LEAST_CORE, SAME_VERTEX
@@ -25,8 +25,8 @@ from standoff.checks.numbers import magnitude_or_zero
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.validation import Array
 
-# The corners, faces and outward normals of a box, numbered as those of its hull. Its vertices,
-# edges and faces are numbered after them, and its digest depends on the signs of the zeros.
+# The corners and outward normals of a box. Its vertices, edges and faces are numbered after them,
+# and its digest depends on the signs of the zeros.
 CORNERS = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
 NORMALS = np.array(
     [
@@ -38,8 +38,7 @@ NORMALS = np.array(
         [-0.0, -0.0, 1.0],
     ]
 )
-ROUND = [0, 2, 6, 4, 0, 4, 5, 1, 4, 6, 7, 5, 0, 1, 3, 2, 2, 3, 7, 6, 1, 5, 7, 3]
-LOOPS = Outlines(np.array(ROUND), np.arange(0, 25, 4), NORMALS)
+STARTS = np.arange(0, 25, 4)
 
 
 @overload
@@ -97,7 +96,19 @@ def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
             "thicker, or round it less."
         )
     points = 0.5 * core * CORNERS
-    return made_body("box", rounding, solid_body(points, begun(points, LOOPS), rounding))
+    return made_body("box", rounding, solid_body(points, _box_outlines(points), rounding))
+
+
+def _box_outlines(points: Array) -> Outlines:
+    """A box's loops: each face's corners by their angles about its middle, the first one's is 0."""
+    loops = []
+    for normal in NORMALS:
+        corners = np.flatnonzero(CORNERS @ normal > 0.0)
+        away = points[corners] - points[corners].mean(axis=0)
+        x = away[0] / np.linalg.norm(away[0])
+        angles = np.arctan2(away @ np.cross(normal, x), away @ x)
+        loops.append(corners[np.argsort(angles)])
+    return Outlines(np.concatenate(loops), STARTS, NORMALS)
 
 
 def polytope(vertices: Any, *, rounding: float = 0.0) -> Body:
