@@ -492,6 +492,8 @@ def pair_calls() -> list[Call]:
         "PaperLaw": (so, {"tolerance": 1e-9, "gain": 100.0, "deadline": 40}),
         "PredictorCorrector": (so, {"tolerance": 1e-9, "deadline": 40}),
         "Tracker": (so, {**pair, "dt": 1e-3, "law": law}),
+        "World": (so, {"bodies": {"ball": SPHERE, "box": BOX}, "within": 0.5, "dt": 1e-3}),
+        "compound": (so, {"pieces": {"ball": SPHERE, "box": (BOX, AWAY)}}),
         "PointTracker": (so, {"body": DISC, "dt": 1e-3, "law": so.PaperLaw()}),
         "distance": (so, posed),
         "distances": (so, {**pair, "poses_a": np.eye(4), "poses_b": np.eye(4)[None], "workers": 1}),

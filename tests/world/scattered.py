@@ -75,7 +75,7 @@ class Truth(NamedTuple):
 
 def placed_pieces(body: object, pose: np.ndarray) -> list[tuple[str, so.Body, np.ndarray]]:
     """(name, body, world pose) of each piece."""
-    if isinstance(body, so.Compound):
+    if isinstance(body, so.world.Compound):
         found = []
         for name, piece in body.pieces.items():
             local = np.eye(4)

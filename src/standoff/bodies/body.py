@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from standoff.bodies.affine_maps import affine_map
 from standoff.bodies.assembly import assemble
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.charts import edge_points, loop_pcurve
@@ -16,14 +17,13 @@ from standoff.bodies.convexity import Known
 from standoff.bodies.finishing import Packed, finish
 from standoff.bodies.made_parts import MadeParts
 from standoff.bodies.report import BodyReport
-from standoff.bodies.tolerances import MAX_SPREAD, SIMILARITY_TOLERANCE, SINGULAR_MAP
+from standoff.bodies.tolerances import MAX_SPREAD
 from standoff.bodies.topology import Edge, Face, check_parts, parts_of
 from standoff.checks.arrays import finite
 from standoff.checks.numbers import LEAST, magnitude, magnitude_or_zero
 from standoff.checks.real_numbers import shape_of
-from standoff.errors import BodyError, StandoffError
+from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, matrix3, vector3
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -282,32 +282,12 @@ class Body(Boundary):
         ValueError
             Singular map; or a map that is not a similarity on a body with a swept radius.
         """
-        try:
-            linear, shift = _affine(affine)
-        except StandoffError as error:
-            raise StandoffError(str(error), "affine", affine) from error
-        stretch = np.linalg.svd(linear, compute_uv=False)
-        if stretch[2] <= SINGULAR_MAP * stretch[0]:
-            raise StandoffError(
-                f"The affine map is singular (singular values {stretch}).", "affine", affine
-            )
-        radius = self.radius
-        if radius > 0.0:
-            if stretch[0] - stretch[2] > SIMILARITY_TOLERANCE * stretch[0]:
-                raise StandoffError(
-                    f"A body with radius {radius} would not keep a round skin under this map "
-                    f"(singular values {stretch}): use so.shapes.ellipsoid or a body of patches.",
-                    "affine",
-                    affine,
-                )
-            radius *= float(stretch[0])
-        if self.dimension == 2 and (np.abs(linear[2, :2]).max() > 0.0 or shift[2] != 0.0):
-            raise StandoffError("The map takes a planar body out of z = 0.", "affine", affine)
-        flip = 1 if np.linalg.det(linear) > 0.0 else -1
+        linear, shift, stretch, flip = affine_map(affine, self.radius, self.dimension)
+        radius = self.radius * stretch
         if isinstance(self.face_parts, MadeParts) and flip > 0:
             from standoff.bodies.hulls.build import image_of
 
-            above = float(stretch[0]) * self.report.convexity_defect
+            above = stretch * self.report.convexity_defect
             image = image_of(self.face_parts.source, linear, shift, radius, above)
             return made_body(self.name, radius, image)
         edges = [replace(e, curve=e.curve.transformed(linear, shift)) for e in self.edge_parts]
@@ -327,8 +307,8 @@ class Body(Boundary):
             rounding=radius,
             dimension=self.dimension,
             name=self.name,
-            tolerance=self._stretched(MAX_SPREAD * self.report.sewing_tolerance, float(stretch[0])),
-            convexity_tolerance=self._stretched(self.report.convexity_tolerance, float(stretch[0])),
+            tolerance=self._stretched(MAX_SPREAD * self.report.sewing_tolerance, stretch),
+            convexity_tolerance=self._stretched(self.report.convexity_tolerance, stretch),
         )
 
     def _stretched(self, tolerance: float, stretch: float) -> float | None:
@@ -411,16 +391,3 @@ def _kept_pcurves(face: Face, edges: Sequence[Edge]) -> tuple[Pcurve | None, ...
         return face.pcurves
     surface = face.charts[0]
     return tuple(loop_pcurve(face, k, edges, surface) for k in range(len(face.loop)))
-
-
-def _affine(value: Any) -> tuple[Array, Array]:
-    if isinstance(value, tuple) and len(value) == 2:
-        return matrix3(value[0], "affine map"), vector3(value[1], "affine shift")
-    if shape_of(value) == (4, 4):
-        array = finite(value, "affine map", (4, 4))
-        if not np.array_equal(array[3], [0.0, 0.0, 0.0, 1.0]):
-            raise StandoffError(
-                f"The affine map's last row is {array[3]}; it must be 0 0 0 1.", "affine", value
-            )
-        return array[:3, :3], array[:3, 3]
-    return matrix3(value, "affine map"), np.zeros(3)
