@@ -105,7 +105,9 @@ margins = [["ball", "still", 2.0], { a = "ball", b = "hand", length = 0.1 }]
 
 
 def test_only_and_parents(load_text: LoadText) -> None:
-    scene = load_text(WORLD + 'only = [["hand", "solids"]]\n[world.groups]\nsolids = ["ball", "wall"]\n')
+    scene = load_text(
+        WORLD + 'only = [["hand", "solids"]]\n[world.groups]\nsolids = ["ball", "wall"]\n'
+    )
     assert set(scene.world.pairs()) == {("ball", "hand"), ("hand", "wall")}
     scene = load_text(WORLD + 'parents = { ball = "hand", wall = "floor" }\n')
     assert ("ball", "hand") not in set(scene.world.pairs())
@@ -141,7 +143,8 @@ def test_times_are_those_of_all_bodies(load_text: LoadText) -> None:
 
 def test_a_pose_of_a_piece_in_any_form(load_text: LoadText) -> None:
     forms = [
-        'quaternion_wxyz = [0.7071067811865476, 0.0, 0.7071067811865476, 0.0]\nposition = [1.0, 0.0, 1.0]',
+        "position = [1.0, 0.0, 1.0]\n"
+        "quaternion_wxyz = [0.7071067811865476, 0.0, 0.7071067811865476, 0.0]",
         "rotation_vector = [0.0, 1.5707963267948966, 0.0]\nposition = [1.0, 0.0, 1.0]",
         "matrix = [[0, 0, 1, 1], [0, 1, 0, 0], [-1, 0, 0, 1], [0, 0, 0, 1]]",
     ]
@@ -172,17 +175,27 @@ PALM = '[bodies.a.pieces.palm]\nshape = "sphere"\nradius = 1.0\n'
         (piece("pieces = 3"), "bodies.a.pieces", ["must be a table", "got 3"]),
         (piece(PALM + "radus = 1"), "bodies.a.pieces.palm.radus", ["did you mean 'radius'?"]),
         (piece(PALM + "positon = [0]"), "bodies.a.pieces.palm.positon", ["mean 'position'?"]),
-        (piece(PALM + "position = [0, 1]\nangle = 0\nmatrix = []"), "bodies.a.pieces.palm", [
-            "say the same thing",
-        ]),
+        (
+            piece(PALM + "position = [0, 1]\nangle = 0\nmatrix = []"),
+            "bodies.a.pieces.palm",
+            [
+                "say the same thing",
+            ],
+        ),
         (piece(PALM + "position = [0]"), "bodies.a.pieces.palm.position", ["2 or 3 numbers"]),
-        (piece(PALM.replace("sphere", "compound")), "bodies.a.pieces.palm.shape", [
-            "one convex shape",
-        ]),
+        (
+            piece(PALM.replace("sphere", "compound")),
+            "bodies.a.pieces.palm.shape",
+            [
+                "one convex shape",
+            ],
+        ),
         (piece("rounding = 0.1\n" + PALM), "bodies.a.rounding", ["unknown key 'rounding'"]),
         (
-            piece(BLOCK + '[bodies.a.pieces.disk]\nshape = "planar_loop"\n[[bodies.a.pieces.disk.'
-            'curves]]\nkind = "ellipse"\ncentre = [0, 0]\nsemi_axes = [1, 1]'),
+            piece(
+                BLOCK + '[bodies.a.pieces.disk]\nshape = "planar_loop"\n[[bodies.a.pieces.disk.'
+                'curves]]\nkind = "ellipse"\ncentre = [0, 0]\nsemi_axes = [1, 1]'
+            ),
             "bodies.a.pieces",
             ["'disk' is planar", "'palm' is not"],
         ),
@@ -195,10 +208,14 @@ PALM = '[bodies.a.pieces.palm]\nshape = "sphere"\nradius = 1.0\n'
         (WORLD + "witin = 1", "world.witin", ["unknown key 'witin'", "did you mean 'within'?"]),
         (WORLD + "within = 0", "world.within", ["above zero"]),
         (WORLD + "minima = -1", "world.minima", ["zero or above"]),
-        (WORLD + 'ignore = [["ball", "hnad"]]', "world.ignore[0][1]", [
-            "unknown body or group 'hnad'",
-            "did you mean 'hand'?",
-        ]),
+        (
+            WORLD + 'ignore = [["ball", "hnad"]]',
+            "world.ignore[0][1]",
+            [
+                "unknown body or group 'hnad'",
+                "did you mean 'hand'?",
+            ],
+        ),
         (WORLD + 'ignore = ["ball", "hand"]', "world.ignore[0]", ["two names", "'ball'"]),
         (WORLD + 'ignore = [["ball", "ball"]]', "world.ignore", ["'ball' with itself"]),
         (WORLD + "ignore = [[1, 2]]", "world.ignore[0][0]", ["name of a body or group", "got 1"]),
@@ -213,9 +230,13 @@ PALM = '[bodies.a.pieces.palm]\nshape = "sphere"\nradius = 1.0\n'
         (WORLD + 'parents = { ball = "ball" }', "world.parents", ["its own parent"]),
         (WORLD + 'margins = [["ball", "hand"]]', "world.margins[0]", ["a, b and length"]),
         (WORLD + 'margins = [["ball", "hand", -1]]', "world.margins[0].length", ["zero or above"]),
-        (WORLD + 'margins = [{ a = "ball", b = "hand", len = 1 }]', "world.margins[0].len", [
-            "did you mean 'length'?",
-        ]),
+        (
+            WORLD + 'margins = [{ a = "ball", b = "hand", len = 1 }]',
+            "world.margins[0].len",
+            [
+                "did you mean 'length'?",
+            ],
+        ),
         (WORLD + 'margins = [["ball", "x", 1]]', "world.margins[0].b", ["unknown body or group"]),
         (BODIES + '[pair]\na = "ball"\nb = "hand"', "pair.b", ["'hand' has several pieces"]),
         (BODIES, "", ["'pair' is missing"]),

@@ -54,18 +54,20 @@ def answer_lines(
     unit, size = scene.length_unit, shown_size(answer)
     numbers = [answer.distance, answer.lower_bound, answer.upper_bound]
     distance, lower, upper = without_roundoff(numbers, size).tolist()
-    on_a, on_b = _vector(answer.point_a, size), _vector(answer.point_b, size)
+    on_a, on_b = vector_text(answer.point_a, size), vector_text(answer.point_b, size)
     certified = f"yes, {_tolerance_text(COLD_TOLERANCE)}" if answer.certified else "no"
     return [
         *_scene_lines(scene),
         *(line("", note) for note in scene.notes),
-        line("time", f"{_time(time)}"),
+        line("time", f"{time_text(time)}"),
         line("distance", f"{distance:.15g} {unit}"),
         line("lower bound", f"{lower:.15g} {unit}"),
         line("upper bound", f"{upper:.15g} {unit}"),
         line(_on(scene.pair[0]), f"{on_a} {unit}, {answer.feature_a}"),
         line(_on(scene.pair[1]), f"{on_b} {unit}, {answer.feature_b}"),
-        line("normal", f"{_vector(answer.normal, 1.0)} from {scene.pair[0]} to {scene.pair[1]}"),
+        line(
+            "normal", f"{vector_text(answer.normal, 1.0)} from {scene.pair[0]} to {scene.pair[1]}"
+        ),
         line("certified", certified),
         *([] if answer.certified else [line("", f"{answer.status.name}: {answer.status.advice}")]),
         line("work", _work(answer.counts, verbose=verbose)),
@@ -147,10 +149,11 @@ def _frames_text(recording: Recording) -> str:
     least, most = f"{steps.min():.4g}", f"{steps.max():.4g}"
     every = f"{most} ms" if least == most else f"{least} to {most} ms"
     first, last = recording.time[[0, -1]].tolist()
-    return f"{len(recording.time)} from {_time(first)} to {_time(last)}, {every} apart"
+    return f"{len(recording.time)} from {time_text(first)} to {time_text(last)}, {every} apart"
 
 
-def _time(seconds: float) -> str:
+def time_text(seconds: float) -> str:
+    """Return a time with its unit."""
     # To the microsecond, which a recorder's epoch of 1e9 s leaves of a double.
     return f"{seconds:.6f}".rstrip("0").rstrip(".") + " s"
 
@@ -160,8 +163,9 @@ def _closest_text(scene: Scene, recording: Recording) -> str:
     if frame is None:
         return "no frame has a distance"
     a, b = scene.pair
+    at = time_text(recording.time[frame])
     return (
-        f"{recording.distance[frame]:.6g} {scene.length_unit} at {_time(recording.time[frame])}, "
+        f"{recording.distance[frame]:.6g} {scene.length_unit} at {at}, "
         f"{a} {recording.feature_a[frame]} to {b} {recording.feature_b[frame]}"
     )
 
@@ -172,7 +176,7 @@ def _gap_text(scene: Scene, recording: Recording) -> str:
         return "no frame has a distance"
     return (
         f"{recording.gap[frame]:.3g} {scene.length_unit} (distance − lower bound) "
-        f"at {_time(recording.time[frame])}"
+        f"at {time_text(recording.time[frame])}"
     )
 
 
@@ -218,12 +222,14 @@ def _event_lines(scene: Scene, events: Sequence[RecordedEvent]) -> list[str]:
     lines = [line("events", f"{len(events)}{more}")]
     names = dict(zip("AB", scene.pair, strict=True))
     told = (
-        f"{_time(event.time):<12} {names[event.body]}: {event.source} to {event.target}"
+        f"{time_text(event.time):<12} {names[event.body]}: {event.source} to {event.target}"
         f"{'' if event.located else ', not located'}"
         for event in events[:FIRST_EVENTS]
     )
     return [*lines, *(line("", text) for text in told)]
 
 
-def _vector(vector: Array, size: float) -> str:
-    return "(" + ", ".join(f"{value:.9g}" for value in without_roundoff(vector, size)) + ")"
+def vector_text(vector: Array, size: float, digits: int = 9) -> str:
+    """Return a vector in parentheses; numbers that are roundoff beside a size are zero."""
+    values = without_roundoff(vector, size)
+    return "(" + ", ".join(f"{value:.{digits}g}" for value in values) + ")"

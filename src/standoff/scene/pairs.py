@@ -71,9 +71,7 @@ def read_pairs(
     return tuple(pairs)
 
 
-def _bodies(
-    table: Table, bodies: Sequence[str], compounds: Collection[str]
-) -> tuple[str, str]:
+def _bodies(table: Table, bodies: Sequence[str], compounds: Collection[str]) -> tuple[str, str]:
     a, b = (table.choice(key, bodies, noun="body") for key in ("a", "b"))
     for key, name in (("a", a), ("b", b)):
         if name in compounds:

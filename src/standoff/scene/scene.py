@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -59,7 +59,7 @@ class Scene:
     motions: Mapping[str, Motion]
     pairs: tuple[Pair, ...]
     seen: Pair | None
-    track: TrackSettings = TrackSettings()
+    track: TrackSettings = field(default_factory=TrackSettings)
     rules: WorldRules | None = None
 
     @property
