@@ -128,7 +128,8 @@ class WorldAnswer(KeepsReadOnly):
         keys = self.state.ints[:, W.I_KEY]
         square = int(self.world.search.pieces.first[-1]) ** 2
         if square == 1 or not len(rows):
-            return self.state.known[rows, W.C_BOUND]
+            alone: Array = self.state.known[rows, W.C_BOUND]
+            return alone
         groups = keys // square
         first = np.searchsorted(groups, groups[rows], "left")
         least = np.minimum.reduceat(
@@ -158,7 +159,7 @@ class WorldAnswer(KeepsReadOnly):
         """(name of the body, of the piece, the piece, from the body's origin to the piece's)."""
         fixed = self.world.search.pieces
         i = int(fixed.owners[p])
-        name, body = list(self.world.bodies.items())[i]
+        name, body = self.world.listed[i]
         k = p - int(fixed.first[i])
         piece = list(body.pieces)[k] if isinstance(body, Compound) else ""
         arm = self.state.placed[p, W.P_SHIFT : W.P_SHIFT + 3] - self.state.poses[i, :3, 3]

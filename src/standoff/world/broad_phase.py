@@ -113,7 +113,9 @@ def _ordered(search: Search, frame: Placed, tree: Tree) -> Tree:
     nodes[leaves : leaves + len(order)] = tree.boxes[order]
     made = Tree(tree.boxes, nodes, order, leaf, tree.n_filled, 0)
     none = Placed(frame.placed, np.zeros_like(frame.sought), frame.still)
-    kernels.pad(search.pieces[:], none[:], made.boxes, np.zeros(len(leaf)), made.arrays, tree.n_filled)
+    kernels.pad(
+        search.pieces[:], none[:], made.boxes, np.zeros(len(leaf)), made.arrays, tree.n_filled
+    )
     return made
 
 

@@ -44,7 +44,7 @@ class Compound(KeepsReadOnly):
     __slots__ = ("dimension", "pieces")
 
     def __init__(self, pieces: Mapping[str, PieceLike]) -> None:
-        if not isinstance(pieces, Mapping) or not pieces:
+        if not (is_mapping(pieces) and pieces):
             raise StandoffTypeError(
                 f"pieces = {shown(pieces)}: give a mapping of names to bodies, or to (body, pose); "
                 "at least one.",
@@ -81,6 +81,11 @@ def compound(pieces: Mapping[str, PieceLike]) -> Compound:
         No piece, no pose, planar pieces among spatial ones.
     """
     return Compound(pieces)
+
+
+def is_mapping(given: Any) -> bool:
+    """Is it a mapping?"""
+    return isinstance(given, Mapping)
 
 
 def name_of(name: Any) -> str:

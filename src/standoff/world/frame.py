@@ -36,8 +36,9 @@ def started_state(world: World, given: GivenPoses, twists: Twists) -> WorldState
     search = world.search
     nothing = empty_placed(len(search.pieces.owners))
     n = len(nothing.placed)
-    endless = Tree(np.zeros((n, 6)), np.empty((2, 6)), *np.zeros((2, 1), dtype=np.int64), 0, 0)
-    frame, given = _placed(world, given, endless, nothing.placed)
+    none = np.zeros(1, dtype=np.int64)
+    no_tree = Tree(np.zeros((n, 6)), np.empty((2, 6)), none, none, 0, 0)
+    frame, given = _placed(world, given, no_tree, nothing.placed)
     tree = first_tree(search, frame)
     frame.sought[:] = 1
     table = table_of(search, frame, tree, NO_PAIRS)
@@ -63,9 +64,7 @@ def next_state(
     else:
         table = Table(table.ints.copy(), table.known.copy())
     time = before.time + dt
-    moment = Moment(
-        before.frame + 1, time, dt, *twists, may_rest, world.minima, workers
-    )
+    moment = Moment(before.frame + 1, time, dt, *twists, may_rest, world.minima, workers)
     asked = ask(world.laws, search.pieces, frame, table, before.pages, moment)
     return _state(world, given, (frame, tree, table), asked, moment)
 

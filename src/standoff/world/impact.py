@@ -80,9 +80,7 @@ def first_impact(
                 if impact.status is not ImpactStatus.NO_IMPACT:
                     names, pieces = (a, b), (piece_a, piece_b)
                     found = WorldImpact(impact.time, impact.status, names, pieces, impact, 0)
-    return WorldImpact(
-        found.time, found.status, found.names, found.pieces, found.impact, searched
-    )
+    return WorldImpact(found.time, found.status, found.names, found.pieces, found.impact, searched)
 
 
 def _pieces(world: World, name: str, path: Any) -> list[tuple[str, Body, Any]]:
@@ -90,6 +88,4 @@ def _pieces(world: World, name: str, path: Any) -> list[tuple[str, Body, Any]]:
     body = world.bodies[name]
     if not isinstance(body, Compound):
         return [("", body, path)]
-    return [
-        (part, piece.body, Offset(path, piece.pose)) for part, piece in body.pieces.items()
-    ]
+    return [(part, piece.body, Offset(path, piece.pose)) for part, piece in body.pieces.items()]

@@ -177,9 +177,7 @@ MOST_PAGES = 16
 """Where there are more, all are gathered into one of each width."""
 
 
-def _gathered(
-    pages: list[Array], numbers: Ints, within: Ints
-) -> tuple[list[Array], Ints, Ints]:
+def _gathered(pages: list[Array], numbers: Ints, within: Ints) -> tuple[list[Array], Ints, Ints]:
     """All rows on one page of each width."""
     made: list[Array] = []
     for width in sorted({page.shape[1] for page in pages}):

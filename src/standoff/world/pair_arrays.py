@@ -58,8 +58,8 @@ class PairArrays(KeepsReadOnly):
     @property
     def names(self) -> list[tuple[str, str]]:
         """The names of the two bodies of each pair."""
-        names = list(self._answer.world.bodies)
-        return [(names[i], names[j]) for i, j in self.bodies.tolist()]
+        listed = self._answer.world.listed
+        return [(listed[i][0], listed[j][0]) for i, j in self.bodies.tolist()]
 
     @property
     def distance(self) -> Array:

@@ -158,8 +158,8 @@ def packed_rules(names: Names, fixed: NDArray[np.bool_], given: Given) -> Rules:
 def _keys(a: Ints, b: Ints, n: int) -> Ints:
     """i n + j of all pairs i < j of two lists."""
     i, j = (x.ravel() for x in np.meshgrid(a, b, indexing="ij"))
-    keys: Ints = np.minimum(i, j) * n + np.maximum(i, j)
-    return keys[i != j]
+    keys: Ints = (np.minimum(i, j) * n + np.maximum(i, j))[i != j]
+    return keys
 
 
 def _kinds(

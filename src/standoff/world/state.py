@@ -127,7 +127,8 @@ class WorldState(KeepsReadOnly):
 
     def block(self, row: int) -> Array:
         """The block of a kept row, by its number."""
-        return self.pages[row >> PAGE][row & IN_PAGE]
+        found: Array = self.pages[row >> PAGE][row & IN_PAGE]
+        return found
 
     def column(self, pairs: Ints, slots: Any) -> Array:
         """Numbers of the answers of some pairs in the table, (k, ...): gathered from the pages."""

@@ -37,7 +37,10 @@ PosesLike = Any
 """World poses of the moving bodies: (n, 4, 4) in the world's order, a list of poses, or a mapping
 of names to poses."""
 
-HIDDEN = ("key", "laws", "names", "search")
+HIDDEN = (
+    *("fixed_rows", "key", "laws", "listed", "moving_rows", "names", "poses_of_fixed", "search"),
+    "check_state",
+)
 
 
 @hides(*HIDDEN)
@@ -89,7 +92,7 @@ class World(KeepsReadOnly):
         that would be a pair, a number that is negative or NaN.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - all but one are keywords with defaults
         self,
         bodies: Mapping[str, BodyLike],
         *,
@@ -112,6 +115,8 @@ class World(KeepsReadOnly):
             still[self.names.body(name, "fixed")] = True
         self.fixed = tuple(name for name in self.bodies if name in placed)
         self.moving = tuple(name for name in self.bodies if name not in placed)
+        self.moving_rows, self.fixed_rows = np.flatnonzero(~still), np.flatnonzero(still)
+        self.listed = tuple(self.bodies.items())
         self.within = positive(within, "within", infinite=True)
         self.minima = -math.inf if minima is None else not_negative(minima, "minima")
         self.dt, self.law = positive(dt, "dt"), checked_law(law)
@@ -298,18 +303,8 @@ class World(KeepsReadOnly):
     def _twists(self, twists: Any, given: GivenPoses) -> tuple[Array, bool]:
         return read_twists_of(twists, self.moving, given.matrices, self.moving_rows)
 
-    @property
-    def moving_rows(self) -> NDArray[np.int64]:
-        """The numbers of the moving bodies."""
-        return np.array([self.names.bodies[name] for name in self.moving], dtype=np.int64)
-
-    @property
-    def fixed_rows(self) -> NDArray[np.int64]:
-        """Those of the fixed ones."""
-        return np.array([self.names.bodies[name] for name in self.fixed], dtype=np.int64)
-
     def _bodies_by_piece(self) -> dict[str, Body]:
-        found = {}
+        found: dict[str, Body] = {}
         for name, body in self.bodies.items():
             if isinstance(body, Compound):
                 found |= {f"{name}.{part}": piece.body for part, piece in body.pieces.items()}
@@ -356,7 +351,7 @@ def _checked_bodies(bodies: Any) -> dict[str, BodyLike]:
     for name, body in bodies.items():
         if not isinstance(body, Body | Compound):
             raise StandoffTypeError(
-                f"The body {name_of(name)!r} is {shown(body)}: give a Body or so.compound({{...}}).",
+                f"The body {name_of(name)!r} is {shown(body)}: give a Body or a Compound.",
                 "bodies",
                 body,
             )

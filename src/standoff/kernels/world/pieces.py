@@ -29,7 +29,8 @@ from standoff.kernels.world.arrays import (
 )
 
 # The norm of R1 - R0, two rotations, is the root of half the sum of its squares; each may be off
-# orthonormal by ROTATION in every entry of R' R, which is less than 3 ROTATION of its norm.
+# orthonormal by ROTATION in every entry of R' R, which is less than 3 ROTATION of its norm. It is
+# never more than the root of the whole sum.
 HALF_ROOT = 0.7071067811865476
 OFF_ROTATION = 6.0 * ROTATION
 
@@ -115,7 +116,8 @@ def gone(before, row, fact):
     if turned > 0.0:
         if fact[F_PLANE] != 0.0:
             return FARTHEST
-        way += (HALF_ROOT * sqrt(turned) + OFF_ROTATION) * fact[F_REACH]
+        norm = sqrt(turned)
+        way += min(norm, HALF_ROOT * norm + OFF_ROTATION) * fact[F_REACH]
     return way + 2.0 * (row[P_PAD] + before[P_PAD])
 
 
