@@ -22,6 +22,8 @@ from standoff.clearance.verdicts import Verdict, touching_tolerance, verdict_of
 from standoff.scene import SceneError
 
 Standoff = Callable[..., Any]
+ROOT = Path(__file__).parents[2]
+DOTALL = re.DOTALL | re.MULTILINE
 
 SCENE = """version = 1
 title = "Balls and boxes"
@@ -477,3 +479,32 @@ def test_the_table_is_sorted_worst_first(standoff: Standoff, scene: Path) -> Non
     assert found == ["OVERLAPPING", "TOUCHING", "APART"]
     assert "far           3 pairs, proven to be " in out
     assert "verdicts      1 OVERLAPPING, 1 TOUCHING, 4 APART" in out
+
+
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
+
+
+def test_the_page_of_the_docs_shows_what_is_printed(
+    standoff: Standoff, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    page = (ROOT / "docs" / "clearance.md").read_text("utf-8")
+    (block,) = re.findall(
+        r"```console\n\$ standoff (.*?)\n```\n\n```text\n(.*?)^```$", page, DOTALL
+    )
+    command, promised = block
+    ended = standoff(*command.split())
+    assert ended.code == 3
+    # The bounds of bodies that touch are roundoff, which differs from machine to machine.
+    texts = [NUMBER.sub("#", text).split() for text in (ended.out, promised)]
+    assert texts[0] == texts[1]
+    numbers = [[float(x) for x in NUMBER.findall(text)] for text in (ended.out, promised)]
+    np.testing.assert_allclose(*numbers, rtol=1e-9, atol=1e-9)
+
+
+def test_the_list_of_fits_on_the_page_can_be_read(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "clearance.md").read_text("utf-8")
+    (text,) = re.findall(r"```toml\n(.*?)^```$", page, DOTALL)
+    file = tmp_path / "fits.toml"
+    file.write_text(text)
+    assert load_fits(file)[0] in load_fits(ROOT / "examples" / "fits-allowed.toml")

@@ -29,8 +29,11 @@ MOST_BODIES = 60
 MOST_WRITTEN = 16
 """Bodies up to which each cell has its number."""
 
-NARROW, CELL, WIDE = 3.2, 0.52, 11.0
-"""Of the figure in inches: beside the cells, of a cell, and at most of all cells."""
+CELL, WIDE = 0.52, 11.0
+"""Of a cell in inches, and at most of all cells."""
+
+LEFT, BESIDE, BELOW, ABOVE = 1.6, 3.2, 1.35, 0.6
+"""Inches left of the cells, left and right of them together, below and above them."""
 
 LEAST = 6
 """Cells that the figure has room for, however few bodies there are."""
@@ -77,8 +80,13 @@ def drawn_bodies(report: Report) -> list[str]:
     return [name for name in names if name in kept]
 
 
+def side_of(report: Report) -> float:
+    """Return the side of a report's matrix, inches."""
+    return min(WIDE, CELL * max(len(drawn_bodies(report)), LEAST))
+
+
 def matrix_figure(report: Report, title: str, unit: str) -> Figure:
-    """Draw a report's matrix.
+    """Draw a report's matrix as a figure of its own.
 
     Parameters
     ----------
@@ -88,42 +96,36 @@ def matrix_figure(report: Report, title: str, unit: str) -> Figure:
     unit : str
         Label of lengths.
     """
-    names, cells = drawn_bodies(report), cells_of(report)
-    n = len(names)
-    side = min(WIDE, CELL * max(n, LEAST))
+    side = side_of(report)
     # Not through pyplot, which would ask for a display and keep the figure alive.
-    figure = Figure(figsize=(side + NARROW, side + 0.6 * NARROW), dpi=130)
+    figure = Figure(figsize=(side + BESIDE, side + BELOW + ABOVE), dpi=130)
     FigureCanvasAgg(figure)
-    width, height = side + NARROW, side + 0.6 * NARROW
-    axes = figure.add_axes((1.6 / width, 1.35 / height, side / width, side / height))
+    draw_matrix(figure, report, f"{title}: clearance of all pairs", unit)
+    return figure
+
+
+def draw_matrix(figure: Figure, report: Report, title: str, unit: str) -> None:
+    """Draw a report's matrix at the lower left of a figure, with its title above it."""
+    names, cells = drawn_bodies(report), cells_of(report)
+    n, side = len(names), side_of(report)
+    width, height = figure.get_size_inches().tolist()
+    axes = figure.add_axes((LEFT / width, BELOW / height, side / width, side / height))
     known = [c.gap for c in cells.values() if not c.far and c.verdict is Verdict.APART]
     scale = Normalize(0.0, max([*known, 0.0]) or 1.0)
     for i in range(n):
         for j in range(i):
-            _draw_cell(
-                axes, (i, j), _cell(cells, names[i], names[j]), scale, written=n <= MOST_WRITTEN
-            )
+            cell = cells.get((names[i], names[j])) or cells.get((names[j], names[i]))
+            _draw_cell(axes, (i, j), cell, scale, written=n <= MOST_WRITTEN)
     _dress(axes, names)
     more = "" if n == len(report.world.bodies) else f", the {n} bodies of the worst pairs"
-    figure.text(
-        0.02,
-        1.0 - 0.32 / height,
-        f"{title}: clearance of all pairs{more}",
-        fontsize="large",
-        va="center",
-    )
+    top = (BELOW + side + 0.6 * ABOVE) / height
+    figure.text(0.15 / width, top, f"{title}{more}", fontsize="large", va="center")
     axes.legend(handles=_legend(cells.values()), loc="upper right", frameon=False, fontsize="small")
     if known:
-        bar = figure.add_axes(
-            ((1.75 + side) / width, 1.35 / height, 0.16 / width, 0.55 * side / height)
-        )
+        box = (LEFT + side + 0.15) / width, BELOW / height, 0.16 / width, 0.55 * side / height
         label = f"gap ({unit})" if unit else "gap"
+        bar = figure.add_axes(box)
         figure.colorbar(ScalarMappable(scale, colormaps[COLOURS]), cax=bar, label=label)
-    return figure
-
-
-def _cell(cells: dict[tuple[str, str], Cell], a: str, b: str) -> Cell | None:
-    return cells.get((a, b)) or cells.get((b, a))
 
 
 def _draw_cell(

@@ -14,7 +14,7 @@ import numpy as np
 from standoff.bodies.plain_data import without_roundoff
 from standoff.clearance.matrix import matrix_figure
 from standoff.clearance.picture import numbered_rows, world_figure
-from standoff.clearance.report import Report, Row, Wanted, at_least, nearest_of, report_on
+from standoff.clearance.report import Looked, Report, Row, Wanted, at_least, nearest_of, report_on
 from standoff.motion import Pose
 from standoff.scene.reader import Array
 from standoff.scene.scene import Scene
@@ -46,7 +46,7 @@ img { max-width: 100%; height: auto; } footer { color: #666; margin-top: 2rem; f
 """
 
 
-def page_of(scene: Scene, report: Report, looked: Any) -> str:
+def page_of(scene: Scene, report: Report, looked: Looked) -> str:
     """Return the page.
 
     Parameters
@@ -80,7 +80,7 @@ def page_of(scene: Scene, report: Report, looked: Any) -> str:
     return "\n".join(parts) + "\n"
 
 
-def _pictured(scene: Scene, report: Report, looked: Any) -> tuple[float, Report]:
+def _pictured(scene: Scene, report: Report, looked: Looked) -> tuple[float, Report]:
     """The instant of the picture, and the report on it: over several frames that of the worst pair
     of which a body moves."""
     if looked.frames == 1:
@@ -100,7 +100,7 @@ def _poses(scene: Scene, report: Report, time: float) -> dict[str, Pose]:
     return moving | {name: Pose.of(matrix) for name, matrix in still}
 
 
-def _summary(scene: Scene, report: Report, looked: Any) -> str:
+def _summary(scene: Scene, report: Report, looked: Looked) -> str:
     unit = escape(scene.length_unit)
     if looked.frames == 1:
         when = f"at {looked.start:g} s"

@@ -53,6 +53,21 @@ class Wanted(NamedTuple):
     fits: Sequence[Fit] | None = None
 
 
+class Looked(NamedTuple):
+    """When the bodies were looked at.
+
+    Attributes
+    ----------
+    start, end : float
+        The first frame's scene time, and the last one's [s].
+    frames : int
+    """
+
+    start: float
+    end: float
+    frames: int
+
+
 @dataclass(frozen=True)
 class Row:
     """One near pair of the report.

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from standoff.clearance.tolerances import TOUCHING
 from standoff.kernels.body import layout as L
 from standoff.ordered import Ordered
@@ -25,7 +23,7 @@ class Verdict(Ordered):
 
 
 _MEANING = {
-    Verdict.OVERLAPPING: "The bodies are proven to overlap by more than the touching tolerance.",
+    Verdict.OVERLAPPING: "The bodies are proven to overlap, and by more than counts as touching.",
     Verdict.UNDECIDED: (
         "Neither is proven: the bounds are on both sides of 0, and farther apart than the touching "
         "tolerance."
@@ -57,7 +55,6 @@ def verdict_of(answer: PairAnswer) -> Verdict:
         return Verdict.TOUCHING
     if lower > 0.0:
         return Verdict.APART
-    if answer.status.penetrating and (upper < 0.0 or -answer.distance > tolerance):
+    if answer.status.penetrating and upper < 0.0:
         return Verdict.OVERLAPPING
-    near = math.isfinite(answer.distance) and abs(answer.distance) <= tolerance
-    return Verdict.TOUCHING if near and answer.certified else Verdict.UNDECIDED
+    return Verdict.UNDECIDED

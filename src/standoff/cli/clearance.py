@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from standoff.clearance.facts import report_facts
 from standoff.clearance.fits import load_fits
 from standoff.clearance.over_time import bounds_over, walk
-from standoff.clearance.report import Report, Wanted, bounds_of, nearest_of, report_on
+from standoff.clearance.report import Looked, Report, Wanted, bounds_of, nearest_of, report_on
 from standoff.cli.arguments import ClearanceCommand
 from standoff.cli.clearance_lines import print_report
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
@@ -24,23 +24,9 @@ from standoff.cli.output import (
 from standoff.cli.progress import progress_bar
 from standoff.cli.terminal import tell
 from standoff.scene import Scene, SceneError, load_scene
+from standoff.scene.reader import Array
 from standoff.scene.worlds import world_of
 from standoff.world import World
-
-
-class Looked(NamedTuple):
-    """When the bodies were looked at.
-
-    Attributes
-    ----------
-    start, end : float
-        The first frame's scene time, and the last one's [s].
-    frames : int
-    """
-
-    start: float
-    end: float
-    frames: int
 
 
 def run_clearance(command: ClearanceCommand) -> int:
@@ -56,9 +42,10 @@ def run_clearance(command: ClearanceCommand) -> int:
     _check(command)
     scene = load_scene(command.scene).as_world
     wanted = Wanted(command.min, None if command.allow is None else load_fits(command.allow))
-    world = world_of(scene, _horizon(command, scene))
+    times = scene.times() if command.motion else None
+    world = world_of(scene, _horizon(command, scene), times=times)
     _check_files(command)
-    report, looked = _looked(command, scene, world, wanted)
+    report, looked = _looked(command, scene, world, wanted, times)
     write_whole(_files(command, scene, report, looked))
     written = [path for path in (command.files.page, command.files.plot) if path is not None]
     if command.report.json:
@@ -92,11 +79,10 @@ def _horizon(command: ClearanceCommand, scene: Scene) -> float | None:
 
 
 def _looked(
-    command: ClearanceCommand, scene: Scene, world: World, wanted: Wanted
+    command: ClearanceCommand, scene: Scene, world: World, wanted: Wanted, times: Array | None
 ) -> tuple[Report, Looked]:
     try:
-        if command.motion:
-            times = scene.times()
+        if times is not None:
             with progress_bar() as progress:
                 walked = walk(scene, world, times, progress)
             bounds = bounds_over(world, walked.near)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -12,16 +11,13 @@ from rich.table import Table
 from rich.text import Text
 
 from standoff.bodies.plain_data import without_roundoff
-from standoff.clearance.report import Report, Row, at_least
+from standoff.clearance.report import Looked, Report, Row, at_least
 from standoff.clearance.verdicts import Verdict
 from standoff.cli.summary import line, time_text, vector_text
 from standoff.cli.terminal import tell
 from standoff.scene import Scene
 from standoff.tracking.proximity import shown_size
 from standoff.wording import counted, printable
-
-if TYPE_CHECKING:
-    from standoff.cli.clearance import Looked
 
 WIDTH = 120
 """Characters of a table where stdout is not a terminal, such as a file."""

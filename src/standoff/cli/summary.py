@@ -97,13 +97,13 @@ def recording_lines(
 ) -> list[str]:
     """Return the lines that sum up a run."""
     frames, certified = len(recording.time), int(np.count_nonzero(recording.certified))
-    share = _share(certified, frames)
+    share = share_text(certified, frames)
     tolerance = _tolerance_text(float(recording.info.options["tolerance"]))
     return [
         *_scene_lines(scene),
         *(line("", note) for note in scene.notes),
         line("law", _law_text(recording)),
-        line("frames", _frames_text(recording)),
+        line("frames", frames_text(recording.time)),
         line("closest", _closest_text(scene, recording)),
         line("certified", f"{certified} of {counted(frames, 'frame')}, {share}, {tolerance}"),
         *_advice(recording.status_frames(), frames),
@@ -144,12 +144,13 @@ def _option_text(option: Option, value: Any) -> str:
     return f"{value:.6g}{unit}" if isinstance(value, float) else f"{value}{unit}"
 
 
-def _frames_text(recording: Recording) -> str:
-    steps = 1e3 * np.diff(recording.time)
+def frames_text(times: Array) -> str:
+    """Return how many frames there are, from when to when, and how far apart."""
+    steps = 1e3 * np.diff(times)
     least, most = f"{steps.min():.4g}", f"{steps.max():.4g}"
     every = f"{most} ms" if least == most else f"{least} to {most} ms"
-    first, last = recording.time[[0, -1]].tolist()
-    return f"{len(recording.time)} from {time_text(first)} to {time_text(last)}, {every} apart"
+    first, last = times[[0, -1]].tolist()
+    return f"{len(times)} from {time_text(first)} to {time_text(last)}, {every} apart"
 
 
 def time_text(seconds: float) -> str:
@@ -180,7 +181,8 @@ def _gap_text(scene: Scene, recording: Recording) -> str:
     )
 
 
-def _share(part: int, whole: int) -> str:
+def share_text(part: int, whole: int) -> str:
+    """Return a part as percent of a whole."""
     # Rounding must not turn all but one into all.
     percent = 100.0 * part / whole
     return f"{percent:.0f} %" if part in (0, whole) else f"{min(percent, 99.99):.2f} %"

@@ -11,8 +11,8 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.scene.errors import SceneError
-from standoff.scene.reader import Table, shown, unknown_name
-from standoff.scene.settings import DEFAULT_STEP
+from standoff.scene.reader import Array, Table, shown, unknown_name
+from standoff.scene.settings import DEFAULT_STEP, TrackSettings
 from standoff.world import Compound, World
 from standoff.world.compound import dimension_of
 from standoff.world.rules import Given, Names, packed_rules
@@ -114,7 +114,12 @@ def read_world(
     return rules
 
 
-def world_of(scene: Scene, within: float | None = None) -> World:
+def world_of(
+    scene: Scene,
+    within: float | None = None,
+    settings: TrackSettings | None = None,
+    times: Array | None = None,
+) -> World:
     """Return the bodies of a scene as a world.
 
     Parameters
@@ -123,6 +128,10 @@ def world_of(scene: Scene, within: float | None = None) -> World:
         Of one without ``[world]`` the scene's pairs are those that count.
     within : float, optional
         The horizon [length]; the scene's own if not given.
+    settings : TrackSettings, optional
+        With the law; the scene's own if not given.
+    times : (n,) array, optional
+        Of the frames, if the world is tracked [s]: the law's gain must hold for the longest step.
 
     Raises
     ------
@@ -136,15 +145,15 @@ def world_of(scene: Scene, within: float | None = None) -> World:
         named = {name for pair in pairs for name in pair}
         bodies = {name: body for name, body in bodies.items() if name in named}
         rules = WorldRules(only=pairs)
-    step = scene.track.step
+    dt = DEFAULT_STEP if times is None else float(np.diff(times).max())
     try:
         return World(
             bodies,
             within=rules.within if within is None else within,
             fixed={name: scene.motions[name].path.pose(0.0) for name in rules.fixed},
             minima=rules.minima,
-            law=scene.track.law,
-            dt=step if isinstance(step, float) else DEFAULT_STEP,
+            law=(settings or scene.track).law,
+            dt=dt,
             **rules.given._asdict(),
         )
     except (ValueError, TypeError) as error:
