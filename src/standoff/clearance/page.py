@@ -217,8 +217,8 @@ def _cells(texts: Iterable[str]) -> str:
 
 
 def _picture(heading: str, told: str, figure: Any) -> str:
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format="png")
-    data = base64.b64encode(drawn.getvalue()).decode()
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png")
+    data = base64.b64encode(buffer.getvalue()).decode()
     alt = escape(f"{heading}, {told}")
     return f'<h2>{escape(heading)}</h2><img alt="{alt}" src="data:image/png;base64,{data}">'
