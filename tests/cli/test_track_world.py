@@ -87,7 +87,7 @@ def test_the_table_has_each_near_pair_of_each_frame(
     table = pq.read_table(file)
     found = table.to_pydict()
     times = load_scene(scene).times()
-    expected = {}
+    expected: dict[tuple[float, str, str], float] = {}
     for names, distances in truth(times).items():
         expected |= {(time, *names): d for time, d in zip(times.tolist(), distances, strict=True)}
     near = {key for key, distance in expected.items() if distance <= 3.0}
