@@ -159,6 +159,22 @@ class World(KeepsReadOnly):
             "A World is not stored: store what it was made of, and its states' poses.", "world"
         )
 
+    @property
+    def dimension(self) -> int:
+        """2 for a world of planar bodies, 3 for one of spatial ones."""
+        return 2 if self.model.planar else 3
+
+    @property
+    def fixed_poses(self) -> dict[str, Pose]:
+        """World poses of the fixed bodies, by name."""
+        poses = map(Pose.of, self.model.poses_of_fixed)
+        return dict(zip(self.fixed, poses, strict=True))
+
+    def margin(self, a: str, b: str) -> float:
+        """The clearance that two bodies must keep, length; 0 where none was given."""
+        i, j = (self.model.names.body(name, "margin") for name in (a, b))
+        return self.model.search.rules.margin(i, j)
+
     def start(self, poses: PosesLike, twists: Any = None) -> WorldState:
         """Find all pairs within the horizon, and their distances, at some poses.
 
