@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +22,8 @@ class Model(NamedTuple):
 
     Attributes
     ----------
-    key : object
-        The mark of this world: its states have the same.
+    key : str
+        The mark of this world: its states have the same, and its copies.
     listed : tuple of (str, Body or Compound)
         All bodies with their names, in order.
     names : Names
@@ -38,7 +38,7 @@ class Model(NamedTuple):
     laws : PackedLaws
     """
 
-    key: Any
+    key: str
     listed: tuple[tuple[str, Body | Compound], ...]
     names: Names
     moving: tuple[str, ...]

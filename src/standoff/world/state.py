@@ -98,7 +98,7 @@ class WorldState(KeepsReadOnly):
         "tree",
     )
 
-    def __init__(self, key: Any, **parts: Any) -> None:
+    def __init__(self, key: str, **parts: Any) -> None:
         self.key = key
         for name in self.__slots__:
             if name != "key":
@@ -106,7 +106,7 @@ class WorldState(KeepsReadOnly):
         for array in (self.poses, self.placed, self.ints, self.known, *self.pages):
             array.flags.writeable = False
 
-    key: Any
+    key: str
     time: float
     frame: int
     has_twist: bool

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import uuid
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -107,6 +108,19 @@ class World(KeepsReadOnly):
         dt: float = 1e-3,
     ) -> None:
         self.bodies = _checked_bodies(bodies)
+        self._made: dict[str, Any] = {
+            "bodies": self.bodies,
+            "within": within,
+            "fixed": fixed,
+            "groups": groups,
+            "ignore": tuple(ignore),
+            "only": None if only is None else tuple(only),
+            "parents": parents,
+            "margins": margins,
+            "minima": minima,
+            "law": law,
+            "dt": dt,
+        }
         names = Names(tuple(self.bodies), groups or {})
         placed = dict(fixed or {})
         still = np.zeros(len(self.bodies), dtype=bool)
@@ -116,8 +130,8 @@ class World(KeepsReadOnly):
         self.dt, self.law = positive(dt, "dt"), checked_law(law)
         given = Given(
             dict(groups or {}),
-            tuple(ignore),
-            None if only is None else tuple(only),
+            self._made["ignore"],
+            self._made["only"],
             dict(parents or {}),
             dict(margins or {}),
         )
@@ -130,7 +144,7 @@ class World(KeepsReadOnly):
         # by address: what the frames read is at hand, and what they call is compiled
         laws = packed_laws([piece for each in pieces for piece in each], self.law, self.dt)
         self.model = Model(
-            key=object(),
+            key=uuid.uuid4().hex,
             listed=tuple(self.bodies.items()),
             names=names,
             moving=tuple(name for name in self.bodies if name not in placed),
@@ -154,10 +168,14 @@ class World(KeepsReadOnly):
         """Names of those that stay where they are."""
         return self.model.fixed
 
-    def __getstate__(self) -> Any:
-        raise StandoffTypeError(
-            "A World is not stored: store what it was made of, and its states' poses.", "world"
-        )
+    def __reduce__(self) -> Any:
+        # addresses are those of this process
+        return _restored, (self._made, self.model.key)
+
+    @property
+    def minima(self) -> float:
+        """Of bodies of several pieces, all minima below it are kept; -inf for the nearest alone."""
+        return self.model.minima
 
     @property
     def dimension(self) -> int:
@@ -305,7 +323,7 @@ class World(KeepsReadOnly):
             raise StandoffTypeError(
                 f"{shown(state)} is not a WorldState: get one from world.start.", "state", state
             )
-        if state.key is not self.model.key:
+        if state.key != self.model.key:
             raise StandoffError(
                 "The state belongs to another world: begin with world.start.", "state", state
             )
@@ -323,6 +341,13 @@ class World(KeepsReadOnly):
     def __repr__(self) -> str:
         horizon = "" if self.within == math.inf else f" within {self.within:g}"
         return f"<World of {counted(len(self), 'body', 'bodies')}{horizon}>"
+
+
+def _restored(made: Mapping[str, Any], key: str) -> World:
+    """A world from what it was made of, whose states keep belonging to it."""
+    world = World(**made)
+    world.model = world.model._replace(key=key)
+    return world
 
 
 def _checked_bodies(bodies: Any) -> dict[str, BodyLike]:
