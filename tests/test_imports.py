@@ -27,7 +27,7 @@ LAWS = {
     *(f"standoff.tracking{part}" for part in ("", ".laws", ".law_options")),
 }
 COMMANDS = (
-    *("track", "distance", "impact", "check", "automaton"),
+    *("track", "distance", "impact", "clearance", "check", "automaton"),
     *("paper", "soak", "accuracy", "warmup"),
 )
 STUDIES = ("paper", "soak", "accuracy")
@@ -150,8 +150,8 @@ def test_import_loads_three_modules_and_no_other_package() -> None:
 def test_help_loads_only_what_reads_the_arguments(command: str) -> None:
     given = [*command.split(), "--help"]
     modules = loaded(f"from standoff.cli import main\nmain({given})")
-    parts = ("", ".added", ".arguments", ".entry", ".errors", ".overview", ".terminal")
-    command_line = {f"standoff.cli{part}" for part in parts} | LAWS
+    parts = ("", ".added", ".arguments", ".entry", ".errors", ".option_groups", ".overview")
+    command_line = {f"standoff.cli{part}" for part in (*parts, ".terminal")} | LAWS
     assert {name for name in modules if packages({name}) == {"standoff"}} == ROOT | command_line
     shown = STUDIES if not command else [name for name in STUDIES if name == command]
     options = {

@@ -17,6 +17,10 @@ SAID = {
     "track s.toml --pair near": "tracking the pair near of s.toml ...",
     "distance s.toml --json": "finding the distance of the pairs of s.toml ...",
     "impact s.toml": "finding the first impact of the pairs of s.toml ...",
+    "clearance s.toml": "finding the clearance of all pairs of s.toml ...",
+    "clearance s.toml --motion": (
+        "finding the clearance of all pairs of s.toml over its motion ..."
+    ),
     "check s.toml": "checking s.toml ...",
     "automaton s.toml": "finding the modes of the pairs of s.toml ...",
     "paper": "making all figures and animations of the paper into standoff-paper ...",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from standoff.cli.arguments import (
     AutomatonCommand,
     CheckCommand,
+    ClearanceCommand,
     Command,
     DistanceCommand,
     ImpactCommand,
@@ -36,6 +37,9 @@ def _doing(command: Command) -> str:
             return f"finding the distance of {_pairs(command.pair)} of {shown(command.scene)}"
         case ImpactCommand():
             return f"finding the first impact of {_pairs(command.pair)} of {shown(command.scene)}"
+        case ClearanceCommand():
+            over = " over its motion" if command.motion else ""
+            return f"finding the clearance of all pairs of {shown(command.scene)}{over}"
         case CheckCommand():
             return f"checking {shown(command.what)}"
         case AutomatonCommand():

@@ -3,119 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, make_dataclass
+from dataclasses import dataclass
 from functools import reduce
 from operator import or_
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import tyro
 from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes, Positional, arg, subcommand
 
 from standoff.cli.added import AddedCommand, added
 from standoff.cli.errors import CommandError
+from standoff.cli.option_groups import (
+    AS_USUAL,
+    NO_FILES,
+    NO_FLAGS,
+    NO_PAPER_FLAGS,
+    OWN_FRAMES,
+    WHOLE_SPAN,
+    FileFlags,
+    FrameFlags,
+    LawFlags,
+    PaperFlags,
+    ReportFlags,
+    SceneFile,
+    SpanFlags,
+    group,
+)
 from standoff.cli.overview import overview, unknown_command
 from standoff.cli.terminal import tell
-from standoff.tracking.law_options import Option
-from standoff.tracking.laws import every_option, laws_with
-
-
-def _flag(option: Option) -> tuple[str, Any, None]:
-    """The field of a law's option: a text that is read as a scene's value is."""
-    laws = [law.name for law in laws_with(option.name)]
-    # The group of the paper's law says of itself whose it is.
-    whose = f"For the law {laws[0]}: " if len(laws) == 1 and laws != ["paper"] else ""
-    told = f"{whose}{option.kind.words()}. {option.help}"
-    name = option.metavar or option.name.upper()
-    hint = Annotated[str | None, arg(metavar=name, help=told, help_behavior_hint="")]
-    return option.name, hint, None
-
-
-LAW_TOLD = (
-    "predictor-corrector or paper. Options of the scene that this law does not have are dropped."
-)
-
-
-def _of_paper_alone(option: Option) -> bool:
-    return [law.name for law in laws_with(option.name)] == ["paper"]
-
-
-if TYPE_CHECKING:
-
-    class LawFlags:
-        """The law, and the options of both laws: by name the texts that were given, or None."""
-
-        law: str | None
-
-    class PaperFlags:
-        """Of those of the paper's law alone."""
-else:
-    _OPTIONS = every_option().values()
-    _WHICH = (
-        "law",
-        Annotated[str | None, arg(metavar="LAW", help=LAW_TOLD, help_behavior_hint="")],
-        None,
-    )
-    LawFlags = make_dataclass(
-        "LawFlags", [_WHICH, *(_flag(x) for x in _OPTIONS if not _of_paper_alone(x))], frozen=True
-    )
-    PaperFlags = make_dataclass(
-        "PaperFlags", [_flag(x) for x in _OPTIONS if _of_paper_alone(x)], frozen=True
-    )
-
-NO_FLAGS, NO_PAPER_FLAGS = LawFlags(), PaperFlags()
-
-
-@dataclass(frozen=True)
-class ReportFlags:
-    """How the result is printed."""
-
-    json: Annotated[bool, arg(help_behavior_hint="")] = False
-    """As JSON, with everything there is to know."""
-    verbose: Annotated[bool, arg(help_behavior_hint="")] = False
-    """With every count of the work, also those that are zero."""
-
-
-@dataclass(frozen=True)
-class FileFlags:
-    """Other files to write; with several pairs, each gets its own file, OUT-NAME."""
-
-    output: Annotated[
-        Path | None, arg(aliases=["-o"], metavar="OUT.parquet", help_behavior_hint="")
-    ] = None
-    """Write every frame to this Parquet file."""
-    plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
-    """Plot distance, certificate gap and active features (.png, .svg or .pdf)."""
-    export: Annotated[Path | None, arg(metavar="OUT.html", help_behavior_hint="")] = None
-    """Show the motion: a page without a server (.html), a video (.mp4, .gif), or a rerun file
-    (.rrd)."""
-
-
-@dataclass(frozen=True)
-class SpanFlags:
-    """Overrides the scene's own."""
-
-    start: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
-    """When to begin, s."""
-    duration: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
-    """How long to track, s."""
-
-
-@dataclass(frozen=True)
-class FrameFlags(SpanFlags):
-    """Overrides the scene's own."""
-
-    step: Annotated[str | None, arg(metavar="SECONDS|samples", help_behavior_hint="")] = None
-    """Time from frame to frame, s, or 'samples'."""
-
-
-def _group(name: str, told: str = "") -> Any:
-    """A group of options, which help shows under its name; the options' own names do not contain
-    it."""
-    return arg(name=name, help=told or None)
-
-
-SceneFile = Annotated[Positional[Path], arg(metavar="SCENE.toml")]
 
 
 @dataclass(frozen=True)
@@ -131,12 +47,12 @@ class TrackCommand:
     """Scene file; docs/scene-format.md describes the format."""
     pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """Only this one of the scene's [[pairs]]."""
-    files: Annotated[FileFlags, _group("file")] = FileFlags()
-    report: Annotated[ReportFlags, _group("report")] = ReportFlags()
-    times: Annotated[FrameFlags, _group("time")] = FrameFlags()
-    options: Annotated[LawFlags, _group("law", "Overrides the scene's own.")] = NO_FLAGS
+    files: Annotated[FileFlags, group("file")] = NO_FILES
+    report: Annotated[ReportFlags, group("report")] = AS_USUAL
+    times: Annotated[FrameFlags, group("time")] = OWN_FRAMES
+    options: Annotated[LawFlags, group("law", "Overrides the scene's own.")] = NO_FLAGS
     paper_options: Annotated[
-        PaperFlags, _group("paper law", "For the paper's law alone; overrides the scene's own.")
+        PaperFlags, group("paper law", "For the paper's law alone; overrides the scene's own.")
     ] = NO_PAPER_FLAGS
 
 
@@ -155,7 +71,7 @@ class DistanceCommand:
     """Scene time in s, from the scene's start to its end; the first frame's if not given."""
     pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """Only this one of the scene's [[pairs]]."""
-    report: Annotated[ReportFlags, _group("report")] = ReportFlags()
+    report: Annotated[ReportFlags, group("report")] = AS_USUAL
 
 
 @dataclass(frozen=True)
@@ -173,8 +89,44 @@ class ImpactCommand:
     """Distance that counts as impact, in the scene's unit; 0, contact, if not given."""
     pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """Only this one of the scene's [[pairs]]."""
-    times: Annotated[SpanFlags, _group("time")] = SpanFlags()
-    report: Annotated[ReportFlags, _group("report")] = ReportFlags()
+    times: Annotated[SpanFlags, group("time")] = WHOLE_SPAN
+    report: Annotated[ReportFlags, group("report")] = AS_USUAL
+
+
+@dataclass(frozen=True)
+class ClearanceFiles:
+    """Other files to write."""
+
+    page: Annotated[Path | None, arg(metavar="OUT.html", help_behavior_hint="")] = None
+    """Write a page with the table and pictures, which needs no other file."""
+    plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
+    """Draw the clearances of all pairs as a matrix (.png, .svg or .pdf)."""
+
+
+@dataclass(frozen=True)
+class ClearanceCommand:
+    """Report the clearance of all pairs of a scene's bodies, proven.
+
+    Example: standoff clearance examples/fits.toml --min 0.3 --allow examples/fits-allowed.toml
+
+    Exit codes: 0 done, 1 results could not be written, 2 bad input, 3 a pair is not proven to keep
+    what it must, or an answer is not certified.
+    """
+
+    scene: SceneFile
+    """Scene file; docs/scene-format.md describes the format."""
+    time: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
+    """Scene time in s; the first frame's if not given."""
+    motion: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Over all frames of the scene's times: the least of each pair, and when."""
+    within: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
+    """Horizon: of pairs that are farther apart only that is proven; the scene's if not given."""
+    min: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
+    """The clearance that every pair must keep; margins in the scene hold besides."""
+    allow: Annotated[Path | None, arg(metavar="FITS.toml", help_behavior_hint="")] = None
+    """Contacts that are meant; docs/clearance.md describes the format."""
+    files: Annotated[ClearanceFiles, group("file")] = ClearanceFiles()
+    report: Annotated[ReportFlags, group("report")] = AS_USUAL
 
 
 @dataclass(frozen=True)
@@ -345,6 +297,7 @@ Command = (
     TrackCommand
     | DistanceCommand
     | ImpactCommand
+    | ClearanceCommand
     | CheckCommand
     | AutomatonCommand
     | SimulateCommand
@@ -359,6 +312,7 @@ OWN: dict[str, type] = {
     "track": TrackCommand,
     "distance": DistanceCommand,
     "impact": ImpactCommand,
+    "clearance": ClearanceCommand,
     "check": CheckCommand,
     "automaton": AutomatonCommand,
     "simulate": SimulateCommand,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from standoff.cli.arguments import (
     AutomatonCommand,
     CheckCommand,
+    ClearanceCommand,
     Command,
     DistanceCommand,
     ImpactCommand,
@@ -41,6 +42,10 @@ def run(command: Command) -> int:
             from standoff.cli.impact import run_impact
 
             return run_impact(command)
+        case ClearanceCommand():
+            from standoff.cli.clearance import run_clearance
+
+            return run_clearance(command)
         case CheckCommand():
             from standoff.cli.check import run_check
 

@@ -55,6 +55,11 @@ def _file_facts(scene: Scene | SimulationScene) -> dict[str, Any]:
     }
 
 
+def world_facts(scene: Scene) -> dict[str, Any]:
+    """Return which scene a result of its world belongs to."""
+    return _file_facts(scene) | {"notes": scene.notes}
+
+
 def scene_facts(scene: Scene) -> dict[str, Any]:
     """Return which scene and pair a result belongs to."""
     return _file_facts(scene) | {

@@ -13,6 +13,7 @@ from standoff.scene.file_content import DEFAULT_LENGTH_UNIT
 from standoff.scene.files import file_problem, toml_tables
 from standoff.scene.reader import Table, shown, unknown_name
 from standoff.scene.shapes import read_body
+from standoff.scene.worlds import by_piece
 
 EXAMPLE = "'shape = \"box\", size = [0.3, 0.2, 0.1]'"
 
@@ -40,7 +41,8 @@ def subjects(what: str, body: str | None) -> list[Subject]:
         found = [_shape(what)]
     elif path.suffix.lower() == ".toml":
         scene = load_scene(path)
-        found = [Subject(name, made, scene.length_unit) for name, made in scene.bodies.items()]
+        bodies = by_piece(scene.bodies)
+        found = [Subject(name, made, scene.length_unit) for name, made in bodies.items()]
     elif path.suffix.lower() == ".json":
         problem = file_problem(path, what, "the current folder")
         if problem is not None:

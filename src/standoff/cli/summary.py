@@ -54,18 +54,20 @@ def answer_lines(
     unit, size = scene.length_unit, shown_size(answer)
     numbers = [answer.distance, answer.lower_bound, answer.upper_bound]
     distance, lower, upper = without_roundoff(numbers, size).tolist()
-    on_a, on_b = _vector(answer.point_a, size), _vector(answer.point_b, size)
+    on_a, on_b = vector_text(answer.point_a, size), vector_text(answer.point_b, size)
     certified = f"yes, {_tolerance_text(COLD_TOLERANCE)}" if answer.certified else "no"
     return [
         *_scene_lines(scene),
         *(line("", note) for note in scene.notes),
-        line("time", f"{_time(time)}"),
+        line("time", f"{time_text(time)}"),
         line("distance", f"{distance:.15g} {unit}"),
         line("lower bound", f"{lower:.15g} {unit}"),
         line("upper bound", f"{upper:.15g} {unit}"),
         line(_on(scene.pair[0]), f"{on_a} {unit}, {answer.feature_a}"),
         line(_on(scene.pair[1]), f"{on_b} {unit}, {answer.feature_b}"),
-        line("normal", f"{_vector(answer.normal, 1.0)} from {scene.pair[0]} to {scene.pair[1]}"),
+        line(
+            "normal", f"{vector_text(answer.normal, 1.0)} from {scene.pair[0]} to {scene.pair[1]}"
+        ),
         line("certified", certified),
         *([] if answer.certified else [line("", f"{answer.status.name}: {answer.status.advice}")]),
         line("work", _work(answer.counts, verbose=verbose)),
@@ -95,13 +97,13 @@ def recording_lines(
 ) -> list[str]:
     """Return the lines that sum up a run."""
     frames, certified = len(recording.time), int(np.count_nonzero(recording.certified))
-    share = _share(certified, frames)
+    share = share_text(certified, frames)
     tolerance = _tolerance_text(float(recording.info.options["tolerance"]))
     return [
         *_scene_lines(scene),
         *(line("", note) for note in scene.notes),
         line("law", _law_text(recording)),
-        line("frames", _frames_text(recording)),
+        line("frames", frames_text(recording.time)),
         line("closest", _closest_text(scene, recording)),
         line("certified", f"{certified} of {counted(frames, 'frame')}, {share}, {tolerance}"),
         *_advice(recording.status_frames(), frames),
@@ -142,15 +144,17 @@ def _option_text(option: Option, value: Any) -> str:
     return f"{value:.6g}{unit}" if isinstance(value, float) else f"{value}{unit}"
 
 
-def _frames_text(recording: Recording) -> str:
-    steps = 1e3 * np.diff(recording.time)
+def frames_text(times: Array) -> str:
+    """Return how many frames there are, from when to when, and how far apart."""
+    steps = 1e3 * np.diff(times)
     least, most = f"{steps.min():.4g}", f"{steps.max():.4g}"
     every = f"{most} ms" if least == most else f"{least} to {most} ms"
-    first, last = recording.time[[0, -1]].tolist()
-    return f"{len(recording.time)} from {_time(first)} to {_time(last)}, {every} apart"
+    first, last = times[[0, -1]].tolist()
+    return f"{len(times)} from {time_text(first)} to {time_text(last)}, {every} apart"
 
 
-def _time(seconds: float) -> str:
+def time_text(seconds: float) -> str:
+    """Return a time with its unit."""
     # To the microsecond, which a recorder's epoch of 1e9 s leaves of a double.
     return f"{seconds:.6f}".rstrip("0").rstrip(".") + " s"
 
@@ -160,8 +164,9 @@ def _closest_text(scene: Scene, recording: Recording) -> str:
     if frame is None:
         return "no frame has a distance"
     a, b = scene.pair
+    at = time_text(recording.time[frame])
     return (
-        f"{recording.distance[frame]:.6g} {scene.length_unit} at {_time(recording.time[frame])}, "
+        f"{recording.distance[frame]:.6g} {scene.length_unit} at {at}, "
         f"{a} {recording.feature_a[frame]} to {b} {recording.feature_b[frame]}"
     )
 
@@ -172,11 +177,12 @@ def _gap_text(scene: Scene, recording: Recording) -> str:
         return "no frame has a distance"
     return (
         f"{recording.gap[frame]:.3g} {scene.length_unit} (distance − lower bound) "
-        f"at {_time(recording.time[frame])}"
+        f"at {time_text(recording.time[frame])}"
     )
 
 
-def _share(part: int, whole: int) -> str:
+def share_text(part: int, whole: int) -> str:
+    """Return a part as percent of a whole."""
     # Rounding must not turn all but one into all.
     percent = 100.0 * part / whole
     return f"{percent:.0f} %" if part in (0, whole) else f"{min(percent, 99.99):.2f} %"
@@ -218,12 +224,14 @@ def _event_lines(scene: Scene, events: Sequence[RecordedEvent]) -> list[str]:
     lines = [line("events", f"{len(events)}{more}")]
     names = dict(zip("AB", scene.pair, strict=True))
     told = (
-        f"{_time(event.time):<12} {names[event.body]}: {event.source} to {event.target}"
+        f"{time_text(event.time):<12} {names[event.body]}: {event.source} to {event.target}"
         f"{'' if event.located else ', not located'}"
         for event in events[:FIRST_EVENTS]
     )
     return [*lines, *(line("", text) for text in told)]
 
 
-def _vector(vector: Array, size: float) -> str:
-    return "(" + ", ".join(f"{value:.9g}" for value in without_roundoff(vector, size)) + ")"
+def vector_text(vector: Array, size: float, digits: int = 9) -> str:
+    """Return a vector in parentheses; numbers that are roundoff beside a size are zero."""
+    values = without_roundoff(vector, size)
+    return "(" + ", ".join(f"{value:.{digits}g}" for value in values) + ")"

@@ -40,6 +40,10 @@ def run_track(command: TrackCommand) -> int:
         If the files could not be written after all.
     """
     whole = load_scene(command.scene)
+    if not whole.pairs:
+        from standoff.cli.track_world import run_track_world
+
+        return run_track_world(command, whole, settings_of(whole, command))
     scenes = chosen(whole, command.pair)
     runs = [_Run.of(scene, command, scenes) for scene in scenes]
     for run in runs:

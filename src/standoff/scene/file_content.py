@@ -10,12 +10,13 @@ from pathlib import Path
 from standoff.bodies.body import Body
 from standoff.long_loops import told
 from standoff.motion import Pose
+from standoff.scene.compounds import read_solid
 from standoff.scene.errors import SceneError
 from standoff.scene.files import text_of, toml_tables
 from standoff.scene.placements import read_pose
 from standoff.scene.reader import Table, Value, shown, unknown_name
-from standoff.scene.shapes import read_body
 from standoff.wording import printable
+from standoff.world import Compound
 
 VERSION = 1
 """The version of the scene format that this library reads."""
@@ -25,7 +26,7 @@ DEFAULT_LENGTH_UNIT = "m"
 KEYS = ("version", "title", "length_unit", "bodies", "placements", "motions")
 """Keys that the top of every scene's file may have."""
 
-PAIR_KEYS = ("pair", "pairs", "track")
+PAIR_KEYS = ("pair", "pairs", "world", "track")
 SIMULATION_KEYS = ("free", "contact", "contacts", "coupler", "device", "simulate")
 """Keys besides, of the scenes of pairs and of those of simulations."""
 
@@ -45,7 +46,7 @@ class FileContent:
         Label of lengths; no number is converted.
     top : Table
         What else is read is read from it.
-    bodies : mapping of str to Body
+    bodies : mapping of str to Body or Compound
     placements : mapping of str to Pose
         Of the bodies that have one.
     motions : mapping of str to Table
@@ -57,7 +58,7 @@ class FileContent:
     title: str
     length_unit: str
     top: Table
-    bodies: Mapping[str, Body]
+    bodies: Mapping[str, Body | Compound]
     placements: Mapping[str, Pose]
     motions: Mapping[str, Table]
 
@@ -92,7 +93,7 @@ def read_content(
     _check_version(top)
     refuse_other_kind(top)
     top.expect(*KEYS, *keys)
-    bodies = named(top, "bodies", read_body)
+    bodies = named(top, "bodies", read_solid)
     if not bodies:
         raise top.error("no bodies; add a table such as [bodies.tool]", "bodies")
     return FileContent(
@@ -122,7 +123,7 @@ def named(
     top: Table,
     key: str,
     read: Callable[[Table], Value],
-    bodies: Mapping[str, Body] | None = None,
+    bodies: Mapping[str, Body | Compound] | None = None,
 ) -> dict[str, Value]:
     """Return what the tables ``[key.NAME]`` describe; with `bodies`, each NAME must be one."""
     if key not in top:

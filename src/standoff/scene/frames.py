@@ -28,8 +28,8 @@ def time_span(motions: Iterable[Motion]) -> tuple[float, float]:
     last = min((float(times[-1]) for times in sampled), default=math.inf)
     if first >= last:
         raise SceneError(
-            f"the samples of the two motions have no time in common: one begins at {first:g} s, "
-            f"the other ends at {last:g} s; set their 'start', or 'start = \"file\"' for both",
+            f"the samples of the motions have no time in common: one begins at {first:g} s, "
+            f"another ends at {last:g} s; set their 'start', or 'start = \"file\"' for each",
             key="motions",
         )
     return first, last
@@ -158,7 +158,7 @@ def _end(settings: TrackSettings, motions: list[Motion], start: float) -> float:
     if settings.duration is None:
         if math.isinf(last):
             raise SceneError(
-                "no motion of the pair ends by itself; add a line such as: duration = 10.0",
+                "no motion ends by itself; add a line such as: duration = 10.0",
                 key="track.duration",
             )
         return last

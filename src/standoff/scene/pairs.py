@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from standoff.scene.reader import Table, shown
@@ -32,41 +32,54 @@ class Pair:
     settings: TrackSettings
 
 
-def read_pairs(top: Table, bodies: Sequence[str]) -> tuple[Pair, ...]:
-    """Return the pairs of a scene, at least one.
+def read_pairs(
+    top: Table, bodies: Sequence[str], compounds: Collection[str] = ()
+) -> tuple[Pair, ...]:
+    """Return the pairs of a scene, at least one unless it has a world.
 
     Parameters
     ----------
     top : Table
-        The scene's top table, with ``pair`` or ``pairs``, and ``track``.
+        The scene's top table, with ``pair`` or ``pairs``, or ``world``, and ``track``.
     bodies : sequence of str
         Names of the bodies.
+    compounds : collection of str
+        Those of several pieces: they are in no pair.
 
     Raises
     ------
     SceneError
-        If neither or both are given, a body is unknown or paired with itself, two names are the
-        same, or a pair's settings do not go together.
+        If neither or both are given, a body is unknown, a compound or paired with itself, two
+        names are the same, or a pair's settings do not go together.
     """
+    if "world" in top and "pair" not in top and "pairs" not in top:
+        return ()
     track = (top.table("track"),) if "track" in top else ()
     if "pairs" not in top:
         table = top.table("pair")
         table.expect("a", "b")
-        a, b = _bodies(table, bodies)
+        a, b = _bodies(table, bodies, compounds)
         return (Pair("pair", a, b, read_settings(*track)),)
     if "pair" in top:
         raise top.error("is given together with [[pairs]]; write it as another [[pairs]]", "pair")
     pairs: list[Pair] = []
     for table in top.tables("pairs"):
         settings = read_settings(table, *track, beside=("name", "a", "b"))
-        a, b = _bodies(table, bodies)
+        a, b = _bodies(table, bodies, compounds)
         name = _name(table, f"{a}-{b}", pairs)
         pairs.append(Pair(name, a, b, settings))
     return tuple(pairs)
 
 
-def _bodies(table: Table, bodies: Sequence[str]) -> tuple[str, str]:
+def _bodies(table: Table, bodies: Sequence[str], compounds: Collection[str]) -> tuple[str, str]:
     a, b = (table.choice(key, bodies, noun="body") for key in ("a", "b"))
+    for key, name in (("a", a), ("b", b)):
+        if name in compounds:
+            raise table.error(
+                f"{shown(name)} has several pieces, and a pair is of two convex bodies; write "
+                "[world] in place of the pair",
+                key,
+            )
     if a == b:
         raise table.error(f"'{a}' is both a and b; name two different bodies")
     return a, b

@@ -13,6 +13,9 @@ ORIENTATIONS = (
 )
 """The ways to write an orientation; a pose uses at most one of them."""
 
+POSE_KEYS = ("position", *ORIENTATIONS)
+"""Every key of a pose."""
+
 
 def read_pose(table: Table) -> Pose:
     """Return the pose that a table describes, the identity where nothing is said.
@@ -27,7 +30,7 @@ def read_pose(table: Table) -> Pose:
     SceneError
         At an unknown key, two orientations, or one that is not a rotation.
     """
-    table.expect("position", *ORIENTATIONS)
+    table.expect(*POSE_KEYS)
     position = in_space(table, "position") if "position" in table else np.zeros(3)
     given = table.only_one(ORIENTATIONS)
     if given is None:

@@ -76,6 +76,11 @@ class Table:
         """Return the keys in file order, for tables whose keys are the user's own names."""
         return list(self._content)
 
+    def only(self, keys: Iterable[str]) -> Table:
+        """Return the same table with none but these of its keys."""
+        content = {key: self._content[key] for key in keys if key in self._content}
+        return Table(content, file=self.file, path=self.path, json=self._json)
+
     def replaced(self, over: Mapping[str, object]) -> Table:
         """Return the same table with other values in place of its own."""
         content = {**self._content, **over}
@@ -217,6 +222,13 @@ class Table:
                 f"{one_of(given[:-1])} and '{given[-1]}' say the same thing: keep one of them"
             )
         return given[0] if given else None
+
+    def entries(self, key: str, example: str = "") -> list[object]:
+        """Return the raw values of a list of any length above zero."""
+        values = self._list(self.required(key, example or f"{key} = [...]"), key)
+        if not values:
+            raise self.error("is an empty list; give at least one entry, or leave it out", key)
+        return values
 
     def vector(self, key: str, lengths: int | tuple[int, ...], *, example: str = "") -> Array:
         """Return a vector of finite numbers whose length is one of `lengths`."""

@@ -1,10 +1,11 @@
-"""A scene: bodies, where they are, how they move, and which pairs of them are tracked."""
+"""A scene: bodies, where they are, how they move, and which pairs of them count."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 from standoff.bodies.body import Body
@@ -15,14 +16,17 @@ from standoff.scene.frames import check_instant, frame_times, start_time, time_w
 from standoff.scene.motions import Motion, at_rest, read_motion
 from standoff.scene.pairs import Pair, read_pairs
 from standoff.scene.reader import Array, Table, unknown_name
-from standoff.scene.settings import TrackSettings
+from standoff.scene.settings import TrackSettings, read_settings
+from standoff.scene.worlds import WorldRules, read_world, world_of
+from standoff.world import Compound, World
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What a scene file says, checked and built, seen through one of its pairs.
+    """What a scene file says, checked and built, seen through one of its pairs, or as a world.
 
     `query` and `record` work on the selected pair; `each` gives the scene once for every pair.
+    Without a selected pair, settings and times are those of the world.
 
     Attributes
     ----------
@@ -34,23 +38,47 @@ class Scene:
         A line for the reader; the file's name where the scene has none.
     length_unit : str
         Label of lengths; no number is converted.
-    bodies : mapping of str to Body
+    bodies : mapping of str to Body or Compound
     motions : mapping of str to Motion
         One for each body; bodies at rest have the kind ``fixed``.
     pairs : tuple of Pair
-        At least one, in the file's order; their names differ.
-    selected : Pair
-        The pair that the properties below refer to; `load_scene` selects the first.
+        In the file's order; their names differ. None only where there is a ``[world]``.
+    seen : Pair or None
+        The selected pair; `load_scene` selects the first, if there is one.
+    track : TrackSettings
+        Those of ``[track]``.
+    rules : WorldRules or None
+        Those of ``[world]``.
     """
 
     file: Path
     text: str
     title: str
     length_unit: str
-    bodies: Mapping[str, Body]
+    bodies: Mapping[str, Body | Compound]
     motions: Mapping[str, Motion]
     pairs: tuple[Pair, ...]
-    selected: Pair
+    seen: Pair | None
+    track: TrackSettings = field(default_factory=TrackSettings)
+    rules: WorldRules | None = None
+
+    @property
+    def selected(self) -> Pair:
+        """The pair that the properties below refer to.
+
+        Raises
+        ------
+        SceneError
+            If the scene has a world and no pair.
+        """
+        if self.seen is None:
+            raise SceneError(
+                "this scene has a [world] and no [pair]: `standoff clearance` reports on all its "
+                "pairs, and `standoff track` follows them; for this, add a [pair]",
+                key="world",
+                file=self.file,
+            )
+        return self.seen
 
     @property
     def pair(self) -> tuple[str, str]:
@@ -60,7 +88,7 @@ class Scene:
     @property
     def settings(self) -> TrackSettings:
         """How the pair is tracked: the ``[track]`` table, with the pair's own values over it."""
-        return self.selected.settings
+        return self.track if self.seen is None else self.seen.settings
 
     def select(self, name: str) -> Scene:
         """Return the same scene seen through the pair of that name.
@@ -72,44 +100,82 @@ class Scene:
         """
         for pair in self.pairs:
             if pair.name == name:
-                return replace(self, selected=pair)
+                return replace(self, seen=pair)
         known = [pair.name for pair in self.pairs]
         raise SceneError(unknown_name(name, known, "pair"), key="pairs", file=self.file)
 
     def each(self) -> tuple[Scene, ...]:
-        """Return the scene once for every pair, in the file's order."""
-        return tuple(replace(self, selected=pair) for pair in self.pairs)
+        """Return the scene once for every pair, in the file's order.
+
+        Raises
+        ------
+        SceneError
+            If it has none.
+        """
+        if not self.pairs:
+            return (replace(self, seen=self.selected),)
+        return tuple(replace(self, seen=pair) for pair in self.pairs)
 
     @property
     def notes(self) -> list[str]:
-        """What was repaired in the pair's input, one sentence each."""
+        """What was repaired in the input, the pair's or the world's, one sentence each."""
+        names = list(self.motions) if self.seen is None else self.pair
         return [
             f"{motion.repaired} rotations of {name} were rounded; replaced by the nearest ones"
-            for name, motion in zip(self.pair, self.pair_motions, strict=True)
+            for name, motion in zip(names, self.seen_motions, strict=True)
             if motion.repaired
         ]
 
     @property
     def pair_bodies(self) -> tuple[Body, Body]:
         """Bodies A and B."""
-        return self.bodies[self.pair[0]], self.bodies[self.pair[1]]
+        a, b = (self.bodies[name] for name in self.pair)
+        # `read_pairs` lets no compound in.
+        assert isinstance(a, Body)
+        assert isinstance(b, Body)
+        return a, b
 
     @property
     def pair_motions(self) -> tuple[Motion, Motion]:
         """Motions of A and B."""
         return self.motions[self.pair[0]], self.motions[self.pair[1]]
 
+    @property
+    def seen_motions(self) -> tuple[Motion, ...]:
+        """Motions of A and B, or of all bodies of the world."""
+        return tuple(self.motions.values()) if self.seen is None else self.pair_motions
+
+    @property
+    def as_world(self) -> Scene:
+        """The same scene with no pair selected: settings and times are those of the world."""
+        return replace(self, seen=None)
+
+    @cached_property
+    def world(self) -> World:
+        """The bodies and which pairs of them count, by ``[world]``; without one, the scene's pairs.
+
+        Raises
+        ------
+        SceneError
+            If the bodies are no world.
+        """
+        return world_of(self)
+
+    def poses(self, world: World, time: float) -> dict[str, Pose]:
+        """Return the world poses of a world's moving bodies at a scene time [s], by name."""
+        return {name: self.motions[name].path.pose(time) for name in world.moving}
+
     def times(self, settings: TrackSettings | None = None) -> Array:
         """Return the frame times [s] of a run, shape (n,), see `frame_times`."""
         try:
-            return frame_times(settings or self.settings, self.pair_motions)
+            return frame_times(settings or self.settings, self.seen_motions)
         except SceneError as error:
             raise error.found_in(self.file) from error
 
     def window(self, settings: TrackSettings | None = None) -> tuple[float, float]:
         """Return the times [s] between which the pair is looked at, see `time_window`."""
         try:
-            return time_window(settings or self.settings, self.pair_motions)
+            return time_window(settings or self.settings, self.seen_motions)
         except SceneError as error:
             raise error.found_in(self.file) from error
 
@@ -118,8 +184,8 @@ class Scene:
         frame's."""
         try:
             if time is None:
-                return start_time(self.settings, self.pair_motions)
-            return check_instant(time, self.settings, self.pair_motions)
+                return start_time(self.settings, self.seen_motions)
+            return check_instant(time, self.settings, self.seen_motions)
         except SceneError as error:
             raise error.found_in(self.file) from error
 
@@ -144,7 +210,9 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
         message names the file, the key and the fix.
     """
     content = read_content(file, PAIR_KEYS, _refuse_simulation)
-    pairs = read_pairs(content.top, list(content.bodies))
+    top, bodies = content.top, content.bodies
+    compounds = [name for name, body in bodies.items() if isinstance(body, Compound)]
+    pairs = read_pairs(top, list(bodies), compounds)
     return Scene(
         file=content.file,
         text=content.text,
@@ -153,14 +221,23 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
         bodies=content.bodies,
         motions={name: _motion(name, content) for name in content.bodies},
         pairs=pairs,
-        selected=pairs[0],
+        seen=pairs[0] if pairs else None,
+        track=_track(top, pairs),
+        rules=read_world(top, bodies, list(content.motions)),
     )
+
+
+def _track(top: Table, pairs: tuple[Pair, ...]) -> TrackSettings:
+    """Settings of the world: what the pairs of a scene without one override is not read here."""
+    if "world" not in top:
+        return pairs[0].settings
+    return read_settings(*((top.table("track"),) if "track" in top else ()))
 
 
 def _refuse_simulation(top: Table) -> None:
     """Name the command for a file of the other kind, if that is what it is."""
     found = [key for key in SIMULATION_KEYS if key in top]
-    if found and "pair" not in top and "pairs" not in top:
+    if found and not any(key in top for key in ("pair", "pairs", "world")):
         raise top.error(
             "this is the scene of a simulation: `standoff simulate` runs it, and draws it with "
             f"--plot; the scene of a pair has no [{found[0]}]",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -176,13 +176,15 @@ SHAPES: Mapping[str, ShapeKind] = {
 """Every shape that a scene may name."""
 
 
-def read_body(table: Table) -> Body:
-    """Return the body that a ``[bodies.NAME]`` table describes.
+def read_body(table: Table, beside: Sequence[str] = ()) -> Body:
+    """Return the convex body that a ``[bodies.NAME]`` table describes.
 
     Parameters
     ----------
     table : Table
         With ``shape``, the shape's own keys, and optionally ``scale`` or ``affine``.
+    beside : sequence of str
+        Keys of the table that are not the shape's.
 
     Returns
     -------
@@ -195,7 +197,7 @@ def read_body(table: Table) -> Body:
         At an unknown shape or key, or a value that the shape refuses.
     """
     kind = SHAPES[table.choice("shape", list(SHAPES))]
-    table.expect("shape", "affine", "scale", "rounding", *kind.keys)
+    table.expect("shape", "affine", "scale", "rounding", *kind.keys, *beside)
     affine = _affine(table)
     body = table.build(lambda: kind.read(table))
     if affine is None:

@@ -26,6 +26,7 @@ from standoff.simulation.operator import SIDES, Operator
 from standoff.simulation.rigid_body import FREE, RigidBody
 from standoff.simulation.simulated_device import SimulatedDevice
 from standoff.simulation.system import EARTH, System
+from standoff.world import Compound
 
 FREE_KEYS = ("density", "mass", "inertia", "centre", "linear", "angular", "frame")
 CONTACT_KEYS = ("stiffness", "damping", "friction", "slip_speed", "depth")
@@ -188,6 +189,12 @@ def _rigid_bodies(content: FileContent) -> list[RigidBody]:
     free = named(content.top, "free", lambda table: table, content.bodies)
     found = []
     for name, body in content.bodies.items():
+        if isinstance(body, Compound):
+            raise content.top.error(
+                "has several pieces, and the simulator moves single convex bodies; write each "
+                "piece as a body, or use the scene with `standoff clearance`",
+                f"bodies.{name}",
+            )
         placement = content.placements.get(name)
         if name in free and name in motions:
             raise free[name].error(

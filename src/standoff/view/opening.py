@@ -149,5 +149,6 @@ def _made(
         bodies=dict(zip(names, bodies, strict=True)),
         motions=dict(zip(names, motions, strict=True)),
         pairs=(pair,),
-        selected=pair,
+        seen=pair,
+        track=settings,
     )

@@ -1,0 +1,66 @@
+"""A report as plain data, for JSON."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from standoff.clearance.report import Report, Row
+from standoff.clearance.verdicts import touching_tolerance
+
+ANSWERED = (
+    *("distance", "lower_bound", "upper_bound", "point_a", "point_b", "normal"),
+    *("feature_a", "feature_b", "status"),
+)
+"""Attributes of an answer that are told, in their order."""
+
+
+def report_facts(report: Report) -> dict[str, Any]:
+    """Return a report as mappings, lists, texts and numbers, but for arrays and enumerations."""
+    return {
+        "bodies": len(report.world.bodies),
+        "within": report.world.within,
+        "min": report.least,
+        "clearance": report.clearance,
+        "holds": not report.failures,
+        "certified": report.certified,
+        "verdicts": {verdict.name: n for verdict, n in report.tally().items()},
+        "pairs": [row_facts(row) for row in report.rows],
+        "far": {
+            "count": len(report.far),
+            "at_least": report.least_far,
+            "pairs": [
+                {"names": far.names, "at_least": far.bound, "failure": far.failure or None}
+                for far in report.far
+            ],
+        },
+        "fits": [
+            {
+                "a": note.fit.a,
+                "b": note.fit.b,
+                "depth": note.fit.depth,
+                "reason": note.fit.reason,
+                "holds": note.holds,
+                "note": note.note or None,
+            }
+            for note in report.fits
+        ],
+    }
+
+
+def row_facts(row: Row) -> dict[str, Any]:
+    """Return one near pair."""
+    answer, fit = row.answer, row.fit
+    return {
+        "names": answer.names,
+        "pieces": answer.pieces,
+        "verdict": row.verdict.name,
+        **{name: getattr(answer, name) for name in ANSWERED},
+        "certified": not row.nearest.uncertified,
+        "uncertified_frames": row.nearest.uncertified,
+        "time": row.nearest.time,
+        "least_lower_bound": row.nearest.lower_bound,
+        "touching_within": touching_tolerance(answer),
+        "required": row.required,
+        "allowed": None if fit is None else {"depth": fit.depth, "reason": fit.reason},
+        "failure": row.failure or None,
+    }

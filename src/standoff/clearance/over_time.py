@@ -1,0 +1,149 @@
+"""A world walked over the times of its scene: the least of each pair, and when."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from standoff.clearance.report import Nearest, horizon
+from standoff.progress import Progress
+from standoff.scene.reader import Array
+from standoff.scene.scene import Scene
+from standoff.world import World, WorldAnswer
+from standoff.world.state import WorldCounts
+
+NamePair = tuple[str, str]
+
+
+class Walked(NamedTuple):
+    """What was seen on the way.
+
+    Attributes
+    ----------
+    times : (n,) array
+        Of the frames, s.
+    clearance : (n,) array
+        Proven for all pairs, frame by frame [length].
+    closest : list of str
+        The nearest pair of each frame, as "a - b"; empty where none is near.
+    distance : (n,) array
+        Its distance [length]; inf where none is near.
+    near : dict of names to Nearest
+        The least of each pair that was near at any time.
+    counts : list of WorldCounts
+        Of each frame.
+    """
+
+    times: Array
+    clearance: Array
+    closest: list[NamePair | None]
+    distance: Array
+    near: dict[NamePair, Nearest]
+    counts: list[WorldCounts]
+
+    @property
+    def uncertified(self) -> int:
+        """Frames in which an answer is not proven."""
+        return sum(count.uncertified > 0 for count in self.counts)
+
+
+def frames(
+    scene: Scene, world: World, times: Array, progress: Progress | None = None
+) -> Iterator[tuple[float, WorldAnswer]]:
+    """Track a world over times, frame by frame.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its motions move the bodies.
+    world : World
+    times : (n,) array
+        Scene times, s, increasing.
+    progress : callable, optional
+        Told how many frames are done, and of how many.
+    """
+    state = world.start(scene.poses(world, float(times[0])))
+    yield float(times[0]), world.answer(state)
+    for k, (before, time) in enumerate(pairwise(times), 2):
+        poses = scene.poses(world, float(time))
+        state, answer = world.step(state, poses, dt=float(time - before))
+        if progress is not None:
+            progress(k, len(times))
+        yield float(time), answer
+
+
+class LeastOfAll:
+    """The least of each pair over the frames that it is told."""
+
+    def __init__(self) -> None:
+        self.near: dict[NamePair, Nearest] = {}
+        self._times: list[float] = []
+        self._clearance: list[float] = []
+        self._closest: list[NamePair | None] = []
+        self._distance: list[float] = []
+        self._counts: list[WorldCounts] = []
+
+    def add(self, time: float, answer: WorldAnswer) -> None:
+        """Take in a frame."""
+        pairs = answer.pairs
+        distances, lowest, certified = pairs.distance, pairs.lower_bound, pairs.certified
+        names = pairs.names
+        for k, name in enumerate(names):
+            self._one(
+                name, time, (float(distances[k]), float(lowest[k])), not certified[k], answer, k
+            )
+        k = int(np.argmin(distances)) if len(names) else -1
+        self._times.append(time)
+        self._clearance.append(answer.clearance)
+        self._closest.append(names[k] if names else None)
+        self._distance.append(float(distances[k]) if names else np.inf)
+        self._counts.append(answer.counts)
+
+    def _one(
+        self,
+        names: NamePair,
+        time: float,
+        found: tuple[float, float],
+        uncertified: bool,
+        answer: WorldAnswer,
+        k: int,
+    ) -> None:
+        distance, lower = found
+        known = self.near.get(names)
+        if known is None:
+            self.near[names] = Nearest(answer.pairs[k], time, lower, int(uncertified))
+        elif uncertified or lower < known.lower_bound or distance < known.answer.distance:
+            nearer = distance < known.answer.distance
+            self.near[names] = Nearest(
+                answer.pairs[k] if nearer else known.answer,
+                time if nearer else known.time,
+                min(lower, known.lower_bound),
+                known.uncertified + int(uncertified),
+            )
+
+    def walked(self) -> Walked:
+        """Return what was seen."""
+        return Walked(
+            np.array(self._times),
+            np.array(self._clearance),
+            self._closest,
+            np.array(self._distance),
+            self.near,
+            self._counts,
+        )
+
+
+def walk(scene: Scene, world: World, times: Array, progress: Progress | None = None) -> Walked:
+    """Track a world over times and return the least of each pair."""
+    least = LeastOfAll()
+    for time, answer in frames(scene, world, times, progress):
+        least.add(time, answer)
+    return least.walked()
+
+
+def bounds_over(world: World, near: dict[NamePair, Nearest]) -> dict[NamePair, float]:
+    """Return bounds of the pairs that were never near: each kept beyond its horizon."""
+    return {names: horizon(world, names) for names in world.pairs() if names not in near}

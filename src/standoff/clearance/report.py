@@ -1,0 +1,297 @@
+"""The clearance of all pairs of a world: verdicts, what each pair must keep, and what fails."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from standoff.clearance.fits import Fit
+from standoff.clearance.tolerances import SHOWN_ABOVE
+from standoff.clearance.verdicts import Verdict, touching_tolerance, verdict_of
+from standoff.world import PairAnswer, World, WorldAnswer
+
+MOST_BOUNDED = 20_000
+"""Pairs beyond the horizon whose own bounds are asked one by one; of more, all are told the
+horizon, which is proven of each."""
+
+
+class Nearest(NamedTuple):
+    """The least of a near pair over one frame or many.
+
+    Attributes
+    ----------
+    answer : PairAnswer
+        At its least distance.
+    time : float
+        Of that frame, scene time, s.
+    lower_bound : float
+        The least of all frames [length].
+    uncertified : int
+        Frames whose answer is not proven.
+    """
+
+    answer: PairAnswer
+    time: float
+    lower_bound: float
+    uncertified: int
+
+
+class Wanted(NamedTuple):
+    """What is asked of the pairs.
+
+    Attributes
+    ----------
+    least : float or None
+        The clearance that every pair must keep [length].
+    fits : sequence of Fit or None
+        Contacts that are meant; if given, no other pair may overlap.
+    """
+
+    least: float | None = None
+    fits: Sequence[Fit] | None = None
+
+
+class Looked(NamedTuple):
+    """When the bodies were looked at.
+
+    Attributes
+    ----------
+    start, end : float
+        The first frame's scene time, and the last one's [s].
+    frames : int
+    """
+
+    start: float
+    end: float
+    frames: int
+
+
+@dataclass(frozen=True)
+class Row:
+    """One near pair of the report.
+
+    Attributes
+    ----------
+    nearest : Nearest
+    verdict : Verdict
+    required : float or None
+        The clearance that it must keep: the greater of the one asked for and the pair's margin.
+    fit : Fit or None
+        What is allowed of it instead.
+    failure : str
+        Why it does not hold; empty where it does.
+    """
+
+    nearest: Nearest
+    verdict: Verdict
+    required: float | None
+    fit: Fit | None
+    failure: str
+
+    @property
+    def answer(self) -> PairAnswer:
+        """At the pair's least distance."""
+        return self.nearest.answer
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Of the bodies."""
+        return self.answer.names
+
+
+class Far(NamedTuple):
+    """A pair beyond its horizon: its names, a proven bound [length], and why it fails, if it does.
+
+    It fails where it must keep more than is proven.
+    """
+
+    names: tuple[str, str]
+    bound: float
+    failure: str
+
+
+class FitNote(NamedTuple):
+    """What became of an allowed fit."""
+
+    fit: Fit
+    note: str
+    holds: bool
+
+
+@dataclass(frozen=True)
+class Report:
+    """The clearance of a world.
+
+    Attributes
+    ----------
+    world : World
+    rows : tuple of Row
+        The near pairs, those that fail first, then by their lower bounds.
+    far : tuple of Far
+        The other pairs that count, by their bounds.
+    fits : tuple of FitNote
+    least : float or None
+        The clearance that was asked of every pair.
+    clearance : float
+        A proven lower bound for all pairs [length].
+    """
+
+    world: World
+    rows: tuple[Row, ...]
+    far: tuple[Far, ...]
+    fits: tuple[FitNote, ...]
+    least: float | None
+    clearance: float
+
+    @property
+    def certified(self) -> bool:
+        """Are the answers of all near pairs proven, in all frames?"""
+        return not any(row.nearest.uncertified for row in self.rows)
+
+    @property
+    def failures(self) -> tuple[tuple[tuple[str, str], str], ...]:
+        """The pairs that do not hold, and why."""
+        found = [(row.names, row.failure) for row in self.rows if row.failure]
+        return (*found, *((far.names, far.failure) for far in self.far if far.failure))
+
+    @property
+    def least_far(self) -> float:
+        """The least bound of the far pairs [length]; inf where there are none."""
+        return min((far.bound for far in self.far), default=math.inf)
+
+    def tally(self) -> dict[Verdict, int]:
+        """Return how many pairs have each verdict, the far ones among them."""
+        found = dict.fromkeys(Verdict, 0)
+        for row in self.rows:
+            found[row.verdict] += 1
+        found[Verdict.APART] += len(self.far)
+        return found
+
+
+def nearest_of(answer: WorldAnswer, time: float) -> dict[tuple[str, str], Nearest]:
+    """Return the near pairs of one frame."""
+    return {
+        pair.names: Nearest(pair, time, pair.lower_bound, int(not pair.certified))
+        for pair in answer.pairs
+    }
+
+
+def bounds_of(answer: WorldAnswer, near: Iterable[tuple[str, str]]) -> dict[tuple[str, str], float]:
+    """Return the proven bounds of all other pairs that count, in one frame."""
+    others = [names for names in answer.world.pairs() if names not in set(near)]
+    if len(others) > MOST_BOUNDED:
+        return {names: horizon(answer.world, names) for names in others}
+    return {names: answer[names].lower_bound for names in others}
+
+
+def horizon(world: World, names: tuple[str, str]) -> float:
+    """Return the distance beyond which a pair is not asked: it is at least that far apart."""
+    return max(world.within, _margin(world, names))
+
+
+def report_on(
+    world: World,
+    near: Mapping[tuple[str, str], Nearest],
+    bounds: Mapping[tuple[str, str], float],
+    wanted: Wanted,
+) -> Report:
+    """Return the report.
+
+    Parameters
+    ----------
+    world : World
+    near : mapping of names to Nearest
+        The pairs within the horizon, in the order of the world's bodies.
+    bounds : mapping of names to float
+        Of all other pairs that count: each is at least so far apart [length].
+    wanted : Wanted
+    """
+    fits = {fit.pair: fit for fit in wanted.fits or ()}
+    rows = [_row(world, nearest, wanted, fits) for nearest in near.values()]
+    rows.sort(key=lambda row: (not row.failure, row.nearest.lower_bound))
+    far = [
+        Far(names, bound, _far_failure(world, names, bound, wanted, fits))
+        for names, bound in bounds.items()
+    ]
+    far.sort(key=lambda each: (not each.failure, each.bound))
+    lowest = [row.nearest.lower_bound for row in rows] + [each.bound for each in far]
+    notes = tuple(_note(world, fit, rows, far) for fit in wanted.fits or ())
+    clearance = min(lowest, default=math.inf)
+    return Report(world, tuple(rows), tuple(far), notes, wanted.least, clearance)
+
+
+def _margin(world: World, names: tuple[str, str]) -> float:
+    i, j = (world.names.bodies[name] for name in names)
+    return world.search.rules.margin(i, j)
+
+
+def _required(world: World, names: tuple[str, str], wanted: Wanted) -> float | None:
+    margin = _margin(world, names)
+    if wanted.least is None:
+        return margin or None
+    return max(margin, wanted.least)
+
+
+def _row(world: World, nearest: Nearest, wanted: Wanted, fits: Mapping[frozenset[str], Fit]) -> Row:
+    names = nearest.answer.names
+    verdict, required = verdict_of(nearest.answer), _required(world, names, wanted)
+    fit, lower = fits.get(frozenset(names)), nearest.lower_bound
+    failure = ""
+    if fit is not None:
+        if -lower > fit.depth + touching_tolerance(nearest.answer):
+            failure = f"up to {-lower:.6g} deep, and {fit.depth:g} is allowed"
+    elif required is not None and lower < required:
+        failure = not_kept(required, lower)
+    elif wanted.fits is not None and verdict in (Verdict.OVERLAPPING, Verdict.UNDECIDED):
+        failure = f"{verdict.name.lower()}, and not among the fits that are allowed"
+    return Row(nearest, verdict, required, fit, failure)
+
+
+def at_least(bound: float, digits: int = 6) -> str:
+    """Return a lower bound as a text that says no more than is proven, but for roundoff."""
+    text = f"{bound:.{digits}g}"
+    if math.isfinite(bound) and float(text) > bound + SHOWN_ABOVE * abs(bound):
+        step = 10.0 ** (math.floor(math.log10(abs(bound))) + 1 - digits)
+        text = f"{float(text) - step:.{digits}g}"
+    return text
+
+
+def not_kept(required: float, lower: float) -> str:
+    """Return the sentence on a clearance that is not proven: with all digits if it takes them."""
+    known = at_least(lower)
+    if float(known) >= required:
+        known = f"{lower:.17g}"
+    if lower < 0.0:
+        return f"not proven to keep {required:g}: the lower bound is {known}"
+    return f"not proven to keep {required:g}: at least {known} apart"
+
+
+def _far_failure(
+    world: World,
+    names: tuple[str, str],
+    bound: float,
+    wanted: Wanted,
+    fits: Mapping[frozenset[str], Fit],
+) -> str:
+    required = _required(world, names, wanted)
+    if frozenset(names) in fits or required is None or bound >= required:
+        return ""
+    return not_kept(required, bound)
+
+
+def _note(world: World, fit: Fit, rows: Sequence[Row], far: Sequence[Far]) -> FitNote:
+    """What became of a fit: in contact as deep as allowed, too deep, apart, or of no pair."""
+    unknown = fit.unknown(list(world.bodies))
+    if unknown:
+        return FitNote(fit, unknown, False)
+    for row in rows:
+        if row.fit is fit:
+            if row.verdict is Verdict.APART:
+                return FitNote(fit, f"not in contact: {row.answer.distance:.6g} apart", False)
+            return FitNote(fit, row.failure, not row.failure)
+    for each in far:
+        if frozenset(each.names) == fit.pair:
+            return FitNote(fit, f"not in contact: at least {at_least(each.bound)} apart", False)
+    return FitNote(fit, "the pair does not count in this world", False)

@@ -1,0 +1,60 @@
+"""What an answer says of two bodies: apart, touching, overlapping, or not decided."""
+
+from __future__ import annotations
+
+from standoff.clearance.tolerances import TOUCHING
+from standoff.kernels.body import layout as L
+from standoff.ordered import Ordered
+from standoff.world import PairAnswer
+
+
+class Verdict(Ordered):
+    """Of two bodies; each is proven, but for UNDECIDED."""
+
+    OVERLAPPING = 0
+    UNDECIDED = 1
+    TOUCHING = 2
+    APART = 3
+
+    @property
+    def meaning(self) -> str:
+        """In a sentence."""
+        return _MEANING[self]
+
+
+_MEANING = {
+    Verdict.OVERLAPPING: "The bodies are proven to overlap, and by more than counts as touching.",
+    Verdict.UNDECIDED: (
+        "Neither is proven: the bounds are on both sides of 0, and farther apart than the touching "
+        "tolerance."
+    ),
+    Verdict.TOUCHING: "The gap or depth is within the touching tolerance of 0.",
+    Verdict.APART: "The bodies are proven to be apart.",
+}
+
+
+def touching_tolerance(answer: PairAnswer) -> float:
+    """Return the gap or depth up to which two bodies count as touching [length].
+
+    It is `TOUCHING` of the larger body's size, and the slack of both: how far their surfaces may
+    be from what they are taken for.
+    """
+    bounded = [body for body in answer.bodies if body.bounded]
+    size = max((body.size for body in bounded), default=0.0)
+    slack = sum(float(body.reals[L.SLACK]) for body in answer.bodies)
+    return TOUCHING * size + slack
+
+
+def verdict_of(answer: PairAnswer) -> Verdict:
+    """Return the verdict on a pair."""
+    if answer.far:
+        return Verdict.APART
+    tolerance = touching_tolerance(answer)
+    lower, upper = answer.lower_bound, answer.upper_bound
+    if -tolerance <= lower and upper <= tolerance:
+        return Verdict.TOUCHING
+    if lower > 0.0:
+        return Verdict.APART
+    if answer.status.penetrating and upper < 0.0:
+        return Verdict.OVERLAPPING
+    return Verdict.UNDECIDED

@@ -1,0 +1,115 @@
+"""Groups of options that several commands share, as tyro reads them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, make_dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from tyro.conf import Positional, arg
+
+from standoff.tracking.law_options import Option
+from standoff.tracking.laws import every_option, laws_with
+
+
+def _flag(option: Option) -> tuple[str, Any, None]:
+    """The field of a law's option: a text that is read as a scene's value is."""
+    laws = [law.name for law in laws_with(option.name)]
+    # The group of the paper's law says of itself whose it is.
+    whose = f"For the law {laws[0]}: " if len(laws) == 1 and laws != ["paper"] else ""
+    told = f"{whose}{option.kind.words()}. {option.help}"
+    name = option.metavar or option.name.upper()
+    hint = Annotated[str | None, arg(metavar=name, help=told, help_behavior_hint="")]
+    return option.name, hint, None
+
+
+LAW_TOLD = (
+    "predictor-corrector or paper. Options of the scene that this law does not have are dropped."
+)
+
+
+def _of_paper_alone(option: Option) -> bool:
+    return [law.name for law in laws_with(option.name)] == ["paper"]
+
+
+if TYPE_CHECKING:
+
+    class LawFlags:
+        """The law, and the options of both laws: by name the texts that were given, or None."""
+
+        law: str | None
+
+    class PaperFlags:
+        """Of those of the paper's law alone."""
+else:
+    _OPTIONS = every_option().values()
+    _WHICH = (
+        "law",
+        Annotated[str | None, arg(metavar="LAW", help=LAW_TOLD, help_behavior_hint="")],
+        None,
+    )
+    LawFlags = make_dataclass(
+        "LawFlags", [_WHICH, *(_flag(x) for x in _OPTIONS if not _of_paper_alone(x))], frozen=True
+    )
+    PaperFlags = make_dataclass(
+        "PaperFlags", [_flag(x) for x in _OPTIONS if _of_paper_alone(x)], frozen=True
+    )
+
+NO_FLAGS, NO_PAPER_FLAGS = LawFlags(), PaperFlags()
+
+
+@dataclass(frozen=True)
+class ReportFlags:
+    """How the result is printed."""
+
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """As JSON, with everything there is to know."""
+    verbose: Annotated[bool, arg(help_behavior_hint="")] = False
+    """With every count of the work, also those that are zero."""
+
+
+@dataclass(frozen=True)
+class FileFlags:
+    """Other files to write; with several pairs, each gets its own file, OUT-NAME."""
+
+    output: Annotated[
+        Path | None, arg(aliases=["-o"], metavar="OUT.parquet", help_behavior_hint="")
+    ] = None
+    """Write every frame to this Parquet file."""
+    plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
+    """Plot distance, certificate gap and active features (.png, .svg or .pdf)."""
+    export: Annotated[Path | None, arg(metavar="OUT.html", help_behavior_hint="")] = None
+    """Show the motion: a page without a server (.html), a video (.mp4, .gif), or a rerun file
+    (.rrd)."""
+
+
+@dataclass(frozen=True)
+class SpanFlags:
+    """Overrides the scene's own."""
+
+    start: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
+    """When to begin, s."""
+    duration: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
+    """How long to track, s."""
+
+
+@dataclass(frozen=True)
+class FrameFlags(SpanFlags):
+    """Overrides the scene's own."""
+
+    step: Annotated[str | None, arg(metavar="SECONDS|samples", help_behavior_hint="")] = None
+    """Time from frame to frame, s, or 'samples'."""
+
+
+def group(name: str, told: str = "") -> Any:
+    """A group of options, which help shows under its name; the options' own names do not contain
+    it."""
+    return arg(name=name, help=told or None)
+
+
+SceneFile = Annotated[Positional[Path], arg(metavar="SCENE.toml")]
+
+
+NO_FILES, AS_USUAL = FileFlags(), ReportFlags()
+WHOLE_SPAN, OWN_FRAMES = SpanFlags(), FrameFlags()
+"""What holds where no option of a group is given."""
