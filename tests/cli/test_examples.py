@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import runpy
 from collections.abc import Callable
 from pathlib import Path
@@ -16,7 +17,9 @@ from standoff.scene import load_scene, query, record
 Standoff = Callable[..., Any]
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-SCENES = sorted(EXAMPLES.glob("*.toml"))
+WORLDS = ("fits", "shelves")
+FITS = "fits-allowed"
+SCENES = [file for file in sorted(EXAMPLES.glob("*.toml")) if file.stem not in (*WORLDS, FITS)]
 
 
 def test_there_are_examples() -> None:
@@ -29,6 +32,39 @@ def test_example_is_certified_throughout(standoff: Standoff, file: Path) -> None
     assert ended.code == 0
     assert ", 100 %" in ended.out
     assert standoff("distance", file).code == 0
+
+
+@pytest.mark.parametrize("name", WORLDS)
+def test_example_of_a_world_is_certified(standoff: Standoff, name: str) -> None:
+    ended = standoff("clearance", EXAMPLES / f"{name}.toml")
+    assert ended.code == 0
+    assert "proven for all pairs" in ended.out
+
+
+def test_the_gripper_keeps_its_margins_and_ends_beside_the_bottle(standoff: Standoff) -> None:
+    file = EXAMPLES / "shelves.toml"
+    ended = standoff("clearance", file, "--motion", "--json")
+    assert ended.code == 0
+    first = json.loads(ended.out)["pairs"][0]
+    assert (first["names"], first["pieces"]) == (["gripper", "bottle"], ["right_finger", ""])
+    assert (first["time"], first["required"]) == (1.0, 0.01)
+    assert standoff("clearance", file, "--motion", "--min", 0.02).code == 3
+    ended = standoff("track", file)
+    assert ended.code == 0
+    assert "201 of 201 frames, 100 %" in ended.out
+    assert "1 s, gripper right_finger - bottle" in ended.out
+
+
+def test_the_fits_that_are_meant_leave_one_overlap(standoff: Standoff) -> None:
+    ended = standoff(
+        *("clearance", EXAMPLES / "fits.toml", "--json"), *("--allow", EXAMPLES / f"{FITS}.toml")
+    )
+    assert ended.code == 3
+    facts = json.loads(ended.out)
+    failing = {tuple(pair["names"]): pair["distance"] for pair in facts["pairs"] if pair["failure"]}
+    assert failing == {("hub", "bracket"): pytest.approx(-0.8, abs=1e-9)}
+    depth = next(pair["distance"] for pair in facts["pairs"] if pair["names"] == ["hub", "pin"])
+    assert depth == pytest.approx(-0.02, abs=1e-9)
 
 
 def test_demo_visits_faces_edges_and_a_vertex_and_equals_cold_queries() -> None:

@@ -9,10 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import standoff as so
 from standoff.scene import Scene, SceneError, load_scene, record
 from standoff.scene.simulation import load_simulation
-from standoff.world import Compound
+from standoff.world import Compound, WorldAnswer
 
 LoadText = Callable[[str], Scene]
 
@@ -50,7 +49,7 @@ WORLD = BODIES + "[world]\n"
 PAIR = '[pair]\na = "ball"\nb = "wall"\n'
 
 
-def answer(scene: Scene, time: float = 0.0) -> so.WorldAnswer:
+def answer(scene: Scene, time: float = 0.0) -> WorldAnswer:
     return scene.world.distances(scene.poses(scene.world, time))
 
 

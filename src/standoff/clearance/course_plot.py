@@ -13,7 +13,6 @@ from standoff.errors import not_installed
 from standoff.wording import short_name
 
 try:
-    from matplotlib import colormaps
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -29,8 +28,9 @@ LEAST_WIDTH = 9.5
 LEGEND = 3.1
 """Inches of this legend."""
 
-MOST_NAMED = 9
-"""Pairs that the legend names; the colours of the others are grey."""
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442")
+"""Of the pairs that are nearest longest, which the legend names: Okabe and Ito's, told apart by any
+eye. The others are grey."""
 
 OTHERS = "0.75"
 
@@ -72,8 +72,8 @@ def _draw_course(axes: Axes, walked: Walked, unit: str) -> None:
     for names, frames in stays:
         if names is not None:
             long[names] += len(frames)
-    named = sorted(long, key=lambda names: -long[names])[:MOST_NAMED]
-    colours = dict(zip(named, colormaps["tab10"].colors, strict=False))
+    named = sorted(long, key=lambda names: -long[names])[: len(COLOURS)]
+    colours = dict(zip(named, COLOURS, strict=False))
     told: set[object] = set()
     for names, frames in stays:
         if names is None:

@@ -39,6 +39,10 @@ class Fit:
         """The two names."""
         return frozenset((self.a, self.b))
 
+    def allowance(self, unit: str = "") -> str:
+        """Return what is allowed, in words."""
+        return f"up to {self.depth:g} {unit}".rstrip() if self.depth else "touching"
+
     def unknown(self, bodies: Collection[str]) -> str:
         """Return what is to be said of names that are no bodies; nothing where both are."""
         for name in (self.a, self.b):

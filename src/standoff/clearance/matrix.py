@@ -120,7 +120,12 @@ def draw_matrix(figure: Figure, report: Report, title: str, unit: str) -> None:
     more = "" if n == len(report.world.bodies) else f", the {n} bodies of the worst pairs"
     top = (BELOW + side + 0.6 * ABOVE) / height
     figure.text(0.15 / width, top, f"{title}{more}", fontsize="large", va="center")
-    axes.legend(handles=_legend(cells.values()), loc="upper right", frameon=False, fontsize="small")
+    axes.legend(
+        handles=_legend(cells.values(), len(report.world.bodies)),
+        loc="upper right",
+        frameon=False,
+        fontsize="small",
+    )
     if known:
         box = (LEFT + side + 0.15) / width, BELOW / height, 0.16 / width, 0.55 * side / height
         label = f"gap ({unit})" if unit else "gap"
@@ -158,7 +163,7 @@ def _draw_cell(
         text = f"≥{at_least(cell.gap, 3)}" if cell.far else f"{cell.gap:.3g}"
         if cell.verdict is Verdict.TOUCHING:
             text = "touch"
-        if cell.allowed and not cell.fails:
+        if cell.allowed and not cell.fails and cell.verdict is not Verdict.APART:
             text += "\nallowed"
         box = {"facecolor": FAR_COLOUR, "edgecolor": "none", "pad": 0.5} if cell.far else None
         axes.text(
@@ -205,7 +210,7 @@ def _dress(axes: Axes, names: Sequence[str]) -> None:
         spine.set_visible(False)
 
 
-def _legend(cells: Iterable[Cell]) -> list[Artist]:
+def _legend(cells: Iterable[Cell], n: int) -> list[Artist]:
     found = list(cells)
     some = {cell.verdict for cell in found}
     entries: list[Artist] = []
@@ -225,7 +230,10 @@ def _legend(cells: Iterable[Cell]) -> list[Artist]:
                 label="far: at least so far apart",
             )
         )
-    entries.append(Line2D([], [], color="0.8", marker=".", linestyle="", label="does not count"))
+    if len(found) < n * (n - 1) // 2:
+        entries.append(
+            Line2D([], [], color="0.8", marker=".", linestyle="", label="does not count")
+        )
     if any(cell.fails for cell in found):
         entries.append(Patch(fill=False, edgecolor="black", linewidth=1.8, label="does not hold"))
     return entries

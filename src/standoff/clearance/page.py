@@ -171,7 +171,7 @@ def _row(row: Row, number: str, *, timed: bool) -> str:
     points = "<br>".join(_point(point, size) for point in (answer.point_a, answer.point_b))
     notes = [row.failure]
     if row.fit is not None:
-        notes.append(f"allowed up to {row.fit.depth:g}: {row.fit.reason}")
+        notes.append(f"allowed {row.fit.allowance()}: {row.fit.reason}")
     if row.nearest.uncertified:
         notes.append(f"not certified: {answer.status.name}")
     cells = [
@@ -179,7 +179,7 @@ def _row(row: Row, number: str, *, timed: bool) -> str:
         f'<td><span class="mark {row.verdict.name}">{row.verdict.name}</span></td>',
         f"<td>{bodies}</td>",
         f'<td class="number">{gap:.6g}</td>',
-        f"<td>{lower:.9g}<br>{upper:.9g}</td>",
+        f"<td>{at_least(lower)}<br>{upper:.6g}</td>",
         f"<td>{points}</td>",
         *([f'<td class="number">{row.nearest.time:.6g}</td>'] if timed else []),
         f'<td class="note">{escape(printable("; ".join(filter(None, notes))))}</td>',
@@ -200,7 +200,7 @@ def _fits(report: Report, unit: str) -> str:
         + _cells(
             [
                 f"{note.fit.a} - {note.fit.b}",
-                f"{note.fit.depth:g} {unit}",
+                note.fit.allowance(unit),
                 note.fit.reason,
                 note.note or "in contact, as allowed",
             ]
@@ -208,7 +208,7 @@ def _fits(report: Report, unit: str) -> str:
         + "</tr>"
         for note in report.fits
     )
-    head = "<tr><th>bodies</th><th>depth allowed</th><th>reason</th><th>found</th></tr>"
+    head = "<tr><th>bodies</th><th>allowed</th><th>reason</th><th>found</th></tr>"
     return f'<h2>Fits that are meant</h2><div class="wide"><table>{head}{rows}</table></div>'
 
 
@@ -217,8 +217,8 @@ def _cells(texts: Iterable[str]) -> str:
 
 
 def _picture(heading: str, told: str, figure: Any) -> str:
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format="png")
-    data = base64.b64encode(drawn.getvalue()).decode()
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png")
+    data = base64.b64encode(buffer.getvalue()).decode()
     alt = escape(f"{heading}, {told}")
     return f'<h2>{escape(heading)}</h2><img alt="{alt}" src="data:image/png;base64,{data}">'

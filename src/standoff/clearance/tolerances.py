@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-TOUCHING: Final = 1e-9
+TOUCHING_PART: Final = 1e-9
 """Of the larger body's size: a gap or a depth up to this, beside the bodies' own slack, counts as
 touching. Placements written with nine digits meet no better, and an answer's own error, some 1e-14
 of the size, is far below it."""

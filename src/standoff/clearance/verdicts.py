@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from standoff.clearance.tolerances import TOUCHING
+from standoff.clearance.tolerances import TOUCHING_PART
 from standoff.kernels.body import layout as L
 from standoff.ordered import Ordered
 from standoff.world import PairAnswer
@@ -36,13 +36,13 @@ _MEANING = {
 def touching_tolerance(answer: PairAnswer) -> float:
     """Return the gap or depth up to which two bodies count as touching [length].
 
-    It is `TOUCHING` of the larger body's size, and the slack of both: how far their surfaces may
-    be from what they are taken for.
+    It is `TOUCHING_PART` of the larger body's size, and the slack of both: how far their surfaces
+    may be from what they are taken for.
     """
     bounded = [body for body in answer.bodies if body.bounded]
     size = max((body.size for body in bounded), default=0.0)
     slack = sum(float(body.reals[L.SLACK]) for body in answer.bodies)
-    return TOUCHING * size + slack
+    return TOUCHING_PART * size + slack
 
 
 def verdict_of(answer: PairAnswer) -> Verdict:

@@ -25,7 +25,6 @@ from standoff.cli.progress import progress_bar
 from standoff.cli.terminal import tell
 from standoff.scene import Scene, SceneError, load_scene
 from standoff.scene.reader import Array
-from standoff.scene.worlds import world_of
 from standoff.world import World
 
 
@@ -43,7 +42,7 @@ def run_clearance(command: ClearanceCommand) -> int:
     scene = load_scene(command.scene).as_world
     wanted = Wanted(command.min, None if command.allow is None else load_fits(command.allow))
     times = scene.times() if command.motion else None
-    world = world_of(scene, _horizon(command, scene), times=times)
+    world = scene.world_with(_horizon(command, scene), times=times)
     _check_files(command)
     report, looked = _looked(command, scene, world, wanted, times)
     write_whole(_files(command, scene, report, looked))

@@ -142,9 +142,8 @@ def _tail(
         lines.append(line("keeps", f"{report.least:g} {unit} in every pair, proven"))
     for k, note in enumerate(report.fits):
         fit = note.fit
-        depth = f"up to {fit.depth:g} {unit}" if fit.depth else "touching"
         said = f"; {note.note}" if note.note else ""
-        text = f"{fit.a} - {fit.b}, {depth} ({fit.reason}){said}"
+        text = f"{fit.a} - {fit.b}, {fit.allowance(unit)} ({fit.reason}){said}"
         lines.append(line("allowed" if k == 0 else "", text))
     return [*lines, *(line("wrote" if k == 0 else "", str(p)) for k, p in enumerate(written))]
 

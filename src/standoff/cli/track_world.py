@@ -16,7 +16,6 @@ from standoff.cli.progress import progress_bar
 from standoff.cli.summary import frames_text, line, share_text, time_text
 from standoff.cli.terminal import tell
 from standoff.scene import Scene, SceneError, TrackSettings
-from standoff.scene.worlds import world_of
 from standoff.wording import counted
 from standoff.world.state import WorldCounts
 
@@ -40,7 +39,7 @@ def run_track_world(command: TrackCommand, scene: Scene, settings: TrackSettings
     _check(command)
     output, plot = command.files.output, command.files.plot
     times = scene.times(settings)
-    world = world_of(scene, settings=settings, times=times)
+    world = scene.world_with(settings=settings, times=times)
     check_results(output, "standoff.clearance.table", plot, "standoff.clearance.course_plot")
     least, rows = LeastOfAll(), None
     if output is not None:

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+
 from standoff.bodies.body import Body
 from standoff.motion import Pose
 from standoff.scene.errors import SceneError
@@ -16,8 +18,8 @@ from standoff.scene.frames import check_instant, frame_times, start_time, time_w
 from standoff.scene.motions import Motion, at_rest, read_motion
 from standoff.scene.pairs import Pair, read_pairs
 from standoff.scene.reader import Array, Table, unknown_name
-from standoff.scene.settings import TrackSettings, read_settings
-from standoff.scene.worlds import WorldRules, read_world, world_of
+from standoff.scene.settings import DEFAULT_STEP, TrackSettings, read_settings
+from standoff.scene.worlds import WorldRules, made_world, read_world
 from standoff.world import Compound, World
 
 
@@ -159,7 +161,43 @@ class Scene:
         SceneError
             If the bodies are no world.
         """
-        return world_of(self)
+        return self.world_with()
+
+    def world_with(
+        self,
+        within: float | None = None,
+        settings: TrackSettings | None = None,
+        times: Array | None = None,
+    ) -> World:
+        """Return the world with another horizon or law.
+
+        Parameters
+        ----------
+        within : float, optional
+            The horizon [length]; the scene's own if not given.
+        settings : TrackSettings, optional
+            With the law; the scene's own if not given.
+        times : (n,) array, optional
+            Of the frames, if it is tracked [s]: the law's gain must hold for the longest step.
+
+        Raises
+        ------
+        SceneError
+            If the bodies are no world, as with two half-spaces that would be a pair.
+        """
+        rules, bodies = self.rules, self.bodies
+        if rules is None:
+            rules = WorldRules(only=tuple((pair.a, pair.b) for pair in self.pairs))
+            named = {name for pair in self.pairs for name in (pair.a, pair.b)}
+            bodies = {name: body for name, body in bodies.items() if name in named}
+        if within is not None:
+            rules = replace(rules, within=within)
+        law = (settings or self.track).law
+        dt = DEFAULT_STEP if times is None else float(np.diff(times).max())
+        try:
+            return made_world(rules, bodies, self.motions, law, dt)
+        except (ValueError, TypeError) as error:
+            raise SceneError(str(error), key="world", file=self.file) from error
 
     def poses(self, world: World, time: float) -> dict[str, Pose]:
         """Return the world poses of a world's moving bodies at a scene time [s], by name."""

@@ -5,20 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from standoff.bodies.body import Body
-from standoff.scene.errors import SceneError
-from standoff.scene.reader import Array, Table, shown, unknown_name
-from standoff.scene.settings import DEFAULT_STEP, TrackSettings
+from standoff.scene.motions import Motion
+from standoff.scene.reader import Table, shown, unknown_name
+from standoff.tracking.law_options import Law
 from standoff.world import Compound, World
 from standoff.world.compound import dimension_of
 from standoff.world.rules import Given, Names, packed_rules
-
-if TYPE_CHECKING:
-    from standoff.scene.scene import Scene
 
 NamePair = tuple[str, str]
 
@@ -114,50 +110,29 @@ def read_world(
     return rules
 
 
-def world_of(
-    scene: Scene,
-    within: float | None = None,
-    settings: TrackSettings | None = None,
-    times: Array | None = None,
+def made_world(
+    rules: WorldRules,
+    bodies: Mapping[str, Body | Compound],
+    motions: Mapping[str, Motion],
+    law: Law,
+    dt: float,
 ) -> World:
-    """Return the bodies of a scene as a world.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of one without ``[world]`` the scene's pairs are those that count.
-    within : float, optional
-        The horizon [length]; the scene's own if not given.
-    settings : TrackSettings, optional
-        With the law; the scene's own if not given.
-    times : (n,) array, optional
-        Of the frames, if the world is tracked [s]: the law's gain must hold for the longest step.
+    """Return a scene's bodies as a world.
 
     Raises
     ------
-    SceneError
-        If the bodies are no world, as with two half-spaces that would be a pair.
+    ValueError, TypeError
+        If they are none, as with two half-spaces that would be a pair.
     """
-    rules = scene.rules
-    bodies = scene.bodies
-    if rules is None:
-        pairs = tuple((pair.a, pair.b) for pair in scene.pairs)
-        named = {name for pair in pairs for name in pair}
-        bodies = {name: body for name, body in bodies.items() if name in named}
-        rules = WorldRules(only=pairs)
-    dt = DEFAULT_STEP if times is None else float(np.diff(times).max())
-    try:
-        return World(
-            bodies,
-            within=rules.within if within is None else within,
-            fixed={name: scene.motions[name].path.pose(0.0) for name in rules.fixed},
-            minima=rules.minima,
-            law=(settings or scene.track).law,
-            dt=dt,
-            **rules.given._asdict(),
-        )
-    except (ValueError, TypeError) as error:
-        raise SceneError(str(error), key="world", file=scene.file) from error
+    return World(
+        bodies,
+        within=rules.within,
+        fixed={name: motions[name].path.pose(0.0) for name in rules.fixed},
+        minima=rules.minima,
+        law=law,
+        dt=dt,
+        **rules.given._asdict(),
+    )
 
 
 def _name(table: Table, value: object, key: str, known: Collection[str], noun: str) -> str:
