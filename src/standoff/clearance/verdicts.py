@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from standoff.clearance.tolerances import TOUCHING_PART
 from standoff.kernels.body import layout as L
-from standoff.ordered import Ordered
+from standoff.tracking.status import Ordered
 from standoff.world import PairAnswer
 
 
