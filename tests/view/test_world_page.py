@@ -242,15 +242,16 @@ def test_a_body_dragged_in_a_browser(chromium: Any, tab: Callable[..., Any]) -> 
         stage = page.stage
         page._asked.put(lambda: page.hand(1))
         until(lambda: stage._hand == 1)
-        desk.page.wait_for_timeout(500)
+        desk.page.wait_for_timeout(1500)
         grip = stage.picture.handle
         start = stage.live.poses[1, :3, 3] + [0.0, 0.0, 0.8 * grip.scale]
         mouse = desk.page.mouse
         mouse.move(*on_screen(page, start))
-        desk.page.wait_for_timeout(300)
+        desk.page.wait_for_timeout(500)
         mouse.down()
         for part in np.linspace(0.0, 0.4, 8):
             mouse.move(*on_screen(page, start + part * np.array([0.0, 0.0, 1.0])))
+        desk.page.wait_for_timeout(500)
         mouse.up()
         until(lambda: stage.live.poses[1, 2, 3] > 0.2)
         desk.page.wait_for_timeout(500)
