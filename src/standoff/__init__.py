@@ -37,7 +37,7 @@ if TYPE_CHECKING:
         witness_set,
     )
     from standoff.view import view
-    from standoff.world import Compound, World, WorldState, compound
+    from standoff.world import World, compound
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -78,7 +78,7 @@ else:
             "standoff.points": ("PointTracker",),
             "standoff.recording": ("Recording", "open_recording", "track"),
             "standoff.view": ("view",),
-            "standoff.world": ("Compound", "World", "WorldState", "compound"),
+            "standoff.world": ("World", "compound"),
         },
         modules=(
             "automaton",
@@ -102,7 +102,6 @@ else:
 __all__ = [
     "Body",
     "BodyError",
-    "Compound",
     "Event",
     "Feature",
     "PaperLaw",
@@ -119,7 +118,6 @@ __all__ = [
     "Twist",
     "WitnessSet",
     "World",
-    "WorldState",
     "compound",
     "distance",
     "distances",

@@ -16,7 +16,7 @@ import pytest
 
 import standoff as so
 from standoff.clearance.fits import load_fits
-from standoff.clearance.report import at_least
+from standoff.clearance.report import Nearest, Wanted, at_least, report_on
 from standoff.clearance.tolerances import TOUCHING_PART
 from standoff.clearance.verdicts import Verdict, touching_tolerance, verdict_of
 from standoff.scene import SceneError
@@ -72,6 +72,7 @@ TRUTH = {
     ("table", "ball"): ("TOUCHING", 0.0),
     ("table", "pair_of_balls"): ("APART", 0.5),
 }
+CONE = '[bodies.moon]\nshape = "cone"\nradius = 1.0\nheight = 2.0\n'
 FITS = 'version = 1\n[[allow]]\na = "table"\nb = "ball"\nreason = "it lies there"\n'
 
 
@@ -171,6 +172,32 @@ def test_min_beyond_the_horizon_is_proven_too(standoff: Standoff, scene: Path) -
     scene.write_text(SCENE.replace("within = 5.0", 'within = 5.0\nonly = [["table", "moon"]]'))
     assert standoff("clearance", scene, "--min", 38.9).code == 0
     assert standoff("clearance", scene, "--min", 39.1).code == 3
+
+
+def test_min_is_proven_where_the_bound_of_the_boxes_is_not_enough(
+    standoff: Standoff, scene: Path
+) -> None:
+    # A corner of the cone's box is nearer to the ball than its apex, at (10, 0, -9).
+    cone = SCENE.replace('[bodies.moon]\nshape = "sphere"\nradius = 1.0\n', CONE)
+    scene.write_text(
+        cone.replace("position = [0.0, 0.0, 40.0]", "position = [10.0, 0.0, -10.0]").replace(
+            "within = 5.0", 'within = 5.0\nonly = [["ball", "moon"]]'
+        )
+    )
+    truth = math.hypot(10.0, 10.0) - 1.0
+    (far,) = facts_of(standoff, scene)["far"]["pairs"]
+    assert far["at_least"] < truth - 0.2
+    assert standoff("clearance", scene, "--min", truth - 0.1).code == 0
+    assert standoff("clearance", scene, "--min", truth + 0.1).code == 3
+
+
+def test_what_is_required_is_asked_of_the_lower_bound() -> None:
+    answer = answer_at(0.5)
+    found = {("a", "b"): Nearest(answer, 0.0, 0.25, 1)}
+    for least, holds in ((0.2, True), (0.3, False)):
+        report = report_on(answer_world(), found, {}, Wanted(least))
+        assert (not report.failures) is holds
+        assert (report.clearance, report.certified) == (0.25, False)
 
 
 def test_a_margin_of_the_scene_must_hold(standoff: Standoff, scene: Path) -> None:
@@ -402,9 +429,13 @@ def test_a_planar_world_is_drawn_in_its_plane(standoff: Standoff, tmp_path: Path
     assert page.exists()
 
 
-def answer_at(gap: float, sizes: tuple[float, float] = (1.0, 1.0)) -> PairAnswer:
+def answer_world(sizes: tuple[float, float] = (1.0, 1.0)) -> so.World:
     a, b = (so.shapes.sphere(0.5 * size) for size in sizes)
-    world = so.World({"a": a, "b": b})
+    return so.World({"a": a, "b": b})
+
+
+def answer_at(gap: float, sizes: tuple[float, float] = (1.0, 1.0)) -> PairAnswer:
+    world = answer_world(sizes)
     at = so.Pose(np.eye(3), [0.5 * sum(sizes) + gap, 0.0, 0.0])
     return world.distances({"a": so.Pose.identity(), "b": at})["a", "b"]
 

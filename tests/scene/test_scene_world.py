@@ -97,8 +97,8 @@ margins = [["ball", "still", 2.0], { a = "ball", b = "hand", length = 0.1 }]
         ("ball", "floor"),
         ("hand", "floor"),
     }
-    rules = world.search.rules
-    assert [rules.margin(0, k) for k in (1, 2, 3)] == [0.1, 2.0, 2.0]
+    first, *others = world.bodies
+    assert [world.margin(first, other) for other in others[:3]] == [0.1, 2.0, 2.0]
     assert answer(scene)["hand", "floor"].far
     assert answer(scene)["hand", "floor"].lower_bound >= 1.5
 
@@ -115,7 +115,7 @@ def test_only_and_parents(load_text: LoadText) -> None:
 
 def test_margins_as_an_array_of_tables(load_text: LoadText) -> None:
     scene = load_text(WORLD + '[[world.margins]]\na = "ball"\nb = "wall"\nlength = 0.3\n')
-    assert scene.world.search.rules.margin(0, 2) == 0.3
+    assert scene.world.margin("ball", "wall") == 0.3
 
 
 def test_a_pair_beside_a_world_is_as_before(load_text: LoadText) -> None:

@@ -91,7 +91,7 @@ def test_cold_queries_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     starts = [tracker.start(HOME, pose).proximity.row for pose in poses]
     assert 0 < overlaps(starts) < FRAMES
     for module in (many_distances, cold_query):
-        monkeypatch.setattr(module, "cold_table", lambda a, b: tracker.table)
+        monkeypatch.setattr(module, "cold_table", lambda a, b, within: tracker.table)
     monkeypatch.setattr(many_distances, "Tracker", partial(so.Tracker, law=STRICT))
     found = so.distances(*PAIRS[name], HOME, poses)
     np.testing.assert_array_equal(found.rows, starts)

@@ -96,8 +96,7 @@ def _pictured(scene: Scene, report: Report, looked: Looked) -> tuple[float, Repo
 
 def _poses(scene: Scene, report: Report, time: float) -> dict[str, Pose]:
     moving = scene.poses(report.world, time)
-    still = zip(report.world.fixed, report.world.poses_of_fixed, strict=True)
-    return moving | {name: Pose.of(matrix) for name, matrix in still}
+    return moving | report.world.fixed_poses
 
 
 def _summary(scene: Scene, report: Report, looked: Looked) -> str:

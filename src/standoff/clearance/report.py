@@ -178,11 +178,13 @@ def nearest_of(answer: WorldAnswer, time: float) -> dict[tuple[str, str], Neares
     }
 
 
-def bounds_of(answer: WorldAnswer, near: Iterable[tuple[str, str]]) -> dict[tuple[str, str], float]:
+def bounds_of(
+    world: World, answer: WorldAnswer, near: Iterable[tuple[str, str]]
+) -> dict[tuple[str, str], float]:
     """Return the proven bounds of all other pairs that count, in one frame."""
-    others = [names for names in answer.world.pairs() if names not in set(near)]
+    others = [names for names in world.pairs() if names not in set(near)]
     if len(others) > MOST_BOUNDED:
-        return {names: horizon(answer.world, names) for names in others}
+        return {names: horizon(world, names) for names in others}
     return {names: answer[names].lower_bound for names in others}
 
 
@@ -223,8 +225,7 @@ def report_on(
 
 
 def _margin(world: World, names: tuple[str, str]) -> float:
-    i, j = (world.names.bodies[name] for name in names)
-    return world.search.rules.margin(i, j)
+    return world.margin(*names)
 
 
 def _required(world: World, names: tuple[str, str], wanted: Wanted) -> float | None:

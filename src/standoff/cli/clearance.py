@@ -96,7 +96,7 @@ def _looked(
     except (ValueError, TypeError) as error:
         raise SceneError(str(error), key="world", file=scene.file) from error
     near = nearest_of(answer, time)
-    return report_on(world, near, bounds_of(answer, near), wanted), Looked(time, time, 1)
+    return report_on(world, near, bounds_of(world, answer, near), wanted), Looked(time, time, 1)
 
 
 def _check_files(command: ClearanceCommand) -> None:
