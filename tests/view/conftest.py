@@ -98,4 +98,4 @@ def tab(chromium: Any) -> Iterator[Any]:
 def slowly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a browser that draws without a graphics card keep up."""
     pytest.importorskip("viser", reason="viser is not installed (extra 'view')")
-    monkeypatch.setattr(import_module("standoff.view.page"), "PERIOD", 0.15)
+    monkeypatch.setattr(import_module("standoff.view.served"), "PERIOD", 0.15)

@@ -8,8 +8,10 @@ from standoff.cli.arguments import ViewCommand
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
-from standoff.scene import SceneError, load_scene
+from standoff.scene import Scene, SceneError, load_scene
 from standoff.view.gallery import scenes_in
+from standoff.view.moving_world import MovingWorld
+from standoff.view.opening import of_scene, page_of
 
 
 def run_view(command: ViewCommand) -> int:
@@ -22,20 +24,23 @@ def run_view(command: ViewCommand) -> int:
     SceneError
         If the scene is not usable.
     """
-    try:
-        from standoff.view.page import Page
-    except ModuleNotFoundError as error:
-        raise CommandError(str(error)) from error
     scene = load_scene(command.scene)
+    what: Scene | MovingWorld = scene
     if command.pair is not None:
         try:
-            scene = scene.select(command.pair)
+            what = scene.select(command.pair)
         except SceneError as error:
             raise CommandError(f"--pair: {error.problem}") from error
+    else:
+        what = of_scene(scene)
+    if command.gallery is not None and not isinstance(what, Scene):
+        raise CommandError(
+            "--gallery: the page of a world opens no other scenes; leave it out, or name a --pair"
+        )
+    others = scenes_in(command.gallery or scene.file.parent)
     try:
-        others = scenes_in(command.gallery or scene.file.parent)
-        page = Page(scene, host=command.host, port=command.port, others=others)
-    except StandoffError as error:
+        page = page_of(what, host=command.host, port=command.port, others=others)
+    except (ModuleNotFoundError, StandoffError) as error:
         raise CommandError(str(error)) from error
     with page:
         tell(f"{scene.title}: open {page.address}")

@@ -61,13 +61,23 @@ class BodyNodes:
     name : str
         Of the node that all others hang from.
     shape : Shape
-    which : int
-        0 of A, 1 of B.
+    colours : (Colour, Colour)
+        Light and strong.
+    corners : bool
+        Whether vertices are drawn.
     """
 
-    def __init__(self, scene: Any, name: str, shape: Shape, which: int) -> None:
+    def __init__(
+        self,
+        scene: Any,
+        name: str,
+        shape: Shape,
+        colours: tuple[Colour, Colour],
+        *,
+        corners: bool = True,
+    ) -> None:
         self._scene, self.name, self._shape = scene, name, shape
-        self._plain, self._strong = COLOURS[which]
+        self._plain, self._strong = colours
         self._active: tuple[tuple[Feature, bool] | None, Any] = (None, None)
         self._glass = False
         self._clear: Any = None
@@ -77,7 +87,7 @@ class BodyNodes:
             self._skin = self._mesh("skin", shape.skin, self._plain, OPACITY)
         if len(shape.drawn):
             self._lines("edges", shape.segments(), EDGE_COLOUR, 1.5)
-        if len(shape.vertices) and not shape.body.radius:
+        if corners and len(shape.vertices) and not shape.body.radius:
             self._points("vertices", shape.vertices, EDGE_COLOUR, 1.0)
 
     def place(self, pose: Pose) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,24 +19,30 @@ from standoff.scene import Scene, load_scene
 from standoff.scene.motions import Motion
 from standoff.scene.pairs import Pair
 from standoff.scene.settings import TrackSettings
+from standoff.view.moving_world import MovingWorld, moving_world, world_of_scene
+from standoff.world import World
 
 if TYPE_CHECKING:
-    from standoff.view.page import Page
+    from standoff.view.served import ServedPage
 
 GIVE = (
-    "give the file of a scene, a Scene, a Recording that so.track returned, or two bodies with "
-    "their poses"
+    "give the file of a scene, a Scene, a Recording that so.track returned, two bodies with "
+    "their poses, a World with poses, or a World with paths and a duration"
 )
 
 
-def view(*what: Any, host: str = "127.0.0.1", port: int | None = None, open: bool = True) -> Page:
-    """Show a scene, a run or a pair of bodies in the browser (docs/live-page.md).
+def view(
+    *what: Any, host: str = "127.0.0.1", port: int | None = None, open: bool = True
+) -> ServedPage:
+    """Show a scene, a run, a pair of bodies or a world in the browser (docs/live-page.md).
 
     Parameters
     ----------
     *what
         The file of a scene, a Scene, or a Recording that ``so.track`` returned; or two bodies
-        and where they are, ``so.view(a, b, pose_a, pose_b)``.
+        and where they are, ``so.view(a, b, pose_a, pose_b)``; or a World and where its moving
+        bodies are, ``so.view(world, poses)``, or how they move, ``so.view(world, paths, duration)``
+        with a mapping of names to paths and a time [s]. A scene with a ``[world]`` is shown as one.
     host : str
         Name or address to serve the page at; only this machine, if not given.
     port : int, optional
@@ -45,7 +52,7 @@ def view(*what: Any, host: str = "127.0.0.1", port: int | None = None, open: boo
 
     Returns
     -------
-    Page
+    ServedPage
         It serves until ``close``, or until the end of its ``with`` block; open its ``address``. In
         a notebook it shows itself.
 
@@ -58,10 +65,7 @@ def view(*what: Any, host: str = "127.0.0.1", port: int | None = None, open: boo
     ValueError
         If a scene is refused, the pair cannot be tracked, or the port is not available.
     """
-    scene = _scene(what)
-    from standoff.view.page import Page
-
-    page = Page(scene, host=host, port=port)
+    page = page_of(_shown(what), host=host, port=port)
     if open:
         import webbrowser
 
@@ -69,17 +73,59 @@ def view(*what: Any, host: str = "127.0.0.1", port: int | None = None, open: boo
     return page
 
 
-def _scene(what: tuple[Any, ...]) -> Scene:
+def page_of(
+    what: Scene | MovingWorld,
+    *,
+    host: str,
+    port: int | None,
+    others: Mapping[str, Path] | None = None,
+) -> ServedPage:
+    """Return the page of a scene's pair or of a world, served.
+
+    Parameters
+    ----------
+    what : Scene or MovingWorld
+    host, port
+        As of `view`.
+    others : mapping of str to Path, optional
+        Scenes of pairs that the page of a pair can open besides, by title.
+
+    Raises
+    ------
+    ModuleNotFoundError, TypeError, ValueError
+        As `view`.
+    """
+    if isinstance(what, Scene):
+        from standoff.view.page import Page
+
+        return Page(what, host=host, port=port, others=others)
+    from standoff.view.world_page import WorldPage
+
+    return WorldPage(what, host=host, port=port)
+
+
+def of_scene(scene: Scene) -> Scene | MovingWorld:
+    """Return the world of a scene that has a ``[world]``; of another, the scene itself."""
+    if scene.rules is None:
+        return scene
+    return world_of_scene(scene)
+
+
+def _shown(what: tuple[Any, ...]) -> Scene | MovingWorld:
     match what:
         case (Scene() as scene,):
-            return scene
+            return of_scene(scene)
         case (str() | os.PathLike() as file,):
-            return load_scene(file)
+            return of_scene(load_scene(file))
         case (Recording() as recording,):
             return scene_of(recording)
         case (Body() as a, Body() as b, pose_a, pose_b):
             paths = Fixed(Pose.of(pose_a)), Fixed(Pose.of(pose_b))
             return _made((a, b), paths, "Two bodies", "", TrackSettings())
+        case (World() as world, poses):
+            return moving_world(world, poses)
+        case (World() as world, paths, duration):
+            return moving_world(world, paths, duration)
     raise StandoffTypeError(f"{shown(what)} cannot be shown: {GIVE}.", "what", what)
 
 

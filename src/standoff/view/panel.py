@@ -8,7 +8,8 @@ from html import escape
 from typing import Any, Protocol
 
 from standoff.view.laws import INTEGRATORS, NAMES
-from standoff.view.player import SPEEDS, Player
+from standoff.view.motion_panel import MotionPanel, Plays
+from standoff.view.player import Player
 from standoff.view.plot import Plot
 from standoff.view.pull import LEAST_FORCE, MAX_FORCE
 from standoff.view.readout import readout
@@ -31,12 +32,9 @@ LOG = '<table style="font-size:.8em;margin:.3em .9em;border-spacing:.6em 0">{}</
 NONE_YET = '<div style="font-size:.8em;margin:.5em .9em;opacity:.65">no switch yet</div>'
 
 
-class Asks(Protocol):
+class Asks(Plays, Protocol):
     """What a user of the page can ask for; each is done between two looks of the page's thread."""
 
-    def play(self, playing: bool) -> None: ...
-    def seek(self, time: float) -> None: ...
-    def speed(self, factor: float) -> None: ...
     def hand(self, which: str) -> None: ...
     def back(self) -> None: ...
     def pull(self, on: bool) -> None: ...
@@ -46,7 +44,7 @@ class Asks(Protocol):
     def export(self, client: Any) -> None: ...
 
 
-class Panel:
+class Panel(MotionPanel):
     """All elements of the panel, for the life of a page.
 
     Parameters
@@ -66,7 +64,8 @@ class Panel:
         asks: Asks,
         titles: Sequence[str],
     ) -> None:
-        self._gui, self._later, self._asks = server.gui, later, asks
+        super().__init__(server, later, asks)
+        self._asks: Asks = asks
         self._log: deque[str] = deque(maxlen=LOGGED)
         self._names, self._unit, self._size = ("A", "B"), "", 1.0
         gui = server.gui
@@ -85,29 +84,9 @@ class Panel:
             self._make_scenes(titles)
 
     def _make_motion(self) -> None:
-        gui = self._gui
-        self._play = gui.add_button("Play")
-        self._time = gui.add_slider("time, s", 0.0, 1.0, 0.001, 0.0)
-        self._speed = gui.add_dropdown("speed", tuple(SPEEDS), initial_value="×1")
+        self._make_playing()
         self._make_hand()
-        self._export = gui.add_button("Save the run as a page")
-        self._playing = False
-
-        @self._play.on_click
-        async def _(_: Any) -> None:
-            playing = not self._playing
-            self._later(lambda: self._asks.play(playing))
-
-        @self._time.on_update
-        async def _(event: Any) -> None:
-            if event.client is not None:
-                time = float(event.target.value)
-                self._later(lambda: self._asks.seek(time))
-
-        @self._speed.on_update
-        async def _(event: Any) -> None:
-            factor = SPEEDS.get(event.target.value, 1.0)
-            self._later(lambda: self._asks.speed(factor))
+        self._export = self._gui.add_button("Save the run as a page")
 
         @self._export.on_click
         async def _(event: Any) -> None:
@@ -178,7 +157,7 @@ class Panel:
     def begin(
         self,
         title: str,
-        player: Player | None,
+        player: Player[Any] | None,
         which: str,
         names: tuple[str, str],
         unit: str,
@@ -201,12 +180,8 @@ class Panel:
         """
         self._names, self._unit, self._size = names, unit, size
         self._gui.set_panel_label(title)
-        for element in (self._play, self._time, self._speed, self._export):
-            element.visible = player is not None
-        if player is not None:
-            self._time.min, self._time.max = player.first, player.last
-            self._time.step = (player.last - player.first) / 1000.0
-            self._time.value = player.time
+        self._export.visible = player is not None
+        self._moves(player)
         # A name is cut to what a message may hold; its letter keeps the two apart then.
         hands = [
             f"{name[: MAX_TEXT - 4]} ({letter})" for name, letter in zip(names, "AB", strict=True)
@@ -251,14 +226,6 @@ class Panel:
         """Show the numbers of an instant; `force` [N] of the coupler where it pulls."""
         self._readout.content = readout(shown, self._names, self._unit, self._size, force)
         self._plot.stands(shown)
-
-    def plays(self, player: Player) -> None:
-        """Show where a recording stands, and its frames up to there."""
-        if self._playing != player.playing:
-            self._playing = player.playing
-            self._play.label = "Pause" if player.playing else "Play"
-        self._time.value = round(player.time, 4)
-        self._plot.plays(player)
 
     def traces(self, time: float, shown: Shown) -> None:
         """Add an instant of a body that is moved by hand to the plot."""

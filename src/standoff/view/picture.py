@@ -5,14 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.motion import Pose
-from standoff.view.nodes import AnswerNodes, BodyNodes, quaternion
+from standoff.view.nodes import COLOURS, AnswerNodes, BodyNodes, quaternion
 from standoff.view.readout import beside
 from standoff.view.shapes import Shape, shape_of
 from standoff.view.shown import Shown
 from standoff.view.tolerances import SEEN_INTO
+
+Array = NDArray[np.float64]
 
 GRIP = 0.5
 """Size of the handle that drags a body, over the body's own."""
@@ -34,7 +37,23 @@ LOWER = 0.28
 """How much lower the camera looks then, over the height that it sees."""
 
 
-class Picture:
+class Aimable:
+    """A picture whose pages have cameras."""
+
+    _server: Any
+
+    def aim_one(self, client: Any) -> None:
+        """Put one page's camera where new ones begin."""
+        step_back(client.camera, self._server.initial_camera)
+
+    def aim_again(self, client: Any) -> None:
+        """Aim the camera of a narrow page that stands where viser puts it, too near."""
+        usual = self._server.initial_camera
+        if client.camera.aspect < 1.0 and np.allclose(client.camera.position, usual.position):
+            self.aim_one(client)
+
+
+class Picture(Aimable):
     """What a server shows of a pair; all else in its scene is taken away.
 
     Parameters
@@ -65,7 +84,7 @@ class Picture:
         self.planar = any(body.dimension == 2 for body in bodies)
         self.shapes: tuple[Shape, Shape] = shape_of(bodies[0]), shape_of(bodies[1])
         self._bodies = [
-            BodyNodes(scene, f"/{which}", shape, number)
+            BodyNodes(scene, f"/{which}", shape, COLOURS[number])
             for number, (which, shape) in enumerate(zip("AB", self.shapes, strict=True))
         ]
         self.size = max(shape.size for shape in self.shapes)
@@ -88,26 +107,7 @@ class Picture:
         middle = 0.5 * (middles[0] + middles[1])
         reach = 0.5 * float(np.linalg.norm(middles[1] - middles[0]))
         reach += 0.6 * max(shape.size for shape in self.shapes)
-        # A plane is seen from above, its y upwards.
-        self._server.scene.set_up_direction("+y" if self.planar else "+z")
-        towards = np.array([0.0, 0.0, 1.0] if self.planar else [0.6, -1.0, 0.6])
-        camera = self._server.initial_camera
-        camera.fov = FIELD
-        camera.near, camera.far = 1e-2 * reach, 1e2 * reach
-        camera.position = middle + AWAY * reach * towards / np.linalg.norm(towards)
-        camera.look_at = middle
-        for client in self._server.get_clients().values():
-            self.aim_one(client)
-
-    def aim_one(self, client: Any) -> None:
-        """Put one page's camera where new ones begin."""
-        step_back(client.camera, self._server.initial_camera)
-
-    def aim_again(self, client: Any) -> None:
-        """Aim the camera of a narrow page that stands where viser puts it, too near."""
-        usual = self._server.initial_camera
-        if client.camera.aspect < 1.0 and np.allclose(client.camera.position, usual.position):
-            self.aim_one(client)
+        aim_all(self._server, middle, reach, planar=self.planar)
 
     def pull(self, at: Any, force: Any, greatest: float) -> None:
         """Draw the coupler's force on a tool; see `AnswerNodes.pull`."""
@@ -140,6 +140,29 @@ class Picture:
                 handle.wxyz, handle.position = quaternion(pose), tuple(pose.translation)
         text = beside(shown, self._unit, self.size)
         self._answer.show(shown.points, shown.normal, f"{note}{text}", deep=deep)
+
+
+def aim_all(server: Any, middle: Array, reach: float, *, planar: bool) -> None:
+    """Point the camera of each page, and of each new one, at a ball.
+
+    Parameters
+    ----------
+    server : viser.ViserServer
+    middle : (3,) array
+    reach : float
+        Radius of the ball [length].
+    planar : bool
+        A plane is seen from above, its y upwards.
+    """
+    server.scene.set_up_direction("+y" if planar else "+z")
+    towards = np.array([0.0, 0.0, 1.0] if planar else [0.6, -1.0, 0.6])
+    camera = server.initial_camera
+    camera.fov = FIELD
+    camera.near, camera.far = 1e-2 * reach, 1e2 * reach
+    camera.position = middle + AWAY * reach * towards / np.linalg.norm(towards)
+    camera.look_at = middle
+    for client in server.get_clients().values():
+        step_back(client.camera, camera)
 
 
 def step_back(camera: Any, usual: Any) -> None:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any, Generic, Protocol, TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
-
-from standoff.recording import Recording
 
 Array = NDArray[np.float64]
 
@@ -13,12 +13,31 @@ SPEEDS = {"×0.1": 0.1, "×0.25": 0.25, "×0.5": 0.5, "×1": 1.0, "×2": 2.0, "�
 """How much faster than its own time a recording is played, by the words of the page."""
 
 
-class Player:
+class Recorded(Protocol):
+    """Frames that can be played: a recording of a pair, or the course of a world."""
+
+    @property
+    def time(self) -> Any:
+        """(n,) array [s]."""
+
+    @property
+    def distance(self) -> Any:
+        """(n,) array [length]."""
+
+    @property
+    def lower_bound(self) -> Any:
+        """(n,) array [length]."""
+
+
+R = TypeVar("R", bound=Recorded)
+
+
+class Player(Generic[R]):
     """A recording and the time at which it stands.
 
     Parameters
     ----------
-    recording : Recording
+    recording : Recorded
 
     Attributes
     ----------
@@ -29,7 +48,7 @@ class Player:
         No unit.
     """
 
-    def __init__(self, recording: Recording) -> None:
+    def __init__(self, recording: R) -> None:
         self.recording = recording
         self.time = self.first
         self.playing = False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from standoff.view.player import Player
 from standoff.view.plot_scale import PlotScale, scale_of
 from standoff.view.readout import COLOURS
-from standoff.view.shown import Shown
 
 Array = NDArray[np.float64]
 
@@ -29,6 +28,18 @@ TIME_AXIS = {**LOOK, "size": 34, "label": "time, s", "labelSize": 14, "labelGap"
 
 DIGIT, GAP = 7, 22
 """Width of a number's character, and that of its tick and margin [pixels]."""
+
+
+class Known(Protocol):
+    """What the plot shows of an instant."""
+
+    @property
+    def distance(self) -> float:
+        """Length."""
+
+    @property
+    def lower_bound(self) -> float:
+        """Length."""
 
 
 class Plot:
@@ -70,19 +81,19 @@ class Plot:
         self._trace.clear()
         self._looks, self._behind = 0, False
 
-    def stands(self, shown: Shown) -> None:
+    def stands(self, shown: Known) -> None:
         """Show level lines where nothing has moved yet."""
         if self._looks == 0:
             level = np.ones(2)
             self._draw(np.array([0.0, 1.0]), level * shown.distance, level * shown.lower_bound)
 
-    def plays(self, player: Player) -> None:
+    def plays(self, player: Player[Any]) -> None:
         """Show a recording up to where it stands."""
         if self._due() or not player.playing:
             rows, run = player.behind(SPAN, MOST_POINTS), player.recording
             self._draw(run.time[rows], run.distance[rows], run.lower_bound[rows])
 
-    def traces(self, time: float, shown: Shown) -> None:
+    def traces(self, time: float, shown: Known) -> None:
         """Go on with an instant of a body that is moved by hand."""
         self._trace.append((time, shown.distance, shown.lower_bound))
         self._behind = True

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from html import escape
+from typing import Protocol
 
 import numpy as np
 
@@ -36,12 +37,28 @@ def length(value: float, unit: str, digits: int = DIGITS) -> str:
     return f"{value:.{digits}g} {unit}".rstrip() if np.isfinite(value) else "not known"
 
 
-def verdict(answer: Shown, unit: str, size: float) -> str:
+class Known(Protocol):
+    """What a sentence says of two bodies."""
+
+    @property
+    def distance(self) -> float:
+        """Length; minus the depth where they overlap."""
+
+    @property
+    def lower_bound(self) -> float:
+        """Length."""
+
+    @property
+    def status(self) -> Status:
+        """How far that is proven."""
+
+
+def verdict(answer: Known, unit: str, size: float) -> str:
     """Return in a sentence how far apart the bodies are, and how far that is proven.
 
     Parameters
     ----------
-    answer : Shown
+    answer : Known
     unit : str
         Label of lengths.
     size : float
@@ -78,7 +95,7 @@ _UNPROVEN = {
 }
 
 
-def beside(answer: Shown, unit: str, size: float) -> str:
+def beside(answer: Known, unit: str, size: float) -> str:
     """Return what stands beside the witness line: the verdict without its proof.
 
     Parameters

@@ -9,6 +9,7 @@ import numpy as np
 
 from standoff.errors import StandoffError
 from standoff.motion import Fixed, Pose
+from standoff.recording import Recording
 from standoff.scene import Scene
 from standoff.scene.run import record
 from standoff.tracking import PaperLaw
@@ -86,6 +87,11 @@ class Stage:
         self._tell_law()
         self.hand(which)
         self._show(of_answer(self.pair.answer, self.pair.poses))
+
+    @property
+    def title(self) -> str:
+        """The scene's."""
+        return self.scene.title
 
     def _listen(
         self, number: int, handle: Any, later: Callable[[Callable[[], None]], None]
@@ -268,7 +274,7 @@ class Stage:
             self.panel.forget()
             self.panel.strayed(False)
 
-    def _note_switches(self, player: Player, before: int) -> None:
+    def _note_switches(self, player: Player[Recording], before: int) -> None:
         for event in player.recording.events:
             if before < event.frame <= player.frame:
                 name = self._name(event.body)
@@ -277,7 +283,7 @@ class Stage:
     def _name(self, body: str) -> str:
         return self.scene.pair["AB".index(body)]
 
-    def _show_frame(self, player: Player) -> None:
+    def _show_frame(self, player: Player[Recording]) -> None:
         self._show(of_frame(player.recording, player.frame))
         self.panel.plays(player)
 

@@ -52,3 +52,6 @@ bounds' roundoff, and far below what can be seen or made."""
 SEEN_INTO: Final = 0.02
 """Depth over the smaller body's size from which bodies are shown as of glass: above what a tool of
 the coupler presses in, so that a contact does not flicker."""
+
+MOST_COURSE: Final = 100_000
+"""Most frames of a world's motion, so many: tracked before the page opens, at some 0.3 ms each."""

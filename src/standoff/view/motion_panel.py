@@ -1,0 +1,76 @@
+"""What plays a motion on a page's panel: a button, the time, and the speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from standoff.view.player import SPEEDS, Player
+from standoff.view.plot import Plot
+
+
+class Plays(Protocol):
+    """What a user can ask of a motion."""
+
+    def play(self, playing: bool) -> None: ...
+    def seek(self, time: float) -> None: ...
+    def speed(self, factor: float) -> None: ...
+
+
+class MotionPanel:
+    """The part of a panel that plays; a subclass says where it stands, and makes the plot.
+
+    Parameters
+    ----------
+    server : viser.ViserServer
+    later : callable
+        Takes what is to be done in the page's thread.
+    asks : Plays
+    """
+
+    _plot: Plot
+
+    def __init__(
+        self, server: Any, later: Callable[[Callable[[], None]], None], asks: Plays
+    ) -> None:
+        self._gui, self._later, self._player = server.gui, later, asks
+        self._playing = False
+
+    def _make_playing(self) -> None:
+        gui = self._gui
+        self._play = gui.add_button("Play")
+        self._time = gui.add_slider("time, s", 0.0, 1.0, 0.001, 0.0)
+        self._speed = gui.add_dropdown("speed", tuple(SPEEDS), initial_value="×1")
+
+        @self._play.on_click
+        async def _(_: Any) -> None:
+            playing = not self._playing
+            self._later(lambda: self._player.play(playing))
+
+        @self._time.on_update
+        async def _(event: Any) -> None:
+            if event.client is not None:
+                time = float(event.target.value)
+                self._later(lambda: self._player.seek(time))
+
+        @self._speed.on_update
+        async def _(event: Any) -> None:
+            factor = SPEEDS.get(event.target.value, 1.0)
+            self._later(lambda: self._player.speed(factor))
+
+    def _moves(self, player: Player[Any] | None) -> None:
+        """Show the part, with the times of a motion, or hide it where nothing moves by itself."""
+        for element in (self._play, self._time, self._speed):
+            element.visible = player is not None
+        if player is not None:
+            self._time.min, self._time.max = player.first, player.last
+            self._time.step = (player.last - player.first) / 1000.0
+            self._time.value = player.time
+
+    def plays(self, player: Player[Any]) -> None:
+        """Show where a recording stands, and its frames up to there."""
+        if self._playing != player.playing:
+            self._playing = player.playing
+            self._play.label = "Pause" if player.playing else "Play"
+        self._time.value = round(player.time, 4)
+        self._plot.plays(player)
