@@ -38,6 +38,8 @@ NOT_CALLED = {
     **dict.fromkeys(("build_library", "save_pair"), "write files; tests/c_interface tries them"),
     "FrameBuffer": "made from a tracker and a state, which need compiled kernels and check nothing",
     "Answers": "made by trackers",
+    "decomposition": "needs CoACD; tests/bodies/test_meshes.py tries it",
+    **dict.fromkeys(("Decomposition", "Fit"), "made by decomposition"),
     "PatchBounds": "made by surfaces",
     "Distances": "made by distances",
     "ServoReport": "made by servos",
@@ -196,6 +198,19 @@ BODIES: dict[str, dict[str, Any]] = {
         "rounding": 0.1,
         "tolerance": 1e-9,
         "convexity_tolerance": 1e-6,
+    },
+    "Body.from_points": {
+        "points": RIGHT_ANGLES["vertices"],
+        "tolerance": 1e-3,
+        "rounding": 0.1,
+        "name": "hull",
+    },
+    "Body.from_mesh": {
+        "mesh": (RIGHT_ANGLES["vertices"], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]),
+        "hull": False,
+        "tolerance": 1e-3,
+        "rounding": 0.1,
+        "name": "mesh",
     },
     "Body.from_patches": {
         "patches": geometry.ellipsoid_octants(1.0, 2.0, 3.0),

@@ -88,7 +88,7 @@ def placed_pieces(body: object, pose: np.ndarray) -> list[tuple[str, so.Body, np
 def truth_of(world: so.World, poses: np.ndarray) -> dict[tuple[str, str], Truth]:
     """Cold queries of all pairs of pieces, the least of each pair of bodies."""
     at = dict(zip(world.moving, poses, strict=True))
-    at |= dict(zip(world.fixed, world.poses_of_fixed, strict=True))
+    at |= dict(zip(world.fixed, world.model.poses_of_fixed, strict=True))
     found = {}
     for a, b in world.pairs():
         each = [

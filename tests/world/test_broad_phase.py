@@ -114,7 +114,7 @@ def test_the_tree_finds_every_pair_of_boxes(
     pieces = packed_pieces([[Piece(shape, so.Pose.identity())] for shape in shapes])
     world = so.World({f"b{k}": shape for k, shape in enumerate(shapes)}, within=0.2)
     poses = poses_of(rng, n, spread)
-    search = world.search
+    search = world.model.search
     frame = placed(pieces, poses)
     tree = broad_phase.first_tree(search, frame)
     frame.sought[:] = 1

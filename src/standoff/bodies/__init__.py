@@ -7,6 +7,8 @@ from standoff.on_demand import on_demand
 if TYPE_CHECKING:
     from standoff.bodies.body import Body
     from standoff.bodies.boundary import Boundary, EdgeKind
+    from standoff.bodies.meshes.columns import Fit
+    from standoff.bodies.meshes.decomposition import Decomposition, decomposition
     from standoff.bodies.report import BodyReport, BoundaryReport, DihedralAngle, PatchCheck
     from standoff.bodies.topology import Apex, Edge, Face
     from standoff.errors import BodyError
@@ -16,6 +18,8 @@ else:
         {
             "standoff.bodies.body": ("Body",),
             "standoff.bodies.boundary": ("Boundary", "EdgeKind"),
+            "standoff.bodies.meshes.columns": ("Fit",),
+            "standoff.bodies.meshes.decomposition": ("Decomposition", "decomposition"),
             "standoff.bodies.report": (
                 "BodyReport",
                 "BoundaryReport",
@@ -34,9 +38,12 @@ __all__ = [
     "BodyReport",
     "Boundary",
     "BoundaryReport",
+    "Decomposition",
     "DihedralAngle",
     "Edge",
     "EdgeKind",
     "Face",
+    "Fit",
     "PatchCheck",
+    "decomposition",
 ]

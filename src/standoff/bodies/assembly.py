@@ -230,10 +230,7 @@ def assemble(
     found = orient(charts, faces, edges, _volume(parts), senses, trusted)
     parts = replace(parts, smooth=found.smooth)
     if roundoff > JOIN_TOLERANCE * size > 0.0:
-        found.notes.append(
-            f"far from the origin: parts may miss each other by {roundoff:.3g}, the roundoff of "
-            "their coordinates"
-        )
+        found.notes.append(roundoff_note(roundoff))
     miss = max(miss, _check_on_surface(charts, edges, size, tolerance))
     sectors, cones = _vertex_geometry(vertices, edges, faces, charts)
     parts = replace(parts, sectors=sectors, cones=cones)
@@ -241,6 +238,14 @@ def assemble(
         right, cones = _planar_geometry(vertices, edges)
         parts = replace(parts, outward_right=right, cones=cones)
     return Joined(parts, found.notes, miss, tolerance, found.shells, found.claims)
+
+
+def roundoff_note(roundoff: float) -> str:
+    """Of a boundary whose coordinates' roundoff, length, is above its own tolerance."""
+    return (
+        f"far from the origin: parts may miss each other by {roundoff:.3g}, the roundoff of "
+        "their coordinates"
+    )
 
 
 def _volume(parts: Assembled) -> Callable[[Sequence[int]], float]:

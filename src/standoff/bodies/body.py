@@ -14,6 +14,7 @@ from standoff.bodies.boundary import Boundary
 from standoff.bodies.charts import edge_points, loop_pcurve
 from standoff.bodies.convexity import Known
 from standoff.bodies.finishing import Packed, finish
+from standoff.bodies.made_parts import MadeParts
 from standoff.bodies.report import BodyReport
 from standoff.bodies.tolerances import MAX_SPREAD, SIMILARITY_TOLERANCE, SINGULAR_MAP
 from standoff.bodies.topology import Edge, Face, check_parts, parts_of
@@ -110,7 +111,7 @@ class Body(Boundary):
         if convexity_tolerance is not None:
             convexity_tolerance = magnitude_or_zero(convexity_tolerance, "convexity_tolerance")
         joined = assemble(points, edges, faces, dimension, rough, tolerance)
-        return _body(name, radius, finish(joined, radius, convexity_tolerance))
+        return made_body(name, radius, finish(joined, radius, convexity_tolerance))
 
     @staticmethod
     def from_patches(
@@ -171,7 +172,107 @@ class Body(Boundary):
             tolerance=sewn.tolerance,
         )
         known = Known(sewn.labels, sewn.proofs)
-        return _body(name, radius, finish(joined, radius, convexity_tolerance, known))
+        return made_body(name, radius, finish(joined, radius, convexity_tolerance, known))
+
+    @staticmethod
+    def from_points(
+        points: Any,
+        *,
+        tolerance: float | None = None,
+        rounding: float = 0.0,
+        name: str = "hull",
+    ) -> Body:
+        """The convex hull of points, spatial or planar.
+
+        Facets of one plane are one face. Faces, edges and vertices are numbered the same for the
+        same points: vertices in the points' order, faces by Qhull's order of facets, edges as the
+        faces' outlines come to them.
+
+        Parameters
+        ----------
+        points : (n, 3) or (n, 2) array_like
+            At least four that are not in one plane, length; of a planar body, at least three that
+            are not in one line. Those inside the hull, and all but one of equal ones, are left
+            out. They may lie far from the origin: the hull is then taken about their middle,
+            which ``body.check().notes`` tells.
+        tolerance : float, optional
+            Points within this distance of the hull of the others may be left out, length: facets
+            that are nearly in one plane become few. The body then lies within the hull; how far
+            points are above its faces goes into the slack, by which lower bounds are less, so that
+            they are bounds for the hull of all points. ``body.check()`` tells both.
+        rounding : float
+            Radius of a ball (planar: a disc) swept over it, length, zero or above: the body grows
+            by it all round.
+        name : str
+
+        Returns
+        -------
+        Body
+
+        Raises
+        ------
+        BodyError
+            The points span no volume (no area), are too thin for their extent, or extend over less
+            than 1e-50.
+        ValueError
+            A wrong shape, a number that is not finite or beyond 1e50, a tolerance that is not
+            positive, a negative rounding.
+        """
+        from standoff.bodies.hulls.from_points import hull_of
+
+        return made_body(name, *hull_of(points, tolerance, rounding))
+
+    @staticmethod
+    def from_mesh(
+        mesh: Any,
+        *,
+        hull: bool = False,
+        tolerance: float | None = None,
+        rounding: float = 0.0,
+        name: str = "mesh",
+    ) -> Body:
+        """A body of a closed convex mesh of triangles, or the hull of one that is not convex.
+
+        Triangles of one plane are one face. What a hull adds to a mesh that is not convex is
+        measured, and told in ``body.check().notes``; for convex pieces of it there is
+        ``so.bodies.decomposition``.
+
+        Parameters
+        ----------
+        mesh : trimesh.Trimesh, path, or (vertices, triangles)
+            Closed, length. A file is read by trimesh, which the extra `meshes` installs. Equal
+            points are made one; a mesh that faces inward is turned, which the notes tell.
+        hull : bool
+            Take the hull where the mesh is not convex.
+        tolerance : float, optional
+            As for ``from_points``; a mesh whose edges are concave by no more counts as convex, by
+            default 1e-6 of the size.
+        rounding : float
+            Radius of a ball swept over it, length, zero or above.
+        name : str
+
+        Returns
+        -------
+        Body
+
+        Raises
+        ------
+        BodyError
+            Holes, more than two triangles at an edge, triangles that face different ways, no
+            volume; or a mesh that is not convex, without ``hull=True``. The message names the
+            place.
+        ModuleNotFoundError
+            A path is given, and trimesh is not installed; the message names the extra.
+        OSError
+            The file cannot be read.
+        TypeError
+            No mesh.
+        ValueError
+            NaN, infinite or wrongly shaped numbers, or corners that do not exist.
+        """
+        from standoff.bodies.meshes.bodies import mesh_body
+
+        return made_body(name, *mesh_body(mesh, hull, tolerance, rounding))
 
     def transformed(self, affine: Any) -> Body:
         """The exact image under an affine map: a (3, 3), a (4, 4), or a ((3, 3), (3,)) pair.
@@ -202,8 +303,14 @@ class Body(Boundary):
             radius *= float(stretch[0])
         if self.dimension == 2 and (np.abs(linear[2, :2]).max() > 0.0 or shift[2] != 0.0):
             raise StandoffError("The map takes a planar body out of z = 0.", "affine", affine)
-        edges = [replace(e, curve=e.curve.transformed(linear, shift)) for e in self.edge_parts]
         flip = 1 if np.linalg.det(linear) > 0.0 else -1
+        if isinstance(self.face_parts, MadeParts) and flip > 0:
+            from standoff.bodies.hulls.build import image_of
+
+            above = float(stretch[0]) * self.report.convexity_defect
+            image = image_of(self.face_parts.source, linear, shift, radius, above)
+            return made_body(self.name, radius, image)
+        edges = [replace(e, curve=e.curve.transformed(linear, shift)) for e in self.edge_parts]
         faces = [
             Face(
                 tuple(s.transformed(linear, shift) for s in f.charts),
@@ -277,13 +384,14 @@ class Body(Boundary):
         return bool(np.abs(np.concatenate(spots)[:, 2]).max() == 0.0)
 
 
-def _body(name: str, radius: float, packed: Packed) -> Body:
+def made_body(name: str, radius: float, packed: Packed) -> Body:
+    """A body of a boundary that is finished."""
     parts, report = packed.parts, packed.report
     return Body(
         name,
         parts.vertices,
-        tuple(parts.edges),
-        tuple(parts.faces),
+        parts.edges if isinstance(parts.edges, MadeParts) else tuple(parts.edges),
+        parts.faces if isinstance(parts.faces, MadeParts) else tuple(parts.faces),
         radius,
         parts.dimension,
         packed.ints,

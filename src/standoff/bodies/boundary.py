@@ -45,8 +45,8 @@ class Boundary(PackedParts):
     name : str
     vertex_points : (n, 3) array
         Body frame.
-    edge_parts : tuple of Edge
-    face_parts : tuple of Face
+    edge_parts : sequence of Edge
+    face_parts : sequence of Face
     radius : float
         Of the ball swept over the core, length; 0 unless it is a `Body`.
     dimension : int

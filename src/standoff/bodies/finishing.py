@@ -81,7 +81,7 @@ def finish(
         allowed = found.defect + 2.0 * joined.residual + max(SAMPLED_DEFECT * size, roundoff)
         seen = check_convex(samples, size, allowed)
         found = replace(found, defect=max(found.defect, seen, 0.0))
-    slack = _slack(found, joined.residual, parts.moved, max(ROUNDOFF * size, roundoff))
+    slack = slack_of(found, joined.residual, parts.moved, max(ROUNDOFF * size, roundoff))
     inner = inner_boxes(parts, ints, reals)
     ints, reals = pack(parts, samples, box, radius, slack, inner)
     report = _report(parts, joined, turns, found, size + 2.0 * radius, share, slack, roundoff)
@@ -96,7 +96,7 @@ def _smooth(parts: Assembled, turns: list[EdgeTurns]) -> list[bool]:
     return smooth
 
 
-def _slack(found: Convexity, residual: float, moved: float, roundoff: float) -> float:
+def slack_of(found: Convexity, residual: float, moved: float, roundoff: float) -> float:
     """What the certificate subtracts: 0 where all three are roundoff."""
     total = sum(x for x in (found.defect, residual, moved) if x > roundoff)
     if total == 0.0:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from standoff.bodies.made_parts import MadeParts
 from standoff.bodies.packing import Assembled, Ints, pack
 from standoff.bodies.topology import Edge, Face
 from standoff.geometry.validation import Array
@@ -32,8 +33,8 @@ class PackedParts(KeepsReadOnly):
 
     name: str
     vertex_points: Array
-    edge_parts: tuple[Edge, ...]
-    face_parts: tuple[Face, ...]
+    edge_parts: Sequence[Edge]
+    face_parts: Sequence[Face]
     radius: float
     dimension: int
     ints: Ints
@@ -98,6 +99,8 @@ def packed_parts(parts: Assembled) -> PackedParts:
 
 def formulas_of(edges: Iterable[Edge], faces: Iterable[Face]) -> list[Formula]:
     """The formulas of a body's parts, in the order of the parts."""
+    if isinstance(edges, MadeParts) and isinstance(faces, MadeParts):
+        return []  # planes and lines, which are not made for this
     found = [f for edge in edges for f in edge.curve.formulas]
     return found + [f for face in faces for chart in face.charts for f in chart.formulas]
 

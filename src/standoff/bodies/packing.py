@@ -1,10 +1,14 @@
-"""Packing: the only writer of the two flat arrays that ``kernels.body.layout`` describes."""
+"""Packing: the writer of the two flat arrays that ``kernels.body.layout`` describes.
+
+It goes part by part. Of polyhedra, ``bodies.hulls.packed`` writes the same arrays all at once.
+"""
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,22 +118,36 @@ class Sample:
     v: float
 
 
+class Counts(NamedTuple):
+    """How many parts a body has."""
+
+    dimension: int
+    faces: int
+    edges: int
+    vertices: int
+    charts: int
+    samples: int
+
+
 class Writer:
     """Appends to the two arrays; every table's offset is known when it is written."""
 
     def __init__(self) -> None:
-        self.ints: list[int] = [0] * L.INT_HEADER
-        self.reals: list[float] = [0.0] * L.REAL_HEADER
+        self.ints = array("q", [0] * L.INT_HEADER)
+        self.reals = array("d", [0.0] * L.REAL_HEADER)
 
     def real_block(self, values: Sequence[float] | Array) -> int:
         offset = len(self.reals)
-        self.reals.extend(float(v) for v in values)
+        self.reals.frombytes(np.asarray(values, dtype=np.float64).tobytes())
         return offset
 
-    def table(self, header: int, rows: Sequence[Sequence[int]]) -> None:
-        self.ints[header] = len(self.ints)
-        for row in rows:
-            self.ints.extend(int(v) for v in row)
+    def int_block(self, values: Sequence[int] | Ints) -> int:
+        offset = len(self.ints)
+        self.ints.frombytes(np.asarray(values, dtype=np.int64).tobytes())
+        return offset
+
+    def table(self, header: int, rows: Sequence[Sequence[int]] | Ints) -> None:
+        self.ints[header] = self.int_block(np.asarray(rows, dtype=np.int64).ravel())
 
     def arrays(self) -> tuple[Ints, Array]:
         ints = np.array(self.ints, dtype=np.int64)
@@ -151,29 +169,42 @@ def pack(
     `inner` are its charts' rectangles of parameters (``inner_boxes``), None while not known.
     """
     w = Writer()
-    w.ints[L.DIMENSION] = body.dimension
-    w.ints[L.N_FACES] = len(body.faces)
-    w.ints[L.N_EDGES] = len(body.edges)
-    w.ints[L.N_VERTICES] = len(body.vertices)
-    w.ints[L.N_CHARTS] = len(body.charts)
-    w.ints[L.N_SAMPLES] = len(samples)
+    counts = (len(part) for part in (body.faces, body.edges, body.vertices, body.charts, samples))
+    put_header(w, Counts(body.dimension, *counts), box, radius, slack)
+    _pack_faces(w, body, inner)
+    _pack_edges(w, body)
+    _pack_vertices(w, body)
+    put_samples(w, samples)
+    return w.arrays()
+
+
+def put_header(
+    w: Writer, counts: Counts, box: tuple[Array, Array] | None, radius: float, slack: float
+) -> None:
+    """Write how many parts there are, and the body's size and place."""
+    w.ints[L.DIMENSION] = counts.dimension
+    w.ints[L.N_FACES] = counts.faces
+    w.ints[L.N_EDGES] = counts.edges
+    w.ints[L.N_VERTICES] = counts.vertices
+    w.ints[L.N_CHARTS] = counts.charts
+    w.ints[L.N_SAMPLES] = counts.samples
     w.ints[L.UNBOUNDED] = int(box is None)
     w.reals[L.RADIUS] = radius
     w.reals[L.SLACK] = slack
     if box is not None:
         low, high = box
         w.reals[L.SIZE] = float(np.linalg.norm(high - low))
-        w.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3] = list(0.5 * (low + high))
+        w.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3] = array("d", 0.5 * (low + high))
         w.reals[L.OFFSET] = float(np.linalg.norm(0.5 * (low + high)))
-        w.reals[L.BOX_HALF : L.BOX_HALF + 3] = list(0.5 * (high - low))
-    _pack_faces(w, body, inner)
-    _pack_edges(w, body)
-    _pack_vertices(w, body)
+        w.reals[L.BOX_HALF : L.BOX_HALF + 3] = array("d", 0.5 * (high - low))
+
+
+def put_samples(w: Writer, samples: Sequence[Sample]) -> None:
+    """Write the samples, which come last."""
     w.table(L.SAMPLES, [(s.feature, s.chart) for s in samples])
     w.ints[L.SAMPLE_REALS] = len(w.reals)
     for s in samples:
         w.real_block([*s.point, *s.normal, s.u, s.v])
-    return w.arrays()
 
 
 def _pack_faces(w: Writer, body: Assembled, inner: Sequence[Sequence[float]] | None) -> None:
@@ -260,7 +291,7 @@ def _pack_vertices(w: Writer, body: Assembled) -> None:
     n = len(body.vertices)
     w.ints[L.VERTICES] = len(w.ints)
     start = len(w.ints)
-    w.ints.extend([0] * (L.VERTEX_STRIDE * n))
+    w.int_block([0] * (L.VERTEX_STRIDE * n))
     fans: list[list[tuple[int, int]]] = [[] for _ in range(n)]
     for j, edge in enumerate(body.edges):
         for end, vertex in enumerate((edge.first, edge.last)):

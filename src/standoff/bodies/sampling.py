@@ -66,19 +66,39 @@ def blind_charts(body: Assembled, ints: Ints, reals: Array) -> list[int]:
     return found
 
 
+def stride(features: int, budget: int) -> int:
+    """Every how many-th feature of a kind is sampled."""
+    return max(1, -(-features // budget))
+
+
+def first_grid(charts: int, budget: int = FACE_BUDGET) -> int:
+    """Points along either parameter of a chart."""
+    return int(np.clip(np.sqrt(budget / charts), 1, 6))
+
+
+def second_grid(first: int) -> int:
+    """Points along either parameter of a chart of which the first grid has missed the face."""
+    return 3 * first + 2
+
+
+def along_each(edges: int, budget: int = EDGE_BUDGET) -> Array:
+    """Shares of an edge's parameter where it is sampled."""
+    n = int(np.clip(budget / edges, 1, 12))
+    return np.asarray((np.arange(n) + 0.5) / n)
+
+
 def face_samples(body: Assembled, ints: Ints, reals: Array, budget: int) -> list[Sample]:
     """Grid points over the charts that lie on their faces."""
     if not body.charts:
         return []
-    n = int(np.clip(np.sqrt(budget / len(body.charts)), 1, 6))
+    n = first_grid(len(body.charts), budget)
     samples = []
-    step = max(1, -(-len(body.charts) // budget))
-    for k in range(0, len(body.charts), step):
+    for k in range(0, len(body.charts), stride(len(body.charts), budget)):
         chart = body.charts[k]
         u0, u1, v0, v1 = _parameter_box(chart)
         nu = 2 * n if chart.surface.periodic else n
         kept = 0
-        for count in (n, 3 * n + 2):  # a slender face may miss the first grid
+        for count in (n, second_grid(n)):  # a slender face may miss the first grid
             if kept:
                 break
             for a in (np.arange(nu if count == n else count) + 0.5) / (nu if count == n else count):
@@ -97,12 +117,11 @@ def edge_samples(body: Assembled, ints: Ints, reals: Array, budget: int) -> list
     if not body.edges:
         return []
     samples = []
-    step = max(1, -(-len(body.edges) // budget))
-    for j in range(0, len(body.edges), step):
+    shares = along_each(len(body.edges), budget)
+    for j in range(0, len(body.edges), stride(len(body.edges), budget)):
         edge = body.edges[j]
-        n = int(np.clip(budget / len(body.edges), 1, 12))
         feature = len(body.faces) + j
-        for s in (np.arange(n) + 0.5) / n:
+        for s in shares:
             c = edge.curve
             t = float(c.first + s * (c.last - c.first))
             normal = np.zeros(3)
@@ -114,10 +133,9 @@ def edge_samples(body: Assembled, ints: Ints, reals: Array, budget: int) -> list
 
 def vertex_samples(body: Assembled, budget: int) -> list[Sample]:
     base = len(body.faces) + len(body.edges)
-    step = max(1, -(-len(body.vertices) // budget))
     return [
         Sample(body.vertices[k], np.zeros(3), base + k, -1, 0.0, 0.0)
-        for k in range(0, len(body.vertices), step)
+        for k in range(0, len(body.vertices), stride(len(body.vertices), budget))
     ]
 
 

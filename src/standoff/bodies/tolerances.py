@@ -102,6 +102,18 @@ COPLANAR_FACETS: Final = 1e-9
 """Facets of a polytope whose normals differ by less than this (sine) are one face; hull facets of
 one plane differ by the roundoff of their vertices."""
 
+MERGED_TURN: Final = 0.0
+"""Facets are merged into one face only where the cosine between their normals is above this: the
+two sides of a body that is thinner than the tolerance stay two."""
+
+INNER_SHARE: Final = 1.0 - 1e-12
+"""Part of the largest rectangle of its proportions that is taken within a face's sides: the rest
+is room for the roundoff of its corners."""
+
+ON_SIDE: Final = 1e-12
+"""A sample may be outside a face's side by this part of the area of the face's rectangle: the
+middle of an obtuse triangle's rectangle is on its side, to roundoff."""
+
 LEAST_CORE: Final = 1e-6
 """The core of a rounded polytope contains at least a ball of this fraction of the inscribed ball of
 the sharp one: a smaller core cannot be distinguished from a point."""

@@ -51,6 +51,21 @@ def finite(value: Any, name: str, shape: tuple[int, ...]) -> FloatArray:
     return copied
 
 
+def finite_rows(value: Any, name: str, columns: int) -> FloatArray:
+    """`finite` of many rows of numbers, such as points: the message names the first wrong row."""
+    copied = numbers(value, name, (-1, columns))
+    wrong = ~(np.abs(copied) <= GREATEST).all(axis=1)
+    if wrong.any():
+        row = int(wrong.argmax())
+        if np.isfinite(copied[row]).all():
+            problem, fix = f"a number beyond {GREATEST:g}", "choose a larger unit"
+        else:
+            problem, fix = "a NaN or infinite number", "give finite ones"
+        raise StandoffError(f"{name}[{row}] has {problem}: {copied[row]}; {fix}.", name, value)
+    copied.setflags(write=False)
+    return copied
+
+
 def numbers(value: Any, name: str, shape: tuple[int, ...] | None) -> FloatArray:
     """Copy `value` to a float64 array of the given shape (None: of any), whose numbers may be of
     any size."""

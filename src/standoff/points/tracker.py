@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import inf
 from typing import Any
 
 import numpy as np
@@ -74,7 +73,7 @@ class PointTracker(KeepsReadOnly):
             raise StandoffTypeError(
                 f"{shown(body)} is not a Body: make one with so.shapes.", "body", body
             )
-        if checked_law(law).within < inf:
+        if checked_law(law).within is not None:
             raise StandoffError(
                 f"within = {law.within}: a point's minima are followed at any distance, so a "
                 "PointTracker has no horizon.",

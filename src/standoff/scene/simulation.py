@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, get_args
@@ -23,6 +23,7 @@ from standoff.scene.motions import read_motion
 from standoff.scene.reader import Table
 from standoff.simulation.contact import HuntCrossley
 from standoff.simulation.operator import SIDES, Operator
+from standoff.simulation.pair_laws import BESIDE
 from standoff.simulation.rigid_body import FREE, RigidBody
 from standoff.simulation.simulated_device import SimulatedDevice
 from standoff.simulation.system import EARTH, System
@@ -39,6 +40,7 @@ SETTINGS = (
     "gain",
     "gravity",
     "allow_overlap",
+    "within",
 )
 
 
@@ -180,7 +182,16 @@ def _operator(system: System, step: float, settings: Table) -> Operator:
     method = settings.choice("method", list(METHODS), "semi-implicit")
     tracker = settings.choice("tracker", list(SIDES), "beside")
     gain = settings.positive("gain") if "gain" in settings else None
-    return Operator(system, step, method, tracker, gain)
+    law = None
+    if "within" in settings:
+        if tracker == "inside":
+            raise settings.error(
+                "a tracker inside the operator is integrated in every tick: a horizon goes with "
+                "tracker = 'beside'",
+                "within",
+            )
+        law = replace(BESIDE, within=settings.positive("within"))
+    return Operator(system, step, method, tracker, gain, law)
 
 
 def _rigid_bodies(content: FileContent) -> list[RigidBody]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import inf
-
 from standoff.bodies.body import Body
 from standoff.checks.numbers import positive
 from standoff.motion import PoseLike
@@ -14,7 +12,7 @@ from standoff.tracking.reached import cold_table
 
 
 def distance(
-    a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike, *, within: float = inf
+    a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike, *, within: float | None = None
 ) -> Proximity:
     """The signed minimum distance of two bodies at two poses: cold, global, certified.
 
@@ -24,7 +22,7 @@ def distance(
         Two spatial bodies, or two planar ones.
     pose_a, pose_b : Pose or what ``Pose.of`` reads
         World poses of the bodies' frames.
-    within : float
+    within : float, optional
         Horizon, length: of bodies farther apart only that is proven, with the status FAR and a
         lower bound, which costs less.
 
@@ -42,7 +40,7 @@ def distance(
         No pose; a horizon that is not positive; a planar body with a spatial one or out of its
         plane; two half-spaces.
     """
-    horizon = inf if within == inf else positive(within, "within")
+    horizon = None if within is None else positive(within, "within")
     try:
         table = cold_table(a, b, horizon)
     except TypeError:

@@ -12,7 +12,6 @@ import functools
 import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import inf
 from typing import Any, ClassVar, TypeVar
 
 METADATA = "option"
@@ -263,11 +262,11 @@ class Law:
         "nothing but the law moves the witness points.",
         metavar="true|false",
     )
-    within: float = option(
-        inf,
-        Positive(infinite=True),
+    within: float | None = option(
+        None,
+        Positive(),
         "Horizon, in length: of bodies farther apart only that is proven, with the status FAR, "
-        "which costs less; inf if every frame is to find the distance.",
+        "which costs less; none if not given.",
         metavar="LENGTH",
         unit="length",
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import operator
-from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -177,7 +176,7 @@ def distances(
     *,
     warm: bool = False,
     workers: int = 1,
-    within: float = inf,
+    within: float | None = None,
 ) -> Distances:
     """The signed minimum distances of two bodies at n pairs of poses.
 
@@ -194,7 +193,7 @@ def distances(
         row before, as in ``Tracker.run``: several times as fast if the rows follow a motion.
     workers : int
         Threads that share cold rows. The answers are the same, to the last bit, for any number.
-    within : float
+    within : float, optional
         Horizon, length: of rows farther apart only that is proven, with the status FAR.
 
     Returns
@@ -229,12 +228,12 @@ def answered_rows(
     *,
     warm: bool = False,
     workers: int = 1,
-    within: float = inf,
+    within: float | None = None,
 ) -> Distances:
     """`distances`, without a warning."""
     whole_number(workers, "workers")
     check_pair(a, b)
-    horizon = inf if within == inf else positive(within, "within")
+    horizon = None if within is None else positive(within, "within")
     law = PredictorCorrector(within=horizon)
     tracker = Tracker(a, b, law=law) if yes_or_no(warm, "warm") else None
     planar = a.dimension == 2 or b.dimension == 2

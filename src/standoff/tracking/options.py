@@ -6,6 +6,7 @@ An option named ``depth`` goes into the slot ``O_DEPTH``, a choice as its place 
 from __future__ import annotations
 
 import functools
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from standoff.kernels.state import arrays as K
 from standoff.tracking.law_options import Law, OfFeedback, options_of
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw
 
-NUMBERS = {"deadline": NO_LIMIT}
+NUMBERS = {"deadline": NO_LIMIT, "within": inf}
 """What stands for an option that is not given."""
 
 GAINS = ("gain", "feedback")

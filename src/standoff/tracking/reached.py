@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import inf
 from typing import Any
 
 import numpy as np
@@ -115,7 +114,7 @@ def table_of(a: Body, b: Body, options: Array) -> AddressTable:
 
 
 @lru_cache(maxsize=PAIRS)
-def cold_table(a: Body, b: Body, within: float = inf) -> AddressTable:
+def cold_table(a: Body, b: Body, within: float | None = None) -> AddressTable:
     """Where two bodies lie, with the default law's options: for starts, which call no frame.
 
     `within` is the horizon, length.
@@ -126,5 +125,5 @@ def cold_table(a: Body, b: Body, within: float = inf) -> AddressTable:
         They cannot be a pair.
     """
     check_pair(a, b)
-    law = DEFAULT_LAW if within == inf else PredictorCorrector(within=within)
+    law = DEFAULT_LAW if within is None else PredictorCorrector(within=within)
     return table_of(a, b, resolved_options(law, ANY_TIME)[1])

@@ -3,29 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.numbers import number
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.entries import world as kernels
-from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.read_only import KeepsReadOnly
-from standoff.world.compound import Compound
-from standoff.world.packed import pieces_of
-from standoff.world.pair_answer import PairAnswer, far_block, swapped
+from standoff.world.model import Model
+from standoff.world.pair_answer import PairAnswer
 from standoff.world.pair_arrays import PairArrays
+from standoff.world.pair_rows import PairRows
 from standoff.world.state import WorldCounts, WorldState
-
-if TYPE_CHECKING:
-    from standoff.world.world import World
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class WorldAnswer(KeepsReadOnly):
@@ -46,11 +38,11 @@ class WorldAnswer(KeepsReadOnly):
     counts : WorldCounts
     """
 
-    __slots__ = ("_groups", "state", "world")
+    __slots__ = ("_rows", "model", "state")
 
-    def __init__(self, world: World, state: WorldState) -> None:
-        self.world, self.state = world, state
-        self._groups = _groups(state, int(world.search.pieces.first[-1]))
+    def __init__(self, model: Model, state: WorldState) -> None:
+        self.model, self.state = model, state
+        self._rows = PairRows(model, state)
 
     @property
     def time(self) -> float:
@@ -67,26 +59,26 @@ class WorldAnswer(KeepsReadOnly):
     @property
     def clearance(self) -> float:
         bounds = self.state.known[:, W.C_BOUND]
-        return min(float(bounds.min(initial=math.inf)), self.world.search.reach)
+        return min(float(bounds.min(initial=math.inf)), self.model.search.reach)
 
     @property
     def pairs(self) -> PairArrays:
         """All pairs within their horizon."""
-        return PairArrays(self, self._groups)
+        return PairArrays(self._rows)
 
     @property
     def closest(self) -> PairAnswer | None:
         """The nearest pair, or the deepest; None if no pair is within its horizon."""
-        if not len(self._groups):
+        rows = self._rows.nearest
+        if not len(rows):
             return None
-        distance = self.pairs.distance
-        return self.of_row(int(self._groups[int(np.argmin(distance))]))
+        return self._rows.answer(int(rows[int(np.argmin(self.pairs.distance))]))
 
     @property
     def below_margin(self) -> tuple[PairAnswer, ...]:
         """The pairs that are not proven to keep the margin that they were given."""
         found = []
-        rules = self.world.search.rules
+        rules = self.model.search.rules
         for answer, (i, j) in zip(self.pairs, self.pairs.bodies.tolist(), strict=True):
             margin = rules.margin(i, j)
             if margin > 0.0 and answer.lower_bound < margin:
@@ -95,13 +87,10 @@ class WorldAnswer(KeepsReadOnly):
 
     def __getitem__(self, names: tuple[str, str]) -> PairAnswer:
         i, j = self._pair(names)
-        first, last = min(i, j), max(i, j)
-        number = first * len(self.world.bodies) + last
-        square = int(self.world.search.pieces.first[-1]) ** 2
-        groups = self.state.ints[self._groups, W.I_KEY] // square
+        number, groups = self.model.pair_number(i, j), self._rows.groups(self._rows.nearest)
         at = int(np.searchsorted(groups, number))
         if at < len(groups) and groups[at] == number:
-            return self.of_row(int(self._groups[at]), turned=i > j)
+            return self._rows.answer(int(self._rows.nearest[at]), turned=i > j)
         return self._far(i, j)
 
     def minima(self, names: tuple[str, str], below: float = math.inf) -> tuple[PairAnswer, ...]:
@@ -115,55 +104,11 @@ class WorldAnswer(KeepsReadOnly):
         """
         below = below if below == math.inf else number(below, "below")
         i, j = self._pair(names)
-        key = min(i, j) * len(self.world.bodies) + max(i, j)
-        square = int(self.world.search.pieces.first[-1]) ** 2
         near = self.state.near
-        rows = near[self.state.ints[near, W.I_KEY] // square == key]
+        rows = near[self._rows.groups(near) == self.model.pair_number(i, j)]
         rows = rows[np.argsort(self.state.known[rows, W.C_UPPER], kind="stable")]
-        found = (self.of_row(int(row), turned=i > j, alone=True) for row in rows)
+        found = (self._rows.answer(int(row), turned=i > j, alone=True) for row in rows)
         return tuple(answer for answer in found if answer.distance < below)
-
-    def lower_bounds(self, rows: Ints) -> Array:
-        """Of pairs of bodies, by the rows of their nearest pieces: over all their pieces."""
-        keys = self.state.ints[:, W.I_KEY]
-        square = int(self.world.search.pieces.first[-1]) ** 2
-        if square == 1 or not len(rows):
-            alone: Array = self.state.known[rows, W.C_BOUND]
-            return alone
-        groups = keys // square
-        first = np.searchsorted(groups, groups[rows], "left")
-        least = np.minimum.reduceat(
-            self.state.known[:, W.C_BOUND], np.unique(np.searchsorted(groups, groups, "left"))
-        )
-        numbers = np.searchsorted(np.unique(groups), groups[first])
-        return least[numbers]
-
-    def of_row(self, row: int, turned: bool = False, alone: bool = False) -> PairAnswer:
-        """The answer in a row of the state's table; `turned`: of (B, A). The lower bound is that of
-        the bodies, or of the pair of pieces alone."""
-        ints = self.state.ints[row]
-        p, q = int(ints[W.I_A]), int(ints[W.I_B])
-        block = np.array(self.state.block(int(ints[W.I_ROW])))
-        if not alone:
-            block[K.LOWER_BOUND] = self.lower_bounds(np.array([row]))[0]
-        if turned:
-            p, q, block = q, p, swapped(block)
-        return self._made(p, q, block)
-
-    def _made(self, p: int, q: int, block: Array) -> PairAnswer:
-        parts = [self._piece(each) for each in (p, q)]
-        names, pieces, bodies, arms = zip(*parts, strict=True)
-        return PairAnswer(bodies, block, names, pieces, np.array(arms), self.time)
-
-    def _piece(self, p: int) -> tuple[str, str, Any, Array]:
-        """(name of the body, of the piece, the piece, from the body's origin to the piece's)."""
-        fixed = self.world.search.pieces
-        i = int(fixed.owners[p])
-        name, body = self.world.listed[i]
-        k = p - int(fixed.first[i])
-        piece = list(body.pieces)[k] if isinstance(body, Compound) else ""
-        arm = self.state.placed[p, W.P_SHIFT : W.P_SHIFT + 3] - self.state.poses[i, :3, 3]
-        return name, piece, pieces_of(body)[k].body, arm
 
     def _pair(self, names: Any) -> tuple[int, int]:
         """The numbers of two bodies whose pair counts.
@@ -176,8 +121,8 @@ class WorldAnswer(KeepsReadOnly):
             raise StandoffTypeError(
                 f"{shown(names)}: ask for a pair by two names, answer['a', 'b'].", "names", names
             )
-        i, j = (self.world.names.body(name, "pair") for name in names)
-        if not self.world.search.rules.counts(i, j):
+        i, j = (self.model.names.body(name, "pair") for name in names)
+        if not self.model.search.rules.counts(i, j):
             raise StandoffError(
                 f"The pair {names} does not count in this world: it is ignored, or both are fixed.",
                 "names",
@@ -187,11 +132,10 @@ class WorldAnswer(KeepsReadOnly):
 
     def _far(self, i: int, j: int) -> PairAnswer:
         """The answer of a pair that is beyond its horizon."""
-        search, state = self.world.search, self.state
+        search, state, square = self.model.search, self.state, self.model.most**2
         bound = kernels.apart_by_boxes(search.pieces[:], state.placed, i, j)
-        key = (min(i, j) * len(self.world.bodies) + max(i, j)) * int(search.pieces.first[-1]) ** 2
-        end = key + int(search.pieces.first[-1]) ** 2
-        first, last = np.searchsorted(state.ints[:, W.I_KEY], [key, end])
+        key = self.model.pair_number(i, j) * square
+        first, last = np.searchsorted(state.ints[:, W.I_KEY], [key, key + square])
         if first < last:
             known = float(state.known[first:last, W.C_BOUND].min())
             # pieces that are in no row are beyond the search's reach
@@ -200,19 +144,7 @@ class WorldAnswer(KeepsReadOnly):
             bound = max(bound, known if whole else min(known, search.reach))
         else:
             bound = max(bound, search.reach)
-        p, q = int(search.pieces.first[i]), int(search.pieces.first[j])
-        return self._made(p, q, far_block(bound))
+        return self._rows.far(i, j, bound)
 
     def __repr__(self) -> str:
         return f"<WorldAnswer: {len(self.pairs)} near pairs, clearance {self.clearance:.6g}>"
-
-
-def _groups(state: WorldState, most: int) -> Ints:
-    """Of each near pair of bodies the row of its nearest pieces, by the bodies' numbers."""
-    near = state.near
-    if most == 1 or not len(near):
-        return near
-    groups = state.ints[near, W.I_KEY] // most**2
-    order = np.lexsort((state.known[near, W.C_UPPER], groups))
-    first = np.flatnonzero(np.diff(groups[order], prepend=-1))
-    return near[order[first]]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,12 +16,10 @@ from standoff.world.broad_phase import (
     repadded,
     table_of,
 )
+from standoff.world.model import Model
 from standoff.world.narrow_phase import Asked, Moment, ask
 from standoff.world.poses import GivenPoses, mend_poses
 from standoff.world.state import Tree, WorldCounts, WorldState
-
-if TYPE_CHECKING:
-    from standoff.world.world import World
 
 Array = NDArray[np.float64]
 Twists = tuple[Array, bool]
@@ -31,7 +27,7 @@ Twists = tuple[Array, bool]
 NO_PAIRS = Table(np.empty((0, W.N_INTS), dtype=np.int64), np.empty((0, W.N_KNOWN)))
 
 
-def started_state(world: World, given: GivenPoses, twists: Twists) -> WorldState:
+def started_state(world: Model, given: GivenPoses, twists: Twists) -> WorldState:
     """The state of a first frame."""
     search = world.search
     nothing = empty_placed(len(search.pieces.owners))
@@ -48,7 +44,7 @@ def started_state(world: World, given: GivenPoses, twists: Twists) -> WorldState
 
 
 def next_state(
-    world: World, before: WorldState, given: GivenPoses, twists: Twists, dt: float, workers: int
+    world: Model, before: WorldState, given: GivenPoses, twists: Twists, dt: float, workers: int
 ) -> WorldState:
     """The state of the next frame."""
     search = world.search
@@ -70,12 +66,12 @@ def next_state(
 
 
 def _placed(
-    world: World, given: GivenPoses, tree: Tree, before: Array
+    world: Model, given: GivenPoses, tree: Tree, before: Array
 ) -> tuple[Placed, GivenPoses]:
     """Where the pieces are; poses that are only rounded are repaired."""
     frame, bad, _, _ = place(world.search, given.matrices, tree, before)
     if bad >= 0:
-        given = mend_poses(given, tuple(world.bodies))
+        given = mend_poses(given, [name for name, _ in world.listed])
         frame, bad, _, _ = place(world.search, given.matrices, tree, before)
     return frame, given
 
@@ -91,7 +87,7 @@ def _rested(before: WorldState, dt: float) -> WorldState:
 
 
 def _state(
-    world: World,
+    world: Model,
     given: GivenPoses,
     found: tuple[Placed, Tree, Table],
     asked: Asked,

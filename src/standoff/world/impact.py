@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError
@@ -14,10 +15,8 @@ from standoff.motion.moving import MotionLike, moving
 from standoff.motion.paths import Fixed, Offset
 from standoff.motion.pose import Pose
 from standoff.world.compound import Compound
+from standoff.world.model import Model
 from standoff.world.poses import check_names
-
-if TYPE_CHECKING:
-    from standoff.world.world import World
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ class WorldImpact:
 
 
 def first_impact(
-    world: World, paths: Mapping[str, MotionLike], duration: float, options: Mapping[str, Any]
+    world: Model, paths: Mapping[str, MotionLike], duration: float, options: Mapping[str, Any]
 ) -> WorldImpact:
     """See ``World.time_of_impact``: each pair is searched up to the earliest time found so far.
 
@@ -65,7 +64,7 @@ def first_impact(
     start = float(options.get("start", 0.0))
     found = WorldImpact(start + duration, ImpactStatus.NO_IMPACT, None, ("", ""), None, 0)
     searched = 0
-    for a, b in world.pairs():
+    for a, b in pairs_that_count(world):
         for piece_a, body_a, path_a in _pieces(world, a, given[a]):
             for piece_b, body_b, path_b in _pieces(world, b, given[b]):
                 left = found.time - start
@@ -83,9 +82,16 @@ def first_impact(
     return WorldImpact(found.time, found.status, found.names, found.pieces, found.impact, searched)
 
 
-def _pieces(world: World, name: str, path: Any) -> list[tuple[str, Body, Any]]:
+def pairs_that_count(world: Model) -> Iterator[tuple[str, str]]:
+    """The names of all pairs that count."""
+    for i, j in itertools.combinations(range(len(world.listed)), 2):
+        if world.search.rules.counts(i, j):
+            yield world.listed[i][0], world.listed[j][0]
+
+
+def _pieces(world: Model, name: str, path: Any) -> list[tuple[str, Body, Any]]:
     """(name, body, path) of each piece of a body."""
-    body = world.bodies[name]
+    body = world.listed[world.names.bodies[name]][1]
     if not isinstance(body, Compound):
         return [("", body, path)]
     return [(part, piece.body, Offset(path, piece.pose)) for part, piece in body.pieces.items()]

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.entries import world as kernels
+from standoff.kernels.entries import world_answers
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.tracking.threads import in_parts
@@ -130,7 +131,7 @@ def _answered(
 
     def some_of(first: int, end: int) -> None:
         part = first, end
-        kernels.answer(*read, table[:], (asked, steps), twists, part, done)
+        world_answers.answer(*read, table[:], (asked, steps), twists, part, done)
 
     in_parts(some_of, len(asking), moment.workers)
     if done.any():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.tracking.answers import proven, statuses
 from standoff.wording import counted
 from standoff.world.pair_answer import PairAnswer
-
-if TYPE_CHECKING:
-    from standoff.world.answer import WorldAnswer
+from standoff.world.pair_rows import PairRows
 
 Array = NDArray[np.float64]
 
@@ -37,28 +35,26 @@ class PairArrays(KeepsReadOnly):
         Time derivatives of the distances; nan where no twists were given.
     """
 
-    __slots__ = ("_answer", "_rows")
+    __slots__ = ("_all", "_rows")
 
-    def __init__(self, answer: WorldAnswer, rows: NDArray[np.int64]) -> None:
-        self._answer = answer
-        self._rows = rows  # in the state's table: of each pair of bodies the nearest pieces
+    def __init__(self, rows: PairRows) -> None:
+        self._all, self._rows = rows, rows.nearest
 
     def _column(self, slots: Any) -> Array:
-        state = self._answer.state
-        found: Array = state.column(self._rows, slots)
+        found: Array = self._all.state.column(self._rows, slots)
         found.flags.writeable = False
         return found
 
     @property
     def bodies(self) -> NDArray[np.int64]:
-        ints = self._answer.state.ints[self._rows]
-        owners = self._answer.world.search.pieces.owners
+        ints = self._all.state.ints[self._rows]
+        owners = self._all.model.search.pieces.owners
         return np.stack([owners[ints[:, W.I_A]], owners[ints[:, W.I_B]]], axis=1)
 
     @property
     def names(self) -> list[tuple[str, str]]:
         """The names of the two bodies of each pair."""
-        listed = self._answer.world.listed
+        listed = self._all.model.listed
         return [(listed[i][0], listed[j][0]) for i, j in self.bodies.tolist()]
 
     @property
@@ -67,7 +63,7 @@ class PairArrays(KeepsReadOnly):
 
     @property
     def lower_bound(self) -> Array:
-        return self._answer.lower_bounds(self._rows)
+        return self._all.lower_bounds(self._rows)
 
     @property
     def upper_bound(self) -> Array:
@@ -92,18 +88,18 @@ class PairArrays(KeepsReadOnly):
     @property
     def status(self) -> NDArray[np.object_]:
         """(n,) the status of each pair."""
-        return statuses(self._answer.state.ints[self._rows, W.I_STATUS].astype(float))
+        return statuses(self._all.state.ints[self._rows, W.I_STATUS].astype(float))
 
     @property
     def certified(self) -> NDArray[np.bool_]:
         """(n,) is the answer proven?"""
-        return proven(self._answer.state.ints[self._rows, W.I_STATUS].astype(float))
+        return proven(self._all.state.ints[self._rows, W.I_STATUS].astype(float))
 
     def __len__(self) -> int:
         return len(self._rows)
 
     def __getitem__(self, k: int) -> PairAnswer:
-        return self._answer.of_row(int(self._rows[k]))
+        return self._all.answer(int(self._rows[k]))
 
     def __iter__(self) -> Iterator[PairAnswer]:
         return (self[k] for k in range(len(self)))

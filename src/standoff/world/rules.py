@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -12,7 +13,7 @@ from standoff.checks.names import did_you_mean
 from standoff.checks.numbers import not_negative
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.world.compound import name_of
+from standoff.world.compound import Piece, name_of
 
 Ints = NDArray[np.int64]
 Pairs = Iterable[tuple[str, str]]
@@ -199,3 +200,22 @@ def _margins(
             found[key] = max(margin, found.get(key, 0.0))
     keys = sorted(found)
     return np.array(keys, dtype=np.int64), np.array([found[key] for key in keys], dtype=float)
+
+
+def check_half_spaces(
+    names: Sequence[str], pieces: Sequence[Sequence[Piece]], rules: Rules
+) -> None:
+    """Refuse two half-spaces that would be a pair.
+
+    Raises
+    ------
+    StandoffError
+    """
+    endless = [k for k, each in enumerate(pieces) if any(not p.body.bounded for p in each)]
+    for i, j in itertools.combinations(endless, 2):
+        if rules.counts(i, j):
+            raise StandoffError(
+                f"{names[i]!r} and {names[j]!r} are half-spaces: such a pair has no witness "
+                "points; fix both, or ignore the pair.",
+                "bodies",
+            )

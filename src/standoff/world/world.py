@@ -26,9 +26,11 @@ from standoff.world.answer import WorldAnswer
 from standoff.world.broad_phase import Search
 from standoff.world.compound import Compound, dimension_of, name_of
 from standoff.world.frame import next_state, started_state
-from standoff.world.packed import PackedLaws, packed_laws, packed_pieces, pieces_of
+from standoff.world.impact import WorldImpact, first_impact, pairs_that_count
+from standoff.world.model import Model
+from standoff.world.packed import packed_laws, packed_pieces, pieces_of
 from standoff.world.poses import GivenPoses, read_poses_of, read_twists_of
-from standoff.world.rules import Given, Names, packed_rules
+from standoff.world.rules import Given, Names, check_half_spaces, packed_rules
 from standoff.world.state import WorldState
 
 Array = NDArray[np.float64]
@@ -37,10 +39,7 @@ PosesLike = Any
 """World poses of the moving bodies: (n, 4, 4) in the world's order, a list of poses, or a mapping
 of names to poses."""
 
-HIDDEN = (
-    *("fixed_rows", "key", "laws", "listed", "moving_rows", "names", "poses_of_fixed", "search"),
-    "check_state",
-)
+HIDDEN = ("check_state", "model")
 
 
 @hides(*HIDDEN)
@@ -53,7 +52,7 @@ class World(KeepsReadOnly):
     ----------
     bodies : mapping of str to Body or Compound
         Spatial ones, or planar ones.
-    within : float
+    within : float, optional
         The horizon, length: of pairs that are farther apart only that is proven. Without one, the
         distances of all pairs are tracked.
     fixed : mapping of str to pose, optional
@@ -96,7 +95,7 @@ class World(KeepsReadOnly):
         self,
         bodies: Mapping[str, BodyLike],
         *,
-        within: float = math.inf,
+        within: float | None = None,
         fixed: Mapping[str, PoseLike] | None = None,
         groups: Mapping[str, Sequence[str]] | None = None,
         ignore: Iterable[tuple[str, str]] = (),
@@ -108,43 +107,52 @@ class World(KeepsReadOnly):
         dt: float = 1e-3,
     ) -> None:
         self.bodies = _checked_bodies(bodies)
-        self.names = Names(tuple(self.bodies), groups or {})
+        names = Names(tuple(self.bodies), groups or {})
         placed = dict(fixed or {})
         still = np.zeros(len(self.bodies), dtype=bool)
         for name in placed:
-            still[self.names.body(name, "fixed")] = True
-        self.fixed = tuple(name for name in self.bodies if name in placed)
-        self.moving = tuple(name for name in self.bodies if name not in placed)
-        self.moving_rows, self.fixed_rows = np.flatnonzero(~still), np.flatnonzero(still)
-        self.listed = tuple(self.bodies.items())
-        self.within = positive(within, "within", infinite=True)
-        self.minima = -math.inf if minima is None else not_negative(minima, "minima")
+            still[names.body(name, "fixed")] = True
+        self.within = positive(within, "within", infinite=True) if within is not None else math.inf
         self.dt, self.law = positive(dt, "dt"), checked_law(law)
-        self.poses_of_fixed = _fixed_poses(self.fixed, placed)
-        self._rules = Given(
+        given = Given(
             dict(groups or {}),
             tuple(ignore),
             None if only is None else tuple(only),
             dict(parents or {}),
             dict(margins or {}),
         )
-        rules = packed_rules(self.names, still, self._rules)
-        self.dimension = dimension_of(self._bodies_by_piece())
-        self._check_half_spaces(rules)
+        rules = packed_rules(names, still, given)
+        planar = dimension_of(_by_piece(self.bodies)) == 2
+        pieces = [pieces_of(body) for body in self.bodies.values()]
+        check_half_spaces(list(self.bodies), pieces, rules)
         reach = max([self.within, *rules.margins.tolist()])
-        pieces = packed_pieces([pieces_of(body) for body in self.bodies.values()])
-        self.search = Search(pieces, rules, self.within, reach)
-        self._compile()
-
-    def _compile(self) -> None:
-        """Have at hand, by address, what the frames read; load or compile what they call."""
-        # the mark of this world: states of another one have another
-        self.key = object()
-        self.laws: PackedLaws = packed_laws(
-            [piece for body in self.bodies.values() for piece in pieces_of(body)],
-            self.law,
-            self.dt,
+        still_names = tuple(name for name in self.bodies if name in placed)
+        # by address: what the frames read is at hand, and what they call is compiled
+        laws = packed_laws([piece for each in pieces for piece in each], self.law, self.dt)
+        self.model = Model(
+            key=object(),
+            listed=tuple(self.bodies.items()),
+            names=names,
+            moving=tuple(name for name in self.bodies if name not in placed),
+            fixed=still_names,
+            moving_rows=np.flatnonzero(~still),
+            fixed_rows=np.flatnonzero(still),
+            poses_of_fixed=_fixed_poses(still_names, placed),
+            planar=planar,
+            minima=-math.inf if minima is None else not_negative(minima, "minima"),
+            search=Search(packed_pieces(pieces), rules, self.within, reach),
+            laws=laws,
         )
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """Names of the bodies whose poses are given, in their order."""
+        return self.model.moving
+
+    @property
+    def fixed(self) -> tuple[str, ...]:
+        """Names of those that stay where they are."""
+        return self.model.fixed
 
     def __getstate__(self) -> Any:
         raise StandoffTypeError(
@@ -172,7 +180,7 @@ class World(KeepsReadOnly):
             A body's pose is missing, or none: its name is told; a planar body out of its plane.
         """
         given = self._read(poses)
-        return started_state(self, given, self._twists(twists, given))
+        return started_state(self.model, given, self._twists(twists, given))
 
     def step(
         self,
@@ -209,8 +217,8 @@ class World(KeepsReadOnly):
         workers = whole_number(workers, "workers")
         given = self._read(poses)
         h = self.dt if dt is None else positive(dt, "dt")
-        after = next_state(self, state, given, self._twists(twists, given), h, workers)
-        return after, WorldAnswer(self, after)
+        after = next_state(self.model, state, given, self._twists(twists, given), h, workers)
+        return after, WorldAnswer(self.model, after)
 
     def run(
         self, state: WorldState, poses: Any, twists: Any = None, *, workers: int = 1
@@ -240,15 +248,15 @@ class World(KeepsReadOnly):
     def answer(self, state: WorldState) -> WorldAnswer:
         """The answer at the frame of a state."""
         self.check_state(state)
-        return WorldAnswer(self, state)
+        return WorldAnswer(self.model, state)
 
     def distances(self, poses: PosesLike) -> WorldAnswer:
         """All near pairs at some poses by themselves, from nothing."""
-        return WorldAnswer(self, self.start(poses))
+        return WorldAnswer(self.model, self.start(poses))
 
     def time_of_impact(
         self, paths: Mapping[str, MotionLike], duration: float, **options: Any
-    ) -> Any:
+    ) -> WorldImpact:
         """The first time at which any pair comes to its clearance: never later than the true one.
 
         Parameters
@@ -264,16 +272,11 @@ class World(KeepsReadOnly):
         -------
         WorldImpact
         """
-        from standoff.world.impact import first_impact
-
-        return first_impact(self, paths, duration, options)
+        return first_impact(self.model, paths, duration, options)
 
     def pairs(self) -> Iterator[tuple[str, str]]:
         """The names of all pairs that count."""
-        names = list(self.bodies)
-        for i, j in itertools.combinations(range(len(names)), 2):
-            if self.search.rules.counts(i, j):
-                yield names[i], names[j]
+        return pairs_that_count(self.model)
 
     def check_state(self, state: WorldState) -> None:
         """Refuse what is not a state of this world.
@@ -286,46 +289,17 @@ class World(KeepsReadOnly):
             raise StandoffTypeError(
                 f"{shown(state)} is not a WorldState: get one from world.start.", "state", state
             )
-        if state.key is not self.key:
+        if state.key is not self.model.key:
             raise StandoffError(
                 "The state belongs to another world: begin with world.start.", "state", state
             )
 
     def _read(self, poses: Any) -> GivenPoses:
-        given = read_poses_of(poses, self.moving, self.dimension == 2)
-        if not self.fixed:
-            return given._replace(matrices=given.matrices.copy())
-        every = np.empty((len(self.bodies), 4, 4))
-        every[self.moving_rows] = given.matrices
-        every[self.fixed_rows] = self.poses_of_fixed
-        return given._replace(matrices=every)
+        given = read_poses_of(poses, self.moving, self.model.planar)
+        return given._replace(matrices=self.model.all_poses(given.matrices))
 
     def _twists(self, twists: Any, given: GivenPoses) -> tuple[Array, bool]:
-        return read_twists_of(twists, self.moving, given.matrices, self.moving_rows)
-
-    def _bodies_by_piece(self) -> dict[str, Body]:
-        found: dict[str, Body] = {}
-        for name, body in self.bodies.items():
-            if isinstance(body, Compound):
-                found |= {f"{name}.{part}": piece.body for part, piece in body.pieces.items()}
-            else:
-                found[name] = body
-        return found
-
-    def _check_half_spaces(self, rules: Any) -> None:
-        names = list(self.bodies)
-        endless = [
-            k
-            for k, body in enumerate(self.bodies.values())
-            if any(not piece.body.bounded for piece in pieces_of(body))
-        ]
-        for i, j in itertools.combinations(endless, 2):
-            if rules.counts(i, j):
-                raise StandoffError(
-                    f"{names[i]!r} and {names[j]!r} are half-spaces: such a pair has no witness "
-                    "points; fix both, or ignore the pair.",
-                    "bodies",
-                )
+        return read_twists_of(twists, self.moving, given.matrices, self.model.moving_rows)
 
     def __len__(self) -> int:
         return len(self.bodies)
@@ -357,6 +331,17 @@ def _checked_bodies(bodies: Any) -> dict[str, BodyLike]:
             )
         name_of(name)
     return dict(bodies)
+
+
+def _by_piece(bodies: Mapping[str, BodyLike]) -> dict[str, Body]:
+    """All pieces, by the names of bodies and pieces."""
+    found: dict[str, Body] = {}
+    for name, body in bodies.items():
+        if isinstance(body, Compound):
+            found |= {f"{name}.{part}": piece.body for part, piece in body.pieces.items()}
+        else:
+            found[name] = body
+    return found
 
 
 def _fixed_poses(names: Sequence[str], given: Mapping[str, PoseLike]) -> Array:

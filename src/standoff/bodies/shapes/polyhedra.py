@@ -2,32 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any, overload
 
 import numpy as np
 import scipy
 
-from standoff.bodies.body import Body
-from standoff.bodies.shapes.arguments import by_position, positive_numbers
-from standoff.bodies.tolerances import (
-    COPLANAR_FACETS,
-    FAR_OFF,
-    FLATTEST,
-    LEAST_CORE,
-    SAME_VERTEX,
-    THIN,
+from standoff.bodies.body import Body, made_body
+from standoff.bodies.hulls.build import (
+    facets,
+    hull,
+    middle_of,
+    recentred,
+    solid_body,
+    thin_error,
 )
-from standoff.bodies.topology import Edge, Face
+from standoff.bodies.hulls.outlines import Outlines
+from standoff.bodies.hulls.qhull import unit_of
+from standoff.bodies.shapes.arguments import by_position, positive_numbers
+from standoff.bodies.tolerances import FLATTEST, LEAST_CORE, SAME_VERTEX
 from standoff.checks.arrays import finite
-from standoff.checks.numbers import LEAST, magnitude_or_zero
+from standoff.checks.numbers import magnitude_or_zero
 from standoff.errors import BodyError, StandoffError
-from standoff.geometry.curves import Line
-from standoff.geometry.quadrics import Plane
 from standoff.geometry.validation import Array
-
-# A face's vertices, counterclockwise seen from outside, and its outward normal.
-Loop = tuple[list[int], Array]
 
 # The corners and outward normals of a box. Its vertices, edges and faces are numbered after them,
 # and its digest depends on the signs of the zeros.
@@ -42,6 +38,7 @@ NORMALS = np.array(
         [-0.0, -0.0, 1.0],
     ]
 )
+STARTS = np.arange(0, 25, 4)
 
 
 @overload
@@ -99,14 +96,26 @@ def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
             "thicker, or round it less."
         )
     points = 0.5 * core * CORNERS
-    planes = [(n, {int(k) for k in np.flatnonzero(CORNERS @ n > 0.0)}) for n in NORMALS]
-    return _solid(points, _loops(points, planes), rounding, "box")
+    return made_body("box", rounding, solid_body(points, _box_outlines(points), rounding))
+
+
+def _box_outlines(points: Array) -> Outlines:
+    """A box's loops: each face's corners by their angles about its middle, the first one's is 0."""
+    loops = []
+    for normal in NORMALS:
+        corners = np.flatnonzero(CORNERS @ normal > 0.0)
+        away = points[corners] - points[corners].mean(axis=0)
+        x = away[0] / np.linalg.norm(away[0])
+        angles = np.arctan2(away @ np.cross(normal, x), away @ x)
+        loops.append(corners[np.argsort(angles)])
+    return Outlines(np.concatenate(loops), STARTS, NORMALS)
 
 
 def polytope(vertices: Any, *, rounding: float = 0.0) -> Body:
     """The convex hull of points.
 
-    With a rounding it grows; ``rounded_polytope`` rounds it within its planes.
+    With a rounding it grows; ``rounded_polytope`` rounds it within its planes. It is
+    ``Body.from_points``, which can also leave out points to have fewer facets.
 
     Vertices may lie far from the origin, like those of a mesh in map coordinates. The hull is then
     computed relative to their middle, as ``body.check().notes`` says, and answers are as accurate
@@ -132,7 +141,7 @@ def polytope(vertices: Any, *, rounding: float = 0.0) -> Body:
     """
     points = finite(vertices, "vertices", (-1, 3))
     radius = magnitude_or_zero(rounding, "rounding")
-    return _polyhedron(points, points, _middle(points), radius, "polytope")
+    return made_body("polytope", radius, hull(points, radius))
 
 
 def rounded_polytope(vertices: Any, rounding: float) -> Body:
@@ -162,19 +171,29 @@ def rounded_polytope(vertices: Any, rounding: float) -> Body:
     """
     points = finite(vertices, "vertices", (-1, 3))
     rounding = magnitude_or_zero(rounding, "rounding")
-    middle = _middle(points)
-    local = points - middle
     if rounding == 0.0:
-        return _polyhedron(points, points, middle, 0.0, "rounded polytope")
-    unit = _unit(local)
-    facets = _facets(local)
-    normals = np.array([normal for _, normal in facets])
-    offsets = np.array([max(local[loop] @ normal) for loop, normal in facets])
+        return made_body("rounded polytope", 0.0, hull(points, 0.0))
+    middle = middle_of(points)
+    faces = facets(points - middle)
     try:
-        core = unit * _inner_vertices(normals, offsets / unit, rounding / unit, unit)
+        core = middle + _core(points - middle, faces, rounding)
+        packed = solid_body(core, facets(core - middle), rounding)
     except scipy.spatial.QhullError as error:
-        raise _thin(points) or BodyError(f"The core was not found: {_line(error)}") from error
-    return _polyhedron(points, middle + core, middle, rounding, "rounded polytope")
+        found = BodyError(f"The core was not found: {_line(error)}")
+        raise thin_error(points, "vertices") or found from error
+    except BodyError as error:
+        raise thin_error(points, "vertices") or error from error
+    return made_body("rounded polytope", rounding, recentred(packed, points, middle))
+
+
+def _core(points: Array, faces: Outlines, rounding: float) -> Array:
+    """The vertices of a polytope whose planes are moved inwards, (n, 3)."""
+    unit = unit_of(points, "vertices")
+    tops = np.maximum.reduceat(
+        np.einsum("ij,ij->i", points[faces.corners], faces.normals[faces.owners]),
+        faces.starts[:-1],
+    )
+    return unit * _inner_vertices(faces.normals, tops / unit, rounding / unit, unit)
 
 
 def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float) -> Array:
@@ -214,131 +233,6 @@ def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float
     return np.array(vertices)
 
 
-def _polyhedron(given: Array, points: Array, middle: Array, radius: float, name: str) -> Body:
-    """The hull of points relative to a middle; messages and notes are about the given points."""
-    try:
-        body = _solid(points, _facets(points - middle), radius, name)
-    except BodyError as error:
-        # Points that Qhull finds in one plane are reported as such.
-        flat = points is given and isinstance(
-            error.__cause__, scipy.spatial.QhullError | ValueError
-        )
-        thin = None if flat else _thin(given)
-        if thin is None:
-            raise
-        raise thin from error
-    if not middle.any():
-        return body
-    away = float(np.abs(given).max()) / float(np.ptp(given, axis=0).max())
-    note = f"recentred: the hull is computed about {middle}: the origin is {away:.3g} extents away"
-    return replace(body, report=replace(body.report, notes=(note, *body.report.notes)))
-
-
-def _middle(points: Array) -> Array:
-    """The point about which the hull is computed: the middle of distant points, else the origin."""
-    extent = float(np.ptp(points, axis=0).max(initial=0.0)) if len(points) else 0.0
-    if extent == 0.0 or float(np.abs(points).max()) <= FAR_OFF * extent:
-        return np.zeros(3)
-    return np.asarray(0.5 * (points.min(axis=0) + points.max(axis=0)))
-
-
-def _thin(points: Array) -> BodyError | None:
-    """The error for a polytope that cannot be built, if the reason is that it is thin."""
-    axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
-    extent, thickness = (float(np.ptp(points @ axis)) for axis in (axes[0], axes[-1]))
-    if thickness >= THIN * extent:
-        return None
-    return BodyError(
-        f"The {len(points)} vertices are too nearly in one plane: {thickness:.3g} thick on an "
-        f"extent of {extent:.3g}, so that its facets cannot be distinguished. Make it thicker than "
-        f"{THIN * extent:.1g}, or use a flat body, so.shapes.polygon."
-    )
-
-
 def _line(error: Exception) -> str:
     """The first line of Qhull's message, without the tables that follow."""
     return str(error).strip().splitlines()[0]
-
-
-def _solid(points: Array, loops: list[Loop], radius: float, name: str) -> Body:
-    used = sorted({k for loop, _ in loops for k in loop})
-    number = {k: i for i, k in enumerate(used)}
-    edge_number: dict[tuple[int, int], int] = {}
-    edges: list[Edge] = []
-    faces = []
-    for loop, normal in loops:
-        coedges = []
-        for a, b in zip(loop, loop[1:] + loop[:1], strict=True):
-            key = (min(a, b), max(a, b))
-            if key not in edge_number:
-                edge_number[key] = len(edges)
-                edges.append(Edge(Line(points[a], points[b]), number[a], number[b]))
-            edge = edges[edge_number[key]]
-            coedges.append((edge_number[key], 1 if edge.first == number[a] else -1))
-        centre = points[loop].mean(axis=0)
-        along = points[loop[1]] - points[loop[0]]
-        along = along / np.linalg.norm(along)
-        faces.append(Face((Plane.through(centre, along, np.cross(normal, along)),), tuple(coedges)))
-    return Body.from_brep(points[used], edges, faces, rounding=radius, name=name)
-
-
-def _unit(points: Array) -> float:
-    """A power of two near the points' extent, since Qhull's and linprog's tolerances are absolute.
-
-    Division by it does not change any digit.
-    """
-    extent = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
-    if 0.0 < extent < LEAST:
-        raise BodyError(
-            f"The {len(points)} vertices extend over {extent:.3g}, below {LEAST:g}; choose a "
-            "smaller unit."
-        )
-    return 2.0 ** round(np.log2(extent)) if extent > 0.0 else 1.0
-
-
-def _hull(points: Array) -> Any:
-    try:
-        return scipy.spatial.ConvexHull(points / _unit(points))
-    except (scipy.spatial.QhullError, ValueError) as error:
-        raise BodyError(
-            f"The {len(points)} vertices span no volume (flat polytope): give at least four "
-            "points that are not in one plane."
-        ) from error
-
-
-def _facets(points: Array) -> list[Loop]:
-    """The faces of the points' hull; facets in one plane become one face."""
-    hull = _hull(points)
-    group = -np.ones(len(hull.simplices), dtype=int)
-    planes: list[tuple[Array, set[int]]] = []
-    for seed in range(len(group)):
-        if group[seed] >= 0:
-            continue
-        normal = hull.equations[seed, :3]
-        members: set[int] = set()
-        front = [seed]
-        group[seed] = len(planes)
-        while front:  # spread to neighbours in the seed's plane
-            k = front.pop()
-            members.update(int(v) for v in hull.simplices[k])
-            for m in hull.neighbors[k]:
-                if group[m] < 0 and np.abs(hull.equations[m, :3] - normal).max() < COPLANAR_FACETS:
-                    group[m] = len(planes)
-                    front.append(int(m))
-        planes.append((normal, members))
-    return _loops(points, planes)
-
-
-def _loops(points: Array, planes: list[tuple[Array, set[int]]]) -> list[Loop]:
-    """Loops around the vertices of planes, each given by its outward normal and its vertices."""
-    loops = []
-    for normal, members in planes:
-        corner = sorted(members)
-        centre = points[corner].mean(axis=0)
-        first = points[corner[0]] - centre
-        x = first / np.linalg.norm(first)
-        y = np.cross(normal, x)
-        rel = points[corner] - centre
-        order = np.argsort(np.arctan2(rel @ y, rel @ x))
-        loops.append(([corner[k] for k in order], normal))
-    return loops

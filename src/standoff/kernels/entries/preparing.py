@@ -23,6 +23,7 @@ MODULES = (
     "standoff.kernels.entries.simulation",
     "standoff.kernels.entries.servo",
     "standoff.kernels.entries.world",
+    "standoff.kernels.entries.world_answers",
 )
 """The modules that have entries."""
 

@@ -1,0 +1,69 @@
+"""What of a world does not change: bodies, rules, and what its frames read."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.world.broad_phase import Search
+from standoff.world.compound import Compound
+from standoff.world.packed import PackedLaws
+from standoff.world.rules import Names
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class Model(NamedTuple):
+    """A world's data.
+
+    Attributes
+    ----------
+    key : object
+        The mark of this world: its states have the same.
+    listed : tuple of (str, Body or Compound)
+        All bodies with their names, in order.
+    names : Names
+    moving, fixed : tuple of str
+    moving_rows, fixed_rows : arrays
+        Their numbers.
+    poses_of_fixed : (n, 4, 4) array
+    planar : bool
+    minima : float
+        All minima below it are asked, length; -inf for the nearest alone.
+    search : Search
+    laws : PackedLaws
+    """
+
+    key: Any
+    listed: tuple[tuple[str, Body | Compound], ...]
+    names: Names
+    moving: tuple[str, ...]
+    fixed: tuple[str, ...]
+    moving_rows: Ints
+    fixed_rows: Ints
+    poses_of_fixed: Array
+    planar: bool
+    minima: float
+    search: Search
+    laws: PackedLaws
+
+    @property
+    def most(self) -> int:
+        """How many pieces a body has at most."""
+        return int(self.search.pieces.first[-1])
+
+    def pair_number(self, i: int, j: int) -> int:
+        """The number of a pair of bodies, as in the keys of the table of pairs."""
+        return min(i, j) * len(self.listed) + max(i, j)
+
+    def all_poses(self, moving: Array) -> Array:
+        """Poses of all bodies, of those that move; a copy."""
+        if not self.fixed:
+            return moving.copy()
+        every = np.empty((len(self.listed), 4, 4))
+        every[self.moving_rows], every[self.fixed_rows] = moving, self.poses_of_fixed
+        return every

@@ -1,0 +1,94 @@
+"""The pairs of a world in one frame, by their rows in the state's table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels.state import arrays as K
+from standoff.kernels.world import arrays as W
+from standoff.read_only import KeepsReadOnly
+from standoff.world.compound import Compound
+from standoff.world.model import Model
+from standoff.world.packed import pieces_of
+from standoff.world.pair_answer import PairAnswer, far_block, swapped
+from standoff.world.state import WorldState
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class PairRows(KeepsReadOnly):
+    """A state with its world's data: answers of single rows, and bounds over all pieces.
+
+    Attributes
+    ----------
+    model : Model
+    state : WorldState
+    nearest : (n,) array
+        Of each near pair of bodies the row of its nearest pieces, by the bodies' numbers.
+    """
+
+    __slots__ = ("model", "nearest", "state")
+
+    def __init__(self, model: Model, state: WorldState) -> None:
+        self.model, self.state = model, state
+        self.nearest = _nearest(state, model.most)
+
+    def groups(self, rows: Ints) -> Ints:
+        """The numbers of the pairs of bodies in some rows."""
+        found: Ints = self.state.ints[rows, W.I_KEY] // self.model.most**2
+        return found
+
+    def lower_bounds(self, rows: Ints) -> Array:
+        """Of the pairs of bodies in some rows: over all their pieces."""
+        bounds: Array = self.state.known[:, W.C_BOUND]
+        if self.model.most == 1 or not len(rows):
+            return np.asarray(bounds[rows])
+        groups = self.state.ints[:, W.I_KEY] // self.model.most**2
+        first = np.flatnonzero(np.diff(groups, prepend=-1))
+        least = np.minimum.reduceat(bounds, first)
+        return np.asarray(least[np.searchsorted(groups[first], groups[rows])])
+
+    def answer(self, row: int, turned: bool = False, alone: bool = False) -> PairAnswer:
+        """The answer in a row; `turned`: of (B, A). The lower bound is that of the bodies, or of
+        the pair of pieces alone."""
+        ints = self.state.ints[row]
+        p, q = int(ints[W.I_A]), int(ints[W.I_B])
+        block = np.array(self.state.block(int(ints[W.I_ROW])))
+        if not alone:
+            block[K.LOWER_BOUND] = self.lower_bounds(np.array([row]))[0]
+        if turned:
+            p, q, block = q, p, swapped(block)
+        return self._made(p, q, block)
+
+    def far(self, i: int, j: int, bound: float) -> PairAnswer:
+        """The answer of a pair of bodies of which only a bound is known."""
+        first = self.model.search.pieces.first
+        return self._made(int(first[i]), int(first[j]), far_block(bound))
+
+    def _made(self, p: int, q: int, block: Array) -> PairAnswer:
+        names, pieces, bodies, arms = zip(*(self._piece(each) for each in (p, q)), strict=True)
+        return PairAnswer(bodies, block, names, pieces, np.array(arms), self.state.time)
+
+    def _piece(self, p: int) -> tuple[str, str, Any, Array]:
+        """(name of the body, of the piece, the piece, from the body's origin to the piece's)."""
+        fixed = self.model.search.pieces
+        i = int(fixed.owners[p])
+        name, body = self.model.listed[i]
+        k = p - int(fixed.first[i])
+        piece = list(body.pieces)[k] if isinstance(body, Compound) else ""
+        arm = self.state.placed[p, W.P_SHIFT : W.P_SHIFT + 3] - self.state.poses[i, :3, 3]
+        return name, piece, pieces_of(body)[k].body, arm
+
+
+def _nearest(state: WorldState, most: int) -> Ints:
+    near = state.near
+    if most == 1 or not len(near):
+        return near
+    groups = state.ints[near, W.I_KEY] // most**2
+    order = np.lexsort((state.known[near, W.C_UPPER], groups))
+    first = np.flatnonzero(np.diff(groups[order], prepend=-1))
+    return np.asarray(near[order[first]], dtype=np.int64)
