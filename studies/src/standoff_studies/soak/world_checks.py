@@ -7,9 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-import standoff as so
 from standoff.geometry.validation import Array
-from standoff.kernels.state import arrays as K
 from standoff.kernels.world.pairs import KEPT_BEYOND
 from standoff.tracking.status import Status
 from standoff.world.answer import WorldAnswer
@@ -155,7 +153,10 @@ class _Checks:
                 continue
             found.near[f, at] = True
             found.distance[f, at] = answer.pairs.distance
-            found.lower[f, at], found.upper[f, at] = answer.pairs.lower_bound, answer.pairs.upper_bound
+            found.lower[f, at], found.upper[f, at] = (
+                answer.pairs.lower_bound,
+                answer.pairs.upper_bound,
+            )
             found.status[f, at] = [one.value for one in answer.pairs.status]
             for k in np.flatnonzero(~found.near[f]).tolist():
                 one = answer[pairs[k]]
@@ -231,7 +232,9 @@ class _Checks:
                 i, j = self.chapter.counted[k]
                 one = answer[self.names[i], self.names[j]]
                 if one.distance != told.distance[f, k]:
-                    self.fail("one pair and its row differ", f, one.distance, told.distance[f, k], k)
+                    self.fail(
+                        "one pair and its row differ", f, one.distance, told.distance[f, k], k
+                    )
                 at = truth.first[k] + self._piece(i, j, one.pieces)
                 wanted = each[f, truth.first[k] : ends[k]].min()
                 slack = truth.gap[f, at] + PROVEN * max(0.0, -wanted)
