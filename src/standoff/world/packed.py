@@ -74,6 +74,7 @@ def _facts(body: Body) -> Array:
     """A piece's row without its placement."""
     row = np.zeros(W.N_FACT)
     row[W.F_RADIUS] = body.reals[L.RADIUS] + body.reals[L.SLACK]
+    row[W.F_PLANAR] = 1.0 if body.dimension == 2 else 0.0
     if not body.bounded:
         row[W.F_PLANE] = 1.0
         normal, offset = outer_plane(body)

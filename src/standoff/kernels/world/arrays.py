@@ -15,7 +15,8 @@ F_REACH = 20  # of the ball about the centre that holds the core
 F_PLANE = 21  # 1 for a half-space
 F_NORMAL = 22  # its outward normal, piece's frame
 F_OFFSET = 25  # along it
-N_FACT = 26
+F_PLANAR = 26  # 1 for a planar body: it overlaps another in the plane alone
+N_FACT = 27
 
 # Where a piece is in one frame: reals.
 P_ROTATION = 0  # world pose: R (9, row-major), p (3)

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.state.arrays import CONVERGED, GLOBAL
-from standoff.kernels.tolerances import EPS
+from standoff.kernels.tolerances import EPS, FARTHEST
 from standoff.kernels.world.arrays import (
     C_BOUND,
     C_HORIZON,
@@ -146,6 +146,8 @@ def renew_bounds(pieces, pairs, k):
     p, q = ints[I_A], ints[I_B]
     travel = travel_of(pieces, p, q)
     way = travel - known[C_TRAVEL]
+    if travel >= FARTHEST:  # a half-space has turned: in such a sum all other ways are lost
+        way = 0.0 if pieces.still[p] != 0 and pieces.still[q] != 0 else FARTHEST
     if way > 0.0:
         way += 4.0 * EPS * travel
         boxes = apart(

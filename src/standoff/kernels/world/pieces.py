@@ -13,6 +13,7 @@ from standoff.kernels.world.arrays import (
     F_NORMAL,
     F_OFFSET,
     F_PLACED,
+    F_PLANAR,
     F_PLANE,
     F_RADIUS,
     F_REACH,
@@ -185,7 +186,8 @@ def boxes_apart(a, fact_a, b, fact_b):
         reach = support_of(a, fact_a, n) + support_of(b, fact_b, n)
         along = length - reach - BOUND_ROUNDINGS * EPS * (length + reach)
     squares, deepest = 0.0, -inf
-    for i in range(3):
+    # planar bodies lie in z = 0: there the boxes' thickness is no depth
+    for i in range(2 if fact_a[F_PLANAR] != 0.0 else 3):
         gap = max(b[P_LOW + i] - a[P_HIGH + i], a[P_LOW + i] - b[P_HIGH + i])
         deepest = max(deepest, gap)
         squares += gap * gap if gap > 0.0 else 0.0

@@ -17,6 +17,7 @@ from standoff_studies.soak.ledger import NAME, Ledger
 from standoff_studies.soak.processes import Done, Tell, soak
 from standoff_studies.soak.reading import written
 from standoff_studies.soak.shapes import missing_library
+from standoff_studies.soak.worlds import run_worlds
 
 if TYPE_CHECKING:
     from standoff_studies.soak.options import SoakOptions
@@ -53,6 +54,10 @@ def run_soak(command: SoakOptions) -> int:
         raise CommandError(f"--seed {command.seed}: give 0 or more")
     if command.certificates is not None:
         return run_certificates(command.certificates, command.seed, command.output, command.json)
+    if command.worlds is not None:
+        return run_worlds(
+            command.worlds, command.seed, command.frames, command.output, command.json
+        )
     ledger = _ledger(command)
     started, before = time.perf_counter(), ledger.pairs_done()
     try:
@@ -141,6 +146,8 @@ def _told(facts: Facts) -> str:
             f"round {facts['round']['number']} of the adversary failed: {facts['what']} "
             f"({facts['value']} where {facts['allowed']} is allowed)"
         )
+    if "world" in facts:
+        return f"world {facts['world']['number']} failed: {facts['what']}"
     if "case" not in facts:
         last = str(facts["what"]).strip().splitlines()[-1]
         return f"pair {facts['number']} failed: {last}"
@@ -165,6 +172,11 @@ def _replay(file: Path) -> int:
         tell(f"now the round fails: {miss.what} ({miss.value} where {miss.allowed} is allowed)")
     elif "round" in facts:
         tell("now no check of the round fails")
+    elif again.world is not None:
+        what, frame = again.world.what, again.world.frame
+        tell(f"now the world fails at frame {frame}: {what} ({again.world.value})")
+    elif "world" in facts:
+        tell("now no check of the world fails")
     elif again.failure is not None:
         fault, query = again.failure.fault, "cold " if again.failure.cold else ""
         tell(

@@ -24,10 +24,14 @@ from standoff_studies.soak.motions import Frames
 from standoff_studies.soak.reading import entry, mapping, number, numbers, read_facts, text
 from standoff_studies.soak.running import Failure, run_case, start
 from standoff_studies.soak.shapes import Made, made
+from standoff_studies.soak.world_checks import WorldFault, run_world
 
 Facts = dict[str, Any]
 
 KIND = "standoff soak failure"
+
+MOST_TOLD = 20
+"""Faults of a world that its file lists."""
 
 
 class Replayed(NamedTuple):
@@ -41,11 +45,14 @@ class Replayed(NamedTuple):
         Of the single step, from the state in the file.
     breach : Breach or None
         Of the adversary's round, rerun.
+    world : WorldFault or None
+        Of the drawn world, rerun.
     """
 
     failure: Failure | None
     step: Fault | None
     breach: Breach | None = None
+    world: WorldFault | None = None
 
 
 def failure_facts(failure: Failure) -> Facts:
@@ -70,6 +77,15 @@ def breach_facts(breach: Breach) -> Facts:
         "round": {"seed": breach.seed, "number": breach.number, "cases": breach.cases},
         "asked": miss.case,
         "about": _plain(breach.facts),
+    }
+
+
+def world_facts(seed: int, number: int, frames: int, faults: list[WorldFault]) -> Facts:
+    """Return what failed in a drawn world as plain data: seed and number repeat it."""
+    first = faults[0]
+    return _told(first.what, first.value, first.allowed) | {
+        "world": {"seed": seed, "number": number, "frames": frames},
+        "faults": [_plain(fault._asdict()) for fault in faults[:MOST_TOLD]],
     }
 
 
@@ -155,9 +171,10 @@ def read_failure(file: Path) -> Facts:
             number(entry(facts, name), f"'{name}'")
         whole_number(entry(facts, "asked"), "'asked'", 0)
         return facts
-    if "case" not in facts:
+    if "world" in facts or "case" not in facts:
+        known = mapping(facts["world"], "'world'") if "world" in facts else facts
         for name, least in (("seed", 0), ("number", 0), ("frames", 1)):
-            whole_number(entry(facts, name), f"'{name}'", least)
+            whole_number(entry(known, name), f"'{name}'", least)
         return facts
     case = mapping(facts["case"], "'case'")
     for name, least in (("seed", 0), ("number", 0), ("frames", 1)):
@@ -193,6 +210,9 @@ def replay(facts: Facts) -> Replayed:
     if "round" in facts:
         _, breaches = run_round(**{k: facts["round"][k] for k in ("seed", "number", "cases")})
         return Replayed(None, None, breaches[0] if breaches else None)
+    if "world" in facts:
+        _, faults = run_world(**{k: facts["world"][k] for k in ("seed", "number", "frames")})
+        return Replayed(None, None, None, faults[0] if faults else None)
     if "case" not in facts:
         from standoff_studies.soak.cases import draw_case
 

@@ -33,6 +33,8 @@ class SoakOptions:
     certificates: Annotated[int | None, arg(metavar="N", help_behavior_hint="")] = None
     """Only ask the certificate by itself, in about N cases of known distance, and list every check
     that fails."""
+    worlds: Annotated[int | None, arg(metavar="N", help_behavior_hint="")] = None
+    """Only worlds of many bodies: N of them, each of M frames, all of whose pairs are judged."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print the ledger as JSON."""
 
@@ -44,6 +46,8 @@ class SoakOptions:
             return f"running the pair of {shown(self.replay)} again"
         if self.certificates is not None:
             return f"asking the certificate by itself in {self.certificates:,} cases"
+        if self.worlds is not None:
+            return f"judging all pairs of {self.worlds:,} worlds, each {self.frames:,} frames"
         return (
             f"tracking and checking random pairs up to {self.pairs:,}, each "
             f"{self.frames:,} frames, into {shown(self.output)}"
