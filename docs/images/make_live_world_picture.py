@@ -1,6 +1,7 @@
 """Take docs/images/live-world.png: the live page of examples/shelves.toml in Chromium.
 
-Run: python docs/images/make_live_world_picture.py [FILE]. Needs the extra `view`, playwright and Chromium.
+Run: python docs/images/make_live_world_picture.py [FILE]. Needs the extra `view`, playwright and
+Chromium.
 """
 
 import shutil

@@ -76,7 +76,7 @@ class WorldPicture(Aimable):
         self.sizes = np.array([body.size for body in self._bodies])
         usual = self.sizes[self._bounded]
         self.size = float(np.median(usual)) if len(usual) else float(self.sizes.max())
-        self._still = world.fixed_rows.tolist()
+        self._still = world.model.fixed_rows.tolist()
         self._placed = np.full((len(world), 4, 4), np.nan)
         self._pairs = PairLines(scene)
         self._closest = AnswerNodes(scene, self.size)

@@ -81,7 +81,7 @@ class Chapter(NamedTuple):
 class Cast(NamedTuple):
     """The bodies that may take part, and how they are placed at first."""
 
-    bodies: list[so.Body | so.Compound]
+    bodies: list[so.Body | so.world.Compound]
     parts: list[list[Part]]
     size: float
     poses: Array
@@ -96,7 +96,7 @@ def draw_world(seed: int, number: int, frames: int) -> list[Chapter]:
     count = int(rng.integers(1, 4)) if frames >= 9 else 1
     lengths = np.diff(np.linspace(0, frames, count + 1).astype(int)).tolist()
     poses = cast.poses
-    chapters = []
+    chapters: list[Chapter] = []
     for length in lengths:
         playing = np.flatnonzero(rng.random(len(cast.bodies)) < 0.85) if chapters else None
         if playing is None or len(playing) < FEWEST:
@@ -173,7 +173,7 @@ def _drawn_parts(rng: Rng, drawer: list[Made], planar: bool) -> list[Part]:
     return found
 
 
-def _body(parts: list[Part]) -> so.Body | so.Compound:
+def _body(parts: list[Part]) -> so.Body | so.world.Compound:
     if len(parts) == 1:
         return parts[0].made.body
     return so.compound(

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from standoff.cli.terminal import tell
 from standoff.world import World, WorldAnswer
 
 Array = NDArray[np.float64]
@@ -174,7 +175,7 @@ def run(n: int, frames: int, every: int, seed: int) -> Counts:
             counts = check(answer, pairs, true_distances(bodies, kind, pairs, poses), counts)
         if time.monotonic() - told > 30.0:
             told = time.monotonic()
-            print(f"frame {frame + 1} of {frames}: {counts}, {answer.counts}", flush=True)
+            tell(f"frame {frame + 1} of {frames}: {counts}, {answer.counts}")
     return counts
 
 
@@ -185,7 +186,7 @@ def main() -> int:
         parser.add_argument(f"--{name}", type=int, default=usual)
     given = parser.parse_args()
     counts = run(given.bodies, given.frames, given.every, given.seed)
-    print(
+    tell(
         f"{counts.frames} frames of {given.bodies} bodies: {counts.near} near pairs, "
         f"{counts.asked} asked; {counts.missed} missed, {counts.wrong} wrong, clearance "
         f"{counts.above} times above the truth"

@@ -121,11 +121,11 @@ class _Checks:
         self.number = {i * n + j: k for k, (i, j) in enumerate(chapter.counted.tolist())}
         self.faults: list[WorldFault] = []
 
-    def fail(self, what: str, frame: int, value: float, allowed: float, group: int = -1) -> None:
+    def fail(self, what: str, frame: int, value: Any, allowed: Any, group: int = -1) -> None:
         pair = (self.names[k] for k in self.chapter.counted[group]) if group >= 0 else ()
         self.faults.append(WorldFault(0, frame, tuple(pair), what, float(value), float(allowed)))
 
-    def expect(self, what: str, value: Array, allowed: Array, where: Array | bool = True) -> None:
+    def expect(self, what: str, value: Any, allowed: Any, where: Any = True) -> None:
         """Note the first frame and pair, (m, g), where a value is above what is allowed."""
         wrong = np.argwhere(~(value <= allowed) & where)
         if len(wrong):
