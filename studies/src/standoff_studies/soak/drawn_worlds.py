@@ -96,7 +96,7 @@ def draw_world(seed: int, number: int, frames: int) -> list[Chapter]:
     count = int(rng.integers(1, 4)) if frames >= 9 else 1
     lengths = np.diff(np.linspace(0, frames, count + 1).astype(int)).tolist()
     poses = cast.poses
-    chapters = []
+    chapters: list[Chapter] = []
     for length in lengths:
         playing = np.flatnonzero(rng.random(len(cast.bodies)) < 0.85) if chapters else None
         if playing is None or len(playing) < FEWEST:

@@ -125,7 +125,7 @@ class _Checks:
         pair = (self.names[k] for k in self.chapter.counted[group]) if group >= 0 else ()
         self.faults.append(WorldFault(0, frame, tuple(pair), what, float(value), float(allowed)))
 
-    def expect(self, what: str, value: Array, allowed: Array, where: Array | bool = True) -> None:
+    def expect(self, what: str, value: Array, allowed: Array, where: Any = True) -> None:
         """Note the first frame and pair, (m, g), where a value is above what is allowed."""
         wrong = np.argwhere(~(value <= allowed) & where)
         if len(wrong):
@@ -210,7 +210,7 @@ class _Checks:
             allowed = gap + PROVEN * np.maximum(0.0, -np.minimum(least, told.distance))
         self.expect("the distance is not that of a query", off, allowed, told.near & proven)
         numbers = np.isfinite(told.distance) & ~np.isnan(told.lower)
-        self.expect("a number that is none", 1.0 - numbers, 0.0 * gap, told.near)
+        self.expect("a number that is none", np.where(numbers, 0.0, 1.0), 0.0 * gap, told.near)
 
     def nearest(self, truth: Truth, told: Told) -> None:
         """`closest` is the least of the listed, and the pieces named are the nearest."""
@@ -287,7 +287,7 @@ class _Checks:
             rows = sum(len(page) for page in state.pages)
             if rows > 2 * open_:
                 self.fail("rows kept that no pair has", f, rows, 2 * open_)
-            found = np.count_nonzero(away[f] - PADDED_PART * both <= 1.01 * reach)
+            found = int(np.count_nonzero(away[f] - PADDED_PART * both <= 1.01 * reach))
             # a pair goes when one of its pieces leaves its padded box, at the latest
             if f == 0 and table > found:
                 self.fail("more pairs in the table than near", f, table, found)

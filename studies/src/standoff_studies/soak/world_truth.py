@@ -115,7 +115,9 @@ def _extent(part: Part) -> Extent:
 
 def bounds_of(chapter: Chapter, pieces: Pieces) -> Truth:
     """Bounds by support functions, of all pairs of pieces of the pairs that count."""
-    first, a, b = [], [], []
+    first: list[int] = []
+    a: list[int] = []
+    b: list[int] = []
     for i, j in chapter.counted.tolist():
         first.append(len(a))
         for p in np.flatnonzero(pieces.owners == i).tolist():
