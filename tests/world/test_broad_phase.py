@@ -149,3 +149,25 @@ def test_pairs_stay_found_as_pieces_leave_their_boxes(rng: np.random.Generator) 
         assert answer.pairs.names == fresh.pairs.names
         assert answer.pairs.distance == pytest.approx(fresh.pairs.distance, abs=1e-9)
     assert refits > 5
+
+
+def test_a_half_space_that_has_turned_hides_no_other_motion() -> None:
+    world = so.World({"plane": so.shapes.halfspace(), "ball": so.shapes.sphere(0.5)}, within=0.5)
+    poses = np.tile(np.eye(4), (2, 1, 1))
+    poses[1, 2, 3] = 10.0
+    state = world.start(poses)
+    poses[0, :3, :3] = so.Pose.exp((0.01, 0.0, 0.0)).rotation
+    state, _ = world.step(state, poses)
+    poses[1, 2, 3] = 0.4
+    state, answer = world.step(state, poses)
+    assert answer["plane", "ball"].distance < 0.0
+
+
+def test_planar_bodies_overlap_in_the_plane_alone() -> None:
+    disc = so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (0.5, 0), (0, 0.5))])
+    world = so.World({"a": disc, "two": so.compound({"near": disc, "off": disc})}, within=0.5)
+    poses = np.tile(np.eye(4), (2, 1, 1))
+    poses[1, 0, 3] = 0.6
+    state = world.start(poses)
+    poses[1, 0, 3] = 0.59
+    assert world.step(state, poses)[1]["a", "two"].lower_bound <= -0.41 + 1e-9
