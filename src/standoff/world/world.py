@@ -108,54 +108,44 @@ class World(KeepsReadOnly):
         dt: float = 1e-3,
     ) -> None:
         self.bodies = _checked_bodies(bodies)
-        self._made: dict[str, Any] = {
-            "bodies": self.bodies,
-            "within": within,
-            "fixed": fixed,
-            "groups": groups,
-            "ignore": tuple(ignore),
-            "only": None if only is None else tuple(only),
-            "parents": parents,
-            "margins": margins,
-            "minima": minima,
-            "law": law,
-            "dt": dt,
-        }
-        names = Names(tuple(self.bodies), groups or {})
-        placed = dict(fixed or {})
-        still = np.zeros(len(self.bodies), dtype=bool)
-        for name in placed:
-            still[names.body(name, "fixed")] = True
-        self.within = positive(within, "within", infinite=True) if within is not None else math.inf
+        self.within = math.inf if within is None else positive(within, "within", infinite=True)
         self.dt, self.law = positive(dt, "dt"), checked_law(law)
-        given = Given(
+        self._fixed = dict(fixed or {})
+        self._given = Given(
             dict(groups or {}),
-            self._made["ignore"],
-            self._made["only"],
+            tuple(ignore),
+            None if only is None else tuple(only),
             dict(parents or {}),
             dict(margins or {}),
         )
-        rules = packed_rules(names, still, given)
+        least = -math.inf if minima is None else not_negative(minima, "minima")
+        self.model = self._made(least)
+
+    def _made(self, minima: float) -> Model:
+        """The world's data, checked; what its frames call is compiled."""
+        names = Names(tuple(self.bodies), self._given.groups)
+        still = np.zeros(len(self.bodies), dtype=bool)
+        for name in self._fixed:
+            still[names.body(name, "fixed")] = True
+        rules = packed_rules(names, still, self._given)
         planar = dimension_of(_by_piece(self.bodies)) == 2
         pieces = [pieces_of(body) for body in self.bodies.values()]
         check_half_spaces(list(self.bodies), pieces, rules)
+        fixed = tuple(name for name in self.bodies if name in self._fixed)
         reach = max([self.within, *rules.margins.tolist()])
-        still_names = tuple(name for name in self.bodies if name in placed)
-        # by address: what the frames read is at hand, and what they call is compiled
-        laws = packed_laws([piece for each in pieces for piece in each], self.law, self.dt)
-        self.model = Model(
+        return Model(
             key=uuid.uuid4().hex,
             listed=tuple(self.bodies.items()),
             names=names,
-            moving=tuple(name for name in self.bodies if name not in placed),
-            fixed=still_names,
+            moving=tuple(name for name in self.bodies if name not in self._fixed),
+            fixed=fixed,
             moving_rows=np.flatnonzero(~still),
             fixed_rows=np.flatnonzero(still),
-            poses_of_fixed=_fixed_poses(still_names, placed),
+            poses_of_fixed=_fixed_poses(fixed, self._fixed),
             planar=planar,
-            minima=-math.inf if minima is None else not_negative(minima, "minima"),
+            minima=minima,
             search=Search(packed_pieces(pieces), rules, self.within, reach),
-            laws=laws,
+            laws=packed_laws([piece for each in pieces for piece in each], self.law, self.dt),
         )
 
     @property
@@ -170,7 +160,10 @@ class World(KeepsReadOnly):
 
     def __reduce__(self) -> Any:
         # addresses are those of this process
-        return _restored, (self._made, self.model.key)
+        given = {**self._given._asdict(), "fixed": self._fixed, "within": self.within}
+        given |= {"bodies": self.bodies, "law": self.law, "dt": self.dt}
+        least = None if self.minima == -math.inf else self.minima
+        return _restored, ({**given, "minima": least}, self.model.key)
 
     @property
     def minima(self) -> float:
@@ -343,9 +336,9 @@ class World(KeepsReadOnly):
         return f"<World of {counted(len(self), 'body', 'bodies')}{horizon}>"
 
 
-def _restored(made: Mapping[str, Any], key: str) -> World:
+def _restored(given: Mapping[str, Any], key: str) -> World:
     """A world from what it was made of, whose states keep belonging to it."""
-    world = World(**made)
+    world = World(**given)
     world.model = world.model._replace(key=key)
     return world
 
