@@ -70,7 +70,7 @@ class Cell(NamedTuple):
 def drawn_bodies(answer: WorldAnswer) -> list[str]:
     """Return the names beside the matrix, in the world's order; of many those of the nearest
     pairs."""
-    names = list(answer.world.bodies)
+    names = [name for name, _ in answer.model.listed]
     if len(names) <= MOST_BODIES:
         return names
     pairs = answer.pairs
@@ -89,11 +89,11 @@ def cells_of(answer: WorldAnswer, names: Sequence[str]) -> dict[NamePair, Cell]:
     names : sequence of str
         In the world's order.
     """
-    bodies, rules = answer.world.names.bodies, answer.world.search.rules
+    body, rules = answer.model.names.body, answer.model.search.rules
     found = {}
     for k, second in enumerate(names):
         for first in names[:k]:
-            if rules.counts(bodies[first], bodies[second]):
+            if rules.counts(body(first, "pair"), body(second, "pair")):
                 pair = answer[first, second]
                 gap = pair.lower_bound if pair.far else pair.distance
                 found[first, second] = Cell(verdict_of(pair), gap, pair.far)
@@ -132,7 +132,7 @@ def matrix_picture(answer: WorldAnswer, unit: str, end: float) -> str:
     height = below + 0.72 * LETTER * letters + FONT
     parts.append(_legend(cells, unit, end, height))
     height += 2.2 * FONT
-    left = len(answer.world.bodies) - len(names)
+    left = len(answer.model.listed) - len(names)
     if left:
         told = f"the {len(names)} bodies of the nearest pairs; {left} more are left out"
         parts.append(_text(told, 2.0, height))

@@ -13,7 +13,8 @@ STOPS = np.array(
     [(8, 29, 88), (34, 94, 168), (29, 145, 192), (65, 182, 196), (127, 205, 187)],
     dtype=float,
 )
-"""Of gaps from 0 to the scale's end: ColorBrewer's yellow, green and blue without the palest, which are not seen on white."""
+"""Of gaps from 0 to the scale's end: ColorBrewer's yellow, green and blue without the palest, which
+are not seen on white."""
 
 OF_VERDICT = {
     Verdict.OVERLAPPING: (213, 94, 0),

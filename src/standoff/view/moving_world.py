@@ -134,7 +134,7 @@ class Known(NamedTuple):
 def known_of(answer: WorldAnswer) -> Known:
     """Return what the plot shows of an answer."""
     least = float(answer.pairs.distance.min(initial=np.inf))
-    return Known(min(least, answer.world.search.reach), answer.clearance)
+    return Known(min(least, answer.model.search.reach), answer.clearance)
 
 
 class Course(NamedTuple):
@@ -197,7 +197,7 @@ class LiveWorld:
     @property
     def poses(self) -> Array:
         """(n, 4, 4) of the moving bodies, in the world's order."""
-        found: Array = self.answer.state.poses[self.world.moving_rows]
+        found: Array = self.answer.state.poses[self.world.model.moving_rows]
         return found
 
     def move(self, poses: Any) -> WorldAnswer:

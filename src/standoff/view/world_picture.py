@@ -61,7 +61,7 @@ class WorldPicture(Aimable):
         self._scene = scene = server.scene
         scene.reset()
         scene.configure_default_lights(cast_shadow=False)
-        self.planar = world.dimension == 2
+        self.planar = world.model.planar
         shapes: dict[int, Shape] = {}
         still = set(world.fixed)
         self._bodies = [
@@ -76,7 +76,7 @@ class WorldPicture(Aimable):
         self.sizes = np.array([body.size for body in self._bodies])
         usual = self.sizes[self._bounded]
         self.size = float(np.median(usual)) if len(usual) else float(self.sizes.max())
-        self._still = world.fixed_rows.tolist()
+        self._still = world.model.fixed_rows.tolist()
         self._placed = np.full((len(world), 4, 4), np.nan)
         self._pairs = PairLines(scene)
         self._closest = AnswerNodes(scene, self.size)

@@ -107,7 +107,7 @@ class WorldStage:
 
     def hand(self, number: int | None) -> None:
         """Give the handle to one of the moving bodies, by its number among them, or to nothing."""
-        rows = self.given.world.moving_rows
+        rows = self.given.world.model.moving_rows
         self._hand = number if number is not None and 0 <= number < len(rows) else None
         self._held = False
         self.panel.hand_is(self._hand)
@@ -214,7 +214,7 @@ class WorldStage:
 
 def _scale_end(world: World, live: LiveWorld, size: float) -> float:
     """The gap of the palest colour: the horizon, or the greatest distance at the beginning."""
-    if np.isfinite(world.search.reach):
-        return float(world.search.reach)
+    if np.isfinite(world.model.search.reach):
+        return float(world.model.search.reach)
     greatest = float(live.answer.pairs.distance.max(initial=0.0))
     return greatest if greatest > 0.0 else size
