@@ -1,7 +1,7 @@
 """Take docs/images/live-world.png: the live page of examples/shelves.toml in Chromium.
 
-Run: python docs/images/make_live_world_picture.py [FILE]. Needs the extra `view`, playwright and
-Chromium.
+Run: python docs/images/make_live_world_picture.py [FILE].
+Needs the extra `view`, playwright and Chromium.
 """
 
 import shutil
@@ -15,7 +15,7 @@ import standoff as so
 HERE = Path(__file__).parent
 SHELVES = HERE.parents[1] / "examples" / "shelves.toml"
 TIME = 0.97  # s
-WINDOW = {"width": 1280, "height": 830}
+WINDOW = {"width": 1280, "height": 860}
 OPTIONS = [
     "--no-sandbox",
     "--use-gl=angle",
@@ -35,8 +35,8 @@ def main() -> None:
         tab.goto(page.address)
         tab.get_by_role("tab", name="Matrix").click(timeout=60_000)
         (client,) = page.server.get_clients().values()
-        client.camera.position = (0.35, -1.75, 1.5)
-        client.camera.look_at = (0.95, 0.05, 0.5)
+        client.camera.position = (0.55, -2.05, 1.6)
+        client.camera.look_at = (1.15, 0.05, 0.55)
         tab.wait_for_timeout(12_000)  # drawn without a graphics card
         tab.evaluate(
             "document.querySelectorAll('[role=alert]').forEach(e => e.style.display = 'none')"

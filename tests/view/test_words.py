@@ -51,6 +51,13 @@ SAID = [
     (Status.GLOBAL, 0.0, -8.1e-13, "touching, to within 8.1e-13 mm", "touching"),
     (Status.GLOBAL, 0.0, 0.0, "touching", "touching"),
     (Status.CONVERGED, 2e-12, 1e-12, "touching, to within 2e-12 mm", "touching"),
+    (
+        Status.FAR,
+        np.inf,
+        200.0,
+        "at least 200 mm apart, beyond the horizon",
+        "at least 200 mm apart",
+    ),
     (Status.TRACKING, 0.0, -5.0, "distance between -5 and 0 mm: the law is still on its way", None),
 ]
 
@@ -60,7 +67,13 @@ def answer(status: Status, distance: float, bound: float) -> Shown:
     home = Pose.identity()
     features = Feature("face", 2), Feature("edge", 0)
     return Shown(
-        (home, home), (np.zeros(3), distance * normal), normal, distance, bound, features, status
+        (home, home),
+        (np.zeros(3), np.nan_to_num(distance) * normal),
+        normal,
+        distance,
+        bound,
+        features,
+        status,
     )
 
 

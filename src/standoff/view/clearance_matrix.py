@@ -89,11 +89,11 @@ def cells_of(answer: WorldAnswer, names: Sequence[str]) -> dict[NamePair, Cell]:
     names : sequence of str
         In the world's order.
     """
-    bodies, rules = answer.model.names.bodies, answer.model.search.rules
+    body, rules = answer.model.names.body, answer.model.search.rules
     found = {}
     for k, second in enumerate(names):
         for first in names[:k]:
-            if rules.counts(bodies[first], bodies[second]):
+            if rules.counts(body(first, "pair"), body(second, "pair")):
                 pair = answer[first, second]
                 gap = pair.lower_bound if pair.far else pair.distance
                 found[first, second] = Cell(verdict_of(pair), gap, pair.far)

@@ -61,7 +61,7 @@ class WorldPicture(Aimable):
         self._scene = scene = server.scene
         scene.reset()
         scene.configure_default_lights(cast_shadow=False)
-        self.planar = world.dimension == 2
+        self.planar = world.model.planar
         shapes: dict[int, Shape] = {}
         still = set(world.fixed)
         self._bodies = [
