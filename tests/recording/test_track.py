@@ -214,6 +214,7 @@ def test_info_tells_the_run() -> None:
         "reset": "foot",
         "far_side": "left",
         "restarts": True,
+        "within": None,
         "feedforward": True,
         "tolerance": 1e-10,
         "dt": 1e-2,
