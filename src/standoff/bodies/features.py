@@ -28,7 +28,7 @@ class Feature:
         return iter((self.kind, self.index))
 
     def __str__(self) -> str:
-        return f"{self.kind} {self.index}"
+        return f"{self.kind} {self.index}" if self.kind else ""
 
 
 NO_FEATURE = Feature("", -1)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff import parquet
-from standoff.bodies.features import Feature
+from standoff.bodies.features import NO_FEATURE, Feature
 from standoff.checks.real_numbers import SHOWN_CHARACTERS, shown
 from standoff.errors import StandoffError
 from standoff.nesting import JSON, text_problem, value_problem
@@ -274,6 +274,8 @@ def _fields(table: Any, info: RunInfo, version: int) -> dict[str, Any]:
 
 
 def _feature(text: str) -> Feature:
+    if not text.strip():
+        return NO_FEATURE
     kind, index = text.split()
     return Feature(kind, int(index))
 

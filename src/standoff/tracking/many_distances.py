@@ -234,8 +234,7 @@ def answered_rows(
     whole_number(workers, "workers")
     check_pair(a, b)
     horizon = None if within is None else positive(within, "within")
-    law = PredictorCorrector(within=horizon)
-    tracker = Tracker(a, b, law=law) if yes_or_no(warm, "warm") else None
+    tracker = _tracker(a, b, horizon) if yes_or_no(warm, "warm") else None
     planar = a.dimension == 2 or b.dimension == 2
     given_a, given_b = read_poses(poses_a, "poses_a"), read_poses(poses_b, "poses_b")
     counts = len(given_a.matrices), len(given_b.matrices)
@@ -261,6 +260,12 @@ def answered_rows(
     errors = RefusedRows(refused, refused_a, refused_b, planar)
     repaired = np.broadcast_to(marks_a, n) + np.broadcast_to(marks_b, n)
     return Distances((a, b), rows, (of_a, of_b), repaired, errors)
+
+
+def _tracker(a: Body, b: Body, within: float | None) -> Tracker:
+    if within is None:
+        return Tracker(a, b)
+    return Tracker(a, b, law=PredictorCorrector(within=within))
 
 
 def _row(poses: Array, k: int) -> Array:
