@@ -47,6 +47,8 @@ def test_answers_are_those_of_python_to_the_last_bit(
         assert {Status.CONVERGED.value, Status.GLOBAL.value} <= set(status)
     if name == "one minimum":
         assert {Status.GLOBAL.value, Status.NOT_RESTARTED.value} <= set(status)
+    if name == "a horizon":
+        assert {Status.CONVERGED.value, Status.FAR.value} <= set(status)
     if name == "no depth is certified":
         assert {Status.OVERLAPPING.value, Status.NOT_CERTIFIED.value} <= set(status)
     if name == "ellipsoids on their faces":

@@ -225,7 +225,8 @@ static void tell(const standoff_pair *pair, const double *out, standoff_answer *
     answer->feature_a = feature_of(pair, 0, out[OUT_MODE]);
     answer->feature_b = feature_of(pair, 1, out[OUT_MODE + 2]);
     answer->status = (int32_t)out[STATUS];
-    answer->certified = answer->status == STANDOFF_CONVERGED || answer->status == STANDOFF_GLOBAL;
+    answer->certified = answer->status == STANDOFF_CONVERGED ||
+                        answer->status == STANDOFF_GLOBAL || answer->status == STANDOFF_FAR;
     answer->evaluations = (int32_t)counts[EVALUATIONS];
     answer->corrections = (int32_t)counts[CORRECTIONS];
     answer->switches = (int32_t)counts[EVENTS];

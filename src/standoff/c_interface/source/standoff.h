@@ -62,7 +62,8 @@ enum standoff_status {
     STANDOFF_LOCAL = 4,         /* overlap: moving B by depth * normal separates the bodies */
     STANDOFF_GLOBAL = 5,        /* overlap, and no direction needs less than 0.999 of it */
     STANDOFF_DEADLINE = 6,      /* the evaluations allowed for a step ran out */
-    STANDOFF_NOT_RESTARTED = 7  /* restarts=False, and a search was due; the bounds hold */
+    STANDOFF_NOT_RESTARTED = 7, /* restarts=False, and a search was due; the bounds hold */
+    STANDOFF_FAR = 8            /* beyond the horizon: the lower bound holds, distance is inf */
 };
 
 enum standoff_kind { STANDOFF_FACE = 0, STANDOFF_EDGE = 1, STANDOFF_VERTEX = 2 };
@@ -80,7 +81,7 @@ typedef struct {
 
 typedef struct {
     int32_t kind;  /* enum standoff_kind */
-    int32_t index; /* among the body's features of this kind, from 0, as in Python */
+    int32_t index; /* among the body's features of this kind, from 0, as in Python; -1: none */
 } standoff_feature;
 
 typedef struct {
