@@ -75,7 +75,11 @@ def planes(body: so.Body) -> tuple[Array, Array]:
     jets = [face.charts[0].jet(0.0, 0.0) for face in body.face_parts]
     normals = np.array([np.cross(jet[1], jet[2]) for jet in jets])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    return normals, np.array([n @ jet[0] for n, jet in zip(normals, jets, strict=True)])
+    spots = np.array([jet[0] for jet in jets])
+    inside = body.vertex_points.mean(axis=0)
+    # those of a mirror image point inwards
+    normals *= np.sign(np.einsum("ij,ij->i", normals, spots - inside))[:, None]
+    return normals, np.einsum("ij,ij->i", normals, spots)
 
 
 @pytest.mark.parametrize("name", [name for name in CLOUDS if name != "clusters"])

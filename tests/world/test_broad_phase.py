@@ -171,3 +171,22 @@ def test_planar_bodies_overlap_in_the_plane_alone() -> None:
     state = world.start(poses)
     poses[1, 0, 3] = 0.59
     assert world.step(state, poses)[1]["a", "two"].lower_bound <= -0.41 + 1e-9
+
+
+def test_a_short_way_after_a_long_one_is_not_lost() -> None:
+    """The sum of two travels may have no digit left for it: A has been far away, B creeps."""
+    ball = so.shapes.sphere(0.5)
+    world = so.World({"a": ball, "b": ball}, within=1.0)
+    poses = np.tile(np.eye(4), (2, 1, 1))
+    poses[1, 0, 3] = 2.0 + 3e-4
+    state = world.start(poses)
+    for x in (1e12, 0.0, 0.0):
+        poses[0, 0, 3] = x
+        state, _ = world.step(state, poses)
+    for _ in range(60):
+        poses[1, 0, 3] -= 1e-5
+        state, answer = world.step(state, poses)
+        true = so.distance(ball, ball, *poses).distance
+        assert answer.clearance <= min(true, 1.0) + 1e-12
+        if abs(true - 1.0) > 1e-9:
+            assert answer["a", "b"].far == (true > 1.0)

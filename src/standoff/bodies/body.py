@@ -284,10 +284,11 @@ class Body(Boundary):
         """
         linear, shift, stretch, flip = affine_map(affine, self.radius, self.dimension)
         radius = self.radius * stretch
-        if isinstance(self.face_parts, MadeParts) and flip > 0:
+        above = stretch * self.report.convexity_defect
+        # what was left out of a hull stays in the slack of its mirror image too
+        if isinstance(self.face_parts, MadeParts) and (flip > 0 or above > 0.0):
             from standoff.bodies.hulls.build import image_of
 
-            above = stretch * self.report.convexity_defect
             image = image_of(self.face_parts.source, linear, shift, radius, above)
             return made_body(self.name, radius, image)
         edges = [replace(e, curve=e.curve.transformed(linear, shift)) for e in self.edge_parts]

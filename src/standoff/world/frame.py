@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.errors import StandoffError
 from standoff.kernels.world import arrays as W
 from standoff.tracking.answers import proven
 from standoff.world.broad_phase import (
@@ -73,6 +74,8 @@ def _placed(
     if bad >= 0:
         given = mend_poses(given, [name for name, _ in world.listed])
         frame, bad, _, _ = place(world.search, given.matrices, tree, before)
+    if bad >= 0:
+        raise StandoffError(f"The pose of {world.listed[bad][0]!r} is none.", "poses")
     return frame, given
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -134,4 +135,5 @@ def _options(a: Body, b: Body, law: Law, dt: float) -> Array:
     """The options of a pair of classes; two half-spaces are no pair, and have a body's."""
     if not a.bounded and not b.bounded:
         return np.zeros(K.N_OPTIONS)
-    return reach(a, b, law, dt, None).options
+    # the world has the horizon: a frame that it asks for is made
+    return reach(a, b, replace(law, within=None), dt, None).options

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError
+from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.status import Status
@@ -114,7 +115,7 @@ OF_SIDES = ((K.POINT_A, K.POINT_B, 3), (K.OUT_MODE, K.OUT_MODE + 2, 2), (K.OUT_Q
 
 
 def swapped(block: Array) -> Array:
-    """The answer of the pair (B, A): without the switches and the state of its tracker."""
+    """The answer of the pair (B, A): without the state of its tracker."""
     found = np.full(K.N_BLOCK, np.nan)
     found[: K.N_OUT] = block[: K.N_OUT]
     motion, first = K.BLOCK_MOTION, K.BLOCK_MOTION + K.TWIST_A
@@ -130,4 +131,10 @@ def swapped(block: Array) -> Array:
     for k in (K.BLOCK_TIME_STEP, K.BLOCK_HAS_TWIST):
         found[k] = block[k]
     found[K.BLOCK_POLYTOPE] = found[K.BLOCK_DONE] = 0.0
+    found[K.BLOCK_EVENTS :] = block[K.BLOCK_EVENTS : K.N_BLOCK]
+    kept = min(int(block[K.OUT_COUNTS + N.EVENTS]), K.KEPT_EVENTS)
+    bodies = slice(
+        K.BLOCK_EVENTS + N.BODY, K.BLOCK_EVENTS + N.EVENT_COLUMNS * kept, N.EVENT_COLUMNS
+    )
+    found[bodies] = 1.0 - found[bodies]
     return found

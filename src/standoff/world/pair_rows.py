@@ -57,7 +57,8 @@ class PairRows(KeepsReadOnly):
         the pair of pieces alone."""
         ints = self.state.ints[row]
         p, q = int(ints[W.I_A]), int(ints[W.I_B])
-        block = np.array(self.state.block(int(ints[W.I_ROW])))
+        block = np.array(self.state.block(int(ints[W.I_ROW]))[: K.N_BLOCK])
+        block[K.BLOCK_POLYTOPE] = 0.0  # that is the next frame's
         if not alone:
             block[K.LOWER_BOUND] = self.lower_bounds(np.array([row]))[0]
         if turned:

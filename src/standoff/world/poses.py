@@ -101,8 +101,9 @@ def check_names(given: Mapping[str, Any], names: Sequence[str], argument: str) -
     for name in names:
         if name not in given:
             raise StandoffError(f"{argument} has none of {name!r}: give one of each.", argument)
+    known = set(names) if len(given) != len(names) else given
     for name in given:
-        if name not in names:
+        if name not in known:
             raise StandoffError(
                 f"{argument} has {shown(name)}, which is no body of the world that moves."
                 f"{did_you_mean(str(name), names)}",

@@ -90,7 +90,8 @@ class Names:
         for name, members in groups.items():
             if name_of(name) in self.bodies:
                 raise StandoffError(f"{name!r} is a body: a group needs another name.", "groups")
-            if isinstance(members, str) or not len(tuple(members)):
+            members = members if isinstance(members, str) else tuple(members)
+            if isinstance(members, str) or not members:
                 raise StandoffError(
                     f"The group {name!r} is {shown(members)}: give a list of one body or more.",
                     "groups",

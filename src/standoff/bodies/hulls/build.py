@@ -149,11 +149,19 @@ def solid_body(
 def image_of(solid: Polyhedron, linear: Array, shift: Array, radius: float, above: float) -> Packed:
     """The image of a polyhedron under an affine map, x -> linear x + shift, swept by a ball.
 
-    Its parts have the parameters of the given one's. The map is no mirror.
+    Its parts have the parameters of the given one's, but for a mirror's.
 
     above : as for `solid_body`, of the image.
     """
     points = solid.vertices @ linear.T + shift
+    if np.linalg.det(linear) < 0.0:  # a mirror turns the outlines round
+        starts = solid.starts
+        ends = np.repeat(starts[:-1] + starts[1:] - 1, np.diff(starts))
+        turned = solid.corners[ends - np.arange(len(solid.corners))]
+        normals = np.asarray(np.linalg.solve(linear.T, solid.normals.T).T, dtype=np.float64)
+        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        found = Outlines(turned, starts, normals)
+        return solid_body(points, found, radius, tolerance=above or None, above=above)
     planes, shifts = linear @ solid.planes, solid.shifts @ linear.T + shift
     normals = np.cross(planes[:, :, 0], planes[:, :, 1])
     normals /= np.linalg.norm(normals, axis=1)[:, None]

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from standoff.bodies.hulls.merging import areas, by_first
 from standoff.bodies.hulls.qhull import Ints, Triangles
-from standoff.bodies.tolerances import SAME_VERTEX
 from standoff.geometry.validation import Array
 
 
@@ -180,10 +179,22 @@ def begun(points: Array, found: Outlines) -> Outlines:
     y = np.cross(found.normals, x)
     away = points[corners] - middle[owners]
     across, along = (np.einsum("ij,ij->i", away, axes[owners]) for axes in (y, x))
-    # a corner opposite to that one is at +pi, whatever the sign of its roundoff
-    across[np.abs(across) <= SAME_VERTEX * np.abs(along)] = 0.0
     angle = np.arctan2(across, along)
     first = np.lexsort((angle, owners))[starts[:-1]] - starts[:-1]
+    for face in np.flatnonzero(count > 3).tolist():
+        # a corner opposite to that one is at +pi or -pi by roundoff: of this very sum, on which
+        # the numbers of edges have always depended
+        own = corners[starts[face] : starts[face + 1]]
+        first[face] = int(np.flatnonzero(own == _first_corner(points, own, found.normals[face]))[0])
     place = np.arange(len(corners)) - starts[:-1][owners]
     turned = starts[:-1][owners] + (place + first[owners]) % count[owners]
     return found._replace(corners=corners[turned])
+
+
+def _first_corner(points: Array, corners: Ints, normal: Array) -> int:
+    """The corner of one face at the least angle about its middle."""
+    ascending = np.sort(corners)
+    away = points[ascending] - points[ascending].mean(axis=0)
+    x = away[0] / np.linalg.norm(away[0])
+    angles = np.arctan2(away @ np.cross(normal, x), away @ x)
+    return int(ascending[np.argmin(angles)])

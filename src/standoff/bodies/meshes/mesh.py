@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -124,8 +125,8 @@ def _loaded(path: Path) -> Any:
         import trimesh
     except ModuleNotFoundError as error:
         raise ModuleNotFoundError(not_installed("trimesh", "meshes"), name=error.name) from error
-    if not path.is_file():
-        raise FileNotFoundError(f"There is no mesh file {path}.")
+    if not os.path.isfile(path):
+        raise FileNotFoundError(f"There is no mesh file {shown(str(path))}.")
     try:
         return trimesh.load(path, force="mesh", process=False)
     except Exception as error:  # each of its many readers raises its own

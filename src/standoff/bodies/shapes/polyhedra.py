@@ -16,7 +16,7 @@ from standoff.bodies.hulls.build import (
     solid_body,
     thin_error,
 )
-from standoff.bodies.hulls.outlines import Outlines
+from standoff.bodies.hulls.outlines import Outlines, begun
 from standoff.bodies.hulls.qhull import unit_of
 from standoff.bodies.shapes.arguments import by_position, positive_numbers
 from standoff.bodies.tolerances import FLATTEST, LEAST_CORE, SAME_VERTEX
@@ -38,7 +38,8 @@ NORMALS = np.array(
         [-0.0, -0.0, 1.0],
     ]
 )
-STARTS = np.arange(0, 25, 4)
+ROUND = [0, 2, 6, 4, 0, 4, 5, 1, 4, 6, 7, 5, 0, 1, 3, 2, 2, 3, 7, 6, 1, 5, 7, 3]
+LOOPS = Outlines(np.array(ROUND), np.arange(0, 25, 4), NORMALS)
 
 
 @overload
@@ -96,19 +97,7 @@ def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
             "thicker, or round it less."
         )
     points = 0.5 * core * CORNERS
-    return made_body("box", rounding, solid_body(points, _box_outlines(points), rounding))
-
-
-def _box_outlines(points: Array) -> Outlines:
-    """A box's loops: each face's corners by their angles about its middle, the first one's is 0."""
-    loops = []
-    for normal in NORMALS:
-        corners = np.flatnonzero(CORNERS @ normal > 0.0)
-        away = points[corners] - points[corners].mean(axis=0)
-        x = away[0] / np.linalg.norm(away[0])
-        angles = np.arctan2(away @ np.cross(normal, x), away @ x)
-        loops.append(corners[np.argsort(angles)])
-    return Outlines(np.concatenate(loops), STARTS, NORMALS)
+    return made_body("box", rounding, solid_body(points, begun(points, LOOPS), rounding))
 
 
 def polytope(vertices: Any, *, rounding: float = 0.0) -> Body:
@@ -182,7 +171,10 @@ def rounded_polytope(vertices: Any, rounding: float) -> Body:
         found = BodyError(f"The core was not found: {_line(error)}")
         raise thin_error(points, "vertices") or found from error
     except BodyError as error:
-        raise thin_error(points, "vertices") or error from error
+        thin = thin_error(points, "vertices")
+        if thin is None:
+            raise
+        raise thin from error
     return made_body("rounded polytope", rounding, recentred(packed, points, middle))
 
 

@@ -61,7 +61,7 @@ from standoff.kernels.state.state import (
     write_state,
 )
 from standoff.kernels.state.tracked import Shown, Tracked, begun, without_rates
-from standoff.kernels.tolerances import START_GAP
+from standoff.kernels.tolerances import BOUND_ROUNDINGS, EPS, FARTHEST, START_GAP
 from standoff.kernels.values import NO_RATES, ORIGIN, Found, Pose
 
 if not CAN_CALL:
@@ -106,7 +106,9 @@ def bound_without(pair, inputs, state):
     pose = relative_pose(inputs.pose_a, inputs.pose_b)
     before = Pose(read_rotation(state, POSE), read_vector(state, POSE + 9))
     radii = pair.reals_a[L.RADIUS] + pair.reals_b[L.RADIUS]
-    by_way = state[LAST_BOUND] - radii - way_between(pair, before, pose)
+    way = way_between(pair, before, pose)
+    by_way = state[LAST_BOUND] - radii - way
+    by_way -= BOUND_ROUNDINGS * EPS * (abs(state[LAST_BOUND]) + radii + min(way, FARTHEST))
     return max(by_way, boxes_apart(pair, pose))
 
 

@@ -145,11 +145,12 @@ def renew_bounds(pieces, pairs, k):
     ints, known = ahead(pairs.ints, N_INTS * k), ahead(pairs.known, N_KNOWN * k)
     p, q = ints[I_A], ints[I_B]
     travel = travel_of(pieces, p, q)
-    way = travel - known[C_TRAVEL]
-    if travel >= FARTHEST:  # a half-space has turned: in such a sum all other ways are lost
-        way = 0.0 if pieces.still[p] != 0 and pieces.still[q] != 0 else FARTHEST
-    if way > 0.0:
-        way += 4.0 * EPS * travel
+    # beside a long travel a short way is lost in the sum: what stands still is told apart
+    still = pieces.still[p] != 0 and pieces.still[q] != 0
+    if not still:
+        way = max(travel - known[C_TRAVEL], 0.0) + 4.0 * EPS * travel
+        if travel >= FARTHEST:  # a half-space has turned: in such a sum all other ways are lost
+            way = FARTHEST
         boxes = apart(
             ahead(pieces.placed, N_PLACED * p),
             ahead(pieces.facts, N_FACT * p),

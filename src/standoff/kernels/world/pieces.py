@@ -187,7 +187,8 @@ def boxes_apart(a, fact_a, b, fact_b):
         along = length - reach - BOUND_ROUNDINGS * EPS * (length + reach)
     squares, deepest = 0.0, -inf
     # planar bodies lie in z = 0: there the boxes' thickness is no depth
-    for i in range(2 if fact_a[F_PLANAR] != 0.0 else 3):
+    planar = fact_a[F_PLANAR] != 0.0 or fact_b[F_PLANAR] != 0.0
+    for i in range(2 if planar else 3):
         gap = max(b[P_LOW + i] - a[P_HIGH + i], a[P_LOW + i] - b[P_HIGH + i])
         deepest = max(deepest, gap)
         squares += gap * gap if gap > 0.0 else 0.0
