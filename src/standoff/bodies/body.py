@@ -286,7 +286,7 @@ class Body(Boundary):
         radius = self.radius * stretch
         above = stretch * self.report.convexity_defect
         # what was left out of a hull stays in the slack of its mirror image too
-        if isinstance(self.face_parts, MadeParts) and (flip > 0 or above > 0.0):
+        if isinstance(self.face_parts, MadeParts) and (flip > 0 or self.report.slack > 0.0):
             from standoff.bodies.hulls.build import image_of
 
             image = image_of(self.face_parts.source, linear, shift, radius, above)
