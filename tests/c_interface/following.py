@@ -40,7 +40,7 @@ CASES = {
     "the paper's law": Case(LENS, ELLIPSOID, so.PaperLaw(gain=200.0)),
     "against a half-space": Case(so.shapes.halfspace(), BOX, reach=1.2),
     "one minimum": Case(BOX, BOX, so.PredictorCorrector(restarts=False), reach=1.0, swing=0.8),
-    "a horizon": Case(BOX, ELLIPSOID, so.PredictorCorrector(within=0.4), reach=2.4, swing=1.0),
+    "a horizon": Case(BOX, ELLIPSOID, so.PredictorCorrector(within=0.5), reach=1.9, swing=0.9),
     "no depth is certified": Case(
         so.shapes.sphere(0.5),
         so.shapes.sphere(0.5),
