@@ -47,5 +47,10 @@ def test_no_impact_and_bad_paths() -> None:
     assert found.names is None
     with pytest.raises(ValueError, match="none of 'b'"):
         world.time_of_impact({"a": at(0.0)}, 5.0)
+    for duration in (0.0, -1.0, np.nan):
+        with pytest.raises(ValueError, match="duration"):
+            world.time_of_impact(paths, duration)
+    with pytest.raises(TypeError, match=r"'clearence'.*'clearance'"):
+        world.time_of_impact(paths, 5.0, clearence=0.1)
     with pytest.raises(ValueError, match=r"\('a', 'b'\)"):
         world.time_of_impact(paths, 5.0, clearance=-1.0)

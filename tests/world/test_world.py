@@ -184,5 +184,7 @@ def test_planar_worlds() -> None:
     poses[2, 2, 3] = 0.1
     with pytest.raises(ValueError, match="'c'"):
         world.distances(poses)
+    with pytest.raises(ValueError, match="'c'"):
+        so.World({"a": disc, "c": disc}, fixed={"c": (np.eye(3), [3.0, 0.0, 0.1])})
     with pytest.raises(ValueError, match="planar"):
         so.World({"a": disc, "ball": SHAPES[0]})

@@ -8,6 +8,12 @@ from typing import Any, Protocol
 from standoff.view.player import SPEEDS, Player
 from standoff.view.plot import Plot
 
+PHONE = """<style data-of="phone">@media (max-width: 36em) {
+.mantine-Paper-root:has([data-of=phone]),
+.mantine-Paper-root:has([data-of=phone]) [style*="width: 20em"] { width: 100% !important; }
+}</style>"""
+"""Viser's panel of a narrow window is 20 em wide, and leaves a strip of the scene beside it."""
+
 
 class Plays(Protocol):
     """What a user can ask of a motion."""
@@ -18,7 +24,8 @@ class Plays(Protocol):
 
 
 class MotionPanel:
-    """The part of a panel that plays; a subclass says where it stands, and makes the plot.
+    """What every panel has: an answer in words, its plot, and what plays a motion; a subclass says
+    where that stands.
 
     Parameters
     ----------
@@ -28,13 +35,15 @@ class MotionPanel:
     asks : Plays
     """
 
-    _plot: Plot
-
     def __init__(
         self, server: Any, later: Callable[[Callable[[], None]], None], asks: Plays
     ) -> None:
         self._gui, self._later, self._player = server.gui, later, asks
         self._playing = False
+        self._gui.configure_theme(show_logo=False, show_share_button=False)
+        self._gui.add_html(PHONE)
+        self._readout = self._gui.add_html("")
+        self._plot = Plot(server)
 
     def _make_playing(self) -> None:
         gui = self._gui

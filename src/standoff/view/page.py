@@ -59,26 +59,10 @@ class Page(ServedPage):
             raise
         self._begin()
 
-    def play(self, playing: bool) -> None:
-        """Play the motion, or pause."""
-        self.stage.play(playing)
-
-    def seek(self, time: float) -> None:
-        """Show the motion at a time [s]."""
-        self.stage.seek(time)
-
-    def speed(self, factor: float) -> None:
-        """Play this many times as fast as the motion."""
-        self.stage.speed(factor)
-
     def hand(self, which: str) -> None:
         """Give the handle to A, to B or to nothing."""
         if which in HANDS:
             self.stage.hand(which)
-
-    def back(self) -> None:
-        """Put the bodies back to where the scene has them."""
-        self.stage.back()
 
     def pull(self, on: bool) -> None:
         """Pull the dragged body through the virtual coupler, or carry it."""

@@ -10,7 +10,6 @@ from typing import Any, Protocol
 from standoff.view.laws import INTEGRATORS, NAMES
 from standoff.view.motion_panel import MotionPanel, Plays
 from standoff.view.player import Player
-from standoff.view.plot import Plot
 from standoff.view.pull import LEAST_FORCE, MAX_FORCE
 from standoff.view.readout import readout
 from standoff.view.shown import Shown
@@ -20,12 +19,6 @@ LOGGED = 12
 """Newest switches that the log shows."""
 
 HANDS = ("A", "B", "nothing")
-
-PHONE = """<style data-of="phone">@media (max-width: 36em) {
-.mantine-Paper-root:has([data-of=phone]),
-.mantine-Paper-root:has([data-of=phone]) [style*="width: 20em"] { width: 100% !important; }
-}</style>"""
-"""Viser's panel of a narrow window is 20 em wide, and leaves a strip of the scene beside it."""
 
 ROW = "<tr><td>{:.3f} s</td><td>{}</td><td>{} → {}</td></tr>"
 LOG = '<table style="font-size:.8em;margin:.3em .9em;border-spacing:.6em 0">{}</table>'
@@ -68,18 +61,13 @@ class Panel(MotionPanel):
         self._asks: Asks = asks
         self._log: deque[str] = deque(maxlen=LOGGED)
         self._names, self._unit, self._size = ("A", "B"), "", 1.0
-        gui = server.gui
-        gui.configure_theme(show_logo=False, show_share_button=False)
-        gui.add_html(PHONE)
-        self._readout = gui.add_html("")
-        self._plot = Plot(server)
-        tabs = gui.add_tab_group()
+        tabs = server.gui.add_tab_group()
         with tabs.add_tab("Move"):
             self._make_motion()
         with tabs.add_tab("Law"):
             self._make_law()
         with tabs.add_tab("Switches"):
-            self._switches = gui.add_html(NONE_YET)
+            self._switches = server.gui.add_html(NONE_YET)
         with tabs.add_tab("Scenes"):
             self._make_scenes(titles)
 

@@ -45,6 +45,18 @@ class Staged(Protocol):
     def look(self, elapsed: float) -> None:
         """Let a time pass [s], and show what has changed."""
 
+    def play(self, playing: bool) -> None:
+        """Play the motion, or pause."""
+
+    def seek(self, time: float) -> None:
+        """Show the motion at a time [s]."""
+
+    def speed(self, factor: float) -> None:
+        """Play this many times as fast as the motion."""
+
+    def back(self) -> None:
+        """Put the bodies back to where they were at first."""
+
 
 class ServedPage:
     """A page at an address, and the thread that does what is asked of it.
@@ -89,6 +101,22 @@ class ServedPage:
         self.server.on_client_connect(self.stage_seen)
         self._thread = threading.Thread(target=self._work, name="standoff-page", daemon=True)
         self._thread.start()
+
+    def play(self, playing: bool) -> None:
+        """Play the motion, or pause."""
+        self.stage.play(playing)
+
+    def seek(self, time: float) -> None:
+        """Show the motion at a time [s]."""
+        self.stage.seek(time)
+
+    def speed(self, factor: float) -> None:
+        """Play this many times as fast as the motion."""
+        self.stage.speed(factor)
+
+    def back(self) -> None:
+        """Put the bodies back to where the scene has them."""
+        self.stage.back()
 
     def close(self) -> None:
         """Close the port; the page says that it is disconnected."""

@@ -17,13 +17,14 @@ from standoff.view import laws
 from standoff.view.live_pair import LivePair
 from standoff.view.panel import Panel
 from standoff.view.picture import Picture
+from standoff.view.played_stage import PlayedStage
 from standoff.view.player import Player
 from standoff.view.pull import LEAST_FORCE, MAX_FORCE, Pull
 from standoff.view.server import name_tab
 from standoff.view.shown import Shown, of_answer, of_frame
 
 
-class Stage:
+class Stage(PlayedStage[Recording]):
     """A scene as a page shows it.
 
     Parameters
@@ -60,7 +61,8 @@ class Stage:
         scene: Scene,
         max_force: float = MAX_FORCE,
     ) -> None:
-        self.scene, self.panel, self._server = scene, panel, server
+        self.scene, self._server = scene, server
+        self.panel: Panel = panel
         self._settings = scene.settings
         self._dt = laws.frame_time(scene)
         start = scene.instant()
@@ -101,25 +103,6 @@ class Stage:
             held, phase = event.target, event.phase
             wxyz, position = np.array(held.wxyz), np.array(held.position)
             later(lambda: self._drag(number, wxyz, position, held=phase != "end"))
-
-    def play(self, playing: bool) -> None:
-        """Play the motion, or pause."""
-        if self.player is not None:
-            self.player.playing = playing
-            self._play_on()
-            self.panel.plays(self.player)
-
-    def seek(self, time: float) -> None:
-        """Show the motion at a time [s]."""
-        if self.player is not None:
-            self.player.seek(time)
-            self._play_on()
-            self._show_frame(self.player)
-
-    def speed(self, factor: float) -> None:
-        """Play this many times as fast as the motion."""
-        if self.player is not None:
-            self.player.speed = factor
 
     def hand(self, which: str) -> None:
         """Give the handle to A, to B or to nothing."""

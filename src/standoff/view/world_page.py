@@ -48,22 +48,6 @@ class WorldPage(ServedPage):
             raise
         self._begin()
 
-    def play(self, playing: bool) -> None:
-        """Play the motion, or pause."""
-        self.stage.play(playing)
-
-    def seek(self, time: float) -> None:
-        """Show the motion at a time [s]."""
-        self.stage.seek(time)
-
-    def speed(self, factor: float) -> None:
-        """Play this many times as fast as the motion."""
-        self.stage.speed(factor)
-
     def hand(self, number: int | None) -> None:
         """Give the handle to one of the moving bodies, by its number among them, or to nothing."""
         self.stage.hand(number)
-
-    def back(self) -> None:
-        """Put the bodies back to where the scene has them."""
-        self.stage.back()

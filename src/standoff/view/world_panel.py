@@ -7,9 +7,7 @@ from typing import Any, Protocol
 
 from standoff.view.motion_panel import MotionPanel, Plays
 from standoff.view.moving_world import Known
-from standoff.view.panel import PHONE
 from standoff.view.player import Player
-from standoff.view.plot import Plot
 from standoff.view.tolerances import MAX_TEXT
 
 NOTHING = "nothing"
@@ -44,17 +42,12 @@ class WorldPanel(MotionPanel):
     ) -> None:
         super().__init__(server, later, asks)
         self._asks = asks
-        gui = server.gui
-        gui.configure_theme(show_logo=False, show_share_button=False)
-        gui.add_html(PHONE)
-        self._readout = gui.add_html("")
-        self._plot = Plot(server)
-        tabs = gui.add_tab_group()
+        tabs = server.gui.add_tab_group()
         with tabs.add_tab("Move"):
             self._make_playing()
             self._make_hand(moving)
         with tabs.add_tab("Matrix"):
-            self._matrix = gui.add_html("")
+            self._matrix = server.gui.add_html("")
 
     def _make_hand(self, moving: Sequence[str]) -> None:
         names = [_option(name, k) for k, name in enumerate(moving)]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from standoff.tracking import Status
 from standoff.view.clearance_matrix import matrix_picture
 from standoff.view.moving_world import Course, LiveWorld, MovingWorld, course_of, known_of
+from standoff.view.played_stage import PlayedStage
 from standoff.view.player import Player
 from standoff.view.server import name_tab
 from standoff.view.stage import placed
@@ -28,7 +29,7 @@ MOST_COUNTED = 1000
 """Bodies of a world up to which its pairs are counted, one by one: half a million."""
 
 
-class WorldStage:
+class WorldStage(PlayedStage[Course]):
     """A world as a page shows it.
 
     Parameters
@@ -60,7 +61,8 @@ class WorldStage:
         later: Callable[[Callable[[], None]], None],
         given: MovingWorld,
     ) -> None:
-        self.given, self.panel, self._server, self._later = given, panel, server, later
+        self.given, self._server, self._later = given, server, later
+        self.panel: WorldPanel = panel
         world = given.world
         self.live = LiveWorld(world, given.poses(float(given.times[0])))
         self.player: Player[Course] | None = Player(course_of(given)) if given.moves else None
@@ -85,25 +87,6 @@ class WorldStage:
     def title(self) -> str:
         """The scene's."""
         return self.given.title
-
-    def play(self, playing: bool) -> None:
-        """Play the motion, or pause."""
-        if self.player is not None:
-            self.player.playing = playing
-            self._play_on()
-            self.panel.plays(self.player)
-
-    def seek(self, time: float) -> None:
-        """Show the motion at a time [s]."""
-        if self.player is not None:
-            self.player.seek(time)
-            self._play_on()
-            self._show_frame(self.player)
-
-    def speed(self, factor: float) -> None:
-        """Play this many times as fast as the motion."""
-        if self.player is not None:
-            self.player.speed = factor
 
     def hand(self, number: int | None) -> None:
         """Give the handle to one of the moving bodies, by its number among them, or to nothing."""

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from standoff.bodies.body import Body
-from standoff.errors import StandoffError
+from standoff.checks.names import did_you_mean, one_of
+from standoff.checks.numbers import number, positive
+from standoff.errors import StandoffError, StandoffTypeError
 from standoff.impact import Impact, time_of_impact
 from standoff.impact.answer import ImpactStatus
 from standoff.motion.moving import MotionLike, moving
@@ -17,6 +19,9 @@ from standoff.motion.pose import Pose
 from standoff.world.compound import Compound
 from standoff.world.model import Model
 from standoff.world.poses import check_names
+
+OPTIONS = frozenset(("clearance", "tolerance", "start", "max_evaluations"))
+"""Of ``so.time_of_impact``, for every pair."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +66,14 @@ def first_impact(
     given = {name: moving(paths[name], f"paths[{name!r}]") for name in world.moving}
     for name, matrix in zip(world.fixed, world.poses_of_fixed, strict=True):
         given[name] = Fixed(Pose.of(matrix))
-    start = float(options.get("start", 0.0))
+    duration, start = positive(duration, "duration"), number(options.get("start", 0.0), "start")
+    for name in options.keys() - OPTIONS:
+        raise StandoffTypeError(
+            f"time_of_impact has no option {name!r}.{did_you_mean(name, OPTIONS)} It has "
+            f"{one_of(sorted(OPTIONS))}.",
+            name,
+            options[name],
+        )
     found = WorldImpact(start + duration, ImpactStatus.NO_IMPACT, None, ("", ""), None, 0)
     searched = 0
     for a, b in pairs_that_count(world):

@@ -31,11 +31,12 @@ class PairRows(KeepsReadOnly):
         Of each near pair of bodies the row of its nearest pieces, by the bodies' numbers.
     """
 
-    __slots__ = ("model", "nearest", "state")
+    __slots__ = ("_least", "model", "nearest", "state")
 
     def __init__(self, model: Model, state: WorldState) -> None:
         self.model, self.state = model, state
         self.nearest = _nearest(state, model.most)
+        self._least: tuple[Ints, Array] | None = None
 
     def groups(self, rows: Ints) -> Ints:
         """The numbers of the pairs of bodies in some rows."""
@@ -47,10 +48,12 @@ class PairRows(KeepsReadOnly):
         bounds: Array = self.state.known[:, W.C_BOUND]
         if self.model.most == 1 or not len(rows):
             return np.asarray(bounds[rows])
-        groups = self.state.ints[:, W.I_KEY] // self.model.most**2
-        first = np.flatnonzero(np.diff(groups, prepend=-1))
-        least = np.minimum.reduceat(bounds, first)
-        return np.asarray(least[np.searchsorted(groups[first], groups[rows])])
+        if self._least is None:
+            groups = self.state.ints[:, W.I_KEY] // self.model.most**2
+            first = np.flatnonzero(np.diff(groups, prepend=-1))
+            self._least = groups[first], np.minimum.reduceat(bounds, first)
+        numbers, least = self._least
+        return np.asarray(least[np.searchsorted(numbers, self.groups(rows))])
 
     def answer(self, row: int, turned: bool = False, alone: bool = False) -> PairAnswer:
         """The answer in a row; `turned`: of (B, A). The lower bound is that of the bodies, or of

@@ -62,14 +62,24 @@ def read_poses_of(poses: Any, names: Sequence[str], planar: bool) -> GivenPoses:
             "of each, in the order of world.moving, or a mapping of names.",
             "poses",
         )
-    if planar and len(matrices):
-        flat = flat_poses(np.ascontiguousarray(matrices))
-        for k in np.flatnonzero(out_of_plane(flat))[:1]:
-            try:
-                check_in_plane(flat[k], flat[k])
-            except StandoffError as error:
-                raise StandoffError(f"{names[k]!r}: {error}", "poses", matrices[k]) from error
+    if planar:
+        check_level(names, matrices, "poses")
     return GivenPoses(np.ascontiguousarray(matrices), repaired)
+
+
+def check_level(names: Sequence[str], matrices: Array, argument: str) -> None:
+    """Refuse poses that take a planar body out of z = 0; the name of the first is told.
+
+    Raises
+    ------
+    StandoffError
+    """
+    flat = flat_poses(np.ascontiguousarray(matrices))
+    for k in np.flatnonzero(out_of_plane(flat))[:1]:
+        try:
+            check_in_plane(flat[k], flat[k])
+        except StandoffError as error:
+            raise StandoffError(f"{names[k]!r}: {error}", argument, matrices[k]) from error
 
 
 def mend_poses(given: GivenPoses, names: Sequence[str]) -> GivenPoses:

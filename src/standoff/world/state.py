@@ -103,7 +103,8 @@ class WorldState(KeepsReadOnly):
         for name in self.__slots__:
             if name != "key":
                 setattr(self, name, parts[name])
-        for array in (self.poses, self.placed, self.ints, self.known, *self.pages):
+        own = self.poses, self.placed, self.ints, self.known, self.near, self.tree.boxes
+        for array in (*own, *self.pages):
             array.flags.writeable = False
 
     key: str

@@ -30,7 +30,7 @@ from standoff.world.frame import next_state, started_state
 from standoff.world.impact import WorldImpact, first_impact, pairs_that_count
 from standoff.world.model import Model
 from standoff.world.packed import packed_laws, packed_pieces, pieces_of
-from standoff.world.poses import GivenPoses, read_poses_of, read_twists_of
+from standoff.world.poses import GivenPoses, check_level, read_poses_of, read_twists_of
 from standoff.world.rules import Given, Names, check_half_spaces, packed_rules
 from standoff.world.state import WorldState
 
@@ -130,8 +130,11 @@ class World(KeepsReadOnly):
         rules = packed_rules(names, still, self._given)
         planar = dimension_of(_by_piece(self.bodies)) == 2
         pieces = [pieces_of(body) for body in self.bodies.values()]
-        check_half_spaces(list(self.bodies), pieces, rules)
         fixed = tuple(name for name in self.bodies if name in self._fixed)
+        poses = _fixed_poses(fixed, self._fixed)
+        if planar:
+            check_level(fixed, poses, "fixed")
+        check_half_spaces(list(self.bodies), pieces, rules)
         reach = max([self.within, *rules.margins.tolist()])
         return Model(
             key=uuid.uuid4().hex,
@@ -141,7 +144,7 @@ class World(KeepsReadOnly):
             fixed=fixed,
             moving_rows=np.flatnonzero(~still),
             fixed_rows=np.flatnonzero(still),
-            poses_of_fixed=_fixed_poses(fixed, self._fixed),
+            poses_of_fixed=poses,
             planar=planar,
             minima=minima,
             search=Search(packed_pieces(pieces), rules, self.within, reach),
@@ -284,7 +287,10 @@ class World(KeepsReadOnly):
     def time_of_impact(
         self, paths: Mapping[str, MotionLike], duration: float, **options: Any
     ) -> WorldImpact:
-        """The first time at which any pair comes to its clearance: never later than the true one.
+        """The first time at which any pair comes to a clearance: never later than the true one.
+
+        Each pair that counts is searched by itself, up to the earliest time found so far; margins
+        take no part.
 
         Parameters
         ----------
@@ -293,7 +299,8 @@ class World(KeepsReadOnly):
         duration : float
             Time to search [s].
         **options
-            ``clearance``, ``tolerance``, ``start``, ``max_evaluations`` of ``so.time_of_impact``.
+            ``clearance``, ``tolerance``, ``start``, ``max_evaluations`` of ``so.time_of_impact``,
+            the same for all pairs.
 
         Returns
         -------
