@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.bodies.assembly import roundoff_note
 from standoff.bodies.convexity import Convexity
@@ -116,27 +118,18 @@ def solid_body(
     noise = max(ROUNDOFF * size, roundoff)
     widen = widening(solid, turns, cones) if max(defect, residual) > noise else 1.0
     slack = slack_of(Convexity((), defect, widen), residual, 0.0, noise)
-    edges, faces = Edges(solid), Faces(solid)
-    parts = Assembled(3, solid.vertices, edges, faces, [])
+    parts = Assembled(3, solid.vertices, Edges(solid), Faces(solid), [])
     inner = inner_rectangles(solid, pcurves)
-    box = low, high
     samples = polyhedron_samples(solid, pcurves)
-    ints, reals = pack_polyhedron(solid, joints, pcurves, box, inner, radius, slack, samples)
+    ints, reals = pack_polyhedron(
+        solid, joints, pcurves, (low, high), inner, radius, slack, samples
+    )
+    notes = _notes(found, len(given) - len(points), defect, residual, size, roundoff)
     report = BodyReport(
-        dimension=3,
-        faces=solid.n_faces,
-        edges=len(edges),
-        vertices=len(solid.vertices),
-        smooth_edges=int(smooth.sum()),
-        charts=solid.n_faces,
+        **_facts(solid, turns, smooth),
         size=size + 2.0 * radius,
         convexity_defect=defect,
-        notes=_notes(found, len(given) - len(points), defect, residual, size, roundoff),
-        closed=True,
-        outward=True,
-        patches=plane_checks(solid.n_faces),
-        sharpest=_dihedral(solid, turns, int(turns.argmax())),
-        flattest=_dihedral(solid, turns, int(turns.argmin())),
+        notes=notes,
         convexity_tolerance=share,
         sewing_residual=residual,
         sewing_tolerance=allowed,
@@ -144,6 +137,23 @@ def solid_body(
         coordinate_roundoff=roundoff,
     )
     return Packed(parts, ints, reals, report)
+
+
+def _facts(solid: Polyhedron, turns: Array, smooth: NDArray[np.bool_]) -> dict[str, Any]:
+    """What a report says of the parts: counts, and the angles of the edges."""
+    return {
+        "dimension": 3,
+        "faces": solid.n_faces,
+        "edges": len(solid.ends),
+        "vertices": len(solid.vertices),
+        "smooth_edges": int(smooth.sum()),
+        "charts": solid.n_faces,
+        "closed": True,
+        "outward": True,
+        "patches": plane_checks(solid.n_faces),
+        "sharpest": _dihedral(solid, turns, int(turns.argmax())),
+        "flattest": _dihedral(solid, turns, int(turns.argmin())),
+    }
 
 
 def image_of(solid: Polyhedron, linear: Array, shift: Array, radius: float, above: float) -> Packed:
