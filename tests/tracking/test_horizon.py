@@ -1,11 +1,14 @@
 """Beyond a horizon a proven bound is enough: it holds, and nothing nearer is left out."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff as so
 from draws import draws
+from standoff.bodies.features import NO_FEATURE
 from standoff.kernels.state import arrays as K
 
 SHAPES = (
@@ -121,17 +124,21 @@ def test_what_a_far_answer_says() -> None:
     assert repr(far).startswith("Proximity(FAR: at least 4.45 apart")
     told = far.as_dict()
     assert told["status"] == "FAR"
-    assert told["feature_a"] is None
+    assert told["feature_a"] == str(far.feature_a) == ""
+    assert far.place_b == (NO_FEATURE, ())
     assert far.row[K.OUT_MODE] == -1.0
-    for name in ("feature_a", "parameters_b", "place_a", "gradient", "unique"):
+    drawn = so.plot(SHAPES[0], SHAPES[1], far)
+    assert "no distance, FAR" in [text.get_text() for text in drawn.legends[0].get_texts()]
+    for name in ("gradient", "hessian", "unique"):
         with pytest.raises(ValueError, match=r"beyond the horizon|no derivatives"):
             getattr(far, name)
     assert far.derivatives().smoothness.name == "UNDEFINED"
     assert "raise `within`" in so.Status.FAR.advice
 
 
-def test_a_recorded_run_keeps_far_frames() -> None:
+def test_a_recorded_run_keeps_far_frames(tmp_path: Path) -> None:
     from standoff.motion import ConstantTwist
+    from standoff.view import save_page, save_video
 
     tracker = so.Tracker(SHAPES[0], SHAPES[1], 1e-2, so.PredictorCorrector(within=0.5))
     pose = np.eye(4)
@@ -144,6 +151,22 @@ def test_a_recorded_run_keeps_far_frames() -> None:
     assert np.isinf(run.distance[far]).all()
     assert run.certified.all()
     assert run.distance[~far].max() <= 0.5 + 1e-9
+    assert not far[run.closest()]
+    assert np.isnan(run.gap[far]).all()
+    assert 0.0 < run.gap[run.widest_gap()] < 1e-9
+    _, errors, *_ = run.plot().axes
+    assert errors.get_ylim()[0] < run.gap[~far].max() < errors.get_ylim()[1]
+    assert len(errors.lines)
+    save_page(run, tmp_path / "run.html")
+    save_video(run, tmp_path / "run.gif")
+    run.save(tmp_path / "run.parquet")
+    again = so.open_recording(tmp_path / "run.parquet")
+    assert again.feature_a[0] == NO_FEATURE
+    assert again.status_frames() == run.status_frames()
+    away = so.track(tracker, np.eye(4), pose, 0.1)
+    assert away.closest() is None
+    assert away.widest_gap() is None
+    away.plot()
 
 
 def test_bad_horizons() -> None:

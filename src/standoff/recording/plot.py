@@ -186,7 +186,8 @@ def _shade_overlaps(axes: Axes, times: Array, recording: RecordedFrames, *, name
 
 
 def _draw_gap(axes: Axes, times: Array, recording: RecordedFrames) -> None:
-    scale = np.nanmax(np.abs(recording.distance), initial=0.0) or 1.0
+    known = recording.distance[np.isfinite(recording.distance)]
+    scale = np.abs(known).max(initial=0.0) or 1.0
     floor = LEAST_SHOWN_GAP * float(np.spacing(scale))
     gap, residual = np.maximum(recording.gap, floor), np.maximum(recording.residual, floor)
     good = recording.certified

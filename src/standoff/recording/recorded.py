@@ -167,12 +167,14 @@ class RecordedFrames(KeepsReadOnly):
 
     @property
     def gap(self) -> Array:
-        """Distance less its lower bound [length], shape (n,)."""
-        return self.distance - self.lower_bound
+        """Distance less its lower bound [length], shape (n,); nan beyond the horizon."""
+        known: Array = np.where(np.isinf(self.distance), np.nan, self.distance)
+        return known - self.lower_bound
 
     def closest(self) -> int | None:
         """Return the frame of the least distance; None where no frame has a distance."""
-        return None if np.isnan(self.distance).all() else int(np.nanargmin(self.distance))
+        some = np.isfinite(self.distance).any()
+        return int(np.nanargmin(self.distance)) if some else None
 
     def widest_gap(self) -> int | None:
         """Return the frame of the greatest gap; None where no frame has one."""

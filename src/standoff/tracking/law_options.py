@@ -268,7 +268,6 @@ class Law:
         "Horizon, in length: of bodies farther apart only that is proven, with the status FAR, "
         "which costs less; none if not given.",
         metavar="LENGTH",
-        unit="length",
     )
 
     def __post_init__(self) -> None:

@@ -11,6 +11,7 @@ from standoff.bodies.body import Body
 from standoff.bodies.features import Feature as Feature
 from standoff.bodies.features import feature_of
 from standoff.bodies.plain_data import PlainData, plain, without_roundoff
+from standoff.errors import StandoffError
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.tracking.rows import Answer
@@ -68,7 +69,7 @@ class Proximity(Answer, PlainData):
     normal : (3,) array
         Unit vector from A to B; of all candidates the one with the greatest lower bound.
     feature_a, feature_b : Feature
-        Active features of the cores.
+        Active features of the cores; of an empty kind beyond the horizon.
     parameters_a, parameters_b : tuple of float
         (u, v) on a face, (u, v, chart) on a face with an atlas of charts, (t,) on an edge, ()
         on a vertex.
@@ -115,6 +116,13 @@ class Proximity(Answer, PlainData):
         return events_of(
             self._a, self._b, block[first : first + N.EVENT_COLUMNS * count], self.time
         )
+
+    def _refuse_far(self) -> None:
+        if self.far:
+            raise StandoffError(
+                "The bodies are beyond the horizon: only a lower bound of their distance is known; "
+                "raise `within`."
+            )
 
     def witness_set(self) -> WitnessSet:
         """All pairs of witness points that this answer could have given (docs/touching.md)."""
@@ -171,11 +179,10 @@ class Proximity(Answer, PlainData):
 
         The keys are the attributes' names; ``poses`` are two 4×4 matrices, or None. Features are
         strings such as ``"face 2"``, the status is its name. The numbers are the same to the last
-        bit, except that no zero has a sign; NaN stays NaN. Of an answer that is FAR, features and
-        parameters are None.
+        bit, except that no zero has a sign; NaN stays NaN. Of an answer that is FAR, features are
+        empty strings.
         """
-        none = _OF_POINTS if self.far else ()
-        facts = {name: None if name in none else plain(getattr(self, name)) for name in _PLAIN}
+        facts = {name: plain(getattr(self, name)) for name in _PLAIN}
         poses = self.poses
         return facts | {"poses": None if poses is None else [_matrix(pose) for pose in poses]}
 
@@ -190,8 +197,6 @@ class Proximity(Answer, PlainData):
         )
 
 
-_OF_POINTS = ("feature_a", "feature_b", "parameters_a", "parameters_b")
-"""What only an answer with witness points has."""
 _PLAIN = (
     *("distance", "lower_bound", "upper_bound", "depth", "point_a", "point_b", "normal"),
     *("feature_a", "feature_b", "parameters_a", "parameters_b", "rate", "velocity_a"),

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature, charts_of, feature_of
-from standoff.errors import StandoffError
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
@@ -226,7 +225,7 @@ class AnswerRows:
         at = 2 * side
         number, chart = (int(n) for n in self.mode[at : at + 2])
         kind = feature_of(body, number).kind
-        count = {"face": 2, "edge": 1, "vertex": 0}[kind]
+        count = {"face": 2, "edge": 1}.get(kind, 0)
         values = tuple(float(x) for x in self.q[at : at + count])
         if kind == "face":
             first, charts = charts_of(body, number)
@@ -300,29 +299,18 @@ class Answer(KeepsReadOnly):
 
     @property
     def feature_a(self) -> Feature:
-        self._refuse_far()
         return feature_of(self._a, int(self._out[K.OUT_MODE]))
 
     @property
     def feature_b(self) -> Feature:
-        self._refuse_far()
         return feature_of(self._b, int(self._out[K.OUT_MODE + 2]))
-
-    def _refuse_far(self) -> None:
-        if self.far:
-            raise StandoffError(
-                "The bodies are beyond the horizon: only a lower bound of their distance is known; "
-                "raise `within`."
-            )
 
     @property
     def parameters_a(self) -> tuple[float, ...]:
-        self._refuse_far()
         return AnswerRows(self._out).parameters(self._a, 0)
 
     @property
     def parameters_b(self) -> tuple[float, ...]:
-        self._refuse_far()
         return AnswerRows(self._out).parameters(self._b, 1)
 
     @property

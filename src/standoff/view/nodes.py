@@ -121,7 +121,7 @@ class BodyNodes:
                 node.remove()
             node = self._drawn(feature)
             self._active = (feature, self._glass), node
-        if node is not None and feature.kind != "face":
+        if node is not None and feature.kind in ("edge", "vertex"):
             node.position = tuple(self._shape.body.radius * outward)
 
     def _drawn(self, feature: Feature) -> Any:

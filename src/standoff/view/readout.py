@@ -132,7 +132,8 @@ def readout(
     """
     normal = ", ".join(f"{value:+.3f}" for value in np.round(answer.normal, 3) + 0.0)
     features = [
-        f"{feature} of {name}" for feature, name in zip(answer.features, names, strict=True)
+        f"{feature} of {name}" if feature.kind else ""
+        for feature, name in zip(answer.features, names, strict=True)
     ]
     bodies = [BODY.format(strong) for _, strong in BODY_COLOURS]
     rows = [

@@ -110,8 +110,9 @@ def _log_frame(
         if before[number] != now.features[number]:
             before[number] = now.features[number]
             log.log(f"{which}/active", rerun.Clear(recursive=True))
-            active = _active(shape, now.features[number], COLOURS[number][1])
-            log.log(f"{which}/active/{now.features[number].kind}", active)
+            if now.features[number].kind:
+                active = _active(shape, now.features[number], COLOURS[number][1])
+                log.log(f"{which}/active/{now.features[number].kind}", active)
     if np.isfinite(now.distance):
         log.log("distance", rerun.Scalars(now.distance))
     if np.isfinite(now.lower_bound):

@@ -70,6 +70,8 @@ class Shape:
             return self.faces.get(feature.index, Mesh(np.zeros((0, 3)), np.zeros((0, 3), int)))
         if feature.kind == "edge":
             return _pieces(self.edges[feature.index])
+        if not feature.kind:  # beyond the horizon
+            return Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
         point: Array = self.vertices[feature.index]
         return point
 

@@ -175,8 +175,11 @@ def legend_of(solids: tuple[Solid, Solid], shown: Shown, unit: str) -> list[Arti
     """Entries that name the bodies, their active features, and the distance."""
     handles: list[Artist] = []
     for k, solid in enumerate(solids):
-        label = f"{'AB'[k]}: {short_name(solid.body.name)}, {shown.features[k]}"
+        feature = f", {shown.features[k]}" if shown.features[k].kind else ""
+        label = f"{'AB'[k]}: {short_name(solid.body.name)}{feature}"
         handles.append(Patch(facecolor=COLOURS[k][1], edgecolor="none", label=label))
+    if not np.isfinite(shown.distance):  # no witness line is drawn
+        return [*handles, Line2D([], [], linestyle="", label=f"no distance, {shown.status}")]
     size = max([body.size for body in (s.body for s in solids) if body.bounded], default=0.0)
     (distance,) = without_roundoff([shown.distance], size)
     told = f"depth {-distance:.6g}" if distance < 0.0 else f"distance {distance:.6g}"
