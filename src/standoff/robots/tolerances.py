@@ -17,4 +17,4 @@ WIDER = 8.0
 of them, and each costs a world that is kept."""
 
 UNLIMITED = 1e30
-"""Limits of q beyond this, in its unit, are none: packages write large numbers for them."""
+"""Limits of q beyond this, rad or length, are none: packages write large numbers for them."""
