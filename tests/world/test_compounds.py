@@ -1,10 +1,14 @@
 """Bodies of several pieces: the nearest, all local minima, gradients by the body's motion."""
 
+from decimal import Decimal, localcontext
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from scattered import SHAPES, poses_of
 
 import standoff as so
+from draws import draws
 
 BALL = so.shapes.sphere(0.5)
 TWO = so.compound({"left": BALL, "right": (BALL, (np.eye(3), [2.0, 0.0, 0.0]))})
@@ -168,3 +172,39 @@ def test_bad_compounds() -> None:
         so.compound({7: BALL})
     with pytest.raises(ValueError, match="'a'"):
         so.compound({"a": (BALL, np.full((4, 4), np.nan))})
+
+
+def exact_centre(rotation: np.ndarray, shift: np.ndarray, point: list[Fraction]) -> list[Fraction]:
+    """R x + p without roundoff."""
+    r, p = [[Fraction(float(x)) for x in row] for row in rotation], map(Fraction, shift.tolist())
+    return [
+        sum(a * x for a, x in zip(row, point, strict=True)) + s for row, s in zip(r, p, strict=True)
+    ]
+
+
+def test_bounds_hold_what_composing_poses_has_lost(rng: np.random.Generator) -> None:
+    """Balls on arms so long that the roundoff of their places is above that of their distance."""
+    lost = 0
+    for _ in range(draws(60)):
+        arm = 10.0 ** rng.uniform(2, 6)
+        turned = poses_of(rng, 1, 1.0)[0]
+        turned[:3, 3] = arm * turned[:3, 0]
+        body = so.compound({"ball": (BALL, turned)})
+        poses = poses_of(rng, 2, 1.0)
+        poses[0, :3, 3] -= poses[0, :3, :3] @ turned[:3, 3]
+        poses[1, :3, 3] += [2.0, 0.0, 0.0]
+        piece = body.pieces["ball"].pose
+        at_piece = exact_centre(
+            poses[0, :3, :3], poses[0, :3, 3], list(map(Fraction, piece.translation.tolist()))
+        )
+        between = [x - Fraction(float(y)) for x, y in zip(at_piece, poses[1, :3, 3], strict=True)]
+        with localcontext() as context:
+            context.prec = 60
+            squares = sum(x * x for x in between)
+            root = (Decimal(squares.numerator) / Decimal(squares.denominator)).sqrt()
+            true = root - 1
+            found = so.World({"body": body, "ball": BALL}).distances(poses)["body", "ball"]
+            if found.distance > 0.0:
+                assert Decimal(found.lower_bound) <= true <= Decimal(found.upper_bound)
+                lost += abs(Decimal(found.distance) - true) > Decimal("1e-13")
+    assert lost > 10
