@@ -116,6 +116,18 @@ def test_composed_rotations_are_never_refused(
         assert answer["hand", "tool"].distance == pytest.approx(true, abs=1e-7)
 
 
+def test_a_pose_that_is_only_just_let_pass_is_repaired(rng: np.random.Generator) -> None:
+    """Composed with a placement it would be off by roundoff more, and be refused."""
+    hand = so.compound({"palm": SHAPES[0], "thumb": (SHAPES[5], poses_of(rng, 1, 0.7)[0])})
+    world = so.World({"hand": hand, "tool": SHAPES[0]}, within=50.0)
+    repaired = 0
+    for _ in range(draws(300)):
+        poses = poses_of(rng, 2, 1.0)
+        poses[0] = off(poses[0], 1e-9 - rng.uniform(0.0, 4e-16))
+        repaired += world.start(poses).repaired
+    assert 10 < repaired < draws(300)
+
+
 def test_a_placement_is_a_rotation_to_roundoff(rng: np.random.Generator) -> None:
     turned = off(poses_of(rng, 1)[0], 0.9e-9)
     piece = so.compound({"a": (BALL, turned)}).pieces["a"]

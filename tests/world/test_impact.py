@@ -103,6 +103,27 @@ def test_a_pair_keeps_the_greater_of_clearance_and_margin() -> None:
     assert found.time == 0.0
 
 
+def test_over_a_floor_at_rest() -> None:
+    """One ball falls on it, one flies along it: that one is left out."""
+    turned = so.Pose.exp((0.3, -0.2, 0.0)).rotation
+    floor = so.Pose(turned, [0.0, 0.0, -2.0])
+    normal = floor.rotation[:, 2]
+    above = floor.translation + 3.5 * normal
+    world = so.World(
+        {"falls": BALL, "flies": BALL, "floor": so.shapes.halfspace()}, fixed={"floor": floor}
+    )
+    paths = {
+        "falls": ConstantTwist((np.eye(3), above), (-0.5 * normal, [0, 0, 0])),
+        "flies": ConstantTwist((np.eye(3), above + 12.0 * normal), (turned[:, 1], [0, 0, 0])),
+    }
+    found = world.time_of_impact(paths, 20.0)
+    assert found.names == ("falls", "floor")
+    assert found.time == pytest.approx(6.0, abs=1e-8)
+    assert found.searched == 1
+    moved = so.World(dict(world.bodies)).time_of_impact({**paths, "floor": floor}, 20.0)
+    assert moved.time == found.time
+
+
 def drawn_paths(rng: np.random.Generator, n: int) -> list[object]:
     """Screws, twists in both frames, samples with breaks, rest; through one place or another."""
     found: list[object] = []
