@@ -1,0 +1,81 @@
+"""The tree of joints of a robot as arrays, read from its model.
+
+Bounds of motion are taken from it. Poses are the package's own: a test holds the two together.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class JointKind(IntEnum):
+    """How a joint moves, and what of q it reads.
+
+    FIXED reads nothing. HINGE reads an angle, rad, and SLIDE a length: both along ``axes``.
+    CONTINUOUS is a hinge that reads (cos, sin). BALL reads a unit quaternion. FREE reads a position
+    and a unit quaternion.
+    """
+
+    FIXED = 0
+    HINGE = 1
+    SLIDE = 2
+    BALL = 3
+    FREE = 4
+    CONTINUOUS = 5
+
+
+class Joints(NamedTuple):
+    """Joints in order from the root: the parent of each comes before it.
+
+    The moved frame of a joint is ``moved[parent] @ placement @ motion(ratio q + offset)``. A joint
+    of several motions, as a universal one, is several joints here.
+
+    Attributes
+    ----------
+    names : tuple of str
+    kinds : (nj,) array
+        A `JointKind` each.
+    parents : (nj,) array
+        The joint before it; -1 for the world.
+    placements : (nj, 4, 4) array
+        The joint's frame, before it moves, in the moved frame of its parent.
+    axes : (nj, 3) array
+        Unit vectors of HINGE, CONTINUOUS and SLIDE in the joint's own frame; 0 for the others.
+    q_at, v_at : (nj,) arrays
+        Where the joint's numbers begin in q (nq,) and in v (nv,).
+    ratios, offsets : (nj,) arrays
+        A HINGE or SLIDE is at ``ratio q[q_at] + offset``: 1 and 0 but for joints that mimic
+        another, and for models whose zero is elsewhere.
+    lower, upper : (nq,) arrays
+        Limits of q; -inf and inf where there are none.
+    scalar_first : bool
+        Are quaternions in q (w, x, y, z)? If not they are (x, y, z, w).
+    """
+
+    names: tuple[str, ...]
+    kinds: Ints
+    parents: Ints
+    placements: Array
+    axes: Array
+    q_at: Ints
+    v_at: Ints
+    ratios: Array
+    offsets: Array
+    lower: Array
+    upper: Array
+    scalar_first: bool
+
+    def chain(self, joint: int) -> list[int]:
+        """The joints that move a joint's frame, itself included, from the root."""
+        found = []
+        while joint >= 0:
+            found.append(joint)
+            joint = int(self.parents[joint])
+        return found[::-1]

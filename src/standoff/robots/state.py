@@ -1,0 +1,28 @@
+"""What a robot carries from configuration to configuration, as a value."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.robots.kinematics import Motion
+from standoff.world.state import WorldState
+
+Array = NDArray[np.float64]
+
+
+class RobotState(NamedTuple):
+    """The warm start of a robot: goes into a step and comes out of it, never changed.
+
+    Attributes
+    ----------
+    q : (nq,) array
+    world : WorldState
+    motion : Motion
+    """
+
+    q: Array
+    world: WorldState
+    motion: Motion

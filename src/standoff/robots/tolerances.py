@@ -1,0 +1,20 @@
+"""Tolerances of robots, each with its unit and reason."""
+
+UNIT_LENGTH = 1e-3
+"""By how much the length of a quaternion, or of (cos, sin), in q may differ from 1, no unit: as of
+a pose's quaternion. It is then made 1."""
+
+TURN_LOST = 1e-12
+"""Angular velocity by unit velocity of a joint, no unit, below which it does not turn a pair about
+an axis: the roundoff of a chain of joints."""
+
+FIRST_HORIZON = 0.1
+"""Part of the size of all bodies together within which the nearest pair is sought first, no unit:
+arms among obstacles mostly have one there. The answer does not depend on it."""
+
+WIDER = 8.0
+"""Factor from one horizon to the next while no pair is found, no unit: the bodies are within a few
+of them, and each costs a world that is kept."""
+
+UNLIMITED = 1e30
+"""Limits of q beyond this, rad or length, are none: packages write large numbers for them."""
