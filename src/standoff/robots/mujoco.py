@@ -282,7 +282,7 @@ def _notes(model: Any) -> tuple[str, ...]:
     free = ", ".join(
         model.joint(j).name or f"joint {j}"
         for j in range(model.njnt)
-        if not model.jnt_limited[j] and model.jnt_type[j] >= mujoco.mjtJoint.mjJNT_SLIDE
+        if not model.jnt_limited[j] and model.jnt_type[j] >= int(mujoco.mjtJoint.mjJNT_SLIDE)
     )
     if free:
         found.append(f"without limits: {free}")
