@@ -37,6 +37,7 @@ def mixed(model: Any, i: int, j: int) -> Mixed:
         opt = model.opt
         found = found._replace(
             solref=np.array(opt.o_solref),
+            solreffriction=np.array(opt.o_solref),
             solimp=np.array(opt.o_solimp),
             friction=np.array(opt.o_friction),
             margin=float(opt.o_margin),
