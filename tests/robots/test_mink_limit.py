@@ -6,7 +6,7 @@ import mink
 import mujoco
 import numpy as np
 import pytest
-from arms import ARM, TWO, differences, model, touching
+from contact_models import ARM, TWO, differences, model, touching
 
 import standoff as so
 from standoff.errors import StandoffError, StandoffTypeError

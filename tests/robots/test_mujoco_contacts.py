@@ -7,7 +7,7 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
-from arms import ARM, model
+from contact_models import ARM, model
 
 import standoff as so
 from standoff.errors import StandoffError

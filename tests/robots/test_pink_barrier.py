@@ -6,7 +6,7 @@ import numpy as np
 import pink
 import pinocchio as pin
 import pytest
-from arms import differences, touching
+from contact_models import differences, touching
 
 import standoff as so
 from standoff.errors import StandoffError

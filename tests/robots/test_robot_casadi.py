@@ -5,7 +5,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 import pytest
-from arms import ARM, TWO, differences, model, touching
+from contact_models import ARM, TWO, differences, model, touching
 
 import standoff as so
 from standoff.errors import StandoffError

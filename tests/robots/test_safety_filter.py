@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from arms import ARM, TWO, model
+from contact_models import ARM, TWO, model
 
 import standoff as so
 from standoff.errors import StandoffError

@@ -7,7 +7,7 @@ from standoff.on_demand import on_demand
 if TYPE_CHECKING:
     from standoff.robots.answer import RobotAnswer
     from standoff.robots.batch import RobotAnswers
-    from standoff.robots.casadi_distance import casadi_distance
+    from standoff.robots.casadi_functions import casadi_distance
     from standoff.robots.geoms import Geoms
     from standoff.robots.joints import JointKind, Joints
     from standoff.robots.kinematics import Kinematics
@@ -25,7 +25,7 @@ else:
         {
             "standoff.robots.answer": ("RobotAnswer",),
             "standoff.robots.batch": ("RobotAnswers",),
-            "standoff.robots.casadi_distance": ("casadi_distance",),
+            "standoff.robots.casadi_functions": ("casadi_distance",),
             "standoff.robots.geoms": ("Geoms",),
             "standoff.robots.joints": ("JointKind", "Joints"),
             "standoff.robots.kinematics": ("Kinematics",),
