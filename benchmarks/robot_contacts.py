@@ -207,8 +207,8 @@ def main() -> None:
         for name, contacts in (("ours", MujocoContacts(robot)), ("MuJoCo's", None)):
             found = run(case, model, contacts, duration)
             print(
-                f"| {case.name} | {name} | {1e3 * found.drift:.4g} | {found.moved:.3g} | {found.energy:.2e} | "
-                f"{found.normal:.1e} | {1e6 * found.step:.0f} |",
+                f"| {case.name} | {name} | {1e3 * found.drift:.4g} | {found.moved:.3g} | "
+                f"{found.energy:.2e} | {found.normal:.1e} | {1e6 * found.step:.0f} |",
                 flush=True,
             )
 
