@@ -51,18 +51,20 @@ def angle_panel(axes, found, theirs):
     gap_axis(axes)
     axes.set_yscale("log")
     axes.set_ylim(1e-12, 1e3)
-    axes.set_yticks([1e-12, 1e-9, 1e-6, 1e-3, 1.0, 180.0])
-    axes.set_yticklabels(["1e-12°", "1e-9°", "1e-6°", "0.001°", "1°", "180°"])
+    axes.set_yticks([1e-12, 1e-9, 1e-6, 1e-3, 1.0, 90.0])
+    axes.set_yticklabels(["1e-12°", "1e-9°", "1e-6°", "0.001°", "1°", "90°"])
     axes.minorticks_off()
-    axes.set_title("how far the row's direction is off", fontsize=9, loc="left")
+    axes.set_title(
+        "how far the row's direction is off (a row of zeros: 90°)", fontsize=9, loc="left"
+    )
 
 
 def draw(found, theirs, told, file):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.2, 3.4), layout="constrained")
     row_panel(left, found, 2, theirs, told)
-    left.legend(fontsize=8, frameon=False, loc="lower right")
+    left.legend(fontsize=8, frameon=False, loc=(0.62, 0.24))
     angle_panel(right, found, theirs)
-    right.legend(fontsize=8, frameon=False, loc="center right")
+    right.legend(fontsize=8, frameon=False, loc=(0.6, 0.27))
     figure.savefig(file, dpi=150)
     plt.close(figure)
 
@@ -74,7 +76,7 @@ def main() -> None:
     draw(
         robot_rows.of_pink(gaps),
         "Pink 4.4",
-        "Pink: no row near contact, the wrong sign in overlap",
+        "Pink: a row of zeros near contact, the wrong sign in overlap",
         folder / "robot-rows-pink.png",
     )
     draw(
