@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from standoff.cli.added import AddedCommand
 from standoff.cli.arguments import (
     AutomatonCommand,
     CheckCommand,
@@ -10,6 +11,7 @@ from standoff.cli.arguments import (
     DistanceCommand,
     ImpactCommand,
     LibraryCommand,
+    RobotCommand,
     ServoCommand,
     SimulateCommand,
     TrackCommand,
@@ -50,6 +52,16 @@ def _doing(command: Command) -> str:
             return f"making the page of {shown(command.scene)}"
         case ServoCommand():
             return f"running {shown(command.scene)} in real time"
+        case _:
+            return _doing_without_a_scene(command)
+
+
+def _doing_without_a_scene(
+    command: RobotCommand | AddedCommand | WarmupCommand | LibraryCommand,
+) -> str:
+    match command:
+        case RobotCommand():
+            return f"reading {shown(command.model)}"
         case WarmupCommand():
             return f"loading all kernels; what must be compiled takes about {ALL_SECONDS} s in all"
         case LibraryCommand():

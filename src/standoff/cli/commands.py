@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from standoff.cli.added import AddedCommand
 from standoff.cli.arguments import (
     AutomatonCommand,
     CheckCommand,
@@ -10,6 +11,7 @@ from standoff.cli.arguments import (
     DistanceCommand,
     ImpactCommand,
     LibraryCommand,
+    RobotCommand,
     ServoCommand,
     SimulateCommand,
     TrackCommand,
@@ -66,6 +68,18 @@ def run(command: Command) -> int:
             from standoff.cli.servo import run_servo
 
             return run_servo(command)
+        case _:
+            return _run_without_a_scene(command)
+
+
+def _run_without_a_scene(
+    command: RobotCommand | WarmupCommand | LibraryCommand | AddedCommand,
+) -> int:
+    match command:
+        case RobotCommand():
+            from standoff.cli.robot import run_robot
+
+            return run_robot(command)
         case WarmupCommand():
             from standoff.cli.warmup import run_warmup
 
