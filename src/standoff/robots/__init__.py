@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     from standoff.robots.geoms import Geoms
     from standoff.robots.joints import JointKind, Joints
     from standoff.robots.kinematics import Kinematics
+    from standoff.robots.paths import FunctionPath
+    from standoff.robots.proof import BoxProof, PathProof, Verdict
     from standoff.robots.report import GeomReport, RobotReport
     from standoff.robots.robot import Robot
     from standoff.robots.rows import RobotRows
@@ -22,6 +24,8 @@ else:
             "standoff.robots.geoms": ("Geoms",),
             "standoff.robots.joints": ("JointKind", "Joints"),
             "standoff.robots.kinematics": ("Kinematics",),
+            "standoff.robots.paths": ("FunctionPath",),
+            "standoff.robots.proof": ("BoxProof", "PathProof", "Verdict"),
             "standoff.robots.report": ("GeomReport", "RobotReport"),
             "standoff.robots.robot": ("Robot",),
             "standoff.robots.rows": ("RobotRows",),
@@ -29,14 +33,18 @@ else:
     )
 
 __all__ = [
+    "BoxProof",
+    "FunctionPath",
     "GeomReport",
     "Geoms",
     "JointKind",
     "Joints",
     "Kinematics",
+    "PathProof",
     "Robot",
     "RobotAnswer",
     "RobotAnswers",
     "RobotReport",
     "RobotRows",
+    "Verdict",
 ]

@@ -22,6 +22,7 @@ from standoff.robots.joints import Joints
 from standoff.robots.kinematics import Kinematics
 from standoff.robots.loaded import Loaded
 from standoff.robots.obstacles import Obstacles, read_obstacles, with_obstacles
+from standoff.robots.proof import BoxProof, PathProof
 from standoff.robots.report import RobotReport
 from standoff.robots.rows import Mounted, RobotRows
 from standoff.robots.state import RobotState
@@ -384,6 +385,20 @@ class Robot(KeepsReadOnly):
         """The answer at the configuration of a state."""
         answer = self.world.answer(state.world)
         return RobotRows(answer, state.q, state.motion, self._mounted, self.within)
+
+    def certify(self, path: Any, clearance: float = 5e-3, **options: Any) -> PathProof:
+        """Prove that a joint path keeps a clearance at every instant: `certify.certify`."""
+        from standoff.robots.certify import certify
+
+        return certify(self, path, clearance, **options)
+
+    def certify_box(
+        self, lower: Any, upper: Any, clearance: float = 5e-3, **options: Any
+    ) -> BoxProof:
+        """Prove it of all configurations in a box: `boxes.certify_box`."""
+        from standoff.robots.boxes import certify_box
+
+        return certify_box(self, lower, upper, clearance, **options)
 
     def _rows(self, q: Array, horizon: float) -> RobotRows:
         raise NotImplementedError
