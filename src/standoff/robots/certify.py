@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from standoff.checks.numbers import not_negative, whole_number
 from standoff.progress import Progress
-from standoff.robots.certify_tolerances import SHORTEST_STEP
+from standoff.robots.certify_tolerances import BRACKET, SHORTEST_STEP
 from standoff.robots.intervals import Intervals, joined, lowest, steps_of
 from standoff.robots.limits import check_limits
 from standoff.robots.motion_bounds import bends, least_speed, seen_from
@@ -316,7 +316,8 @@ class _Search:
 
     def _split(self, left: Intervals) -> Intervals:
         """Halves of what is left; what is too short is put aside."""
-        short = left.last - left.first <= self.least
+        known = left.after[:, 1] + self.doubt < self.clearance
+        short = left.last - left.first <= np.where(known, BRACKET / SHORTEST_STEP, 1.0) * self.least
         short &= left.pieces[:, 1] - left.pieces[:, 0] == 1
         if short.any():
             self.stuck.append(left.some(short))

@@ -89,11 +89,10 @@ class Motions(NamedTuple):
     def rates(self, velocities: Array) -> Array:
         """(m, n + 1): sizes of the motions at joint velocities (m, nv); 0 for the world's frame."""
         found = np.zeros((len(velocities), self.count + 1))
-        for k in range(self.count):
-            at = self.v_at[k]
-            part = velocities[:, at : at + self.v_count[k]]
-            size = np.abs(part[:, 0]) if self.v_count[k] == 1 else _lengths(part)
-            found[:, k] = np.abs(self.ratios[k]) * size
+        single = np.flatnonzero(self.v_count == 1)
+        found[:, single] = np.abs(self.ratios[single] * velocities[:, self.v_at[single]])
+        for k in np.flatnonzero(self.v_count == 3).tolist():
+            found[:, k] = _lengths(velocities[:, self.v_at[k] : self.v_at[k] + 3])
         return found
 
     def swerves(self, rates: Array) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ from standoff.robots.motion_bounds import (
 )
 from standoff.robots.motions import WORLD, Frames, motions_of
 from standoff.robots.watched import Seen, Watched, watched_of
+from standoff.world import World
 from standoff.world.many_frames import answers_at, pieces_placed
 
 if TYPE_CHECKING:
@@ -84,7 +86,7 @@ class Sight:
     def __init__(self, robot: Robot, workers: int = 1) -> None:
         self.robot, self.workers = robot, workers
         self.model = robot.world.model
-        self.watched = _watched(robot)
+        self.watched = _kept(robot)
         self.configurations = self.queries = 0
 
     @property
@@ -214,6 +216,17 @@ def some_of(middle: Middle, which: Any) -> Middle:
     seen_a, seen_b = (Seen(*(x[which] for x in each)) for each in middle.seen)
     reaches = Reaches(*(x[which] for x in middle.reaches))
     return Middle((seen_a, seen_b), middle.half[:, which], reaches, middle.way[which])
+
+
+_KEPT: WeakKeyDictionary[World, Watched] = WeakKeyDictionary()
+
+
+def _kept(robot: Robot) -> Watched:
+    """The pairs of a robot, which are found once for each of its worlds."""
+    world = robot.world
+    if world not in _KEPT:
+        _KEPT[world] = _watched(robot)
+    return _KEPT[world]
 
 
 def _watched(robot: Robot) -> Watched:

@@ -6,8 +6,7 @@ down to A's. Only the motions on it move the two against each other.
 
 from __future__ import annotations
 
-import itertools
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -163,17 +162,19 @@ def _cores(world: Model, carriers: Ints, placements: Array) -> Cores:
 
 def _pairs(world: Model) -> tuple[Ints, Ints, Ints]:
     """(numbers of the bodies, piece of A, piece of B) of all pairs of pieces that count."""
-    first, rules = world.search.pieces.first, world.search.rules
-    found: list[Any] = []
-    for i, j in itertools.combinations(range(len(world.listed)), 2):
-        if rules.counts(i, j):
-            some = np.meshgrid(
-                np.arange(first[i], first[i + 1]), np.arange(first[j], first[j + 1]), indexing="ij"
-            )
-            p, q = (each.ravel() for each in some)
-            found.append(np.stack([np.full(len(p), i), np.full(len(p), j), p, q]))
-    rows = np.concatenate(found, axis=1) if found else np.zeros((4, 0), dtype=np.int64)
-    return rows[:2].T.copy(), rows[2], rows[3]
+    pieces, rules = world.search.pieces, world.search.rules
+    n = len(world.listed)
+    i, j = np.triu_indices(n, 1)
+    count = (rules.meets[rules.kinds[i], rules.kinds[j]] != 0) & ~np.isin(i * n + j, rules.left_out)
+    i, j = i[count], j[count]
+    sizes = np.diff(pieces.first[:-1])
+    of_b = sizes[j]
+    each = sizes[i] * of_b
+    row = np.repeat(np.arange(len(i)), each)
+    within = np.arange(len(row)) - np.repeat(np.cumsum(each) - each, each)
+    a = pieces.first[i][row] + within // of_b[row]
+    b = pieces.first[j][row] + within % of_b[row]
+    return np.stack([i[row], j[row]], axis=1), a, b
 
 
 def _chains(motions: Motions, links: Ints) -> Chains:
