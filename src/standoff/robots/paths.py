@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from itertools import pairwise
@@ -136,7 +137,7 @@ class SplinePath(JointPath):
     """
 
     def __init__(self, spline: Any, kinematics: Kinematics) -> None:
-        from scipy.interpolate import BSpline, PPoly
+        from scipy.interpolate import BSpline
 
         if kinematics.nq != kinematics.nv:
             raise StandoffError(
@@ -145,12 +146,7 @@ class SplinePath(JointPath):
                 "path",
                 spline,
             )
-        if isinstance(spline, BSpline):
-            degree, whole = spline.k, PPoly.from_spline(spline)
-            x = whole.x[degree : len(whole.x) - degree]
-            c = whole.c[:, degree : whole.c.shape[1] - degree]
-        else:
-            x, c = spline.x, spline.c
+        x, c = _powers(spline) if isinstance(spline, BSpline) else (spline.x, spline.c)
         if c.ndim != 3 or c.shape[2] != kinematics.nq:
             raise StandoffError(
                 f"The spline's values have the shape {tuple(c.shape[2:])}: give one of "
@@ -350,6 +346,14 @@ def _limits(given: Any, name: str, nv: int) -> Array:
         raise StandoffError(f"{name} = {found}: give sizes, zero or more.", name, given)
     found.flags.writeable = False
     return found
+
+
+def _powers(spline: Any) -> tuple[Array, Array]:
+    """A B-spline's knots, and its coefficients by powers, the highest first (k + 1, n, nq)."""
+    k = spline.k
+    x = np.unique(spline.t[k : len(spline.t) - k])
+    rows = [spline.derivative(m)(x[:-1]) / math.factorial(m) for m in range(k, 0, -1)]
+    return x, np.stack([*rows, spline(x[:-1])])
 
 
 def _derived(c: Array) -> Array:
