@@ -99,7 +99,9 @@ def least_distances(judged: Judged, q: np.ndarray) -> np.ndarray:
         arm = pose[:3, 2] * simple.half
         ends.append(tuple(np.tile(pose[:3, 3] + s * arm, (m, 1)) for s in (-1.0, 1.0)))
     simples = [simple for _, simple, _ in judged.geoms] + [simple for simple, _ in judged.fixed]
-    return np.stack([_between(ends[i], simples[i], ends[j], simples[j]) for i, j in judged.pairs], 1)
+    return np.stack(
+        [_between(ends[i], simples[i], ends[j], simples[j]) for i, j in judged.pairs], 1
+    )
 
 
 def _between(a: Any, of_a: Simple, b: Any, of_b: Simple) -> np.ndarray:
@@ -115,7 +117,12 @@ def segments_apart(a0: Any, a1: Any, b0: Any, b1: Any) -> np.ndarray:
     """(m,) distances of segments: the least of the four ends' and of the lines' where these are
     nearest inside of both."""
     best = np.minimum.reduce(
-        [_to_segment(a0, b0, b1), _to_segment(a1, b0, b1), _to_segment(b0, a0, a1), _to_segment(b1, a0, a1)]
+        [
+            _to_segment(a0, b0, b1),
+            _to_segment(a1, b0, b1),
+            _to_segment(b0, a0, a1),
+            _to_segment(b1, a0, a1),
+        ]
     )
     u, v, w = a1 - a0, b1 - b0, a0 - b0
     uu, vv, uv = (np.einsum("mi,mi->m", x, y) for x, y in ((u, u), (v, v), (u, v)))

@@ -35,7 +35,9 @@ def corners_in(frame: np.ndarray, box: tuple[np.ndarray, np.ndarray]) -> np.ndar
     return (centre + signs @ sides.T - frame[:3, 3]) @ frame[:3, :3]
 
 
-def core(robot: TreeRobot, sight: Sight, piece: int, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def core(
+    robot: TreeRobot, sight: Sight, piece: int, q: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Centre and half sides (as columns) of a core's box in the world, by the oracle."""
     body = robot.world.model.search.pieces.owners[piece]
     links = robot.kinematics.links(q)
@@ -90,9 +92,7 @@ def test_no_point_goes_farther_than_the_bound(seed: int) -> None:
     at = np.zeros(len(pairs), dtype=int)
     middle = sight.middle(pairs, frames, at, ways)
     reaches, watched = middle.reaches, sight.watched
-    cut = seen_from(
-        _sums(reaches.h * reaches.w_a, reaches.h * reaches.w_b), reaches
-    )
+    cut = seen_from(_sums(reaches.h * reaches.w_a, reaches.h * reaches.w_b), reaches)
     assert np.array_equal(cut.bound, middle.way)
     normals = rng.normal(size=(len(pairs), 3))
     normals /= np.linalg.norm(normals, axis=1)[:, None]
@@ -186,7 +186,9 @@ def test_the_bound_is_exact_of_one_hinge() -> None:
     ball = so.shapes.sphere(0.1)
     arm = np.eye(4)
     arm[0, 3] = 2.0
-    robot = robot_of([1], [-1], [np.eye(4)], [[0, 0, 1.0]], [(0, ball, arm)], fixed={"f": (ball, np.eye(4))})
+    robot = robot_of(
+        [1], [-1], [np.eye(4)], [[0, 0, 1.0]], [(0, ball, arm)], fixed={"f": (ball, np.eye(4))}
+    )
     sight = Sight(robot)
     ways = np.array([[0.1, 0.0]])
     middle = sight.middle(np.array([0]), sight.frames(np.zeros((1, 1))), np.array([0]), ways)
@@ -199,7 +201,12 @@ def test_a_joint_that_mimics_another_moves_by_its_ratio() -> None:
     rng = np.random.default_rng(5)
     body = drawn_body(rng)
     robot = robot_of(
-        [1, 1], [-1, 0], [np.eye(4), drawn_pose(rng, 0.3)], np.eye(3)[:2], [(1, body, np.eye(4))],
-        fixed={"f": (body, drawn_pose(rng, 1.0))}, ratios=[1.0, -2.0],
+        [1, 1],
+        [-1, 0],
+        [np.eye(4), drawn_pose(rng, 0.3)],
+        np.eye(3)[:2],
+        [(1, body, np.eye(4))],
+        fixed={"f": (body, drawn_pose(rng, 1.0))},
+        ratios=[1.0, -2.0],
     )
     assert Sight(robot).watched.motions.rates(np.array([[0.5, 0.25]])).tolist() == [[0.5, 0.5, 0.0]]

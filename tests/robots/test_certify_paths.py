@@ -42,7 +42,9 @@ def judge(judged: Judged, proof: PathProof, at: object, samples: int = SAMPLES) 
 
 
 def straight(points: np.ndarray, times: np.ndarray) -> object:
-    return lambda t: np.stack([np.interp(t, times, points[:, k]) for k in range(points.shape[1])], 1)
+    return lambda t: np.stack(
+        [np.interp(t, times, points[:, k]) for k in range(points.shape[1])], 1
+    )
 
 
 def test_random_paths() -> None:
@@ -51,10 +53,14 @@ def test_random_paths() -> None:
     for _ in range(60):
         judged = drawn_judged(rng, int(rng.integers(1, 8)))
         n = int(rng.integers(2, 6))
-        points = rng.uniform(-1.0, 1.0, judged.robot.nq) + rng.uniform(-0.6, 0.6, (n, judged.robot.nq))
+        points = rng.uniform(-1.0, 1.0, judged.robot.nq) + rng.uniform(
+            -0.6, 0.6, (n, judged.robot.nq)
+        )
         times = np.cumsum(rng.uniform(0.1, 2.0, n)) - 1.0
         # what they keep is asked for, more or less, so that both verdicts come about
-        own = least_distances(judged, straight(points, times)(np.linspace(times[0], times[-1], 200)))
+        own = least_distances(
+            judged, straight(points, times)(np.linspace(times[0], times[-1], 200))
+        )
         clearance = max(0.0, own.min() + rng.choice([-0.02, -1e-3, 1e-3]))
         if own[0].min() <= 0.0:
             continue
@@ -73,7 +79,9 @@ def test_splines(made: object) -> None:
     for _ in range(12):
         judged = drawn_judged(rng, 4)
         times = np.array([0.0, 0.7, 1.5, 2.0, 3.1])
-        points = rng.uniform(-1.0, 1.0, judged.robot.nq) + rng.uniform(-0.5, 0.5, (5, judged.robot.nq))
+        points = rng.uniform(-1.0, 1.0, judged.robot.nq) + rng.uniform(
+            -0.5, 0.5, (5, judged.robot.nq)
+        )
         spline = made(times, points)
         own = least_distances(judged, spline(np.linspace(0.0, 3.1, 300))).min()
         if own <= 0.01:
@@ -119,7 +127,12 @@ def test_ball_and_free_joints_move_by_the_packages_own_integration() -> None:
         points = [q, robot.kinematics.integrate(q, rng.uniform(-0.7, 0.7, robot.nv))]
         way = robot.kinematics.difference(*points)
         times = np.linspace(0.0, 1.0, 60)
-        answers = [robot.world.distances(robot.kinematics.poses(robot.kinematics.integrate(points[0], t * way))) for t in times]
+        answers = [
+            robot.world.distances(
+                robot.kinematics.poses(robot.kinematics.integrate(points[0], t * way))
+            )
+            for t in times
+        ]
         least = min(float(each.pairs.distance.min()) for each in answers)
         if least < 0.01:
             continue
