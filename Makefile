@@ -19,7 +19,7 @@ $(BIN)/python:
 $(ALL): $(DECLARED) | $(BIN)/python
 	@echo "Installing Standoff, all its extras and the tools into .venv: once, some minutes ..."
 	$(PIP) install -q -c constraints.txt \
-		-e ".[cli,test,dev,docs,pandas,jax,casadi,devices,view,rerun,video]" -e "./studies[peers]"
+		-e ".[cli,test,dev,docs,pandas,jax,casadi,devices,view,rerun,video,mujoco,pinocchio]" -e "./studies[peers]"
 	@touch $(ALL) $(CLI)
 
 $(CLI): $(DECLARED) | $(BIN)/python

@@ -2,7 +2,7 @@
 
 The names of every day; the rest is in modules that load when asked for: `so.points`, `so.voronoi`,
 `so.impact`, `so.recording`, `so.automaton`, `so.bodies`, `so.geometry`, `so.motion`, `so.tracking`,
-`so.control`, `so.simulation`, `so.devices`, `so.servo`, `so.scene`, `so.world`.
+`so.control`, `so.simulation`, `so.devices`, `so.servo`, `so.scene`, `so.world`, `so.robots`.
 """
 
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from standoff.motion import Pose, Poses, Twist
     from standoff.points import PointTracker
     from standoff.recording import Recording, open_recording, track
+    from standoff.robots import Robot
     from standoff.tracking import (
         Event,
         Feature,
@@ -77,6 +78,7 @@ else:
             "standoff.impact": ("time_of_impact",),
             "standoff.points": ("PointTracker",),
             "standoff.recording": ("Recording", "open_recording", "track"),
+            "standoff.robots": ("Robot",),
             "standoff.view": ("view",),
             "standoff.world": ("World", "compound"),
         },
@@ -90,6 +92,7 @@ else:
             "motion",
             "points",
             "recording",
+            "robots",
             "scene",
             "servo",
             "simulation",
@@ -111,6 +114,7 @@ __all__ = [
     "PredictorCorrector",
     "Proximity",
     "Recording",
+    "Robot",
     "StandoffError",
     "Status",
     "Tracker",

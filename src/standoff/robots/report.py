@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from typing import NamedTuple
 
+from standoff.bodies.body import Body
+from standoff.robots.obstacles import Obstacles
 from standoff.wording import counted
+from standoff.world.compound import Compound
 
 EXACT, HULL, GIVEN, SKIPPED, UNSEEN = "exact", "hull", "given", "skipped", "does not collide"
 """What may become of a geometry: its exact shape, the hull of its mesh, a body that the user gave,
@@ -70,6 +73,18 @@ class RobotReport(NamedTuple):
             for row in rows
         ]
         return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
+
+
+def of_obstacles(obstacles: Obstacles) -> tuple[GeomReport, ...]:
+    """Rows of a robot's obstacles, which are as they were given."""
+    return tuple(
+        GeomReport(name, name, _kind(body), GIVEN, float("nan"))
+        for name, (body, _) in obstacles.items()
+    )
+
+
+def _kind(body: Body | Compound) -> str:
+    return "compound" if isinstance(body, Compound) else body.name
 
 
 def _gap(geom: GeomReport) -> str:

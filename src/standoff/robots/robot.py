@@ -10,25 +10,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.arrays import finite_rows
 from standoff.checks.numbers import positive, whole_number
-from standoff.checks.real_numbers import shown
-from standoff.errors import StandoffError, StandoffTypeError
-from standoff.read_only import KeepsReadOnly
+from standoff.checks.real_numbers import shape_of
+from standoff.errors import StandoffError
 from standoff.robots.answer import RobotAnswer
 from standoff.robots.batch import RobotAnswers
-from standoff.robots.geoms import Geoms
-from standoff.robots.horizons import Horizons
-from standoff.robots.joints import Joints
 from standoff.robots.kinematics import Kinematics
 from standoff.robots.loaded import Loaded
-from standoff.robots.obstacles import Obstacles, read_obstacles, with_obstacles
+from standoff.robots.obstacles import read_obstacles
 from standoff.robots.proof import BoxProof, PathProof
-from standoff.robots.report import RobotReport
-from standoff.robots.rows import Mounted, RobotRows
+from standoff.robots.robot_model import RobotModel
+from standoff.robots.rows import RobotRows
 from standoff.robots.state import RobotState
-from standoff.shown_names import hides
 from standoff.tracking.threads import in_parts
-from standoff.wording import counted
 from standoff.world import World
 
 Array = NDArray[np.float64]
@@ -36,8 +31,7 @@ Meshes = Any
 """None, "hull", or a mapping of names of geometries to "hull", a Body or a Compound."""
 
 
-@hides("loaded")
-class Robot(KeepsReadOnly):
+class Robot(RobotModel):
     """A robot model with exact bodies: distances of its pairs, and gradients by its joints.
 
     Made by `from_mujoco`, `from_pinocchio` or `from_urdf`. Kinematics are the package's own;
@@ -63,18 +57,6 @@ class Robot(KeepsReadOnly):
         The horizon of ``distances``, ``start`` and ``step``, length.
     obstacles : dict of str to (body, Pose)
     """
-
-    def __init__(self, loaded: Loaded, *, within: float | None, obstacles: Obstacles) -> None:
-        self.loaded = loaded
-        self.within = math.inf if within is None else positive(within, "within", infinite=True)
-        self.obstacles = obstacles
-        self.kinematics: Kinematics = loaded.kinematics
-        self.joints: Joints = loaded.joints
-        self.geoms: Geoms = with_obstacles(loaded.geoms, obstacles)
-        self._horizons = Horizons(self.geoms, loaded.pairs, len(loaded.geoms.names))
-        support = np.zeros((len(self.geoms.names), self.kinematics.support.shape[1]))
-        support[self.geoms.moving] = self.kinematics.support
-        self._mounted = Mounted(self.geoms.links, support, self.kinematics.fold)
 
     @staticmethod
     def from_mujoco(
@@ -165,7 +147,7 @@ class Robot(KeepsReadOnly):
         return _made(load(model, geometry_model, meshes, skip), within, obstacles)
 
     @staticmethod
-    def from_urdf(
+    def from_urdf(  # noqa: PLR0913 - all but two are keywords with defaults
         path: str | Path,
         srdf: str | Path | None = None,
         *,
@@ -238,57 +220,6 @@ class Robot(KeepsReadOnly):
         within = None if self.within == math.inf else self.within
         return Robot(self.loaded, within=within, obstacles=self.obstacles | read)
 
-    @property
-    def nq(self) -> int:
-        return self.kinematics.nq
-
-    @property
-    def nv(self) -> int:
-        return self.kinematics.nv
-
-    @property
-    def lower(self) -> Array:
-        return self.joints.lower
-
-    @property
-    def upper(self) -> Array:
-        return self.joints.upper
-
-    @property
-    def world(self) -> World:
-        return self._horizons.world(self.within)
-
-    @property
-    def pairs(self) -> list[tuple[str, str]]:
-        names = self.geoms.names
-        return [(names[i], names[j]) for i, j in self._horizons.pairs.tolist()]
-
-    def report(self) -> RobotReport:
-        """What became of every geometry, and which pairs are watched."""
-        from standoff.robots.report import of_obstacles
-
-        return RobotReport(
-            self.loaded.source,
-            self.joints.names,
-            self.loaded.reports + of_obstacles(self.obstacles),
-            tuple(self.pairs),
-            self.loaded.notes,
-        )
-
-    def outside(self, q: Any) -> tuple[str, ...]:
-        """Names of the joints that a configuration (nq,) has outside their limits."""
-        q = self.kinematics.check(q)
-        wrong = np.flatnonzero((q < self.lower) | (q > self.upper))
-        at = np.searchsorted(np.sort(self.joints.q_at), wrong, side="right") - 1
-        order = np.argsort(self.joints.q_at, kind="stable")
-        return tuple(dict.fromkeys(self.joints.names[order[k]] for k in at))
-
-    def poses(self, q: Any) -> Array:
-        """(n, 4, 4) world poses of all geometries, in the order of ``geoms``."""
-        found = np.array(self.geoms.placements)
-        found[self.geoms.moving] = self.kinematics.poses(self.kinematics.check(q))
-        return found
-
     def clearance(self, q: Any) -> RobotAnswer:
         """The nearest pair at a configuration, from nothing.
 
@@ -329,9 +260,9 @@ class Robot(KeepsReadOnly):
             As ``clearance``, but a robot without pairs has no rows; a horizon that is not positive.
         """
         horizon = self.within if within is None else positive(within, "within", infinite=True)
-        return self._rows(self.kinematics.check(q), horizon)
+        return self._rows(self.kinematics.check(q), self._horizons.world(horizon))
 
-    def clearances(self, Q: Any, *, workers: int = 1) -> RobotAnswers:  # noqa: N803
+    def clearances(self, Q: Any, *, workers: int = 1) -> RobotAnswers:
         """The nearest pair at each of many configurations.
 
         Parameters
@@ -349,7 +280,21 @@ class Robot(KeepsReadOnly):
         ValueError
             As ``clearance``; the number of the row is told.
         """
-        raise NotImplementedError
+        self._check_pairs()
+        shape = shape_of(Q)
+        if shape is not None and (len(shape) != 2 or shape[1] != self.nq):
+            raise StandoffError(f"Q has the shape {shape}: give (m, {self.nq}).", "Q", Q)
+        given = finite_rows(Q, "Q", self.nq)
+        workers = whole_number(workers, "workers")
+        configurations = [_checked_row(self.kinematics, k, q) for k, q in enumerate(given)]
+        answers: list[Any] = [None] * len(given)
+
+        def some(first: int, end: int) -> None:
+            for k in range(first, end):
+                answers[k] = self._nearest(configurations[k])
+
+        in_parts(some, len(given), workers)
+        return RobotAnswers(answers, self.nv)
 
     def start(self, q: Any) -> RobotState:
         """The state of a first configuration, for ``step``."""
@@ -387,7 +332,7 @@ class Robot(KeepsReadOnly):
         return RobotRows(answer, state.q, state.motion, self._mounted, self.within)
 
     def certify(self, path: Any, clearance: float = 5e-3, **options: Any) -> PathProof:
-        """Prove that a joint path keeps a clearance at every instant: `certify.certify`."""
+        """Prove that a joint path keeps a clearance at every instant: see `certify.certify`."""
         from standoff.robots.certify import certify
 
         return certify(self, path, clearance, **options)
@@ -395,25 +340,40 @@ class Robot(KeepsReadOnly):
     def certify_box(
         self, lower: Any, upper: Any, clearance: float = 5e-3, **options: Any
     ) -> BoxProof:
-        """Prove it of all configurations in a box: `boxes.certify_box`."""
+        """Prove that all configurations in a box keep a clearance: see `boxes.certify_box`."""
         from standoff.robots.boxes import certify_box
 
         return certify_box(self, lower, upper, clearance, **options)
 
-    def _rows(self, q: Array, horizon: float) -> RobotRows:
-        raise NotImplementedError
+    def _rows(self, q: Array, world: World) -> RobotRows:
+        motion = self.kinematics.motion(q)
+        return RobotRows(world.distances(motion.poses), q, motion, self._mounted, world.within)
 
     def _nearest(self, q: Array) -> RobotAnswer:
-        raise NotImplementedError
+        """The nearest pair: the first of wider and wider horizons that has any."""
+        motion = self.kinematics.motion(q)
+        for world in self._horizons.widening(self.within):
+            answer = world.distances(motion.poses)
+            if len(answer.pairs):
+                rows = RobotRows(answer, q, motion, self._mounted, world.within)
+                return rows[int(np.argmin(rows.distance))]
+        raise StandoffError(f"No pair of {self.loaded.source} was found.")
 
     def _check_pairs(self) -> None:
-        raise NotImplementedError
-
-    def __repr__(self) -> str:
-        near = counted(len(self._horizons.pairs), "pair")
-        return f"<Robot of {self.loaded.source}: nq {self.nq}, nv {self.nv}, {near}>"
+        if not len(self._horizons.pairs):
+            raise StandoffError(
+                f"{self.loaded.source} watches no pair: add obstacles by with_obstacles, or see "
+                "robot.report() for what was left out."
+            )
 
 
 def _made(loaded: Loaded, within: float | None, obstacles: Mapping[str, Any] | None) -> Robot:
     read = {} if obstacles is None else read_obstacles(obstacles, loaded.geoms.names)
     return Robot(loaded, within=within, obstacles=read)
+
+
+def _checked_row(kinematics: Kinematics, k: int, q: Array) -> Array:
+    try:
+        return kinematics.check(q)
+    except StandoffError as error:
+        raise StandoffError(f"Row {k} of Q: {error}", "Q", q) from error

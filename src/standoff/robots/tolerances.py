@@ -1,9 +1,20 @@
 """Tolerances of robots, each with its unit and reason."""
 
-QUATERNION_LENGTH = 1e-6
-"""By how much the length of a quaternion in q may differ from 1, no unit: more than the rounding of
-float32 and of integration, less than a number that was forgotten. It is then made 1."""
+UNIT_LENGTH = 1e-3
+"""By how much the length of a quaternion, or of (cos, sin), in q may differ from 1, no unit: as of
+a pose's quaternion. It is then made 1."""
 
 TURN_LOST = 1e-12
 """Angular velocity by unit velocity of a joint, no unit, below which it does not turn a pair about
 an axis: the roundoff of a chain of joints."""
+
+FIRST_HORIZON = 0.1
+"""Part of the size of all bodies together within which the nearest pair is sought first, no unit:
+arms among obstacles mostly have one there. The answer does not depend on it."""
+
+WIDER = 8.0
+"""Factor from one horizon to the next while no pair is found, no unit: the bodies are within a few
+of them, and each costs a world that is kept."""
+
+UNLIMITED = 1e30
+"""Limits of q beyond this, in its unit, are none: packages write large numbers for them."""

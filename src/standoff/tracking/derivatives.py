@@ -131,6 +131,13 @@ def gradient(answer: Answer) -> Array:
     return numbers
 
 
+def flagged_gradient(answer: Answer) -> tuple[Smoothness, str, Array]:
+    """The gradient (12,) alone with its flag and reason: nan where it is undefined."""
+    numbers = np.empty(12)
+    smoothness, reason = _derived(answer, numbers)
+    return smoothness, reason, numbers
+
+
 class Table(Protocol):
     """A table of answers that can also give a row as an `Answer`."""
 

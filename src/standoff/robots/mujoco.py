@@ -1,0 +1,289 @@
+"""Robots of MuJoCo models: their joints, geometries and pairs, and MuJoCo's kinematics."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.checks.real_numbers import shown
+from standoff.errors import StandoffError, StandoffTypeError, not_installed
+from standoff.motion import Pose
+from standoff.robots.configurations import Configurations
+from standoff.robots.frames import frame, frames, from_wxyz, jacobians_of
+from standoff.robots.geoms import Geoms
+from standoff.robots.joints import JointKind, Joints
+from standoff.robots.kinematics import Motion
+from standoff.robots.loaded import Loaded
+from standoff.robots.mujoco_pairs import watched_pairs
+from standoff.robots.shapes import Meshes, Source, made_geoms
+
+try:
+    import mujoco
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(not_installed("MuJoCo", "mujoco"), name=error.name) from error
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+KINDS = {
+    mujoco.mjtGeom.mjGEOM_PLANE: "plane",
+    mujoco.mjtGeom.mjGEOM_HFIELD: "hfield",
+    mujoco.mjtGeom.mjGEOM_SPHERE: "sphere",
+    mujoco.mjtGeom.mjGEOM_CAPSULE: "capsule",
+    mujoco.mjtGeom.mjGEOM_ELLIPSOID: "ellipsoid",
+    mujoco.mjtGeom.mjGEOM_CYLINDER: "cylinder",
+    mujoco.mjtGeom.mjGEOM_BOX: "box",
+    mujoco.mjtGeom.mjGEOM_MESH: "mesh",
+    mujoco.mjtGeom.mjGEOM_SDF: "sdf",
+}
+SIZES: dict[str, Callable[[Any], tuple[float, ...]]] = {
+    "plane": lambda s: (0.0, 0.0, 1.0, 0.0),
+    "sphere": lambda s: (s[0],),
+    "capsule": lambda s: (s[0], 2.0 * s[1]),
+    "ellipsoid": lambda s: (s[0], s[1], s[2]),
+    "cylinder": lambda s: (s[0], 2.0 * s[1]),
+    "box": lambda s: (2.0 * s[0], 2.0 * s[1], 2.0 * s[2]),
+}
+"""The sizes of a body, from MuJoCo's half lengths; planes have no end in its collisions either."""
+
+JOINT_KINDS = {
+    mujoco.mjtJoint.mjJNT_FREE: JointKind.FREE,
+    mujoco.mjtJoint.mjJNT_BALL: JointKind.BALL,
+    mujoco.mjtJoint.mjJNT_SLIDE: JointKind.SLIDE,
+    mujoco.mjtJoint.mjJNT_HINGE: JointKind.HINGE,
+}
+
+
+class MujocoKinematics:
+    """MuJoCo's kinematics of a robot's moving geometries; see `Kinematics`.
+
+    Attributes
+    ----------
+    model : mujoco.MjModel
+    """
+
+    fold: Array | None = None
+
+    def __init__(self, model: Any, joints: Joints, numbers: Ints) -> None:
+        """`numbers`: of the moving geometries in the model."""
+        self.model, self.nq, self.nv = model, int(model.nq), int(model.nv)
+        self._joints, self._numbers = joints, numbers
+        self.check = Configurations(joints, self.nq, "model.qpos0")
+        ancestors = _ancestors(model)
+        of_dofs = ancestors[model.geom_bodyid[numbers]][:, model.dof_bodyid]
+        self.support = np.asarray(of_dofs, dtype=float).reshape(len(numbers), self.nv)
+        self._roots = np.asarray(model.body_rootid[model.dof_bodyid])
+        self._data, self._lock = mujoco.MjData(model), threading.Lock()
+
+    def __reduce__(self) -> Any:
+        return MujocoKinematics, (self.model, self._joints, self._numbers)
+
+    def _placed(self) -> Array:
+        data = self._data
+        return frames(
+            data.geom_xmat[self._numbers].reshape(-1, 3, 3), data.geom_xpos[self._numbers]
+        )
+
+    def poses(self, q: Array) -> Array:
+        with self._lock:
+            self._data.qpos[:] = q
+            mujoco.mj_kinematics(self.model, self._data)
+            return self._placed()
+
+    def motion(self, q: Array) -> Motion:
+        data = self._data
+        with self._lock:
+            data.qpos[:] = q
+            mujoco.mj_kinematics(self.model, data)
+            mujoco.mj_comPos(self.model, data)
+            # MuJoCo's are about the centre of mass of each tree, angular first
+            omega, v = data.cdof[:, :3], data.cdof[:, 3:]
+            v = v + np.cross(data.subtree_com[self._roots], omega)
+            return Motion(self._placed(), np.concatenate([v, omega], axis=1).T)
+
+    def jacobians(self, q: Array) -> Array:
+        return jacobians_of(self.motion(q), self.support, self.fold)
+
+    def integrate(self, q: Array, v: Array) -> Array:
+        after = np.array(q, dtype=float)
+        mujoco.mj_integratePos(self.model, after, np.asarray(v, dtype=float), 1.0)
+        return after
+
+    def difference(self, q0: Array, q1: Array) -> Array:
+        found = np.empty(self.nv)
+        mujoco.mj_differentiatePos(self.model, found, 1.0, np.asarray(q0), np.asarray(q1))
+        return found
+
+    def neutral(self) -> Array:
+        return np.array(self.model.qpos0)
+
+
+def load(model: Any, meshes: Meshes, skip: Sequence[str]) -> Loaded:
+    """See ``Robot.from_mujoco``."""
+    model = _read(model)
+    what = f"the MuJoCo model {model_name(model)!r}"
+    if model.nflex:
+        raise StandoffError(
+            f"{what} has {model.nflex} flexible bodies (flex): a robot's bodies are rigid. Take "
+            "them out of the model.",
+            "model",
+        )
+    joints, of_bodies, body_frames = _joints(model)
+    sources = [_source(model, k, of_bodies, body_frames) for k in range(model.ngeom)]
+    made = made_geoms(sources, meshes, skip, what)
+    geoms = _with_world_poses(model, made.geoms, list(made.numbers))
+    kept = np.array(list(made.numbers), dtype=np.int64)
+    kinematics = MujocoKinematics(model, joints, kept[geoms.joints >= 0])
+    pairs = frozenset(
+        (min(made.numbers[i], made.numbers[j]), max(made.numbers[i], made.numbers[j]))
+        for i, j in watched_pairs(model)
+        if i in made.numbers and j in made.numbers
+    )
+    return Loaded(what, kinematics, joints, geoms, pairs, made.reports, _notes(model))
+
+
+def _read(given: Any) -> Any:
+    """A model, or one from a file.
+
+    Raises
+    ------
+    StandoffTypeError, StandoffError, FileNotFoundError
+    """
+    if isinstance(given, mujoco.MjModel):
+        return given
+    if not isinstance(given, str | Path):
+        raise StandoffTypeError(
+            f"model = {shown(given)}: give a mujoco.MjModel, or the path of an MJCF file.",
+            "model",
+            given,
+        )
+    if not os.path.isfile(given):
+        raise FileNotFoundError(f"There is no model file {shown(str(given))}.")
+    try:
+        return mujoco.MjModel.from_xml_path(str(given))
+    except ValueError as error:
+        raise StandoffError(f"MuJoCo does not read {given}: {error}", "model", given) from error
+
+
+def model_name(model: Any) -> str:
+    """The name of a model."""
+    return bytes(model.names).split(b"\0", 1)[0].decode(errors="replace")
+
+
+def _ancestors(model: Any) -> NDArray[np.bool_]:
+    """(nbody, nbody): is the second an ancestor of the first, or it itself?"""
+    found = np.eye(model.nbody, dtype=bool)
+    for body in range(1, model.nbody):
+        found[body] |= found[model.body_parentid[body]]
+    return found
+
+
+def _joints(model: Any) -> tuple[Joints, Ints, Array]:
+    """The joints, and of each body the joint in whose moved frame it is fixed, and where."""
+    of_bodies, frames_ = np.full(model.nbody, -1), np.tile(np.eye(4), (model.nbody, 1, 1))
+    parents, placements = np.empty(model.njnt, dtype=np.int64), np.empty((model.njnt, 4, 4))
+    for body in range(1, model.nbody):
+        parent = model.body_parentid[body]
+        joint, here = int(of_bodies[parent]), frames_[parent]
+        here = here @ frame(from_wxyz(model.body_quat[body]), model.body_pos[body])
+        first = model.body_jntadr[body]
+        for j in range(first, first + model.body_jntnum[body]):
+            free = model.jnt_type[j] == mujoco.mjtJoint.mjJNT_FREE
+            anchor = frame(np.eye(3), model.jnt_pos[j])
+            parents[j], placements[j] = joint, np.eye(4) if free else here @ anchor
+            joint = j
+            here = np.eye(4) if free else frame(np.eye(3), -model.jnt_pos[j])
+        of_bodies[body], frames_[body] = joint, here
+    return _packed_joints(model, parents, placements), of_bodies, frames_
+
+
+def _packed_joints(model: Any, parents: Ints, placements: Array) -> Joints:
+    kinds = np.array([JOINT_KINDS[mujoco.mjtJoint(t)] for t in model.jnt_type], dtype=np.int64)
+    single = (kinds == JointKind.HINGE) | (kinds == JointKind.SLIDE)
+    at = model.jnt_qposadr.astype(np.int64)
+    lower, upper = np.full(model.nq, -np.inf), np.full(model.nq, np.inf)
+    limited = single & (model.jnt_limited != 0)
+    lower[at[limited]], upper[at[limited]] = model.jnt_range[limited].T
+    offsets = np.where(single, -model.qpos0[at], 0.0) if model.njnt else np.zeros(0)
+    names = (model.joint(j).name or f"joint {j}" for j in range(model.njnt))
+    return Joints(
+        tuple(names),
+        kinds,
+        parents,
+        placements,
+        np.where(single[:, None], model.jnt_axis, 0.0),
+        at,
+        model.jnt_dofadr.astype(np.int64),
+        np.ones(model.njnt),
+        offsets,
+        lower,
+        upper,
+        scalar_first=True,
+    )
+
+
+def _source(model: Any, k: int, of_bodies: Ints, body_frames: Array) -> Source:
+    """Geometry k of the model."""
+    body = int(model.geom_bodyid[k])
+    kind = KINDS.get(mujoco.mjtGeom(model.geom_type[k]), "other")
+    local = frame(from_wxyz(model.geom_quat[k]), model.geom_pos[k])
+    paired = k in model.pair_geom1 or k in model.pair_geom2
+    found = Source(
+        model.geom(k).name,
+        model.body(body).name or f"body {body}",
+        kind,
+        int(of_bodies[body]),
+        body_frames[body] @ local,
+        bool(model.geom_contype[k] or model.geom_conaffinity[k] or paired),
+    )
+    mesh = int(model.geom_dataid[k])
+    if kind in SIZES:
+        size = (*SIZES[kind](model.geom_size[k].tolist()), 0.0)
+        return found._replace(size=size)
+    if kind in ("mesh", "sdf") and mesh >= 0:
+        shift = frame(from_wxyz(model.mesh_quat[mesh]), model.mesh_pos[mesh])
+        own = Pose.of(shift).inverse().matrix
+        return found._replace(mesh=lambda: _mesh(model, mesh), file_frame=own)
+    return found
+
+
+def _mesh(model: Any, k: int) -> tuple[Array, Ints]:
+    first, faces = model.mesh_vertadr[k], model.mesh_faceadr[k]
+    points = model.mesh_vert[first : first + model.mesh_vertnum[k]]
+    triangles = model.mesh_face[faces : faces + model.mesh_facenum[k]]
+    return np.asarray(points, dtype=float), np.asarray(triangles, dtype=np.int64)
+
+
+def _with_world_poses(model: Any, geoms: Geoms, numbers: list[int]) -> Geoms:
+    """Placements of what is fixed in the world as MuJoCo has them, to the last bit."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    placements = geoms.placements.copy()
+    for n in np.flatnonzero(geoms.joints < 0):
+        k = numbers[n]
+        placements[n] = frame(data.geom_xmat[k].reshape(3, 3), data.geom_xpos[k])
+    return geoms._replace(placements=placements)
+
+
+def _notes(model: Any) -> tuple[str, ...]:
+    found = []
+    if model.neq:
+        found.append(
+            f"{model.neq} equality constraints are not enforced: q is taken as it is given"
+        )
+    if model.nmocap:
+        found.append(f"{model.nmocap} mocap bodies stand where the model has them")
+    free = ", ".join(
+        model.joint(j).name or f"joint {j}"
+        for j in range(model.njnt)
+        if not model.jnt_limited[j] and model.jnt_type[j] >= mujoco.mjtJoint.mjJNT_SLIDE
+    )
+    if free:
+        found.append(f"without limits: {free}")
+    return tuple(found)

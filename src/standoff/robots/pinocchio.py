@@ -1,0 +1,192 @@
+"""Robots of Pinocchio models: their joints, geometries and pairs, and Pinocchio's kinematics."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.checks.real_numbers import shown
+from standoff.errors import StandoffError, StandoffTypeError, not_installed
+from standoff.robots.configurations import Configurations
+from standoff.robots.frames import jacobians_of
+from standoff.robots.geoms import Geoms
+from standoff.robots.joints import Joints
+from standoff.robots.kinematics import Motion
+from standoff.robots.loaded import Loaded
+from standoff.robots.pinocchio_joints import Rows, read_joints
+from standoff.robots.pinocchio_shapes import read_shape
+from standoff.robots.shapes import Made, Meshes, Source, made_geoms
+
+try:
+    import coal  # noqa: F401 - its classes are those of the geometries
+    import pinocchio as pin
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(not_installed("Pinocchio", "pinocchio"), name=error.name) from error
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+NEUTRAL = "pinocchio.neutral(model)"
+
+
+class PinocchioKinematics:
+    """Pinocchio's kinematics of a robot's moving geometries; see `Kinematics`.
+
+    Attributes
+    ----------
+    model : pinocchio.Model
+    """
+
+    def __init__(self, model: Any, joints: Joints, carriers: Ints, placements: Array) -> None:
+        """`carriers`: the model's joint of each moving geometry; `placements` in its frame."""
+        self.model, self.nq, self.nv = model, int(model.nq), int(model.nv)
+        self._joints, self._carriers, self._placements = joints, carriers, placements
+        self.check = Configurations(joints, self.nq, NEUTRAL)
+        self._data, self._lock = model.createData(), threading.Lock()
+        self._used, self._of = np.unique(carriers, return_inverse=True)
+        self.fold, columns = _folded(model)
+        self.support = np.zeros((len(carriers), self._data.J.shape[1]))
+        for row, carrier in zip(self.support, carriers, strict=True):
+            for joint in list(model.supports[int(carrier)])[1:]:  # 0 is the universe
+                row[columns[joint]] = 1.0
+
+    def __reduce__(self) -> Any:
+        return PinocchioKinematics, (self.model, self._joints, self._carriers, self._placements)
+
+    def _placed(self) -> Array:
+        places = self._data.oMi
+        used = np.array([places[j].homogeneous for j in self._used.tolist()]).reshape(-1, 4, 4)
+        return np.asarray(used[self._of] @ self._placements)
+
+    def poses(self, q: Array) -> Array:
+        with self._lock:
+            pin.forwardKinematics(self.model, self._data, q)
+            return self._placed()
+
+    def motion(self, q: Array) -> Motion:
+        with self._lock:
+            # its columns are about the world's origin, linear first
+            screws = np.array(pin.computeJointJacobians(self.model, self._data, q))
+            return Motion(self._placed(), screws)
+
+    def jacobians(self, q: Array) -> Array:
+        return jacobians_of(self.motion(q), self.support, self.fold)
+
+    def integrate(self, q: Array, v: Array) -> Array:
+        return np.asarray(pin.integrate(self.model, np.asarray(q), np.asarray(v)))
+
+    def difference(self, q0: Array, q1: Array) -> Array:
+        return np.asarray(pin.difference(self.model, np.asarray(q0), np.asarray(q1)))
+
+    def neutral(self) -> Array:
+        return np.asarray(pin.neutral(self.model))
+
+
+def _folded(model: Any) -> tuple[Array | None, dict[int, slice]]:
+    """How v moves the columns of Pinocchio's Jacobian, and each joint's columns in it.
+
+    Joints that mimic another have columns of their own, and none of v.
+    """
+    columns = {
+        j: slice(model.idx_vExtendeds[j], model.idx_vExtendeds[j] + model.nvExtendeds[j])
+        for j in range(1, model.njoints)
+    }
+    if model.nvExtended == model.nv:
+        return None, columns
+    fold = np.zeros((model.nvExtended, model.nv))
+    for j, own in columns.items():
+        joint = model.joints[j]
+        scale = joint.extract().scaling if joint.shortname() == "JointModelMimic" else 1.0
+        at = model.idx_vs[j]
+        fold[own, at : at + own.stop - own.start] = scale * np.eye(own.stop - own.start)
+    return fold, columns
+
+
+def load(model: Any, geometry_model: Any, meshes: Meshes, skip: Sequence[str]) -> Loaded:
+    """See ``Robot.from_pinocchio``."""
+    if not isinstance(model, pin.Model):
+        raise StandoffTypeError(f"model = {shown(model)}: give a pinocchio.Model.", "model", model)
+    if not isinstance(geometry_model, pin.GeometryModel):
+        raise StandoffTypeError(
+            f"geometry_model = {shown(geometry_model)}: give a pinocchio.GeometryModel, such as "
+            "that of pinocchio.buildGeomFromUrdf(model, path, pinocchio.GeometryType.COLLISION).",
+            "geometry_model",
+            geometry_model,
+        )
+    what = f"the Pinocchio model {model.name!r}"
+    if geometry_model.ngeoms and not len(geometry_model.collisionPairs):
+        raise StandoffError(
+            "geometry_model has no collision pairs, so that nothing would be watched: call "
+            "geometry_model.addAllCollisionPairs(), and pinocchio.removeCollisionPairs(model, "
+            "geometry_model, srdf) for those that may touch.",
+            "geometry_model",
+            geometry_model,
+        )
+    pairs = [(int(p.first), int(p.second)) for p in geometry_model.collisionPairs]
+    return assembled(model, geometry_model, pairs, (meshes, skip), what)
+
+
+def assembled(
+    model: Any,
+    geometry_model: Any,
+    pairs: Sequence[tuple[int, int]],
+    choices: tuple[Meshes, Sequence[str]],
+    what: str,
+    kinds: dict[str, str] | None = None,
+) -> Loaded:
+    """A robot's data from a model, its geometries, and numbers of pairs of them.
+
+    ``kinds`` are those of geometries that only stand for others, by name.
+    """
+    rows = read_joints(model, what)
+    objects = geometry_model.geometryObjects
+    sources = [_source(model, rows, x, kinds or {}) for x in objects]
+    made = made_geoms(sources, *choices, what)
+    kept = list(made.numbers)
+    joints, moving = rows.joints, made.geoms.moving
+    carriers = np.array([objects[kept[n]].parentJoint for n in moving], dtype=np.int64)
+    kinematics = PinocchioKinematics(model, joints, carriers, made.geoms.placements[moving])
+    return Loaded(
+        what, kinematics, joints, made.geoms, _kept_pairs(made, pairs), made.reports, rows.notes
+    )
+
+
+def _kept_pairs(made: Made, pairs: Sequence[tuple[int, int]]) -> frozenset[tuple[int, int]]:
+    """Pairs by the numbers of the geometries that were kept, without two that stand still."""
+    still, found = made.geoms.joints < 0, set()
+    for i, j in pairs:
+        if i in made.numbers and j in made.numbers:
+            a, b = sorted((made.numbers[i], made.numbers[j]))
+            if not (still[a] and still[b]):
+                found.add((a, b))
+    return frozenset(found)
+
+
+def _source(model: Any, rows: Rows, given: Any, kinds: dict[str, str]) -> Source:
+    """One geometry of a Pinocchio model."""
+    shape = read_shape(given.geometry)
+    carrier = int(given.parentJoint)
+    return Source(
+        given.name,
+        _link(model, given),
+        kinds.get(given.name, shape.kind),
+        int(rows.of_joints[carrier]),
+        np.array(given.placement.homogeneous),
+        not given.disableCollision,
+        () if given.name in kinds else shape.size,
+        shape.mesh,
+    )
+
+
+def _link(model: Any, given: Any) -> str:
+    """The body that carries a geometry: its frame, or its joint where it has none."""
+    number = int(given.parentFrame)
+    if 0 < number < model.nframes:
+        return str(model.frames[number].name)
+    return str(model.names[int(given.parentJoint)])
+
+
+__all__ = ["Geoms", "PinocchioKinematics", "assembled", "load"]

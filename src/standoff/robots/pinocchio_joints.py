@@ -1,0 +1,169 @@
+"""Joints of a Pinocchio model as a robot's tree."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from standoff.errors import StandoffError
+from standoff.robots.joints import JointKind, Joints
+from standoff.robots.tolerances import UNLIMITED
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+X, Y, Z = np.eye(3)
+HINGE, SLIDE, CONTINUOUS = JointKind.HINGE, JointKind.SLIDE, JointKind.CONTINUOUS
+
+
+class Row(NamedTuple):
+    """One motion of a joint: its kind, axis, and where its number stands after the joint's first
+    in q and v."""
+
+    kind: JointKind
+    axis: Array
+    q: int = 0
+    v: int = 0
+    ratio: float = 1.0
+    offset: float = 0.0
+
+
+MOTIONS: dict[str, tuple[Row, ...]] = {
+    **{f"JointModelR{n}": (Row(HINGE, a),) for n, a in zip("XYZ", (X, Y, Z), strict=True)},
+    **{f"JointModelP{n}": (Row(SLIDE, a),) for n, a in zip("XYZ", (X, Y, Z), strict=True)},
+    **{f"JointModelRUB{n}": (Row(CONTINUOUS, a),) for n, a in zip("XYZ", (X, Y, Z), strict=True)},
+    "JointModelSpherical": (Row(JointKind.BALL, 0.0 * X),),
+    "JointModelFreeFlyer": (Row(JointKind.FREE, 0.0 * X),),
+    "JointModelTranslation": tuple(Row(SLIDE, a, k, k) for k, a in enumerate((X, Y, Z))),
+    "JointModelPlanar": (Row(SLIDE, X), Row(SLIDE, Y, 1, 1), Row(CONTINUOUS, Z, 2, 2)),
+    "JointModelSphericalZYX": tuple(Row(HINGE, a, k, k) for k, a in enumerate((Z, Y, X))),
+}
+"""Of each kind of joint without a direction of its own."""
+
+ALONG_AXIS = {
+    "JointModelRevoluteUnaligned": HINGE,
+    "JointModelPrismaticUnaligned": SLIDE,
+    "JointModelRevoluteUnboundedUnaligned": CONTINUOUS,
+}
+"""Of those with an axis."""
+
+
+class Rows(NamedTuple):
+    """A model's joints.
+
+    Attributes
+    ----------
+    joints : Joints
+    of_joints : (njoints,) array
+        Of each joint of the model the last of its rows; -1 for the universe.
+    notes : tuple of str
+    """
+
+    joints: Joints
+    of_joints: Ints
+    notes: tuple[str, ...]
+
+
+def read_joints(model: Any, what: str) -> Rows:
+    """The tree of a model's joints.
+
+    Raises
+    ------
+    StandoffError
+        A joint of a kind that is not known; its name and kind are told.
+    """
+    of_joints = np.full(model.njoints, -1)
+    names: list[str] = []
+    rows: list[tuple[Row, int, Array, int, int]] = []
+    for j in range(1, model.njoints):
+        motions = _motions(model, j, what)
+        at_q, at_v = _begins(model, j)
+        parent, placement = int(of_joints[model.parents[j]]), model.jointPlacements[j].homogeneous
+        for k, row in enumerate(motions):
+            names.append(model.names[j] + (f"/{k}" if len(motions) > 1 else ""))
+            rows.append((row, parent, np.array(placement), at_q + row.q, at_v + row.v))
+            parent, placement = len(rows) - 1, np.eye(4)
+        of_joints[j] = parent
+    lower, upper = (_limits(x, side) for x, side in _given_limits(model))
+    for row, _, _, q, _ in rows:
+        if row.kind not in (HINGE, SLIDE):
+            first = q + (3 if row.kind == JointKind.FREE else 0)
+            end = first + (2 if row.kind == CONTINUOUS else 4)
+            lower[first:end], upper[first:end] = -np.inf, np.inf
+    joints = Joints(
+        tuple(names),
+        np.array([row.kind for row, *_ in rows], dtype=np.int64),
+        np.array([parent for _, parent, *_ in rows], dtype=np.int64),
+        np.array([placement for _, _, placement, *_ in rows]).reshape(-1, 4, 4),
+        np.array([row.axis for row, *_ in rows]).reshape(-1, 3),
+        np.array([q for *_, q, _ in rows], dtype=np.int64),
+        np.array([v for *_, v in rows], dtype=np.int64),
+        np.array([row.ratio for row, *_ in rows]),
+        np.array([row.offset for row, *_ in rows]),
+        lower,
+        upper,
+        scalar_first=False,
+    )
+    return Rows(joints, of_joints, _notes(joints))
+
+
+def _motions(model: Any, j: int, what: str) -> tuple[Row, ...]:
+    """What a joint's motions are, from its base."""
+    joint = model.joints[j]
+    kind = joint.shortname()
+    if kind in MOTIONS:
+        return MOTIONS[kind]
+    if kind in ALONG_AXIS:
+        axis = np.array(joint.extract().axis, dtype=float)
+        return (Row(ALONG_AXIS[kind], axis),)
+    if kind == "JointModelMimic":
+        return (_mimicking(model, j, joint.extract()),)
+    raise StandoffError(
+        f"The joint {model.names[j]!r} of {what} is a {kind}, which is not known: build the model "
+        "of joints that turn about an axis, slide, are spherical, planar or free.",
+        "model",
+        model,
+    )
+
+
+def _mimicking(model: Any, j: int, joint: Any) -> Row:
+    """The motion of a joint that mimics another of one number.
+
+    Pinocchio does not tell its axis: it is read from where the joint goes by a unit.
+    """
+    ratio, offset = float(joint.scaling), float(joint.offset)
+    data, q = model.createData(), pin.neutral(model)
+    q[int(model.idx_qs[j])] = (1.0 - offset) / ratio
+    pin.forwardKinematics(model, data, q)
+    base = data.oMi[model.parents[j]] * model.jointPlacements[j]
+    way = pin.log6(base.actInv(data.oMi[j]))
+    turns = np.linalg.norm(way.angular) > 0.5
+    axis = np.array(way.angular if turns else way.linear)
+    return Row(HINGE if turns else SLIDE, axis / np.linalg.norm(axis), 0, 0, ratio, offset)
+
+
+def _begins(model: Any, j: int) -> tuple[int, int]:
+    return int(model.idx_qs[j]), int(model.idx_vs[j])
+
+
+def _given_limits(model: Any) -> list[tuple[Any, float]]:
+    return [(model.lowerPositionLimit, -np.inf), (model.upperPositionLimit, np.inf)]
+
+
+def _limits(given: Any, none: float) -> Array:
+    found = np.array(given, dtype=float)
+    return np.where(np.abs(found) < UNLIMITED, found, none)
+
+
+def _notes(joints: Joints) -> tuple[str, ...]:
+    single = np.isin(joints.kinds, [HINGE, SLIDE])
+    ends = joints.upper[joints.q_at] - joints.lower[joints.q_at]
+    free = [
+        name
+        for name, kind, one, span in zip(joints.names, joints.kinds, single, ends, strict=True)
+        if kind == CONTINUOUS or (one and not np.isfinite(span))
+    ]
+    return (f"without limits: {', '.join(free)}",) if free else ()

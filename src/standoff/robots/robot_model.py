@@ -1,0 +1,96 @@
+"""What of a robot does not depend on its configuration, and where its geometries are."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.checks.numbers import positive
+from standoff.read_only import KeepsReadOnly
+from standoff.robots.geoms import Geoms
+from standoff.robots.horizons import Horizons
+from standoff.robots.joints import Joints
+from standoff.robots.kinematics import Kinematics
+from standoff.robots.loaded import Loaded
+from standoff.robots.obstacles import Obstacles, with_obstacles
+from standoff.robots.report import RobotReport, of_obstacles
+from standoff.robots.rows import Mounted
+from standoff.shown_names import hides
+from standoff.wording import counted
+from standoff.world import World
+
+Array = NDArray[np.float64]
+
+
+@hides("loaded")
+class RobotModel(KeepsReadOnly):
+    """Joints, geometries, pairs and obstacles of a `Robot`; see there."""
+
+    def __init__(self, loaded: Loaded, *, within: float | None, obstacles: Obstacles) -> None:
+        self.loaded = loaded
+        self.within = math.inf if within is None else positive(within, "within", infinite=True)
+        self.obstacles = obstacles
+        self.kinematics: Kinematics = loaded.kinematics
+        self.joints: Joints = loaded.joints
+        self.geoms: Geoms = with_obstacles(loaded.geoms, obstacles)
+        own = len(loaded.geoms.names)
+        self._horizons = Horizons(self.geoms, loaded.pairs, own, self.within)
+        support = np.zeros((len(self.geoms.names), self.kinematics.support.shape[1]))
+        support[self.geoms.moving] = self.kinematics.support
+        self._mounted = Mounted(self.geoms.links, support, self.kinematics.fold)
+
+    @property
+    def nq(self) -> int:
+        return self.kinematics.nq
+
+    @property
+    def nv(self) -> int:
+        return self.kinematics.nv
+
+    @property
+    def lower(self) -> Array:
+        return self.joints.lower
+
+    @property
+    def upper(self) -> Array:
+        return self.joints.upper
+
+    @property
+    def world(self) -> World:
+        return self._horizons.world(self.within)
+
+    @property
+    def pairs(self) -> list[tuple[str, str]]:
+        names = self.geoms.names
+        return [(names[i], names[j]) for i, j in self._horizons.pairs.tolist()]
+
+    def report(self) -> RobotReport:
+        """What became of every geometry, and which pairs are watched."""
+        return RobotReport(
+            self.loaded.source,
+            self.joints.names,
+            self.loaded.reports + of_obstacles(self.obstacles),
+            tuple(self.pairs),
+            self.loaded.notes,
+        )
+
+    def outside(self, q: Any) -> tuple[str, ...]:
+        """Names of the joints that a configuration (nq,) has outside their limits."""
+        q = self.kinematics.check(q)
+        wrong = np.flatnonzero((q < self.lower) | (q > self.upper))
+        at = np.searchsorted(np.sort(self.joints.q_at), wrong, side="right") - 1
+        order = np.argsort(self.joints.q_at, kind="stable")
+        return tuple(dict.fromkeys(self.joints.names[order[k]] for k in at))
+
+    def poses(self, q: Any) -> Array:
+        """(n, 4, 4) world poses of all geometries, in the order of ``geoms``."""
+        found = np.array(self.geoms.placements)
+        found[self.geoms.moving] = self.kinematics.poses(self.kinematics.check(q))
+        return found
+
+    def __repr__(self) -> str:
+        pairs = counted(len(self._horizons.pairs), "pair")
+        return f"<Robot of {self.loaded.source}: nq {self.nq}, nv {self.nv}, {pairs}>"
