@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from robots.trees import TreeRobot, drawn_pose, robot_of
 
 import standoff as so
+from robots.trees import TreeRobot, drawn_pose, robot_of
 
 
 def arm(

@@ -9,10 +9,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from robots.trees import TreeRobot, drawn_axis, drawn_pose, robot_of
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from robots.trees import TreeRobot, drawn_axis, drawn_pose, robot_of
 
 
 class Simple(NamedTuple):

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from robots.trees import TreeRobot, drawn_body, drawn_pose, drawn_q, drawn_robot, robot_of
 
 import standoff as so
+from robots.trees import TreeRobot, drawn_body, drawn_pose, drawn_q, drawn_robot, robot_of
 from standoff.robots.joints import JointKind
 from standoff.robots.motion_bounds import bends, least_way_along, seen_from
 from standoff.robots.motions import motions_of
@@ -84,7 +84,7 @@ def test_no_point_goes_farther_than_the_bound(seed: int) -> None:
     rng = np.random.default_rng(seed)
     robot = drawn_robot(rng, int(rng.integers(1, 7)), KINDS)
     sight = Sight(robot)
-    n = sight.watched.motions.count
+    n = sight.watched.motions.size
     q, h = drawn_q(rng, robot), rng.uniform(0.0, 1.0, n) * 10.0 ** rng.uniform(-3.0, 0.3)
     pairs = np.arange(sight.pairs)
     frames = sight.frames(q[None])

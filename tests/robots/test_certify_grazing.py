@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from robots.path_oracle import Judged, drawn_judged, least_distances
-from robots.trees import robot_of
 
 import standoff as so
+from robots.path_oracle import Judged, drawn_judged, least_distances
+from robots.trees import robot_of
 from standoff.robots.proof import Verdict
 
 CLEARANCE = 5e-3
@@ -81,7 +81,7 @@ def test_a_little_more_is_proven_and_a_little_less_is_found(case: object, margin
     robot, path = case(CLEARANCE - margin)
     proof = robot.certify(path, CLEARANCE)
     assert proof.verdict is Verdict.VIOLATED
-    assert proof.upper_bound < CLEARANCE
+    assert proof.witness.upper_bound < CLEARANCE
     assert not proof
 
 
@@ -90,7 +90,7 @@ def test_exactly_the_clearance_is_not_decided(case: object) -> None:
     robot, path = case(CLEARANCE)
     proof = robot.certify(path, CLEARANCE, max_steps=20_000)
     assert proof.verdict is Verdict.UNDECIDED
-    assert proof.names is not None
+    assert proof.witness is not None
     assert proof.time < proof.end
     assert str(proof).startswith("UNDECIDED")
 
@@ -138,4 +138,4 @@ def test_random_paths_that_graze_at_1e_6() -> None:
         assert judged.robot.certify(points, least - 1e-6).verdict is Verdict.PROVEN
         found = judged.robot.certify(points, least + 1e-6)
         assert found.verdict is Verdict.VIOLATED
-        assert found.distance == pytest.approx(least, abs=1.1e-6)
+        assert found.witness.distance == pytest.approx(least, abs=1.1e-6)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from robots.path_oracle import Judged, drawn_judged, least_distances
-from robots.trees import drawn_q, drawn_robot, neutral
 from scipy.interpolate import CubicSpline, PchipInterpolator, make_interp_spline
 
+from robots.path_oracle import Judged, drawn_judged, least_distances
+from robots.trees import drawn_q, drawn_robot, neutral
 from standoff.robots.paths import FunctionPath
 from standoff.robots.proof import PathProof, Verdict
 
@@ -38,7 +38,9 @@ def judge(judged: Judged, proof: PathProof, at: object, samples: int = SAMPLES) 
         there = least_distances(judged, np.array(at(np.array([proof.latest]))))[0]
         assert there.min() < proof.clearance
         names = list(judged.robot.world.pairs())
-        assert there[names.index(proof.names)] == pytest.approx(proof.distance, abs=1e-8)
+        assert there[names.index(proof.witness.names)] == pytest.approx(
+            proof.witness.distance, abs=1e-8
+        )
 
 
 def straight(points: np.ndarray, times: np.ndarray) -> object:

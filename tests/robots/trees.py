@@ -234,10 +234,8 @@ def drawn_robot(
     """A random tree with a geom or two on each joint, and fixed bodies; a floor in some."""
     of = [int(k) for k in rng.choice(kinds, nj)]
     parents = [int(rng.integers(-1, j)) if rng.random() < 0.4 else j - 1 for j in range(nj)]
-    geoms = []
-    for j in range(nj):
-        for _ in range(int(rng.integers(1, 3))):
-            geoms.append((j, drawn_body(rng), drawn_pose(rng, 0.3)))
+    carriers = [j for j in range(nj) for _ in range(int(rng.integers(1, 3)))]
+    geoms = [(j, drawn_body(rng), drawn_pose(rng, 0.3)) for j in carriers]
     still = {f"f{k}": (drawn_body(rng), drawn_pose(rng, 1.5)) for k in range(fixed)}
     if rng.random() < 0.3:
         still["floor"] = (so.shapes.halfspace([0.0, 0.0, 1.0], -2.0), np.eye(4))

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from standoff.robots.joints import JointKind, Joints
     from standoff.robots.kinematics import Kinematics
     from standoff.robots.paths import FunctionPath
-    from standoff.robots.proof import BoxProof, PathProof, Verdict
+    from standoff.robots.proof import BoxProof, PathProof, Verdict, Witness
     from standoff.robots.report import GeomReport, RobotReport
     from standoff.robots.robot import Robot
     from standoff.robots.rows import RobotRows
@@ -25,7 +25,7 @@ else:
             "standoff.robots.joints": ("JointKind", "Joints"),
             "standoff.robots.kinematics": ("Kinematics",),
             "standoff.robots.paths": ("FunctionPath",),
-            "standoff.robots.proof": ("BoxProof", "PathProof", "Verdict"),
+            "standoff.robots.proof": ("BoxProof", "PathProof", "Verdict", "Witness"),
             "standoff.robots.report": ("GeomReport", "RobotReport"),
             "standoff.robots.robot": ("Robot",),
             "standoff.robots.rows": ("RobotRows",),
@@ -47,4 +47,5 @@ __all__ = [
     "RobotReport",
     "RobotRows",
     "Verdict",
+    "Witness",
 ]

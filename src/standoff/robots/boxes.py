@@ -7,7 +7,7 @@ subtracted. Pairs that this proves are not looked at again in the parts of that 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,16 +16,14 @@ from standoff.best_first import Part, Searched, best_first
 from standoff.checks.arrays import finite, numbers
 from standoff.checks.numbers import not_negative, whole_number, yes_or_no
 from standoff.errors import StandoffError
-from standoff.robots.certify_tolerances import SMALLEST_BOX
+from standoff.robots.certify_tolerances import SMALLEST_SIDE
 from standoff.robots.joints import JointKind
 from standoff.robots.limits import check_limits, joint_of
 from standoff.robots.motion_bounds import Reaches
 from standoff.robots.motions import Motions
-from standoff.robots.proof import BoxCounts, Boxes, BoxProof, Verdict
+from standoff.robots.proof import BoxCounts, Boxes, BoxProof, Verdict, Witness
+from standoff.robots.robot_model import RobotModel
 from standoff.robots.sight import Apart, Sight, closing, some_of
-
-if TYPE_CHECKING:
-    from standoff.robots.robot import Robot
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -68,7 +66,7 @@ class Box(NamedTuple):
 
 
 def certify_box(
-    robot: Robot,
+    robot: RobotModel,
     lower: Any,
     upper: Any,
     clearance: float = 5e-3,
@@ -113,7 +111,7 @@ def certify_box(
     return search.run(max_boxes, yes_or_no(whole, "whole"))
 
 
-def _checked(robot: Robot, lower: Any, upper: Any) -> tuple[Array, Array]:
+def _checked(robot: RobotModel, lower: Any, upper: Any) -> tuple[Array, Array]:
     """The corners of a box.
 
     Raises
@@ -166,18 +164,20 @@ class _Search:
         self.lower, self.upper = lower, upper
         ways = _ways(sight.watched.motions, 0.5 * (upper - lower)[None])[0]
         self.doubt = sight.roundoff(0.5 * (lower + upper), ways)
-        self.least = SMALLEST_BOX * (upper - lower)
+        self.least = SMALLEST_SIDE * (upper - lower)
         self.boxes = 0
         self.proven = math.inf
 
     def run(self, most: int, whole: bool) -> BoxProof:
+        splits = (most - 1) // 2
+        batch = max(1, min(BATCH, splits // 4))
         every = Box(self.lower, self.upper, 1.0, np.arange(self.sight.pairs))
         found = best_first(
             self.looked_at([every]),
             lambda parts: self.looked_at([half for part in parts for half in _halves(part.body)]),
             goal=lambda seen: -math.inf if seen < 0.0 and not whole else 0.0,
-            most=lambda _: (most - 1) // 2,
-            batch=BATCH,
+            most=lambda _: splits - batch + 1,
+            batch=batch,
         )
         return self._answer(found)
 
@@ -205,13 +205,14 @@ class _Search:
         for k, box in enumerate(boxes):
             mine, asked = np.flatnonzero(at == k), np.flatnonzero(at[ask] == k)
             own = box._replace(
-                bound=min(float(bound[mine].min(initial=math.inf)), math.inf),
+                bound=float(bound[mine].min(initial=math.inf)),
                 violated=bool(nearer[asked].any()),
             )
             if len(asked):
                 best = int(asked[np.argmin(apart.upper[asked])])
                 own = own._replace(
-                    least=Apart(*(each[best] for each in apart)), nearest=int(pairs[ask[best]])
+                    least=Apart(*(each[best : best + 1] for each in apart)),
+                    nearest=int(pairs[ask[best]]),
                 )
             found.append(self._part(own, pairs[mine], bound[mine], middle.reaches, mine))
         return found
@@ -222,7 +223,7 @@ class _Search:
         self.proven = min(self.proven, float(bound[~open_].min(initial=math.inf)))
         seen = math.inf
         if box.least is not None:
-            seen = float(box.least.upper) + self.doubt - self.clearance
+            seen = float(box.least.upper[0]) + self.doubt - self.clearance
         if open_.any() and not box.violated:
             worst = int(rows[int(np.argmin(bound))])
             box = box._replace(pairs=pairs[open_], split=self._longest(box, reaches, worst))
@@ -247,36 +248,41 @@ class _Search:
         rest = [part.body for part in every if part.bound < 0.0 and not part.body.violated]
         met = found.place if found.found < 0.0 else None
         verdict = Verdict.VIOLATED if met is not None else Verdict.UNDECIDED
-        if not bad and not rest:
-            verdict = Verdict.PROVEN
         shown = met
         if shown is None and rest:
             shown = min(rest, key=lambda box: box.bound)
-        pair = -1 if shown is None else shown.nearest
-        least = None if met is None else met.least
-        q = None if met is None else 0.5 * (met.lower + met.upper)
-        for array in (self.lower, self.upper, *(() if q is None else (q,))):
+        if not bad and not rest:
+            verdict, shown = Verdict.PROVEN, None
+        for array in (self.lower, self.upper):
             array.flags.writeable = False
-        known = [self.proven, *(box.bound for box in (*rest, *bad))]
+        shares = [math.fsum(box.share for box in some) for some in (free, bad, rest)]
+        sight = self.sight
         return BoxProof(
-            verdict,
-            self.clearance,
-            self.lower,
-            self.upper,
-            *(math.fsum(box.share for box in some) for some in (free, bad, rest)),
-            None if pair < 0 else self.sight.names(pair),
-            None if pair < 0 else self.sight.links(pair),
-            q,
-            *((math.nan,) * 3 if least is None else map(float, least[:3])),
-            min(known),
-            BoxCounts(self.sight.pairs, self.boxes, self.sight.configurations, self.sight.queries),
-            *map(_stacked, (free, bad, rest)),
+            verdict=verdict,
+            clearance=self.clearance,
+            lower=self.lower,
+            upper=self.upper,
+            free=shares[0],
+            violated=shares[1],
+            open=shares[2],
+            witness=self._witness(shown),
+            proven=min([self.proven, *(box.bound for box in (*rest, *bad))]),
+            counts=BoxCounts(sight.pairs, self.boxes, sight.configurations, sight.queries),
+            free_boxes=_stacked(free),
+            violated_boxes=_stacked(bad),
+            open_boxes=_stacked(rest),
         )
+
+    def _witness(self, box: Box | None) -> Witness | None:
+        """The nearest pair in the middle of a box."""
+        if box is None or box.least is None:
+            return None
+        return self.sight.witness(box.nearest, 0.5 * (box.lower + box.upper), box.least)
 
 
 def _ways(motions: Motions, half: Array) -> Array:
     """(m, nm + 1): how far each motion goes from the middle of boxes with these half sides."""
-    found = np.zeros((len(half), motions.count + 1))
+    found = np.zeros((len(half), motions.size + 1))
     scalar = np.flatnonzero(motions.q_count == 1)
     found[:, scalar] = np.abs(motions.ratios[scalar]) * half[:, motions.q_at[scalar]]
     return found

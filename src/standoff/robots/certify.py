@@ -9,7 +9,7 @@ between (`standoff.impact.chord` has the argument). What is not proven is split.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,12 +22,10 @@ from standoff.robots.limits import check_limits
 from standoff.robots.motion_bounds import bends, least_speed, seen_from
 from standoff.robots.motions import Frames
 from standoff.robots.paths import BoundedPath, JointPath, joint_path
-from standoff.robots.proof import How, PathCounts, PathProof, Verdict
+from standoff.robots.proof import How, PathCounts, PathProof, Verdict, Witness
+from standoff.robots.robot_model import RobotModel
 from standoff.robots.sight import Apart, Middle, Sight, closing, some_of
 from standoff.robots.watched import turned
-
-if TYPE_CHECKING:
-    from standoff.robots.robot import Robot
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -39,7 +37,7 @@ more than one row, and more would be looked at in vain behind a violation."""
 
 
 def certify(
-    robot: Robot,
+    robot: RobotModel,
     path: Any,
     clearance: float = 5e-3,
     *,
@@ -94,7 +92,7 @@ class _Search:
         ways = self.speeds * np.diff(path.breaks)[:, None]
         self.gone = np.concatenate([np.zeros((1, ways.shape[1])), np.cumsum(ways, axis=0)])
         (begin,) = path.at(np.array([path.start]))
-        check_limits(sight.robot, path.at(path.breaks), "path", path.breaks)
+        self._at(path.extremes())
         latest = max(abs(path.start), abs(path.end))
         self.doubt = sight.roundoff(
             begin, self.gone[-1], latest, float(self.speeds.max(initial=0.0))
@@ -254,7 +252,8 @@ class _Search:
             change = np.einsum("ki,kij->kj", turn, axes[1][side] - axes[0][side])
             total += np.einsum("kj,kj->k", np.abs(change), middle.half[side])
         span = now.last - now.first
-        return total + 0.5 * span * span * cut.bound + self.doubt
+        found: Array = total + 0.5 * span * span * cut.bound + self.doubt
+        return found
 
     # --- times --------------------------------------------------------------------------------
 
@@ -345,36 +344,33 @@ class _Search:
             self.sight.configurations,
             self.sight.queries,
         )
-        common = self.clearance, self.path.start, self.path.end
-        if not len(open_.pairs) and self.violation is None:
-            least = float(steps.bound.min(initial=math.inf))
-            nothing = None, None, None, math.nan, math.nan, math.nan
-            return PathProof(
-                Verdict.PROVEN, *common, self.path.end, math.nan, *nothing, least, counts, steps
-            )
-        time = float(open_.first.min(initial=math.inf))
-        if self.violation is None:
-            pair = int(open_.pairs[int(np.argmin(open_.first))])
-            verdict, latest, when = Verdict.UNDECIDED, math.nan, time
-            q, frames, at = self._at(np.array([when]))
-            apart = self.sight.ask(np.array([pair]), q, frames, at)
-        else:
-            latest, pair, apart = self.violation
-            verdict, when, time = Verdict.VIOLATED, latest, min(time, latest)
-            q = self.path.at(np.array([when]))
-        q[0].flags.writeable = False
+        time, latest, witness = self._end(open_)
+        verdict = Verdict.PROVEN
+        if witness is not None:
+            verdict = Verdict.UNDECIDED if self.violation is None else Verdict.VIOLATED
         return PathProof(
-            verdict,
-            *common,
-            time,
-            latest,
-            self.sight.names(pair),
-            self.sight.links(pair),
-            q[0],
-            float(apart.distance[0]),
-            float(apart.lower[0]),
-            float(apart.upper[0]),
-            math.nan,
-            counts,
-            steps,
+            verdict=verdict,
+            clearance=self.clearance,
+            start=self.path.start,
+            end=self.path.end,
+            time=time,
+            latest=latest,
+            witness=witness,
+            proven=float(steps.bound.min(initial=math.inf)) if witness is None else math.nan,
+            counts=counts,
+            steps=steps,
         )
+
+    def _end(self, left: Intervals) -> tuple[float, float, Witness | None]:
+        """(proven until, proven to be violated at, the pair there) by what is not proven."""
+        if self.violation is not None:
+            latest, pair, apart = self.violation
+            (q,) = self.path.at(np.array([latest]))
+            time = min(float(left.first.min(initial=math.inf)), latest)
+            return time, latest, self.sight.witness(pair, q, apart)
+        if not len(left.pairs):
+            return self.path.end, math.nan, None
+        k = int(np.argmin(left.first))
+        q, frames, at = self._at(left.first[k : k + 1])
+        apart = self.sight.ask(left.pairs[k : k + 1], q, frames, at)
+        return float(left.first[k]), math.nan, self.sight.witness(int(left.pairs[k]), q[0], apart)

@@ -16,6 +16,10 @@ BOUND_INFLATION: Final = 1e-9
 """By so much (relative) each bound of a motion is raised: the sums of some hundred products that it
 is made of lose 1e-14, and a sine of an angle that is nearly zero 1e-8 of a bound that is not."""
 
+REACH_ROUNDOFF: Final = 1e-12
+"""Part of the robot's lengths that is added to each distance from an axis (relative): its own
+roundoff, where the distance is nearly zero."""
+
 SAME_KINEMATICS: Final = 1e-9
 """Part of the robot's lengths within which the joints as read and the package's own kinematics must
 place a geom alike (relative): rounding leaves 1e-15; more is a joint that was read wrongly, of
@@ -29,7 +33,7 @@ BRACKET: Final = 1e-4
 """Share of a path's duration between an instant up to which all is proven and one at which a pair
 is proven to be nearer than the clearance: halving it once more costs as much as a step."""
 
-SMALLEST_BOX: Final = 1e-6
+SMALLEST_SIDE: Final = 1e-6
 """Share of a box's sides: smaller boxes are not split."""
 
 SPEED_SLACK: Final = 1e-9

@@ -69,8 +69,14 @@ def steps_of(proven: Sequence[tuple[Intervals, Array, How]], names: Sequence[Nam
     every = joined(some)
     how = np.repeat([each.value for each in hows], [len(each.pairs) for each in some])
     order = np.argsort(every.first, kind="stable")
-    columns = every.first, every.last, every.pairs, np.concatenate(bounds), how
-    found = Steps(*(column[order] for column in columns), tuple(names))
+    found = Steps(
+        start=every.first[order],
+        end=every.last[order],
+        pair=every.pairs[order],
+        bound=np.concatenate(bounds)[order],
+        how=how[order],
+        names=tuple(names),
+    )
     for array in found[:5]:
         array.flags.writeable = False
     return found

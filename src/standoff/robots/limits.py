@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.robots.certify_tolerances import LIMIT_SLACK
-
-if TYPE_CHECKING:
-    from standoff.robots.robot import Robot
+from standoff.robots.robot_model import RobotModel
 
 Array = NDArray[np.float64]
 
 
-def check_limits(robot: Robot, q: Array, argument: str, times: Any = None) -> None:
+def check_limits(robot: RobotModel, q: Array, argument: str, times: Any = None) -> None:
     """Refuse configurations (m, nq) outside the robot's limits.
 
     Raises
@@ -39,7 +37,7 @@ def check_limits(robot: Robot, q: Array, argument: str, times: Any = None) -> No
     )
 
 
-def joint_of(robot: Robot, i: int) -> str:
+def joint_of(robot: RobotModel, i: int) -> str:
     """The joint that a number of a configuration is of, as a message names it."""
     joints = robot.joints
     before = np.flatnonzero(joints.q_at <= i)

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.robots.certify_tolerances import BOUND_INFLATION
+from standoff.robots.certify_tolerances import BOUND_INFLATION, REACH_ROUNDOFF
 from standoff.robots.motions import Frames
 from standoff.robots.watched import Seen, Watched
 
@@ -116,7 +116,7 @@ def reaches_of(
 
 def _raised(w: Array, length: float) -> Array:
     """Bounds that hold after roundoff too, of the robot's lengths."""
-    return w * (1.0 + BOUND_INFLATION) + length * BOUND_INFLATION * 1e-3
+    return w * (1.0 + BOUND_INFLATION) + length * REACH_ROUNDOFF
 
 
 def _from_axes(seen: Seen, half: Array, axes: Array, origins: Array) -> Array:

@@ -78,17 +78,14 @@ class Motions(NamedTuple):
     ends: Array
     scalar_first: bool
 
-    def __len__(self) -> int:
-        return len(self.turns)
-
     @property
-    def count(self) -> int:
+    def size(self) -> int:
         """How many there are."""
         return len(self.turns)
 
     def rates(self, velocities: Array) -> Array:
         """(m, n + 1): sizes of the motions at joint velocities (m, nv); 0 for the world's frame."""
-        found = np.zeros((len(velocities), self.count + 1))
+        found = np.zeros((len(velocities), self.size + 1))
         single = np.flatnonzero(self.v_count == 1)
         found[:, single] = np.abs(self.ratios[single] * velocities[:, self.v_at[single]])
         for k in np.flatnonzero(self.v_count == 3).tolist():
@@ -99,14 +96,14 @@ class Motions(NamedTuple):
         """(m, n + 1): accelerations at constant joint velocities: of a free joint's shift, whose
         velocity may be given in the axes that turn with it."""
         found = np.zeros_like(rates)
-        for k in range(1, self.count):
+        for k in range(1, self.size):
             if self.joints[k] == self.joints[k - 1]:
                 found[:, k - 1] = rates[:, k - 1] * rates[:, k]
         return found
 
     def frames(self, q: Array) -> Frames:
         """Where the motions' frames are at configurations (m, nq)."""
-        m, n = len(q), self.count
+        m, n = len(q), self.size
         rotations, origins = np.zeros((m, n + 1, 3, 3)), np.zeros((m, n + 1, 3))
         rotations[:, WORLD] = np.eye(3)
         for k in range(n):
@@ -158,18 +155,24 @@ def motions_of(joints: Joints) -> Motions:
             q_at, v_at = q_at + q_count, v_at + v_count
         links.append(parent)
         ends.append(placement)
-    columns = list(zip(*rows, strict=True)) if rows else [()] * 11
-    turns, axes, parents, placements, *whole = columns
+    whole = np.array([[row[0], row[2], *row[4:9]] for row in rows], dtype=np.int64).reshape(-1, 7)
+    turns, parents, of, q_at_, q_count_, v_at_, v_count_ = whole.T.copy()
+    ratios = np.array([row[9:] for row in rows], dtype=float).reshape(-1, 2)
     return Motions(
-        np.array(turns, dtype=bool),
-        np.array(axes, dtype=float).reshape(-1, 3),
-        np.array(parents, dtype=np.int64),
-        np.array(placements, dtype=float).reshape(-1, 4, 4),
-        *(np.array(column, dtype=np.int64) for column in whole[:5]),
-        *(np.array(column, dtype=float) for column in whole[5:]),
-        np.array(links, dtype=np.int64),
-        np.array(ends, dtype=float).reshape(-1, 4, 4),
-        joints.scalar_first,
+        turns=turns.astype(bool),
+        axes=np.array([row[1] for row in rows], dtype=float).reshape(-1, 3),
+        parents=parents,
+        placements=np.array([row[3] for row in rows], dtype=float).reshape(-1, 4, 4),
+        joints=of,
+        q_at=q_at_,
+        q_count=q_count_,
+        v_at=v_at_,
+        v_count=v_count_,
+        ratios=ratios[:, 0],
+        offsets=ratios[:, 1],
+        links=np.array(links, dtype=np.int64),
+        ends=np.array(ends, dtype=float).reshape(-1, 4, 4),
+        scalar_first=joints.scalar_first,
     )
 
 

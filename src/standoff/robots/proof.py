@@ -97,6 +97,31 @@ class Steps(NamedTuple):
         return np.where(covered == len(self.names), found, np.nan)
 
 
+class Witness(NamedTuple):
+    """A pair at a configuration.
+
+    Attributes
+    ----------
+    names : (str, str)
+        Of the two bodies.
+    links : (str, str)
+        That carry them; of an obstacle its own name.
+    q : (nq,) array
+    distance, lower_bound, upper_bound : float
+        There [length].
+    """
+
+    names: Names
+    links: Names
+    q: Array
+    distance: float
+    lower_bound: float
+    upper_bound: float
+
+    def __str__(self) -> str:
+        return f"{self.names[0]} and {self.names[1]}, {self.distance:.6g} apart"
+
+
 class PathCounts(NamedTuple):
     """What a proof took.
 
@@ -136,14 +161,8 @@ class PathProof(KeepsReadOnly, PlainData):
         Up to here every pair is proven to keep the clearance [s]; the end if PROVEN.
     latest : float
         VIOLATED: an instant at which a pair is proven to be nearer [s]; else nan.
-    names : (str, str) or None
-        The pair that is nearer, or that is not decided; None if PROVEN.
-    links : (str, str) or None
-        The links that carry the two.
-    q : (nq,) array or None
-        The configuration at ``latest``, or at ``time`` if UNDECIDED.
-    distance, lower_bound, upper_bound : float
-        Of that pair there [length]; nan if PROVEN.
+    witness : Witness or None
+        The pair that is nearer at ``latest``, or that is not decided at ``time``; None if PROVEN.
     proven : float
         PROVEN: no pair is nearer than this at any instant [length]; else nan.
     counts : PathCounts
@@ -156,12 +175,7 @@ class PathProof(KeepsReadOnly, PlainData):
     end: float
     time: float
     latest: float
-    names: Names | None
-    links: Names | None
-    q: Array | None
-    distance: float
-    lower_bound: float
-    upper_bound: float
+    witness: Witness | None
     proven: float
     counts: PathCounts
     steps: Steps
@@ -188,13 +202,15 @@ class PathProof(KeepsReadOnly, PlainData):
                 f"PROVEN: every pair keeps {self.clearance:.6g} at every instant from {span}; "
                 f"none comes nearer than {self.proven:.6g} ({took})"
             )
-        pair = " and ".join(self.names or ())
         if self.verdict is Verdict.VIOLATED:
             return (
-                f"VIOLATED: {pair} are {self.distance:.6g} apart at {self.latest:.9g} s, less than "
+                f"VIOLATED: {self.witness} at {self.latest:.9g} s, less than "
                 f"{self.clearance:.6g}; proven until {self.time:.9g} s of {span} ({took})"
             )
-        return f"UNDECIDED: {pair} at {self.time:.9g} s; proven until there, of {span} ({took})"
+        return (
+            f"UNDECIDED: {self.witness} at {self.time:.9g} s; proven until there, of {span} "
+            f"({took})"
+        )
 
     def __repr__(self) -> str:
         return f"PathProof({self.verdict.name}, proven until {self.time:.9g} of {self.end:.9g} s)"
@@ -232,11 +248,8 @@ class Boxes(NamedTuple):
     lower: Array
     upper: Array
 
-    def __len__(self) -> int:
-        return len(self.lower)
-
     @property
-    def count(self) -> int:
+    def size(self) -> int:
         """How many there are."""
         return len(self.lower)
 
@@ -254,13 +267,9 @@ class BoxProof(KeepsReadOnly, PlainData):
         The box.
     free, violated, open : float
         Shares of its volume: proven to keep the clearance, proven not to, and neither.
-    names, links : (str, str) or None
-        The pair that is nearer at ``q``, or the one that keeps the least known bound from being
-        enough; None if PROVEN.
-    q : (nq,) array or None
-        A configuration that is nearer than the clearance, if one was met.
-    distance, lower_bound, upper_bound : float
-        Of that pair there [length]; nan if none was met.
+    witness : Witness or None
+        A pair at a configuration: nearer than the clearance if VIOLATED, the nearest in the open
+        part of the least bound if UNDECIDED, None if PROVEN.
     proven : float
         A lower bound of all pairs' distances in the whole box [length].
     counts : BoxCounts
@@ -275,12 +284,7 @@ class BoxProof(KeepsReadOnly, PlainData):
     free: float
     violated: float
     open: float
-    names: Names | None
-    links: Names | None
-    q: Array | None
-    distance: float
-    lower_bound: float
-    upper_bound: float
+    witness: Witness | None
     proven: float
     counts: BoxCounts
     free_boxes: Boxes
@@ -312,10 +316,10 @@ class BoxProof(KeepsReadOnly, PlainData):
             f"{self.open:.4%} open"
         )
         if self.verdict is Verdict.VIOLATED:
-            pair = " and ".join(self.names or ())
+            q = () if self.witness is None else self.witness.q
             return (
-                f"VIOLATED: {pair} are {self.distance:.6g} apart, less than {self.clearance:.6g}, "
-                f"at q = {np.array2string(np.asarray(self.q), precision=6)}; {shares} ({took})"
+                f"VIOLATED: {self.witness}, less than {self.clearance:.6g}, at q = "
+                f"{np.array2string(np.asarray(q), precision=6)}; {shares} ({took})"
             )
         return f"UNDECIDED: {shares} ({took})"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -24,12 +24,11 @@ from standoff.robots.motion_bounds import (
     reaches_of,
 )
 from standoff.robots.motions import WORLD, Frames, motions_of
+from standoff.robots.proof import Witness
+from standoff.robots.robot_model import RobotModel
 from standoff.robots.watched import Seen, Watched, watched_of
 from standoff.world import World
 from standoff.world.many_frames import answers_at, pieces_placed
-
-if TYPE_CHECKING:
-    from standoff.robots.robot import Robot
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -83,7 +82,7 @@ class Sight:
         At which the package's kinematics were evaluated, and certified distances taken.
     """
 
-    def __init__(self, robot: Robot, workers: int = 1) -> None:
+    def __init__(self, robot: RobotModel, workers: int = 1) -> None:
         self.robot, self.workers = robot, workers
         self.model = robot.world.model
         self.watched = _kept(robot)
@@ -106,6 +105,13 @@ class Sight:
         a, b = self.names(pair)
         return links.get(a, a), links.get(b, b)
 
+    def witness(self, pair: int, q: Array, apart: Apart) -> Witness:
+        """A pair at a configuration, as an answer shows it, of the first of what is known."""
+        q = np.array(q)
+        q.flags.writeable = False
+        numbers = (float(each[0]) for each in apart[:3])
+        return Witness(self.names(pair), self.links(pair), q, *numbers)
+
     def frames(self, q: Array) -> Frames:
         """Where the motions' frames are at configurations (m, nq)."""
         return self.watched.motions.frames(q)
@@ -125,12 +131,12 @@ class Sight:
         motions = self.watched.motions
         length = self.watched.length
         shifts = ~motions.turns
-        length += float(ways[: motions.count][shifts].sum())
+        length += float(ways[: motions.size][shifts].sum())
         for k in np.flatnonzero(shifts).tolist():
             at = int(motions.q_at[k])
             length += float(np.abs(q[at : at + int(motions.v_count[k])]).sum())
         joints = float(np.abs(q).max(initial=0.0) + ways.max(initial=0.0)) + time * speed
-        count = motions.count + 1
+        count = motions.size + 1
         return EPS * count * length * (KINEMATICS_ROUNDINGS + PATH_ROUNDINGS * joints)
 
     def middle(self, pairs: Ints, frames: Frames, at: Ints, ways: Array) -> Middle:
@@ -221,7 +227,7 @@ def some_of(middle: Middle, which: Any) -> Middle:
 _KEPT: WeakKeyDictionary[World, Watched] = WeakKeyDictionary()
 
 
-def _kept(robot: Robot) -> Watched:
+def _kept(robot: RobotModel) -> Watched:
     """The pairs of a robot, which are found once for each of its worlds."""
     world = robot.world
     if world not in _KEPT:
@@ -229,7 +235,7 @@ def _kept(robot: Robot) -> Watched:
     return _KEPT[world]
 
 
-def _watched(robot: Robot) -> Watched:
+def _watched(robot: RobotModel) -> Watched:
     world, geoms = robot.world, robot.geoms
     motions = motions_of(robot.joints)
     at = {name: k for k, name in enumerate(geoms.names)}

@@ -19,7 +19,7 @@ from standoff.world.frame import no_tree
 from standoff.world.model import Model
 from standoff.world.narrow_phase import Moment, answered
 from standoff.world.packed import PackedLaws, PackedPieces
-from standoff.world.poses import GivenPoses, NO_TWISTS, mend_poses
+from standoff.world.poses import NO_TWISTS, GivenPoses, mend_poses
 from standoff.world.state import IN_PAGE, PAGE
 
 Array = NDArray[np.float64]
