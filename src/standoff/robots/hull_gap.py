@@ -7,28 +7,50 @@ import scipy
 from numpy.typing import NDArray
 
 from standoff.bodies.hulls.qhull import hull_triangles
-from standoff.bodies.meshes.columns import spread
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+SPOTS, SAMPLES = 4096, 40_000
+"""Points of the hull, and of the mesh beside its corners: evenly by area."""
 MEASURED = 64
 """Points of the hull whose distance from all triangles is taken: those farthest from samples of
 the mesh."""
+GOLDEN = np.array([0.7548776662466927, 0.5698402909980532])
+"""Steps of the sequence in the plane that is spread most evenly (of Roberts)."""
 
 
 def hull_gap(points: Array, triangles: Ints) -> float:
     """The greatest distance of the hull's surface from the triangles that was found, length.
 
-    Points all over the hull's facets are tried, some 40,000; the distance of the farthest ones is
-    exact. The mesh may have holes.
+    It is exact for the points that are measured, so never more than the true one. The mesh may
+    have holes.
     """
     facets = hull_triangles(points, "vertices of the mesh").corners
-    spots = spread(points, facets)
-    near = scipy.spatial.cKDTree(spread(points, triangles)).query(spots)[0]
-    farthest = spots[np.argsort(near)[-MEASURED:]]
+    spots = _samples(points[facets], SPOTS)
     corners = points[triangles]
-    return max(float(_from_triangles(spot, corners)) for spot in farthest)
+    samples = np.concatenate([points, _samples(corners, SAMPLES)])
+    near = scipy.spatial.cKDTree(samples, balanced_tree=False).query(spots)[0]
+    middles = corners.mean(axis=1)
+    radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
+    gap = 0.0
+    for k in np.argsort(near)[-MEASURED:]:
+        # a sample is this near, so triangles that are farther are not the nearest
+        some = np.linalg.norm(middles - spots[k], axis=1) - radii <= near[k]
+        gap = max(gap, _from_triangles(spots[k], corners[some]))
+    return gap
+
+
+def _samples(corners: Array, count: int) -> Array:
+    """Points of triangles (t, 3, 3), as dense everywhere."""
+    sides = corners[:, 1:] - corners[:, :1]
+    areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    ends = np.cumsum(areas)
+    owners = np.searchsorted(ends, (np.arange(count) + 0.5) / count * ends[-1])
+    shares = np.modf((1.0 + np.arange(count))[:, None] * GOLDEN)[0]
+    over = shares.sum(axis=1) > 1.0
+    shares[over] = 1.0 - shares[over]
+    return np.asarray(corners[owners, 0] + np.einsum("nk,nkj->nj", shares, sides[owners]))
 
 
 def _from_triangles(spot: Array, corners: Array) -> float:

@@ -145,7 +145,7 @@ def load(model: Any, meshes: Meshes, skip: Sequence[str]) -> Loaded:
         for i, j in watched_pairs(model)
         if i in made.numbers and j in made.numbers
     )
-    return Loaded(what, kinematics, joints, geoms, pairs, made.reports, _notes(model))
+    return Loaded(what, kinematics, joints, geoms, pairs, made.reports, _notes(model, joints))
 
 
 def _read(given: Any) -> Any:
@@ -194,7 +194,7 @@ def _joints(model: Any) -> tuple[Joints, Ints, Array]:
         here = here @ frame(from_wxyz(model.body_quat[body]), model.body_pos[body])
         first = model.body_jntadr[body]
         for j in range(first, first + model.body_jntnum[body]):
-            free = model.jnt_type[j] == mujoco.mjtJoint.mjJNT_FREE
+            free = model.jnt_type[j] == int(mujoco.mjtJoint.mjJNT_FREE)
             anchor = frame(np.eye(3), model.jnt_pos[j])
             parents[j], placements[j] = joint, np.eye(4) if free else here @ anchor
             joint = j
@@ -271,7 +271,7 @@ def _with_world_poses(model: Any, geoms: Geoms, numbers: list[int]) -> Geoms:
     return geoms._replace(placements=placements)
 
 
-def _notes(model: Any) -> tuple[str, ...]:
+def _notes(model: Any, joints: Joints) -> tuple[str, ...]:
     found = []
     if model.neq:
         found.append(
@@ -279,11 +279,11 @@ def _notes(model: Any) -> tuple[str, ...]:
         )
     if model.nmocap:
         found.append(f"{model.nmocap} mocap bodies stand where the model has them")
-    free = ", ".join(
-        model.joint(j).name or f"joint {j}"
-        for j in range(model.njnt)
-        if not model.jnt_limited[j] and model.jnt_type[j] >= mujoco.mjtJoint.mjJNT_SLIDE
-    )
+    free = [
+        name
+        for name, kind, at in zip(joints.names, joints.kinds, joints.q_at, strict=True)
+        if kind in (JointKind.HINGE, JointKind.SLIDE) and joints.lower[at] == -np.inf
+    ]
     if free:
-        found.append(f"without limits: {free}")
+        found.append(f"without limits: {', '.join(free)}")
     return tuple(found)

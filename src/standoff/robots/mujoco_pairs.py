@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-HALF_SPACES = (mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_HFIELD)
+HALF_SPACES = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
 """Kinds of which MuJoCo takes no two together."""
 
 
@@ -36,7 +36,7 @@ def _filtered_bodies(model: Any) -> Mask:
     """(nbody, nbody): are two bodies left out, whatever their geometries are?"""
     weld = model.body_weldid
     found: Mask = weld[:, None] == weld[None, :]
-    if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_FILTERPARENT:
+    if not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT):
         parent = weld[model.body_parentid[weld]]
         nested = weld[:, None] == parent[None, :]
         moving = weld != 0

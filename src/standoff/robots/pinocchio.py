@@ -88,7 +88,7 @@ class PinocchioKinematics:
 def _folded(model: Any) -> tuple[Array | None, dict[int, slice]]:
     """How v moves the columns of Pinocchio's Jacobian, and each joint's columns in it.
 
-    Joints that mimic another have columns of their own, and none of v.
+    Joints that mimic another have columns of their own, scaled, and none of v.
     """
     columns = {
         j: slice(model.idx_vExtendeds[j], model.idx_vExtendeds[j] + model.nvExtendeds[j])
@@ -98,10 +98,8 @@ def _folded(model: Any) -> tuple[Array | None, dict[int, slice]]:
         return None, columns
     fold = np.zeros((model.nvExtended, model.nv))
     for j, own in columns.items():
-        joint = model.joints[j]
-        scale = joint.extract().scaling if joint.shortname() == "JointModelMimic" else 1.0
         at = model.idx_vs[j]
-        fold[own, at : at + own.stop - own.start] = scale * np.eye(own.stop - own.start)
+        fold[own, at : at + own.stop - own.start] = np.eye(own.stop - own.start)
     return fold, columns
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -46,7 +47,6 @@ MOTIONS: dict[str, tuple[Row, ...]] = {
 ALONG_AXIS = {
     "JointModelRevoluteUnaligned": HINGE,
     "JointModelPrismaticUnaligned": SLIDE,
-    "JointModelRevoluteUnboundedUnaligned": CONTINUOUS,
 }
 """Of those with an axis."""
 
@@ -119,6 +119,8 @@ def _motions(model: Any, j: int, what: str) -> tuple[Row, ...]:
     if kind in ALONG_AXIS:
         axis = np.array(joint.extract().axis, dtype=float)
         return (Row(ALONG_AXIS[kind], axis),)
+    if kind == "JointModelRevoluteUnboundedUnaligned":
+        return (Row(CONTINUOUS, _unit_motion(model, j, [np.cos(1.0), np.sin(1.0)])[1]),)
     if kind == "JointModelMimic":
         return (_mimicking(model, j, joint.extract()),)
     raise StandoffError(
@@ -130,19 +132,23 @@ def _motions(model: Any, j: int, what: str) -> tuple[Row, ...]:
 
 
 def _mimicking(model: Any, j: int, joint: Any) -> Row:
-    """The motion of a joint that mimics another of one number.
-
-    Pinocchio does not tell its axis: it is read from where the joint goes by a unit.
-    """
+    """The motion of a joint that mimics another of one number."""
     ratio, offset = float(joint.scaling), float(joint.offset)
-    data, q = model.createData(), pin.neutral(model)
-    q[int(model.idx_qs[j])] = (1.0 - offset) / ratio
+    kind, axis = _unit_motion(model, j, [(1.0 - offset) / ratio])
+    return Row(kind, axis, 0, 0, ratio, offset)
+
+
+def _unit_motion(model: Any, j: int, numbers: Sequence[float]) -> tuple[JointKind, Array]:
+    """Kind and axis of a joint, read from where its numbers for one radian or length lead it:
+    Pinocchio does not tell all axes."""
+    data, q, at = model.createData(), pin.neutral(model), int(model.idx_qs[j])
+    q[at : at + len(numbers)] = numbers
     pin.forwardKinematics(model, data, q)
     base = data.oMi[model.parents[j]] * model.jointPlacements[j]
     way = pin.log6(base.actInv(data.oMi[j]))
     turns = np.linalg.norm(way.angular) > 0.5
     axis = np.array(way.angular if turns else way.linear)
-    return Row(HINGE if turns else SLIDE, axis / np.linalg.norm(axis), 0, 0, ratio, offset)
+    return (HINGE if turns else SLIDE), axis / np.linalg.norm(axis)
 
 
 def _begins(model: Any, j: int) -> tuple[int, int]:

@@ -115,10 +115,11 @@ def _add_pairs(model: Any, geometry: Any, srdf: Path | None) -> None:
     """All pairs but neighbours, less those that the SRDF disables."""
     geometry.addAllCollisionPairs()
     carriers = [int(x.parentJoint) for x in geometry.geometryObjects]
-    for pair in list(geometry.collisionPairs):
-        i, j = carriers[pair.first], carriers[pair.second]
+    # by numbers: what Pinocchio hands out are references, which a removal moves
+    for first, second in [(int(p.first), int(p.second)) for p in geometry.collisionPairs]:
+        i, j = carriers[first], carriers[second]
         if i == model.parents[j] or j == model.parents[i]:
-            geometry.removeCollisionPair(pair)
+            geometry.removeCollisionPair(pin.CollisionPair(first, second))
     if srdf is None:
         return
     _check_links(srdf, [frame.name for frame in model.frames])

@@ -79,8 +79,8 @@ def measured(mesh: Mesh, pieces: Sequence[tuple[Array, Ints]]) -> Fit:
     long = length > JOIN_TOLERANCE * float(np.linalg.norm(high - low))
     only = [inside[1] & ~inside[0] & long, inside[0] & ~inside[1] & long]
     spots = [_spots(column[o], z[o], length[o], grid) for o in only]
-    surfaces = [spread(mesh.points, mesh.triangles)]
-    surfaces.append(np.concatenate([spread(*piece) for piece in pieces]))
+    surfaces = [_spread(mesh.points, mesh.triangles)]
+    surfaces.append(np.concatenate([_spread(*piece) for piece in pieces]))
     added, lost = (cell * float(length[o].sum()) for o in only)
     away, off = (_farthest(spots[k], surfaces[k]) for k in range(2))
     return Fit(mesh.volume, added, lost, away, off, step, abs(own - mesh.volume))
@@ -134,7 +134,7 @@ def _farthest(spots: Array, surface: Array) -> float:
     return float(scipy.spatial.cKDTree(surface).query(spots)[0].max())
 
 
-def spread(points: Array, triangles: Ints) -> Array:
+def _spread(points: Array, triangles: Ints) -> Array:
     """Points all over triangles, as dense everywhere, their corners among them."""
     corners = points[triangles]
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
