@@ -165,6 +165,10 @@ class _Search:
         ways = _ways(sight.watched.motions, 0.5 * (upper - lower)[None])[0]
         self.doubt = sight.roundoff(0.5 * (lower + upper), ways)
         self.least = SMALLEST_SIDE * (upper - lower)
+        corners = np.stack([lower, 0.5 * (lower + upper), upper])
+        frames = sight.frames(corners)
+        for k, q in enumerate(corners):  # the joints as read against the package
+            sight.placed(q, frames, k)
         self.boxes = 0
         self.proven = math.inf
 

@@ -83,6 +83,12 @@ def certify(
     return search.run(progress)
 
 
+FEW = 64
+"""Intervals of which so few are left are halved `DEEPER` times at once: a round takes as long for
+one as for hundreds."""
+DEEPER = 2
+
+
 class _Search:
     def __init__(self, sight: Sight, path: JointPath, clearance: float, budget: int) -> None:
         self.sight, self.path = sight, path
@@ -93,6 +99,7 @@ class _Search:
         self.gone = np.concatenate([np.zeros((1, ways.shape[1])), np.cumsum(ways, axis=0)])
         (begin,) = path.at(np.array([path.start]))
         self._at(path.extremes())
+        self._check_kinematics()
         latest = max(abs(path.start), abs(path.end))
         self.doubt = sight.roundoff(
             begin, self.gone[-1], latest, float(self.speeds.max(initial=0.0))
@@ -102,6 +109,13 @@ class _Search:
         self.violation: tuple[float, int, Apart] | None = None
         self.proven: list[tuple[Intervals, Array, How]] = []
         self.stuck: list[Intervals] = []
+
+    def _check_kinematics(self) -> None:
+        """Hold the joints as read against the package: bounds alone may prove a whole path."""
+        times = np.array([self.path.start, 0.5 * (self.path.start + self.path.end), self.path.end])
+        q, frames, at = self._at(times)
+        for k in at.tolist():
+            self.sight.placed(q[k], frames, k)
 
     # --- the whole ----------------------------------------------------------------------------
 
@@ -185,8 +199,7 @@ class _Search:
         q, frames, at = self._at(np.concatenate([now.first, now.last]))
         n = len(now.pairs)
         ends = at[:n], at[n:]
-        before = self._asked(now, now.before, now.first, (q, frames, ends[0]))
-        after = self._asked(now, now.after, now.last, (q, frames, ends[1]))
+        before, after = self._asked(now, (q, frames, at))
         now = now._replace(before=before, after=after)
         sag = self._sags(now, frames, ends, middle)
         bound = lowest(before[:, 0] - self.clearance, after[:, 0] - self.clearance, sag)
@@ -195,19 +208,17 @@ class _Search:
         bound = np.maximum(bound, straight) + self.clearance
         return now.some(self._note(now, bound, How.CHORD))
 
-    def _asked(
-        self, now: Intervals, known: Array, times: Array, where: tuple[Array, Frames, Ints]
-    ) -> Array:
-        """What is known at one end of the intervals, after asking where nothing was."""
+    def _asked(self, now: Intervals, where: tuple[Array, Frames, Ints]) -> tuple[Array, Array]:
+        """What is known at the ends of the intervals, after asking where nothing was."""
         q, frames, at = where
+        known = np.concatenate([now.before, now.after])
         ask = np.flatnonzero(np.isnan(known[:, 0]))
-        if not len(ask):
-            return known
-        apart = self.sight.ask(now.pairs[ask], q, frames, at[ask])
-        self._notice(now.pairs[ask], times[ask], apart)
-        found = known.copy()
-        found[ask, 0], found[ask, 1], found[ask, 2:] = apart.lower, apart.upper, apart.normals
-        return found
+        if len(ask):
+            pairs = np.concatenate([now.pairs, now.pairs])[ask]
+            apart = self.sight.ask(pairs, q, frames, at[ask])
+            self._notice(pairs, np.concatenate([now.first, now.last])[ask], apart)
+            known[ask] = np.column_stack([apart.lower, apart.upper, apart.normals])
+        return known[: len(now.pairs)], known[len(now.pairs) :]
 
     def _rates(self, now: Intervals, middle: Middle) -> tuple[Array, Array | None]:
         """Speeds and accelerations of the motions on each pair's chain, in the interval."""
@@ -314,13 +325,18 @@ class _Search:
             self.violation = float(times[k]), int(pairs[k]), one
 
     def _split(self, left: Intervals) -> Intervals:
-        """Halves of what is left; what is too short is put aside."""
+        """Parts of what is left; what is too short is put aside."""
         known = left.after[:, 1] + self.doubt < self.clearance
         short = left.last - left.first <= np.where(known, BRACKET / SHORTEST_STEP, 1.0) * self.least
         short &= left.pieces[:, 1] - left.pieces[:, 0] == 1
         if short.any():
             self.stuck.append(left.some(short))
             left = left.some(~short)
+        for _ in range(1 if len(left.pairs) > FEW else DEEPER):
+            left = self._halved(left)
+        return left
+
+    def _halved(self, left: Intervals) -> Intervals:
         middles = self._middles(left)
         several = left.pieces[:, 1] - left.pieces[:, 0] > 1
         place = (left.pieces[:, 0] + left.pieces[:, 1]) // 2

@@ -172,7 +172,7 @@ class Sight:
         keys, first, again = np.unique(pairs * len(q) + at, return_index=True, return_inverse=True)
         of_pairs, where = pairs[first], at[first]
         used, rows = np.unique(where, return_inverse=True)
-        placed = [self._placed(q[k], frames, int(k)) for k in used.tolist()]
+        placed = [self.placed(q[k], frames, int(k)) for k in used.tolist()]
         pieces = self.watched.a[of_pairs], self.watched.b[of_pairs]
         found = answers_at(self.model, placed, rows, pieces, self.workers)
         self.queries += len(keys)
@@ -180,7 +180,7 @@ class Sight:
             found.distance[again], found.lower[again], found.upper[again], found.normal[again]
         )
 
-    def _placed(self, q: Array, frames: Frames, k: int) -> Array:
+    def placed(self, q: Array, frames: Frames, k: int) -> Array:
         """Where the pieces are, by the package's own kinematics.
 
         Raises
