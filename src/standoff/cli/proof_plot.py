@@ -51,7 +51,9 @@ def proof_figure(proof: PathProof, title: str = "") -> Figure:
         fontsize=8,
     )
     above.set_ylabel("proven for all pairs")
-    above.set_ylim(bottom=0.0)
+    known = steps.clearance(times)
+    top = max(proof.clearance, float(np.nanmax(known, initial=0.0)))
+    above.set_ylim(0.0, 1.25 * top or 1.0)
     above.set_title(f"{title}: {proof.verdict.name}" if title else proof.verdict.name, fontsize=10)
     for row, pair in enumerate(rows.tolist()):
         for how, colour in COLOURS.items():
