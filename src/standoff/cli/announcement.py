@@ -5,6 +5,7 @@ from __future__ import annotations
 from standoff.cli.added import AddedCommand
 from standoff.cli.arguments import (
     AutomatonCommand,
+    CertifyCommand,
     CheckCommand,
     ClearanceCommand,
     Command,
@@ -42,6 +43,8 @@ def _doing(command: Command) -> str:
         case ClearanceCommand():
             over = " over its motion" if command.motion else ""
             return f"finding the clearance of all pairs of {shown(command.scene)}{over}"
+        case CertifyCommand():
+            return f"proving the path {shown(command.path)} of {shown(command.model)}"
         case CheckCommand():
             return f"checking {shown(command.what)}"
         case AutomatonCommand():

@@ -15,7 +15,6 @@ from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes, Positional, arg, subc
 from standoff.cli.added import AddedCommand, added
 from standoff.cli.errors import CommandError
 from standoff.cli.option_groups import (
-    AS_IN_FILE,
     AS_USUAL,
     NO_FILES,
     NO_FLAGS,
@@ -27,12 +26,13 @@ from standoff.cli.option_groups import (
     LawFlags,
     PaperFlags,
     ReportFlags,
-    RobotFlags,
     SceneFile,
     SpanFlags,
     group,
 )
 from standoff.cli.overview import overview, unknown_command
+from standoff.cli.robot_arguments import CertifyCommand as CertifyCommand
+from standoff.cli.robot_arguments import RobotCommand as RobotCommand
 from standoff.cli.terminal import tell
 
 
@@ -260,26 +260,6 @@ class ServoCommand:
 
 
 @dataclass(frozen=True)
-class RobotCommand:
-    """Read a robot model, and find its nearest pair.
-
-    Example: standoff robot panda.urdf --report --hulls
-
-    Exit codes: 0 done, 2 bad input, 3 finished but not certified.
-    """
-
-    model: Annotated[Positional[Path], arg(metavar="MODEL")]
-    """MJCF file (.xml) or URDF file (.urdf)."""
-    report: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Say what became of every geometry, and which pairs are watched."""
-    q: Annotated[str | None, arg(metavar="NUMBERS", help_behavior_hint="")] = None
-    """Configuration, such as '0 0.5 -1'; the model's own zero if not given."""
-    robot: Annotated[RobotFlags, group("robot")] = AS_IN_FILE
-    json: Annotated[bool, arg(help_behavior_hint="")] = False
-    """Print what was found as JSON."""
-
-
-@dataclass(frozen=True)
 class WarmupCommand:
     """Compile all kernels ahead of time, so that no later use waits for it.
 
@@ -325,6 +305,7 @@ Command = (
     | SimulateCommand
     | ViewCommand
     | RobotCommand
+    | CertifyCommand
     | ServoCommand
     | WarmupCommand
     | LibraryCommand
@@ -341,6 +322,7 @@ OWN: dict[str, type] = {
     "simulate": SimulateCommand,
     "view": ViewCommand,
     "robot": RobotCommand,
+    "certify": CertifyCommand,
     "servo": ServoCommand,
     "warmup": WarmupCommand,
     "c-library": LibraryCommand,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from standoff.cli.added import AddedCommand
 from standoff.cli.arguments import (
     AutomatonCommand,
+    CertifyCommand,
     CheckCommand,
     ClearanceCommand,
     Command,
@@ -48,6 +49,10 @@ def run(command: Command) -> int:
             from standoff.cli.clearance import run_clearance
 
             return run_clearance(command)
+        case CertifyCommand():
+            from standoff.cli.certify import run_certify
+
+            return run_certify(command)
         case CheckCommand():
             from standoff.cli.check import run_check
 

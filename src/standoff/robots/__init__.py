@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from standoff.robots.mink_limit import MinkLimit
     from standoff.robots.mujoco_contacts import MujocoContacts
     from standoff.robots.mujoco_sensor import MujocoSensor
+    from standoff.robots.paths import FunctionPath
     from standoff.robots.pink_barrier import PinkBarrier
+    from standoff.robots.proof import BoxProof, PathProof, Verdict, Witness
     from standoff.robots.report import GeomReport, RobotReport
     from standoff.robots.robot import Robot
     from standoff.robots.rows import RobotRows
@@ -29,6 +31,8 @@ else:
             "standoff.robots.geoms": ("Geoms",),
             "standoff.robots.joints": ("JointKind", "Joints"),
             "standoff.robots.kinematics": ("Kinematics",),
+            "standoff.robots.paths": ("FunctionPath",),
+            "standoff.robots.proof": ("BoxProof", "PathProof", "Verdict", "Witness"),
             "standoff.robots.mink_limit": ("MinkLimit",),
             "standoff.robots.mujoco_contacts": ("MujocoContacts",),
             "standoff.robots.mujoco_sensor": ("MujocoSensor",),
@@ -41,7 +45,9 @@ else:
     )
 
 __all__ = [
+    "BoxProof",
     "FilterStatus",
+    "FunctionPath",
     "GeomReport",
     "Geoms",
     "JointKind",
@@ -50,6 +56,7 @@ __all__ = [
     "MinkLimit",
     "MujocoContacts",
     "MujocoSensor",
+    "PathProof",
     "PinkBarrier",
     "Robot",
     "RobotAnswer",
@@ -58,5 +65,7 @@ __all__ = [
     "RobotRows",
     "SafeVelocity",
     "SafetyFilter",
+    "Verdict",
+    "Witness",
     "casadi_distance",
 ]

@@ -32,16 +32,19 @@ def started_state(world: Model, given: GivenPoses, twists: Twists) -> WorldState
     """The state of a first frame."""
     search = world.search
     nothing = empty_placed(len(search.pieces.owners))
-    n = len(nothing.placed)
-    none = np.zeros(1, dtype=np.int64)
-    no_tree = Tree(np.zeros((n, 6)), np.empty((2, 6)), none, none, 0, 0)
-    frame, given = _placed(world, given, no_tree, nothing.placed)
+    frame, given = _placed(world, given, no_tree(len(nothing.placed)), nothing.placed)
     tree = first_tree(search, frame)
     frame.sought[:] = 1
     table = table_of(search, frame, tree, NO_PAIRS)
     moment = Moment(0, 0.0, 0.0, *twists, False, world.minima, 1)
     asked = _asked(world, frame, table, (), moment)
     return _state(world, given, (frame, tree, table), asked, moment)
+
+
+def no_tree(n: int) -> Tree:
+    """Before the first frame of n pieces: none is in a box."""
+    none = np.zeros(1, dtype=np.int64)
+    return Tree(np.zeros((n, 6)), np.empty((2, 6)), none, none, 0, 0)
 
 
 def next_state(

@@ -86,7 +86,7 @@ def ask(
     again = np.empty(n, dtype=np.int64)
     several = int(pieces.first[-1]) > 1
     while True:
-        pages = _answered(laws, pieces, frame, table, pages, moment, asking, fates)
+        pages = answered(laws, pieces, frame, table, pages, moment, asking, fates)
         if not several or not kernels.due_again(
             pieces[:], frame[:], table[:], moment.minima, fates, again
         ):
@@ -98,7 +98,7 @@ def ask(
     return Asked(fates, _without_unused(table.ints, pages))
 
 
-def _answered(
+def answered(
     laws: PackedLaws,
     pieces: PackedPieces,
     frame: Placed,
