@@ -113,12 +113,12 @@ def _repeated(world: Model, frames: int) -> tuple[PackedLaws, PackedPieces]:
     """A world's pieces, once for each frame."""
     laws, pieces = world.laws, world.search.pieces
     owners = np.tile(pieces.owners, frames)
-    again = np.tile(laws.addresses, (frames, 1)), np.tile(laws.classes, frames)
+    addresses, classes = np.tile(laws.addresses, (frames, 1)), np.tile(laws.classes, frames)
     facts, planes = np.tile(pieces.facts, (frames, 1)), np.tile(pieces.planes, frames)
     many = PackedPieces(owners, pieces.first, planes, facts)
-    for array in (*again, *many):
+    for array in (addresses, classes, *many):
         array.flags.writeable = False
-    return PackedLaws(*again, laws.options), many
+    return laws._replace(addresses=addresses, classes=classes), many
 
 
 def _table(a: Ints, b: Ints) -> Table:
