@@ -53,21 +53,31 @@ def distance(a: Body, b: Body, *, undefined: str = "nan", name: str = "distance"
         RuntimeError: a matrix that is not a pose; undefined derivatives, if asked; a third
         derivative.
     """
+    check_name(name)
+    return _Value(ambient.Pair.of(a, b, undefined), name)
+
+
+def check_name(name: str) -> None:
+    """Refuse a name that CasADi does not take.
+
+    Raises
+    ------
+    StandoffError
+    """
     if not casadi.Function.check_name(name):
         raise StandoffError(
             f"name = {name!r}: give a letter, then letters, digits and single underscores.",
             "name",
             name,
         )
-    return _Value(ambient.Pair.of(a, b, undefined), name)
 
 
-class _Callback(casadi.Callback):
+class NamedCallback(casadi.Callback):
     """A callback with named inputs and outputs of given sizes."""
 
     def __init__(
         self,
-        pair: ambient.Pair,
+        pair: Any,
         name: str,
         inputs: dict[str, Any],
         outputs: dict[str, Any],
@@ -109,7 +119,7 @@ class _Callback(casadi.Callback):
         return dict(zip(names, sizes, strict=True))
 
 
-class _Value(_Callback):
+class _Value(NamedCallback):
     """(pose_a, pose_b) to the distance."""
 
     def __init__(self, pair: ambient.Pair, name: str) -> None:
@@ -124,7 +134,7 @@ class _Value(_Callback):
         return _Gradient(self.pair, name, sizes, self.jacobian_outputs(outputs), options)
 
 
-class _Gradient(_Callback):
+class _Gradient(NamedCallback):
     """(pose_a, pose_b, distance) to the rows of 16 derivatives by each pose."""
 
     def eval(self, given: Any) -> Any:
@@ -141,7 +151,7 @@ class _Gradient(_Callback):
         return _Hessian(self.pair, name, sizes, blocks, options)
 
 
-class _Hessian(_Callback):
+class _Hessian(NamedCallback):
     """The same and the rows to the blocks of 16 x 16, each row by each input."""
 
     def eval(self, given: Any) -> Any:

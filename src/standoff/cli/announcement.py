@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from standoff.cli.added import AddedCommand
 from standoff.cli.arguments import (
     AutomatonCommand,
+    CertifyCommand,
     CheckCommand,
     ClearanceCommand,
     Command,
     DistanceCommand,
     ImpactCommand,
     LibraryCommand,
+    RobotCommand,
     ServoCommand,
     SimulateCommand,
     TrackCommand,
@@ -40,6 +43,8 @@ def _doing(command: Command) -> str:
         case ClearanceCommand():
             over = " over its motion" if command.motion else ""
             return f"finding the clearance of all pairs of {shown(command.scene)}{over}"
+        case CertifyCommand():
+            return f"proving the path {shown(command.path)} of {shown(command.model)}"
         case CheckCommand():
             return f"checking {shown(command.what)}"
         case AutomatonCommand():
@@ -50,6 +55,16 @@ def _doing(command: Command) -> str:
             return f"making the page of {shown(command.scene)}"
         case ServoCommand():
             return f"running {shown(command.scene)} in real time"
+        case _:
+            return _doing_without_a_scene(command)
+
+
+def _doing_without_a_scene(
+    command: RobotCommand | AddedCommand | WarmupCommand | LibraryCommand,
+) -> str:
+    match command:
+        case RobotCommand():
+            return f"reading {shown(command.model)}"
         case WarmupCommand():
             return f"loading all kernels; what must be compiled takes about {ALL_SECONDS} s in all"
         case LibraryCommand():

@@ -31,6 +31,8 @@ from standoff.cli.option_groups import (
     group,
 )
 from standoff.cli.overview import overview, unknown_command
+from standoff.cli.robot_arguments import CertifyCommand as CertifyCommand
+from standoff.cli.robot_arguments import RobotCommand as RobotCommand
 from standoff.cli.terminal import tell
 
 
@@ -302,6 +304,8 @@ Command = (
     | AutomatonCommand
     | SimulateCommand
     | ViewCommand
+    | RobotCommand
+    | CertifyCommand
     | ServoCommand
     | WarmupCommand
     | LibraryCommand
@@ -317,6 +321,8 @@ OWN: dict[str, type] = {
     "automaton": AutomatonCommand,
     "simulate": SimulateCommand,
     "view": ViewCommand,
+    "robot": RobotCommand,
+    "certify": CertifyCommand,
     "servo": ServoCommand,
     "warmup": WarmupCommand,
     "c-library": LibraryCommand,

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from standoff.cli.added import AddedCommand
 from standoff.cli.arguments import (
     AutomatonCommand,
+    CertifyCommand,
     CheckCommand,
     ClearanceCommand,
     Command,
     DistanceCommand,
     ImpactCommand,
     LibraryCommand,
+    RobotCommand,
     ServoCommand,
     SimulateCommand,
     TrackCommand,
@@ -46,6 +49,10 @@ def run(command: Command) -> int:
             from standoff.cli.clearance import run_clearance
 
             return run_clearance(command)
+        case CertifyCommand():
+            from standoff.cli.certify import run_certify
+
+            return run_certify(command)
         case CheckCommand():
             from standoff.cli.check import run_check
 
@@ -66,6 +73,18 @@ def run(command: Command) -> int:
             from standoff.cli.servo import run_servo
 
             return run_servo(command)
+        case _:
+            return _run_without_a_scene(command)
+
+
+def _run_without_a_scene(
+    command: RobotCommand | WarmupCommand | LibraryCommand | AddedCommand,
+) -> int:
+    match command:
+        case RobotCommand():
+            from standoff.cli.robot import run_robot
+
+            return run_robot(command)
         case WarmupCommand():
             from standoff.cli.warmup import run_warmup
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, make_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from tyro.conf import Positional, arg
 
@@ -113,3 +113,26 @@ SceneFile = Annotated[Positional[Path], arg(metavar="SCENE.toml")]
 NO_FILES, AS_USUAL = FileFlags(), ReportFlags()
 WHOLE_SPAN, OWN_FRAMES = SpanFlags(), FrameFlags()
 """What holds where no option of a group is given."""
+
+
+@dataclass(frozen=True)
+class RobotFlags:
+    """How a robot's model is read."""
+
+    hulls: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Take the hulls of meshes, which are refused without it."""
+    skip: Annotated[tuple[str, ...], arg(metavar="NAME", help_behavior_hint="")] = ()
+    """Geometries or links to leave out."""
+    srdf: Annotated[Path | None, arg(metavar="FILE.srdf", help_behavior_hint="")] = None
+    """Of a URDF: which pairs are disabled."""
+    packages: Annotated[tuple[Path, ...], arg(metavar="FOLDER", help_behavior_hint="")] = ()
+    """Of a URDF: folders in which package:// begins; those above the file are tried too."""
+    free_base: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Of a URDF: the base moves freely."""
+    mimic: Annotated[
+        Literal["follow", "free"] | None, arg(metavar="follow|free", help_behavior_hint="")
+    ] = None
+    """Of a URDF with joints that mimic others: whether they do, or move by themselves."""
+
+
+AS_IN_FILE = RobotFlags()

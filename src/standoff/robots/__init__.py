@@ -7,36 +7,65 @@ from standoff.on_demand import on_demand
 if TYPE_CHECKING:
     from standoff.robots.answer import RobotAnswer
     from standoff.robots.batch import RobotAnswers
+    from standoff.robots.casadi_functions import casadi_distance
     from standoff.robots.geoms import Geoms
     from standoff.robots.joints import JointKind, Joints
     from standoff.robots.kinematics import Kinematics
+    from standoff.robots.mink_limit import MinkLimit
+    from standoff.robots.mujoco_contacts import MujocoContacts
+    from standoff.robots.mujoco_sensor import MujocoSensor
+    from standoff.robots.paths import FunctionPath
+    from standoff.robots.pink_barrier import PinkBarrier
+    from standoff.robots.proof import BoxProof, PathProof, Verdict, Witness
     from standoff.robots.report import GeomReport, RobotReport
     from standoff.robots.robot import Robot
     from standoff.robots.rows import RobotRows
+    from standoff.robots.safety_filter import FilterStatus, SafetyFilter, SafeVelocity
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
         {
             "standoff.robots.answer": ("RobotAnswer",),
             "standoff.robots.batch": ("RobotAnswers",),
+            "standoff.robots.casadi_functions": ("casadi_distance",),
             "standoff.robots.geoms": ("Geoms",),
             "standoff.robots.joints": ("JointKind", "Joints"),
             "standoff.robots.kinematics": ("Kinematics",),
+            "standoff.robots.paths": ("FunctionPath",),
+            "standoff.robots.proof": ("BoxProof", "PathProof", "Verdict", "Witness"),
+            "standoff.robots.mink_limit": ("MinkLimit",),
+            "standoff.robots.mujoco_contacts": ("MujocoContacts",),
+            "standoff.robots.mujoco_sensor": ("MujocoSensor",),
+            "standoff.robots.pink_barrier": ("PinkBarrier",),
             "standoff.robots.report": ("GeomReport", "RobotReport"),
             "standoff.robots.robot": ("Robot",),
             "standoff.robots.rows": ("RobotRows",),
+            "standoff.robots.safety_filter": ("FilterStatus", "SafeVelocity", "SafetyFilter"),
         },
     )
 
 __all__ = [
+    "BoxProof",
+    "FilterStatus",
+    "FunctionPath",
     "GeomReport",
     "Geoms",
     "JointKind",
     "Joints",
     "Kinematics",
+    "MinkLimit",
+    "MujocoContacts",
+    "MujocoSensor",
+    "PathProof",
+    "PinkBarrier",
     "Robot",
     "RobotAnswer",
     "RobotAnswers",
     "RobotReport",
     "RobotRows",
+    "SafeVelocity",
+    "SafetyFilter",
+    "Verdict",
+    "Witness",
+    "casadi_distance",
 ]

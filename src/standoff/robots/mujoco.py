@@ -21,6 +21,7 @@ from standoff.robots.joints import JointKind, Joints
 from standoff.robots.kinematics import Motion
 from standoff.robots.loaded import Loaded
 from standoff.robots.mujoco_pairs import watched_pairs
+from standoff.robots.report import GIVEN, GeomReport
 from standoff.robots.shapes import Meshes, Source, made_geoms
 
 try:
@@ -70,10 +71,13 @@ class MujocoKinematics:
 
     fold: Array | None = None
 
-    def __init__(self, model: Any, joints: Joints, numbers: Ints) -> None:
-        """`numbers`: of the moving geometries in the model."""
+    def __init__(
+        self, model: Any, joints: Joints, numbers: Ints, within_geoms: Array | None = None
+    ) -> None:
+        """`numbers`: of the moving geometries in the model; `within_geoms` (n, 4, 4): where the
+        bodies stand in MuJoCo's frames of them, if they differ."""
         self.model, self.nq, self.nv = model, int(model.nq), int(model.nv)
-        self._joints, self._numbers = joints, numbers
+        self._joints, self._numbers, self._within_geoms = joints, numbers, within_geoms
         self.check = Configurations(joints, self.nq, "model.qpos0")
         ancestors = _ancestors(model)
         of_dofs = ancestors[model.geom_bodyid[numbers]][:, model.dof_bodyid]
@@ -82,13 +86,12 @@ class MujocoKinematics:
         self._data, self._lock = mujoco.MjData(model), threading.Lock()
 
     def __reduce__(self) -> Any:
-        return MujocoKinematics, (self.model, self._joints, self._numbers)
+        return MujocoKinematics, (self.model, self._joints, self._numbers, self._within_geoms)
 
     def _placed(self) -> Array:
-        data = self._data
-        return frames(
-            data.geom_xmat[self._numbers].reshape(-1, 3, 3), data.geom_xpos[self._numbers]
-        )
+        data, numbers = self._data, self._numbers
+        found = frames(data.geom_xmat[numbers].reshape(-1, 3, 3), data.geom_xpos[numbers])
+        return found if self._within_geoms is None else found @ self._within_geoms
 
     def poses(self, q: Array) -> Array:
         with self._lock:
@@ -137,9 +140,13 @@ def load(model: Any, meshes: Meshes, skip: Sequence[str]) -> Loaded:
     joints, of_bodies, body_frames = _joints(model)
     sources = [_source(model, k, of_bodies, body_frames) for k in range(model.ngeom)]
     made = made_geoms(sources, meshes, skip, what)
-    geoms = _with_world_poses(model, made.geoms, list(made.numbers))
-    kept = np.array(list(made.numbers), dtype=np.int64)
-    kinematics = MujocoKinematics(model, joints, kept[geoms.joints >= 0])
+    within_geoms = np.array([_within_geom(sources[k], made.reports[k]) for k in made.numbers])
+    geoms = _with_world_poses(model, made.geoms, list(made.numbers), within_geoms)
+    kept, moving = np.array(list(made.numbers), dtype=np.int64), geoms.joints >= 0
+    same = (within_geoms[moving] == np.eye(4)).all()
+    kinematics = MujocoKinematics(
+        model, joints, kept[moving], None if same else within_geoms[moving]
+    )
     pairs = frozenset(
         (min(made.numbers[i], made.numbers[j]), max(made.numbers[i], made.numbers[j]))
         for i, j in watched_pairs(model)
@@ -260,14 +267,22 @@ def _mesh(model: Any, k: int) -> tuple[Array, Ints]:
     return np.asarray(points, dtype=float), np.asarray(triangles, dtype=np.int64)
 
 
-def _with_world_poses(model: Any, geoms: Geoms, numbers: list[int]) -> Geoms:
+def _within_geom(source: Source, report: GeomReport) -> Array:
+    """(4, 4) where a body stands in MuJoCo's frame of its geometry: a body that was given for a
+    mesh is in the frame of the file, and MuJoCo moves that to the centre of mass."""
+    moved = report.became == GIVEN and source.file_frame is not None
+    return np.asarray(source.file_frame) if moved else np.eye(4)
+
+
+def _with_world_poses(model: Any, geoms: Geoms, numbers: list[int], within_geoms: Array) -> Geoms:
     """Placements of what is fixed in the world as MuJoCo has them, to the last bit."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     placements = geoms.placements.copy()
     for n in np.flatnonzero(geoms.joints < 0):
         k = numbers[n]
-        placements[n] = frame(data.geom_xmat[k].reshape(3, 3), data.geom_xpos[k])
+        here = frame(data.geom_xmat[k].reshape(3, 3), data.geom_xpos[k])
+        placements[n] = here @ within_geoms[n]
     return geoms._replace(placements=placements)
 
 

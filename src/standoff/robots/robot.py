@@ -19,6 +19,7 @@ from standoff.robots.batch import RobotAnswers
 from standoff.robots.kinematics import Kinematics
 from standoff.robots.loaded import Loaded
 from standoff.robots.obstacles import read_obstacles
+from standoff.robots.proof import BoxProof, PathProof
 from standoff.robots.robot_model import RobotModel
 from standoff.robots.rows import RobotRows
 from standoff.robots.state import RobotState
@@ -331,6 +332,20 @@ class Robot(RobotModel):
         """The answer at the configuration of a state."""
         answer = self.world.answer(state.world)
         return RobotRows(answer, state.q, state.motion, self._mounted, self.within)
+
+    def certify(self, path: Any, clearance: float = 5e-3, **options: Any) -> PathProof:
+        """Prove that a joint path keeps a clearance at every instant: see `certify.certify`."""
+        from standoff.robots.certify import certify
+
+        return certify(self, path, clearance, **options)
+
+    def certify_box(
+        self, lower: Any, upper: Any, clearance: float = 5e-3, **options: Any
+    ) -> BoxProof:
+        """Prove that all configurations in a box keep a clearance: see `boxes.certify_box`."""
+        from standoff.robots.boxes import certify_box
+
+        return certify_box(self, lower, upper, clearance, **options)
 
     def _rows(self, q: Array, world: World) -> RobotRows:
         motion = self.kinematics.motion(q)

@@ -18,3 +18,12 @@ of them, and each costs a world that is kept."""
 
 UNLIMITED = 1e30
 """Limits of q beyond this, rad or length, are none: packages write large numbers for them."""
+
+RATE_LOST = 1e-6
+"""By how much a velocity of a `SafetyFilter` may miss a row, as a part of 1 and the greatest right
+side, length per time: the precision of the quadratic programming solvers (DAQP's is 1e-6). One
+that misses by more is refused as infeasible."""
+
+CONTACT_HORIZON = 0.01
+"""How far beyond the margins of contacts pairs are followed, as a part of the smallest body's
+size, no unit: what is about to touch starts warm. The contacts do not depend on it."""

@@ -18,7 +18,7 @@ from standoff.kernels.body import layout as L
 from standoff.kernels.tolerances import BLUR
 from standoff.tracking.laws import DEFAULT_LAW
 from standoff.tracking.status import Status
-from standoff_studies.oracles import HalfSpace, lengths
+from standoff_studies.oracles import HalfSpace, Shape, lengths
 from standoff_studies.soak.checks import BLURRED, ROUNDOFF
 from standoff_studies.soak.drawn_worlds import Chapter, Part
 from standoff_studies.soak.placing import heights
@@ -98,12 +98,15 @@ def placed_pieces(chapter: Chapter) -> Pieces:
     whole = chapter.flight.poses[:, owners] @ local
     turns = whole[..., :3, :3].reshape(*whole.shape[:2], 9)
     return Pieces(
-        parts, owners, [_extent(part) for part in parts], np.dstack([turns, whole[..., :3, 3]])
+        parts,
+        owners,
+        [extent_of(part.made.support) for part in parts],
+        np.dstack([turns, whole[..., :3, 3]]),
     )
 
 
-def _extent(part: Part) -> Extent:
-    support = part.made.support
+def extent_of(support: Shape) -> Extent:
+    """The ball of a body, by its support function."""
     if isinstance(support, HalfSpace):
         return Extent(np.zeros(3), np.inf)
     axes = np.eye(3)

@@ -1,0 +1,227 @@
+"""Joint paths and boxes of configurations: how many proofs are wrong, and what they cost.
+
+Run from the repository's root:
+
+- ``python -m benchmarks.certify paths --paths 1000 [--samples 100000] [--seed 1]``: random trees of
+  joints on random straight paths, each judged by many samples of an oracle with other kinematics
+  and closed-form distances (``tests/robots/path_oracle.py``); half of them graze the clearance.
+- ``python -m benchmarks.certify speed``: arms of seven joints among obstacles, certified, and
+  beside it the same path sampled at 1 kHz.
+- ``python -m benchmarks.certify boxes``: the share of a box that is proven, against time, for two
+  to seven joints.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+TESTS = Path(__file__).resolve().parents[1] / "tests"
+sys.path.insert(0, str(TESTS))
+
+BLOCK = 10_000
+"""Samples that the oracle takes at once."""
+
+ORACLE = 1e-11
+"""Accuracy of the oracle's distances [length]."""
+
+
+def paths(count: int, samples: int, seed: int) -> int:
+    """Judge many proofs; the number of wrong ones."""
+    from robots.path_oracle import drawn_judged, least_distances
+    from standoff.robots.proof import Verdict
+
+    quicken()
+    rng = np.random.default_rng(seed)
+    verdicts: Counter[str] = Counter()
+    wrong, taken, steps, margins = 0, [], [], []
+    done = 0
+    while done < count:
+        judged = drawn_judged(rng, int(rng.integers(1, 8)))
+        points = rng.uniform(-1.0, 1.0, judged.robot.nq)
+        points = points + rng.uniform(-0.6, 0.6, (int(rng.integers(2, 6)), judged.robot.nq))
+        times = np.linspace(0.0, 1.0, samples)
+        own = np.linspace(0.0, 1.0, len(points))
+        if least_distances(judged, points).min() <= 1e-3:
+            continue
+        some = np.linspace(0.0, 1.0, 200)
+        q = np.stack([np.interp(some, own, points[:, k]) for k in range(points.shape[1])], 1)
+        if least_distances(judged, q).min() <= 1e-3:
+            continue
+        least = np.empty(samples)
+        for first in range(0, samples, BLOCK):
+            part = times[first : first + BLOCK]
+            q = np.stack([np.interp(part, own, points[:, k]) for k in range(points.shape[1])], 1)
+            least[first : first + BLOCK] = least_distances(judged, q).min(axis=1)
+        if least.min() <= 1e-3:
+            continue
+        done += 1
+        margin = float(rng.choice([-1e-6, 1e-6, -1e-3, 1e-3, rng.uniform(-0.05, 0.05)]))
+        clearance = max(0.0, least.min() - margin)
+        begin = time.perf_counter()
+        proof = judged.robot.certify(points, clearance, times=own)
+        taken.append(time.perf_counter() - begin)
+        verdicts[proof.verdict.name] += 1
+        steps.append(proof.counts.steps / proof.counts.pairs)
+        bad = False
+        if proof.verdict is Verdict.PROVEN:
+            margins.append(least.min() - proof.proven)
+            bad = least.min() < max(clearance, proof.proven) - ORACLE
+        else:
+            bad = least[times < proof.time].min(initial=np.inf) < clearance - ORACLE
+        if proof.verdict is Verdict.VIOLATED:
+            q = proof.witness.q[None]
+            bad |= least_distances(judged, q).min() >= clearance + ORACLE
+        if bad:
+            wrong += 1
+            tell(f"WRONG: seed {seed}, path {done}: {proof}")
+        if done % 100 == 0:
+            tell(f"{done} paths, {wrong} wrong, {dict(verdicts)}")
+    tell(
+        f"{count} paths of 1 to 7 joints, {samples} samples each, seed {seed}: {wrong} wrong; "
+        f"{dict(verdicts)}; {np.median(taken) * 1e3:.1f} ms median, {np.max(taken) * 1e3:.0f} "
+        f"most; steps a pair {np.median(steps):.1f} median, {np.max(steps):.0f} most"
+    )
+    return wrong
+
+
+def quicken() -> None:
+    """Compile the oracle's distance of two segments, after a comparison with its own."""
+    import numba
+
+    from robots import path_oracle
+
+    @numba.njit
+    def to_segment(p, a, b):  # type: ignore[no-untyped-def]
+        along, up, size = 0.0, 0.0, 0.0
+        for i in range(3):
+            along += (p[i] - a[i]) * (b[i] - a[i])
+            size += (b[i] - a[i]) ** 2
+        t = min(max(along / size, 0.0), 1.0) if size > 0.0 else 0.0
+        for i in range(3):
+            up += (p[i] - a[i] - t * (b[i] - a[i])) ** 2
+        return np.sqrt(up)
+
+    @numba.njit
+    def apart(a0, a1, b0, b1):  # type: ignore[no-untyped-def]
+        found = np.empty(len(a0))
+        for k in range(len(a0)):
+            p, q, r, s = a0[k], a1[k], b0[k], b1[k]
+            best = min(to_segment(p, r, s), to_segment(q, r, s))
+            best = min(best, min(to_segment(r, p, q), to_segment(s, p, q)))
+            uu, vv, uv, uw, vw = 0.0, 0.0, 0.0, 0.0, 0.0
+            for i in range(3):
+                u, v, w = q[i] - p[i], s[i] - r[i], p[i] - r[i]
+                uu, vv, uv, uw, vw = uu + u * u, vv + v * v, uv + u * v, uw + u * w, vw + v * w
+            det = uu * vv - uv * uv
+            if det > 1e-12 * uu * vv:
+                x, y = (uv * vw - vv * uw) / det, (uu * vw - uv * uw) / det
+                if 0.0 < x < 1.0 and 0.0 < y < 1.0:
+                    gap = 0.0
+                    for i in range(3):
+                        u, v, w = q[i] - p[i], s[i] - r[i], p[i] - r[i]
+                        gap += (w + x * u - y * v) ** 2
+                    best = min(best, np.sqrt(gap))
+            found[k] = best
+        return found
+
+    ends = np.random.default_rng(0).normal(size=(4, 10_000, 3))
+    ends[1, ::7] = ends[0, ::7]
+    own = path_oracle.segments_apart
+    assert np.abs(apart(*ends) - own(*ends)).max() < 1e-12
+    path_oracle.segments_apart = apart
+
+
+def speed(count: int, seed: int) -> None:
+    """Arms among obstacles: certify a path of a second, and sample it at 1 kHz."""
+    from robots.arms import arm
+    from standoff.robots.proof import Verdict
+
+    rows = []
+    for obstacles in (5, 20, 60):
+        rng = np.random.default_rng(seed)
+        robot = arm(rng, 7, obstacles, boxes=True)
+        proven, found, sampled, made = [], [], [], []
+        while len(proven) < count:
+            points = np.array(rng.uniform(-1.2, 1.2, (2, robot.nq)))
+            begin = time.perf_counter()
+            proof = robot.certify(points, 5e-3)
+            taken = time.perf_counter() - begin
+            if proof.verdict is not Verdict.PROVEN:
+                found.append(taken)
+                continue
+            proven.append(taken)
+            made.append(proof.counts)
+            world = robot.world
+            begin = time.perf_counter()
+            state = world.start(robot.kinematics.poses(points[0]))
+            for s in np.linspace(0.0, 1.0, 101)[1:]:
+                poses = robot.kinematics.poses(points[0] + 0.1 * s * (points[1] - points[0]))
+                state, _ = world.step(state, poses)
+            sampled.append(10.0 * (time.perf_counter() - begin))
+        counts = np.median([each.configurations for each in made])
+        queries = np.median([each.queries for each in made])
+        rows.append(
+            f"| {obstacles} | {made[0].pairs} | {np.median(proven) * 1e3:.0f} | {counts:.0f} | "
+            f"{queries:.0f} | {np.median(found) * 1e3:.0f} | {np.median(sampled) * 1e3:.0f} |"
+        )
+    tell(
+        "| obstacles | pairs | proven, ms | configurations | distances | violated, ms | 1 kHz, ms |"
+    )
+    tell("|---|---|---|---|---|---|---|")
+    for row in rows:
+        tell(row)
+
+
+def boxes(seed: int) -> None:
+    """The proven share of a box against the budget and time."""
+    from robots.arms import arm
+
+    tell("| joints | sides, rad | boxes | free | not free | open | s |")
+    tell("|---|---|---|---|---|---|---|")
+    for joints in range(2, 8):
+        robot = arm(np.random.default_rng(seed), joints, 6)
+        for side in (5.8, 1.0):
+            middle = np.zeros(joints) if side > 2.0 else np.full(joints, 0.4)
+            lower, upper = middle - 0.5 * side, middle + 0.5 * side
+            for most in (100, 1_000, 10_000):
+                begin = time.perf_counter()
+                proof = robot.certify_box(lower, upper, 5e-3, max_boxes=most, whole=True)
+                taken = time.perf_counter() - begin
+                tell(
+                    f"| {joints} | {side} | {proof.counts.boxes} | {proof.free:.1%} | "
+                    f"{proof.violated:.1%} | {proof.open:.1%} | {taken:.2f} |"
+                )
+                if proof.open == 0.0:
+                    break
+
+
+def tell(text: str) -> None:
+    """Print at once: a run takes long."""
+    print(text, flush=True)
+
+
+def main() -> int:
+    """Run one of the measurements."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("what", choices=["paths", "speed", "boxes"])
+    parser.add_argument("--paths", type=int, default=1000)
+    parser.add_argument("--samples", type=int, default=100_000)
+    parser.add_argument("--seed", type=int, default=1)
+    given = parser.parse_args()
+    if given.what == "paths":
+        return 1 if paths(given.paths, given.samples, given.seed) else 0
+    if given.what == "speed":
+        speed(20, given.seed)
+    else:
+        boxes(given.seed)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

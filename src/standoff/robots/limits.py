@@ -1,0 +1,45 @@
+"""Configurations outside the joints' limits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.errors import StandoffError
+from standoff.robots.certify_tolerances import LIMIT_SLACK
+from standoff.robots.robot_model import RobotModel
+
+Array = NDArray[np.float64]
+
+
+def check_limits(robot: RobotModel, q: Array, argument: str, times: Any = None) -> None:
+    """Refuse configurations (m, nq) outside the robot's limits.
+
+    Raises
+    ------
+    StandoffError
+        The first of them, with its joint, and its time if times (m,) are given.
+    """
+    lower, upper = robot.lower, robot.upper
+    size = LIMIT_SLACK * np.maximum(1.0, np.abs(q))
+    wrong = (q < lower - size) | (q > upper + size)
+    if not wrong.any():
+        return
+    k, i = (int(x[0]) for x in np.nonzero(wrong))
+    when = "" if times is None else f" at {float(times[k])!r} s"
+    raise StandoffError(
+        f"{argument}: {joint_of(robot, i)} is {float(q[k, i])!r}{when}, outside its limits "
+        f"{float(lower[i])!r} to {float(upper[i])!r}: keep to them, or give the model wider ones.",
+        argument,
+        q[k],
+    )
+
+
+def joint_of(robot: RobotModel, i: int) -> str:
+    """The joint that a number of a configuration is of, as a message names it."""
+    joints = robot.joints
+    before = np.flatnonzero(joints.q_at <= i)
+    j = int(before[np.argmax(joints.q_at[before])])
+    return f"joint {joints.names[j]!r} (q[{i}])"

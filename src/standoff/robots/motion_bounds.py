@@ -1,0 +1,228 @@
+"""How far the pieces of a pair can move against each other while the joints stay in a box.
+
+Let the joints leave their places q0 by at most h. Seen from any link of the pair's chain (the
+*cut*), no point of A goes farther than Σ hₖ wₖ over the motions k between the cut and A, and none
+of B farther than the same sum on B's side. w of a shift is 1; of a turn it is the greatest distance
+of the piece's points from the axis in the whole box: their distance at q0, and how far the motions
+between the axis and the piece can move them. So the sums are made from the pieces towards the cut.
+The radius of a swept body moves with its core and has no part in it.
+
+With the joints' speeds u and accelerations α in place of h, no point of A is accelerated by more
+than Σ wₖ (uₖ (uₖ + 2 Σᵢ uᵢ) + αₖ), i over the *turns* between the cut and k, the first uₖ only of a
+turn: the second derivatives of the kinematics are ωᵢ × ∂x/∂qₖ. docs/certify.md has the proofs.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.robots.certify_tolerances import BOUND_INFLATION, REACH_ROUNDOFF
+from standoff.robots.motions import Frames
+from standoff.robots.watched import Seen, Watched
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+
+class Reaches(NamedTuple):
+    """Of k pairs, each at one configuration with a box of joints around it.
+
+    Attributes
+    ----------
+    chain : (k, n) array of int
+        The motions between B and A; -1 behind the end.
+    h : (k, n) array
+        How far each motion of the chain can go from that configuration, radians or length.
+    turns : (k, n) array
+        1 for a turn, 0 for a shift.
+    w_a, w_b : (k, n) arrays
+        How far a point of A, or of B, goes at most for each unit of a motion: length, or 1.
+    only_a, only_b : (k,) arrays of bool
+        Is B a half-space, so that everything is seen from it, or A?
+    axes, origins : (k, n, 3) arrays
+        Of the motions, world, at that configuration.
+    """
+
+    chain: Ints
+    h: Array
+    turns: Array
+    w_a: Array
+    w_b: Array
+    only_a: Bools
+    only_b: Bools
+    axes: Array
+    origins: Array
+
+
+class Cut(NamedTuple):
+    """A bound for each pair, and the place in its chain from which the motion is seen.
+
+    Attributes
+    ----------
+    bound : (k,) array
+    place : (k,) array of int
+        How many motions of the chain are on B's side.
+    """
+
+    bound: Array
+    place: Ints
+
+
+def reaches_of(
+    watched: Watched, pairs: Ints, frames: Frames, at: Ints, ways: Array, seen: tuple[Seen, Seen]
+) -> Reaches:
+    """The reaches of pairs, each at the configuration `at` of several.
+
+    Parameters
+    ----------
+    watched : Watched
+    pairs, at : (k,) arrays of int
+    frames : Frames
+        At those configurations.
+    ways : (k, nm + 1) array
+        How far each of the robot's motions can go from there; the last is 0.
+    seen : (Seen, Seen)
+        The cores of A and B there.
+    """
+    motions = watched.motions
+    chain = watched.chains.motions[watched.chain[pairs]]
+    h = np.take_along_axis(ways, chain, axis=1) if chain.shape[1] else np.zeros(chain.shape)
+    turns = np.append(motions.turns, False)[chain].astype(float)
+    own = np.concatenate([motions.axes, np.zeros((1, 3))])[chain]
+    rows = at[:, None]
+    origins = frames.origins[rows, chain]
+    axes = np.einsum("knij,knj->kni", frames.rotations[rows, chain], own)
+    a, b = watched.a[pairs], watched.b[pairs]
+    far_a = _from_axes(seen[0], watched.cores.half[a], axes, origins)
+    far_b = _from_axes(seen[1], watched.cores.half[b], axes, origins)
+    n = chain.shape[1]
+    planes = watched.cores.planes
+    return Reaches(
+        chain,
+        h,
+        turns,
+        _raised(_carried(far_a, h, turns, range(n - 1, -1, -1)), watched.length),
+        _raised(_carried(far_b, h, turns, range(n)), watched.length),
+        planes[b],
+        planes[a],
+        axes,
+        origins,
+    )
+
+
+def _raised(w: Array, length: float) -> Array:
+    """Bounds that hold after roundoff too, of the robot's lengths."""
+    return w * (1.0 + BOUND_INFLATION) + length * REACH_ROUNDOFF
+
+
+def _from_axes(seen: Seen, half: Array, axes: Array, origins: Array) -> Array:
+    """(k, n): the greatest distance of a core's points from axes, or from points where an axis is
+    0, at the configuration itself."""
+    arms = seen.centres[:, None] - origins
+    arms = arms - np.einsum("kni,kni->kn", arms, axes)[..., None] * axes
+    off = np.sqrt(np.einsum("kni,kni->kn", arms, arms))
+    cosines = np.einsum("kni,kij->knj", axes, seen.axes)
+    sines = np.sqrt(np.clip(1.0 - cosines**2, 0.0, None) + BOUND_INFLATION**2)
+    across = np.einsum("knj,kj->kn", sines, half)
+    ball = np.sqrt(np.einsum("kj,kj->k", half, half))
+    found: Array = off + np.minimum(across, ball[:, None])
+    return found
+
+
+def _carried(far: Array, h: Array, turns: Array, order: range) -> Array:
+    """w of each motion: what the motions between it and the piece, which come first in `order`, may
+    do to the distance from its axis."""
+    w = np.empty_like(far)
+    gone = np.zeros(len(far))
+    for k in order:
+        w[:, k] = turns[:, k] * (far[:, k] + gone) + (1.0 - turns[:, k])
+        gone = gone + h[:, k] * w[:, k]
+    return w
+
+
+def least_way(reaches: Reaches) -> Cut:
+    """How far the pieces can move against each other at most (length), from the best cut."""
+    cost = _sums(reaches.h * reaches.w_a, reaches.h * reaches.w_b)
+    return seen_from(cost, reaches)
+
+
+def least_speed(reaches: Reaches, rates: Array) -> Cut:
+    """How fast at most, at speeds of the chain's motions (k, n) [length/s]."""
+    return seen_from(_sums(rates * reaches.w_a, rates * reaches.w_b), reaches)
+
+
+def least_bend(reaches: Reaches, rates: Array, gains: Array) -> Cut:
+    """How much their points are accelerated, together, at speeds and accelerations of the chain's
+    motions (k, n) [length/s²]."""
+    return seen_from(bends(reaches, rates, gains), reaches)
+
+
+def least_way_along(reaches: Reaches, normals: Array, seen: tuple[Seen, Seen], half: Array) -> Cut:
+    """How far they can come together along directions (k, 3) that stay fixed in the cut's frame:
+    the motion's part along it to first order, and half the greatest second derivative (length).
+
+    ``half`` (2, k, 3) are half the sides of the cores' boxes.
+    """
+    along_a = _along(reaches, normals, seen[0], half[0], reaches.w_a)
+    along_b = _along(reaches, normals, seen[1], half[1], reaches.w_b)
+    first = _sums(reaches.h * along_a, reaches.h * along_b)
+    second = bends(reaches, reaches.h, np.zeros_like(reaches.h))
+    return seen_from(first + 0.5 * second, reaches)
+
+
+def _along(reaches: Reaches, normals: Array, seen: Seen, half: Array, w: Array) -> Array:
+    """(k, n): the greatest part along the normals of what a unit of each motion does to a core."""
+    free = ~reaches.axes.any(axis=2)  # of an axis of its own nothing is known
+    levers = np.cross(normals[:, None], reaches.axes)
+    arms = seen.centres[:, None] - reaches.origins
+    spread = np.einsum("knj,kj->kn", np.abs(np.einsum("kni,kij->knj", levers, seen.axes)), half)
+    turn = np.abs(np.einsum("kni,kni->kn", levers, arms)) + spread
+    shift = np.abs(np.einsum("kni,ki->kn", reaches.axes, normals))
+    found = np.where(reaches.turns > 0.0, turn, shift) * (1.0 + BOUND_INFLATION)
+    return np.where(free, w, np.minimum(found + BOUND_INFLATION * w, w))
+
+
+def bends(reaches: Reaches, rates: Array, gains: Array) -> Array:
+    """(k, n + 1): the points' accelerations, A's and B's together, seen from each cut."""
+    turning = reaches.turns * rates
+    before = np.concatenate([np.zeros((len(rates), 1)), np.cumsum(turning, axis=1)], axis=1)
+    way_a, way_b = rates * reaches.w_a, rates * reaches.w_b
+    own_a = way_a * (turning + 2.0 * before[:, :-1]) + gains * reaches.w_a
+    own_b = way_b * (turning - 2.0 * before[:, 1:]) + gains * reaches.w_b
+    on_a = _behind(own_a) - 2.0 * before * _behind(way_a)
+    found: Array = on_a + _ahead(own_b) + 2.0 * before * _ahead(way_b)
+    # the two differences above lose digits of what is larger than they
+    size = _behind(own_a) + 2.0 * before * _ahead(way_b)
+    return found + BOUND_INFLATION * (size + _ahead(gains * reaches.w_b))
+
+
+def _sums(on_a: Array, on_b: Array) -> Array:
+    """(k, n + 1): for each cut, what is behind it of A's and before it of B's."""
+    return _behind(on_a) + _ahead(on_b)
+
+
+def _behind(terms: Array) -> Array:
+    """(k, n + 1): sums of the terms from each place on."""
+    none = np.zeros((len(terms), 1))
+    return np.concatenate([np.cumsum(terms[:, ::-1], axis=1)[:, ::-1], none], axis=1)
+
+
+def _ahead(terms: Array) -> Array:
+    """(k, n + 1): sums of the terms before each place."""
+    return np.concatenate([np.zeros((len(terms), 1)), np.cumsum(terms, axis=1)], axis=1)
+
+
+def seen_from(cost: Array, reaches: Reaches) -> Cut:
+    """The cut of the least bound; a half-space is endless, and is not seen from elsewhere."""
+    k, n = cost.shape
+    if reaches.only_a.any() or reaches.only_b.any():
+        places = np.arange(n)
+        cost = np.where(reaches.only_a[:, None] & (places > 0), np.inf, cost)
+        cost = np.where(reaches.only_b[:, None] & (places < n - 1), np.inf, cost)
+    place = np.argmin(cost, axis=1)
+    bound = cost[np.arange(k), place] * (1.0 + BOUND_INFLATION)
+    return Cut(bound, place)

@@ -1,0 +1,258 @@
+"""Contacts of a MuJoCo model from exact distances: ``so.robots.MujocoContacts``."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.errors import StandoffError, not_installed
+from standoff.robots.mujoco import MujocoKinematics
+from standoff.robots.mujoco_mixing import Mixed, mixed
+from standoff.robots.mujoco_pairs import watched_pairs
+from standoff.robots.near import Near
+from standoff.robots.report import GIVEN
+from standoff.robots.robot import Robot
+from standoff.robots.rows import RobotRows
+from standoff.robots.tolerances import CONTACT_HORIZON
+from standoff.world.packed import pieces_of
+
+try:
+    import mujoco
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(not_installed("MuJoCo", "mujoco"), name=error.name) from error
+
+Array = NDArray[np.float64]
+
+POINTED = ("sphere", "ellipsoid")
+"""Kinds that touch any convex body at one point."""
+
+POSITION = (
+    mujoco.mj_checkPos,
+    mujoco.mj_checkVel,
+    mujoco.mj_kinematics,
+    mujoco.mj_comPos,
+    mujoco.mj_camlight,
+    mujoco.mj_flex,
+    mujoco.mj_tendon,
+    mujoco.mj_makeM,
+    mujoco.mj_factorM,
+)
+"""What a step of MuJoCo does before its contacts."""
+
+VELOCITY = (
+    mujoco.mj_makeConstraint,
+    mujoco.mj_island,
+    mujoco.mj_transmission,
+    mujoco.mj_projectConstraint,
+    mujoco.mj_sensorPos,
+    mujoco.mj_fwdVelocity,
+    mujoco.mj_sensorVel,
+)
+"""And between them and the control."""
+
+
+class MujocoContacts:
+    """Gives a MuJoCo simulation the contacts of exact bodies, one point for each pair in touch.
+
+    Each contact has the parameters that MuJoCo's own would have: solref, solimp, friction,
+    dimensions and margin, mixed by its rules. MuJoCo makes no contact of the same pair.
+
+    Parameters
+    ----------
+    robot : Robot
+        Of a MuJoCo model, without obstacles: only geoms of the model can be in touch.
+    pairs : list of (str, str), optional
+        Of which pairs, by the geoms' names. If not given: all of a sphere, an ellipsoid or a body
+        that was given for a mesh. The others may lie flat on each other; MuJoCo holds them at
+        several points, and goes on to do so.
+
+    Attributes
+    ----------
+    model : mujoco.MjModel
+        To make data of and to step: a copy of the model in which MuJoCo passes by our pairs, if
+        all that collide are ours. Change its options as you like, not its geoms.
+    rows : RobotRows or None
+        The answers of the last call, near pairs that do not touch included.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        MuJoCo is not installed; the message names the extra.
+    TypeError
+        No robot.
+    ValueError
+        A robot of another package, or with obstacles; a pair that it does not watch.
+    """
+
+    def __init__(self, robot: Robot, pairs: Sequence[tuple[str, str]] | None = None) -> None:
+        Near(robot, -math.inf, None)
+        model, numbers = model_of(robot)
+        ours = _smooth(robot) if pairs is None else watched(robot, pairs)
+        self._mixed = {(i, j): mixed(model, numbers[i], numbers[j]) for i, j in ours}
+        self._numbers = numbers
+        self.rows: RobotRows | None = None
+        reach = max((pair.margin + pair.gap for pair in self._mixed.values()), default=0.0)
+        sizes = [
+            piece.body.size
+            for body in robot.geoms.bodies
+            for piece in pieces_of(body)
+            if piece.body.bounded
+        ]
+        self._near = Near(robot, -math.inf, reach + CONTACT_HORIZON * min(sizes, default=1.0))
+        self._theirs = {frozenset((numbers[i], numbers[j])) for i, j in ours}
+        self.model = copy.copy(model)
+        if self._theirs == {frozenset(pair) for pair in watched_pairs(model)}:
+            self.model.geom_contype[:] = self.model.geom_conaffinity[:] = 0
+            self.model.body_contype[:] = self.model.body_conaffinity[:] = 0
+
+    def __call__(self, data: Any) -> int:
+        """Take MuJoCo's contacts of our pairs from the data, and add ours.
+
+        Call it after ``mj_collision`` and before ``mj_makeConstraint``; ``step`` does.
+
+        Returns
+        -------
+        int
+            How many contacts were added.
+
+        Raises
+        ------
+        ValueError
+            Contacts that do not fit into MuJoCo's memory: give the model more (``<size memory>``).
+        """
+        self._leave_theirs(data)
+        self.rows = rows = self._near.rows(data.qpos)
+        middle = 0.5 * (rows.point_a + rows.point_b)
+        seen = zip(rows.bodies.tolist(), rows.distance.tolist(), middle, rows.normal, strict=True)
+        added = 0
+        for (i, j), distance, point, normal in seen:
+            pair = self._mixed.get((i, j))
+            if pair is None or distance > pair.margin + pair.gap:
+                continue
+            contact = _contact(distance, point, normal, pair)
+            contact.geom[:] = contact.geom1, contact.geom2 = self._numbers[i], self._numbers[j]
+            if mujoco.mj_addContact(self.model, data, contact):
+                raise StandoffError(
+                    f"MuJoCo has no room for contact {data.ncon + 1}: give the model more by "
+                    '<size memory="10M"/>.'
+                )
+            added += 1
+        return added
+
+    def _leave_theirs(self, data: Any) -> None:
+        """Of MuJoCo's contacts, those of other pairs alone."""
+        if not data.ncon:
+            return
+        pairs = map(frozenset, data.contact.geom.tolist())
+        kept = [k for k, pair in enumerate(pairs) if pair not in self._theirs]
+        if len(kept) < data.ncon:
+            contacts = [copy.copy(data.contact[k]) for k in kept]
+            data.ncon = 0
+            for contact in contacts:
+                mujoco.mj_addContact(self.model, data, contact)
+
+    def step(self, data: Any) -> None:
+        """``mj_step`` with these contacts, by the model's integrator but RK4.
+
+        Raises
+        ------
+        ValueError
+            The model asks for RK4, which makes contacts within a step.
+        """
+        if self.model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
+            raise StandoffError(
+                "The model's integrator is RK4, within whose steps no contact can be given: set "
+                "contacts.model.opt.integrator to Euler, implicit or implicitfast.",
+                "integrator",
+            )
+        for work in (*POSITION, mujoco.mj_collision):
+            work(self.model, data)
+        self(data)
+        for work in VELOCITY:
+            work(self.model, data)
+        if self.model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_ENERGY:
+            mujoco.mj_energyPos(self.model, data)
+            mujoco.mj_energyVel(self.model, data)
+        control = mujoco.get_mjcb_control()
+        if control is not None:
+            control(self.model, data)
+        mujoco.mj_step2(self.model, data)
+
+
+def model_of(robot: Robot) -> tuple[Any, list[int]]:
+    """The MuJoCo model of a robot, and the number in it of each of the robot's geometries.
+
+    Raises
+    ------
+    StandoffError
+    """
+    if not isinstance(robot.kinematics, MujocoKinematics):
+        raise StandoffError(
+            f"The robot is one of {robot.loaded.source}: make it by so.Robot.from_mujoco.", "robot"
+        )
+    if robot.obstacles:
+        raise StandoffError(
+            f"The obstacles {', '.join(robot.obstacles)} are no geoms of the MuJoCo model, and "
+            "nothing of it can touch them: write them into the model.",
+            "robot",
+        )
+    at = {report.name: k for k, report in enumerate(robot.loaded.reports)}
+    return robot.kinematics.model, [at[name] for name in robot.geoms.names]
+
+
+def watched(robot: Robot, pairs: Sequence[tuple[str, str]]) -> list[tuple[int, int]]:
+    """Numbers i < j of the robot's geometries, of pairs given by names.
+
+    Raises
+    ------
+    StandoffError
+        A pair that the robot does not watch.
+    """
+    names = robot.geoms.names
+    known = {frozenset(pair) for pair in robot.pairs}
+    found = []
+    for pair in pairs:
+        if frozenset(pair) not in known:
+            raise StandoffError(
+                f"The robot does not watch the pair {tuple(pair)}: robot.pairs has those that it "
+                "does.",
+                "pairs",
+                pair,
+            )
+        i, j = sorted(names.index(name) for name in pair)
+        found.append((i, j))
+    return found
+
+
+def _smooth(robot: Robot) -> list[tuple[int, int]]:
+    """The pairs of which one cannot lie flat, and those with a body that MuJoCo does not have."""
+    reports = {report.name: report for report in robot.loaded.reports}
+    geoms = [reports[name] for name in robot.geoms.names]
+    ours = [geom.kind in POINTED or geom.became == GIVEN for geom in geoms]
+    return [(i, j) for i, j in sorted(robot.loaded.pairs) if ours[i] or ours[j]]
+
+
+def _contact(distance: float, point: Array, normal: Array, pair: Mixed) -> Any:
+    """A contact in the middle between the witness points, as MuJoCo has them."""
+    contact = mujoco.MjContact()
+    x, y, z = normal.tolist()
+    # the second axis of MuJoCo's own frames: y, or z where that is near the normal, made square
+    side = np.array(
+        (-y * x, 1.0 - y * y, -y * z) if abs(y) < 0.5 else (-z * x, -z * y, 1.0 - z * z)
+    )
+    side /= math.sqrt(side @ side)
+    u, v, w = side.tolist()
+    contact.frame[:3], contact.frame[3:6] = normal, side
+    contact.frame[6:] = y * w - z * v, z * u - x * w, x * v - y * u
+    contact.dist, contact.pos[:] = distance, point
+    contact.dim, contact.includemargin = pair.dim, pair.margin
+    contact.solref[:], contact.solimp[:] = pair.solref, pair.solimp
+    contact.friction[:], contact.solreffriction[:] = pair.friction, pair.solreffriction
+    contact.flex[:] = contact.elem[:] = contact.vert[:] = -1
+    contact.exclude, contact.efc_address = int(distance >= pair.margin), -1
+    return contact

@@ -1,0 +1,131 @@
+"""Splines in q as joint paths."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.errors import StandoffError
+from standoff.robots.certify_tolerances import SPEED_SLACK
+from standoff.robots.kinematics import Kinematics
+from standoff.robots.path_kinds import JointPath
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class SplinePath(JointPath):
+    """A piecewise polynomial of SciPy: ``CubicSpline``, ``PchipInterpolator``, ``BSpline``, ...
+
+    Only of robots whose joints are hinges and slides.
+
+    Parameters
+    ----------
+    spline : PPoly or BSpline
+        From times to configurations (nq,).
+    kinematics : Kinematics
+    """
+
+    def __init__(self, spline: Any, kinematics: Kinematics) -> None:
+        from scipy.interpolate import BSpline
+
+        if kinematics.nq != kinematics.nv:
+            raise StandoffError(
+                "A spline in q leaves the unit quaternions of ball joints and free joints: give "
+                "waypoints, or a function with its greatest speeds.",
+                "path",
+                spline,
+            )
+        x, c = _powers(spline) if isinstance(spline, BSpline) else (spline.x, spline.c)
+        if c.ndim != 3 or c.shape[2] != kinematics.nq:
+            raise StandoffError(
+                f"The spline's values have the shape {tuple(c.shape[2:])}: give one of "
+                f"({kinematics.nq},), a number for each of the robot's joint positions.",
+                "path",
+                spline,
+            )
+        apart = np.diff(x) > 0.0
+        self.breaks = np.append(x[:-1][apart], x[-1])
+        self._c = np.ascontiguousarray(c[:, apart])
+        if not (np.isfinite(self._c).all() and np.isfinite(self.breaks).all()):
+            raise StandoffError("The spline has a NaN or infinite number.", "path", spline)
+        _check_jumps(self.breaks, self._c, spline)
+        self._piece_speeds = self._bounds(
+            self.breaks[:-1], self.breaks[1:], np.arange(len(self.breaks) - 1), 1
+        )
+
+    def at(self, times: Array) -> Array:
+        k = np.clip(np.searchsorted(self.breaks, times, side="right") - 1, 0, self._c.shape[1] - 1)
+        return _horner(self._c[:, k], (times - self.breaks[k])[:, None])
+
+    def speeds(self, first: Array, last: Array, pieces: Ints) -> tuple[Array, Array | None]:
+        return self._bounds(first, last, pieces, 1), self._bounds(first, last, pieces, 2)
+
+    def extremes(self) -> Array:
+        from scipy.interpolate import PPoly
+
+        turns = PPoly(self._c, self.breaks).derivative().roots(False, False)
+        found = [np.asarray(each, dtype=float) for each in np.asarray(turns, dtype=object).flat]
+        every = np.concatenate([self.breaks, *found])
+        kept: Array = every[np.isfinite(every)]  # nan: a joint that stands still from there on
+        return kept
+
+    @property
+    def piece_speeds(self) -> Array:
+        return self._piece_speeds
+
+    def _bounds(self, first: Array, last: Array, pieces: Ints, order: int) -> Array:
+        """Greatest size of a derivative: its value in the middle, and all higher ones from there.
+
+        A polynomial's Taylor series ends, so that the sum of the sizes of its terms is a bound.
+        """
+        half = 0.5 * (last - first)[:, None]
+        u = (0.5 * (first + last) - self.breaks[pieces])[:, None]
+        c, factor = self._c[:, pieces], np.ones(half.shape)
+        total = np.zeros((len(pieces), self._c.shape[2]))
+        for _ in range(order):
+            c = _derived(c)
+        for k in range(1, len(c) + 1):
+            total += np.abs(_horner(c, u)) * factor
+            c = _derived(c)
+            factor = factor * half / k
+        return total * (1.0 + SPEED_SLACK)
+
+
+def _powers(spline: Any) -> tuple[Array, Array]:
+    """A B-spline's knots, and its coefficients by powers, the highest first (k + 1, n, nq)."""
+    k = spline.k
+    x = np.unique(spline.t[k : len(spline.t) - k])
+    rows = [spline.derivative(m)(x[:-1]) / math.factorial(m) for m in range(k, 0, -1)]
+    return x, np.stack([*rows, spline(x[:-1])])
+
+
+def _derived(c: Array) -> Array:
+    """The derivative of polynomials whose highest coefficients come first."""
+    powers = np.arange(len(c) - 1, 0, -1.0)
+    return c[:-1] * powers.reshape(-1, *[1] * (c.ndim - 1))
+
+
+def _horner(c: Array, u: Array) -> Array:
+    found = np.zeros(np.broadcast_shapes(c.shape[1:], u.shape))
+    for row in c:
+        found = found * u + row
+    return found
+
+
+def _check_jumps(breaks: Array, c: Array, spline: Any) -> None:
+    """Refuse a spline that jumps: between the two values no motion is given."""
+    ends = _horner(c, np.diff(breaks)[:, None])[:-1]
+    jumps = np.abs(ends - c[-1, 1:])
+    size = 1.0 + np.abs(c[-1]).max(initial=0.0)
+    if jumps.size and jumps.max() > SPEED_SLACK * size:
+        k = int(np.argmax(jumps.max(axis=1)))
+        raise StandoffError(
+            f"The spline jumps by {jumps[k].max():.3g} at {float(breaks[k + 1])!r} s: give one "
+            "that is continuous.",
+            "path",
+            spline,
+        )

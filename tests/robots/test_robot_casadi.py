@@ -1,0 +1,114 @@
+"""`so.robots.casadi_distance`: distances by q with exact first and second derivatives."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+import pytest
+from contact_models import ARM, TWO, differences, model, touching
+
+import standoff as so
+from standoff.errors import StandoffError
+from standoff.robots import casadi_distance
+from standoff.tracking.derivatives import Smoothness
+
+
+@pytest.fixture(scope="module")
+def arm() -> so.Robot:
+    return so.Robot.from_mujoco(model(ARM))
+
+
+def smooth_pairs(robot: so.Robot) -> list[tuple[str, str]]:
+    return [pair for pair in robot.pairs if "g3" in pair or "g4" in pair]
+
+
+def compiled(function, nq: int):
+    q = ca.MX.sym("q", nq)
+    value = function(q)
+    jacobian = ca.jacobian(value, q)
+    hessians = [ca.hessian(value[k], q)[0] for k in range(value.numel())]
+    return ca.Function("all", [q], [value, jacobian, *hessians])
+
+
+def test_values_and_derivatives_are_the_robots_and_the_differences(
+    arm: so.Robot, rng: np.random.Generator
+) -> None:
+    pairs = smooth_pairs(arm)
+    every = compiled(casadi_distance(arm, pairs), 4)
+    at = [list(arm.pairs).index(pair) for pair in pairs]
+    for _ in range(8):
+        q = rng.uniform(arm.lower, arm.upper)
+        value, jacobian, *hessians = (x.full() for x in every(q))
+        rows = arm.distances(q)
+        np.testing.assert_allclose(value.ravel(), rows.distance[at], atol=1e-13)
+        np.testing.assert_allclose(jacobian, rows.jacobian[at], atol=1e-10)
+        wanted = differences(lambda x: arm.distances(x).jacobian[at], arm.kinematics, q, 1e-4)
+        for k, hessian in enumerate(hessians):
+            if np.isfinite(hessian).all() and rows[at[k]].smoothness is Smoothness.SMOOTH:
+                np.testing.assert_allclose(hessian, wanted[k], atol=2e-6, rtol=2e-5)
+
+
+def test_second_derivatives_are_exact_through_contact() -> None:
+    robot = so.Robot.from_mujoco(model(TWO))
+    every = compiled(casadi_distance(robot, [("a", "b")]), 4)
+    start, down = np.array([0.1, 0.05, -0.2, 0.3]), np.array([0.0, 0.0, -0.6, 0.0])
+    contact = touching(lambda q: robot.distances(q).distance[0], start, down)
+    for q in (start, contact, contact + 0.03 * down):
+        value, jacobian, hessian = (x.full() for x in every(q))
+        assert value[0, 0] == pytest.approx(robot.distances(q).distance[0], abs=1e-14)
+        first = differences(lambda x: robot.distances(x).distance, robot.kinematics, q)
+        second = differences(lambda x: robot.distances(x).jacobian[0], robot.kinematics, q, 1e-4)
+        np.testing.assert_allclose(jacobian, first, atol=1e-8)
+        np.testing.assert_allclose(hessian, second, atol=1e-6)
+
+
+def test_the_first_named_is_a(arm: so.Robot) -> None:
+    function = casadi_distance(arm, [("g3", "post"), ("post", "g3")])
+    every = compiled(function, 4)
+    _, jacobian, first, second = (x.full() for x in every(np.array([0.3, 0.4, 0.2, 0.0])))
+    np.testing.assert_allclose(jacobian[0], jacobian[1], atol=1e-12)
+    np.testing.assert_allclose(first, second, atol=1e-9)
+
+
+def test_ipopt_stops_at_the_clearance(arm: so.Robot) -> None:
+    """The nearest configuration to one in overlap that keeps all of the last links 3 cm off."""
+    pairs = [("floor", "g4"), ("post", "g4"), ("ball", "g4"), ("post", "g3"), ("ball", "g3")]
+    wanted = np.array([0.75, 0.9, 0.0, 0.0])
+    assert min(arm.distances(wanted).distance) < 0.0
+    q = ca.MX.sym("q", 4)
+    problem = {"x": q, "f": ca.sumsqr(q - wanted), "g": casadi_distance(arm, pairs)(q)}
+    options = {"ipopt.print_level": 0, "print_time": 0, "ipopt.tol": 1e-9}
+    found = ca.nlpsol("solve", "ipopt", problem, options)(
+        x0=np.array([0.0, 0.5, 0.0, 0.0]), lbg=0.03, ubg=np.inf, lbx=arm.lower, ubx=arm.upper
+    )
+    x = found["x"].full().ravel()
+    kept = min(a.distance for a in arm.distances(x) if a.names in pairs)
+    assert kept == pytest.approx(0.03, abs=1e-6)
+
+
+def test_flat_pairs_have_no_second_derivative() -> None:
+    box = """<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1"/>
+    <body pos="0 0 1"><joint type="slide" axis="0 0 1"/><joint type="hinge" axis="0 1 0"/>
+    <geom name="box" type="box" size="0.1 0.1 0.1"/></body></worldbody></mujoco>"""
+    robot = so.Robot.from_mujoco(model(box))
+    every = compiled(casadi_distance(robot, [("floor", "box")]), 2)
+    value, jacobian, hessian = (x.full() for x in every(np.zeros(2)))
+    assert value[0, 0] == pytest.approx(0.9)
+    np.testing.assert_array_equal(jacobian, [[1.0, np.nan]])
+    assert np.isnan(hessian).any()
+    asked = compiled(casadi_distance(robot, [("floor", "box")], undefined="raise"), 2)
+    with pytest.raises(RuntimeError, match="has no derivative"):
+        asked(np.zeros(2))
+
+
+def test_what_does_not_fit_is_refused(arm: so.Robot) -> None:
+    with pytest.raises(StandoffError, match="pairs of names"):
+        casadi_distance(arm, [("g1", "nobody")])
+    with pytest.raises(StandoffError, match="single underscores"):
+        casadi_distance(arm, arm.pairs, name="not a name")
+    free = model(
+        '<mujoco><worldbody><geom name="f" type="plane" size="1 1 1"/><body><freejoint/>'
+        '<geom name="s" size="0.1"/></body></worldbody></mujoco>'
+    )
+    with pytest.raises(StandoffError, match="hinges and slides"):
+        casadi_distance(so.Robot.from_mujoco(free), [("f", "s")])
