@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +12,30 @@ from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 from standoff.world.pair_answer import PairAnswer
 
-if TYPE_CHECKING:
-    from standoff.robots.rows import RobotRows
-
 Array = NDArray[np.float64]
+
+
+class Flag(NamedTuple):
+    """Whether a row is the derivative of its distance.
+
+    Attributes
+    ----------
+    smoothness : Smoothness
+        By the motions of the two bodies.
+    reason : str
+    smooth : bool
+        By the robot's velocity: turns without a derivative may be such as no joint makes.
+    """
+
+    smoothness: Smoothness
+    reason: str
+    smooth: bool
+
+
+class Flagged(Protocol):
+    """Rows that can tell whether each is a derivative."""
+
+    def flag(self, k: int) -> Flag: ...
 
 
 class RobotAnswer(KeepsReadOnly):
@@ -50,12 +70,17 @@ class RobotAnswer(KeepsReadOnly):
 
     __slots__ = ("_k", "_rows", "clearance", "gradient", "links", "names", "pair")
 
-    def __init__(self, rows: RobotRows, k: int) -> None:
-        self._rows, self._k = rows, k
-        self.pair: PairAnswer = rows.answer.pairs[k]
-        self.names, self.links = rows.names[k], rows.links[k]
-        self.gradient: Array = rows.jacobian[k]
-        self.clearance = rows.clearance
+    def __init__(
+        self,
+        pair: PairAnswer,
+        links: tuple[str, str],
+        gradient: Array,
+        clearance: float,
+        row: tuple[Flagged, int],
+    ) -> None:
+        self.pair, self.names, self.links = pair, pair.names, links
+        self.gradient, self.clearance = gradient, clearance
+        self._rows, self._k = row
 
     @property
     def distance(self) -> float:

@@ -54,6 +54,12 @@ class PinocchioKinematics:
                 row[columns[joint]] = 1.0
 
     def __reduce__(self) -> Any:
+        if self.fold is not None:
+            # Pinocchio 4.1 loses numbers of such joints when it stores them, and then crashes
+            raise StandoffError(
+                f"The model {self.model.name!r} has joints that mimic others, which Pinocchio does "
+                "not store: load the robot again from its file."
+            )
         return PinocchioKinematics, (self.model, self._joints, self._carriers, self._placements)
 
     def _placed(self) -> Array:

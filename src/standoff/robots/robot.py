@@ -56,6 +56,8 @@ class Robot(RobotModel):
     within : float
         The horizon of ``distances``, ``start`` and ``step``, length.
     obstacles : dict of str to (body, Pose)
+    loaded : Loaded
+        What was read from the model.
     """
 
     @staticmethod

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.read_only import KeepsReadOnly
-from standoff.robots.answer import RobotAnswer
+from standoff.robots.answer import Flag, RobotAnswer
 from standoff.robots.gradients import rows_by_velocity
 from standoff.robots.kinematics import Motion
 from standoff.robots.tolerances import TURN_LOST
@@ -35,23 +35,6 @@ class Mounted(NamedTuple):
     links: tuple[str, ...]
     support: Array
     fold: Array | None
-
-
-class Flag(NamedTuple):
-    """Whether a row is the derivative of its distance.
-
-    Attributes
-    ----------
-    smoothness : Smoothness
-        By the motions of the two bodies.
-    reason : str
-    smooth : bool
-        By the robot's velocity: turns without a derivative may be such as no joint makes.
-    """
-
-    smoothness: Smoothness
-    reason: str
-    smooth: bool
 
 
 @hides("motion", "mounted", "flag")
@@ -198,7 +181,10 @@ class RobotRows(KeepsReadOnly):
         return len(self._pairs)
 
     def __getitem__(self, k: int) -> RobotAnswer:
-        return RobotAnswer(self, range(len(self))[k])
+        k = range(len(self))[k]
+        pair, bodies = self._pairs[k], self.bodies[k].tolist()
+        links = self.mounted.links[bodies[0]], self.mounted.links[bodies[1]]
+        return RobotAnswer(pair, links, self.jacobian[k], self.clearance, (self, k))
 
     def __iter__(self) -> Iterator[RobotAnswer]:
         return (self[k] for k in range(len(self)))

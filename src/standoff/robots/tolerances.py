@@ -17,7 +17,7 @@ WIDER = 8.0
 of them, and each costs a world that is kept."""
 
 UNLIMITED = 1e30
-"""Limits of q beyond this, in its unit, are none: packages write large numbers for them."""
+"""Limits of q beyond this, rad or length, are none: packages write large numbers for them."""
 
 RATE_LOST = 1e-6
 """By how much a velocity of a `SafetyFilter` may miss a row, as a part of 1 and the greatest right
