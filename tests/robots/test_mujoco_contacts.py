@@ -8,9 +8,9 @@ import mujoco
 import numpy as np
 import pytest
 from contact_models import ARM, model
-from draws import draws
 
 import standoff as so
+from draws import draws
 from standoff.errors import StandoffError
 from standoff.robots import MujocoContacts, MujocoSensor
 from standoff.robots.mujoco_mixing import mixed
