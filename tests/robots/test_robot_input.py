@@ -282,7 +282,7 @@ def test_a_floating_base_needs_a_unit_quaternion(tmp_path: Path) -> None:
 
 def test_names_that_nobody_has() -> None:
     model = mujoco.MjModel.from_xml_string(MJCF)
-    with pytest.raises(so.StandoffError, match="skip has 'trunc'.*'trunk'"):
+    with pytest.raises(so.StandoffError, match=r"skip has 'trunc'.*'trunk'"):
         so.Robot.from_mujoco(model, skip=["trunc"])
     with pytest.raises(so.StandoffError, match="meshes has 'trunc'"):
         so.Robot.from_mujoco(model, meshes={"trunc": "hull"})
