@@ -92,7 +92,7 @@ def test_no_point_goes_farther_than_the_bound(seed: int) -> None:
     at = np.zeros(len(pairs), dtype=int)
     middle = sight.middle(pairs, frames, at, ways)
     reaches, watched = middle.reaches, sight.watched
-    cut = seen_from(_sums(reaches.h * reaches.w_a, reaches.h * reaches.w_b), reaches)
+    cut = seen_from(_sums(reaches.h * reaches.r_a, reaches.h * reaches.r_b), reaches)
     assert np.array_equal(cut.bound, middle.way)
     normals = rng.normal(size=(len(pairs), 3))
     normals /= np.linalg.norm(normals, axis=1)[:, None]
@@ -212,3 +212,44 @@ def test_a_joint_that_mimics_another_moves_by_its_ratio() -> None:
         ratios=[1.0, -2.0],
     )
     assert Sight(robot).watched.motions.rates(np.array([[0.5, 0.25]])).tolist() == [[0.5, 0.5, 0.0]]
+
+
+def test_a_folded_arm_is_accelerated_more_where_it_unfolds() -> None:
+    """At rest its tip is on the first axis; within the box it leaves it."""
+    ball, out, back = so.shapes.sphere(0.1), np.eye(4), np.eye(4)
+    out[0, 3], back[0, 3] = 1.0, -1.0
+    away = np.eye(4)
+    away[0, 3] = 9.0
+    robot = robot_of(
+        [1, 1],
+        [-1, 0],
+        [np.eye(4), out],
+        [[0, 0, 1.0]] * 2,
+        [(1, ball, back)],
+        fixed={"f": (ball, away)},
+    )
+    sight = Sight(robot)
+    ways = np.array([[1.0, 1.0, 0.0]])
+    middle = sight.middle(np.array([0]), sight.frames(np.zeros((1, 2))), np.array([0]), ways)
+    rates = np.array([[1.0, 1.0]])
+    found = bends(middle.reaches, rates, np.zeros((1, 2)))[0, 0]
+    true = abs(-1.0 + 4.0 * np.exp(1j))  # of exp(i t) (1 - exp(i t)) at t = 1
+    assert true == pytest.approx(3.56, abs=0.01)
+    assert true <= found
+    assert middle.way[0] == pytest.approx(1.0, abs=1e-8)
+
+
+def test_a_free_joint_of_pinocchio_swerves_no_more_than_the_bound() -> None:
+    pin = pytest.importorskip("pinocchio")
+    model = pin.Model()
+    model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "base")
+    body = so.shapes.sphere(0.1)
+    robot = robot_of([4], [-1], [np.eye(4)], [[0, 0, 0.0]], [(0, body, np.eye(4))])
+    motions = motions_of(robot.joints)
+    v = np.array([0.7, 0.0, 0.0, 0.0, 0.0, 2.0])
+    swerve = motions.swerves(motions.rates(v[None]))[0]
+    step = 1e-4
+    x = [pin.integrate(model, pin.neutral(model), v * (0.3 + s * step))[:3] for s in (-1, 0, 1)]
+    own = np.linalg.norm(x[0] - 2.0 * x[1] + x[2]) / step**2
+    assert own == pytest.approx(1.4, rel=1e-5)
+    assert swerve.tolist() == pytest.approx([1.4, 0.0, 0.0])

@@ -237,7 +237,7 @@ class _Search:
     def _longest(self, box: Box, reaches: Reaches, row: int) -> int:
         """The number of q that moves a pair most in a box; -1 where none can be halved."""
         watched = self.sight.watched
-        pair_ways = reaches.h[row] * np.minimum(reaches.w_a[row], reaches.w_b[row])
+        pair_ways = reaches.h[row] * np.minimum(reaches.r_a[row], reaches.r_b[row])
         moved = np.zeros(len(self.lower))
         for motion, way in zip(reaches.chain[row].tolist(), pair_ways.tolist(), strict=True):
             if motion >= 0:
