@@ -205,7 +205,7 @@ def _drawn_chapter(
             pair = (names[i], names[j]) if rng.random() < 0.5 else (names[j], names[i])
             margin = float(cast.size * 10.0 ** rng.uniform(-3.0, 0.7))
             horizons[k] = max(horizons[k], margin)
-            margins[pair] = margin
+            margins[pair] = max(margin, margins.get(pair, 0.0))
         rules["margins"] = margins
     bodies = {name: cast.bodies[k] for name, k in zip(names, playing.tolist(), strict=True)}
     flight = drawn_flight(rng, poses, fixed, cast.size, frames, cast.planar)
