@@ -199,7 +199,7 @@ def _drawn_chapter(
     ]
     horizons = np.full(len(counted), within)
     if counted and rng.random() < 0.3:
-        margins = {}
+        margins: dict[tuple[str, str], float] = {}
         for k in rng.integers(0, len(counted), 3).tolist():
             i, j = counted[k]
             pair = (names[i], names[j]) if rng.random() < 0.5 else (names[j], names[i])
