@@ -33,8 +33,8 @@ def law_of_pairs(law: Any) -> Law:
     found: Law = checked_law(law)
     if found.within is not None:
         raise StandoffError(
-            f"The law has within={found.within:g}: give the horizon to the world, "
-            f"so.World(..., within={found.within:g}).",
+            f"The law has within = {found.within:g}: a world has one horizon for all pairs, "
+            "its own `within`; give it there.",
             "law",
             law,
         )

@@ -235,13 +235,15 @@ class _Kinds:
         for side in sides:
             marks[side, columns[side.tobytes()]] = True
         self._rows, kinds = np.unique(marks, axis=0, return_inverse=True)
-        self._columns = columns
+        self._members = {
+            side: np.flatnonzero(self._rows[:, column]) for side, column in columns.items()
+        }
         self.kinds: Ints = kinds.reshape(-1).astype(np.int64)
 
     def _of(self, sides: Sides) -> tuple[Any, Any]:
         """Where a rule stands in a table of kinds: its one order, and the other."""
-        a, b = (np.flatnonzero(self._rows[:, self._columns[x.tobytes()]]) for x in sides)
-        return np.ix_(a, b), np.ix_(b, a)
+        a, b = (self._members[x.tobytes()] for x in sides)
+        return (a[:, None], b), (b[:, None], a)
 
     def meets(self, apart: Iterable[Sides], wanted: Iterable[Sides] | None) -> Ints:
         """1 where two kinds meet: not both fixed, not `apart`, and `wanted` if that is given."""
