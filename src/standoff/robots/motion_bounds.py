@@ -8,7 +8,7 @@ the cut first, so that what is behind an axis still is as at q0 while it turns. 
 swept body moves with its core and has no part in it.
 
 With the joints' speeds u and accelerations α, no point of A is accelerated by more than
-Σ wₖ (uₖ (uₖ + 2 Σᵢ uᵢ) + αₖ), i over the *turns* between the cut and k, the first uₖ only of a turn:
+Σ wₖ (uₖ (uₖ + 2 Σᵢ uᵢ) + αₖ), i over the *turns* between the cut and k, the first uₖ of turns only:
 the second derivatives of the kinematics are ωᵢ × ∂x/∂qₖ. w is r in the whole box: how far the
 motions between an axis and the piece can carry its points is added, from the piece on.
 docs/certify.md has the proofs.
