@@ -203,9 +203,10 @@ def _drawn_chapter(
         for k in rng.integers(0, len(counted), 3).tolist():
             i, j = counted[k]
             pair = (names[i], names[j]) if rng.random() < 0.5 else (names[j], names[i])
-            margin = float(cast.size * 10.0 ** rng.uniform(-3.0, 0.7))
-            horizons[k] = max(horizons[k], margin)
-            margins[pair] = margin
+            margins[pair] = float(cast.size * 10.0 ** rng.uniform(-3.0, 0.7))
+        for k, (i, j) in enumerate(counted):  # a pair drawn twice keeps what was drawn last
+            for pair in ((names[i], names[j]), (names[j], names[i])):
+                horizons[k] = max(horizons[k], margins.get(pair, 0.0))
         rules["margins"] = margins
     bodies = {name: cast.bodies[k] for name, k in zip(names, playing.tolist(), strict=True)}
     flight = drawn_flight(rng, poses, fixed, cast.size, frames, cast.planar)
