@@ -88,6 +88,34 @@ def test_tracked_frames_are_far_or_near_the_same(rng: np.random.Generator, law) 
     assert (spared > 300) == (law is so.PredictorCorrector)
 
 
+@pytest.mark.parametrize("first", [True, False])
+def test_a_half_space_saves_frames_too(rng: np.random.Generator, first: bool) -> None:
+    """Over a plane that turns and a plane at rest, in both orders; the bound is near the truth."""
+    for shape in (SHAPES[1], SHAPES[2], SHAPES[6]):
+        pair = (SHAPES[5], shape) if first else (shape, SHAPES[5])
+        near = so.Tracker(*pair, law=so.PredictorCorrector(within=0.4))
+        plane, body = drawn_pose(rng, 0.3), np.eye(4)
+        normal = plane[:3, :3] @ [0.0, 0.6, 0.8]
+        body[:3, 3] = plane[:3, 3] + 1.5 * normal
+        body[:3, :3] = Rotation.random(random_state=rng).as_matrix()
+        poses = (plane, body) if first else (body, plane)
+        state, spared, far = near.start(*poses), 0, 0
+        for k in range(60):
+            body[:3, 3] += 0.02 * normal
+            if k >= 30:
+                turn = Rotation.from_rotvec([0.002, -0.001, 0.0]).as_matrix()
+                plane[:3, :3] = turn @ plane[:3, :3]
+            state, found = near.step(state, *poses)
+            true = so.distance(*pair, *poses)
+            assert found.far
+            far += 1
+            spared += found.counts.evaluations == 0
+            assert found.lower_bound <= true.upper_bound
+            assert found.lower_bound > true.distance - 0.4
+        assert spared >= far - 1
+        assert so.distance(*pair, *poses, within=0.4).counts.evaluations == 0
+
+
 def poses_at(start, way, spin, k: int) -> list[np.ndarray]:
     poses = []
     for pose, turn, sign in zip(start, spin, (0.0, 1.0), strict=True):

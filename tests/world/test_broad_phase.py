@@ -151,6 +151,20 @@ def test_pairs_stay_found_as_pieces_leave_their_boxes(rng: np.random.Generator) 
     assert refits > 5
 
 
+def test_pieces_in_their_padded_boxes_are_not_sought(rng: np.random.Generator) -> None:
+    """A padded box lasts for some frames at the speed of the last."""
+    world = so.World({f"b{k}": SHAPES[k % 6] for k in range(60)}, within=0.3)
+    poses, speed = poses_of(rng, 60, 2.0), 0.02 * rng.normal(size=(60, 3))
+    state, sought = world.start(poses), 0
+    for _ in range(40):
+        poses = poses.copy()
+        poses[:, :3, 3] += speed
+        state, answer = world.step(state, poses)
+        assert answer.counts.resting == 0
+        sought += answer.counts.sought
+    assert 0 < sought < 0.3 * 40 * 60
+
+
 def test_a_half_space_that_has_turned_hides_no_other_motion() -> None:
     world = so.World({"plane": so.shapes.halfspace(), "ball": so.shapes.sphere(0.5)}, within=0.5)
     poses = np.tile(np.eye(4), (2, 1, 1))

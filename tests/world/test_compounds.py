@@ -1,10 +1,14 @@
 """Bodies of several pieces: the nearest, all local minima, gradients by the body's motion."""
 
+from decimal import Decimal, localcontext
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from scattered import SHAPES, poses_of
 
 import standoff as so
+from draws import draws
 
 BALL = so.shapes.sphere(0.5)
 TWO = so.compound({"left": BALL, "right": (BALL, (np.eye(3), [2.0, 0.0, 0.0]))})
@@ -79,6 +83,86 @@ def test_rates_are_those_of_the_bodies(rng: np.random.Generator) -> None:
         assert found.rate == pytest.approx(float(found.gradient @ twists.ravel()), abs=1e-8)
 
 
+def off(pose: np.ndarray, defect: float) -> np.ndarray:
+    """A pose whose axes are too long, so that R'R is off the identity by the defect."""
+    pose = pose.copy()
+    pose[:3, :3] *= np.sqrt(1.0 + defect)
+    return pose
+
+
+@pytest.mark.parametrize("placed", [1e-9, 0.999e-9, 0.0])
+@pytest.mark.parametrize("given", [1e-9 - 1e-15, 0.999e-9, 1e-9 - 3e-15])
+def test_composed_rotations_are_never_refused(
+    rng: np.random.Generator, placed: float, given: float
+) -> None:
+    """Each of the two is let pass by itself, off orthonormal by so much."""
+    for _ in range(5):
+        turned = off(poses_of(rng, 1, 0.7)[0], 0.999999 * placed)
+        hand = so.compound({"palm": SHAPES[0], "thumb": (SHAPES[5], turned)})
+        poses = poses_of(rng, 2, 1.0)
+        poses[0] = off(poses[0], given)
+        world = so.World({"hand": hand, "tool": SHAPES[0]}, within=5.0)
+        state = world.start(poses)
+        for _ in range(3):
+            poses[0, :3, 3] += 0.01
+            state, answer = world.step(state, poses)
+        thumb = hand.pieces["thumb"].pose
+        local = np.eye(4)
+        local[:3, :3], local[:3, 3] = thumb.rotation, thumb.translation
+        true = min(
+            so.distance(SHAPES[0], SHAPES[0], *poses).distance,
+            so.distance(SHAPES[5], SHAPES[0], so.Pose.nearest(poses[0] @ local), poses[1]).distance,
+        )
+        assert answer["hand", "tool"].distance == pytest.approx(true, abs=1e-7)
+
+
+def test_a_placement_is_a_rotation_to_roundoff(rng: np.random.Generator) -> None:
+    turned = off(poses_of(rng, 1)[0], 0.9e-9)
+    piece = so.compound({"a": (BALL, turned)}).pieces["a"]
+    assert np.abs(piece.pose.rotation.T @ piece.pose.rotation - np.eye(3)).max() < 1e-15
+    assert np.abs(piece.pose.rotation - turned[:3, :3]).max() < 1e-9
+    quarter = so.Pose([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [1.0, 2.0, 3.0])
+    kept = so.compound({"a": (BALL, quarter)}).pieces["a"].pose
+    assert np.array_equal(kept.rotation, quarter.rotation)
+
+
+DISC = so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (0.5, 0), (0, 0.5))])
+
+
+def tilted(angle: float, tilt: float, x: float, y: float) -> np.ndarray:
+    """A planar pose off its plane by a tilt that is let pass."""
+    pose = at(x, y)
+    pose[:3, :3] = so.Pose.exp((0.0, 0.0, angle)).rotation
+    pose[0, 2], pose[1, 2], pose[2, 0], pose[2, 1] = tilt, -tilt, tilt, tilt
+    return pose
+
+
+def test_planar_tilts_that_are_let_pass_are_so_where_they_are_composed() -> None:
+    two = so.compound({"near": DISC, "off": (DISC, tilted(0.7, 1e-12, 2.0, 3.0))})
+    world = so.World({"two": two, "disc": DISC}, within=9.0)
+    state = world.start([tilted(-0.4, -1e-12, 0.0, 0.0), tilted(0.2, 1e-12, 5.0, 3.0)])
+    for angle in np.linspace(-0.4, 3.0, 20):
+        poses = [tilted(angle, 1e-12, 0.0, 0.0), tilted(0.2, 1e-12, 5.0, 3.0)]
+        state, answer = world.step(state, poses)
+        offs = np.array(
+            [np.cos(angle) * 2 - np.sin(angle) * 3, np.sin(angle) * 2 + np.cos(angle) * 3]
+        )
+        true = min(np.hypot(5.0, 3.0), np.hypot(*(np.array([5.0, 3.0]) - offs))) - 1.0
+        assert answer["two", "disc"].distance == pytest.approx(true, abs=1e-9)
+
+
+def test_planar_placements_are_in_the_plane() -> None:
+    with pytest.raises(ValueError, match=r"'up'.*out of the plane z = 0.*z = 0\.1"):
+        so.compound({"a": DISC, "up": (DISC, at(1.0, 0.0, 0.1))})
+    with pytest.raises(ValueError, match=r"'over'.*turned over"):
+        so.compound({"over": (DISC, np.diag([1.0, -1.0, -1.0, 1.0]))})
+    # points are spatial, but lie in a planar world's plane
+    mast = so.compound({"foot": so.shapes.point(), "top": (so.shapes.point(), at(0.0, 0.0, 1.0))})
+    with pytest.raises(ValueError, match=r"'mast\.top'.*out of the plane"):
+        so.World({"mast": mast, "disc": DISC})
+    so.World({"mast": mast, "ball": BALL})
+
+
 def test_bad_compounds() -> None:
     with pytest.raises(TypeError, match="mapping of names"):
         so.compound({})
@@ -88,3 +172,39 @@ def test_bad_compounds() -> None:
         so.compound({7: BALL})
     with pytest.raises(ValueError, match="'a'"):
         so.compound({"a": (BALL, np.full((4, 4), np.nan))})
+
+
+def exact_centre(rotation: np.ndarray, shift: np.ndarray, point: list[Fraction]) -> list[Fraction]:
+    """R x + p without roundoff."""
+    r, p = [[Fraction(float(x)) for x in row] for row in rotation], map(Fraction, shift.tolist())
+    return [
+        sum(a * x for a, x in zip(row, point, strict=True)) + s for row, s in zip(r, p, strict=True)
+    ]
+
+
+def test_bounds_hold_what_composing_poses_has_lost(rng: np.random.Generator) -> None:
+    """Balls on arms so long that the roundoff of their places is above that of their distance."""
+    lost = 0
+    for _ in range(draws(60)):
+        arm = 10.0 ** rng.uniform(2, 6)
+        turned = poses_of(rng, 1, 1.0)[0]
+        turned[:3, 3] = arm * turned[:3, 0]
+        body = so.compound({"ball": (BALL, turned)})
+        poses = poses_of(rng, 2, 1.0)
+        poses[0, :3, 3] -= poses[0, :3, :3] @ turned[:3, 3]
+        poses[1, :3, 3] += [2.0, 0.0, 0.0]
+        piece = body.pieces["ball"].pose
+        at_piece = exact_centre(
+            poses[0, :3, :3], poses[0, :3, 3], list(map(Fraction, piece.translation.tolist()))
+        )
+        between = [x - Fraction(float(y)) for x, y in zip(at_piece, poses[1, :3, 3], strict=True)]
+        with localcontext() as context:
+            context.prec = 60
+            squares = sum(x * x for x in between)
+            root = (Decimal(squares.numerator) / Decimal(squares.denominator)).sqrt()
+            true = root - 1
+            found = so.World({"body": body, "ball": BALL}).distances(poses)["body", "ball"]
+            if found.distance > 0.0:
+                assert Decimal(found.lower_bound) <= true <= Decimal(found.upper_bound)
+                lost += abs(Decimal(found.distance) - true) > Decimal("1e-13")
+    assert lost > 10

@@ -1,6 +1,7 @@
 """Which pairs count, their margins, and what is refused."""
 
 import itertools
+import time
 
 import numpy as np
 import pytest
@@ -65,11 +66,86 @@ def test_margins() -> None:
     assert [x.names for x in answer.below_margin] == [("arm", "hand")]
 
 
+def test_margins_by_group_are_those_by_name() -> None:
+    groups = {"robot": ["arm", "hand", "box"], "room": ["shelf", "wall", "box"]}
+    by_group = {("robot", "room"): 0.3, ("arm", "room"): 0.5, ("hand", "wall"): 0.2}
+    by_name = {}
+    for (a, b), margin in by_group.items():
+        for x, y in itertools.product(groups.get(a, [a]), groups.get(b, [b])):
+            if x != y:
+                key = tuple(sorted((x, y), key=NAMES.index))
+                by_name[key] = max(margin, by_name.get(key, 0.0))
+    worlds = [
+        so.World(BODIES, within=0.1, groups=groups, margins=margins)
+        for margins in (by_group, by_name)
+    ]
+    for a, b in EVERY:
+        wanted = by_name.get((a, b), 0.0)
+        assert [world.margin(a, b) for world in worlds] == [wanted] * 2
+        assert worlds[0].margin(b, a) == wanted
+    poses = np.tile(np.eye(4), (5, 1, 1))
+    poses[:, 0, 3] = 0.0, 1.25, 2.45, 3.7, 4.95
+    for world in worlds:  # a pair without a margin has the horizon, and 0.25 is beyond it
+        answer = world.distances(poses)
+        assert [x.names for x in answer.below_margin] == [("hand", "shelf"), ("wall", "box")]
+        assert answer.pairs.names == [("hand", "shelf"), ("wall", "box")]
+
+
+def test_rules_of_large_groups_take_no_table_of_their_pairs() -> None:
+    """1,000 bodies against 1,000: half a million pairs on each side, and one number."""
+    names = [f"b{k}" for k in range(2000)]
+    groups = {"left": names[:1000], "right": names[1000:], "all": names}
+    began = time.perf_counter()
+    world = so.World(
+        dict.fromkeys(names, BALL),
+        within=0.1,
+        groups=groups,
+        margins={("left", "right"): 0.2, ("all", "all"): 0.15, ("b0", "b1"): 0.4},
+        only=[("left", "right"), ("left", "left")],
+    )
+    took = time.perf_counter() - began
+    rules = world.model.search.rules
+    assert len(rules.margin_pairs) == 1
+    assert rules.meets.size <= 16
+    assert world.margin("b3", "b1500") == 0.2
+    assert world.margin("b3", "b4") == 0.15
+    assert world.margin("b1", "b0") == 0.4
+    assert world.model.search.reach == 0.4
+    assert sum(1 for _ in world.pairs()) == 1000 * 1000 + 1000 * 999 // 2
+    assert took < 5.0
+
+
+def test_the_clearance_is_at_most_the_greatest_horizon() -> None:
+    """That of a pair with a margin: nothing is known farther out."""
+    poses = np.tile(np.eye(4), (5, 1, 1))
+    poses[:, 0, 3] = 50.0 * np.arange(5)
+    for margins, most in [({}, 0.1), ({("arm", "hand"): 0.5}, 0.5), ({("arm", "hand"): 0.05}, 0.1)]:
+        world = so.World(BODIES, within=0.1, margins=margins)
+        assert world.distances(poses).clearance == most
+    poses[1, 0, 3] = 1.3  # arm and hand, 0.3 apart
+    world = so.World(BODIES, within=0.1, margins={("arm", "hand"): 0.5})
+    assert world.distances(poses).clearance == pytest.approx(0.3)
+    poses[3, 0, 3] = poses[2, 0, 3] + 1.2  # beyond their horizon, and only that is proven
+    answer = world.distances(poses)
+    assert answer["shelf", "wall"].far
+    assert 0.1 < answer.clearance <= 0.2 + 1e-12
+
+
 @pytest.mark.parametrize(
     ("rules", "told"),
     [
         ({"ignore": [("arm", "hnad")]}, "'hnad'.*'hand'"),
         ({"ignore": [("arm", "arm")]}, "with itself"),
+        ({"only": [("arm", "arm")]}, "only has 'arm' with itself"),
+        ({"margins": {("arm", "arm"): 1.0}}, "margins has 'arm' with itself"),
+        ({"margins": {("arm", "hnad"): 1.0}}, "margins.*'hnad'.*'hand'"),
+        ({"margins": [("arm", "hand")]}, "margins = .*mapping"),
+        ({"groups": ["arm"]}, "groups = .*mapping"),
+        ({"parents": [("arm", "hand")]}, "parents = .*mapping"),
+        ({"fixed": ["arm"]}, "fixed = .*mapping"),
+        ({"ignore": 3}, "ignore = 3.*pairs of names"),
+        ({"only": "arm"}, "only = .*pairs of names"),
+        ({"law": so.PredictorCorrector(within=0.3)}, r"within=0\.3.*World"),
         ({"ignore": ["arm"]}, "pairs of names"),
         ({"groups": {"arm": ["hand"]}}, "is a body"),
         ({"groups": {"robot": []}}, "one body or more"),

@@ -95,6 +95,48 @@ def test_bodies_at_rest_keep_their_answers(rng: np.random.Generator) -> None:
     check(answer, truth_of(world, poses), 1.0)
 
 
+def test_all_that_states_share_is_locked(rng: np.random.Generator) -> None:
+    world = so.World(bodies_of(rng, 10, 1) | {"floor": SHAPES[2]}, within=1.0)
+    motion = Motion(rng, len(world.moving))
+    state = world.start(motion.poses)
+    for k in range(6):
+        state, _ = world.step(state, motion.jump([1, 2]) if k % 2 else motion.step(H))
+        for each in (state, pickle.loads(pickle.dumps(state))):
+            tree = each.tree
+            arrays = [each.poses, each.placed, each.ints, each.known, each.near, *each.pages]
+            for array in (*arrays, tree.boxes, tree.nodes, tree.order, tree.leaf):
+                assert not array.flags.writeable
+    for array in (*world.model.search.rules, *world.model.search.pieces):
+        assert not array.flags.writeable
+
+
+def test_nothing_is_changed_by_an_error(rng: np.random.Generator) -> None:
+    world = so.World(bodies_of(rng, 10, 1) | {"floor": SHAPES[2]}, within=1.0)
+    motion = Motion(rng, len(world.moving))
+    state = world.start(motion.poses)
+    poses = motion.step(H)
+    kept, given, true = pickle.dumps(state), poses.copy(), world.step(state, poses)[1]
+    bad = poses.copy()
+    bad[3, 0, 3] = np.nan
+    other = so.World(dict(world.bodies), within=1.0)
+    for attempt, told in [
+        (lambda: world.step(state, bad), "'b3'"),
+        (lambda: world.step(state, poses[:-1]), "poses are 11"),
+        (lambda: world.step(state, dict(zip(world.moving[1:], poses[1:], strict=True))), "'b0'"),
+        (lambda: other.step(state, poses), "another world"),
+        (lambda: world.step(state, poses, np.full((12, 6), np.nan)), "'b0'"),
+        (lambda: world.step(state, poses, np.full((12, 6), 1e200)), "'b0'.*too large"),
+        (lambda: world.step(state, poses, dt=0.0), "dt"),
+        (lambda: world.run(state, [poses, poses], [np.zeros((12, 6))]), "twists are of 1 frames"),
+    ]:
+        with pytest.raises(ValueError, match=told):
+            attempt()
+    assert pickle.dumps(state) == kept
+    assert np.array_equal(poses, given)
+    again = world.step(state, poses)[1]
+    assert np.array_equal(again.pairs.distance, true.pairs.distance)
+
+
 def test_a_state_is_a_value(rng: np.random.Generator) -> None:
     world = so.World(bodies_of(rng, 10, 1) | {"floor": SHAPES[2]}, within=1.0)
     motion = Motion(rng, len(world.moving))
@@ -155,6 +197,69 @@ def test_the_clearance_holds_for_far_pairs_too() -> None:
     answer = world.distances(poses)
     assert answer.clearance == pytest.approx(1.5, abs=1e-12)
     assert answer.closest.names == ("a", "b")
+
+
+def test_rates_are_those_of_their_frame_after_far_ones() -> None:
+    """Of a pair that was beyond the horizon, and of one that comes back from there."""
+    a, b = SHAPES[0], SHAPES[5]
+    world, tracker = so.World({"a": a, "b": b}, within=0.5), so.Tracker(a, b, 1e-2)
+    path = np.concatenate([np.linspace(1.2, 4.0, 30), np.linspace(4.0, 1.2, 30)])
+    poses = np.tile(np.eye(4), (2, 1, 1))
+    poses[1, 0, 3] = path[0]
+    state, alone = world.start(poses), tracker.start(*poses)
+    near = before = 0
+    for k, x in enumerate(path):
+        poses[1, 0, 3] = x
+        twists = np.zeros((2, 6))
+        twists[1] = np.sin(k), 0.3, 0.0, 0.0, 0.5 * k, 1.0
+        given = twists if k % 3 else None  # in some frames none are known
+        state, answer = world.step(state, poses, given, dt=1e-2)
+        alone, true = tracker.step(alone, *poses, *([None, None] if given is None else given))
+        found = answer["a", "b"]
+        assert found.time == pytest.approx(true.time)
+        if found.far:
+            assert np.isnan(found.rate)
+            assert np.isnan(found.velocity_a).all()
+            assert np.isnan(found.velocity_b).all()
+            for name in ("gradient", "hessian", "unique"):
+                with pytest.raises(ValueError, match="beyond the horizon"):
+                    getattr(found, name)
+            with pytest.raises(ValueError, match="beyond the horizon"):
+                found.derivatives()
+            before = near
+        else:
+            near += 1
+            for name in ("rate", "velocity_a", "velocity_b"):
+                wanted = getattr(true, name)
+                assert getattr(found, name) == pytest.approx(wanted, abs=1e-5, nan_ok=True)
+            assert answer.pairs.rate == pytest.approx([true.rate], abs=1e-5, nan_ok=True)
+            assert np.isnan(found.rate) == (given is None)
+    assert 0 < before < near
+
+
+def test_the_paper_law_begins_anew_after_far_frames() -> None:
+    """One long step over the frames that were left out would be none of the law."""
+    a, b = SHAPES[0], SHAPES[5]
+    world = so.World({"a": a, "b": b}, within=0.5, law=so.PaperLaw())
+    poses = np.tile(np.eye(4), (2, 1, 1))
+    poses[1, :3, 3] = 0.9, 0.1, 0.0
+    state = world.start(poses)
+    there, far = poses.copy(), 0
+    while far < 3:  # beyond the horizon, but near enough to keep the tracker's state
+        poses[1, 0, 3] += 0.02
+        state, answer = world.step(state, poses)
+        far += answer["a", "b"].far
+    assert answer.counts.open == 1
+    there[1, :3, :3] = so.Pose.exp((0.5, 1.0, -0.7)).rotation
+    state, answer = world.step(state, there)
+    true = so.distance(a, b, *there)
+    assert answer["a", "b"].certified
+    assert answer["a", "b"].distance == pytest.approx(true.distance, abs=1e-9)
+    assert (answer.counts.started, answer.counts.tracked) == (1, 0)
+    there[1, 0, 3] += 1e-5
+    assert world.step(state, there)[1].counts.tracked == 1
+    with pytest.raises(ValueError, match=r"dt|stable"):
+        world.step(state, there, dt=1.0)
 
 
 def test_both_orders_of_a_pair(rng: np.random.Generator) -> None:

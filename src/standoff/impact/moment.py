@@ -48,9 +48,9 @@ class Box:
     middle : (3,) array
         Its centre; a half-space's is its plane's point nearest to the origin of its frame.
     half : (3,) array
-        Half its sides; 0 for a half-space, which has no box.
+        Half its sides, with the body's slack; 0 for a half-space, which has no box.
     radius : float
-        Swept radius of the body.
+        Swept radius of the body; of a half-space with its slack.
     reach : float
         Radius of the ball about ``middle`` that holds the core.
     plane : bool
@@ -68,8 +68,10 @@ class Box:
             self.middle = offset * self.normal
         else:
             self.middle = body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
-            self.half = body.reals[L.BOX_HALF : L.BOX_HALF + 3]
+            self.half = body.reals[L.BOX_HALF : L.BOX_HALF + 3] + body.reals[L.SLACK]
         self.radius = float(body.reals[L.RADIUS])
+        if self.plane:
+            self.radius += float(body.reals[L.SLACK])
         self.reach = length(self.half)
 
 

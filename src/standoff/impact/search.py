@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 from standoff.bodies.body import Body
@@ -86,16 +87,15 @@ def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
         whole number of at least 2, times beyond 1e50 s, a duration that is negligible compared with
         the start, a pair that cannot be tracked, or a time that a path refuses.
     """
-    clearance = _checked_clearance(clearance)
-    duration = positive(duration, "duration")
-    tolerance = positive(tolerance, "tolerance")
-    whole_number(max_evaluations, "max_evaluations", 2)
     paths = moving(path_a, "path_a"), moving(path_b, "path_b")
     for path in paths:
         known(path)
+    begin, end = checked_times(paths, start, duration)
+    clearance = checked_clearance(clearance)
+    tolerance = positive(tolerance, "tolerance")
+    whole_number(max_evaluations, "max_evaluations", 2)
     search = _Search(_tracker(a, b, tolerance), paths, clearance, tolerance, max_evaluations)
-    begin = number(start, "start")
-    return search.run(begin, _end(paths, begin, duration))
+    return search.run(begin, end)
 
 
 def _tracker(a: Body, b: Body, tolerance: float) -> Tracker:
@@ -104,7 +104,13 @@ def _tracker(a: Body, b: Body, tolerance: float) -> Tracker:
     return Tracker(a, b, law=PredictorCorrector(tolerance=gap))
 
 
-def _checked_clearance(clearance: float) -> float:
+def checked_clearance(clearance: float) -> float:
+    """A distance that counts as impact, zero or more (length).
+
+    Raises
+    ------
+    TypeError, ValueError
+    """
     clearance = number(clearance, "clearance")
     if clearance < 0.0:
         raise StandoffError(
@@ -117,14 +123,16 @@ def _checked_clearance(clearance: float) -> float:
     return clearance
 
 
-def _end(paths: tuple[Any, Any], start: float, duration: float) -> float:
-    """The time at which the search ends; a rounding beyond a path's end is not a time beyond it.
+def checked_times(paths: Iterable[Any], start: float, duration: float) -> tuple[float, float]:
+    """The times at which the search begins and ends [s]; a rounding beyond a path's end is not a
+    time beyond it.
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         If a path ends before, or no time is left between the start and the end.
     """
+    duration, start = positive(duration, "duration"), number(start, "start")
     end = start + duration
     if not end > start:
         raise StandoffError(
@@ -141,7 +149,7 @@ def _end(paths: tuple[Any, Any], start: float, duration: float) -> float:
             raise StandoffError(
                 f"start + duration = {end!r}, but a path ends at {last!r}: give a {advice}."
             )
-    return end
+    return start, end
 
 
 class _Spent(Exception):

@@ -32,7 +32,8 @@ class WorldAnswer(KeepsReadOnly):
         Since the start, s.
     clearance : float
         A proven lower bound of the signed distances of *all* pairs that count, the far ones
-        included; with a horizon never more than that, and inf where no pair counts.
+        included. Never more than the horizon, or than the greatest margin where that is more:
+        farther nothing is looked at. Inf where there is no horizon and no pair counts.
     certified : bool
         Are the answers of all near pairs proven?
     counts : WorldCounts
@@ -77,17 +78,14 @@ class WorldAnswer(KeepsReadOnly):
     @property
     def below_margin(self) -> tuple[PairAnswer, ...]:
         """The pairs that are not proven to keep the margin that they were given."""
-        found = []
-        rules = self.model.search.rules
-        for answer, (i, j) in zip(self.pairs, self.pairs.bodies.tolist(), strict=True):
-            margin = rules.margin(i, j)
-            if margin > 0.0 and answer.lower_bound < margin:
-                found.append(answer)
-        return tuple(found)
+        rows = self._rows.nearest
+        margins = self.model.search.rules.margins_of(self._rows.numbers)
+        below = (margins > 0.0) & (self._rows.lower_bounds(rows) < margins)
+        return tuple(self._rows.answer(int(row)) for row in rows[below])
 
     def __getitem__(self, names: tuple[str, str]) -> PairAnswer:
         i, j = self._pair(names)
-        number, groups = self.model.pair_number(i, j), self._rows.groups(self._rows.nearest)
+        number, groups = self.model.pair_number(i, j), self._rows.numbers
         at = int(np.searchsorted(groups, number))
         if at < len(groups) and groups[at] == number:
             return self._rows.answer(int(self._rows.nearest[at]), turned=i > j)
@@ -124,7 +122,8 @@ class WorldAnswer(KeepsReadOnly):
         i, j = (self.model.names.body(name, "pair") for name in names)
         if not self.model.search.rules.counts(i, j):
             raise StandoffError(
-                f"The pair {names} does not count in this world: it is ignored, or both are fixed.",
+                f"The pair {names} does not count in this world: its rules leave it out, both "
+                "are fixed, or it is one body twice.",
                 "names",
                 names,
             )
@@ -135,7 +134,7 @@ class WorldAnswer(KeepsReadOnly):
         search, state, square = self.model.search, self.state, self.model.most**2
         bound = kernels.apart_by_boxes(search.pieces[:], state.placed, i, j)
         key = self.model.pair_number(i, j) * square
-        first, last = np.searchsorted(state.ints[:, W.I_KEY], [key, key + square])
+        first, last = np.searchsorted(self._rows.keys, [key, key + square])
         if first < last:
             known = float(state.known[first:last, W.C_BOUND].min())
             # pieces that are in no row are beyond the search's reach

@@ -88,14 +88,28 @@ def place(search: Search, poses: Array, tree: Tree, before: Array) -> tuple[Plac
 def first_tree(search: Search, frame: Placed) -> Tree:
     """The tree of the first frame: every piece has its box and place."""
     n = len(search.pieces.owners)
+    tree = _unordered(search, np.empty((n, N_BOX)))
+    frame.sought[:] = 1
+    kernels.pad(search.pieces[:], frame[:], tree.boxes, np.zeros(n), tree.arrays, 0)
+    return _ordered(search, frame, tree)
+
+
+def _unordered(search: Search, boxes: Array) -> Tree:
+    """Boxes of all pieces, in no leaves yet."""
     filled = int(np.count_nonzero(search.pieces.planes == 0))
     leaves = 1 << max(0, (filled - 1).bit_length()) if filled else 1
-    boxes, nodes = np.empty((n, N_BOX)), np.empty((2 * leaves, N_BOX))
-    order, leaf = np.zeros(max(filled, 1), dtype=np.int64), np.full(n, -1)
-    tree = Tree(boxes, nodes, order, leaf, filled, 0)
+    order, leaf = np.zeros(max(filled, 1), dtype=np.int64), np.full(len(boxes), -1)
+    return Tree(boxes, np.empty((2 * leaves, N_BOX)), order, leaf, filled, 0)
+
+
+def pairs_of_boxes(search: Search, boxes: Array, reach: float) -> Ints:
+    """The pairs of pieces (m, 2) that count and whose boxes (n, 6) come within `reach` (length) of
+    each other; of a half-space all of its pairs. That of the body of lesser number stands first."""
+    frame = empty_placed(len(boxes))
+    tree = _ordered(search, frame, _unordered(search, boxes))
     frame.sought[:] = 1
-    kernels.pad(search.pieces[:], frame[:], boxes, np.zeros(n), tree.arrays, 0)
-    return _ordered(search, frame, tree)
+    found = _found(search._replace(reach=reach), frame, tree)
+    return found[:, [W.E_A, W.E_B]]
 
 
 def _ordered(search: Search, frame: Placed, tree: Tree) -> Tree:
@@ -124,7 +138,8 @@ def repadded(search: Search, frame: Placed, tree: Tree, before: Array, left: int
     ways = frame.placed[:, W.P_TRAVEL] - before[:, W.P_TRAVEL]
     boxes = tree.boxes.copy()
     if left > SOUGHT_PART * len(boxes) or tree.refits >= MOST_REFITS:
-        kernels.pad(search.pieces[:], frame[:], boxes, ways, tree.arrays, 0)
+        none = np.empty((2, N_BOX)), tree.order, tree.leaf
+        kernels.pad(search.pieces[:], frame[:], boxes, ways, none, 0)
         return _ordered(search, frame, tree._replace(boxes=boxes))
     made = tree._replace(boxes=boxes, nodes=tree.nodes.copy(), refits=tree.refits + 1)
     kernels.pad(search.pieces[:], frame[:], boxes, ways, made.arrays, tree.n_filled)
@@ -136,7 +151,8 @@ def table_of(search: Search, frame: Placed, tree: Tree, old: Table) -> Table:
     found = _found(search, frame, tree)
     room = len(old.ints) + len(found)
     ints, known = np.empty((room, W.N_INTS), dtype=np.int64), np.empty((room, W.N_KNOWN))
-    margins = search.rules.margin_pairs, search.rules.margins
+    numbers = found[:, W.E_KEY] // int(search.pieces.first[-1]) ** 2
+    margins = numbers, search.rules.margins_of(numbers)
     n = kernels.merged(
         search.pieces[:], frame[:], old[:], found, margins, search.within, (ints, known)
     )

@@ -5,12 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple, TypeAlias
 
+import numpy as np
+
 from standoff.bodies.body import Body
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Pose, PoseLike
+from standoff.motion.rotations import without_rounding
 from standoff.read_only import KeepsReadOnly
+from standoff.tracking.inputs import matrix_and_mark
 from standoff.wording import counted
+from standoff.world.poses import check_level
 
 
 class Piece(NamedTuple):
@@ -20,7 +25,8 @@ class Piece(NamedTuple):
     ----------
     body : Body
     pose : Pose
-        Of the piece's frame in the compound's.
+        Of the piece's frame in the compound's: a rotation to roundoff, so that one that is composed
+        with it is as near to one as before; of a planar compound's exactly in z = 0.
     """
 
     body: Body
@@ -51,8 +57,12 @@ class Compound(KeepsReadOnly):
                 "pieces",
                 pieces,
             )
-        self.pieces = {name_of(name): _piece(name, given) for name, given in pieces.items()}
-        self.dimension = dimension_of({n: piece.body for n, piece in self.pieces.items()})
+        found = {name_of(name): _piece(name, given) for name, given in pieces.items()}
+        self.dimension = dimension_of({n: piece.body for n, piece in found.items()})
+        planar = self.dimension == 2
+        if planar:
+            check_in_plane(found)
+        self.pieces = {name: Piece(x.body, _exact(x.pose, planar)) for name, x in found.items()}
 
     def __len__(self) -> int:
         return len(self.pieces)
@@ -78,7 +88,7 @@ def compound(pieces: Mapping[str, PieceLike]) -> Compound:
     TypeError
         Not a mapping, a name that is no string, a piece that is no body.
     ValueError
-        No piece, no pose, planar pieces among spatial ones.
+        No piece, no pose, planar pieces among spatial ones, a planar piece out of z = 0.
     """
     return Compound(pieces)
 
@@ -110,6 +120,26 @@ def _piece(name: str, given: Any) -> Piece:
         return Piece(body, Pose.identity() if pose is None else Pose.of(pose))
     except StandoffError as error:
         raise type(error)(f"The piece {name!r}: {error}", "pieces", given) from error
+
+
+def _exact(pose: Pose, planar: bool) -> Pose:
+    """The nearest rotation to roundoff, of one that may be off by what is let pass in a pose; a
+    planar one without the tilt that may be left in it."""
+    rotation = pose.rotation
+    if planar:
+        rotation = np.eye(3)
+        rotation[:2, :2] = pose.rotation[:2, :2]
+    return Pose.from_checked(without_rounding(rotation), pose.translation, repaired=pose.repaired)
+
+
+def check_in_plane(pieces: Mapping[str, Piece]) -> None:
+    """Refuse a piece that is fixed out of z = 0; its name is told.
+
+    Raises
+    ------
+    StandoffError
+    """
+    check_level(list(pieces), [matrix_and_mark(x.pose)[0] for x in pieces.values()], "pieces")
 
 
 def dimension_of(bodies: Mapping[str, Body]) -> int:

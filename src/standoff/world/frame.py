@@ -18,8 +18,8 @@ from standoff.world.broad_phase import (
     table_of,
 )
 from standoff.world.model import Model
-from standoff.world.narrow_phase import Asked, Moment, ask
-from standoff.world.poses import GivenPoses, mend_poses
+from standoff.world.narrow_phase import Asked, Moment, Refused, ask
+from standoff.world.poses import GivenPoses, mend_poses, refused_pose
 from standoff.world.state import Tree, WorldCounts, WorldState
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ def started_state(world: Model, given: GivenPoses, twists: Twists) -> WorldState
     frame.sought[:] = 1
     table = table_of(search, frame, tree, NO_PAIRS)
     moment = Moment(0, 0.0, 0.0, *twists, False, world.minima, 1)
-    asked = ask(world.laws, search.pieces, frame, table, (), moment)
+    asked = _asked(world, frame, table, (), moment)
     return _state(world, given, (frame, tree, table), asked, moment)
 
 
@@ -62,7 +62,7 @@ def next_state(
         table = Table(table.ints.copy(), table.known.copy())
     time = before.time + dt
     moment = Moment(before.frame + 1, time, dt, *twists, may_rest, world.minima, workers)
-    asked = ask(world.laws, search.pieces, frame, table, before.pages, moment)
+    asked = _asked(world, frame, table, before.pages, moment)
     return _state(world, given, (frame, tree, table), asked, moment)
 
 
@@ -75,8 +75,23 @@ def _placed(
         given = mend_poses(given, [name for name, _ in world.listed])
         frame, bad, _, _ = place(world.search, given.matrices, tree, before)
     if bad >= 0:
-        raise StandoffError(f"The pose of {world.listed[bad][0]!r} is none.", "poses")
+        raise refused_pose(world.listed[bad][0])
     return frame, given
+
+
+def _asked(
+    world: Model, frame: Placed, table: Table, pages: tuple[Array, ...], moment: Moment
+) -> Asked:
+    """`ask`, with the names of the bodies in an error."""
+    pieces = world.search.pieces
+    try:
+        return ask(world.laws, pieces, frame, table, pages, moment)
+    except Refused as refused:
+        p, q, why = refused.args
+        names = tuple(world.listed[pieces.owners[k]][0] for k in (p, q))
+        raise StandoffError(
+            f"The pair {names}: its frame was refused, with {why} of kernels.state.arrays."
+        ) from refused
 
 
 def _rested(before: WorldState, dt: float) -> WorldState:

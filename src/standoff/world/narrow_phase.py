@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.errors import StandoffError
 from standoff.kernels.entries import world as kernels
 from standoff.kernels.entries import world_answers
 from standoff.kernels.state import arrays as K
@@ -49,6 +48,10 @@ class Moment(NamedTuple):
     may_rest: bool
     minima: float
     workers: int
+
+
+class Refused(Exception):
+    """A frame of two pieces, by their numbers, that the kernel has refused, and its reason."""
 
 
 class Asked(NamedTuple):
@@ -109,6 +112,10 @@ def _answered(
     if not len(asking):
         return pages
     ints, known = table.ints[asking], table.known[asking]
+    if laws.integrates:
+        # one step over the frames that were left out is none of the law: it begins anew
+        late = (fates[asking] == W.MOVED) & (ints[:, W.I_FRAME] != moment.frame - 1)
+        fates[asking[late]] = W.NEW
     moved = fates[asking] == W.MOVED
     keeping = moved & (ints[:, W.I_INSIDE] != 0)
     asked = np.zeros((len(asking), 5), dtype=np.int64)
@@ -127,7 +134,7 @@ def _answered(
     steps = np.where(ints[:, W.I_FRAME] == moment.frame - 1, moment.dt, since)
     done = np.empty(len(asking), dtype=np.int64)
     twists = moment.twists, int(moment.has_twist)
-    read = laws[:], pieces[:], frame[:]
+    read = laws[:3], pieces[:], frame[:]
 
     def some_of(first: int, end: int) -> None:
         part = first, end
@@ -136,7 +143,7 @@ def _answered(
     in_parts(some_of, len(asking), moment.workers)
     if done.any():
         k = int(np.flatnonzero(done)[0])
-        raise StandoffError(f"A frame of pair {int(asking[k])} was refused: {int(done[k])}.")
+        raise Refused(int(ints[k, W.I_A]), int(ints[k, W.I_B]), int(done[k]))
     table.ints[asking, W.I_ROW] = rows
     return pages
 

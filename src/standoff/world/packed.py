@@ -16,6 +16,7 @@ from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.motion import Pose
 from standoff.tracking.law_options import Law
+from standoff.tracking.laws import PaperLaw
 from standoff.tracking.reached import reach
 from standoff.tracking.specialised import kinds_of, main_kind
 from standoff.world.compound import Compound, Piece
@@ -51,8 +52,8 @@ def pieces_of(body: Body | Compound) -> tuple[Piece, ...]:
     return (Piece(body, Pose.identity()),)
 
 
-def packed_pieces(bodies: Sequence[Sequence[Piece]]) -> PackedPieces:
-    """Of the pieces of all bodies."""
+def packed_pieces(bodies: Sequence[Sequence[Piece]], planar: bool = False) -> PackedPieces:
+    """Of the pieces of all bodies, of a planar world or of a spatial one."""
     counts = [len(pieces) for pieces in bodies]
     owners = np.repeat(np.arange(len(bodies)), counts)
     first = np.concatenate([[0], np.cumsum(counts), [max(counts)]]).astype(np.int64)
@@ -63,7 +64,7 @@ def packed_pieces(bodies: Sequence[Sequence[Piece]]) -> PackedPieces:
         if id(body) not in known:
             known[id(body)] = _facts(body)
         row[:] = known[id(body)]
-        _place(row, piece.pose)
+        _place(row, piece.pose, planar)
     planes = facts[:, W.F_PLANE].astype(np.int64)
     packed = PackedPieces(owners.astype(np.int64), first, planes, facts)
     for array in packed:
@@ -88,20 +89,33 @@ def _facts(body: Body) -> Array:
     return row
 
 
-def _place(row: Array, pose: Pose) -> None:
+def _place(row: Array, pose: Pose, planar: bool) -> None:
     row[W.F_ROTATION : W.F_SHIFT] = pose.rotation.ravel()
     row[W.F_SHIFT : W.F_PLACED] = pose.translation
     identity = np.array_equal(pose.rotation, np.eye(3)) and not pose.translation.any()
-    row[W.F_PLACED] = 0.0 if identity else 1.0
+    placed = W.LEVEL if planar else W.PLACED
+    row[W.F_PLACED] = 0.0 if identity else placed
 
 
 class PackedLaws(NamedTuple):
-    """What the frames of all pairs read: where the pieces' arrays lie, the class of each by the
-    kinds of its faces, and options with the addresses of frames for each pair of classes."""
+    """What the frames of all pairs read.
+
+    Attributes
+    ----------
+    addresses : (n, 4) array
+        Where each piece's arrays lie.
+    classes : (n,) array
+        The class of each piece, by the kinds of its faces.
+    options : (k, k, N_OPTIONS) array
+        Of each pair of classes, with the addresses of its frames.
+    integrates : bool
+        Is the law integrated from each frame to the next, so that none may be left out?
+    """
 
     addresses: Ints
     classes: Ints
     options: Array
+    integrates: bool
 
 
 def packed_laws(pieces: Sequence[Piece], law: Law, dt: float) -> PackedLaws:
@@ -125,8 +139,9 @@ def packed_laws(pieces: Sequence[Piece], law: Law, dt: float) -> PackedLaws:
         np.array([lies for lies, _ in rows], dtype=np.int64),
         np.array([number for _, number in rows], dtype=np.int64),
         options,
+        isinstance(law, PaperLaw),
     )
-    for array in found:
+    for array in found[:3]:
         array.flags.writeable = False
     return found
 

@@ -62,6 +62,7 @@ class PairAnswer(Proximity):
             Of a pair that is FAR; of the normal's and points' where a piece stands off its body's
             origin: ask ``gradient``.
         """
+        self._refuse_far()
         if self._arms.any():
             raise StandoffError(
                 "Derivatives beyond the gradient are those of single bodies: ask "

@@ -31,12 +31,28 @@ class PairRows(KeepsReadOnly):
         Of each near pair of bodies the row of its nearest pieces, by the bodies' numbers.
     """
 
-    __slots__ = ("_least", "model", "nearest", "state")
+    __slots__ = ("_keys", "_least", "_numbers", "model", "nearest", "state")
 
     def __init__(self, model: Model, state: WorldState) -> None:
         self.model, self.state = model, state
         self.nearest = _nearest(state, model.most)
+        self._keys: Ints | None = None
+        self._numbers: Ints | None = None
         self._least: tuple[Ints, Array] | None = None
+
+    @property
+    def keys(self) -> Ints:
+        """(m,) of all pairs in the state's table, sorted: contiguous, to be searched often."""
+        if self._keys is None:
+            self._keys = np.ascontiguousarray(self.state.ints[:, W.I_KEY])
+        return self._keys
+
+    @property
+    def numbers(self) -> Ints:
+        """The numbers of the near pairs of bodies, sorted."""
+        if self._numbers is None:
+            self._numbers = self.groups(self.nearest)
+        return self._numbers
 
     def groups(self, rows: Ints) -> Ints:
         """The numbers of the pairs of bodies in some rows."""
@@ -49,7 +65,7 @@ class PairRows(KeepsReadOnly):
         if self.model.most == 1 or not len(rows):
             return np.asarray(bounds[rows])
         if self._least is None:
-            groups = self.state.ints[:, W.I_KEY] // self.model.most**2
+            groups = self.keys // self.model.most**2
             first = np.flatnonzero(np.diff(groups, prepend=-1))
             self._least = groups[first], np.minimum.reduceat(bounds, first)
         numbers, least = self._least

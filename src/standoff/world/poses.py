@@ -11,9 +11,12 @@ from numpy.typing import NDArray
 from standoff.checks.names import did_you_mean
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
+from standoff.kernels.tolerances import FARTHEST, ROTATION
 from standoff.motion import Pose, Twist
-from standoff.tracking.inputs import check_in_plane, flat_twist, matrix_and_mark, out_of_plane
+from standoff.motion.rotations import defect, without_rounding
+from standoff.tracking.inputs import flat_twist, matrix_and_mark, out_of_plane
 from standoff.tracking.pose_arrays import flat_poses, mended, read_poses
+from standoff.world.tolerances import COMPOSED_ROUNDOFF
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -67,23 +70,30 @@ def read_poses_of(poses: Any, names: Sequence[str], planar: bool) -> GivenPoses:
     return GivenPoses(np.ascontiguousarray(matrices), repaired)
 
 
-def check_level(names: Sequence[str], matrices: Array, argument: str) -> None:
-    """Refuse poses that take a planar body out of z = 0; the name of the first is told.
+def check_level(names: Sequence[str], matrices: Any, argument: str) -> None:
+    """Refuse poses (n, 4, 4) that take a planar body out of z = 0; the name of the first is told.
+    What is no number is left for others to refuse.
 
     Raises
     ------
     StandoffError
     """
     flat = flat_poses(np.ascontiguousarray(matrices))
-    for k in np.flatnonzero(out_of_plane(flat))[:1]:
-        try:
-            check_in_plane(flat[k], flat[k])
-        except StandoffError as error:
-            raise StandoffError(f"{names[k]!r}: {error}", argument, matrices[k]) from error
+    out = out_of_plane(flat) & np.isfinite(flat).all(axis=1)
+    for k in np.flatnonzero(out)[:1]:
+        tilt = float(np.abs(flat[k, [2, 5, 6, 7]]).max())
+        over = ", turned over" if flat[k, 8] < 0.0 else ""
+        raise StandoffError(
+            f"The pose of {names[k]!r} is out of the plane z = 0 (tilt {tilt:.3g}, z = "
+            f"{flat[k, 11]:.6g}{over}): planar bodies turn about z and move in x and y.",
+            argument,
+            matrices[k],
+        )
 
 
 def mend_poses(given: GivenPoses, names: Sequence[str]) -> GivenPoses:
-    """Poses that the kernel has refused, repaired where they are only rounded.
+    """Poses that the kernel has refused, repaired where they are only rounded, or so far off that
+    one that is composed with a placement is off by more than is let pass.
 
     Raises
     ------
@@ -92,13 +102,25 @@ def mend_poses(given: GivenPoses, names: Sequence[str]) -> GivenPoses:
     """
     found = mended(given.matrices)
     for k in np.flatnonzero(found.refused)[:1]:
-        told = f"The pose of {names[k]!r} is none"
         try:
             Pose.of(given.matrices[k])
         except StandoffError as error:
-            raise StandoffError(f"{told}: {error}", "poses", given.matrices[k]) from error
-        raise StandoffError(f"{told}.", "poses", given.matrices[k])
-    return GivenPoses(found.matrices, given.repaired + int(found.repaired.sum()))
+            told = f"The pose of {names[k]!r} is not one: {error}"
+            raise StandoffError(told, "poses", given.matrices[k]) from error
+        raise refused_pose(names[k])
+    turns = found.matrices[:, :3, :3]
+    doubtful = defect(turns.transpose(0, 2, 1)) > ROTATION - COMPOSED_ROUNDOFF
+    turns[doubtful] = without_rounding(turns[doubtful])
+    repaired = found.repaired | doubtful
+    return GivenPoses(found.matrices, given.repaired + int(repaired.sum()))
+
+
+def refused_pose(name: str) -> StandoffError:
+    """What to raise of a pose that only the kernel refuses."""
+    return StandoffError(
+        f"The pose of {name!r} puts it, or one of its pieces, farther out than {FARTHEST:g}.",
+        "poses",
+    )
 
 
 def check_names(given: Mapping[str, Any], names: Sequence[str], argument: str) -> None:
@@ -110,7 +132,9 @@ def check_names(given: Mapping[str, Any], names: Sequence[str], argument: str) -
     """
     for name in names:
         if name not in given:
-            raise StandoffError(f"{argument} has none of {name!r}: give one of each.", argument)
+            raise StandoffError(
+                f"{argument} has none of {name!r}: give one of each body that moves.", argument
+            )
     known = set(names) if len(given) != len(names) else given
     for name in given:
         if name not in known:
@@ -159,9 +183,13 @@ def read_twists_of(
             )
         _check_count(len(array), names)
         found[rows, :6] = array
-    for k in np.flatnonzero(~np.isfinite(found[rows, :6]).all(axis=1))[:1]:
+    # the twist of a piece is that of its body and its turn times the piece's arm: below this the
+    # sum is finite
+    sound = np.abs(found[rows, :6]) < FARTHEST
+    for k in np.flatnonzero(~sound.all(axis=1))[:1]:
         raise StandoffError(
-            f"The twist of {names[k]!r} has a NaN or infinite number: {found[rows[k], :6]}.",
+            f"The twist of {names[k]!r} has a number that is NaN, infinite or too large: "
+            f"{found[rows[k], :6]}.",
             "twists",
             found[rows[k], :6],
         )

@@ -15,8 +15,11 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.world.compound import Piece, name_of
 
+Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Pairs = Iterable[tuple[str, str]]
+Sides = tuple[Ints, Ints]
+"""The bodies on each side of a rule."""
 
 
 class Rules(NamedTuple):
@@ -30,8 +33,10 @@ class Rules(NamedTuple):
         1 where two kinds meet.
     left_out : (m,) array
         i n + j of pairs i < j of bodies that do not count, sorted.
+    kind_margins : (k, k) array
+        The margins that were given by group, length; 0 where there is none.
     margin_pairs : (m,) array
-        i n + j of pairs with a margin of their own, sorted.
+        i n + j of pairs of two bodies with a margin of their own, sorted.
     margins : (m,) array
         These, length.
     """
@@ -39,8 +44,9 @@ class Rules(NamedTuple):
     kinds: Ints
     meets: Ints
     left_out: Ints
+    kind_margins: Array
     margin_pairs: Ints
-    margins: NDArray[np.float64]
+    margins: Array
 
     def counts(self, i: int, j: int) -> bool:
         """Does a pair of bodies count?"""
@@ -50,13 +56,34 @@ class Rules(NamedTuple):
         at = int(np.searchsorted(self.left_out, key))
         return not (at < len(self.left_out) and self.left_out[at] == key)
 
+    def partners(self, i: int) -> Ints:
+        """The bodies of greater number with which body i is a pair."""
+        n = len(self.kinds)
+        others = np.arange(i + 1, n)
+        others = others[self.meets[self.kinds[i], self.kinds[i + 1 :]] != 0]
+        first, end = np.searchsorted(self.left_out, [i * n, (i + 1) * n])
+        return np.setdiff1d(others, self.left_out[first:end] - i * n, assume_unique=True)
+
+    @property
+    def greatest_margin(self) -> float:
+        """Of all pairs, length; 0 without margins."""
+        return max(float(self.kind_margins.max()), float(self.margins.max(initial=0.0)))
+
+    def margins_of(self, numbers: Ints) -> Array:
+        """The margins of pairs i n + j of bodies i < j, 0 where a pair has none; of several the
+        greatest."""
+        i, j = np.divmod(numbers, len(self.kinds))
+        found: Array = self.kind_margins[self.kinds[i], self.kinds[j]]
+        if len(self.margin_pairs):
+            at = np.minimum(np.searchsorted(self.margin_pairs, numbers), len(self.margins) - 1)
+            own = np.where(self.margin_pairs[at] == numbers, self.margins[at], 0.0)
+            found = np.maximum(found, own)
+        return found
+
     def margin(self, i: int, j: int) -> float:
-        """The margin of a pair, 0 where it has none of its own."""
-        key = min(i, j) * len(self.kinds) + max(i, j)
-        at = int(np.searchsorted(self.margin_pairs, key))
-        if at < len(self.margin_pairs) and self.margin_pairs[at] == key:
-            return float(self.margins[at])
-        return 0.0
+        """The margin of a pair, 0 where it has none."""
+        number = min(i, j) * len(self.kinds) + max(i, j)
+        return float(self.margins_of(np.array([number]))[0])
 
 
 class Given(NamedTuple):
@@ -134,15 +161,13 @@ def packed_rules(names: Names, fixed: NDArray[np.bool_], given: Given) -> Rules:
     """The rules of a world's pairs; two fixed bodies are never a pair."""
     n = len(names.bodies)
     single: list[Ints] = []
-    groups: list[tuple[Any, Any]] = []
+    groups: list[Sides] = []
     for pair in given.ignore:
-        a, b = names.pair(pair, "ignore")
-        if a in names.groups or b in names.groups:
-            groups.append((names.members(a, "ignore"), names.members(b, "ignore")))
+        a, b = sides = _sides(names, pair, "ignore")
+        if len(a) == len(b) == 1:
+            single.append(_keys(a, b, n))
         else:
-            single.append(_keys(names.members(a, "ignore"), names.members(b, "ignore"), n))
-            if len(single[-1]) == 0:
-                raise StandoffError(f"ignore has {a!r} with itself.", "ignore", pair)
+            groups.append(sides)
     for child, parent in given.parents.items():
         i, j = names.body(child, "parents"), names.body(parent, "parents")
         if i == j:
@@ -150,11 +175,37 @@ def packed_rules(names: Names, fixed: NDArray[np.bool_], given: Given) -> Rules:
         single.append(_keys(np.array([i]), np.array([j]), n))
     wanted = None
     if given.only is not None:
-        pairs = [names.pair(pair, "only") for pair in given.only]
-        wanted = [(names.members(a, "only"), names.members(b, "only")) for a, b in pairs]
-    kinds, meets = _kinds(n, fixed, groups, wanted)
+        wanted = [_sides(names, pair, "only") for pair in given.only]
+    own, of_groups = _margins(names, given.margins, n)
+    kinds = _Kinds(n, fixed, [*groups, *(wanted or []), *(sides for sides, _ in of_groups)])
     left_out = np.unique(np.concatenate(single)) if single else np.zeros(0, dtype=np.int64)
-    return Rules(kinds, meets, left_out, *_margins(names, given.margins, n))
+    keys = sorted(own)
+    rules = Rules(
+        kinds.kinds,
+        kinds.meets(groups, wanted),
+        left_out,
+        kinds.margins(of_groups),
+        np.array(keys, dtype=np.int64),
+        np.array([own[key] for key in keys], dtype=float),
+    )
+    for array in rules:
+        array.flags.writeable = False
+    return rules
+
+
+def _sides(names: Names, pair: Any, argument: str) -> Sides:
+    """The bodies on both sides of a rule.
+
+    Raises
+    ------
+    StandoffError
+        A name that nobody has, or a body with itself, which is no pair.
+    """
+    a, b = names.pair(pair, argument)
+    sides = names.members(a, argument), names.members(b, argument)
+    if a == b and a in names.bodies:
+        raise StandoffError(f"{argument} has {a!r} with itself.", argument, pair)
+    return sides
 
 
 def _keys(a: Ints, b: Ints, n: int) -> Ints:
@@ -164,43 +215,73 @@ def _keys(a: Ints, b: Ints, n: int) -> Ints:
     return keys
 
 
-def _kinds(
-    n: int,
-    fixed: NDArray[np.bool_],
-    apart: list[tuple[Ints, Ints]],
-    wanted: list[tuple[Ints, Ints]] | None,
-) -> tuple[Ints, Ints]:
-    """The kinds of bodies that rules by group tell apart, and which of them meet."""
-    sides = [side for pair in [*apart, *(wanted or [])] for side in pair]
-    marks = np.zeros((n, 1 + len(sides)), dtype=bool)
-    marks[:, 0] = fixed
-    for k, side in enumerate(sides, 1):
-        marks[side, k] = True
-    rows, kinds = np.unique(marks, axis=0, return_inverse=True)
-    of_pair = np.arange(1, 1 + len(sides)).reshape(-1, 2)
-    meets = ~np.outer(rows[:, 0], rows[:, 0])
-    for a, b in of_pair[: len(apart)]:
-        meets &= ~(np.outer(rows[:, a], rows[:, b]) | np.outer(rows[:, b], rows[:, a]))
-    if wanted is not None:
-        some = np.zeros_like(meets)
-        for a, b in of_pair[len(apart) :]:
-            some |= np.outer(rows[:, a], rows[:, b]) | np.outer(rows[:, b], rows[:, a])
-        meets &= some
-    return kinds.reshape(-1).astype(np.int64), meets.astype(np.int64)
+class _Kinds:
+    """The kinds of bodies that rules by group tell apart: what holds of a pair of groups stands in
+    a table of kinds, however many bodies are in them.
+
+    Attributes
+    ----------
+    kinds : (n,) array
+        Of each body.
+    """
+
+    def __init__(self, n: int, fixed: NDArray[np.bool_], rules: Iterable[Sides]) -> None:
+        columns: dict[bytes, int] = {}
+        sides = [side for pair in rules for side in pair]
+        for side in sides:
+            columns.setdefault(side.tobytes(), 1 + len(columns))
+        marks = np.zeros((n, 1 + len(columns)), dtype=bool)
+        marks[:, 0] = fixed
+        for side in sides:
+            marks[side, columns[side.tobytes()]] = True
+        self._rows, kinds = np.unique(marks, axis=0, return_inverse=True)
+        self._columns = columns
+        self.kinds: Ints = kinds.reshape(-1).astype(np.int64)
+
+    def _of(self, sides: Sides) -> tuple[Any, Any]:
+        """Where a rule stands in a table of kinds: its one order, and the other."""
+        a, b = (np.flatnonzero(self._rows[:, self._columns[x.tobytes()]]) for x in sides)
+        return np.ix_(a, b), np.ix_(b, a)
+
+    def meets(self, apart: Iterable[Sides], wanted: Iterable[Sides] | None) -> Ints:
+        """1 where two kinds meet: not both fixed, not `apart`, and `wanted` if that is given."""
+        still = self._rows[:, 0]
+        found = ~np.outer(still, still)
+        if wanted is not None:
+            some = np.zeros_like(found)
+            for sides in wanted:
+                for where in self._of(sides):
+                    some[where] = True
+            found &= some
+        for sides in apart:
+            for where in self._of(sides):
+                found[where] = False
+        return found.astype(np.int64)
+
+    def margins(self, given: Iterable[tuple[Sides, float]]) -> Array:
+        """The greatest margin of each two kinds."""
+        found = np.zeros((len(self._rows), len(self._rows)))
+        for sides, margin in given:
+            for where in self._of(sides):
+                found[where] = np.maximum(found[where], margin)
+        return found
 
 
 def _margins(
     names: Names, given: Mapping[tuple[str, str], float], n: int
-) -> tuple[Ints, NDArray[np.float64]]:
-    """Pairs with a margin and the margins; of several for one pair the greatest."""
-    found: dict[int, float] = {}
+) -> tuple[dict[int, float], list[tuple[Sides, float]]]:
+    """Margins of two bodies, by i n + j; and those of groups."""
+    own: dict[int, float] = {}
+    groups: list[tuple[Sides, float]] = []
     for pair, value in given.items():
-        a, b = names.pair(pair, "margins")
-        margin = not_negative(value, f"margins[{a!r}, {b!r}]")
-        for key in _keys(names.members(a, "margins"), names.members(b, "margins"), n).tolist():
-            found[key] = max(margin, found.get(key, 0.0))
-    keys = sorted(found)
-    return np.array(keys, dtype=np.int64), np.array([found[key] for key in keys], dtype=float)
+        a, b = sides = _sides(names, pair, "margins")
+        margin = not_negative(value, f"margins[{pair[0]!r}, {pair[1]!r}]")
+        if len(a) == len(b) == 1:
+            for key in _keys(a, b, n).tolist():
+                own[key] = max(margin, own.get(key, 0.0))
+        else:
+            groups.append((sides, margin))
+    return own, groups
 
 
 def check_half_spaces(

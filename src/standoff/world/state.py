@@ -103,8 +103,8 @@ class WorldState(KeepsReadOnly):
         for name in self.__slots__:
             if name != "key":
                 setattr(self, name, parts[name])
-        own = self.poses, self.placed, self.ints, self.known, self.near, self.tree.boxes
-        for array in (*own, *self.pages):
+        own = self.poses, self.placed, self.ints, self.known, self.near
+        for array in (*own, self.tree.boxes, *self.tree.arrays, *self.pages):
             array.flags.writeable = False
 
     key: str

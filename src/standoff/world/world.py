@@ -5,13 +5,12 @@ from __future__ import annotations
 import itertools
 import math
 import uuid
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Sized
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
 from standoff.checks.numbers import not_negative, positive, whole_number
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
@@ -19,14 +18,22 @@ from standoff.motion import Pose, PoseLike
 from standoff.motion.moving import MotionLike
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
-from standoff.tracking.inputs import matrix_and_mark
 from standoff.tracking.law_options import Law
-from standoff.tracking.laws import DEFAULT_LAW, checked_law
+from standoff.tracking.laws import DEFAULT_LAW
 from standoff.wording import counted
 from standoff.world.answer import WorldAnswer
 from standoff.world.broad_phase import Search
-from standoff.world.compound import Compound, dimension_of, name_of
+from standoff.world.compound import check_in_plane, dimension_of
 from standoff.world.frame import next_state, started_state
+from standoff.world.given import (
+    BodyLike,
+    checked_bodies,
+    fixed_poses_of,
+    law_of_pairs,
+    mapping_of,
+    named_pieces,
+    pairs_of,
+)
 from standoff.world.impact import WorldImpact, first_impact, pairs_that_count
 from standoff.world.model import Model
 from standoff.world.packed import packed_laws, packed_pieces, pieces_of
@@ -35,7 +42,6 @@ from standoff.world.rules import Given, Names, check_half_spaces, packed_rules
 from standoff.world.state import WorldState
 
 Array = NDArray[np.float64]
-BodyLike = Body | Compound
 PosesLike = Any
 """World poses of the moving bodies: (n, 4, 4) in the world's order, a list of poses, or a mapping
 of names to poses."""
@@ -67,7 +73,8 @@ class World(KeepsReadOnly):
     parents : mapping of str to str, optional
         The parent of each child: the two are no pair, as of links at one joint.
     margins : mapping of (str, str) to float, optional
-        The clearance that a pair must keep, length; its horizon is at least that.
+        The clearance that a pair must keep, length; its horizon is at least that. Of several for
+        one pair the greatest holds.
     minima : float, optional
         Of bodies of several pieces, all local minima below this distance are kept, length; the
         nearest alone if not given.
@@ -88,8 +95,9 @@ class World(KeepsReadOnly):
     TypeError
         Not a body, a name that is no string, not a law.
     ValueError
-        A name that nobody has, planar bodies among spatial ones, a group of nobody, two half-spaces
-        that would be a pair, a number that is negative or NaN.
+        A name that nobody has, planar bodies among spatial ones or out of z = 0, a group of nobody,
+        a body in a pair with itself, two half-spaces that would be a pair, a number that is
+        negative or NaN, a law with a horizon of its own.
     """
 
     def __init__(  # noqa: PLR0913 - all but one are keywords with defaults
@@ -107,16 +115,17 @@ class World(KeepsReadOnly):
         law: Law = DEFAULT_LAW,
         dt: float = 1e-3,
     ) -> None:
-        self.bodies = _checked_bodies(bodies)
+        self.bodies = checked_bodies(bodies)
         self.within = math.inf if within is None else positive(within, "within", infinite=True)
-        self.dt, self.law = positive(dt, "dt"), checked_law(law)
-        self._fixed = dict(fixed or {})
+        self.dt, self.law = positive(dt, "dt"), law_of_pairs(law)
+        self._resolved = self.law.resolved(self.dt)
+        self._fixed = mapping_of(fixed, "fixed", "poses")
         self._given = Given(
-            dict(groups or {}),
-            tuple(ignore),
-            None if only is None else tuple(only),
-            dict(parents or {}),
-            dict(margins or {}),
+            mapping_of(groups, "groups", "lists of names"),
+            pairs_of(ignore, "ignore"),
+            None if only is None else pairs_of(only, "only"),
+            mapping_of(parents, "parents", "names, of each child to its parent"),
+            mapping_of(margins, "margins", "lengths, of pairs of names"),
         )
         least = -math.inf if minima is None else not_negative(minima, "minima")
         self.model = self._made(least)
@@ -128,14 +137,15 @@ class World(KeepsReadOnly):
         for name in self._fixed:
             still[names.body(name, "fixed")] = True
         rules = packed_rules(names, still, self._given)
-        planar = dimension_of(_by_piece(self.bodies)) == 2
+        planar = dimension_of({n: x.body for n, x in named_pieces(self.bodies).items()}) == 2
         pieces = [pieces_of(body) for body in self.bodies.values()]
         fixed = tuple(name for name in self.bodies if name in self._fixed)
-        poses = _fixed_poses(fixed, self._fixed)
+        poses = fixed_poses_of(fixed, self._fixed)
         if planar:
             check_level(fixed, poses, "fixed")
+            check_in_plane(named_pieces(self.bodies))
         check_half_spaces(list(self.bodies), pieces, rules)
-        reach = max([self.within, *rules.margins.tolist()])
+        reach = max(self.within, rules.greatest_margin)
         return Model(
             key=uuid.uuid4().hex,
             listed=tuple(self.bodies.items()),
@@ -147,7 +157,7 @@ class World(KeepsReadOnly):
             poses_of_fixed=poses,
             planar=planar,
             minima=minima,
-            search=Search(packed_pieces(pieces), rules, self.within, reach),
+            search=Search(packed_pieces(pieces, planar), rules, self.within, reach),
             laws=packed_laws([piece for each in pieces for piece in each], self.law, self.dt),
         )
 
@@ -241,12 +251,12 @@ class World(KeepsReadOnly):
         Raises
         ------
         TypeError, ValueError
-            As ``start``; a state of another world.
+            As ``start``; a state of another world, a time that is too long for the law.
         """
         self.check_state(state)
         workers = whole_number(workers, "workers")
         given = self._read(poses)
-        h = self.dt if dt is None else positive(dt, "dt")
+        h = self.dt if dt is None else self._frame_time(dt)
         after = next_state(self.model, state, given, self._twists(twists, given), h, workers)
         return after, WorldAnswer(self.model, after)
 
@@ -263,7 +273,19 @@ class World(KeepsReadOnly):
         Returns
         -------
         (WorldState, list of WorldAnswer)
+
+        Raises
+        ------
+        TypeError, ValueError
+            As ``step``, with the number of the frame; twists of another number of frames.
         """
+        sized = isinstance(poses, Sized) and isinstance(twists, Sized)
+        if sized and len(twists) != len(poses):
+            raise StandoffError(
+                f"twists are of {len(twists)} frames and poses of {len(poses)}: give as many.",
+                "twists",
+                twists,
+            )
         answers = []
         each = itertools.repeat(None) if twists is None else twists
         for k, (frame, velocities) in enumerate(zip(poses, each, strict=twists is not None)):
@@ -287,10 +309,11 @@ class World(KeepsReadOnly):
     def time_of_impact(
         self, paths: Mapping[str, MotionLike], duration: float, **options: Any
     ) -> WorldImpact:
-        """The first time at which any pair comes to a clearance: never later than the true one.
+        """The first time at which any pair comes to its clearance: never later than the true one.
 
-        Each pair that counts is searched by itself, up to the earliest time found so far; margins
-        take no part.
+        A pair's clearance is the one that is given, or its margin where that is more. Pairs whose
+        boxes never come so near are left out; each of the others is searched by itself, up to the
+        earliest time found so far.
 
         Parameters
         ----------
@@ -328,6 +351,12 @@ class World(KeepsReadOnly):
                 "The state belongs to another world: begin with world.start.", "state", state
             )
 
+    def _frame_time(self, dt: float) -> float:
+        """A frame's own time, s: positive, and short enough for the law to be stable."""
+        dt = positive(dt, "dt")
+        self._resolved.check_step(dt)
+        return dt
+
     def _read(self, poses: Any) -> GivenPoses:
         given = read_poses_of(poses, self.moving, self.model.planar)
         return given._replace(matrices=self.model.all_poses(given.matrices))
@@ -348,48 +377,3 @@ def _restored(given: Mapping[str, Any], key: str) -> World:
     world = World(**given)
     world.model = world.model._replace(key=key)
     return world
-
-
-def _checked_bodies(bodies: Any) -> dict[str, BodyLike]:
-    """Bodies by name.
-
-    Raises
-    ------
-    StandoffTypeError
-    """
-    if not isinstance(bodies, Mapping) or not bodies:
-        raise StandoffTypeError(
-            f"bodies = {shown(bodies)}: give a mapping of names to bodies, at least one.",
-            "bodies",
-            bodies,
-        )
-    for name, body in bodies.items():
-        if not isinstance(body, Body | Compound):
-            raise StandoffTypeError(
-                f"The body {name_of(name)!r} is {shown(body)}: give a Body or a Compound.",
-                "bodies",
-                body,
-            )
-        name_of(name)
-    return dict(bodies)
-
-
-def _by_piece(bodies: Mapping[str, BodyLike]) -> dict[str, Body]:
-    """All pieces, by the names of bodies and pieces."""
-    found: dict[str, Body] = {}
-    for name, body in bodies.items():
-        if isinstance(body, Compound):
-            found |= {f"{name}.{part}": piece.body for part, piece in body.pieces.items()}
-        else:
-            found[name] = body
-    return found
-
-
-def _fixed_poses(names: Sequence[str], given: Mapping[str, PoseLike]) -> Array:
-    poses = np.empty((len(names), 4, 4))
-    for k, name in enumerate(names):
-        try:
-            poses[k] = matrix_and_mark(Pose.of(given[name]))[0]
-        except StandoffError as error:
-            raise type(error)(f"fixed[{name!r}]: {error}", "fixed", given[name]) from error
-    return poses

@@ -22,10 +22,8 @@ from standoff.kernels.compiler.entry import (
     ROWS,
     WRITE_INTS,
 )
-from standoff.kernels.world.arrays import (
-    N_FACT,
-    N_PLACED,
-)
+from standoff.kernels.state.arrays import is_pose
+from standoff.kernels.world.arrays import F_PLACED, N_FACT, N_PLACED
 from standoff.kernels.world.filter import Filter, counts
 from standoff.kernels.world.pairs import (
     Pairs,
@@ -62,8 +60,9 @@ PLACED = types.Tuple((ROWS, WRITE_INTS, WRITE_INTS))
 RULES = types.Tuple((INTS, READ_INTS_2, INTS))
 # Margins: numbers of pairs of bodies, and their margins.
 MARGINS = types.Tuple((INTS, READ))
-# The tree: nodes, order, leaf.
-TREE = types.Tuple((ROWS, WRITE_INTS, WRITE_INTS))
+# The tree: nodes, order, leaf; and one of a state.
+TREE = types.Tuple((ROWS, INTS, INTS))
+OLD_TREE = types.Tuple((READ_2, INTS, INTS))
 # A table of pairs, and one of a state.
 PAIRS = types.Tuple((ROWS_OF_INTS, ROWS))
 OLD_PAIRS = types.Tuple((READ_INTS_2, READ_2))
@@ -120,7 +119,7 @@ def place(fixed, poses, boxes, before, frame):
 
     Fills in the rows of `frame` from those `before`, marks the pieces that have left their padded
     boxes, and those that are still. Returns (-1, how many have left, how many are still), or the
-    first body whose pose is none.
+    first body whose pose is none, or makes none of a piece's.
     """
     _, first, planes, facts = fixed
     placed, searched, still = frame
@@ -133,6 +132,9 @@ def place(fixed, poses, boxes, before, frame):
             row = pointer(placed, N_PLACED * p)
             fact, last = pointer(facts, N_FACT * p), pointer(before, N_PLACED * p)
             rests = put_piece(flat, fact, last, row)
+            # a pose that is only just let pass may be none where it is composed with a placement
+            if fact[F_PLACED] != 0.0 and not rests and not is_pose(row):
+                return body, 0, 0
             left = planes[p] == 0 and not rests and not in_box(row, pointer(boxes, N_BOX * p))
             still[p], searched[p] = 1 if rests else 0, 1 if left else 0
             n_still += still[p]
@@ -176,7 +178,7 @@ def pad(fixed, frame, boxes, ways, tree, n_filled):
     return 0
 
 
-@entry(PIECES, PLACED, READ_2, TREE, INT, RULES, REAL, ROWS_OF_INTS, work="world")
+@entry(PIECES, PLACED, READ_2, OLD_TREE, INT, RULES, REAL, ROWS_OF_INTS, work="world")
 def seek(fixed, frame, boxes, tree, n_filled, rules, reach, found):
     """Pairs of the pieces that are searched for with all whose padded boxes come within `reach`.
 

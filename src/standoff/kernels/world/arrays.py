@@ -7,7 +7,7 @@ of one body have consecutive numbers.
 # What is known of a piece, once for all: reals.
 F_ROTATION = 0  # placement in the body's frame: R (9, row-major), p (3)
 F_SHIFT = 9
-F_PLACED = 12  # 1 where the placement is not the identity
+F_PLACED = 12  # 0 where the placement is the identity; else PLACED, or LEVEL in a planar world
 F_CENTRE = 13  # of the box around the core, piece's frame
 F_HALF = 16  # half its sides; 0 for a half-space
 F_RADIUS = 19  # swept radius and slack, length
@@ -17,6 +17,8 @@ F_NORMAL = 22  # its outward normal, piece's frame
 F_OFFSET = 25  # along it
 F_PLANAR = 26  # 1 for a planar body: it overlaps another in the plane alone
 N_FACT = 27
+
+PLACED, LEVEL = 1.0, 2.0
 
 # Where a piece is in one frame: reals.
 P_ROTATION = 0  # world pose: R (9, row-major), p (3)

@@ -19,6 +19,7 @@ from standoff.kernels.world.arrays import (
     F_REACH,
     F_ROTATION,
     F_SHIFT,
+    LEVEL,
     N_PLACED,
     P_CENTRE,
     P_HIGH,
@@ -58,6 +59,11 @@ def put_pose(body, fact, row):
             row[P_ROTATION + 3 * i + j] = total
             shift += body[3 * i + j] * fact[F_SHIFT + j]
         row[P_SHIFT + i] = shift
+    if fact[F_PLACED] == LEVEL:
+        # the tilt that is let pass in a planar pose times the placement would be out of plane
+        row[P_ROTATION + 2], row[P_ROTATION + 5] = 0.0, 0.0
+        row[P_ROTATION + 6], row[P_ROTATION + 7] = 0.0, 0.0
+        row[P_SHIFT + 2] = 0.0
 
 
 @kernel

@@ -1,0 +1,121 @@
+"""What a user makes a world of, checked: bodies, rules, fixed poses, the law."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.checks.real_numbers import shown
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.motion import Pose, PoseLike
+from standoff.tracking.inputs import matrix_and_mark
+from standoff.tracking.law_options import Law
+from standoff.tracking.laws import checked_law
+from standoff.world.compound import Compound, Piece, name_of
+from standoff.world.poses import GivenPoses, mend_poses
+
+Array = NDArray[np.float64]
+BodyLike = Body | Compound
+
+
+def law_of_pairs(law: Any) -> Law:
+    """The law by which pairs are tracked.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Not a law; one with a horizon of its own.
+    """
+    found: Law = checked_law(law)
+    if found.within is not None:
+        raise StandoffError(
+            f"The law has within={found.within:g}: give the horizon to the world, "
+            f"so.World(..., within={found.within:g}).",
+            "law",
+            law,
+        )
+    return found
+
+
+def mapping_of(given: Any, argument: str, values: str) -> dict[Any, Any]:
+    """A mapping that may be left out.
+
+    Raises
+    ------
+    StandoffTypeError
+    """
+    if given is None or isinstance(given, Mapping):
+        return dict(given or {})
+    raise StandoffTypeError(
+        f"{argument} = {shown(given)}: give a mapping to {values}.", argument, given
+    )
+
+
+def pairs_of(given: Any, argument: str) -> tuple[Any, ...]:
+    """Pairs of names, as a tuple.
+
+    Raises
+    ------
+    StandoffTypeError
+    """
+    if isinstance(given, str | Mapping) or not isinstance(given, Iterable):
+        raise StandoffTypeError(
+            f"{argument} = {shown(given)}: give a list of pairs of names.", argument, given
+        )
+    return tuple(given)
+
+
+def checked_bodies(bodies: Any) -> dict[str, BodyLike]:
+    """Bodies by name.
+
+    Raises
+    ------
+    StandoffTypeError
+    """
+    if not isinstance(bodies, Mapping) or not bodies:
+        raise StandoffTypeError(
+            f"bodies = {shown(bodies)}: give a mapping of names to bodies, at least one.",
+            "bodies",
+            bodies,
+        )
+    for name, body in bodies.items():
+        if not isinstance(body, Body | Compound):
+            raise StandoffTypeError(
+                f"The body {name_of(name)!r} is {shown(body)}: give a Body or a Compound.",
+                "bodies",
+                body,
+            )
+        name_of(name)
+    return dict(bodies)
+
+
+def named_pieces(bodies: Mapping[str, BodyLike]) -> dict[str, Piece]:
+    """All pieces, by the names of bodies and pieces."""
+    found: dict[str, Piece] = {}
+    for name, body in bodies.items():
+        if isinstance(body, Compound):
+            found |= {f"{name}.{part}": piece for part, piece in body.pieces.items()}
+        else:
+            found[name] = Piece(body, Pose.identity())
+    return found
+
+
+def fixed_poses_of(names: Sequence[str], given: Mapping[str, PoseLike]) -> Array:
+    """World poses (n, 4, 4) of the fixed bodies, as every frame reads them.
+
+    Raises
+    ------
+    StandoffError
+        No pose; the body's name is told.
+    """
+    poses = np.empty((len(names), 4, 4))
+    for k, name in enumerate(names):
+        try:
+            poses[k] = matrix_and_mark(Pose.of(given[name]))[0]
+        except StandoffError as error:
+            raise type(error)(f"fixed[{name!r}]: {error}", "fixed", given[name]) from error
+    return mend_poses(GivenPoses(poses, 0), names).matrices
