@@ -31,6 +31,7 @@ from standoff.simulation.device_loop import (
     write,
 )
 from standoff.simulation.device_readings import DeviceReadings
+from standoff.simulation.near_pairs import near_rows
 from standoff.simulation.packed_system import driven_table, pack_system
 from standoff.simulation.pair_laws import (
     Laws,
@@ -134,7 +135,8 @@ class Operator(KeepsReadOnly):
         inside = self.tracker == "inside"
         options = packed_laws(self.system, self.laws, self.dt, inside)
         kept = keeps_polytopes(self.laws)
-        self.packed = pack_system(self.system, self.dt, number, inside, options, kept)
+        near = None if inside else near_rows(self.system, self.laws)
+        self.packed = pack_system(self.system, self.dt, number, inside, options, kept, near)
         self.ticks_a_reading = int(self.packed[0][K.I_READING])
         prepare_simulation()
 

@@ -11,6 +11,7 @@ from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
 from standoff.recording.tolerances import WHOLE_STEPS
 from standoff.simulation.flat_parts import pack_flat_parts
+from standoff.simulation.near_pairs import NearRows
 from standoff.simulation.rigid_body import DRIVEN, FREE, RigidBody
 from standoff.simulation.system import System
 from standoff.simulation.system_state import state_length
@@ -20,15 +21,23 @@ KINDS = {"free": K.FREE, "fixed": K.FIXED, "driven": K.DRIVEN}
 
 
 def pack_system(
-    system: System, dt: float, method: int, inside: bool, options: Array, kept: bool = False
+    system: System,
+    dt: float,
+    method: int,
+    inside: bool,
+    options: Array,
+    kept: bool = False,
+    near: NearRows | None = None,
 ) -> Any:
     """(layout, numbers, ints, reals, options), all read-only.
 
-    `options` are those of all pairs; with `kept`, polytopes stand at the end of a state.
+    `options` are those of all pairs; with `kept`, polytopes stand at the end of a state; with
+    `near`, ticks search for near pairs.
     """
     tool = -1 if system.tool is None else system.tool
     polytopes = state_length(system) if kept else 0
     layout = [len(system.bodies), len(system.pairs), method, int(inside), tool, 0, 1, polytopes]
+    layout += [0, 0]  # of the search for near pairs
     numbers = [*system.gravity, dt]
     ints = [body.body.ints for body in system.bodies]
     reals = [body.body.reals for body in system.bodies]
@@ -55,8 +64,13 @@ def pack_system(
     if system.coupler is not None:
         layout[K.I_COUPLER], layout[K.I_READING] = len(numbers), ticks_a_reading(system, dt)
         numbers += system.coupler.packed.tolist()
+    layout += flat_rows
+    if near is not None:
+        layout[K.I_NEAR], layout[K.I_NEAR_NUMBERS] = len(layout), len(numbers)
+        layout += near.ints
+        numbers += near.numbers
     packed = (
-        np.array(layout + flat_rows, dtype=np.int64),
+        np.array(layout, dtype=np.int64),
         np.array(numbers),
         np.concatenate(ints),
         np.concatenate(reals),

@@ -67,3 +67,8 @@ found."""
 CHART_SERIES: Final = 1e-3
 """Radians, half the angle of a chart: below it two terms of the series for J_r⁻¹ miss it by less
 than 1e-12 of a third-order term, and the closed form loses digits."""
+
+BALL_SLACK: Final = 1e-6
+"""Relative, of the radius of a ball and of the horizon: how much greater the search for near pairs
+takes them, so that the bound of a pair that it leaves out exceeds the horizon although a rotation
+may miss being orthonormal by 1e-9 (``kernels.tolerances.ROTATION``) and lengths are rounded."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from standoff.kernels.entries import world as kernels
 from standoff.kernels.world import arrays as W
-from standoff.kernels.world.tree import N_BOX
+from standoff.kernels.world.tree import MOST_REFITS, N_BOX, SOUGHT_PART
 from standoff.world.packed import PackedPieces
 from standoff.world.rules import Rules
 from standoff.world.state import Tree
@@ -23,10 +23,6 @@ from standoff.world.state import Tree
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SOUGHT_PART = 0.25
-"""Of the pieces: where more leave their boxes at once, the tree's leaves are put in order anew."""
-MOST_REFITS = 200
-"""Frames after which they are in any case: a tree that is only refitted grows loose."""
 FIRST_ROOM = 1024
 """Pairs that a search has room for at first."""
 

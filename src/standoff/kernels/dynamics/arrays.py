@@ -20,9 +20,11 @@ FREE, FIXED, DRIVEN = range(3)
 
 # Integers of a system: header, a row a body, a row a pair, then the flat parts of the bodies. Of a
 # coupler: the number of the tool, -1 without one; where its numbers stand; ticks a reading. And
-# where the pairs' kept polytopes stand in the state, 0 where none are kept.
+# where the pairs' kept polytopes stand in the state, 0 where none are kept; where what the search
+# for near pairs reads stands in these integers, 0 without one, and in the numbers.
 I_BODIES, I_PAIRS, I_METHOD, I_INSIDE, I_TOOL, I_COUPLER, I_READING, I_POLYTOPES = range(8)
-INT_HEADER = 8
+I_NEAR, I_NEAR_NUMBERS = 8, 9
+INT_HEADER = 10
 # A body: its kind, where its packed arrays begin among all bodies', its column in the table of
 # driven motions, and where its flat parts begin in these integers.
 B_KIND, B_INTS, B_REALS, B_DRIVEN, B_FLATS = range(5)
@@ -90,6 +92,8 @@ class Scratch(NamedTuple):
     spots: Any  # see ``flat_contact``
     change: Any  # N_CHANGE numbers of the pair whose frame it is
     polytope: Any  # of a pair that keeps none
+    near: Any  # integers of the search for near pairs, and what it finds (``near_arrays``)
+    near_numbers: Any  # and its numbers
 
 
 @kernel
@@ -153,7 +157,8 @@ def pair_rates(system, pair):
 
 @kernel
 def n_rates(system):
-    return pair_rates(system, n_pairs(system))
+    """How many: pairs have rates only where the trackers are inside the operator."""
+    return pair_rates(system, n_pairs(system) if system.layout[I_INSIDE] else 0)
 
 
 @kernel

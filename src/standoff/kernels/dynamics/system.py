@@ -18,7 +18,6 @@ from standoff.kernels.dynamics.arrays import (
     body_row,
     kind_of,
     n_bodies,
-    n_pairs,
     options_of,
     pair_rates,
     pair_row,
@@ -31,6 +30,7 @@ from standoff.kernels.dynamics.inside_law import (
     stage_normal,
     stage_rates,
 )
+from standoff.kernels.dynamics.near_arrays import n_visited, visited
 from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
 from standoff.kernels.dynamics.rigid_body import power, write_rates
 from standoff.kernels.state.arrays import (
@@ -139,7 +139,8 @@ def stage_of(system, state, s, held, rates, work, scratch):
     if not held:
         clear_loads(system, scratch)
         lost = 0.0
-        for pair in range(n_pairs(system)):
+        for k in range(n_visited(system, scratch)):
+            pair = visited(scratch, k)
             if system.layout[I_INSIDE]:
                 lost += touch_ahead(system, pair, state, s, rates, work, scratch)
             else:

@@ -11,7 +11,7 @@ from numba import types
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import INT, INTS, ROWS, WRITE, WRITE_INTS
 from standoff.kernels.compiler.shared_memory import load_relaxed
-from standoff.kernels.dynamics.arrays import I_READING, S_TIME, STEP, coupler_row, n_pairs
+from standoff.kernels.dynamics.arrays import I_READING, S_TIME, STEP, coupler_row
 from standoff.kernels.dynamics.coupler_arrays import (
     C_ENGAGED,
     G_FAULT,
@@ -20,6 +20,7 @@ from standoff.kernels.dynamics.coupler_arrays import (
     MISSING,
     N_READING,
 )
+from standoff.kernels.dynamics.near_arrays import near_arrays
 from standoff.kernels.dynamics.servo import (
     BILLION,
     TORN,
@@ -67,7 +68,7 @@ from standoff.kernels.entries.simulation import (
     scratch_for,
     system_of,
     tick_bodies,
-    track_pair,
+    track_pairs,
 )
 from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNT_SLOTS
 from standoff.kernels.state.arrays import FINE
@@ -108,10 +109,10 @@ def move_bodies(system, state, drives, tick, begun, work, scratch):
         step = tick * steps + k
         tick_bodies(system, state, h, (table, reading, seconds + k * h), step, work, scratch)
         state[S_TIME] = begun + (step + 1) * h
-        for pair in range(n_pairs(system)):
-            why = track_pair(system, pair, state, h, work, scratch)
-            if why != FINE:
-                return why
+        # the whole state is told after the last step of a tick
+        why = track_pairs(system, state, h, (step, k == steps - 1, steps > 1), work, scratch)
+        if why != FINE:
+            return why
     return FINE
 
 
@@ -205,8 +206,8 @@ def serve(packed, numbers, state, plan, commands, given, boxes, measured):
     tallies = measured[1]
     inbox, outbox = boxes
     system = system_of(packed)
-    arrays = scratch_for(system)
-    scratch = pointed(arrays)
+    arrays, near = scratch_for(system), near_arrays(system)
+    scratch = pointed(arrays, near)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     events = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
     work = Work(pointer(counts, 0), pointer(events, 0), scratch.polytope, scratch.polytope)
@@ -243,7 +244,7 @@ def serve(packed, numbers, state, plan, commands, given, boxes, measured):
         last, tick = start, tick + 1
     rest(system.coupler, joined)
     tell(system, numbers, tallies, state, (tick, last, 0, spent), ended, outbox)
-    keep_alive(arrays, counts, events)
+    keep_alive(arrays, near, counts, events)
     return ended
 
 

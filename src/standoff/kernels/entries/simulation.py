@@ -36,6 +36,8 @@ from standoff.kernels.dynamics.coupled_tool import (
 )
 from standoff.kernels.dynamics.coupler import Moment, couple
 from standoff.kernels.dynamics.flat_contact import N_SPOTS
+from standoff.kernels.dynamics.near_arrays import n_visited, near_arrays, searches, visited
+from standoff.kernels.dynamics.near_pairs import catch_up, find_near
 from standoff.kernels.dynamics.operator import change_of, step_bodies
 from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
 from standoff.kernels.dynamics.rigid_body import kinetic, potential, power
@@ -90,7 +92,7 @@ def scratch_for(system):
 
 
 @kernel
-def pointed(arrays):
+def pointed(arrays, near):
     return Scratch(
         arrays[0],
         pointer(arrays[1], 0),
@@ -102,14 +104,16 @@ def pointed(arrays):
         pointer(arrays[7], 0),
         pointer(arrays[8], 0),
         pointer(arrays[9], 0),
+        pointer(near[0], 0),
+        pointer(near[1], 0),
     )
 
 
 @kernel
-def keep_alive(arrays, counts, log):
+def keep_alive(arrays, near, counts, log):
     """Call this after the last use of what points into the arrays: Numba frees an array after its
     own last use, and a pointer is not one."""
-    total = len(counts) + len(log)
+    total = len(counts) + len(log) + len(near[0]) + len(near[1])
     for k in range(10):
         total += len(arrays[k])
     return total
@@ -148,6 +152,28 @@ def track_pair(system, pair, state, h, work, scratch):
     sound = status in (CONVERGED, TRACKING, LOCAL, GLOBAL, FAR)
     state[S_UNCERTIFIED] += 0.0 if sound else 1.0
     state[S_DEEPEST] = max(state[S_DEEPEST], -out[DISTANCE])
+    return FINE
+
+
+@kernel
+def track_pairs(system, state, h, told, work, scratch):
+    """The frames of all pairs at the end of a tick; FINE, or what one refuses.
+
+    `told` are the tick, whether the whole state is read after it, and whether ticks between are
+    not: those visit only the pairs that may be near, and all others are FAR as they were.
+    """
+    tick, read, between = told
+    by_tree = between and searches(system)
+    everything = read or not by_tree
+    if by_tree:
+        everything = find_near(system, state, scratch) or everything
+    for k in range(n_pairs(system) if everything else n_visited(system, scratch)):
+        pair = k if everything else visited(scratch, k)
+        if by_tree:
+            catch_up(system, pair, state, h, tick, scratch)
+        why = track_pair(system, pair, state, h, work, scratch)
+        if why != FINE:
+            return why
     return FINE
 
 
@@ -211,8 +237,8 @@ def run_system(packed, state, drives, every, records):
     """
     states, accounts = records
     system = system_of(packed)
-    arrays = scratch_for(system)
-    scratch = pointed(arrays)
+    arrays, near = scratch_for(system), near_arrays(system)
+    scratch = pointed(arrays, near)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
     work = Work(pointer(counts, 0), pointer(log, 0), scratch.polytope, scratch.polytope)
@@ -225,16 +251,16 @@ def run_system(packed, state, drives, every, records):
     for tick in range(every * (states.shape[0] - 1)):
         tick_bodies(system, state, h, (table, readings, np.nan), tick, work, scratch)
         state[S_TIME] = begun + (tick + 1) * h
-        for pair in range(n_pairs(system)):
-            why = track_pair(system, pair, state, h, work, scratch)
-            if why != FINE:
-                keep_alive(arrays, counts, log)
-                return tick, why
-        if (tick + 1) % every == 0:
+        recorded = (tick + 1) % every == 0
+        why = track_pairs(system, state, h, (tick, recorded, every > 1), work, scratch)
+        if why != FINE:
+            keep_alive(arrays, near, counts, log)
+            return tick, why
+        if recorded:
             row = (tick + 1) // every
             states[row, :] = state[:width]
             account(system, state, accounts[row], scratch)
-    keep_alive(arrays, counts, log)
+    keep_alive(arrays, near, counts, log)
     return -1, FINE
 
 
@@ -256,8 +282,8 @@ def load_system(packed, state, loads, row):
     refused.
     """
     system = system_of(packed)
-    arrays = scratch_for(system)
-    scratch = pointed(arrays)
+    arrays, near = scratch_for(system), near_arrays(system)
+    scratch = pointed(arrays, near)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
     work = Work(pointer(counts, 0), pointer(log, 0), scratch.polytope, scratch.polytope)
@@ -277,5 +303,5 @@ def load_system(packed, state, loads, row):
     for k in range(end):
         loads[k] = scratch.loads[k]
     loads[end], loads[end + 1] = lost, given
-    keep_alive(arrays, counts, log)
+    keep_alive(arrays, near, counts, log)
     return FINE

@@ -7,7 +7,6 @@ from math import inf
 from numba import types
 
 from standoff.kernels.compiler.decorators import (
-    ahead,
     entry,
     kernel,
     pointer,
@@ -34,18 +33,8 @@ from standoff.kernels.world.pairs import (
     write_pair,
 )
 from standoff.kernels.world.pieces import apart, flat_pose, put_piece
-from standoff.kernels.world.tree import (
-    GRID,
-    N_BOX,
-    Tree,
-    empty_leaves,
-    fill_leaf,
-    find,
-    in_box,
-    morton,
-    pad_box,
-    refit,
-)
+from standoff.kernels.world.search import pad_sought, put_codes, seek_pairs
+from standoff.kernels.world.tree import N_BOX, Tree, in_box
 
 ROWS_OF_INTS = types.Array(INT, 2, "C")
 READ_INTS_2 = types.Array(INT, 2, "C", readonly=True)
@@ -145,17 +134,7 @@ def place(fixed, poses, boxes, before, frame):
 @entry(READ_2, WRITE_INTS, work="world")
 def codes(boxes, found):
     """The Morton codes of the centres of boxes (n, N_BOX)."""
-    low, high = reals_on_stack(3), reals_on_stack(3)
-    for i in range(3):
-        low[i], high[i] = inf, -inf
-    for k in range(len(boxes)):
-        for i in range(3):
-            centre = 0.5 * (boxes[k, i] + boxes[k, 3 + i])
-            low[i], high[i] = min(low[i], centre), max(high[i], centre)
-    widest = max(max(high[0] - low[0], high[1] - low[1]), high[2] - low[2])
-    scale = GRID / widest if widest > 0.0 else 0.0
-    for k in range(len(boxes)):
-        found[k] = morton(pointer(boxes, N_BOX * k), low, scale)
+    put_codes(pointer(boxes, 0), len(boxes), pointer(found, 0), 1)
     return 0
 
 
@@ -163,18 +142,8 @@ def codes(boxes, found):
 def pad(fixed, frame, boxes, ways, tree, n_filled):
     """New padded boxes of the pieces that are searched for, and the tree of them; `ways` are how
     far the pieces went in the last frame."""
-    pieces, at = pieces_at(fixed, frame), tree_at(tree, n_filled)
-    for p in range(len(fixed[0])):
-        if pieces.searched[p] != 0:
-            box = pointer(boxes, N_BOX * p)
-            pad_box(
-                ahead(pieces.placed, N_PLACED * p), ahead(pieces.facts, N_FACT * p), ways[p], box
-            )
-            if at.leaf[p] >= 0 and n_filled > 0:
-                fill_leaf(at, p, box)
-    if n_filled > 0:
-        empty_leaves(at)
-        refit(at)
+    at = tree_at(tree, n_filled)
+    pad_sought(pieces_at(fixed, frame), len(fixed[0]), pointer(boxes, 0), pointer(ways, 0), at)
     return 0
 
 
@@ -185,19 +154,9 @@ def seek(fixed, frame, boxes, tree, n_filled, rules, reach, found):
     Returns how many there are: more than len(found), and only these are written.
     """
     pieces, at = pieces_at(fixed, frame), tree_at(tree, n_filled)
-    filter, emit, n = rules_at(rules, pieces.n_bodies), (pointer(found, 0), len(found)), 0
-    planes = fixed[2]
-    for p in range(len(planes)):
-        if pieces.searched[p] == 0:
-            continue
-        if planes[p] == 0:
-            box = pointer(boxes, N_BOX * p)
-            n = find(at, filter, pieces, p, box, reach, emit, n)
-        else:  # of a half-space once: its pairs last
-            for q in range(len(planes)):
-                if planes[q] == 0 and counts(filter, pieces.owners[p], pieces.owners[q]):
-                    n = write_pair(pieces, p, q, emit, n)
-    return n
+    filter, emit = rules_at(rules, pieces.n_bodies), (pointer(found, 0), len(found))
+    planes, n = pointer(fixed[2], 0), len(fixed[2])
+    return seek_pairs(pieces, planes, n, at, filter, pointer(boxes, 0), reach, emit)
 
 
 @entry(PIECES, PLACED, RULES, ROWS_OF_INTS, work="world")

@@ -28,6 +28,11 @@ PAD_PART = 0.05
 PAD_FRAMES = 6.0
 """And in ways of the last frame: it lasts as many frames at this speed."""
 
+SOUGHT_PART = 0.25
+"""Of the pieces: where more leave their boxes at once, the tree's leaves are put in order anew."""
+MOST_REFITS = 200
+"""Searches after which they are in any case: a tree that is only refitted grows loose."""
+
 
 class Tree(NamedTuple):
     """Pointers, and the number of leaves, a power of two."""
