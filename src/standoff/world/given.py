@@ -69,6 +69,20 @@ def pairs_of(given: Any, argument: str) -> tuple[Any, ...]:
     return tuple(given)
 
 
+def names_of(given: Any, argument: str) -> tuple[Any, ...]:
+    """Names of bodies, as a tuple.
+
+    Raises
+    ------
+    StandoffTypeError
+    """
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise StandoffTypeError(
+            f"{argument} = {shown(given)}: give a list of names.", argument, given
+        )
+    return tuple(given)
+
+
 def checked_bodies(bodies: Any) -> dict[str, BodyLike]:
     """Bodies by name.
 

@@ -56,6 +56,12 @@ class Rules(NamedTuple):
         at = int(np.searchsorted(self.left_out, key))
         return not (at < len(self.left_out) and self.left_out[at] == key)
 
+    def counting(self, i: Ints, j: Ints) -> NDArray[np.bool_]:
+        """Which of several pairs of bodies count?"""
+        keys = np.minimum(i, j) * len(self.kinds) + np.maximum(i, j)
+        meet = self.meets[self.kinds[i], self.kinds[j]] != 0
+        return np.asarray(meet & (i != j) & ~np.isin(keys, self.left_out))
+
     def partners(self, i: int) -> Ints:
         """The bodies of greater number with which body i is a pair."""
         n = len(self.kinds)

@@ -1,7 +1,7 @@
 """Random worlds: bodies of the soak's shapes, rules, horizons, and wild motions of all.
 
 Seed and number determine a world, and in it a few *chapters*: after some frames bodies leave or
-enter, or the horizon changes, and a new world of the same bodies goes on from there.
+enter, or the horizon changes, and a new world of the same bodies goes on from the last state.
 """
 
 from __future__ import annotations
