@@ -31,11 +31,6 @@ NO_PAIRS = Table(np.empty((0, W.N_INTS), dtype=np.int64), np.empty((0, W.N_KNOWN
 
 def started_state(world: Model, given: GivenPoses, twists: Twists) -> WorldState:
     """The state of a first frame."""
-<<<<<<< HEAD
-    search = world.search
-    nothing = empty_placed(len(search.pieces.owners))
-    frame, given = _placed(world, given, no_tree(len(nothing.placed)), nothing.placed)
-=======
     before = empty_placed(len(world.search.pieces.owners)).placed
     moment = Moment(0, 0.0, 0.0, *twists, False, world.minima, 1)
     return _sought(world, given, before, (NO_PAIRS, ()), moment)
@@ -64,10 +59,7 @@ def _sought(
     """The state of a frame in which the pairs of all pieces are sought, and what is known of some
     is kept."""
     search, n = world.search, len(before)
-    none = np.zeros(1, dtype=np.int64)
-    no_tree = Tree(np.zeros((n, 6)), np.empty((2, 6)), none, none, 0, 0)
-    frame, given = _placed(world, given, no_tree, before)
->>>>>>> wbench
+    frame, given = _placed(world, given, no_tree(n), before)
     tree = first_tree(search, frame)
     frame.sought[:] = 1
     table = table_of(search, frame, tree, known[0])
