@@ -16,7 +16,7 @@ from standoff.best_first import Part, Searched, best_first
 from standoff.checks.arrays import finite, numbers
 from standoff.checks.numbers import not_negative, whole_number, yes_or_no
 from standoff.errors import StandoffError
-from standoff.robots.certify_tolerances import CLEARANCE, SMALLEST_SIDE
+from standoff.robots.certify_tolerances import ASKED_CLEARANCE, SMALLEST_SIDE
 from standoff.robots.joints import JointKind
 from standoff.robots.limits import check_limits, joint_of
 from standoff.robots.motion_bounds import Reaches
@@ -69,7 +69,7 @@ def certify_box(
     robot: RobotModel,
     lower: Any,
     upper: Any,
-    clearance: float = CLEARANCE,
+    clearance: float = ASKED_CLEARANCE,
     *,
     max_boxes: int = 20_000,
     whole: bool = False,

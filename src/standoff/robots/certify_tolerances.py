@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-CLEARANCE: Final = 5e-3
+ASKED_CLEARANCE: Final = 5e-3
 """That a proof asks of every pair where nothing else is said, length: 5 mm of a robot in metres."""
 
 KINEMATICS_ROUNDINGS: Final = 64.0
