@@ -1,8 +1,8 @@
 """The pair cases of MuJoCo's own tests of its collision of convex geoms, as Standoff's bodies.
 
 The numbers (sizes, poses, expected values, tolerances) are those of the 48 tests of
-``test/engine/engine_collision_gjk_test.cc`` of MuJoCo (Apache-2.0), in the order of that file. They
-stand for each test's two geoms only; a third geom, where there is one, takes no part in the test.
+``test/engine/engine_collision_gjk_test.cc`` of MuJoCo (Apache-2.0; its version of commit
+6c5f8a345167, as older ones have fewer), in the order of that file.
 """
 
 from dataclasses import dataclass, field
