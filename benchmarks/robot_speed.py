@@ -163,10 +163,9 @@ class PinocchioCoal:
         self.model, self.geometry = pinocchio_models(geoms)
         self.data, self.places = self.model.createData(), self.geometry.createData()
         self.pairs = np.array(sorted(pairs_of(geoms)))
-        above = np.tri(JOINTS + 1, JOINTS)[1:]
-        moves = np.array(
-            [above[geom.joint] if geom.joint >= 0 else 0.0 * above[0] for geom in geoms]
-        )
+        # the last row is of what stands still
+        above = np.concatenate([np.tri(JOINTS), np.zeros((1, JOINTS))])
+        moves = above[[geom.joint for geom in geoms]]
         self.signs = moves[self.pairs[:, 1]] - moves[self.pairs[:, 0]]
 
     def __call__(self, q: Array) -> Answer:
