@@ -1,8 +1,8 @@
 """An arm of seven joints among 20 obstacles: time of a call with Jacobian rows, beside others.
 
-``python -m benchmarks.robots --speed``. One scene of spheres, capsules and boxes in Pinocchio and
-in MuJoCo; a smooth motion sampled at 1 kHz. At each sample every contender answers once, in an
-order that turns, so that a busy machine is busy for all of them.
+``python -m benchmarks.robots --speed``. One scene of spheres, capsules, cylinders and boxes in
+Pinocchio and in MuJoCo; a smooth motion sampled at 1 kHz. At each sample every contender answers
+once, in an order that turns, so that a busy machine is busy for all of them.
 """
 
 from __future__ import annotations
@@ -53,9 +53,12 @@ class Answer(NamedTuple):
 
 
 def geoms_of(rng: np.random.Generator) -> list[Geom]:
-    """Seven capsules and a ball at the tip, and the obstacles around them."""
+    """Seven capsules and cylinders and a ball at the tip, and the obstacles around them."""
     middle, tip = (pin.SE3(np.eye(3), np.array([0.0, 0.0, z])) for z in (0.5 * LENGTH, LENGTH))
-    found = [Geom(f"link {k}", k, "capsule", (0.04, 0.4 * LENGTH), middle) for k in range(JOINTS)]
+    kinds = [("capsule", "cylinder")[k % 2] for k in range(JOINTS)]
+    found = [
+        Geom(f"link {k}", k, kind, (0.04, 0.4 * LENGTH), middle) for k, kind in enumerate(kinds)
+    ]
     found.append(Geom("tip", JOINTS - 1, "sphere", (0.05,), tip))
     for k in range(OBSTACLES):
         away = rng.normal(size=3)
@@ -65,7 +68,8 @@ def geoms_of(rng: np.random.Generator) -> list[Geom]:
             ("sphere", (float(rng.uniform(0.03, 0.1)),)),
             ("capsule", (float(rng.uniform(0.02, 0.05)), float(rng.uniform(0.03, 0.15)))),
             ("box", tuple(rng.uniform(0.03, 0.1, 3).tolist())),
-        )[k % 3]
+            ("cylinder", (float(rng.uniform(0.03, 0.08)), float(rng.uniform(0.03, 0.15)))),
+        )[k % 4]
         found.append(Geom(f"obstacle {k}", -1, kind, half, pin.SE3(turn, at)))
     return found
 
@@ -90,7 +94,8 @@ def coal_shape(geom: Geom) -> Any:
         return coal.Box(*(2.0 * x for x in geom.half))
     if geom.kind == "sphere":
         return coal.Sphere(*geom.half)
-    return coal.Capsule(geom.half[0], 2.0 * geom.half[1])
+    made = {"capsule": coal.Capsule, "cylinder": coal.Cylinder}[geom.kind]
+    return made(geom.half[0], 2.0 * geom.half[1])
 
 
 def pinocchio_models(geoms: Sequence[Geom]) -> tuple[Any, Any]:
