@@ -47,7 +47,7 @@ class Geom(NamedTuple):
 class Answer(NamedTuple):
     """Distances (k,) and rows (k, 7) of the pairs (k, 2) by the geometries' numbers."""
 
-    pairs: Array
+    pairs: NDArray[np.int64]
     distance: Array
     rows: Array
 
@@ -152,7 +152,8 @@ class Warm:
     """Ours from the sample before."""
 
     def __init__(self, robot: so.Robot) -> None:
-        self.robot, self.state = robot, None
+        self.robot = robot
+        self.state: Any = None
 
     def __call__(self, q: Array) -> Answer:
         if self.state is None:

@@ -44,6 +44,15 @@ COMPARED = ("allegro right", "romeo", "panda", "laikago", "quadruped", "a1")
 DIFFERENTIATED = ("panda", "laikago", "romeo", "allegro right", "quadruped")
 STATED = 1e-6
 """What Coal (``gjk_tolerance``) and MuJoCo (``ccd_tolerance``) state of their distances, m."""
+EVERY_JOINT = "tests: every joint"
+"""The MJCF model of the tests with every kind of joint and exact geometry."""
+TESTDATA: dict[str, tuple[str, ...]] = {
+    "mujoco/testdata/model.xml": (),
+    "mujoco/testdata/model.xml, its height field skipped": ("world/0",),
+}
+"""The model that MuJoCo's package has, and what of it is skipped."""
+LONGEST_REFUSAL = 250
+"""Characters of a refusal in the table."""
 FAR = 10.0
 """Beyond any pair of these robots, m: MuJoCo's horizon."""
 H = 1e-5
@@ -69,24 +78,30 @@ class Model(NamedTuple):
 
 
 def loaded(name: str) -> so.Robot:
-    """A robot by its name; hulls stand for meshes."""
+    """A robot by its name, or by its file among those of example-robot-data."""
     if name in robot_models.EXACT:
-        return robot_models.exact_robot(name)
-    if name == "every joint":
+        robot: so.Robot = robot_models.exact_robot(name)
+        return robot
+    if name == EVERY_JOINT:
         return so.Robot.from_mujoco(mujoco.MjModel.from_xml_string(robot_models.MJCF))
-    if name == "mujoco testdata":
+    if name in TESTDATA:
         path = Path(mujoco.__file__).parent / "testdata" / "model.xml"
-        return so.Robot.from_mujoco(path, meshes="hull")
-    if name == "mujoco testdata, skip":
-        path = Path(mujoco.__file__).parent / "testdata" / "model.xml"
-        return so.Robot.from_mujoco(path, meshes="hull", skip=["world/0"])
-    return so.Robot.from_urdf(robot_models.urdf(name), mimic=True, meshes="hull")
+        return so.Robot.from_mujoco(path, meshes="hull", skip=TESTDATA[name])
+    path = robot_models.ROBOTS / name
+    try:
+        return so.Robot.from_urdf(path, mimic=True, meshes="hull")
+    except so.StandoffError as error:
+        if "mimic" not in str(error):
+            raise
+        # Pinocchio does not read joints that mimic one of another branch
+        return so.Robot.from_urdf(path, mimic=False, meshes="hull")
 
 
 def names_of_models() -> tuple[str, ...]:
-    """All robots of the table."""
-    known = (*robot_models.EXACT, *robot_models.WITH_MESHES)
-    return (*known, "every joint", "mujoco testdata", "mujoco testdata, skip")
+    """All robots of the table: every URDF file of example-robot-data, and those of MuJoCo."""
+    files = sorted(robot_models.ROBOTS.rglob("*.urdf"))
+    known = (path.relative_to(robot_models.ROBOTS).as_posix() for path in files)
+    return (*known, EVERY_JOINT, *TESTDATA)
 
 
 def model_row(name: str) -> Model:
@@ -94,7 +109,9 @@ def model_row(name: str) -> Model:
     try:
         robot = loaded(name)
     except (so.StandoffError, FileNotFoundError) as error:
-        return Model(name, 0, {}, {}, 0.0, 0, " ".join(str(error).split()))
+        said = " ".join(str(error).replace(f"{robot_models.ROBOTS}/", "").split())
+        short = said if len(said) <= LONGEST_REFUSAL else said[:LONGEST_REFUSAL] + " ..."
+        return Model(name, 0, {}, {}, 0.0, 0, short)
     geoms = robot.report().geoms
     gaps = [geom.gap for geom in geoms if geom.became == HULL]
     return Model(
@@ -111,7 +128,7 @@ def model_row(name: str) -> Model:
 def model_lines(rows: Sequence[Model]) -> list[str]:
     """The table of models, and its sums."""
     lines = [
-        "| robot | nv | exact | hulls | left out | kinds | greatest gap of a hull, m | pairs |",
+        "| model | nv | exact | hulls | left out | kinds | greatest gap of a hull, m | pairs |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for row in rows:
@@ -180,12 +197,12 @@ def geom_text(shape: Any) -> str:
     *size, swept = shape.size
     if swept:
         raise ValueError("MuJoCo has no swept shapes")
-    half = {
-        "sphere": lambda: size,
-        "box": lambda: [0.5 * x for x in size],
-        "cylinder": lambda: [size[0], 0.5 * size[1]],
-        "capsule": lambda: [size[0], 0.5 * size[1]],
-    }[shape.kind]()
+    if shape.kind == "box":
+        half = [0.5 * x for x in size]
+    elif shape.kind in ("sphere", "cylinder", "capsule"):
+        half = [size[0], *(0.5 * x for x in size[1:])]
+    else:
+        raise ValueError(f"no size of a {shape.kind} is known here")
     return f'<geom type="{shape.kind}" size="{" ".join(map(repr, half))}"/>'
 
 
@@ -343,7 +360,7 @@ def main(given: Sequence[str] | None = None) -> None:
     asked = reader.parse_args(given)
     parts: list[Iterator[str]] = []
     if asked.models:
-        parts.append(line for line in model_lines([model_row(n) for n in names_of_models()]))
+        parts.append(iter(model_lines([model_row(name) for name in names_of_models()])))
     if asked.distances:
         parts.append(compared_lines(asked.distances))
     if asked.gradients:
