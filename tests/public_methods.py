@@ -14,6 +14,7 @@ AWAY = so.Pose(np.eye(3), [3.0, 0.0, 0.0])
 TWIST = so.Twist([0.1, 0.0, 0.0], [0.0, 0.0, 1.0])
 SPHERE, BOX = so.shapes.sphere(0.5), so.shapes.box(1.0, 1.0, 1.0)
 TRACKER = so.Tracker(SPHERE, BOX)
+WORLD = so.World({"ball": SPHERE, "box": BOX}, within=0.5, fixed={"box": HOME})
 POINTS, SPATIAL = so.PointTracker(DISC), so.PointTracker(BOX)
 
 
@@ -50,6 +51,8 @@ def method_calls() -> list[Call]:
         (so.distances, {"a": SPHERE, "b": BOX, "poses_a": stacked, "poses_b": flat}),
         (so.distances, {"a": SPHERE, "b": BOX, "poses_a": np.eye(4).tolist(), "poses_b": AWAY}),
         (TRACKER.start_from, placed),
+        (WORLD.changed, {"add": {"more": SPHERE}, "remove": ["ball"], "within": 0.3}),
+        (WORLD.start_from, {"world": WORLD, "state": WORLD.start({"ball": AWAY}), "poses": None}),
         (POINTS.start, {"point": [2.0, 0.1], "velocity": [1.0, 0.0]}),
         (SPATIAL.start, {"point": [2.0, 0.1, 0.2], "velocity": [1.0, 0.0, 0.0]}),
         (BOX.transformed, {"affine": np.diag([1.0, 2.0, 3.0])}),

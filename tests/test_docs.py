@@ -39,6 +39,7 @@ def test_code_of_a_page_prints_what_the_page_says(
 ) -> None:
     """A page's Python blocks run in their order; a text block right after one is what it prints."""
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "examples").symlink_to(DOCS.parent / "examples")
     found = blocks(page)
     names: dict[str, Any] = {}
     for k, (language, code) in enumerate(found):

@@ -97,6 +97,20 @@ def test_bad_input(standoff: Standoff, arm: Path, words: list[str], told: str) -
     assert told in ended.err
 
 
+def test_fixes_are_options_of_the_command(standoff: Standoff, tmp_path: Path) -> None:
+    file = tmp_path / "mesh.xml"
+    file.write_text(
+        '<mujoco><asset><mesh name="m" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/></asset><worldbody>'
+        '<geom name="f" type="plane" size="1 1 1"/><body pos="0 0 2"><joint type="slide"/>'
+        '<geom name="g" type="mesh" mesh="m"/></body></worldbody></mujoco>'
+    )
+    ended = standoff("robot", file)
+    assert ended.code == 2
+    assert "give --hulls for its hull" in ended.err
+    assert "meshes=" not in ended.err
+    assert "hull" in standoff("robot", file, "--hulls", "--report").out
+
+
 def test_bad_files(standoff: Standoff, tmp_path: Path) -> None:
     for name, told in (("a.xml", "no model file"), ("a.urdf", "a.urdf"), ("a.stl", "MJCF file")):
         ended = standoff("robot", tmp_path / name)

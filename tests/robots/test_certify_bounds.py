@@ -24,6 +24,8 @@ KINDS = (
     JointKind.CONTINUOUS,
 )
 
+Links = list[np.ndarray]
+
 ROUNDING = 1e-13
 """Of the oracle itself [length]."""
 
@@ -35,12 +37,9 @@ def corners_in(frame: np.ndarray, box: tuple[np.ndarray, np.ndarray]) -> np.ndar
     return (centre + signs @ sides.T - frame[:3, 3]) @ frame[:3, :3]
 
 
-def core(
-    robot: TreeRobot, sight: Sight, piece: int, q: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def core(robot: TreeRobot, links: Links, piece: int) -> tuple[np.ndarray, np.ndarray]:
     """Centre and half sides (as columns) of a core's box in the world, by the oracle."""
     body = robot.world.model.search.pieces.owners[piece]
-    links = robot.kinematics.links(q)
     joint = int(robot.geoms.joints[body])
     pose = robot.geoms.placements[body]
     if joint >= 0:
@@ -50,12 +49,13 @@ def core(
     return pose[:3, :3] @ centre + pose[:3, 3], pose[:3, :3] * half
 
 
-def frame_of(robot: TreeRobot, sight: Sight, motion: int, q: np.ndarray) -> np.ndarray:
+def frame_of(
+    robot: TreeRobot, sight: Sight, motion: int, links: Links, q: np.ndarray
+) -> np.ndarray:
     """The oracle's pose of the frame that a motion carries, or the world's."""
     if motion < 0:
         return np.eye(4)
     joint = int(sight.watched.motions.joints[motion])
-    links = robot.kinematics.links(q)
     if int(sight.watched.motions.links[joint]) == motion:
         return links[joint]
     parent = int(robot.joints.parents[joint])  # a free joint's shift, before its turn
@@ -92,14 +92,15 @@ def test_no_point_goes_farther_than_the_bound(seed: int) -> None:
     at = np.zeros(len(pairs), dtype=int)
     middle = sight.middle(pairs, frames, at, ways)
     reaches, watched = middle.reaches, sight.watched
-    cut = seen_from(_sums(reaches.h * reaches.w_a, reaches.h * reaches.w_b), reaches)
+    cut = seen_from(_sums(reaches.h * reaches.r_a, reaches.h * reaches.r_b), reaches)
     assert np.array_equal(cut.bound, middle.way)
     normals = rng.normal(size=(len(pairs), 3))
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     along = least_way_along(reaches, normals, middle.seen, middle.half)
     greatest = np.zeros(len(pairs))
-    for _ in range(40):
+    for _ in range(30):
         other = in_box(rng, robot, q, h)
+        both = [(robot.kinematics.links(x), x) for x in (q, other)]
         for k in pairs.tolist():
             sides = watched.a[k], watched.b[k]
             if watched.cores.planes[list(sides)].any():
@@ -109,19 +110,19 @@ def test_no_point_goes_farther_than_the_bound(seed: int) -> None:
             for piece in sides:
                 link = int(chain[cut.place[k]])
                 ends = [
-                    corners_in(frame_of(robot, sight, link, x), core(robot, sight, piece, x))
-                    for x in (q, other)
+                    corners_in(frame_of(robot, sight, link, *x), core(robot, x[0], piece))
+                    for x in both
                 ]
                 way += np.linalg.norm(ends[1] - ends[0], axis=1).max()
             greatest[k] = max(greatest[k], way)
             assert way <= middle.way[k] + ROUNDING
             # along a direction that is fixed in its cut's frame
             link = int(chain[along.place[k]])
-            before, after = (frame_of(robot, sight, link, x) for x in (q, other))
+            before, after = (frame_of(robot, sight, link, *x) for x in both)
             fixed = before[:3, :3].T @ normals[k]
             moved = [
-                (corners_in(after, core(robot, sight, p, other)) @ fixed)
-                - (corners_in(before, core(robot, sight, p, q)) @ fixed)
+                (corners_in(after, core(robot, both[1][0], p)) @ fixed)
+                - (corners_in(before, core(robot, both[0][0], p)) @ fixed)
                 for p in sides
             ]
             assert np.max(moved[0]) - np.min(moved[1]) <= along.bound[k] + ROUNDING
@@ -160,6 +161,7 @@ def test_no_point_is_accelerated_more_than_the_bound(seed: int) -> None:
     for _ in range(5):
         t = rng.uniform(-span + step, span - step)
         three = [robot.kinematics.integrate(q, v * (t + s * step)) for s in (-1, 0, 1)]
+        moved = [(robot.kinematics.links(x), x) for x in three]
         for k in pairs.tolist():
             chain = watched.chains.frames[watched.chain[k]]
             sides = watched.a[k], watched.b[k]
@@ -171,10 +173,10 @@ def test_no_point_is_accelerated_more_than_the_bound(seed: int) -> None:
                 for piece in sides:
                     x = [
                         corners_in(
-                            frame_of(robot, sight, int(chain[place]), each),
-                            core(robot, sight, piece, each),
+                            frame_of(robot, sight, int(chain[place]), *each),
+                            core(robot, each[0], piece),
                         )
-                        for each in three
+                        for each in moved
                     ]
                     bend = (x[0] - 2.0 * x[1] + x[2]) / step**2
                     total += np.linalg.norm(bend, axis=1).max()
@@ -210,3 +212,44 @@ def test_a_joint_that_mimics_another_moves_by_its_ratio() -> None:
         ratios=[1.0, -2.0],
     )
     assert Sight(robot).watched.motions.rates(np.array([[0.5, 0.25]])).tolist() == [[0.5, 0.5, 0.0]]
+
+
+def test_a_folded_arm_is_accelerated_more_where_it_unfolds() -> None:
+    """At rest its tip is on the first axis; within the box it leaves it."""
+    ball, out, back = so.shapes.sphere(0.1), np.eye(4), np.eye(4)
+    out[0, 3], back[0, 3] = 1.0, -1.0
+    away = np.eye(4)
+    away[0, 3] = 9.0
+    robot = robot_of(
+        [1, 1],
+        [-1, 0],
+        [np.eye(4), out],
+        [[0, 0, 1.0]] * 2,
+        [(1, ball, back)],
+        fixed={"f": (ball, away)},
+    )
+    sight = Sight(robot)
+    ways = np.array([[1.0, 1.0, 0.0]])
+    middle = sight.middle(np.array([0]), sight.frames(np.zeros((1, 2))), np.array([0]), ways)
+    rates = np.array([[1.0, 1.0]])
+    found = bends(middle.reaches, rates, np.zeros((1, 2)))[0, 0]
+    true = abs(-1.0 + 4.0 * np.exp(1j))  # of exp(i t) (1 - exp(i t)) at t = 1
+    assert true == pytest.approx(3.56, abs=0.01)
+    assert true <= found
+    assert middle.way[0] == pytest.approx(1.0, abs=1e-8)
+
+
+def test_a_free_joint_of_pinocchio_swerves_no_more_than_the_bound() -> None:
+    pin = pytest.importorskip("pinocchio")
+    model = pin.Model()
+    model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "base")
+    body = so.shapes.sphere(0.1)
+    robot = robot_of([4], [-1], [np.eye(4)], [[0, 0, 0.0]], [(0, body, np.eye(4))])
+    motions = motions_of(robot.joints)
+    v = np.array([0.7, 0.0, 0.0, 0.0, 0.0, 2.0])
+    swerve = motions.swerves(motions.rates(v[None]))[0]
+    step = 1e-4
+    x = [pin.integrate(model, pin.neutral(model), v * (0.3 + s * step))[:3] for s in (-1, 0, 1)]
+    own = np.linalg.norm(x[0] - 2.0 * x[1] + x[2]) / step**2
+    assert own == pytest.approx(1.4, rel=1e-5)
+    assert swerve.tolist() == pytest.approx([1.4, 0.0, 0.0])

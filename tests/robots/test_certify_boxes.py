@@ -118,3 +118,19 @@ def test_half_open_touching() -> None:
     assert 0.0 < proof.open < 1e-3
     assert proof.open_boxes.upper.max() == 1.0
     assert proof.witness.names == ("g0", "post")
+
+
+def test_a_half_space_is_endless() -> None:
+    """Seen from the arm, the floor's point below the axis moves little; that under the hand does
+    not."""
+    hand, floor = np.eye(4), so.shapes.halfspace([0.0, 0.0, 1.0], -1.0)
+    hand[0, 3] = 10.0
+    ball = so.shapes.sphere(0.1)
+    for moving in (True, False):
+        geoms = [(0, floor, np.eye(4))] if moving else [(0, ball, hand)]
+        still = {"f": (ball, hand)} if moving else {"f": (floor, np.eye(4))}
+        robot = robot_of([1], [-1], [np.eye(4)], [[0, 1.0, 0]], geoms, fixed=still)
+        assert robot.certify_box([-0.2], [0.2], 1e-3).verdict is Verdict.VIOLATED
+        assert robot.certify_box([-0.05], [0.05], 1e-3).verdict is Verdict.PROVEN
+        assert robot.certify([[-0.2], [0.2]], 1e-3).verdict is Verdict.VIOLATED
+        assert robot.certify([[-0.05], [0.0], [0.05]], 1e-3).verdict is Verdict.PROVEN

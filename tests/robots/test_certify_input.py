@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from typing import Any
 
@@ -95,3 +96,12 @@ def test_joints_without_a_range_are_refused_in_boxes_but_may_be_held(kind: int, 
     q = neutral(robot)
     boxed(q - 0.1, q + 0.1, f"Joint 'j0' is {said}.*no box", of=robot)
     assert robot.certify_box(q, q, 0.0).counts.boxes == 1
+
+
+def test_joints_that_were_read_wrongly_are_found_before_anything_is_proven() -> None:
+    robot = arm(np.random.default_rng(0), joints=2, obstacles=0)
+    axes = np.array(robot.joints.axes)
+    axes[1] = 1.0, 0.0, 0.0
+    wrong = dataclasses.replace(robot, joints=robot.joints._replace(axes=axes))
+    refused(AWAY, of=wrong, match="not where the joints as read place it")
+    boxed([0.0, 0.0], [0.1, 0.1], "not where the joints as read place it", of=wrong)

@@ -198,6 +198,14 @@ PALM = '[bodies.a.pieces.palm]\nshape = "sphere"\nradius = 1.0\n'
             "bodies.a.pieces",
             ["'disk' is planar", "'palm' is not"],
         ),
+        (WORLD + '[bodies.ball]\nshape = "box"', "", ["('bodies', 'ball') twice"]),
+        (
+            BODIES + '[bodies.pad]\nshape = "compound"\n[bodies.pad.pieces.disk]\nposition = '
+            '[0, 0, 0.1]\nshape = "planar_loop"\n[[bodies.pad.pieces.disk.curves]]\n'
+            'kind = "ellipse"\ncentre = [0, 0]\nsemi_axes = [1, 1]',
+            "bodies.pad.pieces",
+            ["'disk' is out of the plane z = 0"],
+        ),
         (
             WORLD + '[bodies.disk]\nshape = "planar_loop"\n[[bodies.disk.curves]]\nkind = "ellipse"'
             "\ncentre = [0, 0]\nsemi_axes = [1, 1]",

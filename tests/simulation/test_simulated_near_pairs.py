@@ -188,6 +188,31 @@ def test_with_pairs_in_any_order(monkeypatch: pytest.MonkeyPatch) -> None:
     same_motion(monkeypatch, bodies, law, 200, pairs=chosen)
 
 
+def hand(t: float) -> so.Pose:
+    """Down into the bodies and out of them."""
+    return so.Pose(np.eye(3), [0.16, 0.16, 0.2 + 0.1 * np.cos(20.0 * t)])
+
+
+def test_with_a_coupler(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Several ticks a reading, of which only the last is recorded."""
+    sampling = sim.Sampling(period=5e-3, device_damping=20.0)
+    coupler = sim.VirtualCoupler(
+        stiffness=500.0, damping=1.0, max_force=20.0, max_age=0.02, sampling=sampling
+    )
+    ball = sim.RigidBody.free(so.shapes.sphere(0.03), mass=0.2, pose=hand(0.0))
+    law = so.PredictorCorrector(depth="local", within=0.03)
+    runs = []
+    for tree in (False, True):
+        bodies = [FLOOR, *grid(3), ball]
+        operator = made(monkeypatch, bodies, tree, law, coupler=coupler, tool=len(bodies) - 1)
+        given = sim.DeviceReadings.along(hand, 60, 5e-3)
+        state = operator.start(allow_overlap=True).engage()
+        runs.append(operator.run(state, 300, every=5, device=given))
+    assert runs[0].states.tobytes() == runs[1].states.tobytes()
+    assert runs[0].accounts.tobytes() == runs[1].accounts.tobytes()
+    assert (runs[1].spots[:, [10 in pair for pair in runs[1].system.pairs]] > 0).any()
+
+
 def test_a_motion_without_bounds_ends_at_the_same_tick(monkeypatch: pytest.MonkeyPatch) -> None:
     law = so.PredictorCorrector(depth="local", within=0.03)
     told = []

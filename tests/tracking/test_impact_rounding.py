@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import standoff as so
+from standoff.impact.moment import Box
+from standoff.kernels.body import layout as L
 from standoff.motion import Bounded, Carried, ConstantTwist, Fixed, Offset, PoseSamples, Screw
 
 REST = so.Pose.identity()
@@ -142,3 +144,15 @@ def test_touching_as_given_is_contact_at_the_start() -> None:
     for path in (Fixed(at(2.0, 0.0, 0.0)), away, along_x([0.0, 1.0], [2.0, 3.0])):
         found = so.time_of_impact(ball, ball, REST, path, 1.0)
         assert (found.status, found.time) == (so.impact.ImpactStatus.AT_START, 0.0)
+
+
+def test_bounding_balls_hold_what_a_body_may_be_off(rng: np.random.Generator) -> None:
+    """A hull whose facets were merged is known to its slack, and so are its balls and chords."""
+    points = rng.normal(size=(300, 3))
+    points /= np.linalg.norm(points, axis=1)[:, None]
+    hull = so.Body.from_points(points, tolerance=0.03)
+    half, slack = hull.reals[L.BOX_HALF : L.BOX_HALF + 3], hull.reals[L.SLACK]
+    assert slack > 0.0
+    box = Box(hull)
+    assert (box.half >= half + slack).all()
+    assert box.reach >= np.linalg.norm(half) + slack

@@ -145,7 +145,7 @@ def test_the_clearance_is_at_most_the_greatest_horizon() -> None:
         ({"fixed": ["arm"]}, "fixed = .*mapping"),
         ({"ignore": 3}, "ignore = 3.*pairs of names"),
         ({"only": "arm"}, "only = .*pairs of names"),
-        ({"law": so.PredictorCorrector(within=0.3)}, r"within=0\.3.*World"),
+        ({"law": so.PredictorCorrector(within=0.3)}, r"within = 0\.3.*give it there"),
         ({"ignore": ["arm"]}, "pairs of names"),
         ({"groups": {"arm": ["hand"]}}, "is a body"),
         ({"groups": {"robot": []}}, "one body or more"),

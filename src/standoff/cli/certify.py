@@ -24,6 +24,7 @@ from standoff.cli.progress import progress_bar
 from standoff.cli.robot_model import robot_of
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
+from standoff.robots.certify_tolerances import ASKED_CLEARANCE
 from standoff.robots.proof import How, PathProof
 from standoff.robots.robot import Robot
 from standoff.scene import SceneError, load_scene
@@ -84,7 +85,7 @@ def _proof(command: CertifyCommand, robot: Robot, table: JointTable) -> PathProo
         with progress_bar("proving") as progress:
             return robot.certify(
                 table.waypoints,
-                command.clearance,
+                ASKED_CLEARANCE if command.clearance is None else command.clearance,
                 times=table.times,
                 max_steps=command.max_steps,
                 progress=progress,

@@ -44,7 +44,7 @@ class CertifyCommand:
     """MJCF file (.xml) or URDF file (.urdf)."""
     path: Annotated[Positional[Path], arg(metavar="PATH.csv")]
     """Waypoints, a row each, straight in q between them; docs/certify.md describes the format."""
-    clearance: Annotated[float, arg(metavar="LENGTH", help_behavior_hint="")] = 5e-3
+    clearance: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
     """Distance that every pair must keep, in the model's unit; 0.005 if not given."""
     obstacles: Annotated[Path | None, arg(metavar="SCENE.toml", help_behavior_hint="")] = None
     """The bodies of this scene, where they are at its start, are obstacles of the robot."""

@@ -11,6 +11,15 @@ if TYPE_CHECKING:
     from standoff.cli.option_groups import RobotFlags
     from standoff.robots.robot import Robot
 
+OPTIONS = {
+    "meshes='hull'": "--hulls",
+    ", or meshes={name: a body}": "",
+    "mimic=True": "--mimic follow",
+    "mimic=False": "--mimic free",
+    "skip=[name]": "--skip NAME",
+}
+"""What the library's messages say to do, as this command says it."""
+
 
 def robot_of(model: Any, flags: RobotFlags, *, within: float | None = None) -> Robot:
     """The robot of an MJCF file (.xml, .mjcf) or of a URDF file (.urdf).
@@ -46,4 +55,11 @@ def robot_of(model: Any, flags: RobotFlags, *, within: float | None = None) -> R
             **common,
         )
     except (StandoffError, FileNotFoundError, ModuleNotFoundError) as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(_as_options(str(error))) from error
+
+
+def _as_options(message: str) -> str:
+    """A message whose fixes are those of the command line."""
+    for argument, option in OPTIONS.items():
+        message = message.replace(argument, option)
+    return message

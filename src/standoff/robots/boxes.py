@@ -16,7 +16,7 @@ from standoff.best_first import Part, Searched, best_first
 from standoff.checks.arrays import finite, numbers
 from standoff.checks.numbers import not_negative, whole_number, yes_or_no
 from standoff.errors import StandoffError
-from standoff.robots.certify_tolerances import SMALLEST_SIDE
+from standoff.robots.certify_tolerances import ASKED_CLEARANCE, SMALLEST_SIDE
 from standoff.robots.joints import JointKind
 from standoff.robots.limits import check_limits, joint_of
 from standoff.robots.motion_bounds import Reaches
@@ -69,7 +69,7 @@ def certify_box(
     robot: RobotModel,
     lower: Any,
     upper: Any,
-    clearance: float = 5e-3,
+    clearance: float = ASKED_CLEARANCE,
     *,
     max_boxes: int = 20_000,
     whole: bool = False,
@@ -237,7 +237,7 @@ class _Search:
     def _longest(self, box: Box, reaches: Reaches, row: int) -> int:
         """The number of q that moves a pair most in a box; -1 where none can be halved."""
         watched = self.sight.watched
-        pair_ways = reaches.h[row] * np.minimum(reaches.w_a[row], reaches.w_b[row])
+        pair_ways = reaches.h[row] * np.minimum(reaches.r_a[row], reaches.r_b[row])
         moved = np.zeros(len(self.lower))
         for motion, way in zip(reaches.chain[row].tolist(), pair_ways.tolist(), strict=True):
             if motion >= 0:

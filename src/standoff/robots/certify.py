@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from standoff.checks.numbers import not_negative, whole_number
 from standoff.progress import Progress
-from standoff.robots.certify_tolerances import BRACKET, SHORTEST_STEP
+from standoff.robots.certify_tolerances import ASKED_CLEARANCE, BRACKET, SHORTEST_STEP
 from standoff.robots.intervals import Intervals, joined, lowest, steps_of
 from standoff.robots.limits import check_limits
 from standoff.robots.motion_bounds import bends, least_speed, seen_from
@@ -39,7 +39,7 @@ more than one row, and more would be looked at in vain behind a violation."""
 def certify(
     robot: RobotModel,
     path: Any,
-    clearance: float = 5e-3,
+    clearance: float = ASKED_CLEARANCE,
     *,
     times: Any = None,
     max_steps: int = 1_000_000,

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
+ASKED_CLEARANCE: Final = 5e-3
+"""That a proof asks of every pair where nothing else is said, length: 5 mm of a robot in metres."""
+
 KINEMATICS_ROUNDINGS: Final = 64.0
 """Roundings (eps) of the lengths of a robot, for each joint and one: a joint's turn and the two
 products that pass it on take some twenty; the package's own kinematics need no more."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from standoff.checks.numbers import not_negative, number
 from standoff.errors import StandoffError, not_installed
+from standoff.robots.certify_tolerances import ASKED_CLEARANCE
 from standoff.robots.near import Near
 from standoff.robots.robot import Robot
 
@@ -51,7 +52,7 @@ class MinkLimit(Limit):  # type: ignore[misc]
     def __init__(
         self,
         robot: Robot,
-        minimum: float = 5e-3,
+        minimum: float = ASKED_CLEARANCE,
         *,
         gain: float = 0.85,
         within: float | None = None,

@@ -1,15 +1,17 @@
 """How far the pieces of a pair can move against each other while the joints stay in a box.
 
 Let the joints leave their places q0 by at most h. Seen from any link of the pair's chain (the
-*cut*), no point of A goes farther than Σ hₖ wₖ over the motions k between the cut and A, and none
-of B farther than the same sum on B's side. w of a shift is 1; of a turn it is the greatest distance
-of the piece's points from the axis in the whole box: their distance at q0, and how far the motions
-between the axis and the piece can move them. So the sums are made from the pieces towards the cut.
-The radius of a swept body moves with its core and has no part in it.
+*cut*), no point of A goes farther than Σ hₖ rₖ over the motions k between the cut and A, and none
+of B farther than the same sum on B's side. r of a shift is 1; of a turn it is the greatest distance
+of the piece's points from the axis at q0: the motions are made one after the other, that nearest to
+the cut first, so that what is behind an axis still is as at q0 while it turns. The radius of a
+swept body moves with its core and has no part in it.
 
-With the joints' speeds u and accelerations α in place of h, no point of A is accelerated by more
-than Σ wₖ (uₖ (uₖ + 2 Σᵢ uᵢ) + αₖ), i over the *turns* between the cut and k, the first uₖ only of a
-turn: the second derivatives of the kinematics are ωᵢ × ∂x/∂qₖ. docs/certify.md has the proofs.
+With the joints' speeds u and accelerations α, no point of A is accelerated by more than
+Σ wₖ (uₖ (uₖ + 2 Σᵢ uᵢ) + αₖ), i over the *turns* between the cut and k, the first uₖ of turns only:
+the second derivatives of the kinematics are ωᵢ × ∂x/∂qₖ. w is r in the whole box: how far the
+motions between an axis and the piece can carry its points is added, from the piece on.
+docs/certify.md has the proofs.
 """
 
 from __future__ import annotations
@@ -39,8 +41,11 @@ class Reaches(NamedTuple):
         How far each motion of the chain can go from that configuration, radians or length.
     turns : (k, n) array
         1 for a turn, 0 for a shift.
+    r_a, r_b : (k, n) arrays
+        How far a point of A, or of B, goes at most for each unit of a motion from that
+        configuration: length, or 1.
     w_a, w_b : (k, n) arrays
-        How far a point of A, or of B, goes at most for each unit of a motion: length, or 1.
+        The same from any configuration in the box.
     only_a, only_b : (k,) arrays of bool
         Is B a half-space, so that everything is seen from it, or A?
     axes, origins : (k, n, 3) arrays
@@ -50,6 +55,8 @@ class Reaches(NamedTuple):
     chain: Ints
     h: Array
     turns: Array
+    r_a: Array
+    r_b: Array
     w_a: Array
     w_b: Array
     only_a: Bools
@@ -105,6 +112,8 @@ def reaches_of(
         chain,
         h,
         turns,
+        _raised(turns * far_a + 1.0 - turns, watched.length),
+        _raised(turns * far_b + 1.0 - turns, watched.length),
         _raised(_carried(far_a, h, turns, range(n - 1, -1, -1)), watched.length),
         _raised(_carried(far_b, h, turns, range(n)), watched.length),
         planes[b],
@@ -146,7 +155,7 @@ def _carried(far: Array, h: Array, turns: Array, order: range) -> Array:
 
 def least_way(reaches: Reaches) -> Cut:
     """How far the pieces can move against each other at most (length), from the best cut."""
-    cost = _sums(reaches.h * reaches.w_a, reaches.h * reaches.w_b)
+    cost = _sums(reaches.h * reaches.r_a, reaches.h * reaches.r_b)
     return seen_from(cost, reaches)
 
 
@@ -167,14 +176,14 @@ def least_way_along(reaches: Reaches, normals: Array, seen: tuple[Seen, Seen], h
 
     ``half`` (2, k, 3) are half the sides of the cores' boxes.
     """
-    along_a = _along(reaches, normals, seen[0], half[0], reaches.w_a)
-    along_b = _along(reaches, normals, seen[1], half[1], reaches.w_b)
+    along_a = _along(reaches, normals, seen[0], half[0], reaches.r_a)
+    along_b = _along(reaches, normals, seen[1], half[1], reaches.r_b)
     first = _sums(reaches.h * along_a, reaches.h * along_b)
     second = bends(reaches, reaches.h, np.zeros_like(reaches.h))
     return seen_from(first + 0.5 * second, reaches)
 
 
-def _along(reaches: Reaches, normals: Array, seen: Seen, half: Array, w: Array) -> Array:
+def _along(reaches: Reaches, normals: Array, seen: Seen, half: Array, r: Array) -> Array:
     """(k, n): the greatest part along the normals of what a unit of each motion does to a core."""
     free = ~reaches.axes.any(axis=2)  # of an axis of its own nothing is known
     levers = np.cross(normals[:, None], reaches.axes)
@@ -183,7 +192,7 @@ def _along(reaches: Reaches, normals: Array, seen: Seen, half: Array, w: Array) 
     turn = np.abs(np.einsum("kni,kni->kn", levers, arms)) + spread
     shift = np.abs(np.einsum("kni,ki->kn", reaches.axes, normals))
     found = np.where(reaches.turns > 0.0, turn, shift) * (1.0 + BOUND_INFLATION)
-    return np.where(free, w, np.minimum(found + BOUND_INFLATION * w, w))
+    return np.where(free, r, np.minimum(found + BOUND_INFLATION * r, r))
 
 
 def bends(reaches: Reaches, rates: Array, gains: Array) -> Array:

@@ -129,7 +129,8 @@ class Motions(NamedTuple):
         if self.q_count[k] == 4:
             return _of_quaternions(given if self.scalar_first else np.roll(given, 1, axis=1))
         if self.q_count[k] == 2:
-            return _about(self.axes[k], given[:, 0], given[:, 1])
+            cosines, sines = (given / _lengths(given)[:, None]).T
+            return _about(self.axes[k], cosines, sines)
         angles = self._position(k, given)
         return _about(self.axes[k], np.cos(angles), np.sin(angles))
 

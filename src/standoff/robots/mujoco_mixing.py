@@ -12,10 +12,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from standoff.robots.tolerances import LEAST_FRICTION
 
-LEAST_FRICTION = 1e-5
-"""MuJoCo's mjMINMU, no unit: it makes lesser friction this."""
+Array = NDArray[np.float64]
 
 
 class Mixed(NamedTuple):

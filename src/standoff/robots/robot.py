@@ -16,6 +16,7 @@ from standoff.checks.real_numbers import shape_of
 from standoff.errors import StandoffError
 from standoff.robots.answer import RobotAnswer
 from standoff.robots.batch import RobotAnswers
+from standoff.robots.certify_tolerances import ASKED_CLEARANCE
 from standoff.robots.kinematics import Kinematics
 from standoff.robots.loaded import Loaded
 from standoff.robots.obstacles import read_obstacles
@@ -333,14 +334,14 @@ class Robot(RobotModel):
         answer = self.world.answer(state.world)
         return RobotRows(answer, state.q, state.motion, self._mounted, self.within)
 
-    def certify(self, path: Any, clearance: float = 5e-3, **options: Any) -> PathProof:
+    def certify(self, path: Any, clearance: float = ASKED_CLEARANCE, **options: Any) -> PathProof:
         """Prove that a joint path keeps a clearance at every instant: see `certify.certify`."""
         from standoff.robots.certify import certify
 
         return certify(self, path, clearance, **options)
 
     def certify_box(
-        self, lower: Any, upper: Any, clearance: float = 5e-3, **options: Any
+        self, lower: Any, upper: Any, clearance: float = ASKED_CLEARANCE, **options: Any
     ) -> BoxProof:
         """Prove that all configurations in a box keep a clearance: see `boxes.certify_box`."""
         from standoff.robots.boxes import certify_box

@@ -27,3 +27,6 @@ that misses by more is refused as infeasible."""
 CONTACT_HORIZON = 0.01
 """How far beyond the margins of contacts pairs are followed, as a part of the smallest body's
 size, no unit: what is about to touch starts warm. The contacts do not depend on it."""
+
+LEAST_FRICTION = 1e-5
+"""MuJoCo's mjMINMU, a coefficient of friction, no unit: it makes a lesser one this."""

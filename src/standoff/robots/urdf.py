@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import pinocchio as pin
 
+from standoff.checks.names import one_of
 from standoff.checks.numbers import yes_or_no
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
@@ -20,6 +21,8 @@ from standoff.robots.urdf_meshes import stand_ins
 
 FOLDERS_ABOVE = 6
 """Folders above the file in which ``package://`` is sought too: ROS packages are no deeper."""
+
+JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 
 
 class UrdfOptions(NamedTuple):
@@ -37,6 +40,7 @@ def load(path: Any, srdf: Any, options: UrdfOptions) -> Loaded:
     path = _file(path, "path")
     srdf = None if srdf is None else _file(srdf, "srdf")
     root = _parsed(path, "path")
+    _check_joints(root, path)
     free = yes_or_no(options.free_base, "free_base")
     follow = _follows(root, options.mimic, path)
     folders = [*options.package_dirs, *map(str, _above(path))]
@@ -90,6 +94,24 @@ def _parsed(path: Path, argument: str) -> Any:
 
 def _above(path: Path) -> list[Path]:
     return list(path.parents[:FOLDERS_ABOVE])
+
+
+def _check_joints(root: Any, path: Path) -> None:
+    """Refuse joints of a kind that URDF does not have, by name.
+
+    Raises
+    ------
+    StandoffError
+    """
+    for joint in root.findall("joint"):  # those of transmissions have no type
+        kind = joint.get("type")
+        if kind is not None and kind not in JOINT_TYPES:
+            raise StandoffError(
+                f"{path.name}: the joint {joint.get('name', '?')!r} is of the type {kind!r}; URDF "
+                f"has {one_of(JOINT_TYPES)}.",
+                "path",
+                path,
+            )
 
 
 def _follows(root: Any, mimic: bool | None, path: Path) -> bool:

@@ -17,9 +17,10 @@ from standoff.world.broad_phase import (
     repadded,
     table_of,
 )
+from standoff.world.carried import carried_pieces, carried_rows, carried_table
 from standoff.world.model import Model
 from standoff.world.narrow_phase import Asked, Moment, Refused, ask
-from standoff.world.poses import GivenPoses, mend_poses, refused_pose
+from standoff.world.poses import NO_TWISTS, GivenPoses, mend_poses, refused_pose
 from standoff.world.state import Tree, WorldCounts, WorldState
 
 Array = NDArray[np.float64]
@@ -30,14 +31,39 @@ NO_PAIRS = Table(np.empty((0, W.N_INTS), dtype=np.int64), np.empty((0, W.N_KNOWN
 
 def started_state(world: Model, given: GivenPoses, twists: Twists) -> WorldState:
     """The state of a first frame."""
-    search = world.search
-    nothing = empty_placed(len(search.pieces.owners))
-    frame, given = _placed(world, given, no_tree(len(nothing.placed)), nothing.placed)
+    before = empty_placed(len(world.search.pieces.owners)).placed
+    moment = Moment(0, 0.0, 0.0, *twists, False, world.minima, 1)
+    return _sought(world, given, before, (NO_PAIRS, ()), moment)
+
+
+def carried_state(
+    world: Model, old: Model, before: WorldState, given: GivenPoses, keeps_rows: bool, dt: float
+) -> WorldState:
+    """The state of a world after that of another with some of its bodies: no time passes, and the
+    answers of the pairs that both have hold where their bodies are not moved."""
+    numbers = carried_pieces(world, old)
+    placed = carried_rows(len(world.search.pieces.owners), before, numbers)
+    known = carried_table(world, before, numbers, keeps_rows), before.pages
+    may_rest = not before.has_twist
+    moment = Moment(before.frame + 1, before.time, dt, NO_TWISTS, False, may_rest, world.minima, 1)
+    return _sought(world, given, placed, known, moment)
+
+
+def _sought(
+    world: Model,
+    given: GivenPoses,
+    before: Array,
+    known: tuple[Table, tuple[Array, ...]],
+    moment: Moment,
+) -> WorldState:
+    """The state of a frame in which the pairs of all pieces are sought, and what is known of some
+    is kept."""
+    search, n = world.search, len(before)
+    frame, given = _placed(world, given, no_tree(n), before)
     tree = first_tree(search, frame)
     frame.sought[:] = 1
-    table = table_of(search, frame, tree, NO_PAIRS)
-    moment = Moment(0, 0.0, 0.0, *twists, False, world.minima, 1)
-    asked = _asked(world, frame, table, (), moment)
+    table = table_of(search, frame, tree, known[0])
+    asked = _asked(world, frame, table, known[1], moment)
     return _state(world, given, (frame, tree, table), asked, moment)
 
 

@@ -33,8 +33,8 @@ def law_of_pairs(law: Any) -> Law:
     found: Law = checked_law(law)
     if found.within is not None:
         raise StandoffError(
-            f"The law has within={found.within:g}: give the horizon to the world, "
-            f"so.World(..., within={found.within:g}).",
+            f"The law has within = {found.within:g}: a world has one horizon for all pairs, "
+            "its own `within`; give it there.",
             "law",
             law,
         )
@@ -65,6 +65,20 @@ def pairs_of(given: Any, argument: str) -> tuple[Any, ...]:
     if isinstance(given, str | Mapping) or not isinstance(given, Iterable):
         raise StandoffTypeError(
             f"{argument} = {shown(given)}: give a list of pairs of names.", argument, given
+        )
+    return tuple(given)
+
+
+def names_of(given: Any, argument: str) -> tuple[Any, ...]:
+    """Names of bodies, as a tuple.
+
+    Raises
+    ------
+    StandoffTypeError
+    """
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise StandoffTypeError(
+            f"{argument} = {shown(given)}: give a list of names.", argument, given
         )
     return tuple(given)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Sized
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -194,6 +194,21 @@ def read_twists_of(
             found[rows[k], :6],
         )
     return found, True
+
+
+def check_frames(poses: Any, twists: Any) -> None:
+    """Refuse twists of another number of frames, where both are known.
+
+    Raises
+    ------
+    StandoffError
+    """
+    if isinstance(poses, Sized) and isinstance(twists, Sized) and len(twists) != len(poses):
+        raise StandoffError(
+            f"twists are of {len(twists)} frames and poses of {len(poses)}: give as many.",
+            "twists",
+            twists,
+        )
 
 
 def _check_count(count: int, names: Sequence[str]) -> None:

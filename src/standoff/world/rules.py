@@ -56,6 +56,12 @@ class Rules(NamedTuple):
         at = int(np.searchsorted(self.left_out, key))
         return not (at < len(self.left_out) and self.left_out[at] == key)
 
+    def counting(self, i: Ints, j: Ints) -> NDArray[np.bool_]:
+        """Which of several pairs of bodies count?"""
+        keys = np.minimum(i, j) * len(self.kinds) + np.maximum(i, j)
+        meet = self.meets[self.kinds[i], self.kinds[j]] != 0
+        return np.asarray(meet & (i != j) & ~np.isin(keys, self.left_out))
+
     def partners(self, i: int) -> Ints:
         """The bodies of greater number with which body i is a pair."""
         n = len(self.kinds)
@@ -235,13 +241,15 @@ class _Kinds:
         for side in sides:
             marks[side, columns[side.tobytes()]] = True
         self._rows, kinds = np.unique(marks, axis=0, return_inverse=True)
-        self._columns = columns
+        self._members = {
+            side: np.flatnonzero(self._rows[:, column]) for side, column in columns.items()
+        }
         self.kinds: Ints = kinds.reshape(-1).astype(np.int64)
 
     def _of(self, sides: Sides) -> tuple[Any, Any]:
         """Where a rule stands in a table of kinds: its one order, and the other."""
-        a, b = (np.flatnonzero(self._rows[:, self._columns[x.tobytes()]]) for x in sides)
-        return np.ix_(a, b), np.ix_(b, a)
+        a, b = (self._members[x.tobytes()] for x in sides)
+        return (a[:, None], b), (b[:, None], a)
 
     def meets(self, apart: Iterable[Sides], wanted: Iterable[Sides] | None) -> Ints:
         """1 where two kinds meet: not both fixed, not `apart`, and `wanted` if that is given."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-import uuid
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Sized
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,23 +21,19 @@ from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW
 from standoff.wording import counted
 from standoff.world.answer import WorldAnswer
-from standoff.world.broad_phase import Search
-from standoff.world.compound import check_in_plane, dimension_of
-from standoff.world.frame import next_state, started_state
+from standoff.world.carried import carried_poses, changed_arguments
+from standoff.world.frame import carried_state, next_state, started_state
 from standoff.world.given import (
     BodyLike,
     checked_bodies,
-    fixed_poses_of,
     law_of_pairs,
     mapping_of,
-    named_pieces,
     pairs_of,
 )
 from standoff.world.impact import WorldImpact, first_impact, pairs_that_count
-from standoff.world.model import Model
-from standoff.world.packed import packed_laws, packed_pieces, pieces_of
-from standoff.world.poses import GivenPoses, check_level, read_poses_of, read_twists_of
-from standoff.world.rules import Given, Names, check_half_spaces, packed_rules
+from standoff.world.making import made_model
+from standoff.world.poses import GivenPoses, check_frames, read_poses_of, read_twists_of
+from standoff.world.rules import Given
 from standoff.world.state import WorldState
 
 Array = NDArray[np.float64]
@@ -128,37 +123,8 @@ class World(KeepsReadOnly):
             mapping_of(margins, "margins", "lengths, of pairs of names"),
         )
         least = -math.inf if minima is None else not_negative(minima, "minima")
-        self.model = self._made(least)
-
-    def _made(self, minima: float) -> Model:
-        """The world's data, checked; what its frames call is compiled."""
-        names = Names(tuple(self.bodies), self._given.groups)
-        still = np.zeros(len(self.bodies), dtype=bool)
-        for name in self._fixed:
-            still[names.body(name, "fixed")] = True
-        rules = packed_rules(names, still, self._given)
-        planar = dimension_of({n: x.body for n, x in named_pieces(self.bodies).items()}) == 2
-        pieces = [pieces_of(body) for body in self.bodies.values()]
-        fixed = tuple(name for name in self.bodies if name in self._fixed)
-        poses = fixed_poses_of(fixed, self._fixed)
-        if planar:
-            check_level(fixed, poses, "fixed")
-            check_in_plane(named_pieces(self.bodies))
-        check_half_spaces(list(self.bodies), pieces, rules)
-        reach = max(self.within, rules.greatest_margin)
-        return Model(
-            key=uuid.uuid4().hex,
-            listed=tuple(self.bodies.items()),
-            names=names,
-            moving=tuple(name for name in self.bodies if name not in self._fixed),
-            fixed=fixed,
-            moving_rows=np.flatnonzero(~still),
-            fixed_rows=np.flatnonzero(still),
-            poses_of_fixed=poses,
-            planar=planar,
-            minima=minima,
-            search=Search(packed_pieces(pieces, planar), rules, self.within, reach),
-            laws=packed_laws([piece for each in pieces for piece in each], self.law, self.dt),
+        self.model = made_model(
+            self.bodies, self._given, self._fixed, self.within, least, self.law, self.dt
         )
 
     @property
@@ -173,10 +139,39 @@ class World(KeepsReadOnly):
 
     def __reduce__(self) -> Any:
         # addresses are those of this process
-        given = {**self._given._asdict(), "fixed": self._fixed, "within": self.within}
-        given |= {"bodies": self.bodies, "law": self.law, "dt": self.dt}
+        return _restored, (self._arguments(self._given), self.model.key)
+
+    def _arguments(self, given: Given) -> dict[str, Any]:
+        """What this world was made of, with other rules of pairs."""
         least = None if self.minima == -math.inf else self.minima
-        return _restored, ({**given, "minima": least}, self.model.key)
+        found = {**given._asdict(), "fixed": self._fixed, "within": self.within, "minima": least}
+        return found | {"bodies": self.bodies, "law": self.law, "dt": self.dt}
+
+    def changed(
+        self, add: Mapping[str, BodyLike] | None = None, remove: Iterable[str] = (), **options: Any
+    ) -> World:
+        """Another world, with bodies that enter (after the others) or leave, or another horizon.
+
+        Rules that name a body that leaves go with it. ``start_from`` takes a state along.
+
+        Parameters
+        ----------
+        add : mapping of str to Body or Compound, optional
+        remove : iterable of str
+        **options
+            Arguments of `World`, instead of this world's: ``within``, ``fixed``, ``ignore``, ...
+
+        Returns
+        -------
+        World
+
+        Raises
+        ------
+        TypeError, ValueError
+            As `World`; a name that it does not have, or has already.
+        """
+        given = self._arguments(self._given)
+        return World(**(changed_arguments(self._given, given, add, remove) | options))
 
     @property
     def minima(self) -> float:
@@ -221,6 +216,38 @@ class World(KeepsReadOnly):
         """
         given = self._read(poses)
         return started_state(self.model, given, self._twists(twists, given))
+
+    def start_from(self, world: World, state: WorldState, poses: Any = None) -> WorldState:
+        """A state of this world where that of another is: what is known of the pairs that both
+        have is kept, and only the others are asked anew.
+
+        Two worlds have a pair where both have its two body objects under the same names.
+
+        Parameters
+        ----------
+        world : World
+            The other one.
+        state : WorldState
+            Of the other one; it is not changed.
+        poses : mapping of str to pose, optional
+            World poses of the moving bodies that enter. The others stay where they are.
+
+        Returns
+        -------
+        WorldState
+            At the time of the other one.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As ``start``; not a world, a state of yet another one.
+        """
+        if not isinstance(world, World):
+            raise StandoffTypeError(f"{shown(world)} is not a World.", "world", world)
+        world.check_state(state)
+        old, same_law = world.model, self.law == world.law
+        given = carried_poses(self.model, old, state, poses)
+        return carried_state(self.model, old, state, given, same_law, self.dt)
 
     def step(
         self,
@@ -279,13 +306,7 @@ class World(KeepsReadOnly):
         TypeError, ValueError
             As ``step``, with the number of the frame; twists of another number of frames.
         """
-        sized = isinstance(poses, Sized) and isinstance(twists, Sized)
-        if sized and len(twists) != len(poses):
-            raise StandoffError(
-                f"twists are of {len(twists)} frames and poses of {len(poses)}: give as many.",
-                "twists",
-                twists,
-            )
+        check_frames(poses, twists)
         answers = []
         each = itertools.repeat(None) if twists is None else twists
         for k, (frame, velocities) in enumerate(zip(poses, each, strict=twists is not None)):

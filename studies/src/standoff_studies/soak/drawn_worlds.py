@@ -1,7 +1,7 @@
 """Random worlds: bodies of the soak's shapes, rules, horizons, and wild motions of all.
 
 Seed and number determine a world, and in it a few *chapters*: after some frames bodies leave or
-enter, or the horizon changes, and a new world of the same bodies goes on from there.
+enter, or the horizon changes, and a new world of the same bodies goes on from the last state.
 """
 
 from __future__ import annotations
@@ -199,14 +199,13 @@ def _drawn_chapter(
     ]
     horizons = np.full(len(counted), within)
     if counted and rng.random() < 0.3:
-        margins = {}
+        margins: dict[tuple[str, str], float] = {}
         for k in rng.integers(0, len(counted), 3).tolist():
             i, j = counted[k]
             pair = (names[i], names[j]) if rng.random() < 0.5 else (names[j], names[i])
-            margins[pair] = float(cast.size * 10.0 ** rng.uniform(-3.0, 0.7))
-        for k, (i, j) in enumerate(counted):  # a pair drawn twice keeps what was drawn last
-            for pair in ((names[i], names[j]), (names[j], names[i])):
-                horizons[k] = max(horizons[k], margins.get(pair, 0.0))
+            margin = float(cast.size * 10.0 ** rng.uniform(-3.0, 0.7))
+            horizons[k] = max(horizons[k], margin)
+            margins[pair] = max(margin, margins.get(pair, 0.0))
         rules["margins"] = margins
     bodies = {name: cast.bodies[k] for name, k in zip(names, playing.tolist(), strict=True)}
     flight = drawn_flight(rng, poses, fixed, cast.size, frames, cast.planar)

@@ -1,9 +1,10 @@
 """``python -m standoff_studies.soak.large_worlds``: a large world against all of its pairs.
 
 Bodies of all kinds drift, turn, jump and pause; after every --change frames some leave and some
-enter, the horizon changes, and another world goes on. In every frame all pairs are judged by
-`large_truth`, which knows nothing of the world: no pair below the horizon may be missing, no
-distance wrong, no bound above the truth, and the clearance never above the least distance.
+enter, the horizon changes, and another world goes on from the state (`World.start_from`). In every
+frame all pairs are judged by `large_truth`, which knows nothing of the world: no pair below the
+horizon may be missing, no distance wrong, no bound above the truth, and the clearance never above
+the least distance.
 
 Every half minute a line says what was judged so far: it stands where a run is cut off.
 """
@@ -20,7 +21,6 @@ from numpy.typing import NDArray
 from standoff.cli.terminal import tell
 from standoff.kernels.world import arrays as W
 from standoff.world import World, WorldAnswer
-from standoff.world.state import WorldState
 from standoff_studies.soak.large_motions import HORIZONS, Drift, H, kinds
 from standoff_studies.soak.large_truth import Judge, Told, Verdict
 from standoff_studies.soak.shapes import Made
@@ -36,29 +36,36 @@ TELL = 30.0
 def frames_of(made: list[Made], n: int, frames: int, change: int, seed: int) -> Iterator[Told]:
     """The frames of worlds of up to n bodies."""
     rng = np.random.default_rng(seed)
-    drift, kind = Drift(n, rng), np.arange(n) % len(made)
-    world: World
-    state: WorldState
-    for frame in range(frames):
+    drift, kind, there = Drift(n, rng), np.arange(n) % len(made), np.arange(n)
+    world = world_of(made, kind, there, HORIZONS[1])
+    state = world.start(drift.poses)
+    yield told_by(world.answer(state), kind)
+    for frame in range(1, frames):
         poses = drift.step()
         if frame % change == 0:
-            there = drift.cast() if frame else np.arange(n)
-            within = float(rng.choice(HORIZONS)) if frame else HORIZONS[1]
-            bodies = {f"b{k}": made[kind[k]].body for k in there.tolist()}
-            world = World(bodies, within=within, dt=H)
-            state = world.start(poses[there])
-            answer = world.answer(state)
+            before, there = there, drift.cast()
+            after = world_of(made, kind, there, float(rng.choice(HORIZONS)))
+            entering = {f"b{k}": poses[k] for k in np.setdiff1d(there, before).tolist()}
+            # those that stay are where they were in the frame before
+            state = after.start_from(world, state, entering)
+            world, answer = after, after.answer(state)
         else:
             state, answer = world.step(state, poses[there])
-        yield told_by(answer, kind[there], poses[there])
+        yield told_by(answer, kind[there])
 
 
-def told_by(answer: WorldAnswer, kind: Ints, poses: NDArray[np.float64]) -> Told:
+def world_of(made: list[Made], kind: Ints, there: Ints, within: float) -> World:
+    """Of some of the bodies."""
+    bodies = {f"b{k}": made[kind[k]].body for k in there.tolist()}
+    return World(bodies, within=within, dt=H)
+
+
+def told_by(answer: WorldAnswer, kind: Ints) -> Told:
     """What an answer says; every body has one piece."""
     pairs, state = answer.pairs, answer.state
     return Told(
         kind,
-        poses,
+        state.poses,
         answer.model.search.within,
         answer.clearance,
         pairs.bodies,

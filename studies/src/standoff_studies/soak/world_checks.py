@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+import standoff as so
 from standoff.geometry.validation import Array
 from standoff.kernels.world.pairs import KEPT_BEYOND
 from standoff.tracking.status import Status
@@ -56,21 +57,26 @@ def run_world(seed: int, number: int, frames: int) -> tuple[Tally, list[WorldFau
     """Draw a world, answer its frames, and judge all pairs of all of them."""
     tally, faults = Tally(), []
     tally.count("worlds", 1)
+    last = None
     for k, chapter in enumerate(draw_world(seed, number, frames)):
-        states = answered(chapter)
+        states = answered(chapter, last)
+        last = chapter.world, states[-1]
         answers = [chapter.world.answer(state) for state in states]
         found = judge(chapter, answers, tally)
         faults += [fault._replace(chapter=k) for fault in found]
     return tally, faults
 
 
-def answered(chapter: Chapter) -> list[WorldState]:
-    """The states of all frames."""
+def answered(chapter: Chapter, last: tuple[so.World, WorldState] | None = None) -> list[WorldState]:
+    """The states of all frames; the first from the last one of another chapter, or from nothing."""
     world, flight = chapter.world, chapter.flight
     rows = world.model.moving_rows
     poses = flight.poses[:, rows]
     twists = [None] * len(poses) if flight.twists is None else list(flight.twists[:, rows])
-    states = [world.start(poses[0], twists[0])]
+    if last is None:
+        states = [world.start(poses[0], twists[0])]
+    else:
+        states = [world.start_from(*last, dict(zip(world.moving, poses[0], strict=True)))]
     for k in range(1, len(poses)):
         h, workers = float(flight.steps[k]), int(flight.workers[k])
         states.append(world.step(states[-1], poses[k], twists[k], h, workers=workers)[0])
