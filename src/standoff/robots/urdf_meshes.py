@@ -74,7 +74,10 @@ def _read(name: str, link: str, meshes: Meshes, skip: Collection[str]) -> bool:
 def _found(file: str, urdf: Path, folders: Sequence[str]) -> Path | None:
     """The file of a mesh, as Pinocchio finds it."""
     if file.startswith(PACKAGE):
-        tried = [Path(folder) / file[len(PACKAGE) :] for folder in folders]
+        # files with package:/// are found by Pinocchio too: a path that begins with / would not be
+        # joined to the folder
+        within = file[len(PACKAGE) :].lstrip("/")
+        tried = [Path(folder) / within for folder in folders]
     else:
         plain = file.removeprefix("file://")
         tried = [Path(plain), urdf.parent / plain]
