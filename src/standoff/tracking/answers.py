@@ -33,13 +33,21 @@ def _field(name: str, doc: str) -> Any:
 
 def statuses(numbers: Array) -> NDArray[np.object_]:
     """The statuses of the kernels' numbers (n,), REFUSED of nan."""
-    whole = np.where(np.isnan(numbers), Status.REFUSED.value, numbers).astype(np.int64)
-    return np.array(BY_NUMBER, dtype=object)[whole]
+    return np.array(BY_NUMBER, dtype=object)[_whole(numbers)]
 
 
 def proven(numbers: Array) -> NDArray[np.bool_]:
     """Which answers are proven, by the kernels' numbers (n,) of their statuses."""
-    return np.isin(numbers, [status.value for status in Status if status.certified])
+    found: NDArray[np.bool_] = PROVEN[_whole(numbers)]
+    return found
+
+
+PROVEN = np.array([status.certified for status in BY_NUMBER])
+"""By a status's number."""
+
+
+def _whole(numbers: Array) -> NDArray[np.int64]:
+    return np.where(np.isnan(numbers), Status.REFUSED.value, numbers).astype(np.int64)
 
 
 class AnswerArrays(KeepsReadOnly):

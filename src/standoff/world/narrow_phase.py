@@ -120,7 +120,6 @@ def answered(
     keeping = moved & (ints[:, W.I_INSIDE] != 0)
     asked = np.zeros((len(asking), 5), dtype=np.int64)
     asked[:, 0] = asking
-    asked[moved, 1], asked[moved, 3] = _addresses(ints[moved, W.I_ROW], pages)
     made: list[Array] = []
     rows = np.empty(len(asking), dtype=np.int64)
     for some, width in ((~keeping, K.N_BLOCK), (keeping, K.N_KEEPING_BLOCK)):
@@ -129,7 +128,9 @@ def answered(
             rows[some] = (len(pages) + len(made) << PAGE) + np.arange(count)
             made.append(np.empty((count, width)))
     pages = (*pages, *made)
-    asked[:, 2], asked[:, 4] = _addresses(rows, pages)
+    places = _places(pages)
+    asked[moved, 1], asked[moved, 3] = _addresses(ints[moved, W.I_ROW], places)
+    asked[:, 2], asked[:, 4] = _addresses(rows, places)
     since = moment.time - known[:, W.C_TIME]
     steps = np.where(ints[:, W.I_FRAME] == moment.frame - 1, moment.dt, since)
     done = np.empty(len(asking), dtype=np.int64)
@@ -148,13 +149,19 @@ def answered(
     return pages
 
 
-def _addresses(rows: Ints, pages: tuple[Array, ...]) -> tuple[Ints, Ints]:
+def _places(pages: tuple[Array, ...]) -> tuple[Ints, Ints]:
+    """Where pages begin in memory, and the widths of their rows."""
+    bases = np.array([page.ctypes.data for page in pages], dtype=np.int64)
+    return bases, np.array([page.shape[1] for page in pages], dtype=np.int64)
+
+
+def _addresses(rows: Ints, places: tuple[Ints, Ints]) -> tuple[Ints, Ints]:
     """Where the blocks of rows begin in memory, and their polytopes, 0 for none."""
-    bases = np.array([page.ctypes.data for page in pages] or [0], dtype=np.int64)
-    widths = np.array([page.shape[1] for page in pages] or [0], dtype=np.int64)
+    bases, widths = places
     at = rows >> PAGE
-    blocks = bases[at] + (rows & IN_PAGE) * widths[at] * NUMBER
-    return blocks, np.where(widths[at] == K.N_KEEPING_BLOCK, blocks + K.N_BLOCK * NUMBER, 0)
+    width = widths[at]
+    blocks = bases[at] + (rows & IN_PAGE) * width * NUMBER
+    return blocks, np.where(width == K.N_KEEPING_BLOCK, blocks + K.N_BLOCK * NUMBER, 0)
 
 
 def _without_unused(ints: Ints, pages: tuple[Array, ...]) -> tuple[Array, ...]:

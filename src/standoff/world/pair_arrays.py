@@ -18,6 +18,16 @@ from standoff.world.pair_rows import PairRows
 
 Array = NDArray[np.float64]
 
+GATHERED = np.array(
+    [
+        *(K.DISTANCE, K.UPPER_BOUND, K.OUT_RATE),
+        *(o + i for o in (K.POINT_A, K.POINT_B, K.NORMAL) for i in range(3)),
+    ]
+)
+"""The numbers of an answer that have an array here: read from the pages at once."""
+DISTANCE, UPPER_BOUND, RATE = range(3)
+POINT_A, POINT_B, NORMAL = slice(3, 6), slice(6, 9), slice(9, 12)
+
 
 class PairArrays(KeepsReadOnly):
     """All pairs of bodies within their horizon, nearest or not, in arrays of n rows.
@@ -35,13 +45,16 @@ class PairArrays(KeepsReadOnly):
         Time derivatives of the distances; nan where no twists were given.
     """
 
-    __slots__ = ("_all", "_rows")
+    __slots__ = ("_all", "_numbers", "_rows")
 
     def __init__(self, rows: PairRows) -> None:
         self._all, self._rows = rows, rows.nearest
+        self._numbers: Array | None = None
 
-    def _column(self, slots: Any) -> Array:
-        found: Array = self._all.state.column(self._rows, slots)
+    def _column(self, which: Any) -> Array:
+        if self._numbers is None:
+            self._numbers = self._all.state.column(self._rows, GATHERED)
+        found = self._numbers[:, which].copy()
         found.flags.writeable = False
         return found
 
@@ -59,7 +72,7 @@ class PairArrays(KeepsReadOnly):
 
     @property
     def distance(self) -> Array:
-        return self._column(K.DISTANCE)
+        return self._column(DISTANCE)
 
     @property
     def lower_bound(self) -> Array:
@@ -67,23 +80,23 @@ class PairArrays(KeepsReadOnly):
 
     @property
     def upper_bound(self) -> Array:
-        return self._column(K.UPPER_BOUND)
+        return self._column(UPPER_BOUND)
 
     @property
     def rate(self) -> Array:
-        return self._column(K.OUT_RATE)
+        return self._column(RATE)
 
     @property
     def point_a(self) -> Array:
-        return self._column(slice(K.POINT_A, K.POINT_A + 3))
+        return self._column(POINT_A)
 
     @property
     def point_b(self) -> Array:
-        return self._column(slice(K.POINT_B, K.POINT_B + 3))
+        return self._column(POINT_B)
 
     @property
     def normal(self) -> Array:
-        return self._column(slice(K.NORMAL, K.NORMAL + 3))
+        return self._column(NORMAL)
 
     @property
     def status(self) -> NDArray[np.object_]:
