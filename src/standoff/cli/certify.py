@@ -62,7 +62,7 @@ def _check_files(command: CertifyCommand) -> None:
     if command.plot is not None:
         check_target(command.plot, "--plot", PLOT_ENDINGS)
         try:
-            import standoff.cli.proof_plot  # noqa: F401
+            import standoff.robots.proof_plot  # noqa: F401
         except ModuleNotFoundError as error:
             raise MissingExtra(str(error.name)) from error
 
@@ -114,7 +114,7 @@ def _files(command: CertifyCommand, robot: Robot, proof: PathProof) -> dict[Path
         text = json_text({"standoff": __version__} | proof.as_dict() | {"steps": steps})
         files[command.output] = lambda file: file.write(text.encode())
     if command.plot is not None:
-        from standoff.cli.proof_plot import proof_figure
+        from standoff.robots.proof_plot import proof_figure
 
         figure = proof_figure(proof, title=f"{command.path.stem} of {robot.loaded.source}")
         ending = kind_of_picture(command.plot)

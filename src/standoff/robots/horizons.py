@@ -58,13 +58,13 @@ class Horizons(KeepsReadOnly):
 
     def widening(self, first: float) -> Iterator[World]:
         """Worlds with wider and wider horizons, the last without one; `first` or infinity."""
-        horizon = first if first < math.inf else FIRST_HORIZON * self._size()
+        horizon = first if first < math.inf else FIRST_HORIZON * self.size()
         for _ in range(3):
             yield self.world(horizon)
             horizon *= WIDER
         yield self.world(math.inf)
 
-    def _size(self) -> float:
+    def size(self) -> float:
         """Of all bounded bodies together, length."""
         pieces = [piece for body in self._geoms.bodies for piece in pieces_of(body)]
         sizes = [piece.body.size for piece in pieces if piece.body.bounded]

@@ -348,6 +348,12 @@ class Robot(RobotModel):
 
         return certify_box(self, lower, upper, clearance, **options)
 
+    def view(self, what: Any, **options: Any) -> Any:
+        """Show the robot in the browser, at a configuration or along a path: see `view.view`."""
+        from standoff.robots.view import view
+
+        return view(self, what, **options)
+
     def _rows(self, q: Array, world: World) -> RobotRows:
         motion = self.kinematics.motion(q)
         return RobotRows(world.distances(motion.poses), q, motion, self._mounted, world.within)

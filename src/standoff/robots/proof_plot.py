@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from standoff.robots.proof import How, PathProof, Verdict
+from standoff.robots.proof import How, PathProof, Steps, Verdict
 
 ROWS = 24
-"""Pairs whose steps are drawn: those of the least proven bounds."""
+"""Pairs whose steps are drawn, if not given."""
 
 SAMPLES = 1000
 """Times at which the proven clearance is drawn, besides the ends of the steps."""
@@ -22,8 +23,24 @@ TOLD = {
 }
 
 
-def proof_figure(proof: PathProof, title: str = "") -> Figure:
-    """Draw a proof: above what is proven for all pairs, below the steps of the nearest pairs."""
+WIDE = 6.0
+"""Width from which the legend stands in one line, inches; a narrower picture is lower, too."""
+
+
+def proof_figure(
+    proof: PathProof, title: str = "", *, width: float = 9.0, most: int = ROWS
+) -> Figure:
+    """Draw a proof: above what is proven for all pairs, below the steps of the nearest pairs.
+
+    Parameters
+    ----------
+    proof : PathProof
+    title : str
+    width : float
+        Inches.
+    most : int
+        Pairs whose steps are drawn: those of the least proven bounds.
+    """
     steps = proof.steps
     least = np.full(len(steps.names), np.inf)
     np.minimum.at(least, steps.pair, steps.bound)
@@ -31,11 +48,10 @@ def proof_figure(proof: PathProof, title: str = "") -> Figure:
     if proof.witness is not None and proof.witness.names in steps.names:
         seen = np.union1d(seen, [steps.names.index(proof.witness.names)])
         least[steps.names.index(proof.witness.names)] = -np.inf
-    rows = seen[np.argsort(least[seen], kind="stable")][:ROWS]
-    figure = Figure(figsize=(9.0, 3.4 + 0.2 * max(1, len(rows))), layout="constrained")
-    above, below = figure.subplots(
-        2, 1, sharex=True, height_ratios=[3.0, 0.4 + 0.2 * max(1, len(rows))]
-    )
+    rows = seen[np.argsort(least[seen], kind="stable")][:most]
+    high, bars_high = (3.0 if width >= WIDE else 1.8), 0.4 + 0.2 * max(1, len(rows))
+    figure = Figure(figsize=(width, high + bars_high), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[high, bars_high])
     ends = np.concatenate([steps.start, steps.end, np.linspace(proof.start, proof.end, SAMPLES)])
     times = np.unique(np.clip(ends, proof.start, proof.end))
     above.step(times, steps.clearance(times), where="mid", color="#3b6ea5", lw=1.2)
@@ -56,15 +72,7 @@ def proof_figure(proof: PathProof, title: str = "") -> Figure:
     above.set_ylim(0.0, 1.25 * top or 1.0)
     above.set_title(f"{title}: {proof.verdict.name}" if title else proof.verdict.name, fontsize=10)
     for row, pair in enumerate(rows.tolist()):
-        for how, colour in COLOURS.items():
-            mine = np.flatnonzero((steps.pair == pair) & (steps.how == how.value))
-            bars = [
-                [(a, row - 0.38), (b, row - 0.38), (b, row + 0.38), (a, row + 0.38)]
-                for a, b in zip(steps.start[mine].tolist(), steps.end[mine].tolist(), strict=True)
-            ]
-            below.add_collection(
-                PolyCollection(bars, facecolor=colour, edgecolor="white", linewidth=0.4)
-            )
+        _draw_bars(below, steps, row, pair)
     if proof.verdict is not Verdict.PROVEN:
         at = proof.time if np.isnan(proof.latest) else proof.latest
         for axes in (above, below):
@@ -79,5 +87,21 @@ def proof_figure(proof: PathProof, title: str = "") -> Figure:
         PolyCollection([], facecolor=colour, label=f"proven {TOLD[how]}")
         for how, colour in COLOURS.items()
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
+    ncols = len(handles) if width >= WIDE else 1
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=ncols, fontsize=8, frameon=False
+    )
     return figure
+
+
+def _draw_bars(axes: Axes, steps: Steps, row: int, pair: int) -> None:
+    """The steps of a pair in a row of the picture."""
+    for how, colour in COLOURS.items():
+        mine = np.flatnonzero((steps.pair == pair) & (steps.how == how.value))
+        bars = [
+            [(a, row - 0.38), (b, row - 0.38), (b, row + 0.38), (a, row + 0.38)]
+            for a, b in zip(steps.start[mine].tolist(), steps.end[mine].tolist(), strict=True)
+        ]
+        axes.add_collection(
+            PolyCollection(bars, facecolor=colour, edgecolor="white", linewidth=0.4)
+        )
