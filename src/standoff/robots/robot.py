@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,9 @@ from standoff.robots.rows import RobotRows
 from standoff.robots.state import RobotState
 from standoff.tracking.threads import in_parts
 from standoff.world import World
+
+if TYPE_CHECKING:
+    from standoff.robots.robot_page import RobotPage
 
 Array = NDArray[np.float64]
 Meshes = Any
@@ -348,7 +351,7 @@ class Robot(RobotModel):
 
         return certify_box(self, lower, upper, clearance, **options)
 
-    def view(self, what: Any, **options: Any) -> Any:
+    def view(self, what: Any, **options: Any) -> RobotPage:
         """Show the robot in the browser, at a configuration or along a path: see `view.view`."""
         from standoff.robots.view import view
 
