@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import pickle
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Barrier
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from robot_models import EXACT, MJCF, drawn, exact_robot, urdf
 
 import standoff as so
 from draws import draws
+from standoff.robots.horizons import Horizons
 
 mujoco = pytest.importorskip("mujoco")
 pin = pytest.importorskip("pinocchio")
@@ -234,3 +237,17 @@ def test_a_robot_with_joints_that_mimic_is_not_stored() -> None:
     """Pinocchio 4.1 stores such models without what it needs, and crashes with what it reads."""
     with pytest.raises(so.StandoffError, match="mimic"):
         pickle.dumps(exact_robot("panda"))
+
+
+def test_threads_that_ask_for_a_horizon_at_once_get_one_world(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Both find none and make one: the state of the one must fit the world of the other."""
+    robot = exact_robot("panda")
+    both, made = Barrier(2, timeout=60.0), Horizons._made
+    monkeypatch.setattr(
+        Horizons, "_made", lambda self, within: (both.wait(), made(self, within))[1]
+    )
+    with ThreadPoolExecutor(2) as threads:
+        found = list(threads.map(robot._horizons.world, [0.123, 0.123]))
+    assert found[0] is found[1]

@@ -49,11 +49,12 @@ class Horizons(KeepsReadOnly):
         """The world with a horizon, length; made once."""
         found = self._worlds.get(within)
         if found is None:
-            found = self._worlds[within] = self._made(within)
+            # threads may ask at once, as those of `clearances`: the first that is made is kept
+            found = self._worlds.setdefault(within, self._made(within))
             # states belong to the world of the robot's own horizon: that one stays
-            others = [horizon for horizon in self._worlds if horizon != self._within]
+            others = [horizon for horizon in list(self._worlds) if horizon != self._within]
             for horizon in others[:-KEPT]:
-                del self._worlds[horizon]
+                self._worlds.pop(horizon, None)
         return found
 
     def widening(self, first: float) -> Iterator[World]:

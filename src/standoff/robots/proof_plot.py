@@ -52,24 +52,7 @@ def proof_figure(
     high, bars_high = (3.0 if width >= WIDE else 1.8), 0.4 + 0.2 * max(1, len(rows))
     figure = Figure(figsize=(width, high + bars_high), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[high, bars_high])
-    ends = np.concatenate([steps.start, steps.end, np.linspace(proof.start, proof.end, SAMPLES)])
-    times = np.unique(np.clip(ends, proof.start, proof.end))
-    above.step(times, steps.clearance(times), where="mid", color="#3b6ea5", lw=1.2)
-    above.axhline(proof.clearance, color="#b3261e", lw=1.0, ls="--")
-    above.annotate(
-        f"asked for: {proof.clearance:g}",
-        (0.995, proof.clearance),
-        xycoords=("axes fraction", "data"),
-        xytext=(0, 3),
-        textcoords="offset points",
-        ha="right",
-        color="#b3261e",
-        fontsize=8,
-    )
-    above.set_ylabel("proven for all pairs")
-    known = steps.clearance(times)
-    top = max(proof.clearance, float(np.nanmax(known, initial=0.0)))
-    above.set_ylim(0.0, 1.25 * top or 1.0)
+    _draw_clearance(above, proof)
     above.set_title(f"{title}: {proof.verdict.name}" if title else proof.verdict.name, fontsize=10)
     for row, pair in enumerate(rows.tolist()):
         _draw_bars(below, steps, row, pair)
@@ -92,6 +75,29 @@ def proof_figure(
         handles=handles, loc="outside lower center", ncols=ncols, fontsize=8, frameon=False
     )
     return figure
+
+
+def _draw_clearance(above: Axes, proof: PathProof) -> None:
+    """What is proven for all pairs, over time, and what was asked for."""
+    steps = proof.steps
+    ends = np.concatenate([steps.start, steps.end, np.linspace(proof.start, proof.end, SAMPLES)])
+    times = np.unique(np.clip(ends, proof.start, proof.end))
+    above.step(times, steps.clearance(times), where="mid", color="#3b6ea5", lw=1.2)
+    above.axhline(proof.clearance, color="#b3261e", lw=1.0, ls="--")
+    above.annotate(
+        f"asked for: {proof.clearance:g}",
+        (0.995, proof.clearance),
+        xycoords=("axes fraction", "data"),
+        xytext=(0, 3),
+        textcoords="offset points",
+        ha="right",
+        color="#b3261e",
+        fontsize=8,
+    )
+    above.set_ylabel("proven for all pairs")
+    known = steps.clearance(times)
+    top = max(proof.clearance, float(np.nanmax(known, initial=0.0)))
+    above.set_ylim(0.0, 1.25 * top or 1.0)
 
 
 def _draw_bars(axes: Axes, steps: Steps, row: int, pair: int) -> None:
