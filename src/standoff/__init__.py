@@ -2,7 +2,8 @@
 
 The names of every day; the rest is in modules that load when asked for: `so.points`, `so.voronoi`,
 `so.impact`, `so.recording`, `so.automaton`, `so.bodies`, `so.geometry`, `so.motion`, `so.tracking`,
-`so.control`, `so.simulation`, `so.devices`, `so.servo`, `so.scene`, `so.world`, `so.robots`.
+`so.control`, `so.simulation`, `so.devices`, `so.servo`, `so.scene`, `so.world`, `so.robots`,
+`so.solids`.
 """
 
 from typing import TYPE_CHECKING
@@ -96,6 +97,7 @@ else:
             "scene",
             "servo",
             "simulation",
+            "solids",
             "tracking",
             "voronoi",
             "world",

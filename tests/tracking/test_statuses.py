@@ -15,10 +15,11 @@ from standoff.kernels.entries import frames
 from standoff.kernels.frame import answer
 from standoff.kernels.state import arrays
 from standoff.motion import Helix
+from standoff.tracking.status import OF_SOLIDS
 
 DOCS = Path(__file__).parents[2] / "docs"
-ANSWERED = [status for status in so.Status if status is not so.Status.REFUSED]
-"""Those of frames; the other one is of rows that no kernel answers."""
+ANSWERED = [s for s in so.Status if s is not so.Status.REFUSED and s not in OF_SOLIDS]
+"""Those of frames; the others are of rows that no kernel answers, and of solids."""
 
 
 @pytest.fixture(scope="module")

@@ -8,6 +8,7 @@ import pytest
 from standoff.bodies.features import Feature
 from standoff.motion import Pose
 from standoff.tracking import Status
+from standoff.tracking.status import OF_SOLIDS
 from standoff.view.plot_scale import PlotScale, scale_of
 from standoff.view.readout import beside, readout, verdict
 from standoff.view.shown import Shown
@@ -85,8 +86,8 @@ def test_an_answer_is_said_in_words(
     assert verdict(shown, "mm", 100.0) == said
     if short is not None:
         assert beside(shown, "mm", 100.0) == short
-    # a page asks for no rows of a batch, so none is refused
-    assert {status for status, *_ in SAID} == set(Status) - {Status.REFUSED}
+    # a page asks for no rows of a batch, so none is refused, and draws no solids
+    assert {status for status, *_ in SAID} == set(Status) - {Status.REFUSED, *OF_SOLIDS}
 
 
 def test_the_table_names_bodies_and_writes_no_python() -> None:

@@ -9,7 +9,7 @@ from standoff.kernels.compiler.machine import source_digest
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion.tolerances import ROUNDED
-from standoff.tracking.status import Status
+from standoff.tracking.status import OF_SOLIDS, Status
 from standoff.version import __version__
 
 OF_BLOCKS = (
@@ -40,7 +40,8 @@ def layout_header(smooth_frames: list[str]) -> str:
     lines = ["/* Made with the library. */"]
     lines += [f"#define {name} {value!r}" for name, value in constants.items()]
     lines += [f"#define {name} {json.dumps(text)}" for name, text in texts.items()]
-    told = [status.advice for status in Status if status is not Status.REFUSED]  # of rows in Python
+    elsewhere = (Status.REFUSED, *OF_SOLIDS)  # of rows in Python, and of solids
+    told = [status.advice for status in Status if status not in elsewhere]
     advice = ", ".join(json.dumps(sentence) for sentence in told)
     frames = " ".join(f"SMOOTH_FRAME({name})" for name in smooth_frames)
     lines += [f"#define STATUS_ADVICE {advice}", f"#define SMOOTH_FRAMES {frames}"]

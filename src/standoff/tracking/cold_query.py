@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, Protocol, TypeVar, overload, runtime_checkable
+
 from standoff.bodies.body import Body
 from standoff.checks.numbers import positive
 from standoff.motion import PoseLike
@@ -10,16 +12,57 @@ from standoff.tracking.mended_calls import found_anywhere
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.reached import cold_table
 
+T_co = TypeVar("T_co", covariant=True)
 
+
+@runtime_checkable
+class Queried(Protocol[T_co]):
+    """What is no `Body`, and answers a cold query with another by itself: a solid."""
+
+    def cold_query(
+        self, a: Any, b: Any, pose_a: PoseLike, pose_b: PoseLike, within: float | None
+    ) -> T_co:
+        """The answer of A and B, one of which is this one; `within` is the horizon."""
+        ...
+
+
+@overload
 def distance(
     a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike, *, within: float | None = None
-) -> Proximity:
+) -> Proximity: ...
+
+
+@overload
+def distance(
+    a: Queried[T_co],
+    b: Body | Queried[T_co],
+    pose_a: PoseLike,
+    pose_b: PoseLike,
+    *,
+    within: float | None = None,
+) -> T_co: ...
+
+
+@overload
+def distance(
+    a: Body,
+    b: Queried[T_co],
+    pose_a: PoseLike,
+    pose_b: PoseLike,
+    *,
+    within: float | None = None,
+) -> T_co: ...
+
+
+def distance(
+    a: Any, b: Any, pose_a: PoseLike, pose_b: PoseLike, *, within: float | None = None
+) -> Any:
     """The signed minimum distance of two bodies at two poses: cold, global, certified.
 
     Parameters
     ----------
-    a, b : Body
-        Two spatial bodies, or two planar ones.
+    a, b : Body, Solid or PlanarSolid
+        Two spatial ones, or two planar ones.
     pose_a, pose_b : Pose or what ``Pose.of`` reads
         World poses of the bodies' frames.
     within : float, optional
@@ -28,14 +71,14 @@ def distance(
 
     Returns
     -------
-    Proximity
+    Proximity, or SolidProximity where one of them need not be convex
         In penetration ``distance`` is less than 0, the least depth, and ``status`` GLOBAL (or
         LOCAL, where it could not be proven to be the least).
 
     Raises
     ------
     TypeError
-        Not a body.
+        Neither a body nor a solid.
     ValueError
         No pose; a horizon that is not positive; a planar body with a spatial one or out of its
         plane; two half-spaces.
@@ -44,6 +87,9 @@ def distance(
     try:
         table = cold_table(a, b, horizon)
     except TypeError:
+        solid = next((each for each in (a, b) if isinstance(each, Queried)), None)
+        if solid is not None:
+            return solid.cold_query(a, b, pose_a, pose_b, horizon)
         check_pair(a, b)  # what cannot be hashed is no body either
         raise
     return found_anywhere((a, b), table, (pose_a, pose_b, None, None))

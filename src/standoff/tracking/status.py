@@ -32,11 +32,16 @@ class Status(Ordered):
     NOT_RESTARTED = 7
     FAR = 8
     REFUSED = 9
+    WITHIN = 10
+    CONTINUUM = 11
+    TOUCHING = 12
+    CONTAINED = 13
 
     @property
     def certified(self) -> bool:
-        """Is what was asked proven: the signed distance (CONVERGED while apart, GLOBAL in
-        penetration), or that the bodies are beyond the horizon (FAR)?"""
+        """Is what was asked proven: the signed distance (CONVERGED or CONTINUUM while apart,
+        GLOBAL in penetration, TOUCHING between them), the least wall of a solid inside another
+        (CONTAINED), or that the bodies are beyond the horizon (FAR)?"""
         return self in _CERTIFIED
 
     @property
@@ -50,7 +55,17 @@ class Status(Ordered):
         return _ADVICE[self]
 
 
-_CERTIFIED = (Status.CONVERGED, Status.GLOBAL, Status.FAR)
+OF_SOLIDS = (Status.WITHIN, Status.CONTINUUM, Status.TOUCHING, Status.CONTAINED)
+"""What only an answer of solids that need not be convex can end with."""
+
+_CERTIFIED = (
+    Status.CONVERGED,
+    Status.GLOBAL,
+    Status.FAR,
+    Status.CONTINUUM,
+    Status.TOUCHING,
+    Status.CONTAINED,
+)
 _PENETRATING = (Status.LOCAL, Status.GLOBAL, Status.OVERLAPPING)
 _ADVICE = {
     Status.CONVERGED: (
@@ -91,6 +106,22 @@ _ADVICE = {
     Status.FAR: (
         "The bodies are proven to be farther apart than the horizon: the lower bound holds, and no "
         "distance was asked for; for one, raise `within`."
+    ),
+    Status.WITHIN: (
+        "The distance is proven to lie between the lower and the upper bound, which are farther "
+        "apart than the tolerance: allow more evaluations, or use the bounds as they are."
+    ),
+    Status.CONTINUUM: (
+        "The distance is proven, and a whole set of pairs of points has it: the witness points are "
+        "one of them, and the ends of the set are in `continuum`."
+    ),
+    Status.TOUCHING: (
+        "The solids are proven to be closer than the tolerance and the slack, and no point was "
+        "found inside both: they touch, or overlap by less than that."
+    ),
+    Status.CONTAINED: (
+        "One solid is wholly inside the other's material: the distance is the least wall between "
+        "their boundaries."
     ),
     Status.REFUSED: (
         "There is no answer, because a pose of this row is invalid: `errors` of so.distances' "

@@ -1,0 +1,35 @@
+"""Solids that need not be convex: what they are, and the proven distance between two of them."""
+
+from typing import TYPE_CHECKING
+
+from standoff.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from standoff.solids.answer import (
+        Continuum,
+        NearestPair,
+        Overlap,
+        SolidCounts,
+        SolidProximity,
+    )
+else:
+    __getattr__, __dir__ = on_demand(
+        __name__,
+        {
+            "standoff.solids.answer": (
+                "Continuum",
+                "NearestPair",
+                "Overlap",
+                "SolidCounts",
+                "SolidProximity",
+            ),
+        },
+    )
+
+__all__ = [
+    "Continuum",
+    "NearestPair",
+    "Overlap",
+    "SolidCounts",
+    "SolidProximity",
+]

@@ -1,0 +1,221 @@
+"""The answer of two solids that need not be convex: a proven interval, and what it was found at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.features import Feature
+from standoff.bodies.plain_data import PlainData, plain, without_roundoff
+from standoff.errors import StandoffError
+from standoff.read_only import KeepsReadOnly
+from standoff.tracking.derivatives import NOT_UNIQUE, Smoothness
+from standoff.tracking.status import Status
+
+Array = NDArray[np.float64]
+
+
+class NearestPair(NamedTuple):
+    """A local minimum of the distance between two boundaries.
+
+    Attributes
+    ----------
+    distance : float
+        Length; negative in an overlap, where moving B by -distance * normal parts this place.
+    lower_bound : float
+        No two points of the two pieces of boundary around it are proven to be closer.
+    point_a, point_b : (3,) arrays
+        World axes.
+    normal : (3,) array
+        Unit vector from A to B.
+    feature_a, feature_b : Feature
+    parameters_a, parameters_b : tuple of float
+        As those of a `Proximity`.
+    """
+
+    distance: float
+    lower_bound: float
+    point_a: Array
+    point_b: Array
+    normal: Array
+    feature_a: Feature
+    feature_b: Feature
+    parameters_a: tuple[float, ...]
+    parameters_b: tuple[float, ...]
+
+
+class Continuum(NamedTuple):
+    """A set of nearest pairs that are all at the same distance.
+
+    Attributes
+    ----------
+    kind : "line", "arc", "surface"
+        What the witness points of one body fill.
+    ends : tuple of (point_a, point_b)
+        The pairs at its ends: two of a line or an arc, the corners found of a surface; none of a
+        closed one.
+    """
+
+    kind: Literal["line", "arc", "surface"]
+    ends: tuple[tuple[Array, Array], ...]
+
+
+class Overlap(NamedTuple):
+    """What is proven of two solids that overlap.
+
+    Attributes
+    ----------
+    common_point : (3,) array
+        Inside both, world axes.
+    radius : float
+        The ball of this radius round it is inside both: no translation shorter than twice the
+        radius parts the solids.
+    """
+
+    common_point: Array
+    radius: float
+
+
+class SolidCounts(NamedTuple):
+    """What an answer took.
+
+    Attributes
+    ----------
+    evaluations : int
+        Points and jets of the boundaries that were computed.
+    node_pairs : int
+        Pairs of boxes whose distance was bounded.
+    leaf_pairs : int
+        Pairs of pieces that had to be closed.
+    boxes : int
+        Boxes that potentials were bounded over.
+    bisections : int
+        Pieces that were cut in two because no potential closed them whole.
+    """
+
+    evaluations: int = 0
+    node_pairs: int = 0
+    leaf_pairs: int = 0
+    boxes: int = 0
+    bisections: int = 0
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SolidProximity(KeepsReadOnly, PlainData):
+    """Witness points of two solids, and the interval in which their distance is proven to lie.
+
+    All vectors are in world axes. The names are those of `Proximity`, where both have them.
+
+    Attributes
+    ----------
+    status : Status
+    distance : float
+        Between the witness points while apart; of a solid inside the other's material the least
+        wall between both boundaries; in an overlap ``-2 * overlap.radius``, a depth that no
+        translation is less than.
+    lower_bound, upper_bound : float
+        Proven: the true value of what ``distance`` stands for is neither less nor more. In an
+        overlap the upper bound is the distance, and the lower one minus infinity unless a
+        translation was found that parts the solids.
+    slack : float
+        How far the given boundaries may be from what they stand for, both together [length].
+    point_a, point_b : (3,) arrays
+    normal : (3,) array
+        Unit vector from A to B.
+    feature_a, feature_b : Feature
+    parameters_a, parameters_b : tuple of float
+    minima : tuple of NearestPair
+        The pairs at the least distance, and with ``minima=`` all local ones below it, nearest
+        first. The first is the answer's own.
+    continuum : Continuum or None
+        With the status CONTINUUM: the set of nearest pairs.
+    overlap : Overlap or None
+        With the status OVERLAPPING.
+    inside : "A", "B" or ""
+        Which solid is inside the other's material.
+    gradient_rows : (12,) array
+        See `gradient`.
+    smoothness : Smoothness
+        SMOOTH where one pair is the nearest; ONE_SIDED at a tie, of which the gradient is that of
+        the first pair; PARTIAL in a continuum, where only translations along the normal count;
+        UNDEFINED where nothing is known.
+    counts : SolidCounts
+    poses : pair of (12,) arrays
+        World poses of A and B for which the answer holds: R row-major, p.
+    """
+
+    status: Status
+    distance: float
+    lower_bound: float
+    upper_bound: float
+    slack: float
+    point_a: Array
+    point_b: Array
+    normal: Array
+    feature_a: Feature
+    feature_b: Feature
+    parameters_a: tuple[float, ...]
+    parameters_b: tuple[float, ...]
+    minima: tuple[NearestPair, ...]
+    continuum: Continuum | None
+    overlap: Overlap | None
+    inside: Literal["A", "B", ""]
+    gradient_rows: Array
+    smoothness: Smoothness
+    counts: SolidCounts
+    poses: tuple[Array, Array]
+
+    @property
+    def certified(self) -> bool:
+        """Is what was asked proven to the tolerance?"""
+        return self.status.certified
+
+    @property
+    def penetrating(self) -> bool:
+        """Do the solids overlap?"""
+        return self.status.penetrating
+
+    @property
+    def depth(self) -> float:
+        """0 while apart, else a depth that no translation is less than."""
+        return max(0.0, -self.distance)
+
+    @property
+    def unique(self) -> bool:
+        """Are the witness points the only ones at the least distance?"""
+        return self.smoothness is Smoothness.SMOOTH
+
+    @property
+    def gradient(self) -> Array:
+        """(12,) derivative of the distance by the unit twists (v_A, omega_A, v_B, omega_B).
+
+        At a tie it is that of the first pair, one-sided; see `smoothness`.
+
+        Raises
+        ------
+        StandoffError
+            Where it is not defined.
+        """
+        if self.smoothness in (Smoothness.PARTIAL, Smoothness.UNDEFINED):
+            raise StandoffError(
+                f"The distance has no gradient here: {NOT_UNIQUE} `gradient_rows` has what is "
+                "known of it, and `smoothness` says what that is."
+            )
+        return self.gradient_rows
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the answer as plain data, under the attributes' names."""
+        facts = {field.name: plain(getattr(self, field.name)) for field in fields(self)}
+        return facts | {"certified": self.certified}
+
+    def __repr__(self) -> str:
+        size = max(float(np.abs(self.point_a).max(initial=0.0)), abs(self.distance))
+        shown = [self.distance, self.upper_bound - self.lower_bound]
+        distance, gap = without_roundoff(shown, size)
+        return (
+            f"SolidProximity(distance={distance:.12g}, gap={gap:.2g}, "
+            f"{self.feature_a} - {self.feature_b}, {self.status.name})"
+        )
