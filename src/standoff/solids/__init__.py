@@ -12,6 +12,7 @@ if TYPE_CHECKING:
         SolidCounts,
         SolidProximity,
     )
+    from standoff.solids.boundary_file import open_boundary, save_boundary
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -23,6 +24,7 @@ else:
                 "SolidCounts",
                 "SolidProximity",
             ),
+            "standoff.solids.boundary_file": ("open_boundary", "save_boundary"),
         },
     )
 
@@ -32,4 +34,6 @@ __all__ = [
     "Overlap",
     "SolidCounts",
     "SolidProximity",
+    "open_boundary",
+    "save_boundary",
 ]
