@@ -138,17 +138,21 @@ def planar_and_continuous() -> so.Robot:
     return so.Robot.from_pinocchio(robot, shapes)
 
 
-def with_a_compound() -> so.Robot:
-    """An arm with two hinges and a slide beside an obstacle of two pieces off its origin."""
-    arm = """<mujoco><worldbody><body><joint type="hinge" axis="0 0 1"/>
+def with_compounds() -> so.Robot:
+    """An arm; its tip and the obstacle are of pieces off their origins."""
+    arm = """<mujoco><asset><mesh name="m" vertex="0 0 0 .1 0 0 0 .1 0 0 0 .1"/></asset>
+    <worldbody><body><joint type="hinge" axis="0 0 1"/>
     <joint type="slide" axis="1 0 0"/><joint type="hinge" axis="0 1 0.2"/>
-    <geom name="tip" type="ellipsoid" size="0.1 0.05 0.07" pos="0.2 0.1 0"/></body>
-    </worldbody></mujoco>"""
+    <geom name="tip" type="mesh" mesh="m" pos="0.2 0.1 0"/></body></worldbody></mujoco>"""
     egg, ball = so.shapes.ellipsoid(0.3, 0.2, 0.4), so.shapes.sphere(0.1)
     place = so.Pose.exp([0.4, 0.1, 0.2], [0.3, 0.2, 0.1])
-    post = so.compound({"egg": (egg, place), "ball": (ball, so.Pose.exp([0, 0, 0], [0, 3.0, 0]))})
-    away = so.Pose.exp([0.2, 0.1, 0.0], [1.5, 0.2, 0.1])
-    return so.Robot.from_mujoco(model(arm)).with_obstacles({"post": (post, away)})
+    away = so.Pose.exp([0, 0, 0], [0, 3.0, 0])
+    post = so.compound({"egg": (egg, place), "ball": (ball, away)})
+    small = so.shapes.ellipsoid(0.1, 0.05, 0.07)
+    tip = so.compound({"egg": (small, place), "other": (small, so.Pose.exp([0, 0, 0], [0, -1, 0]))})
+    stand = so.Pose.exp([0.2, 0.1, 0.0], [1.5, 0.2, 0.1])
+    robot = so.Robot.from_mujoco(model(arm), meshes={"tip": tip})
+    return robot.with_obstacles({"post": (post, stand)})
 
 
 KINDS = {
@@ -160,7 +164,7 @@ KINDS = {
         planar_and_continuous,
         (slice(2, 4), slice(4, 6), slice(6, 10)),
     ),
-    "an obstacle of pieces": (with_a_compound, ()),
+    "bodies of pieces": (with_compounds, ()),
 }
 
 
