@@ -93,43 +93,6 @@ def test_exactly_the_clearance_is_not_decided(case: object) -> None:
     assert proof.witness is not None
     assert proof.time < proof.end
     assert str(proof).startswith("UNDECIDED")
-    assert all(proof.start <= a < b <= proof.end for a, b in proof.undecided)
-    assert proof.undecided[0][0] == proof.time
-
-
-def test_behind_an_undecided_touch_a_violation_is_found() -> None:
-    """A first post is passed at exactly the clearance, a second one too close."""
-    turned = 0.7
-    far = np.array([np.cos(turned), np.sin(turned), 0.0])
-    robot = robot_of(
-        [1],
-        [-1],
-        [np.eye(4)],
-        [[0, 0, 1.0]],
-        [(0, BALL, moved(1, 0, 0))],
-        fixed={
-            "post": (BALL, moved(1.1 + CLEARANCE, 0, 0)),
-            "second": (BALL, moved(*((1.1 + CLEARANCE - 1e-4) * far))),
-        },
-    )
-    proof = robot.certify(np.array([[-0.9], [1.1]]), CLEARANCE, max_steps=20_000)
-    assert proof.verdict is Verdict.VIOLATED
-    assert "second" in proof.witness.names
-    assert proof.latest == pytest.approx(0.8, abs=1e-2)
-    (first, *_, last) = proof.undecided
-    assert first[0] == proof.time
-    assert first[0] < 0.45 < first[1] + 1e-3
-    assert first[1] - first[0] < 1e-2
-    assert last[1] <= proof.latest
-
-
-def test_a_slide_at_the_clearance_ends_within_a_bounded_number_of_steps() -> None:
-    robot, path = sliding(CLEARANCE)
-    proof = robot.certify(path, CLEARANCE)
-    assert proof.verdict is Verdict.UNDECIDED
-    assert proof.counts.tried < 100_000  # two million without a bound
-    assert proof.undecided == ((0.0, 1.0),)
-    assert "1 span, 1 s in all" in str(proof)
 
 
 def test_the_steps_of_a_grazing_path_grow_with_the_digits_alone() -> None:

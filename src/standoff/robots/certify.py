@@ -16,13 +16,8 @@ from numpy.typing import NDArray
 
 from standoff.checks.numbers import not_negative, whole_number
 from standoff.progress import Progress
-from standoff.robots.certify_tolerances import (
-    ASKED_CLEARANCE,
-    BRACKET,
-    OPEN_STEP,
-    SHORTEST_STEP,
-)
-from standoff.robots.intervals import Intervals, joined, lowest, spans_of, steps_of
+from standoff.robots.certify_tolerances import ASKED_CLEARANCE, BRACKET, SHORTEST_STEP
+from standoff.robots.intervals import Intervals, joined, lowest, steps_of
 from standoff.robots.limits import check_limits
 from standoff.robots.motion_bounds import bends, least_speed, seen_from
 from standoff.robots.motions import Frames
@@ -109,11 +104,11 @@ class _Search:
         self.doubt = sight.roundoff(
             begin, self.gone[-1], latest, float(self.speeds.max(initial=0.0))
         )
+        self.least = SHORTEST_STEP * (path.end - path.start)
         self.tried = 0
         self.violation: tuple[float, int, Apart] | None = None
         self.proven: list[tuple[Intervals, Array, How]] = []
         self.stuck: list[Intervals] = []
-        self.doubtful = np.zeros(sight.pairs, dtype=bool)
 
     def _check_kinematics(self) -> None:
         """Hold the joints as read against the package: bounds alone may prove a whole path."""
@@ -152,9 +147,10 @@ class _Search:
 
     def _before_the_end(self, waiting: Intervals) -> Intervals:
         """What lies before the first instant that is known to be bad."""
-        if self.violation is None:
-            return waiting
-        return waiting.some(waiting.first < self.violation[0])
+        end = math.inf if self.violation is None else self.violation[0]
+        if self.stuck:
+            end = min(end, *(float(each.first.min()) for each in self.stuck))
+        return waiting.some(waiting.first < end) if end < math.inf else waiting
 
     # --- some intervals -----------------------------------------------------------------------
 
@@ -331,13 +327,10 @@ class _Search:
     def _split(self, left: Intervals) -> Intervals:
         """Parts of what is left; what is too short is put aside."""
         known = left.after[:, 1] + self.doubt < self.clearance
-        share = np.where(self.doubtful[left.pairs], OPEN_STEP, SHORTEST_STEP)
-        share[known] = BRACKET
-        short = left.last - left.first <= share * (self.path.end - self.path.start)
+        short = left.last - left.first <= np.where(known, BRACKET / SHORTEST_STEP, 1.0) * self.least
         short &= left.pieces[:, 1] - left.pieces[:, 0] == 1
         if short.any():
             self.stuck.append(left.some(short))
-            self.doubtful[left.pairs[short & ~known]] = True
             left = left.some(~short)
         for _ in range(1 if len(left.pairs) > FEW else DEEPER):
             left = self._halved(left)
@@ -380,7 +373,6 @@ class _Search:
             latest=latest,
             witness=witness,
             proven=float(steps.bound.min(initial=math.inf)) if witness is None else math.nan,
-            undecided=spans_of(open_, self.path.end if self.violation is None else latest),
             counts=counts,
             steps=steps,
         )

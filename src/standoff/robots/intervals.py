@@ -80,17 +80,3 @@ def steps_of(proven: Sequence[tuple[Intervals, Array, How]], names: Sequence[Nam
     for array in found[:5]:
         array.flags.writeable = False
     return found
-
-
-def spans_of(left: Intervals, end: float) -> tuple[tuple[float, float], ...]:
-    """The spans of time that intervals cover before an end, in order and without a common part."""
-    found: list[tuple[float, float]] = []
-    for k in np.argsort(left.first, kind="stable"):
-        first, last = float(left.first[k]), min(float(left.last[k]), end)
-        if first >= end:
-            break
-        if found and first <= found[-1][1]:
-            found[-1] = found[-1][0], max(found[-1][1], last)
-        else:
-            found.append((first, last))
-    return tuple(found)

@@ -165,10 +165,6 @@ class PathProof(KeepsReadOnly, PlainData):
         The pair that is nearer at ``latest``, or that is not decided at ``time``; None if PROVEN.
     proven : float
         PROVEN: no pair is nearer than this at any instant [length]; else nan.
-    undecided : tuple of (float, float)
-        Spans of time before ``latest``, or before the end, in which some pair is proven neither
-        to keep the clearance nor to be nearer [s]. A span that ends at ``latest`` leads up to the
-        violation.
     counts : PathCounts
     steps : Steps
     """
@@ -181,7 +177,6 @@ class PathProof(KeepsReadOnly, PlainData):
     latest: float
     witness: Witness | None
     proven: float
-    undecided: tuple[tuple[float, float], ...]
     counts: PathCounts
     steps: Steps
 
@@ -202,7 +197,6 @@ class PathProof(KeepsReadOnly, PlainData):
             f"{counted(counts.queries, 'distance')}"
         )
         span = f"{self.start:.6g} to {self.end:.6g} s"
-        open_for = math.fsum(last - first for first, last in self.undecided)
         if self.verdict is Verdict.PROVEN:
             return (
                 f"PROVEN: every pair keeps {self.clearance:.6g} at every instant from {span}; "
@@ -214,8 +208,8 @@ class PathProof(KeepsReadOnly, PlainData):
                 f"{self.clearance:.6g}; proven until {self.time:.9g} s of {span} ({took})"
             )
         return (
-            f"UNDECIDED: {self.witness} at {self.time:.9g} s; proven until there, of {span}; "
-            f"open in {counted(len(self.undecided), 'span')}, {open_for:.3g} s in all ({took})"
+            f"UNDECIDED: {self.witness} at {self.time:.9g} s; proven until there, of {span} "
+            f"({took})"
         )
 
     def __repr__(self) -> str:
