@@ -100,6 +100,9 @@ def sampled(arm: Arm, points: np.ndarray, count: int) -> Samples:
 def wrong_in(proof: PathProof, arm: Arm, points: np.ndarray, samples: Samples) -> str:
     """What of a proof the samples speak against; empty if nothing."""
     times, least = samples
+    above = proof.steps.clearance(times) - least
+    if np.nanmax(above, initial=-np.inf) > ACCURACY:
+        return f"{np.nanmax(above)} more is proven than there is"
     if proof.verdict is Verdict.PROVEN:
         kept = max(proof.clearance, proof.proven)
         return "" if least.min() >= kept - ACCURACY else f"{least.min()} is less than {kept}"
