@@ -31,7 +31,7 @@ def assembly() -> Assembly:
             "bolt": (bolt(1.0, 2.0, 3.0, 4.0), at(0.0, 0.0, -0.5)),
             "ring": (ring(2.6, 0.4), at(0.0, 0.0, 3.0)),
             "ball": (so.shapes.ellipsoid(0.2, 0.2, 0.2), at(3.0, 3.0, 1.5)),
-            "far": so.shapes.ellipsoid(0.2, 0.3, 0.2).transformed(np.eye(3), [50.0, 0.0, 0.0]),
+            "far": (so.shapes.ellipsoid(0.2, 0.3, 0.2), at(50.0, 0.0, 0.0)),
         },
         title="A bolt in a plate",
         unit="mm",

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
         SolidCounts,
         SolidProximity,
     )
+    from standoff.solids.assembly import Assembly, AssemblyAnswer, PartsAnswer
     from standoff.solids.boundary_file import open_boundary, save_boundary
 else:
     __getattr__, __dir__ = on_demand(
@@ -24,14 +25,18 @@ else:
                 "SolidCounts",
                 "SolidProximity",
             ),
+            "standoff.solids.assembly": ("Assembly", "AssemblyAnswer", "PartsAnswer"),
             "standoff.solids.boundary_file": ("open_boundary", "save_boundary"),
         },
     )
 
 __all__ = [
+    "Assembly",
+    "AssemblyAnswer",
     "Continuum",
     "NearestPair",
     "Overlap",
+    "PartsAnswer",
     "SolidCounts",
     "SolidProximity",
     "open_boundary",
