@@ -149,9 +149,7 @@ def _meeting(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> SolidPr
     starts = [middle]
     for own, other, which in ((pair.a, pair.b, "A"), (pair.b, pair.a, "B")):
         for point in _references(own):
-            world = (
-                point @ pair.ra.T + pair.pa if which == "A" else point @ pair.rb.T + pair.pb
-            )
+            world = point @ pair.ra.T + pair.pa if which == "A" else point @ pair.rb.T + pair.pb
             spot = pair.in_b(world) if which == "A" else pair.in_a(world)
             if within_box(other, spot):
                 starts.append(world)

@@ -120,7 +120,9 @@ def _on_it(
     return np.reshape(kept, (-1, 4)), cuts
 
 
-def _bends_along_u(d: Array, rows: Array, wide: Array, bent: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _bends_along_u(
+    d: Array, rows: Array, wide: Array, bent: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
     hu, hv = rows[:, 1] - rows[:, 0], rows[:, 3] - rows[:, 2]
     with np.errstate(all="ignore"):
         bend_u = (d[:, 2] * hu + d[:, 3] * hv) / d[:, 0]
@@ -179,24 +181,33 @@ def _leaf_reals(rect: Array, bounds: Array, cones: Array, natural: Array) -> Arr
     return reals
 
 
-def edge_leaves(
-    boundary: PackedParts, charts: dict[int, FaceChart], number: int, pieces: list[Piece], size: float
-) -> list[Leaf]:
-    """The intervals of one edge; none of a smooth one, whose points are its faces'."""
-    row = int(boundary.ints[L.EDGES]) + L.EDGE_STRIDE * number
-    flags = int(boundary.ints[row + L.EDGE_FLAGS])
+def _parts_of_edge(boundary: PackedParts, number: int) -> list[tuple[float, float]]:
+    """The parts of an edge that are leaves; none of a smooth one, whose points are its faces'."""
+    flags = _edge_flags(boundary, number)
     if flags & L.SMOOTH and not flags & L.CREASED:
         return []
+    return list(edge_ranges(boundary.edge_parts[number].curve, ARC, LONGEST * boundary.size))
+
+
+def _edge_flags(boundary: PackedParts, number: int) -> int:
+    row = int(boundary.ints[L.EDGES]) + L.EDGE_STRIDE * number
+    return int(boundary.ints[row + L.EDGE_FLAGS])
+
+
+def edge_leaves(
+    boundary: PackedParts, number: int, ranges: list[tuple[float, float]], own: list[Cone]
+) -> list[Leaf]:
+    """The leaves of one edge: its parts, with the cones of their normals."""
+    flags = _edge_flags(boundary, number)
     senses = S.INSIDE if flags & L.REFLEX else S.OUTSIDE
     if flags & (L.MIXED | L.CREASED):
         senses = S.OUTSIDE | S.INSIDE
     curve = boundary.edge_parts[number].curve
     feature = boundary.n_faces + number
-    ranges = edge_ranges(curve, ARC, LONGEST * size)
     bounds = curve_derivatives(curve, ranges)
     arc = isinstance(curve, ConicArc) and round_arc(curve)
     found = []
-    for (first, last), d in zip(ranges, bounds, strict=True):
+    for (first, last), d, cone in zip(ranges, bounds, own, strict=True):
         x, xt, xtt = (np.array(c) for c in edge_jet(boundary.ints, boundary.reals, feature,
                                                     0.5 * (first + last)))  # fmt: skip
         h = 0.5 * (last - first)
@@ -204,7 +215,6 @@ def edge_leaves(
         second = d[1] * h * h / 2.0
         half = np.abs(axes @ xt) * h + second
         half = half * (1.0 + BOUND_INFLATION) + 1e-15 * float(np.abs(x).max())
-        cone = _edge_cone(charts, pieces, number, first, last)
         cones = np.full(8, -1.0)
         cones[:3], cones[4:7] = cone[0], -cone[0]
         cones[3] = cone[1] if senses & S.OUTSIDE else -1.0
@@ -217,33 +227,59 @@ def edge_leaves(
     return found
 
 
-def _edge_cone(
-    charts: dict[int, FaceChart], pieces: list[Piece], edge: int, first: float, last: float
-) -> tuple[Array, float]:
-    """(axis, half angle) of a cone round both faces' outward normals along part of an edge."""
-    axes, angles = [], []
+Cone = tuple[Array, float]
+
+
+def edge_cones(
+    charts: dict[int, FaceChart], pieces: list[Piece], ranges: dict[int, list[tuple[float, float]]]
+) -> dict[int, list[Cone]]:
+    """(axis, half angle) of a cone round both faces' outward normals along each part of each edge.
+
+    Each chart is asked once for all parts of all its edges.
+    """
+    asked: dict[int, list[tuple[int, int, Array]]] = {}
     for piece in pieces:
-        if piece.edge != edge or piece.last <= first or piece.first >= last:
-            continue
-        chart = charts[piece.chart]
-        row = piece.clipped(first, last)
-        try:
-            bounds = chart.surface.bounds(row)
-        except ValueError:
-            return np.array([0.0, 0.0, 1.0]), UNKNOWN
-        axes.append(chart.outward * bounds.axis[0])
-        angles.append(float(bounds.angle[0]))
-    if not axes or max(angles) >= UNKNOWN:
-        return np.array([0.0, 0.0, 1.0]), UNKNOWN
-    axis = np.sum(axes, axis=0)
+        for k, (first, last) in enumerate(ranges.get(piece.edge, ())):
+            if first < piece.last and piece.first < last:
+                rows = piece.clipped(first, last)
+                asked.setdefault(piece.chart, []).append((piece.edge, k, rows))
+    around: dict[tuple[int, int], list[Cone]] = {}
+    for number, parts in asked.items():
+        chart = charts[number]
+        every = _normal_cones(chart, np.concatenate([rows for _, _, rows in parts]))
+        at = 0
+        for edge, k, rows in parts:
+            around.setdefault((edge, k), []).extend(every[at : at + len(rows)])
+            at += len(rows)
+    return {
+        edge: [_cone_round(around.get((edge, k), [])) for k in range(len(parts))]
+        for edge, parts in ranges.items()
+    }
+
+
+def _normal_cones(chart: FaceChart, rows: Array) -> list[Cone]:
+    """Of a chart's outward normals over rectangles; unknown ones where it has no bounds."""
+    try:
+        bounds = chart.surface.bounds(rows)
+    except ValueError:
+        return [(np.array([0.0, 0.0, 1.0]), UNKNOWN)] * len(rows)
+    return [
+        (chart.outward * axis, float(angle))
+        for axis, angle in zip(bounds.axis, bounds.angle, strict=True)
+    ]
+
+
+def _cone_round(cones: list[Cone]) -> Cone:
+    """A cone around some; one of the half angle `UNKNOWN` where that would be too wide."""
+    nothing = np.array([0.0, 0.0, 1.0]), UNKNOWN
+    if not cones or max(angle for _, angle in cones) >= UNKNOWN:
+        return nothing
+    axis = np.sum([axis for axis, _ in cones], axis=0)
     scale = np.linalg.norm(axis)
     if scale <= 1e-3:
-        return np.array([0.0, 0.0, 1.0]), UNKNOWN
+        return nothing
     axis = axis / scale
-    reach = max(
-        float(between(axis, other)) + angle for other, angle in zip(axes, angles, strict=True)
-    )
-    wide = reach + SMOOTH_JOIN
+    wide = max(float(between(axis, other)) + angle for other, angle in cones) + SMOOTH_JOIN
     return axis, wide if wide < 0.5 * np.pi else UNKNOWN
 
 
@@ -266,7 +302,10 @@ def all_leaves(boundary: PackedParts) -> tuple[list[Leaf], list[Piece]]:
     found = [
         leaf for chart in charts.values() for leaf in face_leaves(boundary, chart, pieces, size)
     ]
-    for number in range(boundary.n_edges):
-        found += edge_leaves(boundary, charts, number, pieces, size)
+    ranges = {k: _parts_of_edge(boundary, k) for k in range(boundary.n_edges)}
+    cones = edge_cones(charts, pieces, ranges)
+    for number, parts in ranges.items():
+        if parts:
+            found += edge_leaves(boundary, number, parts, cones[number])
     found += [vertex_leaf(boundary, number) for number in range(boundary.n_vertices)]
     return found, pieces
