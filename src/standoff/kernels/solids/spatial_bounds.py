@@ -15,6 +15,7 @@ from standoff.kernels.body.features import (
 from standoff.kernels.body.trimming import on_face
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.spatial_heights import height_greatest
 from standoff.kernels.solids.spatial_pieces import (
     CUT_BY_TRIM,
     OUTSIDE_TRIM,
@@ -335,6 +336,10 @@ def proven(phi, sign, most, side, leaf, box, q, counts):
         bound, value, g, change = greatest(phi, sign, side, leaf, b, u, v)
         if bound <= most:
             continue
+        if is_plane(phi):
+            known, bound = height_greatest(phi, sign, side, leaf, b)
+            if known and bound <= most:
+                continue
         cu, cv = 0.5 * (b.u0 + b.u1), 0.5 * (b.v0 + b.v1)
         if by_axis and (
             round_axis_greatest(phi, sign, data, b, cu, cv) <= most
