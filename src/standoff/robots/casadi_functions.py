@@ -11,14 +11,16 @@ from numpy.typing import NDArray
 from standoff.casadi import NamedCallback, check_name
 from standoff.checks.names import choice
 from standoff.errors import StandoffError, not_installed
-from standoff.frameworks.ambient import LACKING, NO_THIRD, UNDEFINED
+from standoff.frameworks.ambient import NO_THIRD, UNDEFINED
 from standoff.robots.configurations import made_unit
 from standoff.robots.curvature import Twists
 from standoff.robots.near import check_robot
 from standoff.robots.robot import Robot
-from standoff.robots.tolerances import TURN_LOST
+from standoff.robots.tolerances import TIED, TIED_APART, TURN_LOST
 from standoff.tracking.derivatives import Smoothness, flagged_gradient
 from standoff.world import World
+from standoff.world.answer import WorldAnswer
+from standoff.world.pair_answer import PairAnswer
 
 try:
     import casadi
@@ -26,6 +28,8 @@ except ModuleNotFoundError as error:
     raise ModuleNotFoundError(not_installed("CasADi", "casadi"), name=error.name) from error
 
 Array = NDArray[np.float64]
+
+TWO_PIECES = "two pairs of pieces are equally near."
 
 
 def casadi_distance(
@@ -95,7 +99,8 @@ class _Pairs:
     def value(self, q: Any) -> Array:
         """(k,) distances."""
         q = self.robot.kinematics.check(made_unit(self.robot.joints, q))
-        return np.array([answer.distance for answer in self._answers(self.robot.poses(q))])
+        answer = self._answer(self.robot.poses(q))
+        return np.array([answer[pair].distance for pair in self.names])
 
     def first(self, q: Any) -> Array:
         """(k, nq) gradients."""
@@ -105,23 +110,46 @@ class _Pairs:
         """(k, nq, nq) Hessians."""
         return np.array([hessian for _, hessian in self._derived(q, second=True)])
 
-    def _answers(self, poses: Array) -> list[Any]:
-        answer = self.world.distances(poses[self.moving])
-        return [answer[pair] for pair in self.names]
+    def _answer(self, poses: Array) -> WorldAnswer:
+        return self.world.distances(poses[self.moving])
 
     def _derived(self, q: Any, *, second: bool) -> list[tuple[Array, Array]]:
         twists = Twists(self.robot, q)
+        answer = self._answer(twists.poses)
         found = []
-        for pair, answer in zip(self.numbers, self._answers(twists.poses), strict=True):
-            flag, reason, _ = flagged_gradient(answer)
-            none = flag is Smoothness.UNDEFINED
-            by_twists = np.full(12, np.nan) if none else answer.gradient
-            gradient = _through(by_twists, twists.of(pair))
-            lacks = second if flag in LACKING else False
-            if self.undefined == "raise" and (lacks or np.isnan(gradient).any()):
-                raise StandoffError(f"The distance of {answer.names} has no derivative: {reason}")
-            found.append((gradient, twists.hessian(pair, answer) if second else gradient))
+        for pair, names in zip(self.numbers, self.names, strict=True):
+            each = [_by_q(twists, pair, one, second=second) for one in nearest(answer, names)]
+            gradient, hessian = (agreed(np.array(parts)) for parts in zip(*each, strict=True))
+            if self.undefined == "raise" and np.isnan(hessian if second else gradient).any():
+                reason = flagged_gradient(answer[names])[1] or TWO_PIECES
+                raise StandoffError(f"The distance of {names} has no derivative: {reason}")
+            found.append((gradient, hessian))
         return found
+
+
+def _by_q(
+    twists: Twists, pair: tuple[int, int], answer: PairAnswer, *, second: bool
+) -> tuple[Array, Array]:
+    """Gradient by q, and the Hessian if it is asked."""
+    none = flagged_gradient(answer)[0] is Smoothness.UNDEFINED
+    by_twists = np.full(12, np.nan) if none else answer.gradient
+    gradient = _through(by_twists, twists.of(pair))
+    return gradient, twists.hessian(pair, answer) if second else gradient
+
+
+def nearest(answer: WorldAnswer, names: tuple[str, str]) -> list[PairAnswer]:
+    """The nearest pair of pieces of two bodies, and all others that are as near."""
+    first = answer[names]
+    others = answer.minima(names, first.distance + TIED)
+    return [first, *(one for one in others if one.pieces != first.pieces)]
+
+
+def agreed(parts: Array) -> Array:
+    """Of (n, ...) numbers one where all are the same, else nan."""
+    found: Array = parts[0].copy()
+    size = 1.0 + float(np.abs(np.nan_to_num(parts)).max(initial=0.0))
+    found[~(np.abs(parts - found) <= TIED_APART * size).all(axis=0)] = np.nan
+    return found
 
 
 def _through(by_twists: Array, jacobian: Array) -> Array:
