@@ -42,9 +42,7 @@ def test_every_pair_has_its_answer(assembly: Assembly) -> None:
     answer = assembly.distances(within=10.0)
     assert answer.certified
     assert len(answer.near) + len(answer.far) == 10
-    assert {names for names in answer.far} == {
-        (n, "far") for n in ("plate", "bolt", "ring", "ball")
-    }
+    assert set(answer.far) == {(n, "far") for n in ("plate", "bolt", "ring", "ball")}
     assert all(bound > 10.0 for bound in answer.far.values())
     bolt_in_plate = answer["plate", "bolt"]
     assert bolt_in_plate.distance == pytest.approx(0.1, abs=1e-9)
