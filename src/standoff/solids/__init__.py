@@ -12,6 +12,8 @@ if TYPE_CHECKING:
         SolidCounts,
         SolidProximity,
     )
+    from standoff.solids.planar.solid import PlanarSolid
+    from standoff.solids.query import distance
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -23,6 +25,8 @@ else:
                 "SolidCounts",
                 "SolidProximity",
             ),
+            "standoff.solids.planar.solid": ("PlanarSolid",),
+            "standoff.solids.query": ("distance",),
         },
     )
 
@@ -30,6 +34,8 @@ __all__ = [
     "Continuum",
     "NearestPair",
     "Overlap",
+    "PlanarSolid",
     "SolidCounts",
     "SolidProximity",
+    "distance",
 ]

@@ -1,0 +1,1 @@
+"""Compiled parts of solids that need not be convex."""
