@@ -1,6 +1,5 @@
 """Planar solids as Python calls them: the distance of two, points, and what crosses."""
 
-
 from numba import types
 
 from standoff.kernels.algebra.rigid import relative_pose
@@ -51,7 +50,7 @@ def pair_of(a, b, poses):
     return outline_at(a, 1.0, 0.0, 0.0, 0.0), outline_at(b, c, s, pose.p[0], pose.p[1])
 
 
-@entry(OUTLINE, OUTLINE, READ, NUMBERS, types.int64, QUEUE, WRITE_INTS, work="solids")
+@entry(OUTLINE, OUTLINE, READ, NUMBERS, types.int64, QUEUE, WRITE_INTS, work="planar")
 def nearest(a, b, poses, sought, budget, queue, counts):
     """(how it ended, proven, least found, pairs kept) at poses (24 numbers); `found` in A's frame;
     `sought` holds the fields of `Sought`."""
@@ -61,7 +60,7 @@ def nearest(a, b, poses, sought, budget, queue, counts):
     return seek(first, second, asked, kept, pointer(counts, 0), budget)
 
 
-@entry(OUTLINE, OUTLINE, READ, NUMBERS, types.int64, types.int64, QUEUE, work="solids")
+@entry(OUTLINE, OUTLINE, READ, NUMBERS, types.int64, types.int64, QUEUE, work="planar")
 def common_ball(a, b, poses, sought, n_found, budget, queue):
     """(x, y, proven radius, squares) in A's frame; `sought` is (x, y, half) of the square that is
     searched, tolerance, extent, part."""
@@ -70,13 +69,11 @@ def common_ball(a, b, poses, sought, n_found, budget, queue):
     x, y, half, tolerance, extent, part = sought
     best = seeded(first, second, kept, n_found, tolerance, extent)
     square = (x, y, half)
-    best, made = largest_ball(
-        first, second, square, best, kept, part, budget, (tolerance, extent)
-    )
+    best, made = largest_ball(first, second, square, best, kept, part, budget, (tolerance, extent))
     return best.x, best.y, best.radius, made
 
 
-@entry(OUTLINE, READ_ROWS, types.float64, types.float64, WRITE, WRITE_INTS, ROWS, work="solids")
+@entry(OUTLINE, READ_ROWS, types.float64, types.float64, WRITE, WRITE_INTS, ROWS, work="planar")
 def points(a, at, tolerance, extent, distances, inside, feet):
     """Of points (n, 2): distances from the boundary, whether inside, and the rows (proven distance,
     foot point, leaf, parameter)."""
@@ -93,7 +90,7 @@ def points(a, at, tolerance, extent, distances, inside, feet):
         feet[k, 4] = near.t
 
 
-@entry(READ, WRITE, work="solids")
+@entry(READ, WRITE, work="planar")
 def gradient(arms, to):
     """The gradient of the distance, 12 numbers, from the normal, then the arms of both witness
     points about the solids' origins, world axes."""
@@ -102,9 +99,7 @@ def gradient(arms, to):
     write_gradient(n, arm_a, arm_b, True, pointer(to, 0))
 
 
-
-
-@entry(OUTLINE, types.float64, types.int64, work="solids")
+@entry(OUTLINE, types.float64, types.int64, work="planar")
 def self_crossing(a, touch, budget):
     """(what was found, x, y, leaf, leaf) where a boundary is nearer to itself than `touch`."""
     return clash(outline_at(a, 1.0, 0.0, 0.0, 0.0), touch, budget)

@@ -44,9 +44,7 @@ def stacked_pair(stack, size, p, q):
 def swing(outline, piece):
     """How far the tangent turns over a piece, radians."""
     leaf = leaf_of(outline, piece.node)
-    bend = max(
-        abs(leaf_real(outline, leaf, LEAST_K)), abs(leaf_real(outline, leaf, GREATEST_K))
-    )
+    bend = max(abs(leaf_real(outline, leaf, LEAST_K)), abs(leaf_real(outline, leaf, GREATEST_K)))
     return bend * leaf_real(outline, leaf, FASTEST) * abs(piece.last - piece.first)
 
 

@@ -62,9 +62,7 @@ def seeded(a, b, queue, n_found, tolerance, extent):
             best = better(a, b, best, to_x, to_y, tolerance, extent)
         for j in range(i):
             other_x, other_y = found[N_FOUND * j + 2], found[N_FOUND * j + 3]
-            best = better(
-                a, b, best, 0.5 * (x + other_x), 0.5 * (y + other_y), tolerance, extent
-            )
+            best = better(a, b, best, 0.5 * (x + other_x), 0.5 * (y + other_y), tolerance, extent)
     return best
 
 

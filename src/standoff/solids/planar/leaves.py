@@ -129,4 +129,3 @@ def leaves_of(curve: Curve, backward: bool, at_least: int) -> Leaves:
     size = float(np.abs(starts).max()) + float(np.abs(curve.point(curve.last)).max())
     reals[:, P.PAD] = PADDED * (size + float(ranges.fastest.max()) * float(np.diff(cuts).max()))
     return Leaves(reals, ints, starts)
-

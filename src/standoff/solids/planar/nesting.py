@@ -47,7 +47,9 @@ def check_simple(outline: Outline, loops: tuple[Loop, ...]) -> None:
     first, second = outline.leaf_int(leaf_p, P.CURVE), outline.leaf_int(leaf_q, P.CURVE)
     place = np.array([x, y])
     if found == C.MEETS:
-        what = f"edges {first} and {second} meet" if first != second else f"edge {first} meets itself"
+        what = (
+            f"edges {first} and {second} meet" if first != second else f"edge {first} meets itself"
+        )
         raise BodyError(
             f"The boundary crosses or touches itself at {place}: {what} there (edges are numbered "
             "through all loops); a curve given twice does too.",

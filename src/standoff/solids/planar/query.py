@@ -252,16 +252,12 @@ def _answer(
 
 def _unseen() -> NearestPair:
     empty = UNSEEN.copy()
-    return NearestPair(
-        np.nan, np.nan, empty, empty, empty, NO_FEATURE, NO_FEATURE, (), ()
-    )
+    return NearestPair(np.nan, np.nan, empty, empty, empty, NO_FEATURE, NO_FEATURE, (), ())
 
 
 def _beyond(pair: Queried, searched: Searched) -> SolidProximity:
     bounds = searched.proven, np.inf
-    return _answer(
-        pair, Status.FAR, bounds, (), Smoothness.UNDEFINED, _counts(searched.counts)
-    )
+    return _answer(pair, Status.FAR, bounds, (), Smoothness.UNDEFINED, _counts(searched.counts))
 
 
 def _meeting(pair: Queried, above: float) -> SolidProximity:
@@ -278,9 +274,7 @@ def _meeting(pair: Queried, above: float) -> SolidProximity:
         smooth = Smoothness.ONE_SIDED
     bounds = -pair.tolerance, searched.least
     counts = _counts(searched.counts)
-    return _answer(
-        pair, Status.TOUCHING, bounds, _pairs(pair, rows), smooth, counts, continuum
-    )
+    return _answer(pair, Status.TOUCHING, bounds, _pairs(pair, rows), smooth, counts, continuum)
 
 
 def common_ball(pair: Queried, searched: Searched) -> Overlap | None:
