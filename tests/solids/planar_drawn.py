@@ -1,4 +1,4 @@
-"""Planar solids drawn at random, and dense samples of their boundaries with a bound of their own."""
+"""Planar solids drawn at random, and dense samples of boundaries with a bound of their own."""
 
 from __future__ import annotations
 

@@ -7,6 +7,8 @@ from typing import Any
 from standoff.checks.numbers import positive, whole_number
 from standoff.motion import PoseLike
 from standoff.solids.answer import SolidProximity
+from standoff.solids.planar.query import Asked, planar_distance
+from standoff.solids.planar.solid import PlanarSolid
 
 
 def distance(
@@ -47,15 +49,10 @@ def distance(
     ValueError
         No pose, one out of the plane, a number that is not positive.
     """
-    from standoff.solids.planar.query import planar_distance
-
-    return planar_distance(
-        a,
-        b,
-        pose_a,
-        pose_b,
-        within=None if within is None else positive(within, "within"),
-        tolerance=None if tolerance is None else positive(tolerance, "tolerance"),
-        minima=None if minima is None else positive(minima, "minima"),
-        deadline=None if deadline is None else whole_number(deadline, "deadline", 1),
+    asked = Asked(
+        None if within is None else positive(within, "within"),
+        None if tolerance is None else positive(tolerance, "tolerance"),
+        None if minima is None else positive(minima, "minima"),
+        None if deadline is None else whole_number(deadline, "deadline"),
     )
+    return planar_distance(PlanarSolid.of(a, "a"), PlanarSolid.of(b, "b"), pose_a, pose_b, asked)

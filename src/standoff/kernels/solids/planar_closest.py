@@ -27,9 +27,9 @@ from standoff.kernels.solids.planar_pieces import (
     turned_into,
 )
 from standoff.kernels.solids.planar_tolerances import (
-    AT_END,
     NEWTON_END,
     NEWTON_STEPS,
+    PIECE_END,
     SAFE_NORMAL,
     SAME_POINT,
     SINGULAR_STEP,
@@ -193,7 +193,7 @@ def crossing(a, piece_a, b, piece_b, found):
 @small
 def at_end(piece, t):
     """1 at the piece's last point, -1 at its first, 0 between."""
-    length = AT_END * abs(piece.last - piece.first)
+    length = PIECE_END * abs(piece.last - piece.first)
     if abs(t - piece.last) <= length:
         return 1.0
     return -1.0 if abs(t - piece.first) <= length else 0.0
@@ -260,7 +260,7 @@ def slope_over(outline, leaf, t, nx, ny):
     first, last = leaf_real(outline, leaf, FROM), leaf_real(outline, leaf, UNTIL)
     _, _, tx, ty, _ = frame_at(outline, leaf, t)
     before = after = nx * tx + ny * ty
-    near = AT_END * abs(last - first)
+    near = PIECE_END * abs(last - first)
     if abs(t - first) <= near:
         other = leaf_int(outline, leaf, BEFORE)
         _, _, tx, ty, _ = frame_at(outline, other, leaf_real(outline, other, UNTIL))

@@ -26,6 +26,8 @@ N_FOUND = 12
 CLOSED, SPENT, BEYOND, MET = 0, 1, 2, 3  # how a search ended
 EVALUATIONS, NODE_PAIRS, LEAF_PAIRS, BOXES, BISECTIONS = 0, 1, 2, 3, 4
 N_COUNT = 5
+# About how many jets a pair of leaves takes.
+JETS_OF_PAIR = 40
 
 
 class Sought(NamedTuple):
@@ -117,16 +119,37 @@ def pop(rows, heap, size):
     return least
 
 
+class Pieces(NamedTuple):
+    """A piece of each outline, and the outlines."""
+
+    a: Any
+    p: Piece
+    b: Any
+    q: Piece
+
+
+class Progress(NamedTuple):
+    """How far a search has come: lengths, and numbers of rows."""
+
+    made: int
+    size: int
+    upper: float
+    proven: float
+    n_found: int
+
+
 @kernel
-def bound_by(a, p, b, q, phi, near):
+def bound_by(pieces, phi, near):
     """No points of two pieces are nearer: the least of φ on B less the greatest on A."""
+    a, p, b, q = pieces
     return -greatest(b, q, phi, -1.0, near.s) - greatest(a, p, phi, 1.0, near.t)
 
 
 @kernel
-def bound_pair(a, p, b, q, near, n, goal, sought, counts):
+def bound_pair(pieces, near, n, goal, sought, counts):
     """The best bound of a few potentials, which ends at the first that reaches the goal."""
     nx, ny = n
+    a, p, b, q = pieces
     half = 0.5 * near.distance
     high = bend_toward(a, p, near.t, nx, ny, half)
     low = -bend_toward(b, q, near.s, -nx, -ny, half)
@@ -137,7 +160,7 @@ def bound_pair(a, p, b, q, near, n, goal, sought, counts):
         if trial > 0 and k == middle:
             continue
         counts[BOXES] += 2
-        bound = bound_by(a, p, b, q, potential_of(near, nx, ny, k, sought.extent), near)
+        bound = bound_by(pieces, potential_of(near, nx, ny, k, sought.extent), near)
         best = max(best, bound)
         if best >= goal:
             break
@@ -145,7 +168,7 @@ def bound_pair(a, p, b, q, near, n, goal, sought, counts):
 
 
 @kernel
-def keep(queue, n_found, near, n, bound, leaf_a, leaf_b):
+def keep(queue, n_found, near, n, bound, leaves):
     """Write down a pair of points; returns how many there are."""
     if n_found >= queue.most_found:
         return n_found
@@ -160,9 +183,42 @@ def keep(queue, n_found, near, n, bound, leaf_a, leaf_b):
     found[at + 7] = n[1]
     found[at + 8] = near.t
     found[at + 9] = near.s
-    found[at + 10] = float(leaf_a)
-    found[at + 11] = float(leaf_b)
+    found[at + 10] = float(leaves[0])
+    found[at + 11] = float(leaves[1])
     return n_found + 1
+
+
+@small
+def reach_of(sought, upper):
+    """Pairs with a greater bound are of no interest."""
+    return max(upper + sought.tolerance, sought.above)
+
+
+@kernel
+def close(pieces, bound, sought, queue, counts, progress):
+    """(is a pair of leaves' pieces done with, its bound, the progress)."""
+    a, p, b, q = pieces
+    made, size, upper, proven, n_found = progress
+    counts[LEAF_PAIRS] += 1
+    counts[EVALUATIONS] += JETS_OF_PAIR
+    near = nearest_points(a, p, b, q)
+    upper = min(upper, near.distance)
+    n = direction(a, p, b, q, near, sought.extent)
+    goal = min(near.distance, max(upper, sought.above)) - sought.tolerance
+    if n[0] != 0.0 or n[1] != 0.0:
+        bound = max(bound, bound_pair(pieces, near, n, goal, sought, counts) - sought.roundoff)
+    bound = min(bound, near.distance)
+    alike = width(p) + width(q) < SPLIT_LENGTH * sought.extent
+    done = bound >= goal or alike or upper <= sought.meeting
+    if done:
+        proven = min(proven, bound)
+        touching = near.distance <= max(sought.tolerance, sought.meeting)
+        if near.distance <= reach_of(sought, upper) and (
+            touching or is_stationary(a, p, b, q, near, n[0], n[1])
+        ):
+            leaves = leaf_of(a, p.node), leaf_of(b, q.node)
+            n_found = keep(queue, n_found, near, n, bound, leaves)
+    return done, bound, Progress(made, size, upper, proven, n_found)
 
 
 @small
@@ -175,6 +231,30 @@ def cut(a, p, b, q):
 
 
 @kernel
+def put_part(pieces, floor, sought, queue, progress):
+    """A part of a pair into the queue, or only its bound to what is proven."""
+    made, size, upper, proven, n_found = progress
+    bound = max(apart(pieces.p, pieces.q) - sought.roundoff, floor)
+    if bound > reach_of(sought, upper):
+        return Progress(made, size, upper, min(proven, bound), n_found)
+    push(queue, made, size, bound, pieces.p, pieces.q)
+    return Progress(made + 1, size + 1, upper, proven, n_found)
+
+
+@kernel
+def split(pieces, floor, sought, queue, progress):
+    """The larger piece of a pair is cut, and both parts are put into the queue."""
+    a, p, b, q = pieces
+    if cut(a, p, b, q):
+        one, two = halves(a, p)
+        progress = put_part(Pieces(a, one, b, q), floor, sought, queue, progress)
+        return put_part(Pieces(a, two, b, q), floor, sought, queue, progress)
+    one, two = halves(b, q)
+    progress = put_part(Pieces(a, p, b, one), floor, sought, queue, progress)
+    return put_part(Pieces(a, p, b, two), floor, sought, queue, progress)
+
+
+@kernel
 def seek(a, b, sought, queue, counts, budget):
     """(how it ended, least proven, least found, how many pairs were kept).
 
@@ -182,67 +262,32 @@ def seek(a, b, sought, queue, counts, budget):
     potential, or open in the queue. The least of these bounds is what is proven.
     """
     p, q = node_piece(a, 0), node_piece(b, 0)
-    made, size, n_found = 1, 1, 0
     push(queue, 0, 0, apart(p, q) - sought.roundoff, p, q)
-    upper, proven = inf, inf
-    while size > 0:
+    progress = Progress(1, 1, inf, inf, 0)
+    while progress.size > 0:
+        made, size, upper, proven, n_found = progress
         row = N_ROW * pop(queue.rows, queue.heap, size)
         bound = queue.rows[row]
-        reach = max(upper + sought.tolerance, sought.above)
-        if bound > reach:
-            return CLOSED, min(proven, bound), upper, n_found
-        if bound > sought.horizon:
-            return BEYOND, min(proven, bound), upper, n_found
-        if made + 4 > queue.capacity or counts[EVALUATIONS] > budget:
-            return SPENT, min(proven, bound), upper, n_found
-        size -= 1
-        p, q = take_piece(queue.rows, row + 1), take_piece(queue.rows, row + 9)
-        leaf_a, leaf_b = leaf_of(a, p.node), leaf_of(b, q.node)
-        if leaf_a >= 0 and leaf_b >= 0:
-            counts[LEAF_PAIRS] += 1
-            counts[EVALUATIONS] += 40
-            near = nearest_points(a, p, b, q)
-            upper = min(upper, near.distance)
-            if upper <= sought.meeting:
-                n_found = keep(queue, n_found, near, (0.0, 0.0), bound, leaf_a, leaf_b)
-                return MET, min(proven, bound), upper, n_found
-            n = direction(a, p, b, q, near, sought.extent)
-            goal = min(near.distance, max(upper, sought.above)) - sought.tolerance
-            if n[0] != 0.0 or n[1] != 0.0:
-                bound = max(bound, bound_pair(a, p, b, q, near, n, goal, sought, counts))
-                bound = min(bound - sought.roundoff, near.distance)
-            small_pair = width(p) + width(q) < SPLIT_LENGTH * sought.extent
-            if bound >= goal or small_pair:
-                proven = min(proven, bound)
-                reach = max(upper + sought.tolerance, sought.above)
-                touching = near.distance <= sought.tolerance
-                if near.distance <= reach and (
-                    touching or is_stationary(a, p, b, q, near, n[0], n[1])
-                ):
-                    n_found = keep(queue, n_found, near, n, bound, leaf_a, leaf_b)
+        ended = -1
+        if bound > reach_of(sought, upper):
+            ended = CLOSED
+        elif bound > sought.horizon:
+            ended = BEYOND
+        elif upper <= sought.meeting:
+            ended = MET
+        elif made + 4 > queue.capacity or counts[EVALUATIONS] > budget:
+            ended = SPENT
+        if ended >= 0:
+            return ended, min(proven, bound), upper, n_found
+        progress = Progress(made, size - 1, upper, proven, n_found)
+        pieces = Pieces(a, take_piece(queue.rows, row + 1), b, take_piece(queue.rows, row + 9))
+        floor = -inf
+        if leaf_of(a, pieces.p.node) >= 0 and leaf_of(b, pieces.q.node) >= 0:
+            done, floor, progress = close(pieces, bound, sought, queue, counts, progress)
+            if done:
                 continue
             counts[BISECTIONS] += 1
-        if cut(a, p, b, q):
-            one, two = halves(a, p)
-            rest_1 = rest_2 = q
-            bound_1, bound_2 = apart(one, q), apart(two, q)
-        else:
-            rest_1, rest_2 = halves(b, q)
-            one = two = p
-            bound_1, bound_2 = apart(p, rest_1), apart(p, rest_2)
         counts[NODE_PAIRS] += 2
-        floor = bound if leaf_a >= 0 and leaf_b >= 0 else -inf
-        reach = max(upper + sought.tolerance, sought.above)
-        bound_1 = max(bound_1 - sought.roundoff, floor)
-        bound_2 = max(bound_2 - sought.roundoff, floor)
-        if bound_1 <= reach:
-            push(queue, made, size, bound_1, one, rest_1)
-            made, size = made + 1, size + 1
-        else:
-            proven = min(proven, bound_1)
-        if bound_2 <= reach:
-            push(queue, made, size, bound_2, two, rest_2)
-            made, size = made + 1, size + 1
-        else:
-            proven = min(proven, bound_2)
-    return CLOSED, proven, upper, n_found
+        progress = split(pieces, floor, sought, queue, progress)
+    ended = MET if progress.upper <= sought.meeting else CLOSED
+    return ended, progress.proven, progress.upper, progress.n_found

@@ -19,7 +19,7 @@ STATIONARY: Final = 1e-6
 """Sine of the angle by which a pair's direction may leave the normal cone of a local minimum:
 Newton's steps end at some 1e-8."""
 
-AT_END: Final = 1e-9
+PIECE_END: Final = 1e-9
 """A parameter this near to an end of its piece (a fraction of the piece) is at the end."""
 
 SAME_ANGLE: Final = 1e-12

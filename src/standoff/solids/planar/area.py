@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -59,7 +61,7 @@ def _integrated(curve: Curve, size: float) -> tuple[float, float]:
     total = Interval(np.zeros(1), np.zeros(1))
     value = 0.0
     spans = curve.spans()
-    for first, last in zip(spans[:-1], spans[1:], strict=True):
+    for first, last in pairwise(spans):
         cuts = np.linspace(first, last, PARTS + 1)
         low, high = cuts[:-1], cuts[1:]
         middle, h = 0.5 * (low + high), high - low

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.kernels.solids import planar_layout as P
 from standoff.solids.answer import Continuum
+from standoff.solids.planar.pair import Queried
 from standoff.solids.planar.tolerances import LONG_SET, SAME_PAIR
-
-if TYPE_CHECKING:
-    from standoff.solids.planar.query import Queried
 
 Array = NDArray[np.float64]
 
@@ -149,7 +147,9 @@ def _chained(
     pieces: list[tuple[str, Array, Array]], reach: float
 ) -> list[tuple[str, Array, Array, float]]:
     """Pieces that go on from each other as one, with its length on A or B, the longer."""
-    left = [[kind, p, q, _long(p, q)] for kind, p, q in _without_copies(pieces, reach)]
+    left: list[list[Any]] = [
+        [kind, p, q, _long(p, q)] for kind, p, q in _without_copies(pieces, reach)
+    ]
     merged = True
     while merged:
         merged = False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -13,8 +14,8 @@ from standoff.geometry.interval_vectors import length
 from standoff.geometry.intervals import Interval
 from standoff.kernels.solids import planar_layout as P
 from standoff.solids.planar.tolerances import (
+    ARC_OF_CIRCLE,
     PADDED,
-    ROUND,
     TURN_OF_ARC,
     TURN_OF_LEAF,
     UNEVEN_LEAF,
@@ -43,7 +44,7 @@ def form_of(curve: Curve) -> int:
         a, b, _ = curve.basis().T
         sizes = float(np.linalg.norm(a)), float(np.linalg.norm(b))
         uneven = abs(sizes[0] - sizes[1]) + abs(float(a @ b)) / sizes[0]
-        if uneven <= ROUND * sizes[0]:
+        if uneven <= ARC_OF_CIRCLE * sizes[0]:
             return P.ARC
     return P.GENERAL
 
@@ -70,7 +71,7 @@ def cut_curve(curve: Curve, at_least: int) -> tuple[Array, Ranges]:
     spans = np.asarray(curve.spans(), dtype=np.float64)
     if form == P.ARC:
         at_least = max(at_least, int(np.ceil((curve.last - curve.first) / TURN_OF_ARC)))
-    parts = [np.linspace(a, b, at_least + 1) for a, b in zip(spans[:-1], spans[1:], strict=True)]
+    parts = [np.linspace(a, b, at_least + 1) for a, b in pairwise(spans)]
     cuts = np.unique(np.concatenate(parts))
     for _ in range(MOST_CUTS):
         ranges = ranges_over(curve, cuts[:-1], cuts[1:])

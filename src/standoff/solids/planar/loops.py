@@ -14,7 +14,7 @@ from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve
 from standoff.kernels.solids import planar_layout as P
 from standoff.solids.planar.leaves import FEWEST_LEAVES, Leaves, leaves_of
-from standoff.solids.planar.tolerances import FLAT, JOINED
+from standoff.solids.planar.tolerances import IN_PLANE, JOINED
 
 Array = NDArray[np.float64]
 
@@ -77,7 +77,7 @@ def read_loop(curves: Any, where: str) -> Loop:
 
 def _check_flat(curve: Curve, what: str, size: float) -> None:
     points = np.array([curve.point(t) for t in np.linspace(curve.first, curve.last, 17)])
-    if np.abs(points[:, 2]).max() > FLAT * max(size, float(np.abs(points).max())):
+    if np.abs(points[:, 2]).max() > IN_PLANE * max(size, float(np.abs(points).max())):
         raise BodyError(f"{what} leaves the plane z = 0, at {points[0]}: give curves in it.")
     if size > 0.0 and np.linalg.norm(np.ptp(points, axis=0)) <= JOINED * size:
         raise BodyError(

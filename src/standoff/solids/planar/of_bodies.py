@@ -11,6 +11,7 @@ from standoff.kernels.solids import planar_layout as P
 from standoff.solids.planar.leaves import form_of
 from standoff.solids.planar.loops import Loop, read_loop
 from standoff.solids.planar.nesting import turned
+from standoff.solids.planar.tolerances import NO_CORNER
 
 
 def loops_of_body(body: Body) -> list[Curve]:
@@ -51,7 +52,7 @@ def _grown(loop: Loop, r: float, body: Body) -> list[Curve]:
         into, out = _normal(loop, k, True), _normal(loop, (k + 1) % n, False)
         first = float(np.arctan2(into[1], into[0]))
         turn = float(np.arctan2(into[0] * out[1] - into[1] * out[0], into @ out))
-        if turn * r > 1e-9 * body.size:
+        if turn * r > NO_CORNER * body.size:
             axes = (r, 0.0, 0.0), (0.0, r, 0.0)
             grown.append(ConicArc(corner, *axes, first, first + turn))
     return grown

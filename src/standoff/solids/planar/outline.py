@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from standoff.kernels.entries import planar_solids as entries
 from standoff.kernels.solids import planar_layout as P
 from standoff.solids.planar.loops import Loop, packed_loop
-from standoff.solids.planar.tolerances import ROUNDED
+from standoff.solids.planar.tolerances import BOUND_ROUNDED
 from standoff.solids.planar.tree import built, leaf_radii
 
 Array = NDArray[np.float64]
@@ -67,7 +67,7 @@ class Outline(NamedTuple):
         n = len(points)
         distances, inside, feet = np.empty(n), np.empty(n, dtype=np.int64), np.empty((n, 5))
         extent = self.extent + float(np.abs(points).max(initial=0.0))
-        proof = max(tolerance, ROUNDED * extent)
+        proof = max(tolerance, BOUND_ROUNDED * extent)
         entries.points(self.arrays, points, proof, extent, distances, inside, feet)
         return distances, inside, feet
 

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import NO_FEATURE
-from standoff.errors import StandoffTypeError
 from standoff.kernels.entries import planar_solids as entries
 from standoff.kernels.solids import planar_search as S
 from standoff.motion import PoseLike
@@ -20,8 +19,8 @@ from standoff.solids.answer import (
     SolidProximity,
 )
 from standoff.solids.planar.continua import continuum_of, distinct
-from standoff.solids.planar.solid import PlanarSolid
-from standoff.solids.planar.tolerances import BALL_PART, PROOF, ROUNDED
+from standoff.solids.planar.pair import Queried, Shape
+from standoff.solids.planar.tolerances import BALL_PART, BOUND_ROUNDED, PROVEN_TO
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.inputs import check_in_plane, flat_pose
 from standoff.tracking.status import Status
@@ -35,35 +34,16 @@ MOST_SQUARES = 4000
 UNSEEN: Array = np.full(3, np.nan)
 
 
-class Queried(NamedTuple):
-    """A pair at its poses, and how its answer is to be proven."""
+class Asked(NamedTuple):
+    """Options of ``so.solids.distance``."""
 
-    a: PlanarSolid
-    b: PlanarSolid
-    poses: Array  # (24,)
-    tolerance: float
-    extent: float
-    budget: int
+    within: float | None = None
+    tolerance: float | None = None
+    minima: float | None = None
+    deadline: int | None = None
 
-    @property
-    def roundoff(self) -> float:
-        return ROUNDED * self.extent
 
-    @property
-    def slack(self) -> float:
-        return self.a.slack + self.b.slack
-
-    @property
-    def size(self) -> float:
-        return max(self.a.size, self.b.size)
-
-    def world(self, point: Any) -> Array:
-        """A point (x, y) of A's frame in world axes, (3,)."""
-        R = self.poses[:9].reshape(3, 3)
-        return R @ np.array([point[0], point[1], 0.0]) + self.poses[9:12]
-
-    def turned(self, vector: Any) -> Array:
-        return self.poses[:9].reshape(3, 3) @ np.array([vector[0], vector[1], 0.0])
+DEFAULT = Asked()
 
 
 class Searched(NamedTuple):
@@ -77,25 +57,17 @@ class Searched(NamedTuple):
 
 
 def planar_distance(
-    a: Any,
-    b: Any,
-    pose_a: PoseLike,
-    pose_b: PoseLike,
-    *,
-    within: float | None = None,
-    tolerance: float | None = None,
-    minima: float | None = None,
-    deadline: int | None = None,
+    first: Shape, second: Shape, pose_a: PoseLike, pose_b: PoseLike, asked: Asked = DEFAULT
 ) -> SolidProximity:
     """See ``so.solids.distance``."""
-    first, second = (_solid(each, name) for each, name in ((a, "a"), (b, "b")))
+    within, tolerance, minima, deadline = asked
     flat_a, flat_b = flat_pose(pose_a), flat_pose(pose_b)
     check_in_plane(flat_a, flat_b)
     apart = float(np.linalg.norm(flat_b[9:] - flat_a[9:]))
     extent = first.outline.extent + second.outline.extent + apart
     size = max(first.size, second.size)
-    proof = PROOF * size if tolerance is None else tolerance
-    proof = max(proof, 4.0 * ROUNDED * extent)
+    proof = PROVEN_TO * size if tolerance is None else tolerance
+    proof = max(proof, 4.0 * BOUND_ROUNDED * extent)
     budget = MOST_EVALUATIONS if deadline is None else deadline
     pair = Queried(first, second, np.concatenate([flat_a, flat_b]), proof, extent, budget)
     horizon = np.inf if within is None else within
@@ -108,14 +80,6 @@ def planar_distance(
     if all(inside):
         return _overlapping(pair, searched)
     return _apart(pair, searched, ("B" if inside[0] else "A") if any(inside) else "", minima)
-
-
-def _solid(given: Any, name: str) -> PlanarSolid:
-    if isinstance(given, PlanarSolid):
-        return given
-    if hasattr(given, "edge_parts"):
-        return PlanarSolid.from_body(given)
-    raise StandoffTypeError(f"{name} is {given!r}: give a PlanarSolid or a planar Body.", name)
 
 
 def search(pair: Queried, above: float, horizon: float, meeting: float) -> Searched:
@@ -208,11 +172,12 @@ def _answer(
     pairs: tuple[NearestPair, ...],
     smooth: Smoothness,
     counts: SolidCounts,
-    continuum: Continuum | None = None,
+    more: Continuum | Overlap | None = None,
     inside: str = "",
-    overlap: Overlap | None = None,
 ) -> SolidProximity:
     lower, distance = bounds
+    continuum = more if isinstance(more, Continuum) else None
+    overlap = more if isinstance(more, Overlap) else None
     side: Literal["A", "B", ""] = "A" if inside == "A" else "B" if inside == "B" else ""
     best = pairs[0] if pairs else _unseen()
     gradient = np.full(12, np.nan)
@@ -323,5 +288,5 @@ def _overlapping(
         pairs,
         Smoothness.UNDEFINED,
         counts,
-        overlap=ball,
+        ball,
     )

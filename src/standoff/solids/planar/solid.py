@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.checks.arrays import finite
-from standoff.checks.real_numbers import shape_of
+from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve
 from standoff.kernels.solids import planar_layout as P
+from standoff.kernels.solids.planar_tolerances import PIECE_END
 from standoff.motion import PoseLike
 from standoff.read_only import KeepsReadOnly
 from standoff.solids.answer import SolidProximity
@@ -24,7 +25,8 @@ from standoff.solids.planar.loops import Loop, read_loop
 from standoff.solids.planar.nesting import check_simple, nested, oriented
 from standoff.solids.planar.of_bodies import loops_of_body
 from standoff.solids.planar.outline import Outline, packed_outline
-from standoff.solids.planar.tolerances import PROOF, SMOOTH_TURN
+from standoff.solids.planar.query import Asked, planar_distance
+from standoff.solids.planar.tolerances import PROVEN_TO, SMOOTH_TURN
 
 Array = NDArray[np.float64]
 VertexKind = Literal["convex", "reflex", "smooth"]
@@ -50,6 +52,8 @@ class PlanarSolid(KeepsReadOnly):
     slack : float
         How far the boundary may be from what it stands for: ends that miss each other, and knots
         that were removed from splines; length.
+    kinds : tuple of "convex", "reflex" or "smooth"
+        Of the vertices: a corner that points outward, one that points inward, or none.
     outline : Outline
         What the compiled loops read.
     """
@@ -59,6 +63,7 @@ class PlanarSolid(KeepsReadOnly):
     area: float
     area_error: float
     slack: float
+    kinds: tuple[VertexKind, ...]
     outline: Outline = field(repr=False)
 
     @classmethod
@@ -131,13 +136,43 @@ class PlanarSolid(KeepsReadOnly):
         return cls.from_loops(loops_of_body(body), name=name or body.name)
 
     @classmethod
+    def of(cls, given: Any, name: str = "solid") -> PlanarSolid:
+        """A planar solid as it is, or a planar `Body` as one.
+
+        Parameters
+        ----------
+        given : PlanarSolid or Body
+        name : str, optional
+            Of the argument, for the error.
+
+        Returns
+        -------
+        PlanarSolid
+
+        Raises
+        ------
+        TypeError
+            Something else.
+        BodyError
+            As `from_body`.
+        """
+        if isinstance(given, PlanarSolid):
+            return given
+        if isinstance(given, Body):
+            return cls.from_body(given)
+        raise StandoffTypeError(
+            f"{name} is {shown(given)}: give a PlanarSolid or a planar Body.", name, given
+        )
+
+    @classmethod
     def _made(cls, loops: tuple[Loop, ...], name: str) -> PlanarSolid:
         outline = packed_outline(loops)
         check_simple(outline, loops)
         area, error = area_of(loops)
         moved = max(curve.moved for loop in loops for curve in loop.curves)
         slack = max(loop.gap for loop in loops) + moved
-        return cls(name, loops, area, error, slack, outline)
+        kinds = tuple(kind for loop in loops for kind in kinds_of(loop))
+        return cls(name, loops, area, error, slack, kinds, outline)
 
     @property
     def dimension(self) -> int:
@@ -159,20 +194,6 @@ class PlanarSolid(KeepsReadOnly):
         """The curves of all loops, by their numbers."""
         return tuple(curve for loop in self.loops for curve in loop.curves)
 
-    def vertex_kinds(self) -> tuple[VertexKind, ...]:
-        """What the boundary does at the start of each edge: a corner that points outward, one that
-        points inward, or none."""
-        kinds: list[VertexKind] = []
-        for loop in self.loops:
-            last = [_tangent(c, not b, b) for c, b in zip(loop.curves, loop.backward, strict=True)]
-            first = [_tangent(c, b, b) for c, b in zip(loop.curves, loop.backward, strict=True)]
-            for k, out in enumerate(first):
-                into = last[k - 1]
-                turn = np.arctan2(into[0] * out[1] - into[1] * out[0], into @ out)
-                smooth = abs(turn) <= SMOOTH_TURN
-                kinds.append("smooth" if smooth else "convex" if turn > 0.0 else "reflex")
-        return tuple(kinds)
-
     def cold_query(
         self, a: Any, b: Any, pose_a: PoseLike, pose_b: PoseLike, within: float | None
     ) -> SolidProximity:
@@ -191,9 +212,8 @@ class PlanarSolid(KeepsReadOnly):
         -------
         SolidProximity
         """
-        from standoff.solids.planar.query import planar_distance
-
-        return planar_distance(a, b, pose_a, pose_b, within=within)
+        first, second = PlanarSolid.of(a, "a"), PlanarSolid.of(b, "b")
+        return planar_distance(first, second, pose_a, pose_b, Asked(within))
 
     def signed_distance(
         self, points: Any, *, gradients: bool = False
@@ -221,7 +241,7 @@ class PlanarSolid(KeepsReadOnly):
             A wrong shape, numbers that are not finite, points out of z = 0.
         """
         at = _points(points)
-        distances, inside, feet = self.outline.foot(at, PROOF * self.size)
+        distances, inside, feet = self.outline.foot(at, PROVEN_TO * self.size)
         sign = np.where(inside == 1, -1.0, 1.0)
         if not gradients:
             return sign * distances
@@ -249,7 +269,7 @@ class PlanarSolid(KeepsReadOnly):
             As for `signed_distance`.
         """
         at = _points(points)
-        distances, inside, _ = self.outline.foot(at, PROOF * self.size)
+        distances, inside, _ = self.outline.foot(at, PROVEN_TO * self.size)
         found: NDArray[np.bool_] = (inside == 1) | (distances <= self.outline.leaf_real(0, P.PAD))
         return found
 
@@ -272,10 +292,9 @@ class PlanarSolid(KeepsReadOnly):
         outline = self.outline
         for end, owner in ((P.FROM, leaf), (P.UNTIL, outline.leaf_int(leaf, P.AFTER))):
             vertex = outline.leaf_int(owner, P.VERTEX)
-            near = abs(t - outline.leaf_real(leaf, end)) <= 1e-9 * abs(
-                outline.leaf_real(leaf, P.UNTIL) - outline.leaf_real(leaf, P.FROM)
-            )
-            if near and vertex >= 0 and self.vertex_kinds()[vertex] != "smooth":
+            length = abs(outline.leaf_real(leaf, P.UNTIL) - outline.leaf_real(leaf, P.FROM))
+            near = abs(t - outline.leaf_real(leaf, end)) <= PIECE_END * length
+            if near and vertex >= 0 and self.kinds[vertex] != "smooth":
                 return Feature("vertex", vertex), ()
         return Feature("edge", outline.leaf_int(leaf, P.CURVE)), (t,)
 
@@ -283,6 +302,20 @@ class PlanarSolid(KeepsReadOnly):
         inner = len(self.loops) - 1
         holes = f", {inner} inner loop{'s' if inner > 1 else ''}" if inner else ""
         return f"PlanarSolid({self.name!r}, {self.n_edges} edges{holes}, area={self.area:.6g})"
+
+
+def kinds_of(loop: Loop) -> list[VertexKind]:
+    """What the boundary does where each curve of a loop begins."""
+    kinds: list[VertexKind] = []
+    runs = list(zip(loop.curves, loop.backward, strict=True))
+    last = [_tangent(curve, not backward, backward) for curve, backward in runs]
+    first = [_tangent(curve, backward, backward) for curve, backward in runs]
+    for k, out in enumerate(first):
+        into = last[k - 1]
+        turn = np.arctan2(into[0] * out[1] - into[1] * out[0], into @ out)
+        smooth = abs(turn) <= SMOOTH_TURN
+        kinds.append("smooth" if smooth else "convex" if turn > 0.0 else "reflex")
+    return kinds
 
 
 def _tangent(curve: Curve, at_last: bool, backward: bool) -> Array:
