@@ -5,6 +5,9 @@ Run from the repository's root:
 - ``python -m benchmarks.certify paths --paths 1000 [--samples 100000] [--seed 1]``: random trees of
   joints on random straight paths, each judged by many samples of an oracle with other kinematics
   and closed-form distances (``tests/robots/path_oracle.py``); half of them graze the clearance.
+- ``python -m benchmarks.certify arms --paths 20 [--samples 10000] [--seed 1]``: the same for real
+  arms among a pole, a ball and a crate, judged by Pinocchio with Coal, and by MuJoCo
+  (``tests/robots/real_arms.py``).
 - ``python -m benchmarks.certify speed``: arms of seven joints among obstacles, certified, and
   beside it the same path sampled at 1 kHz.
 - ``python -m benchmarks.certify boxes``: the share of a box that is proven, against time, for two
@@ -29,6 +32,9 @@ sys.path.insert(0, str(TESTS))
 
 BLOCK = 10_000
 """Samples that the oracle takes at once."""
+
+FEW = 60
+"""Samples that tell whether a path is worth judging."""
 
 SAMPLED_WITHIN = 0.05
 """The horizon of the sampled path [m]: farther pairs are only bounded."""
@@ -97,6 +103,45 @@ def paths(count: int, samples: int, seed: int) -> int:
         f"most; steps a pair {np.median(steps):.1f} median, {np.max(steps):.0f} most"
     )
     return wrong
+
+
+def arms(count: int, samples: int, seed: int) -> int:
+    """Judge proofs of paths of real arms; the number of wrong ones."""
+    sys.path.insert(0, str(TESTS / "robots"))
+    from real_arms import ACCURACY, ARMS, arm, sampled, wrong_in
+
+    from standoff.robots.proof import Verdict
+
+    tell("| arm | pairs | paths | proven | violated | undecided | wrong | samples | ms |")
+    tell("|---|---|---|---|---|---|---|---|---|")
+    total = 0
+    for name in ARMS:
+        judged, rng = arm(name), np.random.default_rng(seed)
+        verdicts: Counter[Verdict] = Counter()
+        wrong, taken = 0, []
+        while sum(verdicts.values()) < count:
+            points = judged.path(rng)
+            if sampled(judged, points, FEW).least.min() < 1e-3:
+                continue
+            seen = sampled(judged, points, samples)
+            margin = float(rng.choice([-2.0 * ACCURACY, 2.0 * ACCURACY, -1e-3, 1e-3]))
+            if seen.least.min() - abs(margin) < 0.0:
+                continue
+            begin = time.perf_counter()
+            proof = judged.robot.certify(points, seen.least.min() - margin)
+            taken.append(time.perf_counter() - begin)
+            verdicts[proof.verdict] += 1
+            said = wrong_in(proof, judged, points, seen)
+            if said:
+                wrong += 1
+                tell(f"WRONG: {name}, seed {seed}, path {len(taken)}: {said}: {proof}")
+        each = " | ".join(str(verdicts[verdict]) for verdict in Verdict)
+        tell(
+            f"| {name} | {len(judged.pairs)} | {count} | {each} | {wrong} | {samples} | "
+            f"{np.median(taken) * 1e3:.0f} |"
+        )
+        total += wrong
+    return total
 
 
 def quicken() -> None:
@@ -233,13 +278,15 @@ def tell(text: str) -> None:
 def main() -> int:
     """Run one of the measurements."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("what", choices=["paths", "speed", "boxes"])
+    parser.add_argument("what", choices=["paths", "arms", "speed", "boxes"])
     parser.add_argument("--paths", type=int, default=1000)
-    parser.add_argument("--samples", type=int, default=100_000)
+    parser.add_argument("--samples", type=int, default=None)
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
     if given.what == "paths":
-        return 1 if paths(given.paths, given.samples, given.seed) else 0
+        return 1 if paths(given.paths, given.samples or 100_000, given.seed) else 0
+    if given.what == "arms":
+        return 1 if arms(given.paths, given.samples or 10_000, given.seed) else 0
     if given.what == "speed":
         speed(20, given.seed)
     else:

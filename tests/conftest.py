@@ -6,6 +6,7 @@ STANDOFF_FRESH=1 takes a new base, and a failure tells it. STANDOFF_DRAWS=10 dra
 cases (`draws.py`).
 """
 
+import gc
 import hashlib
 import os
 import secrets
@@ -89,6 +90,26 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if hypothesis.is_hypothesis_test(test) and test not in drawn:
             drawn.add(test)
             hypothesis.seed(BASE)(test)
+
+
+def keep_what_is_there() -> None:
+    """Take all objects that live now out of the garbage collector's rounds.
+
+    A process that has collected all tests holds millions of objects that stay, and each full round
+    would go through them.
+    """
+    gc.collect()
+    gc.freeze()
+
+
+def pytest_collection_finish() -> None:
+    keep_what_is_there()
+
+
+@pytest.fixture(scope="module")
+def quick_collections() -> None:
+    """For tests of timings, which collect garbage before each of them."""
+    keep_what_is_there()
 
 
 def place(nodeid: str) -> int:

@@ -28,6 +28,7 @@ OURS = 1e-12
 """Greatest error of a distance of the library, over the size."""
 DIFFERENCES = 1e-9
 """Error of central differences, over the size."""
+pytestmark = pytest.mark.usefixtures("quick_collections")
 TINY = Effort(frames=8, rounds=1)
 PAIR = all_pairs()[0]
 

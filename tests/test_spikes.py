@@ -5,9 +5,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 SPIKES = Path(__file__).parents[1] / "docs" / "spikes"
 
 
+@pytest.mark.soak
 def test_switching_spike_finds_no_cycle_and_no_wrong_answer() -> None:
     # In plain Python: nothing to compile, and the kernels are read as they are written.
     run = subprocess.run(

@@ -47,10 +47,13 @@ def test_knots_along_u_and_v_of_all_patches_change_no_feature(name, spacing):
     assert_same(so.Body.from_patches(patches), coarse(name))
 
 
+MORE = pytest.mark.soak
+
+
 @pytest.mark.parametrize("name", ["lens prism", "spline", "cone"])
-@pytest.mark.parametrize("way", ["u", "v", "uv"])
-@pytest.mark.parametrize("count", [1, 5])
-@pytest.mark.parametrize("spacing", [0.038, 1e-3, 1e-5])
+@pytest.mark.parametrize("way", ["u", pytest.param("v", marks=MORE), "uv"])
+@pytest.mark.parametrize("count", [pytest.param(1, marks=MORE), 5])
+@pytest.mark.parametrize("spacing", [0.038, pytest.param(1e-3, marks=MORE), 1e-5])
 def test_knots_on_one_patch_alone_change_no_feature(name, way, count, spacing):
     first, *others = SHELLS[name]()
     body = so.Body.from_patches([refined(first, spacing, way, count), *others])
@@ -122,8 +125,10 @@ def dented(depth, spacing):
     return [*shells.box((2.0, 2.0, 2.0))[:5], NurbsSurface(points, top.knots_u, top.knots_v)]
 
 
-@pytest.mark.parametrize("spacing", [0.1, 1e-2, 1e-3, 1e-4, 1e-5])
-@pytest.mark.parametrize("depth", [1e-9, 1e-11])
+@pytest.mark.parametrize(
+    "spacing", [0.1, pytest.param(1e-2, marks=MORE), 1e-3, pytest.param(1e-4, marks=MORE), 1e-5]
+)
+@pytest.mark.parametrize("depth", [pytest.param(1e-9, marks=MORE), 1e-11])
 def test_a_dent_among_inserted_knots_is_not_waved_through(spacing, depth):
     """The slack is no less than the dent is deep; or the normals turn so far that it is refused."""
     patches = dented(depth, spacing)

@@ -85,6 +85,7 @@ def test_parts_of_a_map_join_over_the_seam_and_at_the_poles() -> None:
     assert basins.stray(cells.ravel()) == at
 
 
+@pytest.mark.soak
 def test_the_laws_own_stray_starts_are_those_of_long_steps() -> None:
     """Each is next to a singular M; in steps a fiftieth as long none is left."""
     found = basins.beside_a_point("raw law").found

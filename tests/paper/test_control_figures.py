@@ -17,7 +17,9 @@ from standoff_studies.paper.control.roots import loci
 KEYS = ("gains", "stability", "feedback", "basin", "lyapunov")
 
 
-@pytest.mark.parametrize("key", KEYS)
+@pytest.mark.parametrize(
+    "key", [pytest.param(k, marks=[pytest.mark.soak] if k == "basin" else []) for k in KEYS]
+)
 def test_every_statement_that_can_hold_does(key: str) -> None:
     (entry,) = chosen([key])
     artwork = make(entry)

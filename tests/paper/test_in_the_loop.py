@@ -33,6 +33,7 @@ def cut(runs: Runs, records: int) -> Runs:
     return replace(runs, inside=part, exact=runs.exact[:records])
 
 
+@pytest.mark.soak
 def test_the_hand_goes_around_the_lens_a_little_inside() -> None:
     times = np.linspace(0.0, DURATION, 200)
     way = np.array([hand_pose(t).translation for t in times])

@@ -91,6 +91,7 @@ def test_the_focal_depth_is_where_the_support_functions_lose_their_maximum():
     assert values[0] < -0.1
 
 
+@pytest.mark.soak
 def test_condition_near_and_far():
     study = normals.run()
     near, far = normals.GAPS < 1e-3, normals.GAPS > 30.0

@@ -111,6 +111,7 @@ def true_instant(frame, before, after):
     return root, rise / (2.0 * RATE_STENCIL)
 
 
+@pytest.mark.soak
 def test_the_brute_force_itself():
     """The design's golden values for a vertex of B as the point; then cutting planes, which
     bound the distance from both sides by support functions alone."""

@@ -8,6 +8,7 @@ import pytest
 import standoff as so
 from robots.path_oracle import Judged, drawn_judged, least_distances
 from robots.trees import robot_of
+from standoff.robots import certify
 from standoff.robots.proof import Verdict
 
 CLEARANCE = 5e-3
@@ -93,6 +94,73 @@ def test_exactly_the_clearance_is_not_decided(case: object) -> None:
     assert proof.witness is not None
     assert proof.time < proof.end
     assert str(proof).startswith("UNDECIDED")
+
+
+def past_posts(gaps: list[float]) -> tuple[object, np.ndarray]:
+    """A ball on an arm of length 1 that passes fixed balls at least distances `gaps`."""
+    posts = {}
+    for k, gap in enumerate(gaps):
+        away = 1.1 + gap
+        posts[f"post {k}"] = (BALL, moved(away * np.cos(k), away * np.sin(k), 0))
+    robot = robot_of(
+        [1], [-1], [np.eye(4)], [[0, 0, 1.0]], [(0, BALL, moved(1, 0, 0))], fixed=posts
+    )
+    return robot, np.array([[-0.5], [len(gaps) - 0.5]])
+
+
+@pytest.mark.parametrize("batch", [4, 2048])
+def test_a_violation_behind_an_undecided_instant_is_found(
+    batch: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(certify, "BATCH", batch)
+    robot, path = past_posts([CLEARANCE, 1.0, CLEARANCE - 1e-6, -0.1])
+    proof = robot.certify(path, CLEARANCE)
+    assert proof.verdict is Verdict.VIOLATED
+    assert "post 2" in proof.witness.names
+    (span,) = proof.undecided
+    assert "post 0" in span.names
+    assert span.start == proof.time < 0.125 < span.end < 0.126
+    assert proof.latest == pytest.approx(0.625, abs=1e-3)
+    between = np.linspace(span.end, 0.62, 50)
+    assert (proof.steps.clearance(between) > CLEARANCE).all()
+    assert np.isnan(proof.steps.clearance(np.array([0.125])))
+    assert "undecided: " in str(proof)
+    assert proof.as_dict()["undecided"][0]["end"] == span.end
+
+
+@pytest.mark.parametrize("batch", [4, 2048])
+def test_all_undecided_instants_are_listed(batch: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(certify, "BATCH", batch)
+    robot, path = past_posts([CLEARANCE, 1.0, CLEARANCE, 1.0])
+    proof = robot.certify(path, CLEARANCE)
+    assert proof.verdict is Verdict.UNDECIDED
+    assert not proof
+    for span, at in zip(proof.undecided, (0.125, 0.625), strict=True):
+        assert span.start < at < span.end
+    assert proof.time == proof.undecided[0].start
+    assert "and 1 more" in str(proof)
+    open_ = np.isnan(proof.steps.clearance(np.linspace(0.0, 1.0, 10_001)))
+    assert 1 <= open_.sum() < 10
+
+
+def test_a_pair_at_the_clearance_all_the_time_ends_soon() -> None:
+    robot, path = sliding(0.25)
+    proof = robot.certify(path, 0.25)
+    assert proof.verdict is Verdict.UNDECIDED
+    (span,) = proof.undecided
+    assert (span.start, span.end) == (0.0, 1.0)
+    assert proof.counts.tried < 100_000
+
+
+def test_what_the_budget_leaves_is_listed() -> None:
+    robot, path = past_posts([CLEARANCE, CLEARANCE + 1e-3, CLEARANCE + 1e-3])
+    proof = robot.certify(path, CLEARANCE, max_steps=20)
+    assert proof.verdict is Verdict.UNDECIDED
+    times = np.linspace(0.0, 1.0, 1000)
+    within = np.zeros(len(times), dtype=bool)
+    for span in proof.undecided:
+        within |= (times >= span.start) & (times <= span.end)
+    assert np.array_equal(np.isnan(proof.steps.clearance(times)), within)
 
 
 def test_the_steps_of_a_grazing_path_grow_with_the_digits_alone() -> None:

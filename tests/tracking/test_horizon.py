@@ -168,7 +168,7 @@ def test_a_recorded_run_keeps_far_frames(tmp_path: Path) -> None:
     from standoff.motion import ConstantTwist
     from standoff.view import save_page, save_video
 
-    tracker = so.Tracker(SHAPES[0], SHAPES[1], 1e-2, so.PredictorCorrector(within=0.5))
+    tracker = so.Tracker(SHAPES[0], SHAPES[1], 4e-2, so.PredictorCorrector(within=0.5))
     pose = np.eye(4)
     pose[0, 3] = 3.0
     flying = ConstantTwist(pose, ([-1.0, 0, 0], [0, 0, 0.3]))
@@ -186,7 +186,7 @@ def test_a_recorded_run_keeps_far_frames(tmp_path: Path) -> None:
     assert errors.get_ylim()[0] < run.gap[~far].max() < errors.get_ylim()[1]
     assert len(errors.lines)
     save_page(run, tmp_path / "run.html")
-    save_video(run, tmp_path / "run.gif")
+    save_video(run, tmp_path / "run.gif", pictures=12)
     run.save(tmp_path / "run.parquet")
     again = so.open_recording(tmp_path / "run.parquet")
     assert again.feature_a[0] == NO_FEATURE

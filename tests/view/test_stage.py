@@ -248,6 +248,8 @@ def test_bodies_are_of_glass_while_one_is_deep_in_the_other(tmp_path: Path) -> N
             assert picture._answer._normal.visible is not deep
             if deep:
                 answer = picture._answer
+                # it is seen before it has its length
+                until(lambda answer=answer: np.ndim(answer._depth.scale) == 1)
                 length = answer._depth.scale[2]
                 assert length == pytest.approx(-stage.pair.answer.distance)
                 tip = answer._depth.position + length * stage.pair.answer.normal

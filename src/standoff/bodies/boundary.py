@@ -107,7 +107,7 @@ class Boundary(PackedParts):
         """
         from standoff.bodies.closing import joined_parts
 
-        return _made(name, joined_parts(vertices, edges, faces, senses, tolerance))
+        return made_boundary(name, joined_parts(vertices, edges, faces, senses, tolerance))
 
     @staticmethod
     def from_patches(
@@ -133,7 +133,7 @@ class Boundary(PackedParts):
         """
         from standoff.bodies.closing import joined_patches
 
-        return _made(name, joined_patches(patches, tolerance))
+        return made_boundary(name, joined_patches(patches, tolerance))
 
     def contains(self, points: Any) -> NDArray[np.bool_]:
         """Which points are inside or on the boundary.
@@ -175,7 +175,8 @@ class Boundary(PackedParts):
         return tuple(_kind(int(flag)) for flag in flags)
 
 
-def _made(name: str, joined: Joined) -> Boundary:
+def made_boundary(name: str, joined: Joined) -> Boundary:
+    """A boundary from joined parts; raises as `Boundary.from_brep` does."""
     from standoff.bodies.closing import close
 
     parts, ints, reals, report = close(joined)

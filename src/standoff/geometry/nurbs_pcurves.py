@@ -63,6 +63,7 @@ class NurbsPcurve(Pcurve):
     """
 
     spans: list[BezierPcurve]
+    knots: Array
 
     def __init__(self, control_points: Any, knots: Any, weights: Any = None) -> None:
         points = finite(control_points, "control_points", (-1, 2))
@@ -78,6 +79,7 @@ class NurbsPcurve(Pcurve):
         object.__setattr__(self, "kind", L.BEZIER)
         object.__setattr__(self, "matrix", rows)
         object.__setattr__(self, "spans", spans)
+        object.__setattr__(self, "knots", vector.knots)
 
     def homogeneous(self, t: float) -> tuple[Array, Array, Array]:
         return next((s for s in self.spans if t <= s.last), self.spans[-1]).homogeneous(t)

@@ -12,6 +12,7 @@ from standoff.casadi import NamedCallback, check_name
 from standoff.checks.names import choice
 from standoff.errors import StandoffError, not_installed
 from standoff.frameworks.ambient import LACKING, NO_THIRD, UNDEFINED
+from standoff.robots.configurations import made_unit
 from standoff.robots.curvature import Twists
 from standoff.robots.near import check_robot
 from standoff.robots.robot import Robot
@@ -42,7 +43,8 @@ def casadi_distance(
     Parameters
     ----------
     robot : Robot
-        Whose joints are hinges and slides, so that q is in the space of its velocities.
+        With joints of any kind. Derivatives are by the numbers of q themselves: a quaternion's
+        four, or (cos, sin), which count as made unit, as the packages read them.
     pairs : list of (str, str)
         Names of geometries or obstacles.
     undefined : "nan" or "raise"
@@ -62,19 +64,12 @@ def casadi_distance(
     TypeError
         No robot.
     ValueError
-        A robot with balls, free or continuous joints, a pair that there is not, an unknown choice
-        or a bad name. When called, within CasADi's own RuntimeError: q that is not finite;
-        undefined derivatives, if asked; second derivatives of bodies of several pieces.
+        A pair that there is not, an unknown choice or a bad name. When called, within CasADi's own
+        RuntimeError: q that is not finite; undefined derivatives, if asked.
     """
     check_robot(robot)
     check_name(name)
     choice(undefined, "undefined", UNDEFINED)
-    if robot.nq != robot.nv:
-        raise StandoffError(
-            f"The robot has nq {robot.nq} and nv {robot.nv}: derivatives by q are those of hinges "
-            "and slides. Fix the base, or use robot.distances(q).jacobian.",
-            "robot",
-        )
     return _Value(_Pairs(robot, [(str(a), str(b)) for a, b in pairs], undefined), name)
 
 
@@ -99,15 +94,15 @@ class _Pairs:
 
     def value(self, q: Any) -> Array:
         """(k,) distances."""
-        q = self.robot.kinematics.check(q)
+        q = self.robot.kinematics.check(made_unit(self.robot.joints, q))
         return np.array([answer.distance for answer in self._answers(self.robot.poses(q))])
 
     def first(self, q: Any) -> Array:
-        """(k, nv) gradients."""
+        """(k, nq) gradients."""
         return np.array([gradient for gradient, _ in self._derived(q, second=False)])
 
     def second(self, q: Any) -> Array:
-        """(k, nv, nv) Hessians."""
+        """(k, nq, nq) Hessians."""
         return np.array([hessian for _, hessian in self._derived(q, second=True)])
 
     def _answers(self, poses: Array) -> list[Any]:
@@ -115,10 +110,9 @@ class _Pairs:
         return [answer[pair] for pair in self.names]
 
     def _derived(self, q: Any, *, second: bool) -> list[tuple[Array, Array]]:
-        q = self.robot.kinematics.check(q)
         twists = Twists(self.robot, q)
         found = []
-        for pair, answer in zip(self.numbers, self._answers(self.robot.poses(q)), strict=True):
+        for pair, answer in zip(self.numbers, self._answers(twists.poses), strict=True):
             flag, reason, _ = flagged_gradient(answer)
             none = flag is Smoothness.UNDEFINED
             by_twists = np.full(12, np.nan) if none else answer.gradient
@@ -131,7 +125,7 @@ class _Pairs:
 
 
 def _through(by_twists: Array, jacobian: Array) -> Array:
-    """(nv,) derivatives by the joints; nan where one that is not defined has a part in it."""
+    """(nq,) derivatives by q; nan where one that is not defined has a part in it."""
     lost = np.isnan(by_twists)
     found: Array = np.where(lost, 0.0, by_twists) @ jacobian
     if lost.any():
@@ -179,9 +173,9 @@ class _Hessian(NamedCallback):
 
     def eval(self, given: Any) -> Any:
         hessian = self.pair.second(given[0].full().ravel())
-        count, nv, _ = hessian.shape
-        by_q = hessian.transpose(1, 0, 2).reshape(nv * count, nv)
-        return [by_q, casadi.DM(nv * count, count)]
+        count, nq, _ = hessian.shape
+        by_q = hessian.transpose(1, 0, 2).reshape(nq * count, nq)
+        return [by_q, casadi.DM(nq * count, count)]
 
     def get_jacobian(self, name: str, inputs: Any, outputs: Any, options: Any) -> Any:
         raise StandoffError(NO_THIRD)

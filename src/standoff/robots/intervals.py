@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.robots.proof import How, Names, Steps
+from standoff.robots.proof import How, Names, Span, Steps
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -57,6 +57,20 @@ def lowest(before: Array, after: Array, sag: Array) -> Array:
 def joined(parts: Sequence[Intervals]) -> Intervals:
     """All rows."""
     return Intervals(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+
+
+def spans_of(some: Intervals, names: Sequence[Names], end: float) -> tuple[Span, ...]:
+    """Intervals up to an end; those of two bodies that follow each other are one."""
+    found: list[Span] = []
+    owners = [names[pair] for pair in some.pairs.tolist()]
+    for own, first, last in sorted(
+        zip(owners, some.first.tolist(), some.last.tolist(), strict=True)
+    ):
+        if found and found[-1].names == own and first <= found[-1].end:
+            found[-1] = found[-1]._replace(end=max(min(last, end), found[-1].end))
+        else:
+            found.append(Span(first, min(last, end), own))
+    return tuple(sorted(found))
 
 
 def steps_of(proven: Sequence[tuple[Intervals, Array, How]], names: Sequence[Names]) -> Steps:

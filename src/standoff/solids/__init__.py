@@ -12,6 +12,8 @@ if TYPE_CHECKING:
         SolidCounts,
         SolidProximity,
     )
+    from standoff.solids.assembly import Assembly, AssemblyAnswer, PartsAnswer
+    from standoff.solids.boundary_file import open_boundary, save_boundary
     from standoff.solids.planar.solid import PlanarSolid
     from standoff.solids.query import distance
 else:
@@ -25,17 +27,24 @@ else:
                 "SolidCounts",
                 "SolidProximity",
             ),
+            "standoff.solids.assembly": ("Assembly", "AssemblyAnswer", "PartsAnswer"),
+            "standoff.solids.boundary_file": ("open_boundary", "save_boundary"),
             "standoff.solids.planar.solid": ("PlanarSolid",),
             "standoff.solids.query": ("distance",),
         },
     )
 
 __all__ = [
+    "Assembly",
+    "AssemblyAnswer",
     "Continuum",
     "NearestPair",
     "Overlap",
+    "PartsAnswer",
     "PlanarSolid",
     "SolidCounts",
     "SolidProximity",
     "distance",
+    "open_boundary",
+    "save_boundary",
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,9 @@ from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.status import Status
+
+if TYPE_CHECKING:
+    from standoff.tracking.derivatives import Derivatives
 
 Array = NDArray[np.float64]
 
@@ -69,6 +72,24 @@ class PairAnswer(Proximity):
                 "so.distance(...) of the pieces, or the gradient."
             )
         return super().derivatives()
+
+    def derivatives_of_pieces(self) -> tuple[Derivatives, Array]:
+        """Return the derivatives by the motions of the two *pieces* about their own origins, and
+        where these are.
+
+        Returns
+        -------
+        derivatives : Derivatives
+        arms : (2, 3) array
+            From the body's origin to the piece's, world axes; 0 of a body that is no compound.
+
+        Raises
+        ------
+        StandoffError
+            Of a pair that is FAR.
+        """
+        self._refuse_far()
+        return super().derivatives(), self._arms
 
     @property
     def gradient(self) -> Array:

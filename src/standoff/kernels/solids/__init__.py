@@ -1,1 +1,1 @@
-"""Compiled parts of solids that need not be convex."""
+"""Solids that need not be convex: potentials, searches and closings."""

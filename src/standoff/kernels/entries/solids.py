@@ -1,0 +1,59 @@
+"""The distance of two solids' boundaries as Python calls it."""
+
+from numba import types
+
+from standoff.kernels.compiler.decorators import entry, kernel, pointer
+from standoff.kernels.compiler.entry import INT, INTS, READ, WRITE, WRITE_INTS
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.spatial_pieces import leaf_jet
+from standoff.kernels.solids.spatial_search import search
+from standoff.kernels.values import Pose
+
+# Packed boundary, then leaves and tree; pose in A's frame (R, p).
+SOLID = types.Tuple((INTS, READ, INTS, READ))
+
+
+@kernel
+def side_at(solid, pose, sense):
+    ints, reals, own, numbers = solid
+    R = (pose[0], pose[1], pose[2], pose[3], pose[4], pose[5], pose[6], pose[7], pose[8])
+    placed = Pose(R, (pose[9], pose[10], pose[11]))
+    return S.Side(
+        pointer(ints, 0), pointer(reals, 0), pointer(own, 0), pointer(numbers, 0), placed, sense
+    )
+
+
+@entry(
+    SOLID, READ, INT, SOLID, READ, INT, WRITE, WRITE, WRITE, WRITE_INTS, WRITE, WRITE_INTS,
+    work="bodies",
+)  # fmt: skip
+def boundary_distance(
+    solid_a, pose_a, sense_a, solid_b, pose_b, sense_b, best, minima, work, nodes, keys, counts
+):
+    """Of two solids at poses in one frame, seen from outside or inside; `best` says how far."""
+    a, b = side_at(solid_a, pose_a, sense_a), side_at(solid_b, pose_b, sense_b)
+    limit = len(keys)
+    heap = (pointer(keys, 0), pointer(nodes, 0), pointer(nodes, limit))
+    most = (len(work) - 2048) // 3
+    search(
+        a,
+        b,
+        pointer(best, 0),
+        pointer(minima, 0),
+        heap,
+        limit,
+        pointer(work, 2048),
+        most,
+        pointer(work, 0),
+        pointer(counts, 0),
+    )
+
+
+@entry(SOLID, READ, INT, types.float64, types.float64, WRITE, work="bodies")
+def solid_point(solid, pose, leaf, u, v, out):
+    """The jet of a leaf (18 numbers) into `out`."""
+    jet = leaf_jet(side_at(solid, pose, S.OUTSIDE), leaf, u, v)
+    for i in range(6):
+        vector = jet[i]
+        for k in range(3):
+            out[3 * i + k] = vector[k]

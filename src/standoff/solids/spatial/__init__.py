@@ -1,0 +1,1 @@
+"""Solids in space: their leaves and tree, and the proven distance of two of them."""
