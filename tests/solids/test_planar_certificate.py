@@ -10,14 +10,13 @@ from planar_drawn import star
 
 import standoff as so
 from standoff.geometry import ConicArc, FormulaCurve, Line
-from standoff.kernels.compiler.decorators import kernel, pointer
+from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.entries.planar_solids import outline_at
 from standoff.kernels.solids import planar_layout as P
 from standoff.kernels.solids.planar_layout import Piece, Potential
 from standoff.kernels.solids.planar_pieces import apart, halves, jet_at, node_piece
-from standoff.kernels.solids.planar_points import nearest_boundary
 from standoff.kernels.solids.planar_ranges import greatest, value_at
-from standoff.kernels.solids.potential import circle_distance
+from standoff.kernels.solids.torus_potential import from_circle
 from standoff.solids.planar.outline import Outline
 
 
@@ -25,7 +24,7 @@ def test_the_distance_from_a_circle_has_no_cancellation() -> None:
     for k in (-2.0, -1e-9, 0.0, 1e-12, 0.3, 5.0):
         for t, z in ((0.1, 0.05), (1e-8, -1e-8), (0.02, -0.03)):
             exact = z if k == 0.0 else _by_decimals(k, t, z)
-            assert circle_distance(k, t, z) == pytest.approx(exact, rel=1e-14)
+            assert from_circle(k, t, z)[0] == pytest.approx(exact, rel=1e-14)
 
 
 def _by_decimals(k: float, t: float, z: float) -> float:
@@ -109,15 +108,6 @@ def test_no_false_bound_of_many(rng: np.random.Generator) -> None:
             assert attacked(rng, solid.outline, 3000)[1] <= 1e-14
 
 
-@kernel
-def feet(arrays, points, out):  # type: ignore[no-untyped-def]
-    outline = outline_at(arrays, 1.0, 0.0, 0.0, 0.0)
-    for k in range(len(points)):
-        near = nearest_boundary(outline, points[k, 0], points[k, 1], 1e-10, 3.0)
-        out[k, 0], out[k, 1] = near.lower, near.distance
-    return pointer(out, 0)[0]
-
-
 def test_points_are_proven(rng: np.random.Generator) -> None:
     for solid in solids(rng):
         boundary = np.array(
@@ -127,8 +117,9 @@ def test_points_are_proven(rng: np.random.Generator) -> None:
                 for t in np.linspace(curve.first, curve.last, 400)
             ]
         )
-        points, out = rng.uniform(-1.3, 1.3, (200, 2)), np.empty((200, 2))
-        feet(solid.outline.arrays, points, out)
+        points = rng.uniform(-1.3, 1.3, (200, 2))
+        distances, _, rows = solid.outline.foot(points, 1e-10)
+        out = np.column_stack([rows[:, 0], distances])
         seen = np.linalg.norm(points[:, None] - boundary, axis=2).min(axis=1)
         assert (out[:, 1] <= seen + 1e-12).all()
         assert (out[:, 0] >= seen - 0.02).all()

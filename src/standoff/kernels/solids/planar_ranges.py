@@ -31,7 +31,7 @@ from standoff.kernels.solids.planar_pieces import (
     turned_into,
 )
 from standoff.kernels.solids.planar_tolerances import SAME_ANGLE
-from standoff.kernels.solids.potential import circle_distance
+from standoff.kernels.solids.torus_potential import from_circle
 
 
 @small
@@ -41,7 +41,7 @@ def value_at(phi, x, y):
         return sqrt(dx * dx + dy * dy)
     z = phi.nx * dx + phi.ny * dy
     t = phi.nx * dy - phi.ny * dx
-    return circle_distance(phi.k, t, z)
+    return from_circle(phi.k, t, z)[0]
 
 
 @small

@@ -53,7 +53,7 @@ def size_of(curves: Sequence[Curve]) -> float:
     return float(np.linalg.norm(np.ptp(at, axis=0)))
 
 
-def read_loop(curves: Any, where: str) -> Loop:
+def read_loop(curves: Any, where: str, join: float | None = None) -> Loop:
     """A closed loop of curves that follow each other, each in either direction.
 
     Raises
@@ -72,7 +72,7 @@ def read_loop(curves: Any, where: str) -> Loop:
     size = size_of(found)
     for k, curve in enumerate(found):
         _check_flat(curve, f"Curve {k} of {where}", size)
-    return joined(tuple(found), where, JOINED * size)
+    return joined(tuple(found), where, JOINED * size if join is None else join)
 
 
 def _check_flat(curve: Curve, what: str, size: float) -> None:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.checks.arrays import finite
+from standoff.checks.numbers import positive
 from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve
@@ -68,7 +69,12 @@ class PlanarSolid(KeepsReadOnly):
 
     @classmethod
     def from_loops(
-        cls, outer: Sequence[Any], inner: Sequence[Sequence[Curve]] = (), *, name: str = "solid"
+        cls,
+        outer: Sequence[Any],
+        inner: Sequence[Sequence[Curve]] = (),
+        *,
+        name: str = "solid",
+        join: float | None = None,
     ) -> PlanarSolid:
         """A solid from its loops.
 
@@ -80,6 +86,9 @@ class PlanarSolid(KeepsReadOnly):
         inner : sequence of sequences of Curve, optional
             Holes.
         name : str, optional
+        join : float, optional
+            By how much ends that meet may miss each other, length; 1e-9 of the loop's size by
+            default. What they miss is the solid's `slack`.
 
         Returns
         -------
@@ -94,9 +103,9 @@ class PlanarSolid(KeepsReadOnly):
             Something that is not a curve.
         """
         given = tuple(outer)
+        limit = None if join is None else positive(join, "join")
         if given and not any(isinstance(each, Curve) for each in given):
-            loops = [read_loop(each, f"loop {k}") for k, each in enumerate(given)]
-            found = nested(loops)
+            found = solids_of(given, name=name, join=limit)
             if len(found) != 1:
                 raise BodyError(
                     f"{len(given)} loops make {len(found)} separate solids: make one of each, "
@@ -104,9 +113,9 @@ class PlanarSolid(KeepsReadOnly):
                     "outer",
                     outer,
                 )
-            return cls._made(found[0], name)
-        first = read_loop(given, "the outer loop")
-        holes = [read_loop(each, f"inner loop {k}") for k, each in enumerate(inner)]
+            return found[0]
+        first = read_loop(given, "the outer loop", limit)
+        holes = [read_loop(each, f"inner loop {k}", limit) for k, each in enumerate(inner)]
         return cls._made(oriented(first, holes), name)
 
     @classmethod
@@ -302,6 +311,33 @@ class PlanarSolid(KeepsReadOnly):
         inner = len(self.loops) - 1
         holes = f", {inner} inner loop{'s' if inner > 1 else ''}" if inner else ""
         return f"PlanarSolid({self.name!r}, {self.n_edges} edges{holes}, area={self.area:.6g})"
+
+
+def solids_of(
+    loops: Sequence[Any], *, name: str = "solid", join: float | None = None
+) -> tuple[PlanarSolid, ...]:
+    """The separate solids that loops make, those inside others being holes.
+
+    Parameters
+    ----------
+    loops : sequence of sequences of Curve
+    name : str, optional
+        Of the first; the others have a number after it.
+    join : float, optional
+        See `PlanarSolid.from_loops`.
+
+    Returns
+    -------
+    tuple of PlanarSolid
+
+    Raises
+    ------
+    BodyError
+        See `PlanarSolid.from_loops`.
+    """
+    read = [read_loop(each, f"loop {k}", join) for k, each in enumerate(loops)]
+    found = enumerate(nested(read))
+    return tuple(PlanarSolid._made(each, f"{name} {k + 1}" if k else name) for k, each in found)
 
 
 def kinds_of(loop: Loop) -> list[VertexKind]:
