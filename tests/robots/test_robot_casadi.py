@@ -206,3 +206,23 @@ def test_derivatives_by_all_numbers_of_q_are_the_differences(
             for i in range(robot.nq)
         ]
         np.testing.assert_allclose(hessian, second, atol=2e-5)
+
+
+def test_two_pieces_equally_near_have_no_derivative_on_which_they_differ() -> None:
+    balls = """<mujoco><asset><mesh name="m" vertex="0 0 0 .1 0 0 0 .1 0 0 0 .1"/></asset>
+    <worldbody><geom name="floor" type="plane" size="1 1 1"/>
+    <body pos="0 0 1"><joint type="slide" axis="0 0 1"/><joint type="hinge" axis="0 1 0"/>
+    <geom name="tip" type="mesh" mesh="m"/></body></worldbody></mujoco>"""
+    ball = so.shapes.sphere(0.1)
+    two = so.compound({s: (ball, (np.eye(3), [x, 0.0, 0.0])) for s, x in (("l", -0.3), ("r", 0.3))})
+    robot = so.Robot.from_mujoco(model(balls), meshes={"tip": two})
+    every = compiled(casadi_distance(robot, [("floor", "tip")]), 2)
+    value, jacobian, hessian = (x.full() for x in every(np.zeros(2)))
+    assert value[0, 0] == pytest.approx(0.9)
+    np.testing.assert_allclose(jacobian, [[1.0, np.nan]], atol=1e-12)
+    _, jacobian, hessian = (x.full() for x in every(np.array([0.0, 1e-3])))
+    np.testing.assert_allclose(jacobian, [[1.0, -0.3 * np.cos(1e-3)]], atol=1e-12)
+    np.testing.assert_allclose(hessian, [[0.0, 0.0], [0.0, 0.3 * np.sin(1e-3)]], atol=1e-12)
+    asked = compiled(casadi_distance(robot, [("floor", "tip")], undefined="raise"), 2)
+    with pytest.raises(RuntimeError, match="two pairs of pieces"):
+        asked(np.zeros(2))

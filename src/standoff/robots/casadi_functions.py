@@ -5,27 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.casadi import NamedCallback, check_name
 from standoff.checks.names import choice
 from standoff.errors import StandoffError, not_installed
-from standoff.frameworks.ambient import LACKING, NO_THIRD, UNDEFINED
-from standoff.robots.configurations import made_unit
-from standoff.robots.curvature import Twists
+from standoff.frameworks.ambient import NO_THIRD, UNDEFINED
 from standoff.robots.near import check_robot
+from standoff.robots.pairs_by_q import PairsByQ
 from standoff.robots.robot import Robot
-from standoff.robots.tolerances import TURN_LOST
-from standoff.tracking.derivatives import Smoothness, flagged_gradient
-from standoff.world import World
 
 try:
     import casadi
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(not_installed("CasADi", "casadi"), name=error.name) from error
-
-Array = NDArray[np.float64]
 
 
 def casadi_distance(
@@ -70,77 +61,13 @@ def casadi_distance(
     check_robot(robot)
     check_name(name)
     choice(undefined, "undefined", UNDEFINED)
-    return _Value(_Pairs(robot, [(str(a), str(b)) for a, b in pairs], undefined), name)
-
-
-class _Pairs:
-    """Some pairs of a robot: their answers at q, and derivatives by it."""
-
-    def __init__(self, robot: Robot, names: list[tuple[str, str]], undefined: str) -> None:
-        known = dict(zip(robot.geoms.names, robot.geoms.bodies, strict=True))
-        used = [name for name in known if any(name in pair for pair in names)]
-        unknown = {name for pair in names for name in pair} - known.keys()
-        if unknown or not names:
-            raise StandoffError(
-                f"pairs = {names}: give pairs of names in robot.geoms.names.", "pairs", names
-            )
-        still = dict(zip(robot.geoms.names, robot.geoms.joints < 0, strict=True))
-        at = {name: k for k, name in enumerate(robot.geoms.names)}
-        self.robot, self.names, self.undefined = robot, names, undefined
-        self.numbers = [(at[a], at[b]) for a, b in names]
-        fixed = {name: robot.geoms.placements[at[name]] for name in used if still[name]}
-        self.moving = [at[name] for name in used if not still[name]]
-        self.world = World({name: known[name] for name in used}, fixed=fixed, only=names)
-
-    def value(self, q: Any) -> Array:
-        """(k,) distances."""
-        q = self.robot.kinematics.check(made_unit(self.robot.joints, q))
-        return np.array([answer.distance for answer in self._answers(self.robot.poses(q))])
-
-    def first(self, q: Any) -> Array:
-        """(k, nq) gradients."""
-        return np.array([gradient for gradient, _ in self._derived(q, second=False)])
-
-    def second(self, q: Any) -> Array:
-        """(k, nq, nq) Hessians."""
-        return np.array([hessian for _, hessian in self._derived(q, second=True)])
-
-    def _answers(self, poses: Array) -> list[Any]:
-        answer = self.world.distances(poses[self.moving])
-        return [answer[pair] for pair in self.names]
-
-    def _derived(self, q: Any, *, second: bool) -> list[tuple[Array, Array]]:
-        twists = Twists(self.robot, q)
-        found = []
-        for pair, answer in zip(self.numbers, self._answers(twists.poses), strict=True):
-            flag, reason, _ = flagged_gradient(answer)
-            none = flag is Smoothness.UNDEFINED
-            by_twists = np.full(12, np.nan) if none else answer.gradient
-            gradient = _through(by_twists, twists.of(pair))
-            lacks = second if flag in LACKING else False
-            if self.undefined == "raise" and (lacks or np.isnan(gradient).any()):
-                raise StandoffError(f"The distance of {answer.names} has no derivative: {reason}")
-            found.append((gradient, twists.hessian(pair, answer) if second else gradient))
-        return found
-
-
-def _through(by_twists: Array, jacobian: Array) -> Array:
-    """(nq,) derivatives by q; nan where one that is not defined has a part in it."""
-    lost = np.isnan(by_twists)
-    found: Array = np.where(lost, 0.0, by_twists) @ jacobian
-    if lost.any():
-        # turns that move both bodies alike do not change the distance
-        either = lost.reshape(2, 2, 3).any(axis=0)
-        apart = np.abs(jacobian[6:] - jacobian[:6])
-        apart[:3] = np.abs(jacobian[[0, 1, 2]]) + np.abs(jacobian[[6, 7, 8]])
-        found[(apart[either.ravel()] > TURN_LOST).any(axis=0)] = np.nan
-    return found
+    return _Value(PairsByQ(robot, [(str(a), str(b)) for a, b in pairs], undefined), name)
 
 
 class _Value(NamedCallback):
     """q to the distances."""
 
-    def __init__(self, pairs: _Pairs, name: str) -> None:
+    def __init__(self, pairs: PairsByQ, name: str) -> None:
         q, distances = (casadi.Sparsity.dense(n, 1) for n in (pairs.robot.nq, len(pairs.names)))
         super().__init__(pairs, name, {"q": q}, {"distances": distances})
 

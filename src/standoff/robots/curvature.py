@@ -103,8 +103,8 @@ class Twists:
 
     def hessian(self, pair: tuple[int, int], answer: Any) -> Array:
         """(nq, nq) second derivatives of a pair's distance; nan if they are not defined."""
-        derived, arms = answer.derivatives_of_pieces()
-        each = [self._of_one(k, self._origins[k] + arm) for k, arm in zip(pair, arms, strict=True)]
+        derived = answer.derivatives()
+        each = [self._of_one(k, self._origins[k]) for k in pair]
         twists = np.concatenate([np.vstack(one) for one in each])
         found = twists.T @ derived.hessian @ twists
         before = self._motions[:, None] < self._motions[None]
@@ -115,7 +115,7 @@ class Twists:
             same = self._motions[:, None] == self._motions[None]
             found += np.where(before, place, np.where(same, 0.5 * (place + place.T), place.T))
             found += np.where(before, turn, np.where(same, 0.0, turn.T))
-            origin = self._origins[pair[side]] + arms[side]
+            origin = self._origins[pair[side]]
             for bend in self._bends:
                 if bend.motion in self._carried[pair[side]]:
                     shift = np.cross(bend.turn, origin - bend.centre)
