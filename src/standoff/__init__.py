@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from standoff.points import PointTracker
     from standoff.recording import Recording, open_recording, track
     from standoff.robots import Robot
+    from standoff.solids import PlanarSolid
     from standoff.tracking import (
         Event,
         Feature,
@@ -80,6 +81,7 @@ else:
             "standoff.points": ("PointTracker",),
             "standoff.recording": ("Recording", "open_recording", "track"),
             "standoff.robots": ("Robot",),
+            "standoff.solids": ("PlanarSolid",),
             "standoff.view": ("view",),
             "standoff.world": ("World", "compound"),
         },
@@ -110,6 +112,7 @@ __all__ = [
     "Event",
     "Feature",
     "PaperLaw",
+    "PlanarSolid",
     "PointTracker",
     "Pose",
     "Poses",

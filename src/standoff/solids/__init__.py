@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     )
     from standoff.solids.assembly import Assembly, AssemblyAnswer, PartsAnswer
     from standoff.solids.boundary_file import open_boundary, save_boundary
+    from standoff.solids.planar.dxf import read_dxf
+    from standoff.solids.planar.solid import PlanarSolid
+    from standoff.solids.query import distance
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -27,6 +30,9 @@ else:
             ),
             "standoff.solids.assembly": ("Assembly", "AssemblyAnswer", "PartsAnswer"),
             "standoff.solids.boundary_file": ("open_boundary", "save_boundary"),
+            "standoff.solids.planar.dxf": ("read_dxf",),
+            "standoff.solids.planar.solid": ("PlanarSolid",),
+            "standoff.solids.query": ("distance",),
         },
     )
 
@@ -37,8 +43,11 @@ __all__ = [
     "NearestPair",
     "Overlap",
     "PartsAnswer",
+    "PlanarSolid",
     "SolidCounts",
     "SolidProximity",
+    "distance",
     "open_boundary",
+    "read_dxf",
     "save_boundary",
 ]
