@@ -213,7 +213,7 @@ class AssemblyAnswer:
 def _placed(name: str, given: Any) -> tuple[Any, Pose]:
     shape, pose = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
     if isinstance(shape, Boundary) and not isinstance(shape, Body):
-        from standoff.solids.spatial import Solid
+        from standoff.solids.spatial.solid import Solid
 
         shape = Solid(shape)
     if not isinstance(shape, Body | Queried):
