@@ -328,7 +328,9 @@ def proven(phi, sign, most, side, leaf, box, q, counts):
     count, rounds = 1, 0
     while count > 0:
         count -= 1
-        b = S.Box(stack[4 * count], stack[4 * count + 1], stack[4 * count + 2], stack[4 * count + 3])
+        b = S.Box(
+            stack[4 * count], stack[4 * count + 1], stack[4 * count + 2], stack[4 * count + 3]
+        )
         rounds += 1
         counts[0] += 1
         u, v = min(max(q[0], b.u0), b.u1), min(max(q[1], b.v0), b.v1)

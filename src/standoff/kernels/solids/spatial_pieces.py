@@ -52,7 +52,14 @@ def own_jet(side, leaf, u, v):
     if dim == 1:
         x, xt, xtt = edge_jet(side.ints, side.reals, side.own[r + S.FEATURE], u)
         return x, xt, ZERO, xtt, ZERO, ZERO
-    return vertex_point(side.ints, side.reals, side.own[r + S.FEATURE]), ZERO, ZERO, ZERO, ZERO, ZERO
+    return (
+        vertex_point(side.ints, side.reals, side.own[r + S.FEATURE]),
+        ZERO,
+        ZERO,
+        ZERO,
+        ZERO,
+        ZERO,
+    )
 
 
 @shared
@@ -142,9 +149,7 @@ def piece_meets(side, piece, box):
         small = part.u1 - part.u0 <= 0.25 * (box.u1 - box.u0) or (
             part.v1 - part.v0 <= 0.25 * (box.v1 - box.v0)
         )
-        inside = (
-            box.u0 <= part.u0 and part.u1 <= box.u1 and box.v0 <= part.v0 and part.v1 <= box.v1
-        )
+        inside = box.u0 <= part.u0 and part.u1 <= box.u1 and box.v0 <= part.v0 and part.v1 <= box.v1
         if inside or rounds > 40 or count >= 22 or (small and rounds > 20):
             return True
         tm = 0.5 * (ta + tb)

@@ -70,9 +70,7 @@ def search(a, b, best, minima, heap, limit, pairs, most_pairs, work, counts):
         goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
         if pairs[3 * k + 2] < goal and best[MET] == 0.0:
             counts[3] += 1
-            close_leaves(
-                a, int(pairs[3 * k]), b, int(pairs[3 * k + 1]), best, minima, work, counts
-            )
+            close_leaves(a, int(pairs[3 * k]), b, int(pairs[3 * k + 1]), best, minima, work, counts)
 
 
 @kernel
