@@ -3,7 +3,6 @@ pair, and the queue of those that wait."""
 
 from math import acos, asin, inf, pi
 
-from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import add, dot, norm, rotate, scale, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S

@@ -2,7 +2,7 @@
 
 from math import inf
 
-from standoff.kernels.algebra.vectors import cross, norm, rotate, scale, sub
+from standoff.kernels.algebra.vectors import cross, norm, rotate, scale
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_jet,
@@ -13,10 +13,9 @@ from standoff.kernels.body.features import (
     vertex_point,
 )
 from standoff.kernels.body.trimming import on_face
-from standoff.kernels.compiler.decorators import ints_on_stack, kernel, reals_on_stack, shared
+from standoff.kernels.compiler.decorators import kernel, reals_on_stack, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.torus_potential import TORUS_THROUGH, Potential
-from standoff.kernels.values import Pose
 
 ZERO = (0.0, 0.0, 0.0)
 OUTSIDE_TRIM, INSIDE_TRIM, CUT_BY_TRIM = 0, 1, 2
