@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from standoff.solids.spatial.minimum import Found, leaf_jet_of, least_distance
 from standoff.solids.spatial.points import distance_to_boundary, signed_distances
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid import Solid
+from standoff.solids.spatial.tolerances import DIRECTED
 
 
 @dataclass(frozen=True)
@@ -61,10 +63,8 @@ class PlacedPair:
         y = leaf_jet_of(self.b.packed, leaf_b, row[5], row[6])[0] @ self.rb.T + self.pb
         away = y - x
         length = float(np.linalg.norm(away))
-        if length > 1e-9 * self.size:
-            normal = away / length
-        else:
-            normal = self._normal_at(row, senses)
+        told = length > DIRECTED * self.size
+        normal = away / length if told else self._normal_at(row, senses)
         return Place(row, x, y, normal)
 
     def _normal_at(self, row: Array, senses: tuple[int, int]) -> Array:
@@ -131,11 +131,11 @@ def parameters(solid: Solid, leaf: int, values: Array) -> tuple[float, ...]:
 def reference_points(solid: Solid, count: int) -> Array:
     """Points of a solid's boundary, own frame: vertices first, then middles of leaves."""
     vertices = np.asarray(solid.boundary.vertex_points).reshape(-1, 3)[:count]
+    whole = (k for k, leaf in enumerate(solid.leaves) if leaf.dim and not leaf.cut)
     others = [
         leaf_jet_of(solid.packed, k, *middle_of(solid, k))[0]
-        for k, leaf in enumerate(solid.leaves)
-        if leaf.dim and not leaf.cut
-    ][:count]
+        for k in islice(whole, count - len(vertices))
+    ]
     return np.vstack([vertices, np.reshape(others, (-1, 3))])
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from standoff.geometry.validation import Array
 from standoff.solids.answer import Continuum
 from standoff.solids.spatial.pair import Place, PlacedPair
-from standoff.solids.spatial.tolerances import CONTINUUM_LENGTH, SAME_PAIR
+from standoff.solids.spatial.tolerances import CONTINUUM_LENGTH, SAME_BASIN, SAME_PAIR, VALLEY
 
 # How many neighbours of a pair are tried for a continuum between them.
 TRIED = 4
@@ -19,14 +19,20 @@ MOST_CORNERS = 8
 def distinct(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
     """Without those that were found twice."""
     kept: list[Place] = []
-    for place in places:
-        spot = np.concatenate([place.point_a, place.point_b])
-        if all(
-            np.abs(spot - np.concatenate([k.point_a, k.point_b])).max() > SAME_PAIR * pair.size
-            for k in kept
-        ):
+    for place in sorted(places, key=lambda each: each.distance):
+        if not any(_same(place, other, pair.size) for other in kept):
             kept.append(place)
     return kept
+
+
+def _same(place: Place, other: Place, size: float) -> bool:
+    """Is a pair another one again, or cut off its valley by the side of a leaf?"""
+    away = max(
+        float(np.linalg.norm(place.point_a - other.point_a)),
+        float(np.linalg.norm(place.point_b - other.point_b)),
+    )
+    farther = place.distance - other.distance > VALLEY * size
+    return away <= (SAME_BASIN if farther else SAME_PAIR) * size
 
 
 def continuum_of(

@@ -26,8 +26,10 @@ def packed_leaves(boundary: PackedParts) -> tuple[NDArray[np.int64], Array, list
     """(ints, reals, leaves) of a boundary, laid out as in ``kernels.solids.spatial_layout``."""
     leaves, pieces = all_leaves(boundary)
     nodes = _grown(leaves)
-    ints, reals, lists = list(range(S.INT_HEADER)), np.zeros(S.REAL_HEADER), []
-    leaf_rows, leaf_reals = [], []
+    ints, reals = list(range(S.INT_HEADER)), np.zeros(S.REAL_HEADER)
+    lists: list[int] = []
+    leaf_rows: list[int] = []
+    leaf_reals: list[Array] = []
     for leaf in leaves:
         leaf_rows += [leaf.dim, leaf.feature, leaf.chart, int(leaf.cut), leaf.senses, len(lists),
                       len(leaf.pieces), leaf.kind]  # fmt: skip
