@@ -130,8 +130,8 @@ def _bends_along_u(
 ) -> NDArray[np.bool_]:
     hu, hv = rows[:, 1] - rows[:, 0], rows[:, 3] - rows[:, 2]
     with np.errstate(all="ignore"):
-        bend_u = (d[:, 2] * hu + d[:, 3] * hv) / d[:, 0]
-        bend_v = (d[:, 4] * hv + d[:, 3] * hu) / d[:, 1]
+        bend_u = (d[:, 2] / d[:, 0] + d[:, 3] / d[:, 1]) * hu
+        bend_v = (d[:, 4] / d[:, 1] + d[:, 3] / d[:, 0]) * hv
     known = np.isfinite(bend_u) & np.isfinite(bend_v)
     by_bend = np.where(known, bend_u >= bend_v, hu >= hv)
     by_width = np.where(np.isfinite(wide).all(axis=0), wide[0] >= wide[1], hu >= hv)
