@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.bodies import Edge, Face
-from standoff.geometry import ConicArc, Cylinder, Line, Plane, Torus, ellipsoid_patches
+from standoff.geometry import (
+    ConicArc,
+    Cylinder,
+    Line,
+    Plane,
+    Torus,
+    ellipsoid_patches,
+)
+from standoff.geometry.quadrics import sphere_atlas
 from standoff.solids.spatial import Solid
 
 x, y, z = np.eye(3)
@@ -83,17 +91,22 @@ def bracket() -> Solid:
     return prism(BRACKET, 0.7)
 
 
+def sphere(radius: float) -> Face:
+    return Face(sphere_atlas(radius * np.eye(3), np.zeros(3)))
+
+
 def ball(radius: float) -> Solid:
-    return Solid.from_patches(ellipsoid_patches(radius, radius, radius), name="ball")
+    return Solid.from_brep(faces=[sphere(radius)], name="ball")
 
 
 def socket(inner: float, outer: float) -> Solid:
     """A ball with a round cavity."""
-    patches = [
-        *ellipsoid_patches(outer, outer, outer),
-        *ellipsoid_patches(inner, inner, inner),
-    ]
-    return Solid.from_patches(patches, name="socket")
+    return Solid.from_brep(faces=[sphere(outer), sphere(inner)], name="socket")
+
+
+def egg(a: float, b: float, c: float) -> Solid:
+    """An ellipsoid of Bezier patches."""
+    return Solid.from_patches(ellipsoid_patches(a, b, c), name="egg")
 
 
 def ring(major: float, minor: float) -> Solid:

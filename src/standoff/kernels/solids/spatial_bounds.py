@@ -16,6 +16,7 @@ from standoff.kernels.body.trimming import on_face
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_heights import height_greatest
+from standoff.kernels.solids.spatial_likeness import differences, to_axis, to_own, turning
 from standoff.kernels.solids.spatial_pieces import (
     CUT_BY_TRIM,
     OUTSIDE_TRIM,
@@ -86,16 +87,18 @@ def pulled_back(phi, sign, jet, reach):
 
 
 @kernel
-def third_bounds(m, o, d2, d3):
-    """Bounds of F_uuu, F_uuv, F_uvv and F_vvv from those of the piece, at m[o:]."""
+def third_bounds(m, o, derivatives):
+    """Bounds of F_uuu, F_uuv, F_uvv and F_vvv from those of the piece, at m[o:], and of the first
+    to the third derivative of the potential."""
+    d1, d2, d3 = derivatives
     lu, lv = m[o + S.FIRST], m[o + S.FIRST + 1]
     uu, uv, vv = m[o + S.SECOND], m[o + S.SECOND + 1], m[o + S.SECOND + 2]
     t = o + S.THIRDS
     return (
-        d3 * lu * lu * lu + 3.0 * d2 * lu * uu + m[t],
-        d3 * lu * lu * lv + d2 * (2.0 * lu * uv + uu * lv) + m[t + 1],
-        d3 * lu * lv * lv + d2 * (2.0 * lv * uv + vv * lu) + m[t + 2],
-        d3 * lv * lv * lv + 3.0 * d2 * lv * vv + m[t + 3],
+        d3 * lu * lu * lu + 3.0 * d2 * lu * uu + d1 * m[t],
+        d3 * lu * lu * lv + d2 * (2.0 * lu * uv + uu * lv) + d1 * m[t + 1],
+        d3 * lu * lv * lv + d2 * (2.0 * lv * uv + vv * lu) + d1 * m[t + 2],
+        d3 * lv * lv * lv + 3.0 * d2 * lv * vv + d1 * m[t + 3],
     )
 
 
@@ -156,6 +159,30 @@ def heights_third(phi, side, leaf, box, thirds):
 
 
 @kernel
+def lesser(a, b):
+    return min(a[0], b[0]), min(a[1], b[1]), min(a[2], b[2]), min(a[3], b[3])
+
+
+@kernel
+def likely_third(phi, side, leaf, x, reach, thirds):
+    """The same for a potential that is nearly the leaf's own, or turns about nearly its axis."""
+    o, m = leaf_reals(side, leaf), side.numbers
+    e, w = to_own(phi, side, leaf, x, reach)
+    if e < inf:
+        d = differences(phi, x, reach, e, w)
+        if d[0] < inf:
+            thirds = lesser(thirds, third_bounds(m, o, d))
+    known, point, axis = turning(side, leaf)
+    if known:
+        e, w = to_axis(phi, point, axis, x, reach)
+        d = differences(phi, x, reach, e, w)
+        if d[0] < inf:
+            t = third_bounds(m, o, d)
+            thirds = lesser(thirds, (t[0], t[1], t[2], thirds[3]))
+    return thirds
+
+
+@kernel
 def greatest(phi, sign, side, leaf, box, u, v):
     """(bound of sign phi over a box, value and slopes at (u, v), how far the slopes may change)."""
     o, m = leaf_reals(side, leaf), side.numbers
@@ -164,9 +191,11 @@ def greatest(phi, sign, side, leaf, box, u, v):
     value, g, H, d2, d3 = pulled_back(phi, sign, leaf_jet(side, leaf, u, v), reach)
     if d2 == inf:
         return value + reach, value, g, (inf, inf)
-    thirds = third_bounds(m, o, d2, d3)
+    thirds = third_bounds(m, o, (1.0, d2, d3))
     if is_plane(phi):
         thirds = heights_third(phi, side, leaf, box, thirds)
+    elif phi.kind != TORUS_THROUGH:
+        thirds = likely_third(phi, side, leaf, leaf_jet(side, leaf, u, v)[0], reach, thirds)
     w = o + S.SPREAD
     wide = widened(H, thirds, (m[w], m[w + 1], m[w + 2]), mu, mv)
     e = (box.u0 - u, box.u1 - u, box.v0 - v, box.v1 - v)

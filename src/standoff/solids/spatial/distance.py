@@ -105,7 +105,7 @@ def _apart(
     evaluations: int,
 ) -> SolidProximity:
     places = _places(pair, found, senses)
-    continuum = continuum_of(pair, places, found.upper, found.tolerance)
+    continuum = continuum_of(pair, places, found, senses)
     proven = found.upper - found.lower <= PROVEN * found.tolerance
     if not proven:
         status = Status.DEADLINE if found.counts[0] > evaluations else Status.WITHIN

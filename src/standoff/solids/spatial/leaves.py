@@ -17,6 +17,7 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import edge_jet, on_face
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.torus_potential import TORUS_THROUGH
 from standoff.solids.spatial.analytic import natural_of, round_arc
 from standoff.solids.spatial.derivative_bounds import curve_derivatives, surface_derivatives
 from standoff.solids.spatial.tolerances import BOUND_INFLATION, COLLAPSED_FRAME, SMOOTH_JOIN
@@ -29,6 +30,8 @@ LONGEST, LONGEST_CUT = 0.5, 0.12
 MOST_HALVINGS = 14
 ARC = 0.6  # radians
 UNKNOWN = np.pi
+# What stands in place of a kind of potential for an edge that is an arc of a circle.
+ROUND_ARC = -2
 
 
 @dataclass
@@ -46,6 +49,7 @@ class Leaf:
     centre: Array
     axes: Array
     half: Array
+    beside: int = -1
 
 
 def face_leaves(
@@ -126,9 +130,12 @@ def _bends_along_u(
 ) -> NDArray[np.bool_]:
     hu, hv = rows[:, 1] - rows[:, 0], rows[:, 3] - rows[:, 2]
     with np.errstate(all="ignore"):
-        bend_u = (d[:, 2] * hu + d[:, 3] * hv) / d[:, 0]
-        bend_v = (d[:, 4] * hv + d[:, 3] * hu) / d[:, 1]
-    return np.asarray(np.where(bent, bend_u >= bend_v, wide[0] >= wide[1]))
+        bend_u = (d[:, 2] / d[:, 0] + d[:, 3] / d[:, 1]) * hu
+        bend_v = (d[:, 4] / d[:, 1] + d[:, 3] / d[:, 0]) * hv
+    known = np.isfinite(bend_u) & np.isfinite(bend_v)
+    by_bend = np.where(known, bend_u >= bend_v, hu >= hv)
+    by_width = np.where(np.isfinite(wide).all(axis=0), wide[0] >= wide[1], hu >= hv)
+    return np.asarray(np.where(bent, by_bend, by_width))
 
 
 def _halves(rows: Array, by_u: NDArray[np.bool_]) -> Array:
@@ -200,9 +207,14 @@ def _edge_flags(boundary: PackedParts, number: int) -> int:
 
 
 def edge_leaves(
-    boundary: PackedParts, number: int, ranges: list[tuple[float, float]], own: list[Cone]
+    boundary: PackedParts,
+    number: int,
+    ranges: list[tuple[float, float]],
+    own: list[Cone],
+    beside: tuple[int, Array],
 ) -> list[Leaf]:
-    """The leaves of one edge: its parts, with the cones of their normals."""
+    """The leaves of one edge: its parts, with the cones of their normals, and the potential of a
+    round face beside it."""
     flags = _edge_flags(boundary, number)
     senses = S.INSIDE if flags & L.REFLEX else S.OUTSIDE
     if flags & (L.MIXED | L.CREASED):
@@ -226,9 +238,9 @@ def edge_leaves(
         cones[7] = cone[1] if senses & S.INSIDE else -1.0
         every = np.zeros(12)
         every[0], every[2], every[5], every[9] = d
-        reals = _leaf_reals(np.array([first, last, 0.0, 0.0]), every, cones, np.zeros(9))
-        kind = -2 if arc else -1
-        found.append(Leaf(1, feature, -1, False, senses, [], kind, reals, x, axes, half))
+        reals = _leaf_reals(np.array([first, last, 0.0, 0.0]), every, cones, beside[1])
+        kind = ROUND_ARC if arc else -1
+        found.append(Leaf(1, feature, -1, False, senses, [], kind, reals, x, axes, half, beside[0]))
     return found
 
 
@@ -309,8 +321,14 @@ def all_leaves(boundary: PackedParts) -> tuple[list[Leaf], list[Piece]]:
     ]
     ranges = {k: _parts_of_edge(boundary, k) for k in range(boundary.n_edges)}
     cones = edge_cones(charts, pieces, ranges)
+    round_faces = {}
+    for piece in pieces:
+        kind, record = natural_of(charts[piece.chart])
+        if kind > TORUS_THROUGH:
+            round_faces[piece.edge] = kind, record
     for number, parts in ranges.items():
         if parts:
-            found += edge_leaves(boundary, number, parts, cones[number])
+            beside = round_faces.get(number, (-1, np.zeros(9)))
+            found += edge_leaves(boundary, number, parts, cones[number], beside)
     found += [vertex_leaf(boundary, number) for number in range(boundary.n_vertices)]
     return found, pieces

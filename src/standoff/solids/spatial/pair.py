@@ -8,11 +8,12 @@ from itertools import islice
 import numpy as np
 
 from standoff.geometry.validation import Array
+from standoff.kernels.entries.solids import nearest_in_leaves
 from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
 from standoff.solids.answer import NearestPair
 from standoff.solids.spatial.minimum import Found, leaf_jet_of, least_distance
-from standoff.solids.spatial.points import distance_to_boundary, signed_distances
+from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid import Solid
 from standoff.solids.spatial.tolerances import DIRECTED
@@ -103,15 +104,17 @@ class PlacedPair:
             [-n, -np.cross(place.point_a - self.pa, n), n, np.cross(place.point_b - self.pb, n)]
         )
 
-    def distance_to_b(self, point: Array) -> float:
-        """Of a world point from B's boundary, without a sign."""
-        return distance_to_boundary(self.b, self.in_b(point)).upper
-
-    def on_a(self, point: Array) -> Array:
-        """The point of A's boundary that is nearest to a world point."""
-        found = distance_to_boundary(self.a, self.in_a(point))
-        x = leaf_jet_of(self.a.packed, int(found.best[2]), found.best[5], found.best[6])[0]
-        return np.asarray(x @ self.ra.T + self.pa)
+    def found_from(self, row: Array, start: Array) -> Array | None:
+        """A row of the local minimum that Newton's method finds in a row's leaves from other
+        parameters (4,); None where it is off a solid."""
+        values = np.array([*start, 0.0, 0.0])
+        leaves = row[1:3].astype(np.int64)
+        counts = np.zeros(8, dtype=np.int64)
+        solids = (self.a.packed, self.b.packed)
+        nearest_in_leaves(solids, self.relative, leaves, values, counts)
+        if values[5] == 0.0:
+            return None
+        return np.array([values[4], row[1], row[2], *values[:4], 0.0])
 
     def depths(self, point: Array) -> tuple[float, float, Array, Array]:
         """(how deep a world point is in A and in B, at least; how each grows there)."""

@@ -32,3 +32,5 @@ SAME_BASIN: Final = 1e-2
 a leaf."""
 VALLEY: Final = 1e-14
 """Of the sizes: pairs that differ by less in their distance are as near as each other."""
+STRAIGHT: Final = 1e-6
+"""Of its length: a continuum that bends less is a line."""
