@@ -12,12 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from standoff.cad.tolerances import BOUND_SHARE, FITTED_TRIM
+from standoff.cad.polynomial_bounds import polynomial_bound
+from standoff.cad.tolerances import BOUND_FLOOR, BOUND_SHARE
 from standoff.geometry.boxes import Boxes
 from standoff.geometry.curves import Curve
-from standoff.geometry.interval_vectors import stacked
 from standoff.geometry.intervals import Interval, cos, interval, sin
 from standoff.geometry.net_bounds import curve_nets
+from standoff.geometry.nurbs import NurbsSurface
+from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.patch_bounds import cut
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
@@ -48,6 +50,10 @@ def miss_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float) -> f
     """
     worst = 0.0
     spans = curve.spans()
+    if isinstance(surface, NurbsSurface) and isinstance(curve, NurbsCurve):
+        proven = polynomial_bound(pcurve, curve, surface)
+        if proven is not None:
+            return proven
     for piece, first, last in pcurve.pieces(curve.first, curve.last):
         inside = spans[(spans > first) & (spans < last)]
         for a, b in pairwise([first, *inside, last]):
@@ -65,7 +71,7 @@ def _piece_bound(
         at = np.maximum(_misses(piece, curve, surface, low), _misses(piece, curve, surface, high))
         rest = (high - low) ** 2 / 8.0 * _second(piece, curve, surface, low, high)
         rest = np.where(np.isnan(rest), np.inf, rest)
-        allowed = BOUND_SHARE * max(float(at.max()), proven, FITTED_TRIM * size)
+        allowed = max(BOUND_FLOOR * size, BOUND_SHARE * max(float(at.max()), proven))
         open_ = rest > allowed
         if halving == MOST_HALVINGS:
             open_[:] = False
@@ -146,6 +152,3 @@ def _jets(surface: Surface, boxes: Boxes) -> list[Interval]:
 def rectangles_boxes(rectangles: Array) -> Boxes:
     """Rows (u0, u1, v0, v1) as boxes."""
     return Boxes(rectangles[:, [0, 2]], rectangles[:, [1, 3]])
-
-
-__all__ = ["miss_bound", "stacked"]

@@ -15,14 +15,12 @@ import numpy as np
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.cad.curves import Converted, converted, isoline
 from standoff.cad.opencascade import cast, coordinates, explored, forward
-from standoff.cad.sphere_faces import sphere_charts, sphere_sense
-from standoff.cad.surfaces import Carrier, carrier
+from standoff.cad.seams import once
+from standoff.cad.sphere_faces import sphere_by_angles, sphere_charts, sphere_sense
+from standoff.cad.surfaces import Carrier, basis_surface, carrier
 from standoff.cad.trims import trim
 from standoff.errors import BodyError, StandoffError
-from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.validation import Array
-
-APEX_ANGLES = (0.0, 2.0 * np.pi)
 
 
 class Refused(StandoffError):
@@ -51,15 +49,6 @@ class Pieces:
     sources: list[Any] = field(default_factory=list)
     trims: Counter[str] = field(default_factory=Counter)
     moved: float = 0.0
-
-
-@dataclass(frozen=True)
-class _Use:
-    """An edge in a wire of a face."""
-
-    edge: Any
-    sense: int
-    collapsed: bool
 
 
 def pieces_of(solid: Any, size: float, original: Any = None) -> Pieces:
@@ -116,8 +105,8 @@ class _Maker:
         """Vertices at which an edge ends that is neither closed, a seam, nor collapsed."""
         busy = set()
         for face in explored(solid, "face"):
-            for use in _uses(face):
-                a, b = (self._vertex_key(v) for v in _ends(use.edge))
+            for edge in once(face):
+                a, b = (self._vertex_key(v) for v in _ends(edge))
                 if a != b:
                     busy |= {a, b}
         return busy
@@ -178,40 +167,48 @@ class _Maker:
         from OCP.BRep import BRep_Tool
         from OCP.BRepTools import BRepTools
 
-        geometry = BRep_Tool.Surface_s(face)
+        geometry = basis_surface(BRep_Tool.Surface_s(face))
         over = BRepTools.UVBounds_s(face)
         on = carrier(geometry, over)
-        uses = _uses(face)
-        loop: list[tuple[int, int]] = []
-        trims: list[Pcurve | None] = []
-        apexes: list[Apex] = []
-        for use in uses:
-            if use.collapsed:
-                if on.kind != "sphere":
-                    apexes.append(self._apex(use.edge, face, on, over))
-                continue
-            flat = BRep_Tool.CurveOnSurface_s(use.edge, face, 0.0, 0.0)
-            for number, made in self.edge(use.edge, flat, geometry):
-                loop.append((number, use.sense))
-                if on.kind == "sphere":
-                    continue
-                pcurve, how = trim(made, on, flat, self.size)
+        uses = once(face)
+        made = [m for e in uses if not BRep_Tool.Degenerated_s(e) for m in self._edges(e, face)]
+        sense = None
+        if on.kind == "sphere":
+            charts, trims = sphere_charts(
+                on.surface, [m.curve for _, m, _, _ in made], face, self.size
+            )
+            if not charts:
+                on = sphere_by_angles(geometry, over)
+            elif len(charts) > 1 and made:
+                sense = sphere_sense(geometry, face) * (-1 if cavity else 1)
+        if on.surface.part_of is None:
+            charts, trims = (on.surface,), []
+            for _, converted_edge, _, flat in made:
+                pcurve, how = trim(converted_edge, on, flat, self.size)
                 trims.append(pcurve)
                 self.pieces.trims[how] += 1
-        charts, sense = (on.surface,), None
-        if on.kind == "sphere":
-            curves = [self.pieces.edges[j].curve for j, _ in loop]
-            charts, trims = sphere_charts(on.surface, curves, face, self.size)
-            if len(charts) > 1 and loop:
-                sense = sphere_sense(geometry, face) * (-1 if cavity else 1)
-        elif not loop and not apexes:
-            raise Refused(f"a {on.kind} without an edge")
+        apexes = []
+        if on.surface.part_of is None:
+            collapsed = [e for e in uses if BRep_Tool.Degenerated_s(e)]
+            apexes = [self._apex(e, face, on, over) for e in collapsed]
+            if not made and not apexes:
+                raise Refused(f"a {on.kind} without an edge")
+        loop = tuple((number, way) for number, _, way, _ in made)
         given = tuple(trims) if any(t is not None for t in trims) else ()
-        self.pieces.faces.append(Face(tuple(charts), tuple(loop), tuple(apexes), given))
+        self.pieces.faces.append(Face(tuple(charts), loop, tuple(apexes), given))
         self.pieces.senses.append(sense)
         self.pieces.kinds.append(on.kind)
         self.pieces.sources.append(face)
         self.pieces.moved = max(self.pieces.moved, on.moved)
+
+    def _edges(self, edge: Any, face: Any) -> list[tuple[int, Converted, int, Any]]:
+        """(number, curve, sense, the file's trimming curve) of the edges that an edge becomes."""
+        from OCP.BRep import BRep_Tool
+
+        flat = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 0.0)
+        sense = 1 if forward(edge) else -1
+        found = self.edge(edge, flat, BRep_Tool.Surface_s(face))
+        return [(number, made, sense, flat) for number, made in found]
 
     def _apex(self, edge: Any, face: Any, on: Carrier, over: tuple[float, ...]) -> Apex:
         """A collapsed edge, which must be a side in (u, v)."""
@@ -228,23 +225,6 @@ class _Maker:
         lo, hi = sorted(ends[:, 1 - across].tolist())
         side = ("u", "v")[across] + ("0" if middle[across] > level else "1")
         return Apex(self.vertex(_ends(edge)[0]), level, lo, hi, side)
-
-
-def _uses(face: Any) -> list[_Use]:
-    """The edges of a face's wires, without its seams."""
-    from OCP.BRep import BRep_Tool
-    from OCP.TopAbs import TopAbs_EXTERNAL, TopAbs_INTERNAL
-
-    found = []
-    for wire in explored(face, "wire"):
-        for edge in explored(wire, "edge"):
-            if edge.Orientation() in (TopAbs_INTERNAL, TopAbs_EXTERNAL):
-                continue
-            collapsed = bool(BRep_Tool.Degenerated_s(edge))
-            if not collapsed and BRep_Tool.IsClosed_s(edge, face):
-                continue
-            found.append(_Use(edge, 1 if forward(edge) else -1, collapsed))
-    return found
 
 
 def _ends(edge: Any) -> tuple[Any, Any]:

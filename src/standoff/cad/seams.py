@@ -7,11 +7,13 @@ face at the seam and opposite; area and volume are compared afterwards.
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
 import numpy as np
 
-from standoff.cad.opencascade import cast, coordinates, explored
+from standoff.cad.opencascade import cast, coordinates, explored, forward
+from standoff.cad.surfaces import basis_surface
 from standoff.geometry.curves import FULL_TURN
 
 ANGULAR_U = ("CylindricalSurface", "ConicalSurface", "SphericalSurface")
@@ -37,18 +39,40 @@ def without_seams(solid: Any) -> tuple[Any, int]:
     return cast("solid", context.Apply(solid)), len(closed)
 
 
+def once(face: Any) -> list[Any]:
+    """The edges that a face has once, collapsed ones included, in the order of its wires."""
+    edges = _bounding(face)
+    double = {hash(edge) for edge in seams(face)}
+    return [edge for edge in edges if hash(edge) not in double]
+
+
+def seams(face: Any) -> list[Any]:
+    """The edges that a face has twice, one of each pair. An edge of two faces that share their
+    surface has two trimming curves on it as well, and is none."""
+    from OCP.BRep import BRep_Tool
+
+    edges = [edge for edge in _bounding(face) if not BRep_Tool.Degenerated_s(edge)]
+    times = Counter(hash(edge) for edge in edges)
+    return [edge for edge in edges if times[hash(edge)] == 2 and forward(edge)]
+
+
+def _bounding(face: Any) -> list[Any]:
+    """The edges of a face's wires, without those that lie inside it."""
+    from OCP.TopAbs import TopAbs_EXTERNAL, TopAbs_INTERNAL
+
+    inner = (TopAbs_INTERNAL, TopAbs_EXTERNAL)
+    wires = explored(face, "wire")
+    return [e for wire in wires for e in explored(wire, "edge") if e.Orientation() not in inner]
+
+
 def _must_be_cut(face: Any) -> bool:
     from OCP.BRep import BRep_Tool
 
-    geometry = BRep_Tool.Surface_s(face)
-    while geometry.DynamicType().Name() == "Geom_RectangularTrimmedSurface":
-        geometry = geometry.BasisSurface()
+    geometry = basis_surface(BRep_Tool.Surface_s(face))
     kind = geometry.DynamicType().Name().removeprefix("Geom_")
     if kind in ANGULAR_U:
         return False
-    for edge in explored(face, "edge"):
-        if BRep_Tool.Degenerated_s(edge) or not BRep_Tool.IsClosed_s(edge, face):
-            continue
+    for edge in seams(face):
         flat = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 0.0)
         first, last = BRep_Tool.Range_s(edge, face)
         ends = np.array([coordinates(flat.Value(t)) for t in (first, last)])

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from standoff.cad.curves import NoExactForm, converted, repeated
+from standoff.cad.lowered_degree import lowered
 from standoff.cad.opencascade import coordinates, frame_of
 from standoff.cad.tolerances import OFF_PLANE_PROFILE
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
@@ -58,6 +59,13 @@ class Carrier:
         return np.asarray(uv @ self.to_own[:, :2].T + self.to_own[:, 2])
 
 
+def basis_surface(geometry: Any) -> Any:
+    """A surface without its trims."""
+    while geometry.DynamicType().Name() == "Geom_RectangularTrimmedSurface":
+        geometry = geometry.BasisSurface()
+    return geometry
+
+
 def carrier(geometry: Any, over: Range) -> Carrier:
     """The surface of a face with these ranges of the file's parameters.
 
@@ -67,8 +75,7 @@ def carrier(geometry: Any, over: Range) -> Carrier:
         An offset surface, a profile that is not in a plane of its axis, a spline of too high a
         degree.
     """
-    while geometry.DynamicType().Name() == "Geom_RectangularTrimmedSurface":
-        geometry = geometry.BasisSurface()
+    geometry = basis_surface(geometry)
     kind = geometry.DynamicType().Name().removeprefix("Geom_")
     made = MAKERS.get(kind)
     if made is None:
@@ -140,9 +147,7 @@ def _torus(geometry: Any, over: Range) -> Carrier:
     return Carrier("torus", surface, IDENTITY, inverse, (True, True))
 
 
-def _lemon(
-    axes: Array, origin: Array, major: float, minor: float, v0: float, v1: float
-) -> Carrier:
+def _lemon(axes: Array, origin: Array, major: float, minor: float, v0: float, v1: float) -> Carrier:
     """The inner part of a torus that meets its axis: its arc rotated, half a turn on."""
     x, z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
     surface = Revolution(ConicArc(-major * x, -minor * x, minor * z, v0, v1))
@@ -161,11 +166,6 @@ def _spline(geometry: Any, over: Range) -> Carrier:
         from OCP.GeomConvert import GeomConvert
 
         geometry = GeomConvert.SurfaceToBSplineSurface_s(geometry)
-    if max(geometry.UDegree(), geometry.VDegree()) > GREATEST_DEGREE:
-        raise NoExactForm(
-            f"a spline of degrees {geometry.UDegree()} and {geometry.VDegree()}; the greatest is "
-            f"{GREATEST_DEGREE}"
-        )
     geometry = geometry.Copy()
     if geometry.IsUPeriodic() or geometry.IsVPeriodic():
         whole = list(geometry.Bounds())
@@ -177,24 +177,25 @@ def _spline(geometry: Any, over: Range) -> Carrier:
         geometry.SetUNotPeriodic()
     if geometry.IsVPeriodic():
         geometry.SetVNotPeriodic()
+    points, weights, knots_u, knots_v = _net(geometry)
+    moved = 0.0
+    if max(geometry.UDegree(), geometry.VDegree()) > GREATEST_DEGREE:
+        points, weights, knots_u, knots_v, moved = lowered(points, weights, knots_u, knots_v)
+    surface = NurbsSurface(points, knots_u, knots_v, weights)
+    return Carrier("spline", surface, IDENTITY, moved=moved)
+
+
+def _net(geometry: Any) -> tuple[Array, Array | None, Array, Array]:
     n, m = geometry.NbUPoles(), geometry.NbVPoles()
-    rows = [[geometry.Pole(i, j) for j in range(1, m + 1)] for i in range(1, n + 1)]
-    points = np.array([[coordinates(p) for p in row] for row in rows])
+    us, vs = range(1, n + 1), range(1, m + 1)
+    points = np.array([[coordinates(geometry.Pole(i, j)) for j in vs] for i in us])
     weights = None
     if geometry.IsURational() or geometry.IsVRational():
-        weights = np.array(
-            [[geometry.Weight(i, j) for j in range(1, m + 1)] for i in range(1, n + 1)]
-        )
-    knots_u = repeated(
-        [geometry.UKnot(k) for k in range(1, geometry.NbUKnots() + 1)],
-        [geometry.UMultiplicity(k) for k in range(1, geometry.NbUKnots() + 1)],
-    )
-    knots_v = repeated(
-        [geometry.VKnot(k) for k in range(1, geometry.NbVKnots() + 1)],
-        [geometry.VMultiplicity(k) for k in range(1, geometry.NbVKnots() + 1)],
-    )
-    surface = NurbsSurface(points, knots_u, knots_v, weights)
-    return Carrier("spline", surface, IDENTITY, moved=surface.moved)
+        weights = np.array([[geometry.Weight(i, j) for j in vs] for i in us])
+    us, vs = range(1, geometry.NbUKnots() + 1), range(1, geometry.NbVKnots() + 1)
+    knots_u = repeated([geometry.UKnot(k) for k in us], [geometry.UMultiplicity(k) for k in us])
+    knots_v = repeated([geometry.VKnot(k) for k in vs], [geometry.VMultiplicity(k) for k in vs])
+    return points, weights, knots_u, knots_v
 
 
 def _extrusion(geometry: Any, over: Range) -> Carrier:
@@ -254,6 +255,28 @@ def _into_plane(curve: Curve, extent: float) -> tuple[Curve, float]:
             f"a surface of revolution whose profile leaves the plane of its axis by {moved:.3g}"
         )
     return made, moved
+
+
+KINDS = {
+    "Plane": "plane",
+    "CylindricalSurface": "cylinder",
+    "ConicalSurface": "cone",
+    "SphericalSurface": "sphere",
+    "ToroidalSurface": "torus",
+    "BSplineSurface": "spline",
+    "BezierSurface": "spline",
+    "SurfaceOfLinearExtrusion": "extrusion",
+    "SurfaceOfRevolution": "revolution",
+    "OffsetSurface": "offset",
+}
+
+
+def kind_of(face: Any) -> str:
+    """The kind of a face's surface, as reports name it."""
+    from OCP.BRep import BRep_Tool
+
+    name = basis_surface(BRep_Tool.Surface_s(face)).DynamicType().Name().removeprefix("Geom_")
+    return KINDS.get(name, name)
 
 
 MAKERS: dict[str, Callable[[Any, Range], Carrier]] = {

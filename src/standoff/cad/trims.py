@@ -37,13 +37,13 @@ from standoff.kernels.body import layout as L
 
 # How often the spans of a fitted trimming curve are halved at most.
 FIT_HALVINGS = 6
+# A trimming curve is near enough at this many times its edge's own distance from the surface.
+NEAR_ENOUGH = 1.5
 # Points of each span at which a trimming curve is compared with its edge.
 COMPARED = 33
 
 
-def trim(
-    edge: Converted, on: Carrier, geometry: Any, size: float
-) -> tuple[Pcurve | None, str]:
+def trim(edge: Converted, on: Carrier, geometry: Any, size: float) -> tuple[Pcurve | None, str]:
     """The trimming curve of an edge, and how it was made: "exact", "file" or "fitted".
 
     Parameters
@@ -76,22 +76,32 @@ def trim(
         else:
             return None, "exact"
     if on.kind == "plane":
-        assert on.inverse is not None and isinstance(curve, NurbsCurve)
+        assert on.inverse is not None
+        assert isinstance(curve, NurbsCurve)
         flat = on.inverse(curve.control_points)
         return NurbsPcurve(flat, curve.knots, curve.weights), "exact"
-    found = None
-    if geometry is not None and edge.affine:
-        found = of_file(geometry, edge, on)
-    if found is not None and (on.inverse is None or miss(found, curve, surface) <= FITTED_TRIM * size):
-        return found, "file"
+    found = of_file(geometry, edge, on) if geometry is not None and edge.affine else None
     if on.inverse is None:
         if found is None:
             raise NoExactForm("an edge without a trimming curve on it")
         return found, "file"
-    fitted = fit(curve, on, hint(geometry, edge, on), size)
+    enough = NEAR_ENOUGH * off_surface(curve, on) + FITTED_TRIM * size
+    if found is not None and miss(found, curve, surface) <= enough:
+        return found, "file"
+    fitted = fit(curve, on, hint(geometry, edge, on), enough)
     if found is not None and miss(found, curve, surface) <= miss(fitted, curve, surface):
         return found, "file"
     return fitted, "fitted"
+
+
+def off_surface(curve: Curve, on: Carrier) -> float:
+    """How far a curve is from a surface at samples, length: no trimming curve is nearer."""
+    assert on.inverse is not None
+    points = np.array(
+        [curve.point(float(t)) for t in np.linspace(curve.first, curve.last, COMPARED)]
+    )
+    feet = [on.surface.jet(float(u), float(v))[0] for u, v in on.inverse(points)]
+    return float(np.linalg.norm(points - np.array(feet), axis=1).max())
 
 
 def of_file(geometry: Any, edge: Converted, on: Carrier) -> Pcurve | None:
@@ -119,8 +129,20 @@ def of_file(geometry: Any, edge: Converted, on: Carrier) -> Pcurve | None:
         if flat.Degree() > GREATEST_DEGREE:
             return _lowered(flat, edge, on)
         points, knots, weights = spline_of(flat, float(first), float(last))
-        return NurbsPcurve(on.own(points), knots * edge.scale + edge.shift, weights)
+        knots = _over(knots * edge.scale + edge.shift, edge.curve)
+        try:
+            found = NurbsPcurve(on.own(points), knots, weights)
+            found.pieces(edge.curve.first, edge.curve.last)
+        except StandoffError:  # a cusp, or weights far apart
+            return _lowered(flat, edge, on)
+        return found
     return None
+
+
+def _over(knots: Array, curve: Curve) -> Array:
+    """Knots that begin and end with a curve, to which they are mapped with rounding."""
+    first, last = knots[0], knots[-1]
+    return np.where(knots == first, curve.first, np.where(knots == last, curve.last, knots))
 
 
 def _lowered(flat: Any, edge: Converted, on: Carrier) -> Pcurve:
@@ -147,9 +169,9 @@ def hint(geometry: Any, edge: Converted, on: Carrier) -> Array | None:
     return on.own(coordinates(geometry.Value(t))[None])[0]
 
 
-def fit(curve: Curve, on: Carrier, near: Array | None, size: float) -> NurbsPcurve:
-    """A polynomial trimming curve through the parameters of a curve's points, spans halved until it
-    is near enough."""
+def fit(curve: Curve, on: Carrier, near: Array | None, enough: float) -> NurbsPcurve:
+    """A polynomial trimming curve through the parameters of a curve's points, its spans halved
+    until it is near enough, length."""
     assert on.inverse is not None
     inverse = on.inverse
 
@@ -160,11 +182,11 @@ def fit(curve: Curve, on: Carrier, near: Array | None, size: float) -> NurbsPcur
                 uv[:, k] = np.unwrap(uv[:, k])
         return uv
 
-    breaks = np.asarray(curve.spans(), dtype=np.float64)
+    breaks = np.array([curve.first, curve.last])
     found = None
     for _ in range(FIT_HALVINGS):
         found = _fitted(places, breaks, on.angles, near)
-        if miss(found, curve, on.surface) <= FITTED_TRIM * size:
+        if miss(found, curve, on.surface) <= enough:
             break
         breaks = np.sort(np.concatenate([breaks, 0.5 * (breaks[1:] + breaks[:-1])]))
     assert found is not None
