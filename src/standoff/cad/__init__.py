@@ -14,11 +14,13 @@ if TYPE_CHECKING:
         read_step,
         reports_of,
     )
+    from standoff.errors import CadError
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
         {
             "standoff.cad.assembly": ("Assembly", "Part", "PartReport"),
+            "standoff.errors": ("CadError",),
             "standoff.cad.reading": (
                 "from_shape",
                 "read_brep",
@@ -32,6 +34,7 @@ else:
 
 __all__ = [
     "Assembly",
+    "CadError",
     "Part",
     "PartReport",
     "from_shape",

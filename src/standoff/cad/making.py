@@ -119,6 +119,9 @@ def _check(shape: Any, size: float) -> None:
         raise Refused("it has no face")
     if len(faces) > MOST_FACES:
         raise Refused(f"it has {len(faces)} faces; at most {MOST_FACES} (standoff.cad.limits)")
+    for number, face in enumerate(faces, 1):
+        if abs(area_of(face)) <= LEAST_FACE * size**2:
+            raise Refused(f"face {number} (a {kind_of(face)}) has no area")
     at = free_edges(shape)
     if at or not is_kind(shape, "solid"):
         where = ", ".join(at[:MOST_NAMED]) + (", ..." if len(at) > MOST_NAMED else "")
@@ -128,9 +131,6 @@ def _check(shape: Any, size: float) -> None:
             if at
             else "it is a closed shell, but no solid; heal=True makes it one"
         )
-    for number, face in enumerate(faces, 1):
-        if abs(area_of(face)) <= LEAST_FACE * size**2:
-            raise Refused(f"face {number} (a {kind_of(face)}) has no area")
     faults = faults_of(shape)
     if faults:
         raise Refused("; ".join(faults[:MOST_NAMED]))

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from standoff.cad.closed_bounds import closed_bound
 from standoff.cad.polynomial_bounds import polynomial_bound
 from standoff.cad.tolerances import BOUND_FLOOR, BOUND_SHARE
 from standoff.geometry.boxes import Boxes
@@ -48,6 +49,9 @@ def miss_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float) -> f
     float
         Infinite where the surface has no bounds.
     """
+    closed = closed_bound(pcurve, curve, surface)
+    if closed is not None:
+        return closed
     worst = 0.0
     spans = curve.spans()
     if isinstance(surface, NurbsSurface) and isinstance(curve, NurbsCurve):
@@ -68,7 +72,9 @@ def _piece_bound(
     low, high = ts[:-1], ts[1:]
     proven = 0.0
     for halving in range(MOST_HALVINGS + 1):
-        at = np.maximum(_misses(piece, curve, surface, low), _misses(piece, curve, surface, high))
+        ends, place = np.unique(np.concatenate([low, high]), return_inverse=True)
+        at = _misses(piece, curve, surface, ends)[place]
+        at = np.maximum(at[: len(low)], at[len(low) :])
         rest = (high - low) ** 2 / 8.0 * _second(piece, curve, surface, low, high)
         rest = np.where(np.isnan(rest), np.inf, rest)
         allowed = max(BOUND_FLOOR * size, BOUND_SHARE * max(float(at.max()), proven))

@@ -2,8 +2,8 @@
 polynomial between known parameters.
 
 With S = A / a, p polynomial and C = B / b, the difference times a b is N = A b - B a, a polynomial
-of known degree n. By the Lebesgue constant of its Chebyshev points, |N| <= (1 + 2/pi ln n + 1) times
-its greatest value there (Rivlin 1974): a bound from n + 1 values.
+of known degree n. By the Lebesgue constant of its Chebyshev points, |N| <= (1 +
+2/pi ln(n + 1)) times its greatest value there (Rivlin 1974): a bound from n + 1 values.
 """
 
 from __future__ import annotations

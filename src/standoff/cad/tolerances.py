@@ -42,3 +42,7 @@ SEWN_AT_LEAST: Final = 1e-7
 QUADRATURE: Final = 1e-9
 """Relative error asked of OpenCASCADE's integrals of area and volume: what its own adaptive rule
 reaches on curved faces in milliseconds."""
+
+CONSTANT: Final = 1e-11
+"""A parameter of a trimming curve that varies by less than this (relative to 1 + itself) along it
+is constant: the roundoff of angles, and of the file's own digits."""

@@ -23,7 +23,7 @@ from standoff.cad.curves import (
 )
 from standoff.cad.opencascade import coordinates
 from standoff.cad.surfaces import Carrier
-from standoff.cad.tolerances import FITTED_TRIM
+from standoff.cad.tolerances import CONSTANT, FITTED_TRIM
 from standoff.errors import StandoffError
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
 from standoff.geometry.exact_pcurves import pcurve_of
@@ -131,7 +131,7 @@ def of_file(geometry: Any, edge: Converted, on: Carrier) -> Pcurve | None:
         points, knots, weights = spline_of(flat, float(first), float(last))
         knots = _over(knots * edge.scale + edge.shift, edge.curve)
         try:
-            found = NurbsPcurve(on.own(points), knots, weights)
+            found = NurbsPcurve(straightened(on.own(points)), knots, weights)
             found.pieces(edge.curve.first, edge.curve.last)
         except StandoffError:  # a cusp, or weights far apart
             return _lowered(flat, edge, on)
@@ -153,7 +153,16 @@ def _lowered(flat: Any, edge: Converted, on: Carrier) -> Pcurve:
 
     spans = edge.curve.spans()
     breaks = np.concatenate([np.linspace(a, b, 5)[:-1] for a, b in pairwise(spans)] + [spans[-1:]])
-    return NurbsPcurve(*interpolated(places, breaks))
+    found, knots = interpolated(places, breaks)
+    return NurbsPcurve(straightened(found), knots)
+
+
+def straightened(points: Array) -> Array:
+    """Control points whose u, or v, is constant up to roundoff: exactly constant. Else a curve
+    would have an inflection wherever roundoff turns it."""
+    middle = points.mean(axis=0)
+    same = np.ptp(points, axis=0) <= CONSTANT * (1.0 + np.abs(middle))
+    return np.where(same, middle, points)
 
 
 def hint(geometry: Any, edge: Converted, on: Carrier) -> Array | None:
@@ -203,7 +212,7 @@ def _fitted(
     if near is not None:
         turns = FULL_TURN * np.round((near - points[len(points) // 2]) / FULL_TURN)
         points = points + np.where(angles, turns, 0.0)
-    return NurbsPcurve(points, knots)
+    return NurbsPcurve(straightened(points), knots)
 
 
 def miss(pcurve: Pcurve, curve: Curve, surface: Surface) -> float:
