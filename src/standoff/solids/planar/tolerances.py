@@ -57,3 +57,7 @@ BALL_PART: Final = 2e-2
 
 NO_CORNER: Final = 1e-9
 """A round corner shorter than this fraction of the body's size is left out: its neighbours meet."""
+
+CLEAR_AREA: Final = 1e-2
+"""A polygon through points of a loop that has more area than this fraction of the size squared
+turns as the loop does."""

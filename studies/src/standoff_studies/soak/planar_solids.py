@@ -10,6 +10,7 @@ the samples must come as near as the reaches.
 from __future__ import annotations
 
 import argparse
+import itertools
 import time
 from collections import Counter
 from typing import NamedTuple
@@ -28,6 +29,8 @@ Array = NDArray[np.float64]
 TELL = 20.0  # s between two lines
 PER_LENGTH = 400  # samples along a unit of length
 POSES = 50  # of a pair
+POOL = 30  # solids at a time
+PAIRS = 2000  # of a pool
 # The greatest distance between neighbouring samples, and half of it more for what lies between.
 REACH = 0.75
 ROUNDED_SAMPLE = 1e-12  # length
@@ -143,8 +146,13 @@ def main() -> int:
     counted: Counter[str] = Counter()
     faults, done, spent, times = 0, 0, 0.0, []
     last = begun = time.monotonic()
-    while done < given.queries:
-        a, b = judged(rng), judged(rng)
+    pool: list[Judged] = []
+    for pair in itertools.count():
+        if done >= given.queries:
+            break
+        if pair % PAIRS == 0:
+            pool = [judged(rng) for _ in range(POOL)]
+        a, b = (pool[k] for k in rng.integers(POOL, size=2))
         for _ in range(min(POSES, given.queries - done)):
             r, way, turn = rng.uniform(0.3, 2.6), rng.uniform(0.0, 7.0), rng.uniform(0.0, 7.0)
             pose_b = planar_pose(r * np.cos(way), r * np.sin(way), turn)
