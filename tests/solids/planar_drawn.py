@@ -22,7 +22,7 @@ def planar_pose(x: float, y: float, angle: float = 0.0) -> so.Pose:
 def star(rng: np.random.Generator, n: int, kinds: str = "lab") -> list[Curve]:
     """A star-shaped loop of n curves: lines, arcs of circles through both ends, Bezier curves."""
     angles = (np.arange(n) + rng.uniform(0.0, 0.6, n)) * 2.0 * np.pi / n
-    radii = rng.uniform(0.6, 1.0, n)
+    radii = 0.8 + rng.uniform(-1.0, 1.0, n) * min(0.2, 4.0 / n) + wave(rng, angles, n)
     corners = radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
     curves: list[Curve] = []
     for k in range(n):
@@ -44,6 +44,14 @@ def star(rng: np.random.Generator, n: int, kinds: str = "lab") -> list[Curve]:
                 knots = [0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0]
                 curves.append(NurbsCurve(points, knots))
     return curves
+
+
+def wave(rng: np.random.Generator, angles: Array, n: int) -> Array:
+    """Hollows that many curves make together."""
+    if n < 40:
+        return np.zeros(n)
+    height: Array = rng.uniform(0.0, 0.2) * np.cos(rng.integers(2, 6) * angles)
+    return height
 
 
 def bulged(p: Array, q: Array, bulge: float) -> Curve:

@@ -11,10 +11,15 @@ from standoff.kernels.solids.planar_search import N_FOUND, N_ROW, pop, rise
 
 # Halvings of the steps of the last descent.
 MOST_HALVINGS = 40
+# Of the ball's radius: the last step.
+FINE = 0.002
 # Sides of the steps: the axes and the diagonals.
 N_WAYS = 8
-MOST_SEEDS = 24
+MOST_SEEDS = 12
+MOST_DEEP_SEEDS = 3
 N_DEPTHS = 9
+# Of a square's half side: how well the distances at its middle are known.
+LOOSE = 0.125
 
 
 class Ball(NamedTuple):
@@ -55,7 +60,7 @@ def seeded(a, b, queue, n_found, tolerance, extent):
         _, _, ux, uy, _ = frame_at(a, int(found[at + 10]), found[at + 8])
         _, _, vx, vy, _ = frame_at(b, int(found[at + 11]), found[at + 9])
         step = extent
-        for _ in range(N_DEPTHS):
+        for _ in range(N_DEPTHS if i < MOST_DEEP_SEEDS else 0):
             step *= 0.1
             # to the left of both tangents
             to_x, to_y = x - step * (uy + vy), y + step * (ux + vx)
@@ -94,10 +99,11 @@ def largest_ball(a, b, square, best, queue, part, budget, lengths):
         for k in range(4):
             x = rows[at + 1] + (half if k % 2 else -half)
             y = rows[at + 2] + (half if k // 2 else -half)
-            ball = ball_at(a, b, x, y, tolerance, extent)
+            loose = max(tolerance, LOOSE * half)
+            ball = ball_at(a, b, x, y, loose, extent)
             if ball.radius > best.radius:
                 best = ball
-            put_square(rows, made, -(ball.radius + sqrt(2.0) * half), x, y, half)
+            put_square(rows, made, -(ball.radius + loose + sqrt(2.0) * half), x, y, half)
             rise(rows, heap, made, size)
             made, size = made + 1, size + 1
     return climbed(a, b, best, 0.1 * extent, tolerance, extent), made
@@ -107,7 +113,7 @@ def largest_ball(a, b, square, best, queue, part, budget, lengths):
 def climbed(a, b, best, step, tolerance, extent):
     """The ball moved to larger ones beside it, by steps that are halved."""
     for _ in range(MOST_HALVINGS):
-        if step < tolerance:
+        if step < max(tolerance, FINE * best.radius):
             break
         last = best
         for k in range(N_WAYS):

@@ -7,24 +7,29 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.curves import Curve
+from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.intervals import Interval
-from standoff.kernels.solids import planar_layout as P
-from standoff.solids.planar.leaves import form_of
-from standoff.solids.planar.loops import Loop, ends_of
+from standoff.solids.planar.loops import Loop, ends_of, size_of
 from standoff.solids.planar.tolerances import PADDED
 
 Array = NDArray[np.float64]
-PARTS = 512  # of each smooth piece of a curve
-GAUSS = np.polynomial.legendre.leggauss(4)
+# Parts of a smooth piece of a curve, for the error: by its part of the solid's size.
+FEWEST_PARTS, MOST_PARTS = 24, 512
+GAUSS_PARTS = 12  # for the value
+GAUSS = np.polynomial.legendre.leggauss(5)
+SAMPLES = 17  # of a curve, for the rough value
 
 
 def area_of(loops: tuple[Loop, ...]) -> tuple[float, float]:
     """(area, bound of its error) of what lies on the left of the loops."""
     total, error = 0.0, 0.0
+    size = max(size_of(loop.curves) for loop in loops)
     for loop in loops:
         for curve, backward in zip(loop.curves, loop.backward, strict=True):
-            value, off = swept(curve)
+            share = float(np.abs(np.subtract(*ends_of(curve))).max()) / size
+            # a closed curve has no chord
+            parts = MOST_PARTS if curve.closed else max(FEWEST_PARTS, int(MOST_PARTS * share))
+            value, off = swept(curve, parts)
             total += -value if backward else value
             error += off
         total_ends = _joints(loop)
@@ -38,42 +43,74 @@ def _joints(loop: Loop) -> float:
     return len(loop.curves) * loop.gap * reach
 
 
-def swept(curve: Curve) -> tuple[float, float]:
+def swept(curve: Curve, parts: int) -> tuple[float, float]:
     """(half the integral of x dy - y dx along a curve, bound of its error)."""
     (x0, y0), (x1, y1) = ends_of(curve)
     size = float(np.abs([x0, y0, x1, y1]).max())
-    form = form_of(curve)
-    if form == P.LINE:
+    if isinstance(curve, Line):
         return 0.5 * float(x0 * y1 - x1 * y0), PADDED * size**2
-    if form == P.ARC:
+    if isinstance(curve, ConicArc):
         a, b, c = curve.basis()[:2].T
         turn = curve.last - curve.first
         sector = 0.5 * turn * float(a[0] * b[1] - a[1] * b[0])
         chord = 0.5 * float(c[0] * (y1 - y0) - c[1] * (x1 - x0))
         reach = size + float(np.abs(curve.basis()).sum())
         return sector + chord, PADDED * reach**2 * (1.0 + turn)
-    return _integrated(curve, size)
+    return _integrated(curve, size, parts)
 
 
-def _integrated(curve: Curve, size: float) -> tuple[float, float]:
-    """By the midpoint rule, whose error over a part of length h is at most h² / 8 times the width
-    of the range of the integrand's derivative x y_tt - y x_tt."""
-    total = Interval(np.zeros(1), np.zeros(1))
-    value = 0.0
-    spans = curve.spans()
-    for first, last in pairwise(spans):
-        cuts = np.linspace(first, last, PARTS + 1)
-        low, high = cuts[:-1], cuts[1:]
-        middle, h = 0.5 * (low + high), high - low
-        over, at = curve.jets_over(Interval(low, high)), curve.jets_over(Interval(middle, middle))
-        rate = over[0, 0] * over[1, 2] - over[1, 0] * over[0, 2]
-        density = at[0, 0] * at[1, 1] - at[1, 0] * at[0, 1]
-        off = 0.125 * h**2 * (rate.hi - rate.lo)
-        part = density * h + Interval(-off, off)
-        total = total + Interval(part.lo.sum(keepdims=True), part.hi.sum(keepdims=True)) * 0.5
+def _integrated(curve: Curve, size: float, parts: int) -> tuple[float, float]:
+    """The value by Gauss, the error from bounds.
+
+    Over a part of length h round c, with T = x_t(c) and P, Q in the range of x_tt,
+    (x - x(c)) x x_t = t² (T x Q + P x T / 2) + t³ P x Q / 2: its integral is known up to the width
+    of that range, times h³.
+    """
+    low, high, value = 0.0, 0.0, 0.0
+    for first, last in pairwise(curve.spans()):
+        cuts = np.linspace(first, last, parts + 1)
+        start, end = cuts[:-1], cuts[1:]
+        middle, h = 0.5 * (start + end), end - start
+        over = curve.jets_over(Interval(start, end))
+        # knots as the starts and as the ends of parts, so that none lies between two spans
+        places = np.concatenate([middle, start, end])
+        at, starts, ends = _thirds(curve.jets_over(Interval(places, places)), parts)
+        chord = ends[:, 0] - starts[:, 0]
+        bend = _crossed(at[:, 1], over[:, 2])
+        rest = _crossed(over[:, 2], over[:, 2]).magnitude * h**4 / 64.0
+        part = _crossed(at[:, 0], chord) + (bend - bend * 0.5) * (h**3 / 12.0)
+        part = (part + Interval(-rest, rest)) * 0.5
+        low, high = low + float(part.lo.sum()), high + float(part.hi.sum())
+        value += _by_gauss(curve, float(first), float(last))
+    rounding = PADDED * parts * (size**2 + abs(value))
+    return value, max(high - value, value - low) + rounding
+
+
+def _thirds(jets: Interval, n: int) -> tuple[Interval, Interval, Interval]:
+    return jets[..., :n], jets[..., n : 2 * n], jets[..., 2 * n :]
+
+
+def _crossed(a: Interval, b: Interval) -> Interval:
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def _by_gauss(curve: Curve, first: float, last: float) -> float:
+    """Half the integral of x dy - y dx over a smooth piece."""
+    step, value = (last - first) / GAUSS_PARTS, 0.0
+    for k in range(GAUSS_PARTS):
         for node, weight in zip(*GAUSS, strict=True):
-            jets = [curve.jet(float(m + 0.5 * node * d)) for m, d in zip(middle, h, strict=True)]
-            x, xt = np.array([j[0] for j in jets]), np.array([j[1] for j in jets])
-            value += 0.25 * weight * float(h @ (x[:, 0] * xt[:, 1] - x[:, 1] * xt[:, 0]))
-    rounding = PADDED * (size**2 + abs(value)) * len(spans)
-    return value, float(max(total.hi[0] - value, value - total.lo[0])) + rounding
+            x, xt, _ = curve.jet(first + step * (k + 0.5 + 0.5 * float(node)))
+            value += 0.25 * step * float(weight) * float(x[0] * xt[1] - x[1] * xt[0])
+    return value
+
+
+def rough_area(loop: Loop) -> float:
+    """The area of a polygon through points of a loop: enough to see which way it turns."""
+    points = []
+    for curve, backward in zip(loop.curves, loop.backward, strict=True):
+        ts = np.linspace(curve.first, curve.last, SAMPLES)[:-1]
+        if backward:
+            ts = curve.first + curve.last - ts
+        points += [curve.point(float(t))[:2] for t in ts]
+    x, y = np.array(points).T
+    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))

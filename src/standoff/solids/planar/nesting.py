@@ -10,10 +10,10 @@ from standoff.errors import BodyError
 from standoff.kernels.entries import planar_solids as entries
 from standoff.kernels.solids import planar_crossings as C
 from standoff.kernels.solids import planar_layout as P
-from standoff.solids.planar.area import area_of
-from standoff.solids.planar.loops import Loop
+from standoff.solids.planar.area import area_of, rough_area
+from standoff.solids.planar.loops import Loop, size_of
 from standoff.solids.planar.outline import Outline, packed_outline
-from standoff.solids.planar.tolerances import APART_FROM_ITSELF
+from standoff.solids.planar.tolerances import APART_FROM_ITSELF, CLEAR_AREA
 
 # Pairs of parts that may be looked at.
 MOST_LOOKS = 10_000_000
@@ -27,8 +27,11 @@ def turned(loop: Loop, outer: bool) -> Loop:
     BodyError
         No area.
     """
-    area, error = area_of((loop,))
+    area, error = rough_area(loop), 0.0
+    if abs(area) <= CLEAR_AREA * size_of(loop.curves) ** 2:
+        area, error = area_of((loop,))
     if abs(area) <= error:
+        check_simple(packed_outline((loop,)), (loop,))  # an eight has no area either
         place = loop.curves[0].point(loop.curves[0].first)[:2]
         raise BodyError(
             f"A loop of {len(loop.curves)} curves at {place} encloses no area: its curves run "

@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 CAPACITY = 1 << 17  # pairs of pieces that may be open or were
 MOST_FOUND = 2048
 MOST_EVALUATIONS = 4_000_000
-MOST_SQUARES = 4000
+MOST_SQUARES = 1200
 UNSEEN: Array = np.full(3, np.nan)
 
 

@@ -52,8 +52,12 @@ TURN_OF_ARC: Final = 0.8
 UNEVEN_LEAF: Final = 0.05
 """Radians: width of a leaf's range of curvature, by its length."""
 
-BALL_PART: Final = 1e-2
+BALL_PART: Final = 2e-2
 """The ball in an overlap is sought until no other is larger by this part of it."""
 
 NO_CORNER: Final = 1e-9
 """A round corner shorter than this fraction of the body's size is left out: its neighbours meet."""
+
+CLEAR_AREA: Final = 1e-2
+"""A polygon through points of a loop that has more area than this fraction of the size squared
+turns as the loop does."""
