@@ -190,11 +190,13 @@ def _answer(
             ]
         )
         entries.gradient(arms, gradient)
+    if overlap is None and status is not Status.TOUCHING:
+        lower = max(lower, 0.0)
     lower -= pair.slack
     return SolidProximity(
         status=status,
         distance=distance,
-        lower_bound=max(lower, 0.0) if overlap is None and status is not Status.TOUCHING else lower,
+        lower_bound=lower,
         upper_bound=distance + pair.slack,
         slack=pair.slack,
         point_a=best.point_a,

@@ -18,6 +18,8 @@ from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
+from standoff.motion import PoseLike
+from standoff.solids.answer import SolidProximity
 from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.tree import packed_leaves
 from standoff.wording import printable
@@ -169,6 +171,27 @@ class Solid:
         first = (0, self.boundary.n_faces, self.boundary.n_faces + self.boundary.n_edges)
         names = ("face", "edge", "vertex")
         return Feature(names[2 - part.dim], part.feature - first[2 - part.dim])
+
+    def cold_query(
+        self, a: Any, b: Any, pose_a: PoseLike, pose_b: PoseLike, within: float | None
+    ) -> SolidProximity:
+        """The distance of two solids, or of one and a `Body`; see ``so.solids.distance``.
+
+        Parameters
+        ----------
+        a, b : Solid, Boundary or Body
+            One of them this one.
+        pose_a, pose_b : Pose or what ``Pose.of`` reads
+        within : float or None
+            Horizon, length.
+
+        Returns
+        -------
+        SolidProximity
+        """
+        from standoff.solids.spatial.distance import spatial_distance
+
+        return spatial_distance(a, b, pose_a, pose_b, within=within)
 
     def contains(self, points: Any) -> NDArray[np.bool_]:
         """Which points are inside the solid or on its boundary.
