@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -250,5 +250,11 @@ def as_solid(given: Any) -> Solid:
     if isinstance(given, Solid):
         return given
     if isinstance(given, Boundary | Body):
-        return Solid(given)
+        return _made_once(given)
     raise StandoffError(f"{given!r} is no Solid, Boundary or Body.", "solid", given)
+
+
+@lru_cache(maxsize=64)
+def _made_once(boundary: Boundary) -> Solid:
+    """A body is asked again and again, and its leaves take a second."""
+    return Solid(boundary)
